@@ -1,0 +1,70 @@
+"""What a press gives back: the load history and the fields at each step. SI units."""
+
+from dataclasses import dataclass, field
+
+from mesh.types import Floats, Ints
+
+
+@dataclass(frozen=True)
+class Fields:
+    """Fields at one load step; cell arrays follow the mesh's tetrahedra.
+
+    displacement_m : (n, 3)
+    cauchy_stress_Pa : (m, 6) xx, yy, zz, xy, yz, xz (VTK's order of a symmetric tensor), mean over the element
+    von_mises_Pa, pressure_Pa (positive in compression), max_stretch : (m,)
+    film_tets : (k,) indices of the film's tetrahedra; the film arrays follow it, in the film's own axes (1 along
+        the draw direction, 2 across, 3 normal):
+    film_strain : (k, 6) Green-Lagrange strain 11, 22, 33, 12, 23, 13
+    film_stress_Pa : (k, 6) second Piola-Kirchhoff stress, same order
+    charge_density_C_per_m2 : (k,) short-circuit charge per undeformed area
+    contact_nodes : (c,) nodes of the facets "contact"; the contact arrays follow it
+    gap_m : (c,) signed distance to the dot; contact_pressure_Pa : (c,) positive in compression
+    """
+
+    displacement_m: Floats
+    cauchy_stress_Pa: Floats
+    von_mises_Pa: Floats
+    pressure_Pa: Floats
+    max_stretch: Floats
+    film_tets: Ints
+    film_strain: Floats
+    film_stress_Pa: Floats
+    charge_density_C_per_m2: Floats
+    contact_nodes: Ints
+    gap_m: Floats
+    contact_pressure_Pa: Floats
+
+
+@dataclass(frozen=True)
+class Step:
+    """One converged load step. Charges and voltages: one per electrode, shape (e,)."""
+
+    indentation_m: float
+    reaction_force_N: float
+    film_charge_C: Floats
+    open_circuit_voltage_V: Floats
+    newton_iterations: int
+    relative_residual: float
+    dot_position_m: Floats
+    fields: Fields
+
+
+@dataclass(frozen=True)
+class PressResult:
+    """The history of a press. steps[0] is the unloaded state.
+
+    converged is False when the last asked depth was not reached; failure then says where and why.
+    Forces and charges are those of the whole segment (a plane-strain slice is scaled to width_mm).
+    """
+
+    steps: tuple[Step, ...]
+    converged: bool
+    failure: str | None
+    electrode_names: tuple[str, ...]
+    capacitance_F: Floats
+    unknowns: int
+    linear_solver: str
+    max_relative_residual: float
+    max_principal_film_strain: float
+    max_principal_film_stress_Pa: float
+    warnings: tuple[str, ...] = field(default=())
