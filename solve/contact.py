@@ -1,0 +1,128 @@
+"""Frictionless contact with the rigid dot: a contact pressure at every surface node, no penalty number.
+
+Lagrangian L = W - sum_i lambda_i g_i with the weighted gap g_i = int phi_i g(X + u) dA over the undeformed facet.
+phi_i is the hat function of node i on the facet cut into four, so that there is one positive pressure for each
+surface node: with the corner nodes alone a compressed surface can wrinkle below the size of the elements.
+The complementarity lambda_i >= 0, g_i >= 0 is solved by the primal-dual active set, a semismooth Newton method
+(Hueeber and Wohlmuth, Comput. Methods Appl. Mech. Eng. 194, 2005; Popp et al., Int. J. Numer. Meth. Eng. 83,
+2010). lambda is a nominal pressure, per undeformed area.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mesh.types import Floats, Ints
+from solve.dot_distance import RigidDot
+from solve.quadrature import triangle
+from solve.shape_functions import linear, quadratic
+from solve.unknowns import Unknowns
+
+QUARTERS = ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5))  # a quadratic facet as four linear ones
+NODES = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]])
+
+
+def composite_rule() -> tuple[Floats, Floats, Floats]:
+    """Quadrature on the four quarters of a facet: points (q, 2), weights (q,), hat functions (q, 6)."""
+    points, weights = triangle()
+    hats = np.zeros((4, len(points), 6))
+    for quarter, nodes in enumerate(QUARTERS):
+        hats[quarter][:, nodes] = linear(points)
+    hat = hats.reshape(-1, 6)
+    return hat @ NODES, np.tile(weights / 4.0, 4), hat
+
+
+POINTS, WEIGHTS, HATS = composite_rule()
+SHAPES, SLOPES = quadratic(POINTS)
+
+
+@dataclass(frozen=True)
+class ContactFacets:
+    """Contact facets with their quadrature, in the solver's unit of length.
+
+    facets : (k, 6) nodes; points : (n, 3) undeformed nodes; area : (k, q) weights;
+    dofs : (k, 25) unknowns: 6 x 3 displacements, 6 contact pressures, the dot's approach.
+    pressure_dofs : (c,) distinct contact-pressure unknowns, index : (k, 6) into them.
+    """
+
+    facets: Ints
+    points: Floats
+    area: Floats
+    dofs: Ints
+    pressure_dofs: Ints
+    index: Ints
+    dot: RigidDot
+
+    @property
+    def nodal_area(self) -> Floats:
+        """int phi_i dA, shape (c,)."""
+        return self._sum(np.einsum("kq,qi->ki", self.area, HATS))
+
+    def _sum(self, local: Floats) -> Floats:
+        return np.bincount(self.index.ravel(), local.ravel(), len(self.pressure_dofs))
+
+    def _at_quadrature(self, displacement: Floats, move: Floats) -> tuple[Floats, Floats, Floats]:
+        position = (self.points + displacement)[self.facets]
+        x = np.einsum("qn,kni->kqi", SHAPES, position)
+        gap, normal, hessian = self.dot.distance(x.reshape(-1, 3), move)
+        shape = x.shape[:2]
+        return gap.reshape(shape), normal.reshape(*shape, 3), hessian.reshape(*shape, 3, 3)
+
+    def weighted_gap(self, displacement: Floats, move: Floats) -> Floats:
+        """g_i, shape (c,), at nodal displacements (n, 3) and the dot displaced by move (3,)."""
+        gap = self._at_quadrature(displacement, move)[0]
+        return self._sum(np.einsum("kq,qi,kq->ki", self.area, HATS, gap))
+
+    def elements(self, displacement: Floats, move: Floats, pressure: Floats, active: Ints) -> tuple[Floats, Floats]:
+        """Matrices (k, 25, 25) and residuals (k, 25) of -sum lambda_i g_i.
+
+        pressure : (c,) lambda; active : (c,) bool. Rows of inactive nodes carry no coupling.
+        """
+        phi = HATS
+        gap, normal, hessian = self._at_quadrature(displacement, move)
+        on = active[self.index].astype(float)
+        lam = np.einsum("qi,ki->kq", phi, np.where(active, pressure, 0.0)[self.index])
+        # generalised direction of each unknown: displacement of node n along i, then the approach along -z
+        count = len(self.facets)
+        direction = np.zeros((len(phi), 19, 3))
+        direction[:, :18] = np.einsum("qn,ij->qnij", SHAPES, np.eye(3)).reshape(len(phi), 18, 3)
+        direction[:, 18, 2] = 1.0  # the dot moves by -z: the gap changes as if the surface moved by +z
+        slope = np.einsum("kqi,qdi->kqd", normal, direction)
+        columns = np.r_[0:18, 24]
+        ke, re = np.zeros((count, 25, 25)), np.zeros((count, 25))
+        curvature = np.einsum("kq,kq,qdi,kqij,qej->kde", self.area, lam, direction, hessian, direction, optimize=True)
+        ke[:, columns[:, None], columns[None, :]] = -curvature
+        coupling = -np.einsum("kq,kqd,qi->kdi", self.area, slope, phi, optimize=True) * on[:, None, :]
+        ke[:, columns, 18:24] = coupling
+        ke[:, 18:24, 24] = coupling[:, 18, :]
+        re[:, columns] = -np.einsum("kq,kq,kqd->kd", self.area, lam, slope)
+        re[:, 18:24] = -np.einsum("kq,qi,kq->ki", self.area, phi, gap) * on
+        return ke, re
+
+    def force(self, displacement: Floats, move: Floats, pressure: Floats) -> Floats:
+        """Resultant of the dot on the meshed body, shape (3,), in the solver's units."""
+        lam = np.einsum("qi,ki->kq", HATS, pressure[self.index])
+        normal = self._at_quadrature(displacement, move)[1]
+        return np.einsum("kq,kq,kqi->i", self.area, lam, normal)
+
+
+def facet_area(points: Floats, facets: Ints) -> Floats:
+    """Area weights (k, q) of quadratic facets (k, 6) under the composite rule."""
+    tangents = np.einsum("qna,kni->kqai", SLOPES, points[facets])
+    return np.linalg.norm(np.cross(tangents[:, :, 0], tangents[:, :, 1]), axis=-1) * WEIGHTS
+
+
+def contact_facets(points: Floats, facets: Ints, unknowns: Unknowns, dot: RigidDot) -> ContactFacets:
+    """Collect the contact facets (k, 6) of a problem; points (n, 3)."""
+    pressure_dofs, index = np.unique(unknowns.contact[facets], return_inverse=True)
+    dofs = np.concatenate(
+        [
+            unknowns.displacement[facets].reshape(-1, 18),
+            unknowns.contact[facets],
+            np.full((len(facets), 1), unknowns.approach),
+        ],
+        axis=1,
+    )
+    return ContactFacets(
+        facets, points, facet_area(points, facets), dofs, pressure_dofs, index.reshape(-1, 6), dot
+    )

@@ -1,0 +1,76 @@
+"""Fields of a converged state in SI units, element means where they vary inside an element."""
+
+import numpy as np
+
+from mesh.types import Floats, TetMesh
+from solve.materials.voigt import from_voigt, to_voigt
+from solve.result import Fields
+from solve.solid import SolidRegion, deformation_gradient
+from solve.quadrature import tetrahedron
+from solve.shape_functions import linear
+from solve.system import Load, System
+
+
+def fields(system: System, tet_mesh: TetMesh, x: Floats, load: Load) -> Fields:
+    """All fields at the unknowns x (count,)."""
+    displacement = system.displacement(x)
+    cauchy, stretch = np.zeros((len(tet_mesh.tets), 3, 3)), np.zeros(len(tet_mesh.tets))
+    for solid in system.solids:
+        index = tet_mesh.region_tets(solid.name)
+        cauchy[index], stretch[index] = _medium(solid, displacement, x)
+    film = tet_mesh.region_tets("film")
+    strain, stress, cauchy[film], stretch[film] = _film(system, displacement, x)
+    density = stress @ system.film.law.coupling
+    turn = system.film.law.to_film_axes
+    deviator = cauchy - np.einsum("mii->m", cauchy)[:, None, None] / 3.0 * np.eye(3)
+    contact_nodes = np.unique(tet_mesh.facets["contact"])
+    pressure_dofs = system.unknowns.contact[contact_nodes]
+    return Fields(
+        displacement_m=displacement * system.units.length,
+        cauchy_stress_Pa=to_voigt(cauchy) * system.units.stress,
+        von_mises_Pa=np.sqrt(1.5 * np.einsum("mij,mij->m", deviator, deviator)) * system.units.stress,
+        pressure_Pa=-np.einsum("mii->m", cauchy) / 3.0 * system.units.stress,
+        max_stretch=stretch,
+        film_tets=film,
+        film_strain=strain @ turn.T * [1, 1, 1, 0.5, 0.5, 0.5],
+        film_stress_Pa=np.linalg.solve(turn.T, stress.T).T * system.units.stress,
+        charge_density_C_per_m2=density * system.units.stress * system.units.length / system.units.voltage,
+        contact_nodes=contact_nodes,
+        gap_m=_gap(system, displacement, x, load, contact_nodes),
+        contact_pressure_Pa=x[pressure_dofs] * system.units.stress,
+    )
+
+
+def _medium(solid: SolidRegion, displacement: Floats, x: Floats) -> tuple[Floats, Floats]:
+    """Mean Cauchy stress (m, 3, 3) and largest principal stretch (m,), J sigma = F S F^t."""
+    f = deformation_gradient(solid.gradient, displacement[solid.tets])
+    c = f.swapaxes(-1, -2) @ f
+    stress = solid.law.stress(c.reshape(-1, 3, 3))[0].reshape(*f.shape[:2], 6)
+    jacobian = np.linalg.det(f)[..., None, None]
+    pressure = np.einsum("qa,ma->mq", linear(tetrahedron()[0]), x[solid.dofs[:, 30:]])
+    sigma = f @ from_voigt(stress) @ f.swapaxes(-1, -2) / jacobian + pressure[..., None, None] * np.eye(3)
+    return _mean(sigma, solid.weight), _largest_stretch(_mean(c, solid.weight))
+
+
+def _film(system: System, displacement: Floats, x: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    """Mean strain and stress (k, 6) in segment axes, mean Cauchy stress (k, 3, 3), largest stretch (k,)."""
+    film = system.film
+    strain, stress = film.strain_and_stress(displacement, system.voltage(x))
+    f = deformation_gradient(film.gradient, displacement[film.tets])
+    sigma = f @ from_voigt(stress) @ f.swapaxes(-1, -2) / np.linalg.det(f)[..., None, None]
+    stretch = _largest_stretch(_mean(f.swapaxes(-1, -2) @ f, film.weight))
+    return _mean(strain, film.weight), _mean(stress, film.weight), _mean(sigma, film.weight), stretch
+
+
+def _mean(values: Floats, weight: Floats) -> Floats:
+    mean: Floats = np.einsum("mq...,mq->m...", values, weight / weight.sum(axis=1, keepdims=True))
+    return mean
+
+
+def _largest_stretch(cauchy_green: Floats) -> Floats:
+    return np.sqrt(np.linalg.eigvalsh(cauchy_green)[:, -1])
+
+
+def _gap(system: System, displacement: Floats, x: Floats, load: Load, nodes: Floats) -> Floats:
+    gap = system.contact.dot.distance((system.points + displacement)[nodes], system.move(x, load))[0]
+    return gap * system.units.length

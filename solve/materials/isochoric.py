@@ -1,0 +1,83 @@
+"""Stress and tangent of a polynomial in the isochoric invariants.
+
+With A = dI1/dC = J^(-2/3) (1 - I1/3 C^-1) and B = dI2/dC = J^(-4/3) (I1 1 - C - 2/3 I2 C^-1):
+    S = 2 (W1 A + W2 B),     CC = 4 (W11 A x A + W1 dA/dC + W2 dB/dC)
+(Holzapfel, Nonlinear Solid Mechanics, 2000, eqs. 6.116 and 6.168 ff.)
+"""
+
+import numba as nb
+import numpy as np
+
+from mesh.types import Floats
+
+I_OF = np.array([0, 1, 2, 0, 1, 0])
+J_OF = np.array([0, 1, 2, 1, 2, 2])
+
+
+@nb.njit(inline="always")  # type: ignore[untyped-decorator]
+def inverse(c, out):  # type: ignore[no-untyped-def]
+    """Inverse of a 3 x 3 matrix into out; returns the determinant."""
+    out[0, 0] = c[1, 1] * c[2, 2] - c[1, 2] * c[2, 1]
+    out[0, 1] = c[0, 2] * c[2, 1] - c[0, 1] * c[2, 2]
+    out[0, 2] = c[0, 1] * c[1, 2] - c[0, 2] * c[1, 1]
+    out[1, 0] = c[1, 2] * c[2, 0] - c[1, 0] * c[2, 2]
+    out[1, 1] = c[0, 0] * c[2, 2] - c[0, 2] * c[2, 0]
+    out[1, 2] = c[0, 2] * c[1, 0] - c[0, 0] * c[1, 2]
+    out[2, 0] = c[1, 0] * c[2, 1] - c[1, 1] * c[2, 0]
+    out[2, 1] = c[0, 1] * c[2, 0] - c[0, 0] * c[2, 1]
+    out[2, 2] = c[0, 0] * c[1, 1] - c[0, 1] * c[1, 0]
+    det = c[0, 0] * out[0, 0] + c[0, 1] * out[1, 0] + c[0, 2] * out[2, 0]
+    for i in range(3):
+        for j in range(3):
+            out[i, j] /= det
+    return det
+
+
+@nb.njit(parallel=True, cache=True)  # type: ignore[untyped-decorator]
+def _stress_and_tangent(cauchy_green, c10, c01, c20, c30, stress, tangent):  # type: ignore[no-untyped-def]
+    for n in nb.prange(len(cauchy_green)):
+        c = cauchy_green[n]
+        ci, a, b = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
+        j23 = inverse(c, ci) ** (-1.0 / 3.0)
+        trace = c[0, 0] + c[1, 1] + c[2, 2]
+        square = 0.0
+        for i in range(3):
+            for j in range(3):
+                square += c[i, j] * c[i, j]
+        i1, i2 = j23 * trace, j23 * j23 * 0.5 * (trace * trace - square)
+        x = i1 - 3.0
+        w1 = c10 + x * (2.0 * c20 + 3.0 * c30 * x)
+        w11 = 2.0 * c20 + 6.0 * c30 * x
+        for i in range(3):
+            for j in range(3):
+                d = 1.0 if i == j else 0.0
+                a[i, j] = j23 * d - i1 / 3.0 * ci[i, j]
+                b[i, j] = j23 * j23 * (trace * d - c[i, j]) - 2.0 / 3.0 * i2 * ci[i, j]
+        for v in range(6):
+            i, j = I_OF[v], J_OF[v]
+            stress[n, v] = 2.0 * (w1 * a[i, j] + c01 * b[i, j])
+            dij = 1.0 if i == j else 0.0
+            for w in range(6):
+                k, m = I_OF[w], J_OF[w]
+                dkm = 1.0 if k == m else 0.0
+                # C^-1 (.) C^-1 and the fourth-order identity, symmetrised
+                odot = 0.5 * (ci[i, k] * ci[j, m] + ci[i, m] * ci[j, k])
+                unit = (1.0 if v == w else 0.0) * (1.0 if v < 3 else 0.5)
+                both = ci[i, j] * ci[k, m]
+                da = -j23 / 3.0 * (dij * ci[k, m] + ci[i, j] * dkm) + i1 * (both / 9.0 + odot / 3.0)
+                tij = j23 * j23 * (trace * dij - c[i, j])
+                tkm = j23 * j23 * (trace * dkm - c[k, m])
+                db = (
+                    j23 * j23 * (dij * dkm - unit)
+                    - 2.0 / 3.0 * (tij * ci[k, m] + ci[i, j] * tkm)
+                    + i2 * (4.0 / 9.0 * both + 2.0 / 3.0 * odot)
+                )
+                tangent[n, v, w] = 4.0 * (w11 * a[i, j] * a[k, m] + w1 * da + c01 * db)
+
+
+def isochoric_stress(cauchy_green: Floats, constants: Floats) -> tuple[Floats, Floats]:
+    """S (n, 6) and tangent (n, 6, 6) at C (n, 3, 3) for the constants (c10, c01, c20, c30)."""
+    stress = np.empty((len(cauchy_green), 6))
+    tangent = np.empty((len(cauchy_green), 6, 6))
+    _stress_and_tangent(cauchy_green, *constants, stress, tangent)
+    return stress, tangent

@@ -1,0 +1,165 @@
+"""The material models that a configuration can name, with their constants."""
+
+from typing import Annotated, Literal, Self, TypeVar
+
+from pydantic import AfterValidator, Field, model_validator
+
+from geometry.parameters import Finite, Positive, Table
+
+
+def _poisson_ratio(value: float) -> float:
+    if not -1.0 < value < 0.5:
+        raise ValueError("must be above -1 and below 0.5")
+    return value
+
+
+PoissonRatio = Annotated[
+    float,
+    AfterValidator(_poisson_ratio),
+    Field(json_schema_extra={"exclusiveMinimum": -1, "exclusiveMaximum": 0.5}),
+]
+Terms = Annotated[tuple[Finite, ...], Field(min_length=1)]
+
+
+class MaterialTable(Table):
+    """What every material may state."""
+
+    density_kg_m3: Positive = Field(1000.0, description="density in the undeformed state")
+    max_fitted_strain: Positive | None = Field(
+        None, description="largest nominal strain of the data behind the constants; a run warns beyond it"
+    )
+    source: str | None = Field(None, description="where the constants come from")
+    confidence: Literal["high", "medium", "low"] | None = Field(
+        None, description="high: read in the source; medium: fitted or secondary; low: a starting value"
+    )
+
+
+class NeoHookean(MaterialTable):
+    """Nearly incompressible rubber: W = G/2 (J^(-2/3) I1 - 3) + K/2 (J - 1)^2."""
+
+    model: Literal["neo-hookean"] = Field("neo-hookean", description="neo-Hookean rubber")
+    youngs_modulus_MPa: Positive = Field(description="small-strain Young's modulus")
+    poisson_ratio: PoissonRatio = Field(0.495, description="small-strain Poisson's ratio")
+
+
+class Linear(MaterialTable):
+    """Hooke's law between Green-Lagrange strain and second Piola-Kirchhoff stress."""
+
+    model: Literal["linear"] = Field("linear", description="linear elastic solid")
+    youngs_modulus_MPa: Positive = Field(description="Young's modulus")
+    poisson_ratio: PoissonRatio = Field(0.495, description="Poisson's ratio")
+
+
+class MooneyRivlin(MaterialTable):
+    """W = c10 (I1 - 3) + c01 (I2 - 3) in the isochoric invariants, + K/2 (J - 1)^2; G = 2 (c10 + c01)."""
+
+    model: Literal["mooney-rivlin"] = Field("mooney-rivlin", description="two-constant Mooney-Rivlin rubber")
+    c10_MPa: Finite = Field(description="constant of the first invariant")
+    c01_MPa: Finite = Field(0.0, description="constant of the second invariant")
+    poisson_ratio: PoissonRatio = Field(0.495, description="small-strain Poisson's ratio")
+
+    @model_validator(mode="after")
+    def _stiff(self) -> Self:
+        return _require_shear_modulus(self, 2.0 * (self.c10_MPa + self.c01_MPa), "2 (c10_MPa + c01_MPa)")
+
+
+class Yeoh(MaterialTable):
+    """W = c10 (I1 - 3) + c20 (I1 - 3)^2 + c30 (I1 - 3)^3, isochoric, + K/2 (J - 1)^2; G = 2 c10."""
+
+    model: Literal["yeoh"] = Field("yeoh", description="Yeoh rubber: stiffens at large strain")
+    c10_MPa: Positive = Field(description="linear constant")
+    c20_MPa: Finite = Field(0.0, description="quadratic constant")
+    c30_MPa: Finite = Field(0.0, description="cubic constant")
+    poisson_ratio: PoissonRatio = Field(0.495, description="small-strain Poisson's ratio")
+
+
+class Ogden(MaterialTable):
+    """W = sum mu/alpha (l1^alpha + l2^alpha + l3^alpha - 3), isochoric stretches; G = 1/2 sum mu alpha."""
+
+    model: Literal["ogden"] = Field("ogden", description="Ogden rubber, any number of terms")
+    mu_MPa: Terms = Field(description="modulus of each term")
+    alpha: Terms = Field(description="exponent of each term")
+    poisson_ratio: PoissonRatio = Field(0.495, description="small-strain Poisson's ratio")
+
+    @model_validator(mode="after")
+    def _stiff(self) -> Self:
+        _require_terms("alpha", self.alpha, self.mu_MPa)
+        shear = 0.5 * sum(m * a for m, a in zip(self.mu_MPa, self.alpha, strict=True))
+        return _require_shear_modulus(self, shear, "half the sum of mu_MPa times alpha")
+
+
+class Hyperfoam(MaterialTable):
+    """W = sum 2 mu/alpha^2 [l1^alpha + l2^alpha + l3^alpha - 3 + (J^(-alpha beta) - 1)/beta].
+
+    beta = nu / (1 - 2 nu) for each term; G = sum mu.
+    """
+
+    model: Literal["hyperfoam"] = Field("hyperfoam", description="Ogden-Hill compressible foam")
+    mu_MPa: Terms = Field(description="modulus of each term")
+    alpha: Terms = Field(description="exponent of each term, not zero")
+    poisson_ratio: Annotated[tuple[PoissonRatio, ...], Field(min_length=1)] = Field(
+        description="Poisson's ratio of each term"
+    )
+
+    @model_validator(mode="after")
+    def _stiff(self) -> Self:
+        _require_terms("alpha", self.alpha, self.mu_MPa)
+        _require_terms("poisson_ratio", self.poisson_ratio, self.mu_MPa)
+        if 0.0 in self.alpha:
+            raise ValueError("alpha = 0: every exponent must differ from zero")
+        return _require_shear_modulus(self, sum(self.mu_MPa), "the sum of mu_MPa")
+
+
+class PiezoelectricFilm(MaterialTable):
+    """A poled polymer film. Axis 1 is the draw direction, 2 lies across, 3 is the normal."""
+
+    model: Literal["piezoelectric-film"] = Field(
+        "piezoelectric-film", description="linear piezoelectric film"
+    )
+    youngs_modulus_MPa: Positive = Field(2000.0, description="Young's modulus along the draw direction")
+    youngs_modulus_2_MPa: Positive | None = Field(
+        None, description="Young's modulus across the draw direction; none: as along it"
+    )
+    poisson_ratio: PoissonRatio = Field(0.29, description="Poisson's ratio")
+    d31_pC_per_N: Finite = Field(23.0, description="charge per force along the draw direction")
+    d32_pC_per_N: Finite = Field(2.3, description="charge per force across the draw direction")
+    d33_pC_per_N: Finite = Field(-33.0, description="charge per force along the normal")
+    relative_permittivity: Positive = Field(12.0, description="at constant stress, along the normal")
+    yield_stress_MPa: Positive | None = Field(
+        50.0, description="a run warns when the film is stressed beyond it"
+    )
+    density_kg_m3: Positive = Field(1780.0, description="density in the undeformed state")
+    coupling: Literal["one-way", "two-way"] = Field(
+        "one-way",
+        description="one-way: charge follows from stress; two-way: the voltage also strains the film",
+    )
+
+    @model_validator(mode="after")
+    def _stable(self) -> Self:
+        """Positive strain energy of the transversely isotropic compliance: E2 / E1 < (1 - nu) / (2 nu^2)."""
+        e1, e2, nu = self.youngs_modulus_MPa, self.youngs_modulus_2_MPa, self.poisson_ratio
+        if e2 is not None and 2.0 * nu**2 * e2 >= (1.0 - nu) * e1:
+            limit = (1.0 - nu) * e1 / (2.0 * nu**2)
+            raise ValueError(
+                f"youngs_modulus_2_MPa = {e2:g}: must be below {limit:.4g} for this poisson_ratio"
+            )
+        return self
+
+
+M = TypeVar("M", bound=MaterialTable)
+
+
+def _require_terms(name: str, values: tuple[float, ...], mu: tuple[float, ...]) -> None:
+    if len(values) != len(mu):
+        raise ValueError(f"{name} has {len(values)} values but mu_MPa has {len(mu)}: one of each per term")
+
+
+def _require_shear_modulus(material: M, shear_MPa: float, formula: str) -> M:
+    if not shear_MPa > 0.0:
+        raise ValueError(f"small-strain shear modulus = {shear_MPa:g} MPa: {formula} must be above 0")
+    return material
+
+
+Medium = NeoHookean | Linear | MooneyRivlin | Yeoh | Ogden | Hyperfoam
+Material = NeoHookean | Linear | MooneyRivlin | Yeoh | Ogden | Hyperfoam | PiezoelectricFilm
+AnyMaterial = Annotated[Material, Field(discriminator="model")]
