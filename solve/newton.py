@@ -12,6 +12,7 @@ from solve.system import Load, System
 TOLERANCE = 1e-9
 MAX_ITERATIONS = 25
 MAX_HALVINGS = 6
+SIMILAR_CONTACT = 6  # so many nodes may change contact and the last factorisation still be a good preconditioner
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,9 @@ def equilibrate(system: System, linear: LinearSolver, x: Floats, load: Load) -> 
                 return Equilibrium(x, iteration, relative)
             if not np.isfinite(norm):
                 break
-            step = linear.solve(now.tangent, -now.residual)
+            similar = previous is not None and np.count_nonzero(previous != now.active) <= SIMILAR_CONTACT
+            # inexact Newton: the linear residual need only fall as the nonlinear one will
+            step = linear.solve(now.tangent, -now.residual, min(0.1 * relative, 1e-3), similar)
             previous = now.active
             x, now = _advance(system, x, step, load)
     except LinearSolveError as error:

@@ -44,7 +44,7 @@ def press_segment(
     Want of convergence raises nothing: the result then holds what converged and says where and why it ended.
     """
     system = build_system(segment, materials, dot, tet_mesh, press.force_N is not None)
-    linear = LinearSolver()
+    linear = LinearSolver(system.factorisation_shift)
     force_scale, charge_scale = scale_of_section(segment, tet_mesh)
     targets = load_path(press, system, force_scale)
     rest = np.zeros(system.unknowns.count)
@@ -60,6 +60,7 @@ def press_segment(
         if failure is not None:
             failure = f"step {number} of {len(targets) - 1} stopped at {_depth_text(steps[-1])}: {failure}"
             break
+    linear.close()
     return _result(system, linear, segment, steps, failure, charge_scale)
 
 
