@@ -1,0 +1,54 @@
+"""How far the press has come at a time: the fraction of its final depth or force."""
+
+import csv
+from pathlib import Path
+
+import numpy as np
+
+from geometry.errors import InputError
+from mesh.types import Floats
+from solve.parameters import Waveform
+
+
+def duration_s(waveform: Waveform) -> float:
+    """Time at which the waveform has ended."""
+    if waveform.shape == "file":
+        return float(_table(waveform)[-1, 0])
+    if waveform.shape == "half-sine":
+        return 2.0 * waveform.rise_s
+    fall = waveform.fall_s if waveform.shape == "trapezoid" else 0.0
+    return waveform.rise_s + (waveform.hold_s if waveform.shape in ("ramp", "trapezoid") else 0.0) + fall
+
+
+def fraction(waveform: Waveform, time_s: Floats) -> Floats:
+    """Fraction of the final depth or force, 0 to 1, same shape as time_s. InputError for a bad file."""
+    relative = np.clip(time_s / waveform.rise_s, 0.0, None)
+    if waveform.shape == "ramp":
+        return np.minimum(relative, 1.0)
+    if waveform.shape == "half-sine":
+        return np.sin(np.pi / 2.0 * np.minimum(relative, 2.0))
+    if waveform.shape == "raised-cosine":
+        return 0.5 * (1.0 - np.cos(np.pi * np.minimum(relative, 1.0)))
+    if waveform.shape == "trapezoid":
+        end = waveform.rise_s + waveform.hold_s + waveform.fall_s
+        return np.clip(np.minimum(relative, (end - time_s) / waveform.fall_s), 0.0, 1.0)
+    table = _table(waveform)
+    return np.interp(time_s, table[:, 0], table[:, 1])
+
+
+def _table(waveform: Waveform) -> Floats:
+    """The columns time_s, fraction of a file, (n, 2)."""
+    where = f"press.waveform.file = {waveform.file!r}"
+    if waveform.file is None:
+        raise InputError("press.waveform.file is missing: shape = 'file' needs a CSV file")
+    try:
+        with Path(waveform.file).open(encoding="utf-8", newline="") as stream:
+            rows = [(float(row["time_s"]), float(row["fraction"])) for row in csv.DictReader(stream)]
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{where}: cannot be read ({error})") from error
+    except (KeyError, TypeError, ValueError) as error:
+        raise InputError(f"{where}: needs the columns time_s and fraction with numbers") from error
+    table = np.array(rows).reshape(-1, 2)
+    if len(table) < 2 or not (np.diff(table[:, 0]) > 0).all() or table[:, 1].min() < 0 or table[:, 1].max() > 1:
+        raise InputError(f"{where}: time_s must increase and fraction stay between 0 and 1")
+    return table

@@ -1,0 +1,96 @@
+"""The linear solver: right answers, and never a wrong one without notice."""
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+import solve.linear
+from solve.linear import LinearSolveError, LinearSolver, Pardiso, SuperLU, symmetric_product
+
+TOLERANCE = 1e-10
+
+
+@pytest.fixture
+def saddle():
+    """A symmetric indefinite matrix with a zero block, as contact makes it: (upper triangle, right-hand side)."""
+    rng = np.random.default_rng(0)
+    n, m = 200, 20
+    stiffness = sp.random(n, n, 0.02, random_state=rng)
+    stiffness = stiffness @ stiffness.T + sp.identity(n)
+    constraint = sp.random(m, n, 0.1, random_state=rng)
+    full = sp.bmat([[stiffness, constraint.T], [constraint, sp.csr_matrix((m, m))]])
+    upper = sp.triu(full + 1e-300 * sp.identity(n + m), format="csr")  # every diagonal entry is stored
+    upper.sort_indices()
+    return upper, rng.standard_normal(n + m)
+
+
+def shift(upper, contact_rows=20):
+    """What the solver adds to the contact rows of the matrix that it factorises."""
+    value = np.zeros(upper.shape[0])
+    value[-contact_rows:] = -1e-4
+    return value
+
+
+@pytest.mark.parametrize("registry", [[Pardiso], [SuperLU]], ids=["pardiso", "superlu"])
+def test_saddle_point_system(saddle, registry):
+    upper, rhs = saddle
+    solver = LinearSolver(shift(upper))
+    solver._registry = list(registry)
+    full = (upper + sp.triu(upper, 1).T).toarray()
+    np.testing.assert_allclose(solver.solve(upper, rhs, TOLERANCE), np.linalg.solve(full, rhs), rtol=1e-6)
+    solver.close()
+
+
+def test_product_with_the_upper_triangle(saddle):
+    upper, rhs = saddle
+    full = (upper + sp.triu(upper, 1).T).toarray()
+    np.testing.assert_allclose(symmetric_product(upper, rhs), full @ rhs, atol=1e-12)
+
+
+class Wrong(SuperLU):
+    """Gives a wrong answer without an error, as PARDISO can on a weak diagonal."""
+
+    name = "wrong"
+
+    def back_substitute(self, rhs):
+        return 1e30 * rhs[::-1]
+
+
+class Absent(SuperLU):
+    """A library that is not installed."""
+
+    name = "absent"
+
+    def __init__(self):
+        raise ImportError("no MKL here")
+
+
+@pytest.mark.parametrize("bad", [Wrong, Absent])
+def test_a_bad_factorisation_is_noticed_and_replaced(saddle, bad):
+    upper, rhs = saddle
+    solver = LinearSolver(shift(upper))
+    solver._registry = [bad, SuperLU]
+    solution = solver.solve(upper, rhs, TOLERANCE)
+    assert np.linalg.norm(rhs - symmetric_product(upper, solution)) <= TOLERANCE * np.linalg.norm(rhs)
+    assert solver.name == "superlu"
+
+
+def test_a_singular_matrix_is_refused(saddle):
+    upper, rhs = saddle
+    singular = upper.copy()
+    singular.data[:] = 0.0
+    solver = LinearSolver(np.zeros(len(rhs)))
+    with pytest.raises(LinearSolveError, match="pardiso.*superlu"):
+        solver.solve(singular, rhs, TOLERANCE)
+
+
+def test_an_old_factorisation_serves_a_similar_matrix(saddle, monkeypatch):
+    upper, rhs = saddle
+    solver = LinearSolver(shift(upper))
+    solver.solve(upper, rhs, TOLERANCE)
+    monkeypatch.setattr(LinearSolver, "_factorise", lambda *_: pytest.fail("factorised again"))
+    similar = upper.copy()
+    similar.data *= 1.0 + 1e-3 * np.sin(np.arange(len(upper.data)))
+    solution = solver.solve(similar, rhs, 1e-6, similar=True)
+    assert np.linalg.norm(rhs - symmetric_product(similar, solution)) <= 1e-6 * np.linalg.norm(rhs)
+    assert solve.linear.KRYLOV_ITERATIONS < 20

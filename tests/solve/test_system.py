@@ -1,0 +1,123 @@
+"""The whole discrete problem: its tangent, its symmetries and its limits."""
+
+import numpy as np
+import pytest
+
+import solve.newton
+from geometry.parameters import Film
+from solve.parameters import Press
+from solve.press import press_segment
+from solve.problem import build_system
+from solve.system import Load
+from tests.solve.segments import cap, coarse_mesh, materials, ridge, segment
+
+SHALLOW = Press(indentation_mm=0.2, load_steps=2)
+
+
+def last(stack, stuff, dot, press=SHALLOW):
+    result = press_segment(stack, stuff, dot, press, coarse_mesh(stack, dot))
+    assert result.converged, result.failure
+    return result.steps[-1]
+
+
+@pytest.mark.parametrize("force_driven", [False, True])
+def test_tangent_is_the_derivative_of_the_residual(force_driven):
+    """Solid, film with two-way coupling, elastic sides, contact and dot together, in a random direction."""
+    stack = segment(boundary="elastic", side_stiffness_N_per_mm3=3.0)
+    dot = cap(stack)
+    system = build_system(stack, materials(coupling="two-way"), dot, coarse_mesh(stack, dot), force_driven)
+    rng = np.random.default_rng(0)
+    load = Load((0.01, 0.0), approach=0.05, force=0.1)
+    x = 1e-4 * rng.standard_normal(system.unknowns.count)
+    x[system.contact.pressure_dofs] += 0.1  # well inside or outside contact: the active set stays
+    if force_driven:
+        x[system.unknowns.approach] = 0.05
+    here = system.evaluate(x, load)
+    assert 0 < here.active.sum() < len(here.active)
+    direction = rng.standard_normal(len(x))
+    direction[system.contact.pressure_dofs[~here.active]] = 0.0
+    step = 1e-6
+    ahead = system.evaluate(x + step * direction, load).residual
+    behind = system.evaluate(x - step * direction, load).residual
+    upper = here.tangent
+    product = upper @ direction + upper.T @ direction - upper.diagonal() * direction
+    difference = (ahead - behind) / (2 * step)
+    assert np.linalg.norm(product - difference) < 1e-6 * np.linalg.norm(difference)
+
+
+def test_a_force_of_what_the_depth_took_gives_the_depth():
+    stack = segment()
+    deep = last(stack, materials(), cap(stack))
+    pushed = last(stack, materials(), cap(stack), Press(force_N=deep.reaction_force_N, load_steps=2))
+    assert pushed.indentation_m == pytest.approx(2e-4, rel=1e-8)
+    assert pushed.open_circuit_voltage_V == pytest.approx(deep.open_circuit_voltage_V, rel=1e-8)
+
+
+def test_elastic_sides_lie_between_free_and_clamped():
+    """Stiffness 0 is free; a very stiff case is clamped."""
+    def force(**sides):
+        stack = segment(**sides)
+        return last(stack, materials(), cap(stack)).reaction_force_N
+
+    free, clamped = force(boundary="free"), force(boundary="clamped")
+    assert force(boundary="elastic", side_stiffness_N_per_mm3=0.0) == pytest.approx(free, rel=1e-9)
+    assert force(boundary="elastic", side_stiffness_N_per_mm3=1e7) == pytest.approx(clamped, rel=1e-3)
+    assert free < force(boundary="elastic", side_stiffness_N_per_mm3=5.0) < clamped
+
+
+def test_a_square_segment_does_not_know_the_draw_direction():
+    """Turning the film by a quarter turn leaves force and voltage under a centred dot."""
+    along, across = (
+        last(segment(film=Film(thickness_um=28.0, draw_angle_deg=angle)), materials(), cap(segment()))
+        for angle in (0.0, 90.0)
+    )
+    assert across.reaction_force_N == pytest.approx(along.reaction_force_N, rel=1e-9)
+    assert across.open_circuit_voltage_V == pytest.approx(along.open_circuit_voltage_V, rel=2e-2)
+
+
+def test_two_way_coupling_stiffens_by_less_than_the_coupling_factor():
+    """k31^2 = d31^2 Y / eps = 1.0 % for Y = 2 GPa: a strained film gives up to 1 / (1 - k^2) more voltage, k^2 < 2 %."""
+    one, two = (last(segment(), materials(coupling=way), cap(segment())) for way in ("one-way", "two-way"))
+    assert 1.0 < two.reaction_force_N / one.reaction_force_N < 1.01
+    assert 1.0 < float(two.open_circuit_voltage_V[0] / one.open_circuit_voltage_V[0]) < 1.02
+
+
+def test_plane_strain_is_scaled_by_the_width():
+    narrow, wide = (segment(section="plane-strain", width_mm=w) for w in (2.5, 16.0))
+    a, b = (last(stack, materials(), ridge(stack)) for stack in (narrow, wide))
+    assert b.reaction_force_N / a.reaction_force_N == pytest.approx(6.4, rel=1e-9)
+    assert b.film_charge_C[0] / a.film_charge_C[0] == pytest.approx(6.4, rel=1e-9)
+    assert b.open_circuit_voltage_V == pytest.approx(a.open_circuit_voltage_V, rel=1e-9)
+
+
+def test_rubber_of_poisson_ratio_0_4995_converges():
+    stack = segment()
+    assert last(stack, materials(poisson_ratio=0.4995), cap(stack)).reaction_force_N > 0
+
+
+def test_a_slide_keeps_its_depth_and_ends_where_it_was_sent():
+    stack = segment(boundary="free")
+    press = Press(indentation_mm=0.2, load_steps=2, path_xy_mm=((0.2, 0.1),))
+    result = press_segment(stack, materials(), cap(stack), press, coarse_mesh(stack, cap(stack)))
+    assert result.converged
+    assert len(result.steps) == 5
+    np.testing.assert_allclose(result.steps[-1].dot_position_m, [2e-4, 1e-4, -2e-4], atol=1e-12)
+
+
+def test_want_of_convergence_is_told_with_its_place_and_keeps_what_converged(monkeypatch):
+    stack, calls = segment(), []
+    whole = solve.newton.equilibrate
+
+    def fails_after_the_first(system, linear, x, load):
+        calls.append(load)
+        if load.approach * 2.5 > 0.11:
+            monkeypatch.setattr(solve.newton, "MAX_ITERATIONS", 1)
+        return whole(system, linear, x, load)
+
+    monkeypatch.setattr("solve.press.equilibrate", fails_after_the_first)
+    result = press_segment(stack, materials(), cap(stack), SHALLOW, coarse_mesh(stack, cap(stack)))
+    assert not result.converged
+    assert result.steps[1].indentation_m == pytest.approx(1e-4)
+    assert "step 2 of 2 stopped at" in result.failure
+    assert "no convergence" in result.failure
+    assert "mm" in result.failure
