@@ -71,11 +71,15 @@ class Segment(Table):
     """The sensor segment: a stack of layers on a fixed base."""
 
     length_mm: Positive = Field(2.5, description="size in x")
-    width_mm: Positive = Field(2.5, description="size in y; for plane-strain what force and charge are scaled to")
+    width_mm: Positive = Field(
+        2.5, description="size in y; for plane-strain what force and charge are scaled to"
+    )
     section: Literal["solid", "plane-strain"] = Field(
         "solid", description="plane-strain: one thin slice without strain in y"
     )
-    boundary: Literal["free", "clamped", "elastic"] = Field("clamped", description="what the case does to the sides")
+    boundary: Literal["free", "clamped", "elastic"] = Field(
+        "clamped", description="what the case does to the sides"
+    )
     held_layers: tuple[LayerName, ...] = Field(
         ("effector", "medium1", "film"), description="layers whose sides the case holds (clamped, elastic)"
     )
@@ -96,9 +100,13 @@ class Dot(Table):
         "cap", description="cap: spherical, on a plate; ridge: a cylinder along y; plate: flat"
     )
     standard: str | None = Field(None, description="Braille standard whose nominal sizes are used")
-    base_diameter_mm: Positive | None = Field(None, description="with height_mm: explicit size of a cap or ridge")
+    base_diameter_mm: Positive | None = Field(
+        None, description="with height_mm: explicit size of a cap or ridge"
+    )
     height_mm: Positive | None = Field(None, description="height of the dot over its plate")
-    radius_mm: Positive | None = Field(None, description="radius of the sphere or cylinder instead of base_diameter_mm")
+    radius_mm: Positive | None = Field(
+        None, description="radius of the sphere or cylinder instead of base_diameter_mm"
+    )
     offset_mm: tuple[Finite, Finite] = Field((0.0, 0.0), description="position of the pressed dot, x and y")
     tilt_deg: tuple[Finite, Finite] = Field((0.0, 0.0), description="rotation of the dot about x and y")
     cell: str | None = Field(None, description="a Braille character: its other dots surround the pressed one")

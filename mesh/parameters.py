@@ -12,7 +12,13 @@ class MeshOptions(Table):
 
     element_size_mm: Positive = Field(0.3, description="edge length away from contact and film")
     contact_element_size_mm: Positive = Field(0.1, description="edge length under the dot")
-    film_element_size_mm: Positive | None = Field(None, description="edge length on the film; none: chosen between the two")
-    mesher: Literal["pytetwild", "layered"] = Field("pytetwild", description="layered: extruded, deterministic")
-    film_layers: Annotated[int, Field(ge=1, le=8)] = Field(1, description="quadratic elements through the film")
+    film_element_size_mm: Positive | None = Field(
+        None, description="edge length on the film; none: geometric mean of the two"
+    )
+    mesher: Literal["pytetwild", "layered"] = Field(
+        "pytetwild", description="layered: extruded, deterministic"
+    )
+    film_layers: Annotated[int, Field(ge=1, le=8)] = Field(
+        1, description="quadratic elements through the film"
+    )
     timeout_s: Positive = Field(300.0, description="the mesher is stopped after this time")

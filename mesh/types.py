@@ -20,9 +20,9 @@ class TetMesh:
     region_names : names of the parts that exist, e.g. ("medium2", "film", "medium1", "effector").
     facets : name -> (k, 6) int. Quadratic triangles (VTK type 22: corners, then mid-sides 01, 12, 20),
         normal pointing out of the solid (for film facets: up). Names:
-        "contact"  outer surface that the dot can touch (effector skin but its held sides; bare top of medium 1)
+        "contact"  outer surface that the dot can touch (effector skin but its sides, bare top of medium 1)
         "base"     bottom of medium 2
-        "side-<region>"  the x faces (and the y faces when solid) of that region, for every region that has one
+        "side-<region>"  the x faces (and the y faces when solid) of that region, where it has one
         "film-bottom", "film-top"  the two faces of the film
     twin : (n,) int. For each node the node that stands for it: itself, except in a plane-strain slice, where
         all nodes of equal (x, z) share one, so that nothing varies over y.

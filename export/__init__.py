@@ -1,0 +1,1 @@
+"""What leaves softdot: CAD files, ParaView results, pictures and the report."""

@@ -1,0 +1,1 @@
+"""Parameters, Braille standards, the exact dot and the solids of a segment. Lengths in millimetres."""

@@ -1,0 +1,119 @@
+"""Impossible geometry is refused by name before any solid is built."""
+
+from itertools import pairwise
+
+from geometry.bodies import bodies
+from geometry.case_solid import case_outside
+from geometry.dot_shape import DotShape, resolve_dot
+from geometry.effector_checks import check_effector, covers_footprint
+from geometry.electrode_checks import check_electrodes
+from geometry.errors import InputError
+from geometry.parameters import Dot, Segment
+from geometry.stack import layers
+
+
+def check_segment(segment: Segment) -> list[str]:
+    """Raise InputError for a segment that cannot be built; return warnings about one that can."""
+    check_effector(segment)
+    check_electrodes(segment)
+    _check_bonds(segment)
+    return _check_held_layers(segment)
+
+
+def check_dot(dot: Dot, segment: Segment) -> None:
+    """Raise InputError for a dot that cannot be built or that overlaps the resting segment."""
+    resolve_dot(dot, segment)
+
+
+def check_press_depth(segment: Segment, indentation_mm: float) -> None:
+    """Raise InputError for an indentation in mm that is as deep as the stack is high, or deeper."""
+    stack = layers(segment)[-1].top_mm
+    if indentation_mm >= stack:
+        raise InputError(
+            f"press.indentation_mm = {indentation_mm:g}: must be less than the height of the stack, "
+            f"{stack:g} mm"
+        )
+
+
+def press_warnings(dot_shape: DotShape, segment: Segment, indentation_mm: float) -> list[str]:
+    """What to know about a press that is possible; indentation_mm : final depth in mm."""
+    warnings = []
+    if dot_shape.kind != "plate" and indentation_mm > dot_shape.height_mm:
+        warnings.append(
+            f"the indentation of {indentation_mm:.3g} mm exceeds the dot's height of "
+            f"{dot_shape.height_mm:.3g} mm: the plate around the dot touches the segment too"
+        )
+    return [
+        *warnings,
+        *_far_dot(dot_shape, segment, indentation_mm),
+        *_hit_case(dot_shape, segment, indentation_mm),
+    ]
+
+
+def _far_dot(dot_shape: DotShape, segment: Segment, indentation_mm: float) -> list[str]:
+    ball = dot_shape.origin_mm + dot_shape.rotation @ [0.0, 0.0, dot_shape.radius_mm]
+    clear = bodies(segment)[-1].distance(ball) - dot_shape.radius_mm
+    if dot_shape.kind != "cap" or clear <= indentation_mm:
+        return []
+    return [
+        f"the pressed dot stays {clear:.3g} mm clear of the top of the segment at rest, more than the "
+        f"indentation of {indentation_mm:.3g} mm: it may not touch"
+    ]
+
+
+def _hit_case(dot_shape: DotShape, segment: Segment, indentation_mm: float) -> list[str]:
+    """The case is rigid and no part of the simulation: a plate that comes down on its walls is only told."""
+    if segment.boundary == "free":
+        return []
+    normal = dot_shape.rotation[:, 2]
+    face = float(normal @ dot_shape.origin_mm) + dot_shape.height_mm
+    travel = (face - case_outside(segment).reach(normal)) / float(normal[2])
+    if travel >= indentation_mm:
+        return []
+    return [
+        f"the plate around the dot meets the walls of the case at an indentation of "
+        f"{max(travel, 0.0):.3g} mm, before full depth: a real plate must be smaller or the walls lower"
+    ]
+
+
+def _check_held_layers(segment: Segment) -> list[str]:
+    held = segment.held_layers
+    for name in held:
+        if held.count(name) > 1:
+            raise InputError(f"segment.held_layers: '{name}' is named twice")
+    default = Segment.model_fields["held_layers"].default
+    if segment.effector is None and "effector" in held and held != default:
+        raise InputError("segment.held_layers: 'effector' is named, but segment.effector is absent")
+    if segment.boundary == "free":
+        return []
+    if not held:
+        return [
+            f"segment.held_layers is empty: boundary = '{segment.boundary}' then holds nothing, as if free"
+        ]
+    if segment.effector is not None and "effector" in held and not covers_footprint(segment):
+        return [
+            "segment.held_layers: the effector is narrower than the segment, so that sides of it do not "
+            "touch the case and are not held"
+        ]
+    return []
+
+
+def _check_bonds(segment: Segment) -> None:
+    """Bonds join neighbours that exist, each pair once."""
+    names = ["base", *(layer.name for layer in layers(segment))]
+    neighbours = [set(pair) for pair in pairwise(names)]
+    seen: list[set[str]] = []
+    for number, bond in enumerate(segment.bonds):
+        field, pair = f"segment.bonds[{number}].between", set[str](bond.between)
+        if "effector" in pair and segment.effector is None:
+            raise InputError(f"{field}: 'effector' is named, but segment.effector is absent")
+        if pair not in neighbours:
+            raise InputError(
+                f"{field} = '{bond.between[0]}' and '{bond.between[1]}': must be two neighbours in the "
+                f"order {', '.join(names)}"
+            )
+        if pair in seen:
+            raise InputError(
+                f"{field}: the bond of '{bond.between[0]}' and '{bond.between[1]}' is given twice"
+            )
+        seen.append(pair)

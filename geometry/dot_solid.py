@@ -1,0 +1,88 @@
+"""The dot, its neighbours and their plate as one solid."""
+
+from itertools import product
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.dot_shape import DotShape
+from geometry.layer_solids import ball, upright_box, upright_cylinder
+from geometry.parameters import Segment
+from geometry.stack import layers
+
+PLATE_THICKNESS_MM = 1.0
+"""Over the 0.6 mm of an unsupported wall in stereolithography (addema.se, layerx3d.in, forgelabs.com)."""
+PLATE_MARGIN_MM = 1.0
+"""Beyond the footprint and the dots, on each side."""
+
+Floats = NDArray[np.float64]
+
+
+def dot_solid(dot_shape: DotShape, segment: Segment) -> Any:
+    """The rigid dot with its plate at rest in the segment frame, as one build123d Solid."""
+    from build123d import Plane, Solid
+
+    low, high = _plate_corners(dot_shape, segment)
+    face = dot_shape.height_mm
+    plate = _box(low, high, face, face + PLATE_THICKNESS_MM)
+    solid = plate
+    if dot_shape.kind != "plate":
+        dots = [_bump(dot_shape, center, low[1], high[1]) for center in dot_shape.centers_xy_mm]
+        solid = plate.fuse(*dots).solid()
+    rotation, origin = dot_shape.rotation, dot_shape.origin_mm
+    place = Plane(origin=tuple(origin), x_dir=tuple(rotation[:, 0]), z_dir=tuple(rotation[:, 2])).location
+    assert isinstance(solid, Solid)
+    return place * solid
+
+
+def base_radius_mm(dot_shape: DotShape) -> float:
+    """Radius (half the width of a ridge) where the dot meets its plate, in mm."""
+    depth = min(dot_shape.height_mm, dot_shape.radius_mm)
+    return float(np.sqrt(depth * (2 * dot_shape.radius_mm - depth)))
+
+
+def _plate_corners(dot_shape: DotShape, segment: Segment) -> tuple[Floats, Floats]:
+    """Lowest and highest x, y (2,) of the plate in the dot frame: it covers the footprint and all dots."""
+    top = layers(segment)[-1].top_mm
+    signs = product((-1, 1), (-1, 1), (0, 1))
+    scale = np.array([segment.length_mm / 2, segment.width_mm / 2, top])
+    corners = (np.array(list(signs)) * scale - dot_shape.origin_mm) @ dot_shape.rotation
+    reach = base_radius_mm(dot_shape)
+    points = np.vstack([corners[:, :2], dot_shape.centers_xy_mm - reach, dot_shape.centers_xy_mm + reach])
+    return points.min(axis=0) - PLATE_MARGIN_MM, points.max(axis=0) + PLATE_MARGIN_MM
+
+
+def _bump(dot_shape: DotShape, center: Floats, low_y: float, high_y: float) -> Any:
+    """One cap on its foot, or one ridge over the whole plate, in the dot frame."""
+    from build123d import Pos
+
+    radius, face = dot_shape.radius_mm, dot_shape.height_mm
+    equator = min(radius, face)
+    if dot_shape.kind == "ridge":
+        return _ridge(dot_shape, low_y, high_y)
+    lower = upright_box(2 * radius, 2 * radius, -radius, equator)
+    cap = ((Pos(0, 0, radius) * ball(radius)) & lower).solid()
+    if dot_shape.foot_mm > 0.0:
+        cap = cap.fuse(upright_cylinder(radius, equator, face)).solid()
+    return Pos(center[0], center[1], 0) * cap
+
+
+def _ridge(dot_shape: DotShape, low_y: float, high_y: float) -> Any:
+    """The part of a cylinder along y that stands out of the plate, on its foot."""
+    from build123d import Pos, Rot, Solid
+
+    radius, face = dot_shape.radius_mm, dot_shape.height_mm
+    equator = min(radius, face)
+    lying = Pos(0, high_y, radius) * Rot(90, 0, 0) * Solid.make_cylinder(radius, high_y - low_y)
+    ridge = lying & _box(np.array([-2 * radius, low_y]), np.array([2 * radius, high_y]), -radius, equator)
+    if dot_shape.foot_mm > 0.0:
+        foot = _box(np.array([-radius, low_y]), np.array([radius, high_y]), equator, face)
+        return ridge.solid().fuse(foot).solid()
+    return ridge.solid()
+
+
+def _box(low: Floats, high: Floats, bottom: float, top: float) -> Any:
+    from build123d import Pos, Solid
+
+    return Pos(low[0], low[1], bottom) * Solid.make_box(high[0] - low[0], high[1] - low[1], top - bottom)

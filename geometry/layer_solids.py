@@ -1,0 +1,65 @@
+"""build123d solids of the deformable layers."""
+
+from typing import Any
+
+from geometry.bodies import Box as BoxBody
+from geometry.bodies import Disc, Dome, bodies
+from geometry.parameters import Segment
+from geometry.stack import layers
+
+
+def layer_solids(segment: Segment, film_thickness_mm: float = 0.0) -> dict[str, Any]:
+    """Solids by name, from medium2 upwards, with a film of the given thickness in mm.
+
+    Without thickness there is no film: medium 1 and the effector lie directly on medium 2, moved down.
+    """
+    down = segment.film.thickness_um * 1e-3 - film_thickness_mm
+    solids = {}
+    for layer in layers(segment):
+        if layer.name == "film" and film_thickness_mm == 0.0:
+            continue
+        bottom = layer.bottom_mm - (down if layer.name in ("medium1", "effector") else 0.0)
+        top = layer.top_mm - (0.0 if layer.name == "medium2" else down)
+        if layer.name == "effector":
+            solids[layer.name] = _effector(segment, bottom)
+        else:
+            solids[layer.name] = upright_box(segment.length_mm / 2, segment.width_mm / 2, bottom, top)
+    return solids
+
+
+def upright_box(half_x: float, half_y: float, bottom: float, top: float) -> Any:
+    """A box centred on the z axis, in mm."""
+    from build123d import Pos, Solid
+
+    return Pos(-half_x, -half_y, bottom) * Solid.make_box(2 * half_x, 2 * half_y, top - bottom)
+
+
+def ball(radius: float) -> Any:
+    """A sphere about the origin whose poles lie aside on y: a pole at the top gives a degenerate facet."""
+    from build123d import Rot, Solid
+
+    return Rot(90, 0, 0) * Solid.make_sphere(radius, angle1=-90, angle2=90, angle3=360)
+
+
+def upright_cylinder(radius: float, bottom: float, top: float) -> Any:
+    """A cylinder on the z axis, in mm."""
+    from build123d import Pos, Solid
+
+    return Pos(0, 0, bottom) * Solid.make_cylinder(radius, top - bottom)
+
+
+def _effector(segment: Segment, bottom: float) -> Any:
+    """The effector of the exact outline, moved to stand at the given height."""
+    from build123d import Pos
+
+    body = bodies(segment)[-1]
+    if isinstance(body, BoxBody):
+        return upright_box(body.half_x, body.half_y, bottom, bottom + body.top - body.bottom)
+    if isinstance(body, Disc):
+        return upright_cylinder(body.radius, bottom, bottom + body.top - body.bottom)
+    assert isinstance(body, Dome)
+    reach = 2 * body.radius
+    dome = (Pos(0, 0, body.centre_z) * ball(body.radius)) & upright_box(
+        reach, reach, body.bottom, body.top + reach
+    )
+    return Pos(0, 0, bottom - body.bottom) * dome.solid()

@@ -1,0 +1,53 @@
+"""Run pytetwild in a child process that can be stopped."""
+
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from mesh.errors import MeshingError
+from mesh.types import Floats, Ints
+
+WORKER = Path(__file__).with_name("tetwild_worker.py")
+
+
+def tetrahedralize(timeout_s: float, **arrays: object) -> tuple[Floats, Ints]:
+    """Points (n, 3) and tetrahedra (m, 4) that fill the bounding box of a surface.
+
+    arrays : what mesh.tetwild_worker reads. Raises MeshingError when the child fails or takes longer than
+    timeout_s; the child never outlives the call, whatever interrupts it.
+    """
+    with tempfile.TemporaryDirectory(prefix="softdot-") as name:
+        folder = Path(name)
+        np.savez(folder / "input.npz", timeout=timeout_s, **arrays)  # type: ignore[arg-type]
+        _run([sys.executable, "-P", str(WORKER), name], timeout_s)
+        with np.load(folder / "output.npz") as data:
+            return data["points"].astype(np.float64), data["tets"].astype(np.int64)
+
+
+def _run(command: list[str], timeout_s: float) -> None:
+    """Run to the end or kill."""
+    # Its own session: Ctrl-C in the terminal reaches us alone, and we kill the child.
+    child = subprocess.Popen(
+        command,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        start_new_session=True,
+    )
+    try:
+        said, _ = child.communicate(timeout=timeout_s)
+    except subprocess.TimeoutExpired:
+        raise MeshingError(
+            f"the mesher pytetwild was stopped after mesh.timeout_s = {timeout_s:g} s: raise it, coarsen "
+            "mesh.element_size_mm and mesh.contact_element_size_mm, or use mesher layered"
+        ) from None
+    finally:
+        if child.poll() is None:
+            child.kill()
+            child.communicate()
+    if child.returncode != 0:
+        lines = said.decode(errors="replace").strip().splitlines() or ["no message"]
+        raise MeshingError(f"the mesher pytetwild failed with exit code {child.returncode}: {lines[-1]}")

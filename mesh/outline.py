@@ -1,0 +1,110 @@
+"""The heights and sizes of a segment that every part of the mesher needs, with closed-form volumes."""
+
+from dataclasses import dataclass
+from math import acos, pi, sqrt
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.parameters import Segment
+from mesh.types import Floats
+
+Shape = Literal["none", "layer", "block", "cylinder", "dome"]
+
+
+@dataclass(frozen=True)
+class Outline:
+    """The stack in mm; the film may be given another (also zero) thickness than the segment's.
+
+    half_x, half_y : half the footprint (half_y of a slice: half the slice's thickness).
+    film_bottom, film_top, medium1_top, top : heights.
+    shape, effector_half_x, effector_half_y : the effector and half its foot (the radius when round).
+    is_slice : a plane-strain slice; a cylinder then is the rectangle, a dome the arc of its section at y = 0.
+    """
+
+    half_x: float
+    half_y: float
+    film_bottom: float
+    film_top: float
+    medium1_top: float
+    top: float
+    shape: Shape
+    effector_half_x: float
+    effector_half_y: float
+    is_slice: bool
+
+    @property
+    def dome_radius(self) -> float:
+        """Radius of the dome's sphere: (a^2 + h^2) / 2h with the foot's radius a and the height h."""
+        height = self.top - self.medium1_top
+        return (self.effector_half_x**2 + height**2) / (2 * height)
+
+    @property
+    def dome_centre_z(self) -> float:
+        """Height of the centre of the dome's sphere."""
+        return self.top - self.dome_radius
+
+    def inside_effector(self, points: Floats) -> NDArray[np.bool_]:
+        """Whether points (n, 2) in x, y lie within the effector's foot."""
+        x, y = np.abs(points[:, 0]), np.abs(points[:, 1])
+        if self.shape in ("cylinder", "dome") and not self.is_slice:
+            return np.hypot(x, y) < self.effector_half_x
+        return (x < self.effector_half_x) & (y < self.effector_half_y)
+
+    def volumes(self) -> dict[str, float]:
+        """Exact volume of each part in mm^3."""
+        foot = 4 * self.half_x * self.half_y
+        result = {
+            "medium2": foot * self.film_bottom,
+            "film": foot * (self.film_top - self.film_bottom),
+            "medium1": foot * (self.medium1_top - self.film_top),
+        }
+        if self.shape != "none":
+            result["effector"] = self._effector_volume()
+        return result
+
+    def _effector_volume(self) -> float:
+        """Box, cylinder, spherical cap pi h (3a^2 + h^2) / 6 or, sliced, the circular segment."""
+        a, height = self.effector_half_x, self.top - self.medium1_top
+        if self.shape == "dome" and self.is_slice:
+            radius = self.dome_radius
+            below = radius - height
+            return 2 * self.half_y * (radius**2 * acos(below / radius) - below * sqrt(radius**2 - below**2))
+        if self.shape == "dome":
+            return pi * height * (3 * a**2 + height**2) / 6
+        if self.shape == "cylinder" and not self.is_slice:
+            return pi * a**2 * height
+        return 4 * a * self.effector_half_y * height
+
+
+def outline(segment: Segment, film_thickness_mm: float | None = None, slice_mm: float = 0.0) -> Outline:
+    """The outline of a segment.
+
+    film_thickness_mm : overrides the film's thickness; slice_mm : size in y of a plane-strain slice.
+    """
+    film = segment.film.thickness_um * 1e-3 if film_thickness_mm is None else film_thickness_mm
+    is_slice = segment.section == "plane-strain"
+    half_x, half_y = segment.length_mm / 2, (slice_mm if is_slice else segment.width_mm) / 2
+    bottom = segment.medium2.thickness_mm
+    medium1_top = bottom + film + segment.medium1.thickness_mm
+    shape, foot_x, foot_y, height = _effector(segment, half_x, half_y)
+    heights = (bottom, bottom + film, medium1_top, medium1_top + height)
+    return Outline(half_x, half_y, *heights, shape, foot_x, foot_y, is_slice)
+
+
+def _effector(segment: Segment, half_x: float, half_y: float) -> tuple[Shape, float, float, float]:
+    """Shape, half sizes of the foot and height of the effector."""
+    effector = segment.effector
+    if effector is None:
+        return "none", 0.0, 0.0, 0.0
+    if effector.shape == "layer":
+        return "layer", half_x, half_y, effector.height_mm
+    if effector.shape == "block":
+        foot_x = (effector.length_mm or segment.length_mm) / 2
+        foot_y = (effector.width_mm or segment.width_mm) / 2
+    else:
+        foot_x = foot_y = (effector.diameter_mm or segment.length_mm) / 2
+    if segment.section == "plane-strain":
+        foot_y = half_y
+    return effector.shape, foot_x, foot_y, effector.height_mm

@@ -1,0 +1,90 @@
+"""Target edge length at a point: fine under the dot, fine on the film, growing smoothly to the base."""
+
+from dataclasses import dataclass
+from math import sqrt
+
+import numpy as np
+
+from geometry.dot_shape import DotShape
+from mesh.outline import Outline
+from mesh.parameters import MeshOptions
+from mesh.types import Floats
+
+GROWTH = 0.4  # mm of edge length per mm of distance: neighbouring edges differ by about a factor 1.4
+DEPTH_MM = 0.3  # the contact zone is refined for a press this deep
+HELD_EDGE = 0.6  # edge length along the film's rim against that of the film: its stress is singular there
+HELD_EDGE_SLICE = 0.2  # the same in a slice, where it costs next to nothing
+
+
+@dataclass(frozen=True)
+class Sizing:
+    """The sizing field.
+
+    outline : the stack the points lie in; coarse_mm, contact_mm, film_mm : edge lengths.
+    centers_mm : (k, 2) axes of the dots in x, y; reach_mm : radius of the contact zone.
+    kind : shape of the dot; a ridge reaches along y, a plate everywhere.
+    """
+
+    outline: Outline
+    coarse_mm: float
+    contact_mm: float
+    film_mm: float
+    centers_mm: Floats
+    reach_mm: float
+    kind: str
+
+    def at(self, points: Floats) -> Floats:
+        """Edge lengths in mm at points (n, 3), shape (n,)."""
+        contact = self.contact_mm + GROWTH * self._to_contact(points)
+        z = points[:, 2]
+        to_film = np.abs(z - np.clip(z, self.outline.film_bottom, self.outline.film_top))
+        film = self.film_mm + GROWTH * to_film
+        held = HELD_EDGE_SLICE if self.outline.is_slice else HELD_EDGE
+        rim = held * self.film_mm + GROWTH * np.hypot(to_film, self._to_side(points))
+        fine = np.minimum(np.minimum(contact, film), rim)
+        return np.minimum(fine, self.coarse_mm)
+
+    def _to_side(self, points: Floats) -> Floats:
+        """Distance to the nearest side that the case may hold."""
+        to_x = self.outline.half_x - np.abs(points[:, 0])
+        to_y = to_x if self.outline.is_slice else self.outline.half_y - np.abs(points[:, 1])
+        return np.maximum(np.minimum(to_x, to_y), 0.0)
+
+    def _to_contact(self, points: Floats) -> Floats:
+        """Distance to the contact zone on the skin."""
+        depth = np.maximum(self._skin(points) - points[:, 2], 0.0)
+        if self.kind == "plate":
+            return depth
+        away = points[:, None, :2] - self.centers_mm[None]
+        flat = self.outline.is_slice or self.kind == "ridge"
+        radial = np.abs(away[..., 0]) if flat else np.hypot(away[..., 0], away[..., 1])
+        return np.asarray(np.hypot(np.maximum(radial.min(axis=1) - self.reach_mm, 0.0), depth))
+
+    def _skin(self, points: Floats) -> Floats:
+        """Height of the skin within the contact zone: flat, or falling away from the pole of a dome."""
+        if self.outline.shape != "dome":
+            return np.full(len(points), self.outline.top)
+        y = 0.0 if self.outline.is_slice else points[:, 1]
+        radial = np.minimum(np.hypot(points[:, 0], y), 0.9 * self.outline.effector_half_x)
+        return self.outline.dome_centre_z + np.sqrt(self.outline.dome_radius**2 - radial**2)
+
+
+def sizing(outline: Outline, dot: DotShape, options: MeshOptions) -> Sizing:
+    """The sizing field for a dot at its rest position.
+
+    The contact zone is where the undeformed skin and the dot overlap, sqrt(2 R u) at a depth u, with 1/R the
+    sum of the curvatures of dot and dome, plus one element.
+    """
+    film_mm = options.film_element_size_mm or sqrt(options.contact_element_size_mm * options.element_size_mm)
+    flat = np.column_stack([dot.centers_xy_mm, np.zeros(len(dot.centers_xy_mm))])
+    centers = (np.asarray(dot.origin_mm) + flat @ np.asarray(dot.rotation).T)[:, :2]
+    curvature = 0.0 if dot.kind == "plate" else 1.0 / dot.radius_mm
+    if outline.shape == "dome":
+        curvature += 1.0 / outline.dome_radius
+    widest = 2 * max(outline.half_x, outline.half_y)
+    overlap = sqrt(2 * DEPTH_MM / curvature) if curvature else widest
+    reach = min(overlap, widest) + options.contact_element_size_mm
+    kind = "plate" if curvature == 0.0 else ("cap" if dot.kind == "plate" else dot.kind)
+    return Sizing(
+        outline, options.element_size_mm, options.contact_element_size_mm, film_mm, centers, reach, kind
+    )

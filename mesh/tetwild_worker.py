@@ -1,0 +1,38 @@
+"""The child process around pytetwild, which holds the GIL, swallows Ctrl-C and prints from C++.
+
+Started by path, with one argument: a folder with input.npz; writes output.npz beside it.
+"""
+
+import signal
+import sys
+from pathlib import Path
+
+import numpy as np
+
+
+def main(folder: Path) -> None:
+    """Tetrahedralize the surface in folder/input.npz with its background sizes."""
+    with np.load(folder / "input.npz") as data:
+        given = {name: data[name] for name in data.files}
+    # The parent kills us at the timeout; this is for a parent that was killed itself.
+    if hasattr(signal, "alarm"):
+        signal.alarm(int(given["timeout"]) + 10)
+    from pytetwild.pytetwild import tetrahedralize
+
+    points, tets = tetrahedralize(
+        given["vertices"],
+        given["faces"].astype(np.int32),
+        edge_length_abs=float(given["edge_length"]),
+        epsilon=1e-3,
+        stop_energy=float(given["stop_energy"]),
+        disable_filtering=True,
+        quiet=True,
+        bg_vertices=given["bg_vertices"],
+        bg_tets=given["bg_tets"].astype(np.int32),
+        bg_values=given["bg_values"],
+    )
+    np.savez(folder / "output.npz", points=points, tets=tets)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

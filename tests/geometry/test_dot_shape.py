@@ -1,0 +1,139 @@
+"""Sizes of dots against hand-computed radii, and every refusal of a dot."""
+
+import numpy as np
+import pytest
+
+from geometry.dot_shape import resolve_dot
+from geometry.errors import InputError
+from geometry.parameters import Dot
+
+
+@pytest.mark.parametrize(
+    ("base", "height", "radius"),
+    [(1.5, 0.6, 0.769), (1.44, 0.48, 0.780), (1.5, 0.5, 0.812), (1.6, 0.2, 1.70), (1.6, 0.8, 0.800)],
+)
+def test_radius_of_a_spherical_cap(segment, base, height, radius):
+    shape = resolve_dot(Dot(base_diameter_mm=base, height_mm=height), segment)
+    assert shape.radius_mm == pytest.approx(radius, abs=6e-4)
+    assert shape.foot_mm == 0.0
+
+
+def test_nothing_given_is_a_marburg_cap(segment):
+    shape = resolve_dot(Dot(), segment)
+    assert shape.kind == "cap"
+    assert shape.radius_mm == 0.8125  # (0.75^2 + 0.5^2) / (2 * 0.5)
+    assert shape.height_mm == 0.5
+    assert shape.centers_xy_mm.tolist() == [[0.0, 0.0]]
+    assert shape.origin_mm == pytest.approx([0.0, 0.0, 3.528])
+    assert np.array_equal(shape.rotation, np.eye(3))
+
+
+def test_a_cap_that_would_undercut_is_a_hemisphere_on_a_foot(segment):
+    shape = resolve_dot(Dot(base_diameter_mm=1.6, height_mm=0.9), segment)
+    assert (shape.radius_mm, shape.height_mm) == (0.8, 0.9)
+    assert shape.foot_mm == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize("kind", ["cap", "ridge"])
+def test_a_radius_alone_stands_out_by_itself(segment, kind):
+    shape = resolve_dot(Dot(shape=kind, radius_mm=1.15), segment)
+    assert (shape.radius_mm, shape.height_mm, shape.foot_mm) == (1.15, 1.15, 0.0)
+
+
+def test_a_radius_with_a_height_may_be_larger_or_smaller(segment):
+    shallow = resolve_dot(Dot(shape="ridge", radius_mm=3.0, height_mm=0.5), segment)
+    assert (shallow.radius_mm, shallow.height_mm, shallow.foot_mm) == (3.0, 0.5, 0.0)
+    tall = resolve_dot(Dot(radius_mm=0.5, height_mm=0.75), segment)
+    assert (tall.radius_mm, tall.height_mm, tall.foot_mm) == (0.5, 0.75, 0.25)
+
+
+def test_neighbours_lie_around_the_pressed_dot(segment):
+    shape = resolve_dot(Dot(cell="⠿", cell_dot=5, standard="nls"), segment)
+    p = 2.34  # dot 5: right column, middle row
+    others = {(-p, p), (-p, 0.0), (-p, -p), (0.0, p), (0.0, -p)}
+    assert shape.centers_xy_mm[0].tolist() == [0.0, 0.0]
+    assert {tuple(np.round(c, 12) + 0.0) for c in shape.centers_xy_mm[1:]} == others
+
+
+REFUSED = {
+    "standard and size": (
+        Dot(standard="nls", height_mm=0.5),
+        "dot.height_mm = 0.5: dot.standard = 'nls' fixes the sizes already; give either the standard or "
+        "explicit sizes",
+    ),
+    "base and radius": (
+        Dot(base_diameter_mm=1.5, radius_mm=0.8),
+        "dot.radius_mm = 0.8: dot.base_diameter_mm = 1.5 is given too; give either of them",
+    ),
+    "height alone": (
+        Dot(height_mm=0.5),
+        "dot.height_mm = 0.5: a height alone is not a dot; add dot.base_diameter_mm or dot.radius_mm",
+    ),
+    "base alone": (
+        Dot(base_diameter_mm=1.5),
+        "dot.base_diameter_mm = 1.5: a base alone is not a dot; add dot.height_mm",
+    ),
+    "sized plate": (
+        Dot(shape="plate", height_mm=0.5),
+        "dot.height_mm = 0.5: dot.shape = 'plate' has no size, leave it out",
+    ),
+    "standard plate": (
+        Dot(shape="plate", standard="nls"),
+        "dot.standard = 'nls': dot.shape = 'plate' has no size, leave it out",
+    ),
+    "cell of ridges": (
+        Dot(shape="ridge", cell="⠿"),
+        "dot.cell = '⠿': a cell has dots of dot.shape = 'cap', not 'ridge'",
+    ),
+    "cell without pitch": (
+        Dot(cell="⠿", radius_mm=0.8),
+        "dot.cell = '⠿': the distance of its dots comes from dot.standard; name one with a dot pitch instead "
+        "of explicit sizes",
+    ),
+    "pressed dot not raised": (
+        Dot(cell="⠇", cell_dot=4),
+        "dot.cell_dot = 4: not raised in dot.cell = '⠇', which has 1, 2, 3",
+    ),
+    "empty cell": (Dot(cell="\u2800"), "dot.cell_dot = 1: not raised in dot.cell = '\u2800', which has none"),
+    "cell dot without cell": (
+        Dot(cell_dot=2),
+        "dot.cell_dot = 2: says something only together with dot.cell",
+    ),
+    "unknown standard": (
+        Dot(standard="marburg"),
+        "dot.standard = 'marburg': no such Braille standard; did you mean 'marburg-medium'?",
+    ),
+    "upended": (Dot(tilt_deg=(0.0, 90.0)), "dot.tilt_deg[1] = 90: must be above -90 and below 90"),
+}
+
+
+@pytest.mark.parametrize(("dot", "sentence"), REFUSED.values(), ids=REFUSED)
+def test_an_impossible_dot_is_refused_in_one_sentence(segment, dot, sentence):
+    with pytest.raises(InputError) as error:
+        resolve_dot(dot, segment)
+    assert str(error.value) == sentence
+
+
+PLANE = "segment.section = 'plane-strain' has nothing that varies over y"
+OUT_OF_PLANE = {
+    "cap": (Dot(), f"dot.shape = 'cap': {PLANE}; use dot.shape = 'ridge' or 'plate'"),
+    "cell": (Dot(shape="ridge", cell="⠿"), f"dot.cell = '⠿': {PLANE}; leave the cell out"),
+    "offset": (Dot(shape="ridge", offset_mm=(0.0, 0.1)), f"dot.offset_mm[1] = 0.1: {PLANE}; must be 0"),
+    "tilt": (
+        Dot(shape="plate", tilt_deg=(1.0, 0.0)),
+        f"dot.tilt_deg[0] = 1: {PLANE}; the tilt about x must be 0",
+    ),
+}
+
+
+@pytest.mark.parametrize(("dot", "sentence"), OUT_OF_PLANE.values(), ids=OUT_OF_PLANE)
+def test_nothing_varies_out_of_plane(make_segment, dot, sentence):
+    with pytest.raises(InputError) as error:
+        resolve_dot(dot, make_segment(section="plane-strain"))
+    assert str(error.value) == sentence
+
+
+def test_a_ridge_and_a_plate_fit_a_plane_strain_section(make_segment):
+    sliced = make_segment(section="plane-strain", width_mm=16.0)
+    assert resolve_dot(Dot(shape="ridge", radius_mm=1.15, offset_mm=(0.2, 0.0)), sliced).kind == "ridge"
+    assert resolve_dot(Dot(shape="plate", tilt_deg=(0.0, 3.0)), sliced).kind == "plate"

@@ -1,0 +1,19 @@
+from collections.abc import Iterator
+
+import pytest
+from mesh_samples import SAMPLES, built
+
+from mesh.types import TetMesh
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _own_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SOFTDOT_CACHE", str(tmp_path_factory.mktemp("cache")))
+        yield
+
+
+@pytest.fixture(params=sorted(SAMPLES))
+def sample(request: pytest.FixtureRequest) -> tuple[str, TetMesh]:
+    """Every sample segment, meshed once by each mesher that can."""
+    return request.param, built(request.param)
