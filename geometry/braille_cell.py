@@ -8,8 +8,8 @@ from geometry.errors import InputError
 FIRST, LAST = 0x2800, 0x28FF
 COLUMN_AND_ROW = {1: (0, 0), 2: (0, 1), 3: (0, 2), 7: (0, 3), 4: (1, 0), 5: (1, 1), 6: (1, 2), 8: (1, 3)}
 """Dot number -> (column, row); rows count downwards."""
-COLUMNS_ALONG_X, ROWS_ALONG_Y = 1.0, -1.0
-"""The reading direction is +x and the rows run along -y, as in a drawing seen from above the plate."""
+COLUMNS_ALONG_X, ROWS_ALONG_Y = 1.0, 1.0
+"""Reading runs along +x and rows along +y: the plate faces down, so its dots read correctly from their own side."""
 
 
 def raised_dots(character: str, field: str = "dot.cell") -> tuple[int, ...]:

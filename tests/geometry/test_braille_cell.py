@@ -33,5 +33,5 @@ def test_anything_else_is_refused(wrong):
     ("dot", "column", "row"),
     [(1, 0, 0), (2, 0, 1), (3, 0, 2), (4, 1, 0), (5, 1, 1), (6, 1, 2), (7, 0, 3), (8, 1, 3)],
 )
-def test_columns_run_along_x_and_rows_against_y(dot, column, row):
-    assert dot_offset_mm(dot, 2.5) == pytest.approx([2.5 * column, -2.5 * row])
+def test_columns_run_along_x_and_rows_along_y(dot, column, row):
+    assert dot_offset_mm(dot, 2.5) == pytest.approx([2.5 * column, 2.5 * row])
