@@ -9,7 +9,7 @@ from mesh.build import build
 from mesh.parameters import MeshOptions
 from solve.materials.parameters import NeoHookean, PiezoelectricFilm
 
-COARSE = MeshOptions(element_size_mm=0.6, contact_element_size_mm=0.3, mesher="layered")
+COARSE = MeshOptions(element_size_mm=0.9, contact_element_size_mm=0.45, mesher="layered")
 
 
 def segment(**changes) -> Segment:

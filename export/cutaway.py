@@ -1,0 +1,172 @@
+"""Pictures of the segment cut open along the dot, at rest and pressed."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from export.annotations import COLOUR_MAP, colour_bar, name_parts, ruler
+from export.dot_surface import placed_dot, triangle_surface
+from export.skin import Skin, nearby_plane, nodal_steps, outer_skin, section
+from export.units import MM_PER_M
+from export.view import INK, Body, View, frame, page, render, save
+from geometry.colours import PART_COLOURS
+from geometry.dot_shape import DotShape
+from mesh.types import Floats, TetMesh
+from solve.result import Step
+
+OPEN, FRONT = View(28.0, 18.0), View(0.0, 0.0)
+NAMES = {"medium1": "medium 1", "medium2": "medium 2"}
+
+
+@dataclass(frozen=True)
+class Scene:
+    """One step, ready to be drawn.
+
+    parts : name -> undeformed pyvista surface with point arrays displacement_mm and von_mises_MPa.
+    dots : closed surfaces where they stand; plane_mm : the cut's y; view : where from.
+    """
+
+    parts: dict[str, Any]
+    dots: list[Any]
+    plane_mm: float
+    view: View
+
+
+def is_slice(tet_mesh: TetMesh) -> bool:
+    """Whether the mesh is a plane-strain slice (nodes of equal x and z stand for one another)."""
+    return bool(np.any(tet_mesh.twin != np.arange(len(tet_mesh.twin))))
+
+
+def open_scene(tet_mesh: TetMesh, step: Step, dot_shape: DotShape) -> Scene:
+    """Cut a solid segment along the dot; a plane-strain slice is seen whole from the front."""
+    nodes = nodal_steps(tet_mesh, [step])
+    origin = step.dot_position_m * MM_PER_M
+    dots = placed_dot(dot_shape, tet_mesh, origin, facets=96)
+    outer = outer_skin(nodes, 2)
+    if is_slice(tet_mesh):
+        return Scene(_by_part(tet_mesh, [outer]), dots, 0.0, FRONT)
+    plane = nearby_plane(tet_mesh, float(origin[1]))
+    cut = _by_part(tet_mesh, [outer], lambda s: s.clip("y", origin=(0.0, plane, 0.0), invert=False))
+    faces = _by_part(tet_mesh, [section(nodes, plane, 2)])
+    parts = {name: cut[name].merge(faces[name]).extract_surface(algorithm="dataset_surface") for name in cut}
+    dots = [dot.clip_closed_surface("y", origin=(0.0, plane, 0.0)) for dot in dots]
+    return Scene(parts, [dot for dot in dots if dot.n_cells], plane, OPEN)
+
+
+def draw_parts(scene: Scene, title: str, path: Path) -> None:
+    """The parts in their colours, named, with rulers in mm."""
+    bodies = [Body(_deformed(part), PART_COLOURS[name]) for name, part in scene.parts.items()]
+    figure, axes = _draw(scene, bodies, title)
+    anchors, names = _anchors(scene)
+    colours = [PART_COLOURS[name] for name in [*scene.parts, "dot"]]
+    column = np.max([a[0] for a in anchors]) + 0.05 * float(np.diff(axes.get_xlim())[0])
+    name_parts(axes, names, np.array(anchors), colours, column)
+    save(figure, path)
+
+
+def draw_von_mises(scene: Scene, title: str, path: Path) -> None:
+    """The soft parts by von Mises stress; the film, a thousand times stiffer, in its own colour."""
+    soft = np.concatenate([p["von_mises_MPa"] for name, p in scene.parts.items() if name != "film"])
+    top = float(np.percentile(soft, 99)) or 1.0
+    bodies = [_by_stress(part, top) if name != "film" else Body(_deformed(part), PART_COLOURS[name])
+              for name, part in scene.parts.items()]  # fmt: skip
+    figure, _ = _draw(scene, bodies, title)
+    colour_bar(figure, 0.0, top, "von Mises stress (MPa)", "max" if soft.max() > top else "neither")
+    save(figure, path)
+
+
+def _by_stress(part: Any, top: float) -> Body:
+    """Colours straight into the surface, so that the light shades them like the parts' own."""
+    import matplotlib
+
+    surface = _deformed(part)
+    shade = np.clip(surface["von_mises_MPa"] / top, 0, 1)
+    surface["rgb"] = (matplotlib.colormaps[COLOUR_MAP](shade)[:, :3] * 255).astype(np.uint8)
+    return Body(surface, None)
+
+
+def _draw(scene: Scene, bodies: list[Body], title: str) -> tuple[Any, Any]:
+    """Bodies, outlines, dot and rulers on a page."""
+    bodies += [_outline(part, scene.view) for part in scene.parts.values()]
+    bodies += [Body(_smooth(dot), PART_COLOURS["dot"]) for dot in scene.dots]
+    flat = np.vstack([scene.view.flat(np.asarray(b.surface.points)) for b in bodies if b.surface.n_points])
+    box = frame(flat)
+    figure, axes, pixels_per_mm = page(box, title)
+    image = render(bodies, scene.view, box, 2 * pixels_per_mm)
+    limits = axes.get_xlim(), axes.get_ylim()
+    axes.imshow(image, extent=box, interpolation="antialiased", aspect="auto")
+    axes.set_xlim(limits[0])
+    axes.set_ylim(limits[1])
+    _rulers(axes, scene)
+    return figure, axes
+
+
+def _rulers(axes: Any, scene: Scene) -> None:
+    """x along the foot of the section, z up its left edge and, where it shows, y along the right foot."""
+    points = np.vstack([part.points for part in scene.parts.values()])
+    (x0, y0, z0), (x1, y1, z1) = points.min(axis=0), points.max(axis=0)
+    corner = np.array([x1, y0, z0])
+    away_x, away_y = np.array([0.0, -1.0]), np.array([0.5, -1.0])
+    ruler(axes, scene.view, np.array([x0, y0, z0]), corner, "x", away_x)
+    ruler(axes, scene.view, np.array([x0, y0, z0]), np.array([x0, y0, z1]), "z", np.array([-1.0, 0.0]))
+    if scene.view is not FRONT:
+        ruler(axes, scene.view, corner, np.array([x1, y1, z0]), "y", away_y)
+
+
+def _anchors(scene: Scene) -> tuple[list[Floats], list[str]]:
+    """Where the naming lines start (on the right flank at half height), and the names with thicknesses."""
+    anchors, names = [], []
+    for name, part in scene.parts.items():
+        z = part.points[:, 2]
+        low, high = float(z.min()), float(z.max())
+        flat = scene.view.flat(np.asarray(_deformed(part).points))
+        near = np.flatnonzero(np.abs(z - (low + high) / 2) <= 0.26 * (high - low))
+        near = near if len(near) else np.arange(len(z))
+        right = near[flat[near, 0] >= flat[near, 0].max() - 1e-3]
+        anchors.append(flat[right].mean(axis=0))
+        thick = f"{1e3 * (high - low):.0f} µm" if high - low < 0.1 else f"{high - low:.3g} mm"
+        names.append(f"{NAMES.get(name, name)}, {thick}")
+    plate = scene.view.flat(np.asarray(scene.dots[-1].points))
+    corner = plate[plate[:, 0] >= plate[:, 0].max() - 1e-3]
+    return [*anchors, corner.mean(axis=0)], [*names, "rigid dot"]
+
+
+def _by_part(
+    tet_mesh: TetMesh, skins: list[Skin], shape: Callable[[Any], Any] = lambda s: s
+) -> dict[str, Any]:
+    """One surface per part, named from the base upwards."""
+    result = {}
+    for number, name in enumerate(tet_mesh.region_names):
+        for skin in skins:
+            own = skin.triangles[skin.region[skin.triangles[:, 0]] == number]
+            surface = triangle_surface(skin.points_mm, own)
+            surface["displacement_mm"] = skin.displacement_mm[0]
+            surface["von_mises_MPa"] = skin.von_mises_MPa[0]
+            result[name] = shape(surface.clean())
+    return result
+
+
+def _deformed(surface: Any) -> Any:
+    """The surface where the step has moved it."""
+    moved = surface.copy()
+    moved.points = np.asarray(moved.points) + moved["displacement_mm"]
+    return moved
+
+
+def _outline(part: Any, view: View) -> Body:
+    """Edges of a part, found on the undeformed shape and lifted a little towards the viewer."""
+    edges = part.clean(tolerance=1e-6).extract_feature_edges(
+        feature_angle=40, manifold_edges=False, non_manifold_edges=False, clear_data=False
+    )
+    if edges.n_points:
+        edges = _deformed(edges)
+        edges.points = np.asarray(edges.points) + 0.01 * view.axes[2]
+    return Body(edges, INK, 2.5)
+
+
+def _smooth(surface: Any) -> Any:
+    """Normals that make round faces look round and keep sharp edges."""
+    return surface.compute_normals(split_vertices=True, feature_angle=30, cell_normals=False)

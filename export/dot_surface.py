@@ -1,0 +1,125 @@
+"""The surface of the rigid dot and its plate as triangles, for ParaView, pictures and the 3D view."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from geometry.dot_shape import DotShape
+from mesh.types import Floats, Ints, TetMesh
+
+PLATE_THICKNESS_MM = 0.2
+"""Drawn only: the real plate is of no consequence behind its face."""
+
+
+@dataclass(frozen=True)
+class DotPart:
+    """One closed surface: points_mm (v, 3) in the dot frame, triangles (t, 3) with outward normals."""
+
+    points_mm: Floats
+    triangles: Ints
+
+
+def dot_parts(dot_shape: DotShape, half_size_mm: tuple[float, float], facets: int = 48) -> list[DotPart]:
+    """Closed surfaces of every dot and of their plate in the dot frame.
+
+    half_size_mm : half of the plate's drawn size in x and y about the pressed dot; dots beyond it widen it.
+    facets : edges around a circle.
+    """
+    half = np.asarray(half_size_mm)
+    if dot_shape.kind == "plate":
+        return [_box(-half, half, 0.0)]
+    reach = 1.1 * np.array([1.0, 0.0 if dot_shape.kind == "ridge" else 1.0]) * _base_radius(dot_shape)
+    low = np.minimum(-half, dot_shape.centers_xy_mm.min(axis=0) - reach)
+    high = np.maximum(half, dot_shape.centers_xy_mm.max(axis=0) + reach)
+    profile = _profile(dot_shape, facets // 2)
+    if dot_shape.kind == "ridge":
+        dots = [_ridge(profile, center[0], low[1], high[1]) for center in dot_shape.centers_xy_mm]
+    else:
+        dots = [_revolved(profile, center, facets) for center in dot_shape.centers_xy_mm]
+    return [*dots, _box(low, high, dot_shape.height_mm)]
+
+
+def placed_dot(dot_shape: DotShape, tet_mesh: TetMesh, origin_mm: Floats, facets: int = 48) -> list[Any]:
+    """The parts of the dot as pyvista surfaces in the segment frame, the plate wider than the segment."""
+    half = np.ptp(tet_mesh.points_mm, axis=0)[:2] * 0.55
+    return [
+        triangle_surface(in_segment_frame(dot_shape, part.points_mm, origin_mm), part.triangles)
+        for part in dot_parts(dot_shape, (float(half[0]), float(half[1])), facets)
+    ]
+
+
+def triangle_surface(points_mm: Floats, triangles: Ints) -> Any:
+    """A pyvista surface of points (v, 3) and triangles (t, 3)."""
+    import pyvista
+
+    return pyvista.PolyData.from_regular_faces(points_mm, triangles)  # type: ignore[arg-type]
+
+
+def in_segment_frame(dot_shape: DotShape, points_mm: Floats, origin_mm: Floats) -> Floats:
+    """Points (v, 3) of the dot frame, in mm, seen in the segment frame with the dot's origin at origin_mm."""
+    return np.asarray(origin_mm + points_mm @ dot_shape.rotation.T)
+
+
+def _base_radius(dot_shape: DotShape) -> float:
+    """Radius where the dot meets its plate, in mm."""
+    depth = min(dot_shape.height_mm, dot_shape.radius_mm)
+    return float(np.sqrt(depth * (2 * dot_shape.radius_mm - depth)))
+
+
+def _profile(dot_shape: DotShape, count: int) -> Floats:
+    """Meridian from the tip to the plate, (p, 2) radius and height in mm."""
+    radius = dot_shape.radius_mm
+    opening = np.arccos(1 - min(dot_shape.height_mm, radius) / radius)
+    angle = np.linspace(0.0, opening, count)
+    arc = np.column_stack([radius * np.sin(angle), radius * (1 - np.cos(angle))])
+    if dot_shape.height_mm <= radius:
+        return arc
+    return np.vstack([arc, [radius, dot_shape.height_mm]])
+
+
+def _revolved(profile: Floats, center: Floats, facets: int) -> DotPart:
+    """The profile turned about the z axis through center and closed by a disc at its end."""
+    angle = np.arange(facets) * 2 * np.pi / facets
+    ring = np.column_stack([np.cos(angle), np.sin(angle)])
+    rings = [np.column_stack([center + r * ring, np.full(facets, z)]) for r, z in profile[1:]]
+    tip, lid = np.append(center, profile[0, 1]), np.append(center, profile[-1, 1])
+    a = np.arange(facets)
+    b = np.roll(a, -1)
+    triangles = [np.column_stack([np.zeros(facets, int), 1 + b, 1 + a])]
+    for k in range(len(rings) - 1):
+        low, high = 1 + k * facets, 1 + (k + 1) * facets
+        triangles += [
+            np.column_stack([low + a, low + b, high + b]),
+            np.column_stack([low + a, high + b, high + a]),
+        ]
+    last = 1 + (len(rings) - 1) * facets
+    triangles.append(np.column_stack([last + a, last + b, np.full(facets, 1 + len(rings) * facets)]))
+    return DotPart(np.vstack([tip, *rings, lid]), np.vstack(triangles).astype(np.int64))
+
+
+def _ridge(profile: Floats, center_x: float, front_y: float, back_y: float) -> DotPart:
+    """The profile, mirrored in x, drawn out along y over the plate's width and closed at both ends."""
+    outline = np.vstack([profile[:0:-1] * [-1, 1], profile])
+    count = len(outline)
+    front, back = (
+        np.column_stack([center_x + outline[:, 0], np.full(count, y), outline[:, 1]])
+        for y in (front_y, back_y)
+    )
+    a = np.arange(count)
+    b = np.roll(a, -1)
+    sides = [np.column_stack([a, count + b, b]), np.column_stack([a, count + a, count + b])]
+    inner = np.arange(1, count - 1)
+    ends = [
+        np.column_stack([np.zeros_like(inner), inner, inner + 1]),
+        count + np.column_stack([np.zeros_like(inner), inner + 1, inner]),
+    ]
+    return DotPart(np.vstack([front, back]), np.vstack([*sides, *ends]).astype(np.int64))
+
+
+def _box(low: Floats, high: Floats, bottom: float) -> DotPart:
+    """The plate: its face at z = bottom."""
+    foot = np.where([[0, 0], [1, 0], [1, 1], [0, 1]], high, low)
+    points = np.vstack([np.column_stack([foot, np.full(4, bottom + z)]) for z in (0.0, PLATE_THICKNESS_MM)])
+    quads = np.array([[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]])
+    return DotPart(points, np.vstack([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]]).astype(np.int64))

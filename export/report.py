@@ -1,0 +1,173 @@
+"""The report: one HTML file that opens offline."""
+
+import base64
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from export.files import write_whole_text
+
+HERE = Path(__file__).parent
+CAPTIONS = {
+    "undeformed": (
+        "The segment at rest",
+        "The front half is cut away along the dot, so that every layer shows; the dot just touches.",
+    ),
+    "deformed": (
+        "The segment pressed",
+        "The same cut at the deepest step: how far each layer follows the dot, drawn to scale.",
+    ),
+    "von_mises": (
+        "Load in the soft layers",
+        "Von Mises stress, one number for how hard the material is sheared; the film keeps its own colour "
+        "because it is far stiffer.",
+    ),
+    "film": (
+        "What the film feels",
+        "Left: the largest stretch in the film, averaged through its thickness; right: the charge that this "
+        "stretch frees on each square millimetre; thin white lines join places of equal deflection.",
+    ),
+    "force_voltage": (
+        "Force and voltage while pressing",
+        "Force that the dot feels, and voltage that the film gives (open circuit: nothing draws charge).",
+    ),
+}
+"""Title and one plain sentence for each picture, in the order in which the report shows them."""
+SLICE_CAPTIONS = {
+    "undeformed": (
+        "The slice at rest",
+        "A slice of the segment seen from the front; the ridge just touches.",
+    ),
+    "deformed": (
+        "The slice pressed",
+        "The same slice at the deepest step: how far each layer follows the ridge, drawn to scale.",
+    ),
+    "film": (
+        "What the film feels",
+        "Along the length, left: the largest stretch in the film, averaged through its thickness; right: "
+        "the charge that this stretch frees on each square millimetre.",
+    ),
+}
+"""What differs for a plane-strain slice, where nothing varies across the width."""
+
+
+def write_report(
+    summary: Mapping[str, Any], pictures: Mapping[str, Path], view: Mapping[str, Any] | None, path: Path
+) -> None:
+    """Write one self-contained HTML page with headline numbers, pictures, tables and a 3D view.
+
+    summary : the content of summary.json (plain numbers, lists and strings); what is missing is left out.
+    pictures : name -> PNG; captions come from CAPTIONS. view : from viewer_data, None for no 3D view.
+    The file appears whole or not at all.
+    """
+    import jinja2
+
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(HERE), autoescape=True, trim_blocks=True, lstrip_blocks=True
+    )
+    environment.filters["number"] = number
+    page = environment.get_template("report.html").render(
+        s=summary,
+        headline=headline(summary),
+        steps=step_rows(summary),
+        pictures=[_picture(name, file, _captions(summary)) for name, file in _in_order(pictures)],
+        view=_script_safe(json.dumps(view)) if view else None,
+        viewer=(HERE / "viewer.js").read_text(encoding="utf-8"),
+        config=json.dumps(summary.get("config", {}), indent=2, ensure_ascii=False),
+    )
+    write_whole_text(path, page)
+
+
+def number(value: Any, digits: int = 4) -> str:
+    """A number for people: significant digits, no exponent between 1e-4 and 1e6; other values as they are."""
+    if value is None:
+        return "\u2013"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, list | tuple):
+        return ", ".join(number(item, digits) for item in value)
+    if isinstance(value, int):
+        return f"{value:,}".replace(",", "\u202f")
+    if not isinstance(value, float):
+        return str(value)
+    if value and not 1e-4 <= abs(value) < 1e6:
+        return f"{value:.{digits - 1}e}"
+    return _plain(value, digits)
+
+
+def _plain(value: float, digits: int) -> str:
+    """Significant digits without an exponent."""
+    text = f"{float(f'{value:.{digits}g}'):.10f}".rstrip("0").rstrip(".")
+    return text.replace("-", "\u2212") if text not in ("", "-0") else "0"
+
+
+def headline(summary: Mapping[str, Any]) -> list[dict[str, str]]:
+    """The numbers at the top: label, value, unit and one plain sentence each; missing ones are left out."""
+    film, sensitivity = summary.get("film", {}), summary.get("sensitivity", {})
+    noise = sensitivity.get("noise_V")
+    at_noise = f"for a noise of {number(1e3 * noise)} mV" if noise else "for the stated noise"
+    rows = [
+        ("Depth reached", _last(summary, "indentation_mm"), "mm", "how far the dot went in"),
+        ("Reaction force", _last(summary, "reaction_force_N"), "N", "what the dot feels at that depth"),
+        ("Open-circuit voltage", _last(summary, "open_circuit_voltage_V"), "V", "charge over capacitance"),
+        ("Read-out voltage", _last(summary, "readout_voltage_V"), "V", "behind the given amplifier"),
+        ("Charge", _last(summary, "film_charge_pC"), "pC", "freed by the film at short circuit"),
+        ("Capacitance", film.get("capacitance_pF"), "pF", "of the film at rest"),
+        ("Voltage per depth", sensitivity.get("voltage_per_mm"), "V/mm", "at the deepest step"),
+        ("Charge per force", sensitivity.get("charge_pC_per_N"), "pC/N", "at the deepest step"),
+        ("Least detectable press", sensitivity.get("least_detectable_indentation_um"), "µm", at_noise),
+        ("Largest film strain", _percent(film.get("max_principal_strain")), "%", "principal strain"),
+        ("Largest film stress", film.get("max_principal_stress_MPa"), "MPa", "principal stress"),
+    ]
+    return [
+        {"label": label, "value": number(value), "unit": unit, "note": note}
+        for label, value, unit, note in rows
+        if value is not None
+    ]
+
+
+def step_rows(summary: Mapping[str, Any]) -> tuple[list[str], list[list[str]]]:
+    """Column heads and one row for each load step."""
+    columns = [
+        ("indentation (mm)", "indentation_mm"),
+        ("force (N)", "reaction_force_N"),
+        ("charge (pC)", "film_charge_pC"),
+        ("open-circuit voltage (V)", "open_circuit_voltage_V"),
+        ("read-out voltage (V)", "readout_voltage_V"),
+    ]
+    present = [(head, summary[key]) for head, key in columns if summary.get(key) is not None]
+    rows = [[number(value) for value in row] for row in zip(*(values for _, values in present), strict=True)]
+    return [head for head, _ in present], rows
+
+
+def _last(summary: Mapping[str, Any], key: str) -> Any:
+    """The value at the last step, None where there is no history."""
+    history = summary.get(key)
+    return history[-1] if history else None
+
+
+def _percent(share: float | None) -> float | None:
+    return None if share is None else 100 * share
+
+
+def _in_order(pictures: Mapping[str, Path]) -> list[tuple[str, Path]]:
+    """Known pictures first and in their order."""
+    names = [name for name in CAPTIONS if name in pictures]
+    return [(name, pictures[name]) for name in [*names, *(n for n in pictures if n not in CAPTIONS)]]
+
+
+def _captions(summary: Mapping[str, Any]) -> dict[str, tuple[str, str]]:
+    """Captions for what was computed."""
+    section = summary.get("config", {}).get("segment", {}).get("section")
+    return CAPTIONS | (SLICE_CAPTIONS if section == "plane-strain" else {})
+
+
+def _picture(name: str, path: Path, captions: Mapping[str, tuple[str, str]]) -> dict[str, str]:
+    title, text = captions.get(name, (name.replace("_", " "), ""))
+    return {"title": title, "text": text, "data": base64.b64encode(path.read_bytes()).decode("ascii")}
+
+
+def _script_safe(text: str) -> str:
+    """JSON that cannot end the script element that holds it."""
+    return text.replace("<", "\\u003c")

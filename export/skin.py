@@ -1,0 +1,155 @@
+"""Surfaces of the segment as small triangles that carry every shown step: outer skin, section and film."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from export.nodal_fields import SplitNodes, film_values, largest_principal, split_nodes, spread
+from export.subdivision import tetra_pattern, triangle_pattern
+from export.units import MM_PER_M, MPA_PER_PA
+from mesh.types import Floats, Ints, TetMesh
+from solve.result import Step
+
+FACES = np.array([[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 3, 2, 7, 9, 6]])
+"""The four faces of a quadratic tetrahedron, seen from outside: corners, then mid-sides 01, 12, 20."""
+
+
+@dataclass(frozen=True)
+class Skin:
+    """Triangles with their undeformed corners and the fields of each step (s steps).
+
+    points_mm : (v, 3); triangles : (t, 3); region : (v,) part of each corner (each belongs to one only).
+    displacement_mm : (s, v, 3); von_mises_MPa, film_strain : (s, v), the latter zero outside the film.
+    """
+
+    points_mm: Floats
+    triangles: Ints
+    region: Ints
+    displacement_mm: Floats
+    von_mises_MPa: Floats
+    film_strain: Floats
+
+    def deformed_mm(self, step: int) -> Floats:
+        """Corners (v, 3) at one step."""
+        return np.asarray(self.points_mm + self.displacement_mm[step])
+
+
+@dataclass(frozen=True)
+class NodalSteps:
+    """Fields at the split nodes: displacement_mm (s, n, 3), von_mises_MPa and film_strain (s, n)."""
+
+    split: SplitNodes
+    points_mm: Floats
+    displacement_mm: Floats
+    von_mises_MPa: Floats
+    film_strain: Floats
+
+
+def nodal_steps(tet_mesh: TetMesh, steps: Sequence[Step]) -> NodalSteps:
+    """Gather what the skins show of the given steps, at nodes that belong to one part each."""
+    split = split_nodes(tet_mesh)
+    strain = [
+        film_values(tet_mesh, f.film_tets, largest_principal(f.film_strain))
+        for f in (s.fields for s in steps)
+    ]
+    return NodalSteps(
+        split,
+        tet_mesh.points_mm[split.node],
+        np.stack([s.fields.displacement_m[split.node] for s in steps]) * MM_PER_M,
+        np.stack([spread(split, s.fields.von_mises_Pa) for s in steps]) * MPA_PER_PA,
+        np.stack([spread(split, values) for values in strain]),
+    )
+
+
+def outer_skin(nodes: NodalSteps, level: int = 1) -> Skin:
+    """The skin of every part that is open to the outside, each quadratic face cut into 4^level triangles."""
+    tets = nodes.split.tets
+    mesh_nodes = np.sort(nodes.split.node[tets[:, FACES[:, :3]]].reshape(-1, 3), axis=1)
+    _, first, count = np.unique(mesh_nodes, axis=0, return_index=True, return_counts=True)
+    return _from_facets(nodes, tets[:, FACES].reshape(-1, 6)[first[count == 1]], level)
+
+
+def film_top(nodes: NodalSteps, tet_mesh: TetMesh, level: int = 1) -> Skin:
+    """The upper face of the film."""
+    film = tet_mesh.region_names.index("film")
+    place = np.full(len(tet_mesh.points_mm), -1)
+    own = np.flatnonzero(nodes.split.region == film)
+    place[nodes.split.node[own]] = own
+    return _from_facets(nodes, place[tet_mesh.facets["film-top"]], level)
+
+
+def section(nodes: NodalSteps, y_mm: float, level: int = 1) -> Skin:
+    """The cut through all parts along the undeformed plane y = y_mm, as a surface that faces -y."""
+    import pyvista
+
+    y = nodes.points_mm[nodes.split.tets, 1]
+    crossed = nodes.split.tets[(y.min(axis=1) < y_mm) & (y.max(axis=1) > y_mm)]
+    weights, small = tetra_pattern(level)
+    cells = (np.arange(len(crossed))[:, None, None] * len(weights) + small).reshape(-1, 4)
+    points, *fields = (_interpolate(weights, array, crossed) for array in _arrays(nodes))
+    grid = pyvista.UnstructuredGrid({pyvista.CellType.TETRA: cells}, points)
+    for number, values in enumerate(fields):
+        grid.point_data[f"f{number}"] = values
+    grid.cell_data["region"] = np.repeat(nodes.split.region[crossed[:, 0]], len(small))
+    cut = grid.slice(normal="y", origin=(0.0, y_mm, 0.0)).triangulate()
+    triangles = cut.regular_faces.astype(np.int64)
+    return _facing_front(_welded(nodes, triangles, np.asarray(cut.cell_data["region"]), cut))
+
+
+def nearby_plane(tet_mesh: TetMesh, y_mm: float) -> float:
+    """A y just behind y_mm and inside the segment: a cut exactly through mesh faces would find no cells."""
+    low, high = tet_mesh.points_mm[:, 1].min(), tet_mesh.points_mm[:, 1].max()
+    inset = 1e-4 * (high - low)
+    return float(np.clip(y_mm + inset, low + inset, high - inset))
+
+
+def _arrays(nodes: NodalSteps) -> list[Floats]:
+    """Points first, then each step's displacement, stress and strain."""
+    steps = range(len(nodes.displacement_mm))
+    fields = [a[s] for s in steps for a in (nodes.displacement_mm, nodes.von_mises_MPa, nodes.film_strain)]
+    return [nodes.points_mm, *fields]
+
+
+def _interpolate(weights: Floats, values: Floats, cells: Ints) -> Floats:
+    """Values (n,) or (n, 3) at the pattern's points of every cell, stacked cell by cell."""
+    result = np.einsum("pk,ck...->cp...", weights, values[cells])
+    return np.asarray(result.reshape(-1, *values.shape[1:]))
+
+
+def _from_facets(nodes: NodalSteps, facets: Ints, level: int) -> Skin:
+    """Quadratic triangles (k, 6) in split nodes, subdivided; equal corners of one part are shared."""
+    weights, small = triangle_pattern(level)
+    triangles = (np.arange(len(facets))[:, None, None] * len(weights) + small).reshape(-1, 3)
+    points, *fields = (_interpolate(weights, array, facets) for array in _arrays(nodes))
+    region = np.repeat(nodes.split.region[facets[:, 0]], len(weights))
+    return _shared(points, triangles, region, fields)
+
+
+def _welded(nodes: NodalSteps, triangles: Ints, region: Ints, cut: "object") -> Skin:
+    """A cut whose corners are given to one part each (parts meet at equal corners)."""
+    points = np.asarray(cut.points, np.float64)[triangles].reshape(-1, 3)  # type: ignore[attr-defined]
+    count = 3 * len(nodes.displacement_mm)
+    fields = [np.asarray(cut.point_data[f"f{k}"])[triangles.ravel()] for k in range(count)]  # type: ignore[attr-defined]
+    return _shared(points, np.arange(len(points)).reshape(-1, 3), np.repeat(region, 3), fields)
+
+
+def _shared(points: Floats, triangles: Ints, region: Ints, fields: Sequence[Floats]) -> Skin:
+    """Merge corners of equal place (to 0.1 um) and part, drop triangles that vanish by it."""
+    keys = np.column_stack([np.round(points * 1e4).astype(np.int64), region])
+    _, first, inverse = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    triangles = inverse.ravel()[triangles]
+    a, b, c = triangles.T
+    triangles = triangles[(a != b) & (b != c) & (c != a)]
+    fields = [values[first] for values in fields]
+    return Skin(points[first], triangles, region[first], *(np.stack(fields[k::3]) for k in range(3)))
+
+
+def _facing_front(skin: Skin) -> Skin:
+    """Turn triangles so that their normals point to -y."""
+    a, b, c = (skin.points_mm[skin.triangles[:, i]] for i in range(3))
+    turned = np.cross(b - a, c - a)[:, 1] > 0
+    triangles = np.where(turned[:, None], skin.triangles[:, ::-1], skin.triangles)
+    return Skin(
+        skin.points_mm, triangles, skin.region, skin.displacement_mm, skin.von_mises_MPa, skin.film_strain
+    )

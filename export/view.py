@@ -1,0 +1,130 @@
+"""A straight (orthographic) view of the segment: VTK draws the bodies, matplotlib all that is written."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mesh.types import Floats
+
+WIDTH_IN, HEIGHT_IN, DPI = 8.0, 6.0, 200
+PICTURE_SIZE = (int(WIDTH_IN * DPI), int(HEIGHT_IN * DPI))
+"""Pixels of every picture, width and height."""
+MARGIN = {"left": 0.12, "right": 0.28, "bottom": 0.13, "top": 0.11}
+INK = "#26303a"
+
+
+@dataclass(frozen=True)
+class View:
+    """Where the viewer stands: turned by azimuth_deg from -y towards +x, lifted by elevation_deg."""
+
+    azimuth_deg: float
+    elevation_deg: float
+
+    @property
+    def axes(self) -> tuple[Floats, Floats, Floats]:
+        """Unit vectors to the right, upwards and towards the viewer."""
+        a, e = np.radians([self.azimuth_deg, self.elevation_deg])
+        right = np.array([np.cos(a), np.sin(a), 0.0])
+        toward = np.array([np.sin(a) * np.cos(e), -np.cos(a) * np.cos(e), np.sin(e)])
+        return right, np.cross(toward, right), toward
+
+    def flat(self, points_mm: Floats) -> Floats:
+        """Points (n, 3) as they lie on the picture, (n, 2) mm."""
+        right, up, _ = self.axes
+        return np.asarray(points_mm @ np.column_stack([right, up]))
+
+
+@dataclass(frozen=True)
+class Body:
+    """Something to draw: a pyvista surface, its colour (None: its "rgb" array), line width (0: filled)."""
+
+    surface: Any
+    colour: str | None
+    line_width: float = 0.0
+
+
+def frame(flat_mm: Floats, pad: float = 0.02) -> tuple[float, float, float, float]:
+    """Left, right, bottom, top in mm around flat points (n, 2)."""
+    low, high = flat_mm.min(axis=0), flat_mm.max(axis=0)
+    extra = pad * (high - low).max()
+    return low[0] - extra, high[0] + extra, low[1] - extra, high[1] + extra
+
+
+def render(
+    bodies: list[Body], view: View, box: tuple[float, float, float, float], pixels_per_mm: float
+) -> Any:
+    """Image (h, w, 3) uint8 of what lies inside box (mm on the picture). InputError without OpenGL."""
+    from export.headless import ensure_rendering
+
+    ensure_rendering()
+    import pyvista
+
+    left, right, bottom, top = box
+    size = (max(1, round((right - left) * pixels_per_mm)), max(1, round((top - bottom) * pixels_per_mm)))
+    plotter = pyvista.Plotter(off_screen=True, window_size=list(size), lighting="light kit")
+    plotter.background_color = pyvista.Color("white")
+    flat_light = view.elevation_deg == 0
+    for body in bodies:
+        _add(plotter, body, flat_light)
+    _look(plotter.camera, view, box)
+    plotter.reset_camera_clipping_range()
+    image = plotter.screenshot(None, return_img=True)
+    plotter.close()
+    return image
+
+
+def _add(plotter: Any, body: Body, flat_light: bool) -> None:
+    """Filled surfaces in soft light (none at all in a straight front view), lines in ink."""
+    if body.surface.n_points == 0:
+        return
+    flat = flat_light or body.line_width > 0
+    light: dict[str, Any] = {"lighting": False} if flat else {"ambient": 0.6, "diffuse": 0.5, "specular": 0.0}
+    if body.line_width:
+        light["line_width"] = body.line_width
+    if body.colour is None:
+        plotter.add_mesh(body.surface, scalars="rgb", rgb=True, show_scalar_bar=False, **light)
+    else:
+        plotter.add_mesh(body.surface, color=body.colour, **light)
+
+
+def _look(camera: Any, view: View, box: tuple[float, float, float, float]) -> None:
+    """Aim a parallel camera so that the window is exactly the box."""
+    right, up, toward = view.axes
+    left, right_end, bottom, top = box
+    focus = right * (left + right_end) / 2 + up * (bottom + top) / 2
+    camera.parallel_projection = True
+    camera.focal_point = focus
+    camera.position = focus + 100.0 * toward
+    camera.up = up
+    camera.parallel_scale = (top - bottom) / 2
+
+
+def page(box: tuple[float, float, float, float], title: str) -> tuple[Any, Any, float]:
+    """A white page of PICTURE_SIZE whose coordinates are mm on the picture, with room for writing around box.
+
+    Returns figure, axes and pixels per mm.
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(WIDTH_IN, HEIGHT_IN), dpi=DPI, facecolor="white")
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes.set_axis_off()
+    left, right, bottom, top = box
+    room = (
+        (1 - MARGIN["left"] - MARGIN["right"]) * WIDTH_IN,
+        (1 - MARGIN["bottom"] - MARGIN["top"]) * HEIGHT_IN,
+    )
+    inch_per_mm = min(room[0] / (right - left), room[1] / (top - bottom))
+    span = np.array([WIDTH_IN, HEIGHT_IN]) / inch_per_mm
+    x0 = (left + right) / 2 - span[0] * (MARGIN["left"] + (1 - MARGIN["right"])) / 2
+    y0 = (bottom + top) / 2 - span[1] * (MARGIN["bottom"] + (1 - MARGIN["top"])) / 2
+    axes.set_xlim(x0, x0 + span[0])
+    axes.set_ylim(y0, y0 + span[1])
+    figure.text(0.04, 0.955, title, fontsize=15, fontweight="bold", color=INK, va="center")
+    return figure, axes, inch_per_mm * DPI
+
+
+def save(figure: Any, path: Any) -> None:
+    """Write a PNG of the figure's full size."""
+    figure.savefig(path, dpi=DPI, facecolor="white")

@@ -1,0 +1,145 @@
+"""What the report's 3D view needs, packed as base64 arrays."""
+
+import base64
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from export.annotations import COLOUR_MAP
+from export.cutaway import is_slice
+from export.dot_surface import placed_dot
+from export.skin import NodalSteps, Skin, film_top, nearby_plane, nodal_steps, outer_skin, section
+from export.units import MM_PER_M
+from geometry.colours import PART_COLOURS
+from geometry.dot_shape import DotShape
+from mesh.types import TetMesh
+from solve.result import PressResult, Step
+
+MOST_STEPS = 9
+"""Steps shown; more would make the page heavy without showing more."""
+MOST_TRIANGLES = 30_000
+"""Above this the quadratic faces are drawn by their corners only."""
+
+
+def viewer_data(tet_mesh: TetMesh, result: PressResult, dot_shape: DotShape) -> dict[str, Any]:
+    """Data of export/viewer.js: plain numbers and base64 of little-endian arrays.
+
+    base64 float32: points (v, 3), dotPoints and dotCut (loose triangles); int16: displacement (s, v, 3)
+    in displacementUnit mm; uint8: region (v,), stress and strain (s, v), shares of stressTop and strainTop;
+    uint32: outer, section and film triangles into the same corners.
+    dotShift (s, 3) moves the dot; plane is the cut's y; colours, names and colourMap say how to paint.
+    """
+    chosen = [result.steps[k] for k in _spread_steps(len(result.steps))]
+    nodes = nodal_steps(tet_mesh, chosen)
+    plane = nearby_plane(tet_mesh, float(chosen[-1].dot_position_m[1]) * MM_PER_M)
+    skins = _skins(nodes, tet_mesh, plane)
+    return {
+        "steps": [_caption(step) for step in chosen],
+        "names": list(tet_mesh.region_names),
+        "colours": [_rgb(PART_COLOURS[name]) for name in tet_mesh.region_names],
+        "colourMap": _colour_map(),
+        "plane": plane,
+        "slice": is_slice(tet_mesh),
+        **_geometry(skins),
+        **_fields(skins, tet_mesh),
+        **_dot(tet_mesh, chosen, dot_shape, plane),
+    }
+
+
+def _spread_steps(count: int) -> list[int]:
+    """At most MOST_STEPS indices from the first to the last."""
+    return sorted({round(k) for k in np.linspace(0, count - 1, min(count, MOST_STEPS))})
+
+
+def _caption(step: Step) -> dict[str, float]:
+    return {"indentation": step.indentation_m * MM_PER_M, "force": step.reaction_force_N}
+
+
+def _skins(nodes: NodalSteps, tet_mesh: TetMesh, plane: float) -> list[Skin]:
+    """Outer skin, section and film, curved where the page can bear it."""
+    outer = outer_skin(nodes, 0)
+    level = 1 if 4 * len(outer.triangles) <= MOST_TRIANGLES else 0
+    return [outer_skin(nodes, level), section(nodes, plane, level), film_top(nodes, tet_mesh, level)]
+
+
+def _geometry(skins: list[Skin]) -> dict[str, Any]:
+    """Corners of all skins in one array and the triangles of each."""
+    offsets = np.cumsum([0, *(len(skin.points_mm) for skin in skins[:-1])])
+    triangles = {
+        name: _pack(skin.triangles + offset, np.uint32)
+        for name, skin, offset in zip(("outer", "section", "film"), skins, offsets, strict=True)
+    }
+    points = np.concatenate([skin.points_mm for skin in skins])
+    displacement = np.concatenate([skin.displacement_mm for skin in skins], axis=1)
+    region = np.concatenate([skin.region for skin in skins])
+    unit = (float(np.abs(displacement).max()) or 1.0) / 32767
+    return {
+        "points": _pack(points, np.float32),
+        "displacement": _pack(np.round(displacement / unit), np.int16),
+        "displacementUnit": unit,
+        "region": _pack(region, np.uint8),
+        **triangles,
+    }
+
+
+def _fields(skins: list[Skin], tet_mesh: TetMesh) -> dict[str, Any]:
+    """Stress up to the 99th percentile of the soft parts (the film is far stiffer), strain up to its top."""
+    stress = np.concatenate([skin.von_mises_MPa for skin in skins], axis=1)
+    strain = np.concatenate([skin.film_strain for skin in skins], axis=1)
+    soft = np.concatenate([skin.region for skin in skins]) != tet_mesh.region_names.index("film")
+    stress_top = float(np.percentile(stress[-1, soft], 99)) or 1.0
+    strain_top = float(strain.max()) or 1.0
+    return {
+        "stress": _pack(_share(stress, stress_top), np.uint8),
+        "strain": _pack(_share(strain, strain_top), np.uint8),
+        "stressTop": stress_top,
+        "strainTop": strain_top,
+    }
+
+
+def _dot(tet_mesh: TetMesh, steps: Sequence[Step], dot_shape: DotShape, plane: float) -> dict[str, Any]:
+    """The dot's triangles at its first place, and how far each step moves it."""
+    first = steps[0].dot_position_m * MM_PER_M
+    whole = placed_dot(dot_shape, tet_mesh, first)
+    # Cut where the plane meets the dot at the last step, as the segment is.
+    slide = float(steps[-1].dot_position_m[1]) * MM_PER_M - first[1]
+    cut = [part.clip_closed_surface("y", origin=(0.0, plane - slide, 0.0)) for part in whole]
+    shift = np.stack([step.dot_position_m * MM_PER_M - first for step in steps])
+    return {
+        "dotPoints": _pack(_corners(whole), np.float32),
+        "dotCut": _pack(_corners(cut), np.float32),
+        "dotShift": shift.tolist(),
+        "dotColour": _rgb(PART_COLOURS["dot"]),
+    }
+
+
+def _corners(surfaces: Sequence[Any]) -> NDArray[np.float64]:
+    """Corners (3 t, 3) of all triangles."""
+    return np.concatenate(
+        [s.triangulate().points[s.triangulate().regular_faces].reshape(-1, 3) for s in surfaces]
+    )
+
+
+def _share(values: NDArray[np.float64], top: float) -> NDArray[np.float64]:
+    return np.asarray(np.round(255 * np.clip(values / top, 0, 1)))
+
+
+def _pack(values: NDArray[Any], kind: type[np.generic]) -> str:
+    """Base64 of a little-endian array."""
+    kind_little = np.dtype(kind).newbyteorder("<")
+    return base64.b64encode(np.ascontiguousarray(values, kind_little).tobytes()).decode("ascii")
+
+
+def _rgb(colour: str) -> list[float]:
+    from matplotlib.colors import to_rgb
+
+    return [round(float(c), 4) for c in to_rgb(colour)]
+
+
+def _colour_map() -> str:
+    """256 RGB triples, the same colour map as in the pictures."""
+    import matplotlib
+
+    return _pack(255 * matplotlib.colormaps[COLOUR_MAP](np.arange(256))[:, :3], np.uint8)

@@ -1,0 +1,145 @@
+"""ParaView files: one VTU per load step, gathered by PVD collections over the indentation."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+
+from export.dot_surface import placed_dot
+from export.files import whole_folder
+from export.units import MM_PER_M, MPA_PER_PA, PC_PER_MM2_PER_C_PER_M2
+from geometry.dot_shape import DotShape
+from mesh.types import Floats, Ints, TetMesh
+from solve.result import PressResult, Step
+
+QUADRATIC_TRIANGLE = 22
+QUADRATIC_TETRA = 24
+GLOBAL_AXES = ("XX", "YY", "ZZ", "XY", "YZ", "XZ")
+FILM_AXES = ("11", "22", "33", "12", "23", "13")
+
+
+def write_results(tet_mesh: TetMesh, result: PressResult, dot_shape: DotShape, folder: Path) -> list[Path]:
+    """Write segment, film, contact and dot as PVD collections with one file per step; return the PVD paths.
+
+    The time of a collection is the indentation in mm; where that does not rise from step to step (a slide at
+    constant depth), it is the number of the step. Points are undeformed (mm) and every file carries
+    displacement_mm, so that "Warp By Vector" with factor 1 shows the deformed shape; the dot is written where
+    it stands. Cell arrays of segment: cauchy_stress_MPa, von_mises_MPa, pressure_MPa, max_stretch, region;
+    the field data "region_<name>" holds each part's number. The folder appears whole or not at all.
+    """
+    parts: dict[str, Callable[[Step], Any]] = {
+        "segment": lambda step: _segment(tet_mesh, step),
+        "film": lambda step: _film(tet_mesh, step),
+        "contact": lambda step: _contact(tet_mesh, step),
+        "dot": lambda step: _dot(tet_mesh, dot_shape, step),
+    }
+    with whole_folder(folder) as scratch:
+        for name, build in parts.items():
+            suffix = "vtp" if name == "dot" else "vtu"
+            files = [f"{name}_{index:04d}.{suffix}" for index in range(len(result.steps))]
+            for file, step in zip(files, result.steps, strict=True):
+                _write_xml(build(step), scratch / file)
+            (scratch / f"{name}.pvd").write_text(_collection(files, step_times(result)), encoding="utf-8")
+    return [folder / f"{name}.pvd" for name in parts]
+
+
+def step_times(result: PressResult) -> list[float]:
+    """Indentation of each step in mm, or the step numbers where the indentation does not rise throughout."""
+    depths = np.array([step.indentation_m for step in result.steps]) * MM_PER_M
+    if np.all(np.diff(depths) > 0):
+        return [float(depth) for depth in depths]
+    return [float(index) for index in range(len(depths))]
+
+
+def _segment(tet_mesh: TetMesh, step: Step) -> Any:
+    """The whole segment as quadratic tetrahedra."""
+    fields = step.fields
+    grid = _grid(tet_mesh.points_mm, tet_mesh.tets, QUADRATIC_TETRA)
+    _add(grid.point_data, "displacement_mm", fields.displacement_m * MM_PER_M)
+    _add(grid.cell_data, "cauchy_stress_MPa", fields.cauchy_stress_Pa * MPA_PER_PA, GLOBAL_AXES)
+    _add(grid.cell_data, "von_mises_MPa", fields.von_mises_Pa * MPA_PER_PA)
+    _add(grid.cell_data, "pressure_MPa", fields.pressure_Pa * MPA_PER_PA)
+    _add(grid.cell_data, "max_stretch", fields.max_stretch)
+    _add(grid.cell_data, "region", tet_mesh.region.astype(np.int32))
+    for number, name in enumerate(tet_mesh.region_names):
+        grid.field_data[f"region_{name}"] = np.array([number], np.int32)
+    return grid
+
+
+def _film(tet_mesh: TetMesh, step: Step) -> Any:
+    """The film's tetrahedra alone, in the film's own axes."""
+    fields = step.fields
+    nodes, tets = _compact(tet_mesh.tets[fields.film_tets])
+    grid = _grid(tet_mesh.points_mm[nodes], tets, QUADRATIC_TETRA)
+    _add(grid.point_data, "displacement_mm", fields.displacement_m[nodes] * MM_PER_M)
+    _add(grid.cell_data, "film_strain", fields.film_strain, FILM_AXES)
+    _add(grid.cell_data, "film_stress_MPa", fields.film_stress_Pa * MPA_PER_PA, FILM_AXES)
+    charge = fields.charge_density_C_per_m2 * PC_PER_MM2_PER_C_PER_M2
+    _add(grid.cell_data, "charge_density_pC_per_mm2", charge)
+    return grid
+
+
+def _contact(tet_mesh: TetMesh, step: Step) -> Any:
+    """The skin that the dot can touch, as quadratic triangles."""
+    fields = step.fields
+    nodes, triangles = _compact(tet_mesh.facets["contact"])
+    place = np.full(len(tet_mesh.points_mm), -1)
+    place[fields.contact_nodes] = np.arange(len(fields.contact_nodes))
+    grid = _grid(tet_mesh.points_mm[nodes], triangles, QUADRATIC_TRIANGLE)
+    _add(grid.point_data, "displacement_mm", fields.displacement_m[nodes] * MM_PER_M)
+    _add(grid.point_data, "gap_mm", fields.gap_m[place[nodes]] * MM_PER_M)
+    _add(grid.point_data, "contact_pressure_MPa", fields.contact_pressure_Pa[place[nodes]] * MPA_PER_PA)
+    return grid
+
+
+def _dot(tet_mesh: TetMesh, dot_shape: DotShape, step: Step) -> Any:
+    """The rigid dot and its plate where they stand at this step."""
+    import pyvista
+
+    surfaces = placed_dot(dot_shape, tet_mesh, step.dot_position_m * MM_PER_M)
+    return pyvista.merge(surfaces, merge_points=False)
+
+
+def _grid(points_mm: Floats, cells: Ints, cell_type: int) -> Any:
+    """A VTK unstructured grid of one cell type; points (n, 3) in mm, cells (m, nodes per cell)."""
+    import pyvista
+
+    return pyvista.UnstructuredGrid({cell_type: cells}, points_mm)
+
+
+def _compact(cells: Ints) -> tuple[Ints, Ints]:
+    """The nodes that the cells use, and the cells renumbered onto them."""
+    nodes, renumbered = np.unique(cells, return_inverse=True)
+    return nodes, renumbered.reshape(cells.shape)
+
+
+def _add(arrays: Any, name: str, values: Any, components: tuple[str, ...] = ()) -> None:
+    """Attach one array; ParaView shows the names of its components."""
+    arrays[name] = np.ascontiguousarray(values)
+    for number, component in enumerate(components):
+        arrays.GetArray(name).SetComponentName(number, component)
+
+
+def _write_xml(data: Any, path: Path) -> None:
+    """Write VTK XML, binary and zlib-compressed."""
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter
+
+    writer = vtkXMLPolyDataWriter() if path.suffix == ".vtp" else vtkXMLUnstructuredGridWriter()
+    writer.SetFileName(str(path))
+    writer.SetInputData(data)
+    writer.SetDataModeToBinary()
+    writer.SetCompressorTypeToZLib()
+    if not writer.Write():
+        raise OSError(f"could not write {path}")
+
+
+def _collection(files: list[str], times: list[float]) -> str:
+    """A ParaView data collection."""
+    rows = [
+        f'    <DataSet timestep="{time:.9g}" group="" part="0" file={quoteattr(file)}/>'
+        for time, file in zip(times, files, strict=True)
+    ]
+    head = '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n'
+    return "\n".join([head + "  <Collection>", *rows, "  </Collection>", "</VTKFile>", ""])

@@ -1,0 +1,153 @@
+"""Turn what pydantic says into one sentence: the dotted key, its value and what is allowed."""
+
+import json
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any, get_args
+
+from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
+
+from solve.nearest import nearest
+
+BOUNDS = {
+    "greater_than": ("gt", "above"),
+    "greater_than_equal": ("ge", "at least"),
+    "less_than": ("lt", "below"),
+    "less_than_equal": ("le", "at most"),
+}
+KINDS = {
+    "float_type": "must be a plain number, its unit stands in the key",
+    "float_parsing": "must be a plain number, its unit stands in the key",
+    "int_type": "must be a whole number",
+    "int_parsing": "must be a whole number",
+    "int_from_float": "must be a whole number",
+    "finite_number": "must be a finite number",
+    "string_type": "must be a text in quotes",
+    "tuple_type": "must be a list in square brackets",
+    "dict_type": "must be a table",
+    "model_type": "must be a table",
+    "model_attributes_type": "must be a table",
+}
+
+
+def sentence(error: ValidationError, tables: Mapping[str, Any], model: type[BaseModel]) -> str:
+    """One sentence on the most telling problem: a mistyped key first, a missing one last."""
+    rank = {"extra_forbidden": 0, "missing": 2}
+    problems = sorted(error.errors(include_url=False), key=lambda p: rank.get(p["type"], 1))
+    choices = [
+        p["ctx"]["expected"] for p in problems if p["type"] == "literal_error" and _same_value(p, problems[0])
+    ]
+    return _explain(problems[0], tables, model, choices)
+
+
+def _same_value(one: ErrorDetails, other: ErrorDetails) -> bool:
+    """Whether both are members of one union that refuse the same value."""
+    return one["loc"][:-1] == other["loc"][:-1] and one["input"] == other["input"]
+
+
+def _explain(
+    problem: ErrorDetails, tables: Mapping[str, Any], model: type[BaseModel], choices: Sequence[str]
+) -> str:
+    kind, context = problem["type"], problem.get("ctx", {})
+    path = _existing(problem["loc"], tables, kind)
+    key = dotted(path)
+    if kind == "extra_forbidden":
+        known = {name for table in _tables_at(problem["loc"][:-1], model) for name in table.model_fields}
+        return f"{key} is not a key; {nearest(str(path[-1]), known)}"
+    if kind == "missing":
+        return f"{key} is missing{_described(problem['loc'], model)}"
+    if kind == "value_error":
+        return _own_message(key, problem, model)
+    if kind == "union_tag_invalid":
+        tag = str(context["tag"])
+        known = {name.strip(" '") for name in str(context["expected_tags"]).split(",")}
+        return f"{key}.model = '{tag}': {nearest(tag, known)}"
+    if kind == "literal_error":
+        return f"{key} = {_shown(problem['input'])}: must be {_either(choices)}"
+    if kind in BOUNDS:
+        name, word = BOUNDS[kind]
+        return f"{key} = {_shown(problem['input'])}: must be {word} {context[name]:g}"
+    text = KINDS.get(kind, problem["msg"][:1].lower() + problem["msg"][1:])
+    return f"{key} = {_shown(problem['input'])}: {text}"
+
+
+def _own_message(key: str, problem: ErrorDetails, model: type[BaseModel]) -> str:
+    """A message of our own validators: about a value, about a key in a table, or about the whole."""
+    text = str(problem["ctx"]["error"])
+    if not isinstance(problem["input"], dict):
+        return f"{key} = {_shown(problem['input'])}: {text}"
+    if not key:
+        return text
+    names = {name for table in _tables_at(problem["loc"], model) for name in table.model_fields}
+    first = text.split(maxsplit=1)[0].split(".")[0].rstrip(":")
+    return f"{key}.{text}" if first in names else f"{key}: {text}"
+
+
+def _either(choices: Sequence[str]) -> str:
+    """["'a' or 'b'", "'c'"] -> "'a', 'b' or 'c'"."""
+    words = [word for choice in choices for word in re.split(r", | or ", choice)]
+    return " or ".join([*([", ".join(words[:-1])] if words[:-1] else []), words[-1]])
+
+
+def dotted(path: Sequence[str | int]) -> str:
+    """('dot', 'offset_mm', 1) -> 'dot.offset_mm[1]'."""
+    text = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in path)
+    return text.removeprefix(".")
+
+
+def _existing(loc: Sequence[str | int], tables: Any, kind: str) -> list[str | int]:
+    """The location without the names of union members, which pydantic puts between the keys."""
+    path: list[str | int] = []
+    for number, part in enumerate(loc):
+        last = number == len(loc) - 1
+        try:
+            tables = tables[part]
+        except (KeyError, IndexError, TypeError):
+            if not (last and kind == "missing"):
+                continue
+        path.append(part)
+    return path
+
+
+def _tables_at(loc: Sequence[str | int], model: type[BaseModel]) -> list[type[BaseModel]]:
+    """The models that may stand at a location of the configuration."""
+    here = [model]
+    for part in loc:
+        fields = [table.model_fields[part] for table in here if part in table.model_fields]
+        tagged = [
+            table
+            for table in here
+            if "model" in table.model_fields and table.model_fields["model"].default == part
+        ]
+        if fields:
+            here = [found for field in fields for found in _models_in(field.annotation)]
+        elif tagged:
+            here = tagged
+    return here
+
+
+def _models_in(annotation: Any) -> list[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    return [found for inner in get_args(annotation) for found in _models_in(inner)]
+
+
+def _described(loc: Sequence[str | int], model: type[BaseModel]) -> str:
+    """': ' and the description of the missing key."""
+    for table in _tables_at(loc[:-1], model):
+        field = table.model_fields.get(str(loc[-1]))
+        if field is not None and field.description:
+            return f": {field.description}"
+    return ""
+
+
+def _shown(value: Any) -> str:
+    """A value much as TOML writes it, cut when long."""
+    if isinstance(value, str):
+        text = f"'{value}'"
+    elif isinstance(value, float):
+        text = f"{value:g}"
+    else:
+        text = json.dumps(value, default=str)
+    return text if len(text) <= 60 else f"{text[:57]}..."

@@ -1,0 +1,133 @@
+"""The output folder: refused before any work, filled beside its place, put there whole."""
+
+import json
+import os
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from geometry.errors import InputError
+
+FORMAT = "softdot-run/1"
+SUMMARY = "summary.json"
+OWN_ENTRIES = frozenset({SUMMARY, "report.html", "cad", "results", "pictures"})
+
+
+@contextmanager
+def staged_folder(out: Path) -> Iterator[Path]:
+    """Yield an empty folder beside out that takes its place when the block ends without an exception.
+
+    A folder of an earlier run is replaced. InputError, before the block starts, when out is a file, cannot be
+    written or holds anything that softdot did not write. After any exception, Ctrl-C too, nothing is left.
+    """
+    place = check_output(out)
+    made = _make_parents(place)
+    staging = _make_staging(place, made)
+    try:
+        yield staging
+        _publish(staging, place)
+        made = []
+    finally:
+        shutil.rmtree(staging, ignore_errors=True)
+        _remove_empty(made)
+
+
+def check_output(out: Path) -> Path:
+    """The real path of out. InputError unless it is absent, empty or the folder of an earlier run."""
+    try:
+        place = out.resolve()
+        _require_folder(out, place)
+        entries = {entry.name for entry in place.iterdir()} if place.exists() else set()
+    except (OSError, RuntimeError) as error:
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise InputError(f"output '{out}': cannot be read ({reason})") from None
+    foreign = sorted(entries - OWN_ENTRIES)
+    if foreign or (entries and not _is_earlier_run(place)):
+        found = foreign[0] if foreign else sorted(entries)[0]
+        raise InputError(
+            f"output '{out}': holds '{found}', which softdot did not write; name a new or empty folder"
+        )
+    return place
+
+
+def _require_folder(out: Path, place: Path) -> None:
+    """The nearest thing that exists on the way to out is a folder."""
+    existing = next(path for path in (place, *place.parents) if path.exists())
+    if existing.is_dir():
+        return
+    what = "this" if existing == place else f"'{existing}'"
+    raise InputError(f"output '{out}': {what} is a file, a folder is needed")
+
+
+def _is_earlier_run(folder: Path) -> bool:
+    try:
+        summary = json.loads((folder / SUMMARY).read_text("utf-8"))
+    except (OSError, ValueError):
+        return False
+    return isinstance(summary, dict) and summary.get("format") == FORMAT
+
+
+def _make_parents(out: Path) -> list[Path]:
+    """Create the folders above out; return those that were missing, innermost first."""
+    missing = [parent for parent in out.parents if not parent.exists()]
+    made: list[Path] = []
+    for parent in reversed(missing):
+        try:
+            parent.mkdir()
+        except OSError as error:
+            _remove_empty(made)
+            raise InputError(f"output '{out}': '{parent}' cannot be created ({error.strerror})") from None
+        made.insert(0, parent)
+    return made
+
+
+def _make_staging(out: Path, made: list[Path]) -> Path:
+    """A new folder beside out, or inside it where only out itself can be written."""
+    name = f".{out.name}.softdot-{os.getpid()}"
+    reason = None
+    for parent in [out.parent, *([out] if out.is_dir() else [])]:
+        if not os.access(parent, os.W_OK):
+            reason = reason or "Permission denied"
+            continue
+        try:
+            (parent / name).mkdir()
+        except OSError as error:
+            reason = error.strerror
+        else:
+            return parent / name
+    _remove_empty(made)
+    raise InputError(f"output '{out}': not writable ({reason})")
+
+
+def _publish(staging: Path, out: Path) -> None:
+    """Put the staged folder in its place, by renaming where the file system allows it."""
+    old = staging.with_name(f"{staging.name}-old")
+    if staging.parent == out or out.is_mount() or Path.cwd().is_relative_to(out):
+        _replace_entries(staging, out)
+        return
+    if out.exists():
+        out.rename(old)
+    try:
+        staging.rename(out)
+    except BaseException:
+        if old.exists():
+            old.rename(out)
+        raise
+    shutil.rmtree(old, ignore_errors=True)
+
+
+def _replace_entries(staging: Path, out: Path) -> None:
+    """A mount point and the working folder keep their place: exchange what is in them, the summary last."""
+    for name in OWN_ENTRIES:
+        with suppress(FileNotFoundError):
+            path = out / name
+            shutil.rmtree(path) if path.is_dir() else path.unlink()
+    for path in sorted(staging.iterdir(), key=lambda entry: entry.name == SUMMARY):
+        shutil.move(path, out / path.name)
+
+
+def _remove_empty(folders: list[Path]) -> None:
+    for folder in folders:
+        with suppress(OSError):
+            folder.rmdir()

@@ -1,0 +1,104 @@
+"""The main job: check, geometry, mesh, solve, export; everything appears at once or not at all."""
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from geometry.dot_shape import DotShape
+from mesh.errors import MeshingError
+from mesh.types import Floats, TetMesh
+from softdot import stages
+from softdot.config import Config
+from softdot.numbers import plain, write_json
+from softdot.output_folder import SUMMARY, staged_folder
+from softdot.progress import Progress, Silent
+from softdot.run_warnings import design_warnings, result_warnings
+from softdot.summary import heading, mesh_part, press_part, stopped_solver
+from softdot.system_libraries import named_when_missing
+from solve.result import PressResult, Step
+
+
+class Clock:
+    """Wall-clock seconds by stage."""
+
+    def __init__(self) -> None:
+        self.seconds = {"geometry": 0.0, "mesh": 0.0, "solve": 0.0, "export": 0.0}
+
+    @contextmanager
+    def __call__(self, stage: str) -> Iterator[None]:
+        """Add the time of a block to a stage."""
+        start = time.perf_counter()
+        try:
+            yield
+        finally:
+            self.seconds[stage] += time.perf_counter() - start
+
+
+def run_config(config: Config, out: Path, progress: Progress | None = None) -> dict[str, Any]:
+    """Run the whole pipeline into the folder out and return its summary.
+
+    InputError before any work for what cannot be built or written. Where a computation does not converge
+    nothing is raised: solver.converged is False, solver.failure says why and what converged is written.
+    """
+    progress = progress or Silent()
+    with named_when_missing():
+        progress.stage("check")
+        dot_shape, warnings = stages.check(config)
+        with staged_folder(out) as folder:
+            summary: dict[str, Any] = plain(_fill(config, dot_shape, warnings, folder, progress))
+            write_json(folder / SUMMARY, summary)
+    return summary
+
+
+def _fill(
+    config: Config, dot_shape: DotShape, warnings: list[str], folder: Path, progress: Progress
+) -> dict[str, Any]:
+    """Everything but summary.json; returns the summary."""
+    clock = Clock()
+    summary = {**heading(config), "warnings": [*warnings, *design_warnings(config)]}
+    progress.stage("geometry")
+    with clock("geometry"):
+        parts = stages.build_parts(config, dot_shape)
+    with clock("export"):
+        stages.write_cad(parts, folder / "cad")
+    progress.stage("mesh")
+    try:
+        with clock("mesh"):
+            tet_mesh = stages.build_mesh(config, dot_shape)
+            quality = stages.mesh_quality(config, tet_mesh)
+    except MeshingError as error:
+        return {**summary, "solver": stopped_solver(f"meshing: {error}"), "timing_s": clock.seconds}
+    progress.stage("solve")
+    with clock("solve"):
+        result = stages.press(config, dot_shape, tet_mesh, _reporting(progress))
+        readout = stages.readout_voltage(config, result)
+    summary |= {"mesh": mesh_part(quality, result.unknowns), **press_part(config, result, readout)}
+    summary["warnings"] += result_warnings(config, dot_shape, tet_mesh, result)
+    progress.stage("export")
+    with clock("export"):
+        _export(dot_shape, tet_mesh, result, readout, plain(summary), folder)
+    return {**summary, "timing_s": clock.seconds}
+
+
+def _export(
+    dot_shape: DotShape,
+    tet_mesh: TetMesh,
+    result: PressResult,
+    readout_voltage_V: Floats | None,
+    summary: dict[str, Any],
+    folder: Path,
+) -> None:
+    stages.write_results(tet_mesh, result, dot_shape, folder / "results")
+    pictures = stages.write_pictures(tet_mesh, result, dot_shape, folder / "pictures", readout_voltage_V)
+    stages.write_report(summary, pictures, tet_mesh, result, dot_shape, folder / "report.html")
+
+
+def _reporting(progress: Progress) -> stages.OnStep:
+    """Pass the solver's steps on as text."""
+
+    def on_step(step: Step, number: int, count: int) -> None:
+        progress.step(number, count, f"{1e3 * step.indentation_m:.3f} mm, {step.reaction_force_N:.3g} N")
+
+    return on_step

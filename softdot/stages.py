@@ -1,0 +1,143 @@
+"""The rooms as the pipeline calls them. Heavy libraries are imported here, inside the functions."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from geometry.dot_shape import DotShape, resolve_dot
+from geometry.errors import InputError
+from geometry.part import Part
+from mesh.types import Floats, TetMesh
+from softdot.config import Config
+from solve.result import PressResult, Step
+
+OnStep = Callable[[Step, int, int], None]
+
+
+def check(config: Config) -> tuple[DotShape, list[str]]:
+    """Refuse what cannot be built, drawn or solved, before any work. InputError.
+
+    Returns the dot at rest and what a user should know about this design.
+    """
+    from export.headless import ensure_rendering
+    from geometry.checks import check_press_depth, check_segment, press_warnings
+
+    refuse_unmodelled(config)
+    _check_waveform(config)
+    warnings = check_segment(config.segment)
+    depth = config.press.indentation_mm
+    if depth is not None:
+        check_press_depth(config.segment, depth)
+    dot_shape = resolve_dot(config.dot, config.segment)
+    if depth is not None:
+        warnings += press_warnings(dot_shape, config.segment, depth)
+    ensure_rendering()
+    return dot_shape, warnings
+
+
+def refuse_unmodelled(config: Config) -> None:
+    """Refuse physics that the schema knows and the solver does not have. InputError."""
+    from solve.materials.laws import IMPLEMENTED
+
+    for mechanism in config.mechanisms:
+        raise InputError(f"mechanisms: '{mechanism.name}' is not modelled by this version")
+    if config.segment.bonds:
+        pair = "-".join(config.segment.bonds[0].between)
+        raise InputError(f"segment.bonds: the compliant bond '{pair}' is not modelled by this version")
+    for layer, material in config.layer_materials().items():
+        if material.model not in IMPLEMENTED:
+            raise InputError(
+                f"segment.{layer}.material: model '{material.model}' is not modelled by this version"
+            )
+
+
+def _check_waveform(config: Config) -> None:
+    """Refuse what the read-out would refuse only after the solve."""
+    from solve.waveform import duration_s
+
+    waveform = config.press.waveform
+    if waveform is None:
+        return
+    duration_s(waveform)  # reads the file of shape = "file"
+    if config.press.path_xy_mm and waveform.shape not in ("ramp", "raised-cosine"):
+        raise InputError(f"press.waveform.shape = '{waveform.shape}': a slide stays at depth, use 'ramp'")
+
+
+def build_parts(config: Config, dot_shape: DotShape) -> Sequence[Part]:
+    """The labelled solids of the segment, its case and the dot."""
+    from geometry.solids import build_parts as build
+
+    return build(config.segment, dot_shape)
+
+
+def write_cad(parts: Sequence[Part], folder: Path) -> None:
+    """STEP, 3MF and STL files."""
+    from export.cad import write_cad as write
+
+    write(parts, folder)
+
+
+def build_mesh(config: Config, dot_shape: DotShape) -> TetMesh:
+    """The conforming mesh. MeshingError when there is none."""
+    import mesh
+
+    return mesh.build(config.segment, dot_shape, config.mesh)
+
+
+def mesh_quality(config: Config, tet_mesh: TetMesh) -> dict[str, Any]:
+    """Numbers about the mesh."""
+    from mesh.quality import measure
+
+    return measure(tet_mesh, config.segment).as_dict()
+
+
+def press(config: Config, dot_shape: DotShape, tet_mesh: TetMesh, on_step: OnStep) -> PressResult:
+    """The solved press, as far as it converged."""
+    from solve.press import press_segment
+
+    materials = config.layer_materials()
+    return press_segment(config.segment, materials, dot_shape, config.press, tet_mesh, on_step=on_step)
+
+
+def readout_voltage(config: Config, result: PressResult) -> Floats | None:
+    """Voltage behind the amplifier at each step (s,), None without one."""
+    if config.readout is None:
+        return None
+    from solve.readout import readout_voltage as behind_amplifier
+
+    return behind_amplifier(result, config.press, config.readout)
+
+
+def write_results(tet_mesh: TetMesh, result: PressResult, dot_shape: DotShape, folder: Path) -> None:
+    """ParaView files of every step that converged."""
+    from export.vtu import write_results as write
+
+    write(tet_mesh, result, dot_shape, folder)
+
+
+def write_pictures(
+    tet_mesh: TetMesh,
+    result: PressResult,
+    dot_shape: DotShape,
+    folder: Path,
+    readout_voltage_V: Floats | None,
+) -> dict[str, Path]:
+    """Pictures of the segment and plots of its history, by name."""
+    from export.pictures import write_pictures as write
+
+    return write(tet_mesh, result, dot_shape, folder, readout_voltage_V)
+
+
+def write_report(
+    summary: dict[str, Any],
+    pictures: dict[str, Path],
+    tet_mesh: TetMesh,
+    result: PressResult,
+    dot_shape: DotShape,
+    path: Path,
+) -> None:
+    """One page that opens offline, with a 3D view."""
+    from export.report import write_report as write
+    from export.viewer_data import viewer_data
+
+    write(summary, pictures, viewer_data(tet_mesh, result, dot_shape), path)

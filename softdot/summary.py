@@ -1,0 +1,113 @@
+"""summary.json: what a run found, in the units that people read."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mesh.types import Floats
+from softdot.config import Config, config_hash
+from softdot.output_folder import FORMAT
+from softdot.sensitivity import sensitivity
+from solve.result import PressResult
+
+MM, PC, PF, MPA = 1e3, 1e12, 1e12, 1e-6
+
+
+@dataclass(frozen=True)
+class History:
+    """Load history, each of shape (s,), index 0 unloaded; electrodes taken in parallel."""
+
+    indentation_mm: Floats
+    reaction_force_N: Floats
+    film_charge_pC: Floats
+    open_circuit_voltage_V: Floats
+
+
+def history(result: PressResult) -> History:
+    """The history of a press. Electrodes in parallel: charges and capacitances add up, V = Q / C."""
+    steps = result.steps
+    charge = np.array([step.film_charge_C.sum() for step in steps])
+    weighted = np.array([step.open_circuit_voltage_V @ result.capacitance_F for step in steps])
+    return History(
+        indentation_mm=MM * np.array([step.indentation_m for step in steps]),
+        reaction_force_N=np.array([step.reaction_force_N for step in steps]),
+        film_charge_pC=PC * charge,
+        open_circuit_voltage_V=weighted / result.capacitance_F.sum(),
+    )
+
+
+def heading(config: Config) -> dict[str, Any]:
+    """What is known before any work."""
+    from softdot.version import installed_version
+
+    return {
+        "format": FORMAT,
+        "softdot_version": installed_version(),
+        "config_hash": config_hash(config),
+        "seed": config.seed,
+        "config": config.model_dump(mode="json"),
+    }
+
+
+def press_part(config: Config, result: PressResult, readout_voltage_V: Floats | None) -> dict[str, Any]:
+    """The part of the summary that the press gives. readout_voltage_V : (s,), None without a circuit."""
+    past = history(result)
+    voltage = past.open_circuit_voltage_V if readout_voltage_V is None else readout_voltage_V
+    part = {
+        "indentation_mm": past.indentation_mm,
+        "reaction_force_N": past.reaction_force_N,
+        "film_charge_pC": past.film_charge_pC,
+        "open_circuit_voltage_V": past.open_circuit_voltage_V,
+    }
+    if readout_voltage_V is not None:
+        part["readout_voltage_V"] = readout_voltage_V
+    return {
+        **part,
+        "film": {
+            "capacitance_pF": PF * result.capacitance_F.sum(),
+            "max_principal_strain": result.max_principal_film_strain,
+            "max_principal_stress_MPa": MPA * result.max_principal_film_stress_Pa,
+        },
+        "electrodes": electrodes(result),
+        "sensitivity": sensitivity(
+            past.indentation_mm, past.reaction_force_N, past.film_charge_pC, voltage, config
+        ),
+        "solver": solver(result),
+    }
+
+
+def electrodes(result: PressResult) -> list[dict[str, Any]]:
+    """Charge and open-circuit voltage of each electrode by itself."""
+    return [
+        {
+            "name": name,
+            "capacitance_pF": PF * result.capacitance_F[number],
+            "film_charge_pC": [PC * step.film_charge_C[number] for step in result.steps],
+            "open_circuit_voltage_V": [step.open_circuit_voltage_V[number] for step in result.steps],
+        }
+        for number, name in enumerate(result.electrode_names)
+    ]
+
+
+def solver(result: PressResult) -> dict[str, Any]:
+    """How the solver fared; step 0 is the unloaded state and does not count."""
+    return {
+        "converged": result.converged,
+        "failure": result.failure,
+        "load_steps": len(result.steps) - 1,
+        "newton_iterations": sum(step.newton_iterations for step in result.steps),
+        "linear_solver": result.linear_solver,
+        "max_relative_residual": result.max_relative_residual,
+    }
+
+
+def stopped_solver(failure: str) -> dict[str, Any]:
+    """The solver's part when a stage before it failed."""
+    return {"converged": False, "failure": failure, "load_steps": 0}
+
+
+def mesh_part(quality: Mapping[str, Any], unknowns: int | None) -> dict[str, Any]:
+    """Quality of the mesh and, once known, the number of unknowns."""
+    return {**quality, "unknowns": unknowns}

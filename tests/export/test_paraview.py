@@ -1,0 +1,51 @@
+"""A real ParaView opens what we write."""
+
+import os
+import shutil
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from export.vtu import write_results
+from geometry.dot_shape import DotShape
+from mesh.types import TetMesh
+from solve.result import PressResult
+
+NEEDED = ["pvpython"] if os.environ.get("DISPLAY") else ["pvpython", "Xvfb"]
+MISSING = [tool for tool in NEEDED if shutil.which(tool) is None]
+
+
+@pytest.fixture
+def display() -> Iterator[str]:
+    """A display: Debian's ParaView draws through X only. The server tells its number once it is ready."""
+    if "Xvfb" not in NEEDED:
+        yield os.environ["DISPLAY"]
+        return
+    read, write = os.pipe()
+    command = ["Xvfb", "-displayfd", str(write), "-noreset", "-screen", "0", "1024x768x24"]
+    server = subprocess.Popen(command, pass_fds=[write], stderr=subprocess.DEVNULL)
+    os.close(write)
+    with os.fdopen(read) as number:
+        yield f":{number.readline().strip()}"
+    server.terminate()
+    server.wait()
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(bool(MISSING), reason=f"not installed: {', '.join(MISSING)}")
+def test_paraview_opens_times_fields_and_draws(
+    segment: TetMesh, press: PressResult, dot: DotShape, tmp_path: Path, display: str
+) -> None:
+    write_results(segment, press, dot, tmp_path / "results")
+    script, picture = Path(__file__).with_name("paraview_check.py"), tmp_path / "paraview.png"
+    run = subprocess.run(
+        ["pvpython", "--force-offscreen-rendering", script, tmp_path / "results", picture],
+        capture_output=True, text=True, timeout=240, check=False, env={**os.environ, "DISPLAY": display},
+    )  # fmt: skip
+    assert run.returncode == 0, run.stderr
+    assert "opened 4" in run.stdout
+    assert np.asarray(Image.open(picture).convert("L")).std() > 10

@@ -1,0 +1,55 @@
+"""Results that no solver made."""
+
+import numpy as np
+
+from geometry.dot_shape import DotShape
+from mesh.types import TetMesh
+from solve.result import Fields, PressResult, Step
+
+
+def one_tetrahedron() -> TetMesh:
+    """A mesh of one element, called film."""
+    points = np.zeros((10, 3))
+    points[1, 0] = points[2, 1] = points[3, 2] = 1.0
+    return TetMesh(points, np.arange(10)[None], np.zeros(1, int), ("film",), {}, np.arange(10), 1.0)
+
+
+def cap_of_height(height_mm: float) -> DotShape:
+    """A spherical cap at rest over the origin."""
+    return DotShape("cap", 0.8, height_mm, 0.0, np.zeros((1, 2)), np.zeros(3), np.eye(3))
+
+
+def step_at(depth_mm: float, stretch: float = 1.0) -> Step:
+    """A converged step: 10 N, 20 pC and 2 V per mm on one electrode, the one element stretched as said."""
+    return Step(
+        indentation_m=1e-3 * depth_mm,
+        reaction_force_N=10.0 * depth_mm,
+        film_charge_C=np.array([20e-12 * depth_mm]),
+        open_circuit_voltage_V=np.array([2.0 * depth_mm]),
+        newton_iterations=4,
+        relative_residual=1e-12,
+        dot_position_m=np.zeros(3),
+        fields=fields_with_stretch(stretch),
+    )
+
+
+def fields_with_stretch(stretch: float) -> Fields:
+    """Fields of the one element, empty but for the stretch."""
+    nothing = {name: np.zeros(0) for name in Fields.__dataclass_fields__}
+    return Fields(**{**nothing, "max_stretch": np.array([stretch])})
+
+
+def result_of(depths_mm: list[float], failure: str | None = None, stress_MPa: float = 10.0) -> PressResult:
+    """A press that reached these depths and then, with a failure, stopped."""
+    return PressResult(
+        steps=tuple(step_at(depth) for depth in depths_mm),
+        converged=failure is None,
+        failure=failure,
+        electrode_names=("film",),
+        capacitance_F=np.array([10e-12]),
+        unknowns=30,
+        linear_solver="stand-in",
+        max_relative_residual=1e-12,
+        max_principal_film_strain=0.01,
+        max_principal_film_stress_Pa=1e6 * stress_MPa,
+    )

@@ -1,0 +1,203 @@
+"""Every mistake in a configuration: one sentence, exit 2, nothing written."""
+
+# ruff: noqa: E501  (rows of a table)
+
+import pytest
+
+from softdot.cli import main
+from tests.softdot.conftest import MINIMAL
+
+
+def refusal(arguments, tmp_path, capfd):
+    """The one sentence with which the command line refuses; checks that nothing was written."""
+    before = sorted(tmp_path.rglob("*"))
+    assert main(arguments) == 2
+    printed = capfd.readouterr()
+    assert printed.out == ""
+    assert printed.err.startswith("softdot: ")
+    assert printed.err.count("\n") == 1
+    assert sorted(tmp_path.rglob("*")) == before
+    return printed.err.removeprefix("softdot: ").rstrip("\n")
+
+
+NUMBER = "must be a plain number, its unit stands in the key"
+BOND = "normal_stiffness_N_per_mm3 = 1.0\nshear_stiffness_N_per_mm3 = 1.0"
+CASES = {
+    # unknown keys
+    "[dott]": "dott is not a key; did you mean 'dot'?",
+    "[dot]\nofset_mm = [0.0, 0.0]": "dot.ofset_mm is not a key; did you mean 'offset_mm'?",
+    "[press]\nzzz = 1": "press.zzz is not a key; known are force_N, indentation_mm, load_steps, path_xy_mm, waveform",
+    "[materials.x]\nmodel = 'yeoh'\nc10 = 1.0": "materials.x.c10 is not a key; did you mean 'c10_MPa'?",
+    "[[segment.film.electrodes]]\nnaem = 'a'": "segment.film.electrodes[0].naem is not a key; did you mean 'name'?",
+    # numbers that are none
+    "[press]\nindentation_mm = '0.3 mm'": f"press.indentation_mm = '0.3 mm': {NUMBER}",
+    "[press]\nindentation_mm = '0.3'": f"press.indentation_mm = '0.3': {NUMBER}",
+    "[press]\nindentation_mm = true": f"press.indentation_mm = true: {NUMBER}",
+    "[press]\nindentation_mm = nan": "press.indentation_mm = nan: must be a finite number",
+    "[press]\nindentation_mm = inf": "press.indentation_mm = inf: must be a finite number",
+    "[press]\nindentation_mm = 1e999": "press.indentation_mm = inf: must be a finite number",
+    "[press]\nload_steps = 2.5": "press.load_steps = 2.5: must be a whole number",
+    "[dot]\noffset_mm = 1.0": "dot.offset_mm = 1: must be a list in square brackets",
+    "[dot]\noffset_mm = [1.0]": "dot.offset_mm[1] is missing",
+    "[dot]\noffset_mm = [1.0, 'a']": f"dot.offset_mm[1] = 'a': {NUMBER}",
+    "[press]\nwaveform = 3": "press.waveform = 3: must be a table",
+    # numbers out of range
+    "[press]\nindentation_mm = 0.0": "press.indentation_mm = 0: must be above 0",
+    "[press]\nindentation_mm = -0.3": "press.indentation_mm = -0.3: must be above 0",
+    "[press]\nload_steps = 0": "press.load_steps = 0: must be at least 1",
+    "[dot]\ncell_dot = 9": "dot.cell_dot = 9: must be at most 8",
+    "[segment]\nlength_mm = -2.5": "segment.length_mm = -2.5: must be above 0",
+    "[segment.effector]\nheight_mm = 0.0": "segment.effector.height_mm = 0: must be above 0",
+    # choices
+    "[mesh]\nmesher = 'gmsh'": "mesh.mesher = 'gmsh': must be 'pytetwild' or 'layered'",
+    "[segment]\nheld_layers = ['efector']": (
+        "segment.held_layers[0] = 'efector': must be 'effector', 'medium1', 'film' or 'medium2'"
+    ),
+    "[press]\nindentation_mm = 0.3\nforce_N = 2.0": (
+        "press.force_N = 2: give either indentation_mm or force_N, not both"
+    ),
+    "[readout]\nmode = 'charge'": "readout.feedback_pF is missing: mode = 'charge' needs a feedback capacitance",
+    "[press.waveform]\nshape = 'file'": "press.waveform.file is missing: shape = 'file' needs the name of a CSV file",
+    # materials
+    "[materials.vnr]\npoisson_ratio = 0.5": "materials.vnr.poisson_ratio = 0.5: must be above -1 and below 0.5",
+    "[materials.vnr]\npoisson_ratio = -1.0": "materials.vnr.poisson_ratio = -1: must be above -1 and below 0.5",
+    "[materials.vnr]\npoisson_ratio = nan": "materials.vnr.poisson_ratio = nan: must be above -1 and below 0.5",
+    "[materials.vnr]\nyoungs_modulus_MPa = -5.0": "materials.vnr.youngs_modulus_MPa = -5: must be above 0",
+    "[materials.x]\nmodel = 'neo-hookean'": (
+        "materials.x.youngs_modulus_MPa is missing: small-strain Young's modulus"
+    ),
+    "[materials.x]\nmodel = 'yeo'\nc10_MPa = 1.0": "materials.x.model = 'yeo': did you mean 'yeoh'?",
+    "[materials.x]\nmodel = 'mooney-rivlin'\nc10_MPa = 1.0\nc01_MPa = -1.0": (
+        "materials.x: small-strain shear modulus = 0 MPa: 2 (c10_MPa + c01_MPa) must be above 0"
+    ),
+    "[materials.x]\nmodel = 'ogden'\nmu_MPa = [1.0]\nalpha = [1.0, 2.0]": (
+        "materials.x.alpha has 2 values but mu_MPa has 1: one of each per term"
+    ),
+    "[materials.x]\nmodel = 'ogden'\nmu_MPa = [1.0]\nalpha = [-2.0]": (
+        "materials.x: small-strain shear modulus = -1 MPa: half the sum of mu_MPa times alpha must be above 0"
+    ),
+    "[materials.x]\nmodel = 'hyperfoam'\nmu_MPa = [0.1]\nalpha = [8.0]\npoisson_ratio = [0.5]": (
+        "materials.x.poisson_ratio[0] = 0.5: must be above -1 and below 0.5"
+    ),
+    "[materials.pvdf]\nyoungs_modulus_2_MPa = 9000.0": (
+        "materials.pvdf.youngs_modulus_2_MPa = 9000: must be below 8442 for this poisson_ratio"
+    ),
+    "[segment.effector]\nmaterial = 'ruber'": (
+        "segment.effector.material = 'ruber': no such material; did you mean 'rubber'?"
+    ),
+    "[segment.effector]\nmaterial = 'pvdf'": (
+        "segment.effector.material = 'pvdf': this material is of model 'piezoelectric-film'; "
+        "effector must not be one"
+    ),
+    # physics that is known but not modelled
+    "[[mechanisms]]\nname = 'visco'": "mechanisms[0].name = 'visco': did you mean 'viscoelasticity'?",
+    "[[mechanisms]]\nname = 'friction'\ncomponent = 'film'": (
+        "mechanisms[0].component = 'film': friction acts on dot"
+    ),
+    "[[mechanisms]]\nname = 'friction'\ncomponent = 'dot'\nparameters = {mu = 0.3}": (
+        "mechanisms[0].parameters.mu: friction takes coefficient"
+    ),
+    "[[mechanisms]]\nname = 'viscoelasticity'\ncomponent = 'medium2'": (
+        "mechanisms: 'viscoelasticity' is not modelled by this version"
+    ),
+    f"[[segment.bonds]]\nbetween = ['film', 'medium2']\n{BOND}": (
+        "segment.bonds: the compliant bond 'film-medium2' is not modelled by this version"
+    ),
+    f"[[segment.bonds]]\nbetween = ['film', 'glue']\n{BOND}": (
+        "segment.bonds[0].between[1] = 'glue': must be 'effector', 'medium1', 'film', 'medium2' or 'base'"
+    ),
+    "[segment.effector]\nmaterial = 'sponge-hyperfoam'": (
+        "segment.effector.material: model 'hyperfoam' is not modelled by this version"
+    ),
+}
+
+
+@pytest.mark.parametrize(("mistake", "sentence"), CASES.items())
+def test_a_mistake_is_one_sentence(mistake, sentence, write_config, tmp_path, capfd):
+    config = write_config(mistake)
+    assert refusal(["run", str(config), "-o", str(tmp_path / "out")], tmp_path, capfd) == sentence
+
+
+WHOLE_FILES = {
+    "": "segment.medium1.thickness_mm is missing: thickness in z",
+    MINIMAL.replace("2.0", "'2 mm'"): f"segment.medium2.thickness_mm = '2 mm': {NUMBER}",
+    MINIMAL.replace("2.0", "-2.0"): "segment.medium2.thickness_mm = -2: must be above 0",
+    MINIMAL.replace("0.5", "0"): "segment.medium1.thickness_mm = 0: must be above 0",
+    MINIMAL.replace("28.0", "0.0"): "segment.film.thickness_um = 0: must be above 0",
+    MINIMAL.replace("thickness_um", "thickness_mm"): (
+        "segment.film.thickness_mm is not a key; did you mean 'thickness_um'?"
+    ),
+    "segment = 3": "segment = 3: must be a table",
+    "materials = 3\n" + MINIMAL: "materials = 3: must be a table",
+    "seed = -1\n" + MINIMAL: "seed = -1: must be at least 0",
+    MINIMAL + "material = 'vnr_soft'": (
+        "segment.medium2.material = 'vnr_soft': no such material; did you mean 'vnr-soft'?"
+    ),
+    MINIMAL.replace("thickness_um", "material = 'vnr'\nthickness_um"): (
+        "segment.film.material = 'vnr': this material is of model 'neo-hookean'; "
+        "the film needs a piezoelectric-film"
+    ),
+}
+
+
+@pytest.mark.parametrize(("text", "sentence"), WHOLE_FILES.items())
+def test_a_wrong_file_is_one_sentence(text, sentence, write_config, tmp_path, capfd):
+    config = write_config(text, base="")
+    assert refusal(["run", str(config), "-o", str(tmp_path / "out")], tmp_path, capfd) == sentence
+
+
+IMPOSSIBLE = {
+    "[segment.effector]\nshape = 'block'\nlength_mm = 3.0\nwidth_mm = 1.0": "segment.effector.length_mm = 3",
+    "[segment.effector]\nshape = 'cylinder'\ndiameter_mm = 2.6": "segment.effector.diameter_mm = 2.6",
+    "[press]\nindentation_mm = 2.6": "press.indentation_mm = 2.6",
+    "[dot]\nstandard = 'marburg'": "did you mean 'marburg-medium'?",
+    "[dot]\ntilt_deg = [60.0, 0.0]": "overlaps the segment",
+    "[dot]\ncell = 'x'": "dot.cell = 'x'",
+    "[press.waveform]\nshape = 'file'\nfile = 'none.csv'": "press.waveform.file = 'none.csv': cannot be read",
+    "[press]\npath_xy_mm = [[0.1, 0.0]]\n[press.waveform]\nshape = 'half-sine'": "press.waveform.shape = 'half-sine'",
+}
+
+
+@pytest.mark.parametrize(("mistake", "part"), IMPOSSIBLE.items())
+def test_an_impossible_geometry_is_refused_by_name(mistake, part, write_config, tmp_path, capfd):
+    config = write_config(mistake)
+    assert part in refusal(["run", str(config), "-o", str(tmp_path / "out")], tmp_path, capfd)
+
+
+def test_toml_that_is_none_is_refused_with_its_line(write_config, tmp_path, capfd):
+    config = write_config("[press]\nindentation_mm 0.3", base="")
+    said = refusal(["run", str(config), "-o", str(tmp_path / "out")], tmp_path, capfd)
+    assert said.startswith(f"configuration '{config}': not valid TOML, ")
+    assert "line 2" in said
+
+
+def test_a_file_that_is_not_utf8_is_refused(tmp_path, capfd):
+    config = tmp_path / "latin.toml"
+    config.write_bytes("# Länge\n".encode("latin-1"))
+    said = refusal(["run", str(config), "-o", str(tmp_path / "out")], tmp_path, capfd)
+    assert said == f"configuration '{config}': not UTF-8 text (byte 3), save it as UTF-8"
+
+
+def test_a_missing_file_is_refused(tmp_path, capfd):
+    config = tmp_path / "nowhere.toml"
+    said = refusal(["run", str(config), "-o", str(tmp_path / "out")], tmp_path, capfd)
+    assert said == f"configuration '{config}': there is no such file"
+
+
+def test_a_folder_as_configuration_is_refused(tmp_path, capfd):
+    said = refusal(["run", str(tmp_path), "-o", str(tmp_path / "out")], tmp_path, capfd)
+    assert said == f"configuration '{tmp_path}': this is a folder, a TOML file is needed"
+
+
+def test_nesting_without_end_is_refused(write_config, tmp_path, capfd):
+    config = write_config("x = " + "[" * 100_000, base="")
+    said = refusal(["run", str(config), "-o", str(tmp_path / "out")], tmp_path, capfd)
+    assert said.startswith(f"configuration '{config}': not valid TOML")
+
+
+@pytest.mark.skipif("os.geteuid() == 0", reason="nothing is unreadable to root")
+def test_an_unreadable_file_is_refused(write_config, tmp_path, capfd):
+    config = write_config("")
+    config.chmod(0)
+    said = refusal(["run", str(config), "-o", str(tmp_path / "out")], tmp_path, capfd)
+    assert said == f"configuration '{config}': cannot be read (Permission denied)"

@@ -1,0 +1,45 @@
+"""A real interrupt of a real process, by Ctrl-C or by a system that shuts down."""
+
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+SLOW_RUN = """
+import sys, time
+from pathlib import Path
+from softdot import stages
+stages.check = lambda config: (None, [])
+stages.build_parts = lambda *_: []
+def slow(parts, folder):
+    folder.mkdir()
+    (folder / "half").write_text("half")
+    Path("begun").touch()
+    time.sleep(60)
+stages.write_cad = slow
+from softdot.cli import main
+sys.exit(main(["run", "-o", "out"]))
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupted_process_exits_130_and_leaves_nothing(tmp_path, number):
+    process = subprocess.Popen(
+        [sys.executable, "-c", SLOW_RUN], cwd=tmp_path, stderr=subprocess.PIPE, text=True, env=_environment()
+    )
+    while not (tmp_path / "begun").exists():
+        assert process.poll() is None, process.stderr.read()
+        time.sleep(0.02)
+    process.send_signal(number)
+    _, complaint = process.communicate(timeout=20)
+    assert process.returncode == 130
+    assert complaint == "softdot: interrupted, nothing was written\n"
+    assert [path.name for path in tmp_path.iterdir()] == ["begun"]
+
+
+def _environment():
+    import os
+
+    return {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}

@@ -1,0 +1,157 @@
+"""The pipeline: what it writes, and what is left when something goes wrong."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from mesh.errors import MeshingError
+from softdot.cli import main
+from tests.softdot.stand_ins import result_of
+
+
+def entries(folder: Path) -> set[str]:
+    return {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
+
+
+EVERYTHING = {"summary.json", "report.html", "cad/segment.step", "results/segment.pvd", "pictures/force.png"}
+
+
+@pytest.mark.usefixtures("rooms")
+def test_a_good_run_writes_everything_and_exits_0(tmp_path):
+    out = tmp_path / "deep" / "out"
+    assert main(["run", "-o", str(out)]) == 0
+    assert entries(out) == EVERYTHING
+    assert entries(tmp_path) == {f"deep/out/{name}" for name in EVERYTHING}
+
+
+@pytest.mark.usefixtures("rooms")
+def test_summary_holds_what_was_solved(tmp_path):
+    main(["run", "-o", str(tmp_path / "out")])
+    summary = json.loads((tmp_path / "out/summary.json").read_text())
+    assert summary["format"] == "softdot-run/1"
+    assert summary["indentation_mm"] == pytest.approx([0.0, 0.15, 0.3])
+    assert summary["reaction_force_N"] == pytest.approx([0.0, 1.5, 3.0])
+    assert summary["film_charge_pC"] == pytest.approx([0.0, 3.0, 6.0])
+    assert summary["open_circuit_voltage_V"] == pytest.approx([0.0, 0.3, 0.6])
+    assert summary["film"] == pytest.approx(
+        {"capacitance_pF": 10.0, "max_principal_strain": 0.01, "max_principal_stress_MPa": 10.0}
+    )
+    assert summary["sensitivity"]["voltage_per_mm"] == pytest.approx(2.0)
+    assert summary["sensitivity"]["charge_pC_per_N"] == pytest.approx(2.0)
+    assert summary["sensitivity"]["least_detectable_indentation_um"] == pytest.approx(0.5)  # 1 mV at 2 V/mm
+    assert summary["solver"]["converged"] is True
+    assert summary["solver"]["load_steps"] == 2
+    assert summary["mesh"] == {"tetrahedra": 1, "unknowns": 30}
+    assert set(summary["timing_s"]) == {"geometry", "mesh", "solve", "export"}
+    assert summary["config"]["press"]["indentation_mm"] == 0.3
+    assert summary["config"]["materials"]["vnr-soft"]["youngs_modulus_MPa"] == 1.0
+    assert "readout_voltage_V" not in summary
+
+
+@pytest.mark.usefixtures("rooms")
+def test_json_prints_the_summary_alone(tmp_path, capfd):
+    assert main(["run", "-o", str(tmp_path / "out"), "--json"]) == 0
+    printed = capfd.readouterr()
+    assert json.loads(printed.out) == json.loads((tmp_path / "out/summary.json").read_text())
+    assert printed.err == ""
+
+
+def test_json_is_not_spoilt_by_a_library_that_prints(tmp_path, capfd, rooms):
+    import os
+
+    def noisy(*_):
+        os.write(1, b"library chatter\n")
+        return result_of([0.0, 0.3])
+
+    rooms.press = noisy
+    main(["run", "-o", str(tmp_path / "out"), "--json"])
+    json.loads(capfd.readouterr().out)
+
+
+@pytest.mark.usefixtures("rooms")
+def test_a_run_in_a_pipe_is_quiet(tmp_path, capfd):
+    main(["run", "-o", str(tmp_path / "out")])
+    assert capfd.readouterr() == ("", "")
+
+
+def test_a_press_that_stops_keeps_what_converged_and_exits_3(tmp_path, capfd, rooms):
+    rooms.press = lambda *_: result_of([0.0, 0.1], failure="step 2 of 3 stopped at 0.100 mm")
+    assert main(["run", "-o", str(tmp_path / "out")]) == 3
+    summary = json.loads((tmp_path / "out/summary.json").read_text())
+    assert summary["solver"]["converged"] is False
+    assert summary["solver"]["failure"] == "step 2 of 3 stopped at 0.100 mm"
+    assert summary["indentation_mm"] == pytest.approx([0.0, 0.1])
+    assert entries(tmp_path / "out") == EVERYTHING
+    assert capfd.readouterr().err.splitlines() == [
+        f"softdot: not converged, step 2 of 3 stopped at 0.100 mm; what converged is in '{tmp_path / 'out'}'"
+    ]
+
+
+def test_a_press_that_never_starts_gives_null_sensitivities(tmp_path, rooms):
+    rooms.press = lambda *_: result_of([0.0], failure="step 1 of 3 stopped at 0 mm")
+    assert main(["run", "-o", str(tmp_path / "out")]) == 3
+    summary = json.loads((tmp_path / "out/summary.json").read_text())
+    assert summary["sensitivity"]["voltage_per_mm"] is None
+    assert summary["sensitivity"]["charge_pC_per_N"] is None
+    assert summary["sensitivity"]["least_detectable_indentation_um"] is None
+
+
+def test_a_mesh_that_fails_keeps_the_cad_files_and_exits_3(tmp_path, capfd, rooms):
+    def fail(*_):
+        raise MeshingError("the mesher took longer than 300 s")
+
+    rooms.build_mesh = fail
+    assert main(["run", "-o", str(tmp_path / "out")]) == 3
+    assert entries(tmp_path / "out") == {"summary.json", "cad/segment.step"}
+    summary = json.loads((tmp_path / "out/summary.json").read_text())
+    assert summary["solver"] == {
+        "converged": False,
+        "failure": "meshing: the mesher took longer than 300 s",
+        "load_steps": 0,
+    }
+    assert "took longer than 300 s" in capfd.readouterr().err
+
+
+@pytest.mark.usefixtures("rooms")
+def test_an_earlier_run_is_replaced_whole(tmp_path):
+    out = tmp_path / "out"
+    main(["run", "-o", str(out)])
+    (out / "pictures/stale.png").write_text("of the earlier run")
+    assert main(["run", "-o", str(out)]) == 0
+    assert entries(tmp_path) == {f"out/{name}" for name in EVERYTHING}
+
+
+def test_an_earlier_run_survives_a_failure(tmp_path, rooms):
+    out = tmp_path / "out"
+    main(["run", "-o", str(out)])
+    before = (out / "summary.json").read_text()
+
+    def fail(*_):
+        raise ZeroDivisionError
+
+    rooms.press = fail
+    with pytest.raises(ZeroDivisionError):
+        main(["run", "-o", str(out)])
+    assert (out / "summary.json").read_text() == before
+    assert entries(tmp_path) == {f"out/{name}" for name in EVERYTHING}
+
+
+@pytest.mark.parametrize("stage", ["build_parts", "build_mesh", "press", "write_report"])
+def test_ctrl_c_leaves_nothing(tmp_path, capfd, rooms, stage):
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    setattr(rooms, stage, interrupted)
+    assert main(["run", "-o", str(tmp_path / "new" / "out")]) == 130
+    assert list(tmp_path.iterdir()) == []
+    assert capfd.readouterr().err == "softdot: interrupted, nothing was written\n"
+
+
+@pytest.mark.usefixtures("rooms")
+def test_the_working_folder_can_be_the_output(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", "-o", "."]) == 0
+    assert main(["run", "-o", "."]) == 0
+    assert entries(tmp_path) == EVERYTHING
+    assert Path.cwd() == tmp_path

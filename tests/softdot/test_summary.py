@@ -1,0 +1,58 @@
+"""The summary of a press with a circuit and with several electrodes."""
+
+import dataclasses
+import json
+
+import numpy as np
+import pytest
+
+from softdot.config import config_from
+from softdot.numbers import json_text
+from softdot.summary import history, press_part
+from tests.softdot.stand_ins import result_of
+
+LAYERS = {"medium1": {"thickness_mm": 0.5}, "film": {"thickness_um": 28}, "medium2": {"thickness_mm": 2}}
+
+
+def two_electrodes():
+    """10 pF carrying 20 pC and 30 pF carrying 30 pC at the last of two steps."""
+    charge, capacitance = np.array([20e-12, 30e-12]), np.array([10e-12, 30e-12])
+    steps = [
+        dataclasses.replace(
+            step, film_charge_C=share * charge, open_circuit_voltage_V=share * charge / capacitance
+        )
+        for step, share in zip(result_of([0.0, 0.3]).steps, [0.0, 1.0], strict=True)
+    ]
+    return dataclasses.replace(
+        result_of([0.0]), steps=tuple(steps), capacitance_F=capacitance, electrode_names=("left", "right")
+    )
+
+
+def test_electrodes_are_read_in_parallel():
+    past = history(two_electrodes())
+    assert past.film_charge_pC == pytest.approx([0.0, 50.0])
+    assert past.open_circuit_voltage_V == pytest.approx([0.0, 50.0 / 40.0])
+
+
+def test_each_electrode_is_also_listed_by_itself():
+    part = press_part(config_from({"segment": LAYERS}), two_electrodes(), None)
+    assert [electrode["name"] for electrode in part["electrodes"]] == ["left", "right"]
+    assert [electrode["capacitance_pF"] for electrode in part["electrodes"]] == pytest.approx([10.0, 30.0])
+    assert part["electrodes"][1]["open_circuit_voltage_V"] == pytest.approx([0.0, 1.0])
+
+
+def test_sensitivity_is_that_of_the_amplifier_and_its_noise():
+    config = config_from({"segment": LAYERS, "readout": {"noise_V": 0.01}})
+    behind_amplifier = np.array([0.0, 0.15, 0.3])  # 1 V per mm
+    part = press_part(config, result_of([0.0, 0.15, 0.3]), behind_amplifier)
+    assert part["readout_voltage_V"] == pytest.approx(behind_amplifier)
+    assert part["sensitivity"]["voltage_per_mm"] == pytest.approx(1.0)
+    assert part["sensitivity"]["least_detectable_indentation_um"] == pytest.approx(10.0)
+    assert part["sensitivity"]["noise_V"] == 0.01
+
+
+def test_json_has_no_nan():
+    text = json_text(
+        {"a": float("nan"), "b": [np.inf, np.float64(1.0)], "c": np.arange(2), "d": np.bool_(True)}
+    )
+    assert json.loads(text) == {"a": None, "b": [None, 1.0], "c": [0, 1], "d": True}

@@ -1,0 +1,49 @@
+"""Good results that a user should still doubt."""
+
+import dataclasses
+
+from softdot.config import config_from, load_config
+from softdot.run_warnings import design_warnings, result_warnings
+from tests.softdot.stand_ins import cap_of_height, one_tetrahedron, result_of, step_at
+
+LAYERS = {"medium1": {"thickness_mm": 0.5}, "film": {"thickness_um": 28}, "medium2": {"thickness_mm": 2}}
+
+
+def warn(**segment):
+    return design_warnings(config_from({"segment": {**LAYERS, **segment}}))
+
+
+def test_holding_medium2_closes_a_cavity():
+    every = ["medium1", "film", "medium2"]
+    (warning,) = warn(boundary="clamped", held_layers=every)
+    assert "close a cavity" in warning
+    assert "0.495" in warning
+    assert warn(boundary="free", held_layers=every) == []
+    assert warn(boundary="clamped") == []
+    assert (
+        warn(boundary="clamped", held_layers=every, medium2={"thickness_mm": 2, "material": "sponge"}) == []
+    )
+
+
+def test_film_beyond_yield():
+    config, dot = load_config(), cap_of_height(0.5)
+    assert result_warnings(config, dot, one_tetrahedron(), result_of([0.0, 0.3], stress_MPa=49.0)) == []
+    (warning,) = result_warnings(config, dot, one_tetrahedron(), result_of([0.0, 0.3], stress_MPa=58.0))
+    assert "58 MPa exceeds its yield stress of 50 MPa" in warning
+
+
+def test_strain_beyond_the_fitted_range():
+    config = config_from({"segment": LAYERS, "materials": {"pvdf": {"max_fitted_strain": 0.02}}})
+    dot, tet_mesh = cap_of_height(0.5), one_tetrahedron()
+    within = dataclasses.replace(result_of([0.0]), steps=(step_at(0.0), step_at(0.3, stretch=1.019)))
+    beyond = dataclasses.replace(result_of([0.0]), steps=(step_at(0.0), step_at(0.3, stretch=1.029)))
+    assert result_warnings(config, dot, tet_mesh, within) == []
+    assert result_warnings(config, dot, tet_mesh, beyond) == [
+        "the strain of 2.9 % in film is beyond the fitted range of its material (2 %)"
+    ]
+
+
+def test_a_force_can_press_deeper_than_the_dot():
+    config = config_from({"segment": LAYERS, "press": {"force_N": 2.0}})
+    warnings = result_warnings(config, cap_of_height(0.2), one_tetrahedron(), result_of([0.0, 0.3]))
+    assert any("exceeds the dot's height of 0.2 mm" in warning for warning in warnings)
