@@ -16,7 +16,7 @@ def plain(value: Any) -> Any:
     if hasattr(value, "tolist"):  # numpy arrays and scalars
         return plain(value.tolist())
     if isinstance(value, float):
-        return value + 0.0 if math.isfinite(value) else None  # -0.0 + 0.0 = 0.0
+        return float(f"{value:.12g}") + 0.0 if math.isfinite(value) else None  # -0.0 + 0.0 = 0.0
     return value
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mesh.types import Floats, Ints
+from mesh.types import Bools, Floats, Ints
 from solve.dot_distance import RigidDot
 from solve.quadrature import triangle
 from solve.shape_functions import linear, quadratic
@@ -59,7 +59,8 @@ class ContactFacets:
         return self._sum(np.einsum("kq,qi->ki", self.area, HATS))
 
     def _sum(self, local: Floats) -> Floats:
-        return np.bincount(self.index.ravel(), local.ravel(), len(self.pressure_dofs))
+        total: Floats = np.bincount(self.index.ravel(), local.ravel(), len(self.pressure_dofs)).astype(np.float64)
+        return total
 
     def _at_quadrature(self, displacement: Floats, move: Floats) -> tuple[Floats, Floats, Floats]:
         position = (self.points + displacement)[self.facets]
@@ -73,7 +74,7 @@ class ContactFacets:
         gap = self._at_quadrature(displacement, move)[0]
         return self._sum(np.einsum("kq,qi,kq->ki", self.area, HATS, gap))
 
-    def elements(self, displacement: Floats, move: Floats, pressure: Floats, active: Ints) -> tuple[Floats, Floats]:
+    def elements(self, displacement: Floats, move: Floats, pressure: Floats, active: Bools) -> tuple[Floats, Floats]:
         """Matrices (k, 25, 25) and residuals (k, 25) of -sum lambda_i g_i.
 
         pressure : (c,) lambda; active : (c,) bool. Rows of inactive nodes carry no coupling.
@@ -103,13 +104,15 @@ class ContactFacets:
         """Resultant of the dot on the meshed body, shape (3,), in the solver's units."""
         lam = np.einsum("qi,ki->kq", HATS, pressure[self.index])
         normal = self._at_quadrature(displacement, move)[1]
-        return np.einsum("kq,kq,kqi->i", self.area, lam, normal)
+        resultant: Floats = np.einsum("kq,kq,kqi->i", self.area, lam, normal)
+        return resultant
 
 
 def facet_area(points: Floats, facets: Ints) -> Floats:
     """Area weights (k, q) of quadratic facets (k, 6) under the composite rule."""
     tangents = np.einsum("qna,kni->kqai", SLOPES, points[facets])
-    return np.linalg.norm(np.cross(tangents[:, :, 0], tangents[:, :, 1]), axis=-1) * WEIGHTS
+    area: Floats = np.linalg.norm(np.cross(tangents[:, :, 0], tangents[:, :, 1]), axis=-1) * WEIGHTS
+    return area
 
 
 def contact_facets(points: Floats, facets: Ints, unknowns: Unknowns, dot: RigidDot) -> ContactFacets:

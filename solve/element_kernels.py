@@ -13,7 +13,7 @@ import numpy as np
 from solve.materials.isochoric import I_OF, J_OF, inverse
 
 
-@nb.njit(inline="always")  # type: ignore[untyped-decorator]
+@nb.njit(inline="always")
 def _strain_operator(f, g, b):  # type: ignore[no-untyped-def]
     """B (6, 3n) from F (3, 3) and the gradients g (n, 3)."""
     for a in range(g.shape[0]):
@@ -26,7 +26,7 @@ def _strain_operator(f, g, b):  # type: ignore[no-untyped-def]
                 b[v, col] = f[i, k] * g[a, m] + f[i, m] * g[a, k]
 
 
-@nb.njit(inline="always")  # type: ignore[untyped-decorator]
+@nb.njit(inline="always")
 def _add_displacement_part(b, g, s, cc, w, cb, ke, re):  # type: ignore[no-untyped-def]
     """Add w B^t S to re and the upper triangle of w (B^t CC B + geometric part) to ke."""
     n = b.shape[1]
@@ -54,7 +54,7 @@ def _add_displacement_part(b, g, s, cc, w, cb, ke, re):  # type: ignore[no-untyp
                 ke[3 * a + i, 3 * c + i] += value
 
 
-@nb.njit(parallel=True, cache=True)  # type: ignore[untyped-decorator]
+@nb.njit(parallel=True, cache=True)
 def mixed_solid(grad, weight, shape_p, f, pressure, bulk, s_iso, cc_iso, ke, re):  # type: ignore[no-untyped-def]
     """P2-P1 elements, unknowns (10 nodes x 3 displacements, then 4 pressures).
 
@@ -97,7 +97,7 @@ def mixed_solid(grad, weight, shape_p, f, pressure, bulk, s_iso, cc_iso, ke, re)
                     ke[e, 30 + a, 30 + d] -= w * shape_p[q, a] * shape_p[q, d] / bulk
 
 
-@nb.njit(parallel=True, cache=True)  # type: ignore[untyped-decorator]
+@nb.njit(parallel=True, cache=True)
 def film_solid(grad, weight, f, stiffness, coupling, permittivity, field, per_volt, ke, re):  # type: ignore[no-untyped-def]
     """Piezoelectric P2 elements, unknowns (10 nodes x 3 displacements, then the electrode's voltage).
 
@@ -138,7 +138,7 @@ def film_solid(grad, weight, f, stiffness, coupling, permittivity, field, per_vo
             ke[e, 30, 30] += w * per_volt * per_volt * (dcd - permittivity)
 
 
-@nb.njit(cache=True)  # type: ignore[untyped-decorator]
+@nb.njit(cache=True)
 def scatter(ke, re, dofs, slots, data, residual):  # type: ignore[no-untyped-def]
     """Add element matrices (upper triangles, packed row by row in slots) and vectors; negative = fixed.
 

@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from mesh.types import Floats, TetMesh
+from mesh.types import Floats, Ints, TetMesh
 from solve.materials.voigt import from_voigt, to_voigt
-from solve.result import Fields
-from solve.solid import SolidRegion, deformation_gradient
 from solve.quadrature import tetrahedron
+from solve.result import Fields
 from solve.shape_functions import linear
+from solve.solid import SolidRegion, deformation_gradient
 from solve.system import Load, System
 
 
@@ -33,7 +33,7 @@ def fields(system: System, tet_mesh: TetMesh, x: Floats, load: Load) -> Fields:
         max_stretch=stretch,
         film_tets=film,
         film_strain=strain @ turn.T * [1, 1, 1, 0.5, 0.5, 0.5],
-        film_stress_Pa=np.linalg.solve(turn.T, stress.T).T * system.units.stress,
+        film_stress_Pa=_in_film_axes(turn, stress) * system.units.stress,
         charge_density_C_per_m2=density * system.units.stress * system.units.length / system.units.voltage,
         contact_nodes=contact_nodes,
         gap_m=_gap(system, displacement, x, load, contact_nodes),
@@ -68,9 +68,15 @@ def _mean(values: Floats, weight: Floats) -> Floats:
 
 
 def _largest_stretch(cauchy_green: Floats) -> Floats:
-    return np.sqrt(np.linalg.eigvalsh(cauchy_green)[:, -1])
+    stretch: Floats = np.sqrt(np.linalg.eigvalsh(cauchy_green)[:, -1])
+    return stretch
 
 
-def _gap(system: System, displacement: Floats, x: Floats, load: Load, nodes: Floats) -> Floats:
+def _in_film_axes(turn: Floats, stress: Floats) -> Floats:
+    """Stress (k, 6) in the film's axes: strain turns by T, so stress by T^-t."""
+    return np.asarray(np.linalg.solve(turn.T, stress.T).T, dtype=np.float64)
+
+
+def _gap(system: System, displacement: Floats, x: Floats, load: Load, nodes: Ints) -> Floats:
     gap = system.contact.dot.distance((system.points + displacement)[nodes], system.move(x, load))[0]
     return gap * system.units.length

@@ -56,7 +56,8 @@ class FilmRegion:
         """Integral over the undeformed area of each electrode, shape (e,)."""
         part = np.broadcast_to(density * self.weight / self.thickness, self.weight.shape).ravel()
         under, index = self.covered.ravel() >= 0, self.covered.ravel()
-        return np.bincount(index[under], part[under], self.electrodes)
+        total: Floats = np.bincount(index[under], part[under], self.electrodes).astype(np.float64)
+        return total
 
     def charge(self, displacement: Floats, voltage: Floats) -> Floats:
         """Short-circuit charge of each electrode: integral of d . S over its undeformed area, shape (e,)."""

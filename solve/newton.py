@@ -7,7 +7,7 @@ import numpy as np
 from mesh.types import Floats
 from solve.linear import LinearSolveError, LinearSolver
 from solve.solid import InvertedElementError
-from solve.system import Load, System
+from solve.system import Evaluation, Load, System
 
 TOLERANCE = 1e-9
 MAX_ITERATIONS = 25
@@ -46,7 +46,7 @@ def equilibrate(system: System, linear: LinearSolver, x: Floats, load: Load) -> 
                 return Equilibrium(x, iteration, relative)
             if not np.isfinite(norm):
                 break
-            similar = previous is not None and np.count_nonzero(previous != now.active) <= SIMILAR_CONTACT
+            similar = previous is not None and int(np.sum(previous != now.active)) <= SIMILAR_CONTACT
             # inexact Newton: the linear residual need only fall as the nonlinear one will
             step = linear.solve(now.tangent, -now.residual, min(0.1 * relative, 1e-3), similar)
             previous = now.active
@@ -59,7 +59,7 @@ def equilibrate(system: System, linear: LinearSolver, x: Floats, load: Load) -> 
     raise NoEquilibriumError(f"no convergence in {MAX_ITERATIONS} Newton iterations", x, worst)
 
 
-def _advance(system: System, x: Floats, step: Floats, load: Load):  # type: ignore[no-untyped-def]
+def _advance(system: System, x: Floats, step: Floats, load: Load) -> tuple[Floats, Evaluation]:
     """The full Newton step, halved while it turns an element inside out."""
     for _ in range(MAX_HALVINGS):
         trial = x + step

@@ -166,7 +166,7 @@ def _report(
         open_circuit_voltage_V=charge / system.film.capacitance() * units.voltage,
         newton_iterations=state.equilibrium.iterations,
         relative_residual=state.equilibrium.relative_residual,
-        dot_position_m=move * units.length,
+        dot_position_m=1e-3 * system.contact.dot.shape.origin_mm + move * units.length,
         fields=fields(system, tet_mesh, x, load),
     )
 

@@ -23,7 +23,7 @@ SAMPLES = 4001
 def readout_voltage(result: PressResult, press: Press, readout: Readout) -> Floats:
     """Voltage (s,) at the moment each step is first reached. InputError for a slide on a waveform with a release."""
     time, progress = _timetable(press)
-    voltage = _behind_amplifier(time, _charge(result, press, progress), float(result.capacitance_F.sum()), readout)
+    voltage = _behind_amplifier(time, _charge(result, progress), float(result.capacitance_F.sum()), readout)
     first = [int(np.argmax(progress >= number - 1e-9)) for number in range(len(result.steps))]
     return np.array([_at(progress, voltage, index, number) for number, index in enumerate(first)])
 
@@ -52,7 +52,7 @@ def _timetable(press: Press) -> tuple[Floats, Floats]:
     return time, progress
 
 
-def _charge(result: PressResult, press: Press, progress: Floats) -> Floats:
+def _charge(result: PressResult, progress: Floats) -> Floats:
     """Charge of all electrodes in parallel, C, interpolated without overshoot between the steps."""
     charge = np.array([step.film_charge_C.sum() for step in result.steps])
     if len(charge) == 1:

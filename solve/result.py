@@ -37,7 +37,10 @@ class Fields:
 
 @dataclass(frozen=True)
 class Step:
-    """One converged load step. Charges and voltages: one per electrode, shape (e,)."""
+    """One converged load step. Charges and voltages: one per electrode, shape (e,).
+
+    dot_position_m : (3,) origin of the dot's frame (see geometry.dot_shape) in the segment's frame.
+    """
 
     indentation_m: float
     reaction_force_N: float

@@ -16,7 +16,8 @@ CHUNK = 4096  # elements assembled at a time: bounds the memory of the element m
 
 def deformation_gradient(gradient: Floats, displacement: Floats) -> Floats:
     """F = 1 + du/dX at (m, q, n, 3) gradients and (m, n, 3) nodal displacements: (m, q, 3, 3)."""
-    return np.matmul(displacement.transpose(0, 2, 1)[:, None], gradient) + np.eye(3)
+    f: Floats = np.matmul(displacement.transpose(0, 2, 1)[:, None], gradient) + np.eye(3)
+    return f
 
 
 class InvertedElementError(ArithmeticError):

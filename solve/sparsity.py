@@ -52,7 +52,7 @@ def _coupling(dofs: Ints, count: int) -> sp.csr_matrix:
     return product
 
 
-@nb.njit(parallel=True, cache=True)  # type: ignore[untyped-decorator]
+@nb.njit(parallel=True, cache=True)
 def _slots(dofs, indptr, indices):  # type: ignore[no-untyped-def]
     """Binary search of each upper-triangle pair in its row."""
     elements, width = dofs.shape

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from mesh.types import Floats, Ints
+from mesh.types import Bools, Floats
 from solve.contact import ContactFacets
 from solve.element_kernels import scatter
 from solve.film import FilmRegion
@@ -53,7 +53,7 @@ class Evaluation:
     residual: Floats
     tangent: sp.csr_matrix
     load_norm: float
-    active: Ints
+    active: Bools
 
 
 @dataclass(frozen=True)
@@ -93,10 +93,10 @@ class System:
     def _with_zero(x: Floats) -> Floats:
         return np.append(x, 0.0)  # index -1, a prescribed value, reads zero
 
-    def active_nodes(self, x: Floats, load: Load) -> Ints:
+    def active_nodes(self, x: Floats, load: Load) -> Bools:
         """Nodes in contact: lambda_i - c g_i > 0, shape (c,) bool."""
         gap = self.contact.weighted_gap(self.displacement(x), self.move(x, load)) / self.contact.nodal_area
-        return x[self.contact.pressure_dofs] - ACTIVE_SET_STIFFNESS * gap > 0.0
+        return np.asarray(x[self.contact.pressure_dofs] - ACTIVE_SET_STIFFNESS * gap > 0.0)
 
     def evaluate(self, x: Floats, load: Load) -> Evaluation:
         """Residual and tangent at x; pressures of open nodes in x are set to zero. InvertedElementError."""

@@ -14,7 +14,7 @@ I_OF = np.array([0, 1, 2, 0, 1, 0])
 J_OF = np.array([0, 1, 2, 1, 2, 2])
 
 
-@nb.njit(inline="always")  # type: ignore[untyped-decorator]
+@nb.njit(inline="always")
 def inverse(c, out):  # type: ignore[no-untyped-def]
     """Inverse of a 3 x 3 matrix into out; returns the determinant."""
     out[0, 0] = c[1, 1] * c[2, 2] - c[1, 2] * c[2, 1]
@@ -33,7 +33,7 @@ def inverse(c, out):  # type: ignore[no-untyped-def]
     return det
 
 
-@nb.njit(parallel=True, cache=True)  # type: ignore[untyped-decorator]
+@nb.njit(parallel=True, cache=True)
 def _stress_and_tangent(cauchy_green, c10, c01, c20, c30, stress, tangent):  # type: ignore[no-untyped-def]
     for n in nb.prange(len(cauchy_green)):
         c = cauchy_green[n]
@@ -79,5 +79,6 @@ def isochoric_stress(cauchy_green: Floats, constants: Floats) -> tuple[Floats, F
     """S (n, 6) and tangent (n, 6, 6) at C (n, 3, 3) for the constants (c10, c01, c20, c30)."""
     stress = np.empty((len(cauchy_green), 6))
     tangent = np.empty((len(cauchy_green), 6, 6))
-    _stress_and_tangent(cauchy_green, *constants, stress, tangent)
+    c10, c01, c20, c30 = constants
+    _stress_and_tangent(cauchy_green, c10, c01, c20, c30, stress, tangent)
     return stress, tangent

@@ -46,8 +46,7 @@ def _stiffness(material: PiezoelectricFilm) -> Floats:
     in_plane_shear = np.sqrt(e1 * e2) / (2.0 * (1.0 + nu))
     transverse_shear = e2 / (2.0 * (1.0 + nu))
     compliance[range(3, 6), range(3, 6)] = 1 / in_plane_shear, 1 / transverse_shear, 1 / in_plane_shear
-    stiffness: Floats = np.linalg.inv(compliance)
-    return stiffness
+    return np.asarray(np.linalg.inv(compliance), dtype=np.float64)
 
 
 def film_law(material: PiezoelectricFilm, draw_angle_deg: float) -> FilmLaw:
@@ -62,7 +61,7 @@ def film_law(material: PiezoelectricFilm, draw_angle_deg: float) -> FilmLaw:
     # energy is the same in both axes: S_global = T^t S_film, so D3 = d . S_film = (T^-1 d) . S_global
     return FilmLaw(
         stiffness=turn.T @ _stiffness(material) @ turn,
-        coupling=np.linalg.solve(turn, coupling),
+        coupling=np.asarray(np.linalg.solve(turn, coupling), dtype=np.float64),
         permittivity=material.relative_permittivity * VACUUM_PERMITTIVITY,
         to_film_axes=turn,
     )

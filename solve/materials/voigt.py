@@ -10,7 +10,8 @@ PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))
 def to_voigt(tensor: Floats, shear: float = 1.0) -> Floats:
     """(..., 3, 3) -> (..., 6); shear = 2 for strains."""
     scale = np.array([1.0, 1.0, 1.0, shear, shear, shear])
-    return np.stack([tensor[..., i, j] for i, j in PAIRS], axis=-1) * scale
+    vector: Floats = np.stack([tensor[..., i, j] for i, j in PAIRS], axis=-1) * scale
+    return vector
 
 
 def from_voigt(vector: Floats, shear: float = 1.0) -> Floats:

@@ -8,7 +8,7 @@ from mesh.types import TetMesh
 from solve.result import PressResult
 
 sys.path.insert(0, str(Path(__file__).parent))
-from box import box_dot, box_mesh, made_up_press
+from pressed_box import box_dot, box_mesh, made_up_press
 
 
 @pytest.fixture(scope="session")

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import trimesh
-from box import box_dot
+from pressed_box import box_dot
 
 from export.dot_surface import PLATE_THICKNESS_MM, DotPart, dot_parts, in_segment_frame
 

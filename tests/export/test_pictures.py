@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from box import box_dot, box_mesh, made_up_press
 from matplotlib.colors import to_rgb
 from PIL import Image
+from pressed_box import box_dot, box_mesh, made_up_press
 
 from export.film_map import film_map
 from export.headless import ADVICE

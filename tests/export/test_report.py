@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from box import DEPTHS_MM, box_mesh, made_up_press
+from pressed_box import DEPTHS_MM, box_mesh, made_up_press
 
 from export.report import number, write_report
 from export.viewer_data import viewer_data

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from box import HEIGHT_MM, LENGTH_MM
+from pressed_box import HEIGHT_MM, LENGTH_MM
 
 from export.nodal_fields import largest_principal, split_nodes, spread
 from export.skin import NodalSteps, Skin, film_top, nearby_plane, nodal_steps, outer_skin, section

@@ -8,7 +8,7 @@ import meshio
 import numpy as np
 import pytest
 import pyvista
-from box import DEPTHS_MM, HEIGHT_MM
+from pressed_box import DEPTHS_MM, HEIGHT_MM
 
 from export.vtu import write_results
 from geometry.dot_shape import DotShape

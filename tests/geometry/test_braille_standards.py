@@ -1,6 +1,6 @@
 """The table against the numbers of its sources, and what a wrong name says."""
 
-# ruff: noqa: E501  (rows of a table)
+
 
 import pytest
 

@@ -1,6 +1,6 @@
 """Every mistake in a configuration: one sentence, exit 2, nothing written."""
 
-# ruff: noqa: E501  (rows of a table)
+
 
 import pytest
 

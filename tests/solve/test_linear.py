@@ -80,7 +80,7 @@ def test_a_singular_matrix_is_refused(saddle):
     singular = upper.copy()
     singular.data[:] = 0.0
     solver = LinearSolver(np.zeros(len(rhs)))
-    with pytest.raises(LinearSolveError, match="pardiso.*superlu"):
+    with pytest.raises(LinearSolveError, match=r"pardiso.*superlu"):
         solver.solve(singular, rhs, TOLERANCE)
 
 

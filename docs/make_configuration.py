@@ -1,0 +1,264 @@
+"""Make the tables of the documents from the configuration schema and from the data tables of the program.
+
+Run ``python docs/make_configuration.py`` at the top of the repository after a key, a material or a Braille
+standard has changed. It writes docs/configuration.md and the marked blocks of docs/geometry.md and
+docs/limits.md; tests/softdot/test_docs.py fails while they are out of step.
+"""
+
+import json
+import sys
+import tomllib
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+DOCS = Path(__file__).resolve().parent
+sys.path.insert(0, str(DOCS.parent))  # the rooms of this repository, whatever is installed
+
+from geometry.braille import QUANTITIES, Quantity, standard, standard_names  # noqa: E402
+from softdot.schema import config_schema  # noqa: E402
+from solve.materials.laws import IMPLEMENTED  # noqa: E402
+from solve.materials.library import library_tables  # noqa: E402
+from solve.mechanisms import MECHANISMS  # noqa: E402
+
+Json = dict[str, Any]
+
+TABLES = {
+    "top level": "Config",
+    "[segment]": "Segment",
+    "[segment.effector]": "Effector",
+    "[segment.medium1] and [segment.medium2]": "Medium",
+    "[segment.film]": "Film",
+    "[[segment.film.electrodes]]": "Electrode",
+    "[[segment.bonds]]": "Bond",
+    "[dot]": "Dot",
+    "[press]": "Press",
+    "[press.waveform]": "Waveform",
+    "[readout]": "Readout",
+    "[mesh]": "MeshOptions",
+    "[[mechanisms]]": "Mechanism",
+    "[materials.NAME], model neo-hookean": "NeoHookean",
+    "[materials.NAME], model linear": "Linear",
+    "[materials.NAME], model mooney-rivlin": "MooneyRivlin",
+    "[materials.NAME], model yeoh": "Yeoh",
+    "[materials.NAME], model ogden": "Ogden",
+    "[materials.NAME], model hyperfoam": "Hyperfoam",
+    "[materials.NAME], model piezoelectric-film": "PiezoelectricFilm",
+}
+"""TOML table -> name of its definition in the schema, in the order of the document."""
+
+UNITS = {
+    "_N_per_mm3": "N/mm³",
+    "_pC_per_N": "pC/N",
+    "_kg_m3": "kg/m³",
+    "_MPa": "MPa",
+    "_MOhm": "MΩ",
+    "_deg": "degree",
+    "_mm": "mm",
+    "_um": "µm",
+    "_pF": "pF",
+    "_Hz": "Hz",
+    "_N": "N",
+    "_V": "V",
+    "_s": "s",
+}
+"""Ending of a key -> its unit; the first that fits counts."""
+
+
+def configuration_page() -> str:
+    """The whole text of docs/configuration.md."""
+    schema = config_schema()
+    definitions = {**schema["$defs"], "Config": schema}
+    examples = _read_toml("configuration_examples.toml")
+    parts = [(DOCS / "configuration_head.md").read_text("utf-8")]
+    for title, name in TABLES.items():
+        parts.append(_section(title, definitions[name], examples[name]))
+    parts.append(f"## Built-in materials\n\n{_materials_note()}\n\n{material_table()}")
+    return "\n\n".join(part.strip() for part in parts) + "\n"
+
+
+def _section(title: str, table: Json, examples: Json) -> str:
+    about = "" if title == "top level" else f"{table.get('description', '').strip()}\n\n"
+    required = table.get("required", [])
+    rows = [
+        [f"`{key}`", _meaning(value), _unit(key), _default(key, value, required), _allowed(value), _example(key, examples)]
+        for key, value in table["properties"].items()
+    ]
+    head = "Top level" if title == "top level" else f"`{title}`"
+    return f"## {head}\n\n{about}{_table(['key', 'meaning', 'unit', 'default', 'allowed', 'example'], rows)}"
+
+
+def _meaning(value: Json) -> str:
+    return str(value.get("description", ""))
+
+
+def _unit(key: str) -> str:
+    return next((unit for ending, unit in UNITS.items() if key.endswith(ending)), "–")
+
+
+def _default(key: str, value: Json, required: list[str]) -> str:
+    if key in required:
+        return "required"
+    default = value["default"]
+    if default is None or isinstance(default, dict) or default == []:
+        return "none" if not default else "its own defaults"
+    return f"`{toml(default)}`"
+
+
+def _allowed(value: Json) -> str:
+    """What the schema allows, in words."""
+    if "$ref" in value or "oneOf" in value.get("additionalProperties", {}):
+        return "a table, see below"
+    if "anyOf" in value:
+        return " or ".join(dict.fromkeys(_allowed(one) for one in value["anyOf"] if one.get("type") != "null"))
+    if "enum" in value or "const" in value:
+        return ", ".join(f"`{toml(one)}`" for one in value.get("enum", [value.get("const")]))
+    if value["type"] == "array":
+        return _allowed_list(value)
+    words = {"number": "number", "integer": "whole number", "string": "text", "object": "table", "boolean": "true, false"}
+    bounds = {"exclusiveMinimum": "above", "minimum": "at least", "exclusiveMaximum": "below", "maximum": "at most"}
+    limits = [f"{word} {value[name]:g}" for name, word in bounds.items() if name in value]
+    return " ".join([words[value["type"]], " and ".join(limits)]).strip()
+
+
+def _allowed_list(value: Json) -> str:
+    pieces = value.get("prefixItems")
+    if pieces:
+        return f"list of {len(pieces)}: " + "; ".join(dict.fromkeys(_allowed(piece) for piece in pieces))
+    if "$ref" in value["items"]:
+        return "tables, see below"
+    least = ", at least one" if value.get("minItems") else ""
+    return f"list{least}, each: {_allowed(value['items'])}"
+
+
+def _example(key: str, examples: Json) -> str:
+    if key not in examples:
+        return "see below"
+    return f"`{key} = {toml(examples[key])}`"
+
+
+def toml(value: Any) -> str:
+    """A value as TOML writes it on one line."""
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{key} = {toml(item)}" for key, item in value.items()) + " }"
+    if isinstance(value, list | tuple):
+        return "[" + ", ".join(toml(item) for item in value) + "]"
+    return json.dumps(value, ensure_ascii=False)
+
+
+def _materials_note() -> str:
+    refused = ", ".join(sorted(set(_models()) - IMPLEMENTED))
+    return (
+        "Defined in `solve/materials/library.toml`. high: read in the source; medium: fitted or secondary; "
+        f"low: a starting value. Models that the schema knows and this version refuses to solve: {refused}."
+    )
+
+
+def _models() -> Iterator[str]:
+    for title in TABLES:
+        if ", model " in title:
+            yield title.rpartition(" ")[2]
+
+
+def material_table() -> str:
+    """The built-in materials with their constants."""
+    about = ("model", "source", "confidence")
+    rows = [
+        [
+            f"`{name}`",
+            table["model"],
+            ", ".join(f"{key} {toml(value)}" for key, value in table.items() if key not in about),
+            table["confidence"],
+            table["source"],
+        ]
+        for name, table in library_tables().items()
+    ]
+    return _table(["name", "model", "constants", "confidence", "source"], rows)
+
+
+def braille_table() -> str:
+    """Every standard: minimum, nominal and maximum of every size, with source and confidence."""
+    rows = []
+    for name in standard_names():
+        found = standard(name)
+        sizes = [_size(found.quantities[key], found.confidence) for key in QUANTITIES]
+        about = f"{found.source}{'; ' + found.note if found.note else ''}"
+        rows.append([f"`{name}`", found.title, *sizes, found.confidence, about])
+    heads = [key.removesuffix("_mm").replace("_", " ") for key in QUANTITIES]
+    return _table(["name", "standard", *heads, "confidence", "source, note"], rows)
+
+
+def _size(quantity: Quantity, confidence: str) -> str:
+    """For example 1.3–**1.5**–1.6; a star marks a nominal that is the middle of the range."""
+    low, nominal, high = quantity.minimum_mm, quantity.nominal_mm, quantity.maximum_mm
+    if low is None and nominal is None:
+        return "–"
+    star = "\\*" if quantity.nominal_is_middle else ""
+    middle = "" if nominal is None else f"**{nominal:.6g}**{star}"
+    ends = [f"{low:.6g}" if low is not None else "", middle, f"{high:.6g}" if high is not None else ""]
+    text = "–".join(dict.fromkeys(end for end in ends if end))
+    if low is not None and nominal is None and high is None:
+        text = f"≥ {low:.6g}"
+    notes = [quantity.confidence if quantity.confidence != confidence else "", quantity.note]
+    more = "; ".join(note for note in notes if note)
+    return f"{text} ({more})" if more else text
+
+
+def mechanism_table() -> str:
+    """Every mechanism name that the schema knows."""
+    rows = [
+        [f"`{name}`", ", ".join(_short(components)), ", ".join(parameters) or "none"]
+        for name, (components, parameters) in MECHANISMS.items()
+    ]
+    return _table(["name", "component", "parameters"], rows)
+
+
+def _short(components: tuple[str, ...]) -> tuple[str, ...]:
+    """Numbered channels as one."""
+    numbered = [one for one in components if one.startswith("channel-")]
+    return (f"{numbered[0]} to {numbered[-1]}",) if numbered else components
+
+
+def with_block(text: str, name: str, block: str) -> str:
+    """The text with what stands between the two marks of a block replaced."""
+    start, end = f"<!-- {name}: made by docs/make_configuration.py -->", f"<!-- end of {name} -->"
+    before, _, rest = text.partition(start)
+    _, _, after = rest.partition(end)
+    if not rest or end not in text:
+        raise ValueError(f"the marks of the block '{name}' are missing")
+    return f"{before}{start}\n\n{block}\n\n{end}{after}"
+
+
+def _table(heads: list[str], rows: list[list[str]]) -> str:
+    """A Markdown table; a pipe inside a cell is escaped."""
+    lines = [heads, ["---"] * len(heads), *[[cell.replace("|", "\\|") for cell in row] for row in rows]]
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def _read_toml(name: str) -> Json:
+    return tomllib.loads((DOCS / name).read_text("utf-8"))
+
+
+BLOCKS: dict[str, tuple[str, Callable[[], str]]] = {
+    "geometry.md": ("Braille table", braille_table),
+    "limits.md": ("mechanism table", mechanism_table),
+}
+"""Document -> its generated block."""
+
+
+def pages() -> dict[str, str]:
+    """The text of every document that holds something generated, by file name."""
+    made = {"configuration.md": configuration_page()}
+    for file, (name, block) in BLOCKS.items():
+        made[file] = with_block((DOCS / file).read_text("utf-8"), name, block())
+    return made
+
+
+def main() -> None:
+    """Write all of them."""
+    for file, text in pages().items():
+        (DOCS / file).write_text(text, "utf-8")
+
+
+if __name__ == "__main__":
+    main()
