@@ -24,28 +24,45 @@ from solve.mechanisms import MECHANISMS  # noqa: E402
 Json = dict[str, Any]
 
 TABLES = {
-    "top level": "Config",
-    "[segment]": "Segment",
-    "[segment.effector]": "Effector",
-    "[segment.medium1] and [segment.medium2]": "Medium",
-    "[segment.film]": "Film",
-    "[[segment.film.electrodes]]": "Electrode",
-    "[[segment.bonds]]": "Bond",
-    "[dot]": "Dot",
-    "[press]": "Press",
-    "[press.waveform]": "Waveform",
-    "[readout]": "Readout",
-    "[mesh]": "MeshOptions",
-    "[[mechanisms]]": "Mechanism",
-    "[materials.NAME], model neo-hookean": "NeoHookean",
-    "[materials.NAME], model linear": "Linear",
-    "[materials.NAME], model mooney-rivlin": "MooneyRivlin",
-    "[materials.NAME], model yeoh": "Yeoh",
-    "[materials.NAME], model ogden": "Ogden",
-    "[materials.NAME], model hyperfoam": "Hyperfoam",
-    "[materials.NAME], model piezoelectric-film": "PiezoelectricFilm",
+    "Top level": "Config",
+    "`[segment]`": "Segment",
+    "`[segment.effector]`": "Effector",
+    "`[segment.medium1]` and `[segment.medium2]`": "Medium",
+    "`[segment.film]`": "Film",
+    "`[[segment.film.electrodes]]`": "Electrode",
+    "`[[segment.bonds]]`": "Bond",
+    "`[dot]`": "Dot",
+    "`[press]`": "Press",
+    "`[press.waveform]`": "Waveform",
+    "`[readout]`": "Readout",
+    "`[mesh]`": "MeshOptions",
+    "`[[mechanisms]]`": "Mechanism",
+    "`[materials.NAME]`, model `neo-hookean`": "NeoHookean",
+    "`[materials.NAME]`, model `linear`": "Linear",
+    "`[materials.NAME]`, model `mooney-rivlin`": "MooneyRivlin",
+    "`[materials.NAME]`, model `yeoh`": "Yeoh",
+    "`[materials.NAME]`, model `ogden`": "Ogden",
+    "`[materials.NAME]`, model `hyperfoam`": "Hyperfoam",
+    "`[materials.NAME]`, model `piezoelectric-film`": "PiezoelectricFilm",
 }
-"""TOML table -> name of its definition in the schema, in the order of the document."""
+"""Heading -> name of its definition in the schema, in the order of the document."""
+
+LAST = ("density_kg_m3", "max_fitted_strain", "source", "confidence")
+"""What every material may state comes after its own constants."""
+
+MATERIAL_NAME = "a [built-in material](#built-in-materials) or the NAME of a `[materials.NAME]`"
+HINTS = {
+    "Effector.material": MATERIAL_NAME,
+    "Medium.material": MATERIAL_NAME,
+    "Film.material": f"{MATERIAL_NAME}, of model `piezoelectric-film`",
+    "Dot.standard": "a name of the [Braille sizes](geometry.md#braille-sizes)",
+    "Dot.tilt_deg": "list of 2: number above -90 and below 90, without overlap at rest",
+    "Dot.cell": "one character, U+2800 to U+28FF, with `cell_dot` raised",
+    "Press.indentation_mm": "number above 0 and below the height of the stack",
+    "Mechanism.name": "a name of the [table of mechanisms](limits.md#refused-by-this-version)",
+    "Mechanism.component": "a component of the same table",
+}
+"""What is allowed where the schema alone says too little or too much."""
 
 UNITS = {
     "_N_per_mm3": "N/mm³",
@@ -72,50 +89,63 @@ def configuration_page() -> str:
     examples = _read_toml("configuration_examples.toml")
     parts = [(DOCS / "configuration_head.md").read_text("utf-8")]
     for title, name in TABLES.items():
-        parts.append(_section(title, definitions[name], examples[name]))
+        parts.append(_section(title, name, definitions, examples[name]))
     parts.append(f"## Built-in materials\n\n{_materials_note()}\n\n{material_table()}")
     return "\n\n".join(part.strip() for part in parts) + "\n"
 
 
-def _section(title: str, table: Json, examples: Json) -> str:
-    about = "" if title == "top level" else f"{table.get('description', '').strip()}\n\n"
-    required = table.get("required", [])
-    rows = [
-        [f"`{key}`", _meaning(value), _unit(key), _default(key, value, required), _allowed(value), _example(key, examples)]
-        for key, value in table["properties"].items()
-    ]
-    head = "Top level" if title == "top level" else f"`{title}`"
-    return f"## {head}\n\n{about}{_table(['key', 'meaning', 'unit', 'default', 'allowed', 'example'], rows)}"
+def _section(title: str, name: str, definitions: Json, examples: Json) -> str:
+    table = definitions[name]
+    keys = sorted(table["properties"], key=lambda key: key in LAST)
+    rows = []
+    for key in keys:
+        value, required = table["properties"][key], key in table.get("required", [])
+        meaning = value.get("description") or _description(value, definitions)
+        allowed = HINTS.get(f"{name}.{key}") or _allowed(value)
+        rows.append(
+            [f"`{key}`", meaning, _unit(key), _default(value, required), allowed, _example(title, key, value, examples)]
+        )
+    about = "" if name == "Config" else f"{table['description'].strip()}\n\n"
+    return f"## {title}\n\n{about}{_table(['key', 'meaning', 'unit', 'default', 'allowed', 'example'], rows)}"
 
 
-def _meaning(value: Json) -> str:
-    return str(value.get("description", ""))
+def _description(value: Json, definitions: Json) -> str:
+    """What the definition says that a key refers to."""
+    return str(definitions[value["$ref"].rpartition("/")[2]]["description"]).rstrip(".").lower()
 
 
 def _unit(key: str) -> str:
     return next((unit for ending, unit in UNITS.items() if key.endswith(ending)), "–")
 
 
-def _default(key: str, value: Json, required: list[str]) -> str:
-    if key in required:
+def _default(value: Json, required: bool) -> str:
+    if required:
         return "required"
     default = value["default"]
-    if default is None or isinstance(default, dict) or default == []:
-        return "none" if not default else "its own defaults"
+    if default in (None, [], {}):
+        return "none"
+    if isinstance(default, dict):
+        return "its own defaults"
     return f"`{toml(default)}`"
 
 
 def _allowed(value: Json) -> str:
     """What the schema allows, in words."""
-    if "$ref" in value or "oneOf" in value.get("additionalProperties", {}):
-        return "a table, see below"
+    if "$ref" in value or isinstance(value.get("additionalProperties"), dict):
+        return "a table"
     if "anyOf" in value:
         return " or ".join(dict.fromkeys(_allowed(one) for one in value["anyOf"] if one.get("type") != "null"))
     if "enum" in value or "const" in value:
         return ", ".join(f"`{toml(one)}`" for one in value.get("enum", [value.get("const")]))
     if value["type"] == "array":
         return _allowed_list(value)
-    words = {"number": "number", "integer": "whole number", "string": "text", "object": "table", "boolean": "true, false"}
+    words = {
+        "number": "number",
+        "integer": "whole number",
+        "string": "text",
+        "object": "table",
+        "boolean": "true, false",
+    }
     bounds = {"exclusiveMinimum": "above", "minimum": "at least", "exclusiveMaximum": "below", "maximum": "at most"}
     limits = [f"{word} {value[name]:g}" for name, word in bounds.items() if name in value]
     return " ".join([words[value["type"]], " and ".join(limits)]).strip()
@@ -126,15 +156,18 @@ def _allowed_list(value: Json) -> str:
     if pieces:
         return f"list of {len(pieces)}: " + "; ".join(dict.fromkeys(_allowed(piece) for piece in pieces))
     if "$ref" in value["items"]:
-        return "tables, see below"
+        return "tables"
     least = ", at least one" if value.get("minItems") else ""
     return f"list{least}, each: {_allowed(value['items'])}"
 
 
-def _example(key: str, examples: Json) -> str:
-    if key not in examples:
-        return "see below"
-    return f"`{key} = {toml(examples[key])}`"
+def _example(title: str, key: str, value: Json, examples: Json) -> str:
+    """A line of TOML: the key with a value, or the head of a table of its own."""
+    if key in examples:
+        return f"`{key} = {toml(examples[key])}`"
+    parent = title.strip("[]`") + "." if title.startswith("`") else ""
+    head = f"[{parent}{key}{'.my-rubber' if key == 'materials' else ''}]"
+    return f"`[{head}]`" if value.get("type") == "array" else f"`{head}`"
 
 
 def toml(value: Any) -> str:
@@ -157,7 +190,7 @@ def _materials_note() -> str:
 def _models() -> Iterator[str]:
     for title in TABLES:
         if ", model " in title:
-            yield title.rpartition(" ")[2]
+            yield title.rpartition(" ")[2].strip("`")
 
 
 def material_table() -> str:
@@ -190,18 +223,22 @@ def braille_table() -> str:
 
 def _size(quantity: Quantity, confidence: str) -> str:
     """For example 1.3–**1.5**–1.6; a star marks a nominal that is the middle of the range."""
-    low, nominal, high = quantity.minimum_mm, quantity.nominal_mm, quantity.maximum_mm
-    if low is None and nominal is None:
-        return "–"
-    star = "\\*" if quantity.nominal_is_middle else ""
-    middle = "" if nominal is None else f"**{nominal:.6g}**{star}"
-    ends = [f"{low:.6g}" if low is not None else "", middle, f"{high:.6g}" if high is not None else ""]
-    text = "–".join(dict.fromkeys(end for end in ends if end))
-    if low is not None and nominal is None and high is None:
-        text = f"≥ {low:.6g}"
+    text = _range(quantity)
     notes = [quantity.confidence if quantity.confidence != confidence else "", quantity.note]
     more = "; ".join(note for note in notes if note)
-    return f"{text} ({more})" if more else text
+    return f"{text} ({more})" if more and text != "–" else text
+
+
+def _range(quantity: Quantity) -> str:
+    low, nominal, high = quantity.minimum_mm, quantity.nominal_mm, quantity.maximum_mm
+    if nominal is None:
+        return "–" if low is None else f"≥ {low:g}"
+    if low == nominal == high:
+        return f"**{nominal:g}** exactly"
+    before = f"{low:g}–" if low is not None and low < nominal else ""
+    after = f"–{high:g}" if high is not None and high > nominal else ""
+    star = "\\*" if quantity.nominal_is_middle else ""
+    return f"{before}**{nominal:g}**{star}{after}"
 
 
 def mechanism_table() -> str:

@@ -106,7 +106,7 @@ def _advance(system: System, linear: LinearSolver, history: list[_State], target
             fraction += size
             size *= 2.0
             history.append(_State(now, load, equilibrium))
-            del history[:-2]
+            del history[:-3]
     return None
 
 
@@ -116,13 +116,20 @@ def _equilibrate(
     """Newton from the extrapolated history and, where that fails, from the last state."""
     last = history[-1]
     if len(history) > 1:
-        before = history[-2]
-        rate = (last.equilibrium.x - before.equilibrium.x) / (last.time - before.time)
         try:
-            return equilibrate(system, linear, last.equilibrium.x + rate * (time - last.time), load)
+            return equilibrate(system, linear, _extrapolate(history, time), load)
         except NoEquilibriumError:
             pass
     return equilibrate(system, linear, _touching(system, last.equilibrium.x, load), load)
+
+
+def _extrapolate(history: list[_State], time: float) -> Floats:
+    """The polynomial through the last two or three states, at a later time (Lagrange)."""
+    guess = np.zeros_like(history[-1].equilibrium.x)
+    for state in history:
+        others = [(time - other.time) / (state.time - other.time) for other in history if other is not state]
+        guess += float(np.prod(others)) * state.equilibrium.x
+    return guess
 
 
 def _touching(system: System, x: Floats, load: Load) -> Floats:
