@@ -103,7 +103,7 @@ def film_solid(grad, weight, f, stiffness, coupling, permittivity, field, per_vo
 
     grad (m, q, 10, 3), weight (m, q), f (m, q, 3, 3), stiffness (6, 6), coupling (6,), permittivity,
     field (m,) electric field e3, per_volt = de3/dV; ke (m, 31, 31) upper triangle and re (m, 31) overwritten.
-    re[30] is the element's share of the electrode's charge over -thickness, that is dh/dV.
+    re[30] is dh/dV, the element's share of the electrode's charge at that voltage.
     """
     for e in nb.prange(grad.shape[0]):
         b, cb = np.empty((6, 30)), np.empty((6, 30))
