@@ -78,7 +78,8 @@ def _fill(
     summary["warnings"] += result_warnings(config, dot_shape, tet_mesh, result)
     progress.stage("export")
     with clock("export"):
-        _export(dot_shape, tet_mesh, result, readout, plain(summary), folder)
+        so_far = {"timing_s": dict(clock.seconds)}
+        _export(dot_shape, tet_mesh, result, readout, plain(summary | so_far), folder)
     return {**summary, "timing_s": clock.seconds}
 
 
