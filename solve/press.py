@@ -20,6 +20,7 @@ from solve.system import Load, System
 
 SMALLEST_SUBSTEP = 1.0 / 64.0
 DEFAULT_INDENTATION_MM = 0.3
+PENETRATION_LIMIT = 0.05  # of the depth; contact holds in weighted means, so a coarse surface can overlap at points
 
 
 @dataclass(frozen=True)
@@ -199,6 +200,18 @@ def _result(
         max_relative_residual=max(step.relative_residual for step in steps),
         max_principal_film_strain=_largest_principal(last.film_strain),
         max_principal_film_stress_Pa=_largest_principal(last.film_stress_Pa),
+        warnings=_penetration(steps[-1]),
+    )
+
+
+def _penetration(step: Step) -> tuple[str, ...]:
+    """A warning where the dot overlaps the surface by more than a share of the depth."""
+    overlap = -float(step.fields.gap_m.min())
+    if overlap <= PENETRATION_LIMIT * step.indentation_m:
+        return ()
+    return (
+        f"the dot overlaps the surface by up to {1e3 * overlap:.2g} mm at single points: "
+        "a smaller mesh.contact_element_size_mm is needed",
     )
 
 

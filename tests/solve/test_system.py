@@ -5,6 +5,7 @@ import pytest
 
 import solve.newton
 from geometry.parameters import Film
+from mesh.parameters import MeshOptions
 from solve.parameters import Press
 from solve.press import press_segment
 from solve.problem import build_system
@@ -88,6 +89,19 @@ def test_plane_strain_is_scaled_by_the_width():
     assert b.reaction_force_N / a.reaction_force_N == pytest.approx(6.4, rel=1e-9)
     assert b.film_charge_C[0] / a.film_charge_C[0] == pytest.approx(6.4, rel=1e-9)
     assert b.open_circuit_voltage_V == pytest.approx(a.open_circuit_voltage_V, rel=1e-9)
+
+
+def test_a_surface_too_coarse_for_the_dot_is_told():
+    """Elements of 1.2 mm under a ridge of 0.3 mm radius, against 0.1 mm ones."""
+    stack = segment(section="plane-strain")
+    dot, press = ridge(stack, radius_mm=0.3), Press(indentation_mm=0.1, load_steps=1)
+
+    def warnings(size):
+        options = MeshOptions(mesher="layered", contact_element_size_mm=size, element_size_mm=size)
+        return press_segment(stack, materials(), dot, press, coarse_mesh(stack, dot, options)).warnings
+
+    assert warnings(0.1) == ()
+    assert "overlaps the surface" in warnings(1.2)[0]
 
 
 def test_rubber_of_poisson_ratio_0_4995_converges():
