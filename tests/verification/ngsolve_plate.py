@@ -50,7 +50,8 @@ class PlatePress:
         u, *pressures = self.space.TrialFunction()
         self.form = ng.BilinearForm(self.space, symmetric=True)
         for medium, young, p in zip(media, rubbers.values(), pressures, strict=True):
-            self.form += ng.Variation(self._rubber(u, p, float(young)).Compile() * ng.dx(definedon=medium, bonus_intorder=4))
+            energy = self._rubber(u, p, float(young)).Compile()
+            self.form += ng.Variation(energy * ng.dx(definedon=medium, bonus_intorder=4))
         film = self.domain.Materials("film")
         self.form += ng.Variation(self._film_energy(u).Compile() * ng.dx(definedon=film, bonus_intorder=4))
         self.state = ng.GridFunction(self.space)
