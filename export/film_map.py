@@ -84,6 +84,7 @@ def _map(figure: Any, axes: Any, shown: FilmMap, values: Floats, label: str) -> 
     bar = figure.colorbar(drawn, ax=axes, location="bottom", shrink=0.9, pad=0.03)
     bar.set_label(label, fontsize=12, color=INK)
     bar.ax.tick_params(labelsize=11)
+    bar.ax.locator_params(nbins=5)
     if np.ptp(shown.deflection_mm) > 1e-6:
         lines = axes.tricontour(
             shown.x_mm,

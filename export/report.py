@@ -117,8 +117,8 @@ def headline(summary: Mapping[str, Any]) -> list[dict[str, str]]:
         ("Voltage per depth", sensitivity.get("voltage_per_mm"), "V/mm", "at the deepest step"),
         ("Charge per force", sensitivity.get("charge_pC_per_N"), "pC/N", "at the deepest step"),
         ("Least detectable press", sensitivity.get("least_detectable_indentation_um"), "µm", at_noise),
-        ("Largest film strain", _percent(film.get("max_principal_strain")), "%", "principal strain"),
-        ("Largest film stress", film.get("max_principal_stress_MPa"), "MPa", "principal stress"),
+        ("Largest film strain", _percent(film.get("max_principal_strain")), "%", "principal, anywhere in the film"),
+        ("Largest film stress", film.get("max_principal_stress_MPa"), "MPa", "principal, anywhere in the film"),
     ]
     return [
         {"label": label, "value": number(value), "unit": unit, "note": note}

@@ -45,7 +45,8 @@ def parser() -> argparse.ArgumentParser:
         "run",
         help="geometry, mesh, solve and export from one configuration",
         description="Build, mesh and press one segment; write CAD, ParaView results, pictures and a report.",
-        epilog="Exit status: 0 good, 2 bad input, 3 a computation did not converge, 130 interrupted.",
+        epilog="'softdot schema' explains every key of CONFIG.toml; examples/ has files to start from. "
+        "Exit status: 0 good, 2 bad input, 3 a computation did not converge, 130 interrupted.",
     )
     run.add_argument(
         "config", nargs="?", metavar="CONFIG.toml", help="without it: the final design of the paper"

@@ -54,7 +54,7 @@ def _explain(
     key = dotted(path)
     if kind == "extra_forbidden":
         known = {name for table in _tables_at(problem["loc"][:-1], model) for name in table.model_fields}
-        return f"{key} is not a key; {nearest(str(path[-1]), known)}"
+        return f"{key} is not a key; {_meant(path, known, model)}"
     if kind == "missing":
         return f"{key} is missing{_described(problem['loc'], model)}"
     if kind == "value_error":
@@ -70,6 +70,22 @@ def _explain(
         return f"{key} = {_shown(problem['input'])}: must be {word} {context[name]:g}"
     text = KINDS.get(kind, problem["msg"][:1].lower() + problem["msg"][1:])
     return f"{key} = {_shown(problem['input'])}: {text}"
+
+
+def _meant(path: Sequence[str | int], known: set[str], model: type[BaseModel]) -> str:
+    """What an unknown key was probably meant to be; a table of the segment may stand outside it by mistake."""
+    name = str(path[-1])
+    inner = {key for table in _tables_at(("segment",), model) for key in table.model_fields}
+    if len(path) == 1 and name in inner:
+        return f"did you mean 'segment.{name}'?"
+    text = nearest(name, known)
+    same = next((key for key in known if f"'{key}'" in text and _unitless(key) == _unitless(name)), name)
+    return text if same == name or _unitless(name) == name else f"{text} (mind the other unit)"
+
+
+def _unitless(key: str) -> str:
+    """thickness_um -> thickness."""
+    return re.sub(r"_(mm|um|deg|pF|MOhm|Hz|MPa|kPa|GPa|Pa|m|cm|V|mV|N|mN|s|ms)$", "", key)
 
 
 def _own_message(key: str, problem: ErrorDetails, model: type[BaseModel]) -> str:

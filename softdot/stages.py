@@ -21,6 +21,8 @@ def check(config: Config) -> tuple[DotShape, list[str]]:
     """
     from export.headless import ensure_rendering
     from geometry.checks import check_press_depth, check_segment, press_warnings
+    from softdot.held_rim import held_rim_warnings
+    from softdot.mesh_limit import refuse_huge_mesh
 
     refuse_unmodelled(config)
     _check_waveform(config)
@@ -29,8 +31,10 @@ def check(config: Config) -> tuple[DotShape, list[str]]:
     if depth is not None:
         check_press_depth(config.segment, depth)
     dot_shape = resolve_dot(config.dot, config.segment)
+    refuse_huge_mesh(config.segment, dot_shape, config.mesh)
     if depth is not None:
         warnings += press_warnings(dot_shape, config.segment, depth)
+        warnings += held_rim_warnings(config.segment, dot_shape, depth)
     ensure_rendering()
     return dot_shape, warnings
 

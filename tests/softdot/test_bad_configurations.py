@@ -25,6 +25,7 @@ BOND = "normal_stiffness_N_per_mm3 = 1.0\nshear_stiffness_N_per_mm3 = 1.0"
 CASES = {
     # unknown keys
     "[dott]": "dott is not a key; did you mean 'dot'?",
+    "[effector]": "effector is not a key; did you mean 'segment.effector'?",
     "[dot]\nofset_mm = [0.0, 0.0]": "dot.ofset_mm is not a key; did you mean 'offset_mm'?",
     "[press]\nzzz = 1": "press.zzz is not a key; known are force_N, indentation_mm, load_steps, path_xy_mm, waveform",
     "[materials.x]\nmodel = 'yeoh'\nc10 = 1.0": "materials.x.c10 is not a key; did you mean 'c10_MPa'?",
@@ -125,7 +126,7 @@ WHOLE_FILES = {
     MINIMAL.replace("0.5", "0"): "segment.medium1.thickness_mm = 0: must be above 0",
     MINIMAL.replace("28.0", "0.0"): "segment.film.thickness_um = 0: must be above 0",
     MINIMAL.replace("thickness_um", "thickness_mm"): (
-        "segment.film.thickness_mm is not a key; did you mean 'thickness_um'?"
+        "segment.film.thickness_mm is not a key; did you mean 'thickness_um'? (mind the other unit)"
     ),
     "segment = 3": "segment = 3: must be a table",
     "materials = 3\n" + MINIMAL: "materials = 3: must be a table",

@@ -2,7 +2,11 @@
 
 import dataclasses
 
+import pytest
+
+from geometry.dot_shape import resolve_dot
 from softdot.config import config_from, load_config
+from softdot.held_rim import held_rim_warnings
 from softdot.run_warnings import design_warnings, result_warnings
 from tests.softdot.stand_ins import cap_of_height, one_tetrahedron, result_of, step_at
 
@@ -47,3 +51,15 @@ def test_a_force_can_press_deeper_than_the_dot():
     config = config_from({"segment": LAYERS, "press": {"force_N": 2.0}})
     warnings = result_warnings(config, cap_of_height(0.2), one_tetrahedron(), result_of([0.0, 0.3]))
     assert any("exceeds the dot's height of 0.2 mm" in warning for warning in warnings)
+
+
+@pytest.mark.parametrize(("length_mm", "reaches"), [(2.5, False), (6.0, True), (7.0, False)])
+def test_neighbours_on_the_held_rim(length_mm, reaches):
+    """Neighbours at 2.5 mm, radius 0.8125 mm: 0.5 mm from the rim of 6 mm the sphere is 0.172 mm higher."""
+    tables = {**LAYERS, "effector": {}, "length_mm": length_mm, "width_mm": length_mm}
+    config = config_from({"segment": tables, "dot": {"cell": "⠿", "cell_dot": 2}})
+    dot = resolve_dot(config.dot, config.segment)
+    warnings = held_rim_warnings(config.segment, dot, 0.3)
+    assert bool(warnings) == reaches
+    assert not reaches or "at an indentation of 0.172 mm" in warnings[0]
+    assert held_rim_warnings(config.segment, dot, 0.17) == []

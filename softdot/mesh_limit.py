@@ -1,0 +1,40 @@
+"""Refuse a mesh that no desktop computer can hold, before the mesher fills the memory."""
+
+import numpy as np
+
+from geometry.dot_shape import DotShape
+from geometry.errors import InputError
+from geometry.parameters import Segment
+from mesh.outline import outline
+from mesh.parameters import MeshOptions
+from mesh.sizing import sizing
+
+TOO_MANY = 1_000_000
+POINTS = 100_000
+FILL = 6.0 * np.sqrt(2.0)
+"""A regular tetrahedron of edge h has the volume h^3 / (6 sqrt 2)."""
+
+
+def refuse_huge_mesh(segment: Segment, dot_shape: DotShape, options: MeshOptions) -> None:
+    """InputError when the wished edge lengths mean more than a million elements in a solid section."""
+    if segment.section == "plane-strain":
+        return
+    count = expected_tetrahedra(segment, dot_shape, options)
+    if count > TOO_MANY:
+        sizes = {name: value for name, value in options if name.endswith("size_mm") and value is not None}
+        name = min(sizes, key=lambda one: float(sizes[one]))
+        raise InputError(
+            f"mesh.{name} = {sizes[name]:g}: means about {count:.1g} elements, "
+            f"at most {TOO_MANY:.0g} are allowed; use a larger size"
+        )
+
+
+def expected_tetrahedra(segment: Segment, dot_shape: DotShape, options: MeshOptions) -> float:
+    """Rough number of elements of the soft layers: the mean of 6 sqrt 2 / h^3 over points in the stack."""
+    shape = outline(segment)
+    field = sizing(shape, dot_shape, options)
+    high = np.array([shape.half_x, shape.half_y, shape.top])
+    low = np.array([-shape.half_x, -shape.half_y, 0.0])
+    points = np.random.default_rng(0).uniform(low, high, (POINTS, 3))
+    return float(np.prod(high - low) * np.mean(FILL / field.at(points) ** 3))
+

@@ -1,0 +1,164 @@
+"""Every example runs, and gives a number that is known from elsewhere.
+
+The plane-strain ones are held against an independent finite-element code (forces to 0.01 N, voltages to 1 mV of
+volts over the paper's factor of 337). The solid ones are held against the other mesher, against Hertz and against
+each other, on coarse meshes.
+"""
+
+import functools
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from geometry.dot_shape import resolve_dot
+from mesh.parameters import MeshOptions
+from softdot import stages
+from softdot.config import Config, config_hash, load_config
+from softdot.run import run_config
+from softdot.summary import history
+
+FOLDER = Path(__file__).parents[2] / "examples"
+FACTOR = 337  # the paper's ratio of simulated to measured voltage
+SOLID_MESH = {"element_size_mm": 0.4, "contact_element_size_mm": 0.15}
+
+
+@functools.cache
+def summary_of(name: str, **changes: str) -> dict[str, Any]:
+    """What a run of an example finds; changes : mesher, boundary."""
+    config = changed(load_config(FOLDER / f"{name}.toml"), **changes)
+    with tempfile.TemporaryDirectory() as folder:
+        summary = run_config(config, Path(folder) / "out")
+    assert summary["solver"]["converged"], summary["solver"]
+    return summary
+
+
+def changed(config: Config, mesher: str | None = None, boundary: str | None = None) -> Config:
+    """A copy with another boundary, or with a coarse mesh of a mesher and fewer load steps."""
+    updates: dict[str, Any] = {}
+    if boundary is not None:
+        updates["segment"] = config.segment.model_copy(update={"boundary": boundary})
+    if mesher is not None:
+        updates["mesh"] = MeshOptions(**SOLID_MESH, mesher=mesher)
+        updates["press"] = config.press.model_copy(update={"load_steps": 3})
+    return config.model_copy(update=updates)
+
+
+def force_N(name: str, **changes: str) -> float:
+    return summary_of(name, **changes)["reaction_force_N"][-1]
+
+
+def voltage_V(name: str, **changes: str) -> float:
+    return summary_of(name, **changes)["open_circuit_voltage_V"][-1]
+
+
+def test_final_clamped_design():
+    assert force_N("paper-final-clamped") == pytest.approx(14.44, rel=0.03)
+    assert voltage_V("paper-final-clamped") == pytest.approx(FACTOR * 0.419, rel=0.04)
+
+
+def test_final_free_design():
+    assert force_N("paper-final-free") == pytest.approx(5.05, rel=0.03)
+    assert voltage_V("paper-final-free") == pytest.approx(FACTOR * 0.058, rel=0.04)
+
+
+def test_plane_strain_case_c1():
+    """The voltage of the other code is that of C1 and F4 together; F4 differs by its free sides."""
+    name = "paper-plane-strain"
+    assert force_N(name) == pytest.approx(14.06, rel=0.03)
+    total = voltage_V(name) + voltage_V(name, boundary="free")
+    assert total == pytest.approx(FACTOR * 0.433, rel=0.04)
+
+
+def test_readout_obeys_kirchhoff():
+    """What flowed through R is what the film freed less what is left on the capacitors, through both filters.
+
+    (C_f + C_in) V' = Q' - V / R and T U' = V - U, integrated over the press of 0.5 s:
+    integral of U = R (Q - (C_f + C_in) V) - T U at its end. U is known at the load steps only, V at the end is
+    R Q' within the delay. The trapezoidal rule over 12 steps of a signal that grows as t^1.7 errs by 0.5 %.
+    """
+    found = summary_of("readout")
+    voltage = np.array(found["readout_voltage_V"])
+    charge = 1e-12 * found["film_charge_pC"][-1]
+    resistance, low_pass_s = 1e6, 1.0 / (2.0 * np.pi * 60.0)
+    left = (1e-12 * found["film"]["capacitance_pF"] + 100e-12) * voltage[-1]
+    flown = float(np.trapezoid(voltage, np.linspace(0.0, 0.5, len(voltage))))
+    assert flown == pytest.approx(resistance * (charge - left) - low_pass_s * voltage[-1], rel=0.01)
+
+
+def test_true_segment_is_the_default():
+    assert config_hash(load_config(FOLDER / "true-segment.toml")) == config_hash(load_config())
+
+
+@pytest.mark.slow
+def test_true_segment_agrees_with_the_other_mesher():
+    """As it is, against extruded layers of other sizes."""
+    name = "true-segment"
+    assert force_N(name) == pytest.approx(force_N(name, mesher="layered"), rel=0.01)
+    assert voltage_V(name) == pytest.approx(voltage_V(name, mesher="layered"), rel=0.02)
+
+
+@pytest.mark.slow
+def test_dome_is_between_hertz_and_a_bonded_layer():
+    """A shallow press: the dome is stiffer than a half-space of its rubber, softer than a layer on a rigid base.
+
+    Hertz for two spheres, and Dimitriadis' factor for a bonded incompressible layer as high as the dome.
+    """
+    config = load_config(FOLDER / "dome.toml")
+    depth, height, nu = 0.05, 0.6, 0.495
+    dome_radius = (0.8**2 + height**2) / (2.0 * height)
+    radius = 1.0 / (1.0 / 0.8125 + 1.0 / dome_radius)
+    press = config.press.model_copy(update={"indentation_mm": depth, "load_steps": 1})
+    sizes = MeshOptions(element_size_mm=0.5, contact_element_size_mm=0.15)
+    shallow = config.model_copy(update={"press": press, "mesh": sizes})
+    with tempfile.TemporaryDirectory() as folder:
+        summary = run_config(shallow, Path(folder) / "out")
+    half_space = 4.0 / 3.0 / (1.0 - nu**2) * radius**0.5 * depth**1.5
+    x = (radius * depth) ** 0.5 / height
+    layer = 16.0 / 9.0 * radius**0.5 * depth**1.5 * (1 + 1.133 * x + 1.283 * x**2 + 0.769 * x**3 + 0.0975 * x**4)
+    assert half_space < summary["reaction_force_N"][-1] < layer
+
+
+@pytest.mark.slow
+def test_true_segment_is_between_half_spaces_of_its_rubbers():
+    """Hertz for the softest (1 MPa) and the hardest (5 MPa) rubber: F = 4/3 E / (1 - nu^2) R^0.5 d^1.5."""
+    radius, depth, nu = 0.8125, 0.3, 0.495
+    per_modulus = 4.0 / 3.0 / (1.0 - nu**2) * radius**0.5 * depth**1.5
+    assert 1.0 * per_modulus < force_N("true-segment", mesher="layered") < 5.0 * per_modulus
+
+
+@pytest.mark.slow
+def test_neighbours_never_reach_a_segment_as_wide_as_the_pitch():
+    """On one mesh the whole cell gives what the pressed dot gives alone."""
+    cell = changed(load_config(FOLDER / "braille-cell.toml"), mesher="layered")
+    lone = cell.model_copy(update={"dot": cell.dot.model_copy(update={"cell": None, "cell_dot": 1})})
+    found = summary_of("braille-cell", mesher="layered")
+    dot_shape = resolve_dot(cell.dot, cell.segment)
+    tet_mesh = stages.build_mesh(cell, dot_shape)
+    alone = history(stages.press(lone, resolve_dot(lone.dot, lone.segment), tet_mesh, lambda *_: None))
+    assert found["reaction_force_N"] == pytest.approx(alone.reaction_force_N, rel=1e-6)
+    assert found["open_circuit_voltage_V"] == pytest.approx(alone.open_circuit_voltage_V, rel=1e-6)
+
+
+@pytest.mark.slow
+def test_a_wider_segment_feels_all_six_dots():
+    """Six times Hertz for the softest and the hardest rubber, in a shallow press; a lone dot is far below."""
+    config = load_config(FOLDER / "braille-cell-wide.toml")
+    depth, radius, nu = 0.1, 0.8125, 0.495
+    press = config.press.model_copy(update={"indentation_mm": depth, "load_steps": 1})
+    dot_shape = resolve_dot(config.dot, config.segment)
+    shallow = config.model_copy(update={"press": press})
+    result = stages.press(shallow, dot_shape, stages.build_mesh(shallow, dot_shape), lambda *_: None)
+    per_modulus = 6.0 * 4.0 / 3.0 / (1.0 - nu**2) * radius**0.5 * depth**1.5
+    assert result.converged
+    assert 1.0 * per_modulus < result.steps[-1].reaction_force_N < 5.0 * per_modulus
+
+
+def test_no_example_is_left_out():
+    tested = {
+        "paper-final-clamped", "paper-final-free", "paper-plane-strain", "readout", "true-segment", "dome",
+        "braille-cell", "braille-cell-wide",
+    }  # fmt: skip
+    assert {path.stem for path in FOLDER.glob("*.toml")} == tested
