@@ -35,6 +35,16 @@ def check_press_depth(segment: Segment, indentation_mm: float) -> None:
         )
 
 
+def check_pushed_dot(dot: Dot, segment: Segment) -> None:
+    """A dot that is pushed with a force must stand over the segment: beside it nothing pushes back. InputError."""
+    for axis, half in enumerate((segment.length_mm / 2.0, segment.width_mm / 2.0)):
+        if abs(dot.offset_mm[axis]) > half:
+            raise InputError(
+                f"dot.offset_mm[{axis}] = {dot.offset_mm[axis]:g}: with press.force_N the dot must stand over the "
+                f"segment, between {-half:g} and {half:g}"
+            )
+
+
 def press_warnings(dot_shape: DotShape, segment: Segment, indentation_mm: float) -> list[str]:
     """What to know about a press that is possible; indentation_mm : final depth in mm."""
     warnings = []

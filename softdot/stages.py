@@ -20,7 +20,7 @@ def check(config: Config) -> tuple[DotShape, list[str]]:
     Returns the dot at rest and what a user should know about this design.
     """
     from export.headless import ensure_rendering
-    from geometry.checks import check_press_depth, check_segment, press_warnings
+    from geometry.checks import check_press_depth, check_pushed_dot, check_segment, press_warnings
     from softdot.held_rim import held_rim_warnings
     from softdot.mesh_limit import refuse_huge_mesh
 
@@ -30,6 +30,8 @@ def check(config: Config) -> tuple[DotShape, list[str]]:
     depth = config.press.indentation_mm
     if depth is not None:
         check_press_depth(config.segment, depth)
+    else:
+        check_pushed_dot(config.dot, config.segment)
     dot_shape = resolve_dot(config.dot, config.segment)
     refuse_huge_mesh(config.segment, dot_shape, config.mesh)
     if depth is not None:

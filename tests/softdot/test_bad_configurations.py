@@ -151,6 +151,7 @@ IMPOSSIBLE = {
     "[segment.effector]\nshape = 'block'\nlength_mm = 3.0\nwidth_mm = 1.0": "segment.effector.length_mm = 3",
     "[segment.effector]\nshape = 'cylinder'\ndiameter_mm = 2.6": "segment.effector.diameter_mm = 2.6",
     "[press]\nindentation_mm = 2.6": "press.indentation_mm = 2.6",
+    "[press]\nforce_N = 0.1\n[dot]\noffset_mm = [3.0, 0.0]": "dot.offset_mm[0] = 3: with press.force_N",
     "[dot]\nstandard = 'marburg'": "did you mean 'marburg-medium'?",
     "[dot]\ntilt_deg = [60.0, 0.0]": "overlaps the segment",
     "[dot]\ncell = 'x'": "dot.cell = 'x'",
