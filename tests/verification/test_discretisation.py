@@ -37,11 +37,10 @@ def test_one_quadratic_layer_of_film_is_enough(boundary):
     agree(one, two, 0.02, 0.02)
 
 
-@pytest.mark.parametrize("boundary", ["free", "clamped"])
-def test_both_meshers_agree(boundary):
+def test_both_meshers_agree():
     """The default mesh against the other mesher: 1 % in force, 2 % in voltage."""
-    pytetwild = force_and_voltage(boundary, "pytetwild", 0.1, 0.3)
-    agree(pytetwild, force_and_voltage(boundary, "layered", 0.15, 0.4), 0.01, 0.02)
+    pytetwild = force_and_voltage("clamped", "pytetwild", 0.1, 0.3)
+    agree(pytetwild, force_and_voltage("clamped", "layered", 0.15, 0.4), 0.01, 0.02)
 
 
 def test_a_mesh_of_half_the_elements_changes_little():
