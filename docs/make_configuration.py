@@ -2,7 +2,7 @@
 
 Run ``python docs/make_configuration.py`` at the top of the repository after a key, a material or a Braille
 standard has changed. It writes docs/configuration.md and the marked blocks of docs/geometry.md and
-docs/limits.md; tests/softdot/test_docs.py fails while they are out of step.
+docs/mechanisms.md; tests/softdot/test_docs.py fails while they are out of step.
 """
 
 import json
@@ -17,7 +17,6 @@ sys.path.insert(0, str(DOCS.parent))  # the rooms of this repository, whatever i
 
 from geometry.braille import QUANTITIES, Quantity, standard, standard_names  # noqa: E402
 from softdot.schema import config_schema  # noqa: E402
-from solve.materials.laws import IMPLEMENTED  # noqa: E402
 from solve.materials.library import library_tables  # noqa: E402
 from solve.mechanisms import MECHANISMS  # noqa: E402
 
@@ -59,7 +58,7 @@ HINTS = {
     "Dot.tilt_deg": "list of 2: number above -90 and below 90, without overlap at rest",
     "Dot.cell": "one character, U+2800 to U+28FF, with `cell_dot` raised",
     "Press.indentation_mm": "number above 0 and below the height of the stack",
-    "Mechanism.name": "a name of the [table of mechanisms](limits.md#refused-by-this-version)",
+    "Mechanism.name": "a name of the [table of mechanisms](mechanisms.md#table)",
     "Mechanism.component": "a component of the same table",
 }
 """What is allowed where the schema alone says too little or too much."""
@@ -180,17 +179,10 @@ def toml(value: Any) -> str:
 
 
 def _materials_note() -> str:
-    refused = ", ".join(sorted(set(_models()) - IMPLEMENTED))
     return (
         "Defined in `solve/materials/library.toml`. high: read in the source; medium: fitted or secondary; "
-        f"low: a starting value. Models that the schema knows and this version refuses to solve: {refused}."
+        "low: a starting value."
     )
-
-
-def _models() -> Iterator[str]:
-    for title in TABLES:
-        if ", model " in title:
-            yield title.rpartition(" ")[2].strip("`")
 
 
 def material_table() -> str:
@@ -244,8 +236,8 @@ def _range(quantity: Quantity) -> str:
 def mechanism_table() -> str:
     """Every mechanism name that the schema knows."""
     rows = [
-        [f"`{name}`", ", ".join(_short(components)), ", ".join(parameters) or "none"]
-        for name, (components, parameters) in MECHANISMS.items()
+        [f"`{name}`", ", ".join(_short(kind.components)), ", ".join(kind.parameters.model_fields) or "none"]
+        for name, kind in MECHANISMS.items()
     ]
     return _table(["name", "component", "parameters"], rows)
 
@@ -278,7 +270,7 @@ def _read_toml(name: str) -> Json:
 
 BLOCKS: dict[str, tuple[str, Callable[[], str]]] = {
     "geometry.md": ("Braille table", braille_table),
-    "limits.md": ("mechanism table", mechanism_table),
+    "mechanisms.md": ("mechanism table", mechanism_table),
 }
 """Document -> its generated block."""
 

@@ -53,7 +53,8 @@ def resolve_dot(dot: Dot, segment: Segment) -> DotShape:
     centers = cell_centers(dot) if dot.shape == "cap" else refuse_cell_of(dot)
     sizes = (size.radius_mm, size.height_mm, size.foot_mm)
     turned = DotShape(dot.shape, *sizes, centers, np.zeros(3), rotation_of(dot.tilt_deg))
-    rest = replace(turned, origin_mm=rest_origin(turned, segment, dot.offset_mm))
+    origin = rest_origin(turned, segment, dot.offset_mm) + np.array([0.0, 0.0, dot.gap_mm])
+    rest = replace(turned, origin_mm=origin)
     refuse_overlap(rest, segment, dot)
     return rest
 

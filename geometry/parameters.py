@@ -10,6 +10,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NonNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+# beyond 1e6 (a glue of 1 GPa and 1 um) a bond is as good as perfect, and round-off would rule
+BondStiffness = Annotated[float, Field(gt=0, le=1e6)]
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 LayerName = Literal["effector", "medium1", "film", "medium2"]
 
@@ -63,8 +65,8 @@ class Bond(Table):
     between: tuple[LayerName | Literal["base"], LayerName | Literal["base"]] = Field(
         description="two neighbouring layers, or medium2 and base"
     )
-    normal_stiffness_N_per_mm3: Positive = Field(description="traction per opening")
-    shear_stiffness_N_per_mm3: Positive = Field(description="traction per slip")
+    normal_stiffness_N_per_mm3: BondStiffness = Field(description="traction per opening")
+    shear_stiffness_N_per_mm3: BondStiffness = Field(description="traction per slip")
 
 
 class Segment(Table):
@@ -109,5 +111,6 @@ class Dot(Table):
     )
     offset_mm: tuple[Finite, Finite] = Field((0.0, 0.0), description="position of the pressed dot, x and y")
     tilt_deg: tuple[Finite, Finite] = Field((0.0, 0.0), description="rotation of the dot about x and y")
+    gap_mm: NonNegative = Field(0.0, description="gap between the dot at rest and its first touch")
     cell: str | None = Field(None, description="a Braille character: its other dots surround the pressed one")
     cell_dot: Annotated[int, Field(ge=1, le=8)] = Field(1, description="which dot of the cell is pressed")

@@ -10,6 +10,7 @@ from geometry.dot_shape import DotShape
 from mesh.errors import MeshingError
 from mesh.types import Floats, TetMesh
 from softdot import stages
+from softdot.actual import actual
 from softdot.config import Config
 from softdot.numbers import plain, write_json
 from softdot.output_folder import SUMMARY, staged_folder
@@ -17,6 +18,7 @@ from softdot.progress import Progress, Silent
 from softdot.run_warnings import design_warnings, result_warnings
 from softdot.summary import heading, mesh_part, press_part, stopped_solver
 from softdot.system_libraries import named_when_missing
+from solve.physics import Physics
 from solve.result import PressResult, Step
 
 
@@ -45,17 +47,25 @@ def run_config(config: Config, out: Path, progress: Progress | None = None) -> d
     progress = progress or Silent()
     with named_when_missing():
         progress.stage("check")
-        dot_shape, warnings = stages.check(config)
+        changed, physics = actual(config)
+        dot_shape, warnings = stages.check(changed)
         with staged_folder(out) as folder:
-            summary: dict[str, Any] = plain(_fill(config, dot_shape, warnings, folder, progress))
+            summary: dict[str, Any] = heading(config) | plain(
+                _fill(changed, physics, dot_shape, warnings, folder, progress)
+            )
             write_json(folder / SUMMARY, summary)
     return summary
 
 
 def _fill(
-    config: Config, dot_shape: DotShape, warnings: list[str], folder: Path, progress: Progress
+    config: Config,
+    physics: Physics,
+    dot_shape: DotShape,
+    warnings: list[str],
+    folder: Path,
+    progress: Progress,
 ) -> dict[str, Any]:
-    """Everything but summary.json; returns the summary."""
+    """Everything but summary.json; returns the summary. config : with its mechanisms switched on."""
     clock = Clock()
     summary = {**heading(config), "warnings": [*warnings, *design_warnings(config)]}
     progress.stage("geometry")
@@ -72,9 +82,11 @@ def _fill(
         return {**summary, "solver": stopped_solver(f"meshing: {error}"), "timing_s": clock.seconds}
     progress.stage("solve")
     with clock("solve"):
-        result = stages.press(config, dot_shape, tet_mesh, _reporting(progress))
-        readout = stages.readout_voltage(config, result)
-    summary |= {"mesh": mesh_part(quality, result.unknowns), **press_part(config, result, readout)}
+        result = stages.press(config, physics, dot_shape, tet_mesh, _reporting(progress))
+        amplified = stages.readout_voltage(config, physics, result)
+        readout, channels = amplified if amplified is not None else (None, None)
+    tet_mesh = result.tet_mesh
+    summary |= {"mesh": mesh_part(quality, result.unknowns), **press_part(config, result, readout, channels)}
     summary["warnings"] += result_warnings(config, dot_shape, tet_mesh, result)
     progress.stage("export")
     with clock("export"):

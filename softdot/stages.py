@@ -9,6 +9,7 @@ from geometry.errors import InputError
 from geometry.part import Part
 from mesh.types import Floats, TetMesh
 from softdot.config import Config
+from solve.physics import Physics
 from solve.result import PressResult, Step
 
 OnStep = Callable[[Step, int, int], None]
@@ -24,7 +25,6 @@ def check(config: Config) -> tuple[DotShape, list[str]]:
     from softdot.held_rim import held_rim_warnings
     from softdot.mesh_limit import refuse_huge_mesh
 
-    refuse_unmodelled(config)
     _check_waveform(config)
     warnings = check_segment(config.segment)
     depth = config.press.indentation_mm
@@ -39,22 +39,6 @@ def check(config: Config) -> tuple[DotShape, list[str]]:
         warnings += held_rim_warnings(config.segment, dot_shape, depth)
     ensure_rendering()
     return dot_shape, warnings
-
-
-def refuse_unmodelled(config: Config) -> None:
-    """Refuse physics that the schema knows and the solver does not have. InputError."""
-    from solve.materials.laws import IMPLEMENTED
-
-    for mechanism in config.mechanisms:
-        raise InputError(f"mechanisms: '{mechanism.name}' is not modelled by this version")
-    if config.segment.bonds:
-        pair = "-".join(config.segment.bonds[0].between)
-        raise InputError(f"segment.bonds: the compliant bond '{pair}' is not modelled by this version")
-    for layer, material in config.layer_materials().items():
-        if material.model not in IMPLEMENTED:
-            raise InputError(
-                f"segment.{layer}.material: model '{material.model}' is not modelled by this version"
-            )
 
 
 def _check_waveform(config: Config) -> None:
@@ -97,21 +81,27 @@ def mesh_quality(config: Config, tet_mesh: TetMesh) -> dict[str, Any]:
     return measure(tet_mesh, config.segment).as_dict()
 
 
-def press(config: Config, dot_shape: DotShape, tet_mesh: TetMesh, on_step: OnStep) -> PressResult:
+def press(
+    config: Config, physics: Physics, dot_shape: DotShape, tet_mesh: TetMesh, on_step: OnStep
+) -> PressResult:
     """The solved press, as far as it converged."""
     from solve.press import press_segment
 
-    materials = config.layer_materials()
-    return press_segment(config.segment, materials, dot_shape, config.press, tet_mesh, on_step=on_step)
+    return press_segment(
+        config.segment, config.layer_materials(), dot_shape, config.press, tet_mesh, on_step, physics, config.readout
+    )
 
 
-def readout_voltage(config: Config, result: PressResult) -> Floats | None:
-    """Voltage behind the amplifier at each step (s,), None without one."""
-    if config.readout is None:
+def readout_voltage(config: Config, physics: Physics, result: PressResult) -> tuple[Floats, Floats] | None:
+    """Voltage behind the amplifier at each step, electrodes in parallel (s,) and each alone (e, s); None without one."""
+    if config.readout is None and not (physics.low_pass or physics.hum or physics.crosstalk):
         return None
+    from solve.parameters import Readout
+    from solve.readout import channel_voltages
     from solve.readout import readout_voltage as behind_amplifier
 
-    return behind_amplifier(result, config.press, config.readout)
+    told = (result, config.press, config.readout or Readout())
+    return behind_amplifier(*told, physics), channel_voltages(*told, physics)
 
 
 def write_results(tet_mesh: TetMesh, result: PressResult, dot_shape: DotShape, folder: Path) -> None:

@@ -51,8 +51,13 @@ def heading(config: Config) -> dict[str, Any]:
     }
 
 
-def press_part(config: Config, result: PressResult, readout_voltage_V: Floats | None) -> dict[str, Any]:
-    """The part of the summary that the press gives. readout_voltage_V : (s,), None without a circuit."""
+def press_part(
+    config: Config, result: PressResult, readout_voltage_V: Floats | None, channels_V: Floats | None = None
+) -> dict[str, Any]:
+    """The part of the summary that the press gives.
+
+    readout_voltage_V : (s,) electrodes in parallel, channels_V : (e, s) each alone; None without a circuit.
+    """
     past = history(result)
     voltage = past.open_circuit_voltage_V if readout_voltage_V is None else readout_voltage_V
     part = {
@@ -61,6 +66,8 @@ def press_part(config: Config, result: PressResult, readout_voltage_V: Floats | 
         "film_charge_pC": past.film_charge_pC,
         "open_circuit_voltage_V": past.open_circuit_voltage_V,
     }
+    if result.follows_time:
+        part["time_s"] = np.array([step.time_s for step in result.steps])
     if readout_voltage_V is not None:
         part["readout_voltage_V"] = readout_voltage_V
     return {
@@ -70,7 +77,7 @@ def press_part(config: Config, result: PressResult, readout_voltage_V: Floats | 
             "max_principal_strain": result.max_principal_film_strain,
             "max_principal_stress_MPa": MPA * result.max_principal_film_stress_Pa,
         },
-        "electrodes": electrodes(result),
+        "electrodes": electrodes(result, channels_V),
         "sensitivity": sensitivity(
             past.indentation_mm, past.reaction_force_N, past.film_charge_pC, voltage, config
         ),
@@ -78,14 +85,15 @@ def press_part(config: Config, result: PressResult, readout_voltage_V: Floats | 
     }
 
 
-def electrodes(result: PressResult) -> list[dict[str, Any]]:
-    """Charge and open-circuit voltage of each electrode by itself."""
+def electrodes(result: PressResult, channels_V: Floats | None = None) -> list[dict[str, Any]]:
+    """Charge and voltage of each electrode by itself; channels_V : (e, s) behind amplifiers of their own."""
     return [
         {
             "name": name,
             "capacitance_pF": PF * result.capacitance_F[number],
             "film_charge_pC": [PC * step.film_charge_C[number] for step in result.steps],
             "open_circuit_voltage_V": [step.open_circuit_voltage_V[number] for step in result.steps],
+            **({} if channels_V is None else {"readout_voltage_V": channels_V[number]}),
         }
         for number, name in enumerate(result.electrode_names)
     ]

@@ -8,6 +8,7 @@ The complementarity lambda_i >= 0, g_i >= 0 is solved by the primal-dual active 
 2010). lambda is a nominal pressure, per undeformed area.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +17,10 @@ from mesh.types import Bools, Floats, Ints
 from solve.dot_distance import RigidDot
 from solve.quadrature import triangle
 from solve.shape_functions import linear, quadratic
+from solve.term import Block, History, Term, Trial
 from solve.unknowns import Unknowns
+
+ACTIVE_SET_STIFFNESS = 10.0  # only steers the active set; the converged answer does not contain it
 
 QUARTERS = ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5))  # a quadratic facet as four linear ones
 NODES = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]])
@@ -37,7 +41,7 @@ SHAPES, SLOPES = quadratic(POINTS)
 
 
 @dataclass(frozen=True)
-class ContactFacets:
+class ContactFacets(Term):
     """Contact facets with their quadrature, in the solver's unit of length.
 
     facets : (k, 6) nodes; points : (n, 3) undeformed nodes; area : (k, q) weights;
@@ -52,6 +56,11 @@ class ContactFacets:
     pressure_dofs: Ints
     index: Ints
     dot: RigidDot
+
+    @property
+    def groups(self) -> tuple[Ints, ...]:
+        """Facets (k, 25) and, for the rows of open nodes, contact pressures (c, 1)."""
+        return self.dofs, self.pressure_dofs[:, None]
 
     @property
     def nodal_area(self) -> Floats:
@@ -74,13 +83,22 @@ class ContactFacets:
         gap = self._at_quadrature(displacement, move)[0]
         return self._sum(np.einsum("kq,qi,kq->ki", self.area, HATS, gap))
 
-    def elements(self, displacement: Floats, move: Floats, pressure: Floats, active: Bools) -> tuple[Floats, Floats]:
-        """Matrices (k, 25, 25) and residuals (k, 25) of -sum lambda_i g_i.
+    def status(self, trial: Trial, history: History) -> Bools:
+        """Nodes in contact: lambda_i - c g_i > 0, shape (c,) bool."""
+        gap = self.weighted_gap(trial.displacement, trial.move) / self.nodal_area
+        return np.asarray(trial.x[self.pressure_dofs] - ACTIVE_SET_STIFFNESS * gap > 0.0)
 
-        pressure : (c,) lambda; active : (c,) bool. Rows of inactive nodes carry no coupling.
-        """
+    def elements(self, trial: Trial, history: History) -> Iterator[Block]:
+        """-sum lambda_i g_i over the active nodes; -lambda_i = 0 in the rows of the others."""
+        active, pressure = self.status(trial, history), trial.x[self.pressure_dofs]
+        yield Block(0, slice(0, len(self.facets)), *self._facets(trial, pressure, active))
+        closed = np.where(active, 0.0, -1.0)
+        yield Block(1, slice(0, len(closed)), closed[:, None, None], (closed * pressure)[:, None])
+
+    def _facets(self, trial: Trial, pressure: Floats, active: Bools) -> tuple[Floats, Floats]:
+        """Matrices (k, 25, 25) and residuals (k, 25); rows of inactive nodes carry no coupling."""
         phi = HATS
-        gap, normal, hessian = self._at_quadrature(displacement, move)
+        gap, normal, hessian = self._at_quadrature(trial.displacement, trial.move)
         on = active[self.index].astype(float)
         lam = np.einsum("qi,ki->kq", phi, np.where(active, pressure, 0.0)[self.index])
         # generalised direction of each unknown: displacement of node n along i, then the approach along -z

@@ -1,4 +1,4 @@
-"""Compiled element integrals: residual and symmetric tangent of the mixed solid and of the film.
+"""Compiled element integrals: residual and symmetric tangent of the mixed solid, and the sum over elements.
 
 Total Lagrangian form. With the strain operator B (6 x 3n), E' = B u':
     r_u = int B^t S,    K_uu = int B^t CC B + (grad N_a . S grad N_b) 1
@@ -11,6 +11,17 @@ import numba as nb
 import numpy as np
 
 from solve.materials.isochoric import I_OF, J_OF, inverse
+from solve.stiffness_blocks import (
+    COLUMNS,
+    MATH,
+    add_weighted_rows,
+    displacement_stiffness,
+    first_tangent_rows,
+    strain_rows,
+    transpose_gradients,
+)
+
+BLOCK = 64  # elements of one task: they share its scratch arrays
 
 
 @nb.njit(inline="always")
@@ -54,88 +65,73 @@ def _add_displacement_part(b, g, s, cc, w, cb, ke, re):  # type: ignore[no-untyp
                 ke[3 * a + i, 3 * c + i] += value
 
 
-@nb.njit(parallel=True, cache=True)
+@nb.njit(inline="always")
+def _add_pressure_part(ci, pj, h, s, cc):  # type: ignore[no-untyped-def]
+    """h = C^-1 as six numbers; add p J C^-1 to S and p J (C^-1 x C^-1 - 2 C^-1 (.) C^-1) to CC; fill CC below."""
+    for v in range(6):
+        h[v] = ci[I_OF[v], J_OF[v]]
+    for v in range(6):
+        i, j = I_OF[v], J_OF[v]
+        s[v] += pj * h[v]
+        for k in range(v, 6):
+            m, n = I_OF[k], J_OF[k]
+            cc[v, k] += pj * (h[v] * h[k] - ci[i, m] * ci[j, n] - ci[i, n] * ci[j, m])
+            cc[k, v] = cc[v, k]
+
+
+@nb.njit(inline="always")
+def _add_pressure_rows(n, w, mismatch, bulk, ke, re):  # type: ignore[no-untyped-def]
+    """Add w N_p (J - 1 - p / K) to r_p, -w N_p N_p / K to K_pp."""
+    for a in range(4):
+        re[30 + a] += w * n[a] * mismatch
+        for d in range(a, 4):
+            ke[30 + a, 30 + d] -= w * n[a] * n[d] / bulk
+
+
+@nb.njit(parallel=True, cache=True, fastmath=MATH)
 def mixed_solid(grad, weight, shape_p, f, pressure, bulk, s_iso, cc_iso, ke, re):  # type: ignore[no-untyped-def]
     """P2-P1 elements, unknowns (10 nodes x 3 displacements, then 4 pressures).
 
     grad (m, q, 10, 3), weight (m, q), shape_p (q, 4), f (m, q, 3, 3), pressure (m, 4), s_iso (m, q, 6),
-    cc_iso (m, q, 6, 6); ke (m, 34, 34) upper triangle and re (m, 34) are overwritten.
+    cc_iso (m, q, 6, 6) symmetric; the upper triangle of ke (m, 34, 34) and re (m, 34) are overwritten.
     """
-    for e in nb.prange(grad.shape[0]):
-        b, cb = np.empty((6, 30)), np.empty((6, 30))
-        c, ci, s, cc = np.empty((3, 3)), np.empty((3, 3)), np.empty(6), np.empty((6, 6))
-        ke[e] = 0.0
-        re[e] = 0.0
-        for q in range(grad.shape[1]):
-            fq, g, w = f[e, q], grad[e, q], weight[e, q]
-            for i in range(3):
-                for j in range(3):
-                    c[i, j] = fq[0, i] * fq[0, j] + fq[1, i] * fq[1, j] + fq[2, i] * fq[2, j]
-            jac = np.sqrt(inverse(c, ci))
-            p = 0.0
-            for a in range(4):
-                p += shape_p[q, a] * pressure[e, a]
-            for v in range(6):
-                i, j = I_OF[v], J_OF[v]
-                s[v] = s_iso[e, q, v] + p * jac * ci[i, j]
-                for k in range(6):
-                    m, n = I_OF[k], J_OF[k]
-                    odot = ci[i, m] * ci[j, n] + ci[i, n] * ci[j, m]
-                    cc[v, k] = cc_iso[e, q, v, k] + p * jac * (ci[i, j] * ci[m, n] - odot)
-            _strain_operator(fq, g, b)
-            _add_displacement_part(b, g, s, cc, w, cb, ke[e], re[e])
-            for col in range(30):
-                x = 0.0
+    points = grad.shape[1]
+    for block in nb.prange((grad.shape[0] + BLOCK - 1) // BLOCK):
+        b, cb, t = np.zeros((6, COLUMNS)), np.zeros((6, COLUMNS + 8)), np.empty((3, 3 * points, COLUMNS))
+        g, k, up, ru = np.empty((3 * points, 10)), np.empty((10, COLUMNS)), np.empty((4, COLUMNS)), np.empty(COLUMNS)
+        c, ci, s, cc, h, x = np.empty((3, 3)), np.empty((3, 3)), np.empty(6), np.empty((6, 6)), np.empty(6), np.empty(6)
+        for e in range(block * BLOCK, min(grad.shape[0], (block + 1) * BLOCK)):
+            up[:] = 0.0
+            ru[:] = 0.0
+            ke[e, 30:] = 0.0
+            re[e] = 0.0
+            for q in range(points):
+                fq, gq, n, w = f[e, q], g[3 * q : 3 * q + 3], shape_p[q], weight[e, q]
+                transpose_gradients(grad[e, q], gq)
+                for i in range(3):
+                    for j in range(3):
+                        c[i, j] = fq[0, i] * fq[0, j] + fq[1, i] * fq[1, j] + fq[2, i] * fq[2, j]
+                jac = np.sqrt(inverse(c, ci))
+                p = n[0] * pressure[e, 0] + n[1] * pressure[e, 1] + n[2] * pressure[e, 2] + n[3] * pressure[e, 3]
                 for v in range(6):
-                    x += ci[I_OF[v], J_OF[v]] * b[v, col]
-                x *= w * jac
+                    s[v] = w * s_iso[e, q, v]
+                    for m in range(v, 6):
+                        cc[v, m] = w * cc_iso[e, q, v, m]
+                _add_pressure_part(ci, w * p * jac, h, s, cc)
+                strain_rows(fq, gq, b)
+                first_tangent_rows(fq, gq, s, cc, b, cb, t, 3 * q)
+                add_weighted_rows(s, b, ru)
                 for a in range(4):
-                    ke[e, col, 30 + a] += x * shape_p[q, a]
-            for a in range(4):
-                re[e, 30 + a] += w * shape_p[q, a] * (jac - 1.0 - p / bulk)
-                for d in range(a, 4):
-                    ke[e, 30 + a, 30 + d] -= w * shape_p[q, a] * shape_p[q, d] / bulk
-
-
-@nb.njit(parallel=True, cache=True)
-def film_solid(grad, weight, f, stiffness, coupling, permittivity, field, per_volt, ke, re):  # type: ignore[no-untyped-def]
-    """Piezoelectric P2 elements, unknowns (10 nodes x 3 displacements, then the electrode's voltage).
-
-    grad (m, q, 10, 3), weight (m, q), f (m, q, 3, 3), stiffness (6, 6), coupling (6,), permittivity,
-    field (m,) electric field e3, per_volt = de3/dV; ke (m, 31, 31) upper triangle and re (m, 31) overwritten.
-    re[30] is dh/dV, the element's share of the electrode's charge at that voltage.
-    """
-    for e in nb.prange(grad.shape[0]):
-        b, cb = np.empty((6, 30)), np.empty((6, 30))
-        strain, s, cd = np.empty(6), np.empty(6), np.zeros(6)
-        dcd = 0.0
-        for v in range(6):
-            for k in range(6):
-                cd[v] += stiffness[v, k] * coupling[k]
-            dcd += coupling[v] * cd[v]
-        ke[e] = 0.0
-        re[e] = 0.0
-        for q in range(grad.shape[1]):
-            fq, g, w = f[e, q], grad[e, q], weight[e, q]
-            for v in range(6):
-                i, j = I_OF[v], J_OF[v]
-                c = fq[0, i] * fq[0, j] + fq[1, i] * fq[1, j] + fq[2, i] * fq[2, j]
-                strain[v] = (0.5 * (c - 1.0) if v < 3 else c) - coupling[v] * field[e]
-            displacement = permittivity * field[e]
-            for v in range(6):
-                s[v] = 0.0
-                for k in range(6):
-                    s[v] += stiffness[v, k] * strain[k]
-                displacement += coupling[v] * s[v]
-            _strain_operator(fq, g, b)
-            _add_displacement_part(b, g, s, stiffness, w, cb, ke[e], re[e])
-            for col in range(30):
-                x = 0.0
-                for v in range(6):
-                    x -= cd[v] * b[v, col]
-                ke[e, col, 30] += w * per_volt * x
-            re[e, 30] -= w * per_volt * displacement
-            ke[e, 30, 30] += w * per_volt * per_volt * (dcd - permittivity)
+                    for v in range(6):
+                        x[v] = w * jac * n[a] * h[v]
+                    add_weighted_rows(x, b, up[a])
+                _add_pressure_rows(n, w, jac - 1.0 - p / bulk, bulk, ke[e], re[e])
+            displacement_stiffness(g, t, k, ke[e])
+            for a in range(10):
+                for i in range(3):
+                    re[e, 3 * a + i] = ru[10 * i + a]
+                    for d in range(4):
+                        ke[e, 3 * a + i, 30 + d] = up[d, 10 * i + a]
 
 
 @nb.njit(cache=True)

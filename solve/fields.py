@@ -8,18 +8,21 @@ from solve.quadrature import tetrahedron
 from solve.result import Fields
 from solve.shape_functions import linear
 from solve.solid import SolidRegion, deformation_gradient
-from solve.system import Load, System
+from solve.system import State, System
+from solve.term import History, Trial
 
 
-def fields(system: System, tet_mesh: TetMesh, x: Floats, load: Load) -> Fields:
-    """All fields at the unknowns x (count,)."""
-    displacement = system.displacement(x)
+def fields(system: System, tet_mesh: TetMesh, state: State, before: State) -> Fields:
+    """All fields in a converged state; before : the state that its step started from."""
+    x = state.x
+    trial = system.trial(x, state.load, state.time, before)
+    displacement = trial.displacement
     cauchy, stretch = np.zeros((len(tet_mesh.tets), 3, 3)), np.zeros(len(tet_mesh.tets))
     for solid in system.solids:
         index = tet_mesh.region_tets(solid.name)
-        cauchy[index], stretch[index] = _medium(solid, displacement, x)
+        cauchy[index], stretch[index] = _medium(solid, trial, system.history_of(solid, before))
     film = tet_mesh.region_tets("film")
-    strain, stress, cauchy[film], stretch[film] = _film(system, displacement, x)
+    strain, stress, cauchy[film], stretch[film] = _film(system, trial, system.history_of(system.film, before))
     density = stress @ system.film.law.coupling
     turn = system.film.law.to_film_axes
     deviator = cauchy - np.einsum("mii->m", cauchy)[:, None, None] / 3.0 * np.eye(3)
@@ -36,27 +39,29 @@ def fields(system: System, tet_mesh: TetMesh, x: Floats, load: Load) -> Fields:
         film_stress_Pa=_in_film_axes(turn, stress) * system.units.stress,
         charge_density_C_per_m2=density * system.units.stress * system.units.length / system.units.voltage,
         contact_nodes=contact_nodes,
-        gap_m=_gap(system, displacement, x, load, contact_nodes),
+        gap_m=_gap(system, trial, contact_nodes),
         contact_pressure_Pa=x[pressure_dofs] * system.units.stress,
     )
 
 
-def _medium(solid: SolidRegion, displacement: Floats, x: Floats) -> tuple[Floats, Floats]:
+def _medium(solid: SolidRegion, trial: Trial, history: History) -> tuple[Floats, Floats]:
     """Mean Cauchy stress (m, 3, 3) and largest principal stretch (m,), J sigma = F S F^t."""
-    f = deformation_gradient(solid.gradient, displacement[solid.tets])
+    f = deformation_gradient(solid.gradient, trial.displacement[solid.tets])
     c = f.swapaxes(-1, -2) @ f
-    stress = solid.law.stress(c.reshape(-1, 3, 3))[0].reshape(*f.shape[:2], 6)
+    stress = solid.respond(f, history, trial.time_step)[0].stress.reshape(*f.shape[:2], 6)
     jacobian = np.linalg.det(f)[..., None, None]
-    pressure = np.einsum("qa,ma->mq", linear(tetrahedron()[0]), x[solid.dofs[:, 30:]])
-    sigma = f @ from_voigt(stress) @ f.swapaxes(-1, -2) / jacobian + pressure[..., None, None] * np.eye(3)
+    sigma = f @ from_voigt(stress) @ f.swapaxes(-1, -2) / jacobian
+    if not solid.law.compressible:
+        pressure = np.einsum("qa,ma->mq", linear(tetrahedron()[0]), trial.x[solid.dofs[:, 30:]])
+        sigma += pressure[..., None, None] * np.eye(3)
     return _mean(sigma, solid.weight), _largest_stretch(_mean(c, solid.weight))
 
 
-def _film(system: System, displacement: Floats, x: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+def _film(system: System, trial: Trial, history: History) -> tuple[Floats, Floats, Floats, Floats]:
     """Mean strain and stress (k, 6) in segment axes, mean Cauchy stress (k, 3, 3), largest stretch (k,)."""
     film = system.film
-    strain, stress = film.strain_and_stress(displacement, system.voltage(x))
-    f = deformation_gradient(film.gradient, displacement[film.tets])
+    strain, stress = film.strain_and_stress(trial, history)
+    f = deformation_gradient(film.gradient, trial.displacement[film.tets])
     sigma = f @ from_voigt(stress) @ f.swapaxes(-1, -2) / np.linalg.det(f)[..., None, None]
     stretch = _largest_stretch(_mean(f.swapaxes(-1, -2) @ f, film.weight))
     return _mean(strain, film.weight), _mean(stress, film.weight), _mean(sigma, film.weight), stretch
@@ -77,6 +82,6 @@ def _in_film_axes(turn: Floats, stress: Floats) -> Floats:
     return np.asarray(np.linalg.solve(turn.T, stress.T).T, dtype=np.float64)
 
 
-def _gap(system: System, displacement: Floats, x: Floats, load: Load, nodes: Ints) -> Floats:
-    gap = system.contact.dot.distance((system.points + displacement)[nodes], system.move(x, load))[0]
+def _gap(system: System, trial: Trial, nodes: Ints) -> Floats:
+    gap = system.contact.dot.distance((system.points + trial.displacement)[nodes], trial.move)[0]
     return gap * system.units.length

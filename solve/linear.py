@@ -1,7 +1,8 @@
-"""Solution of the symmetric indefinite tangent, with a residual check after every solve.
+"""Solution of the indefinite tangent, with a residual check after every solve.
 
-PARDISO with mtype -2 (real symmetric indefinite) where MKL exists, else or when its answer is wrong SciPy's
-SuperLU. PARDISO can return a wrong answer without an error on a weak diagonal, hence the check.
+PARDISO where MKL exists, as real symmetric indefinite (mtype -2) or, with friction, unsymmetric (mtype 11), else or
+when its answer is wrong SciPy's SuperLU. PARDISO can return a wrong answer without an error on a weak diagonal, hence
+the check.
 The contact rows have a zero diagonal, which costs pivots; the matrix that is factorised carries a small negative one
 instead, and GMRES preconditioned by it solves the true system in a few back substitutions (Saad, Iterative Methods
 for Sparse Linear Systems, 2003, ch. 9). A factorisation costs some thirty of them, so one of an earlier Newton
@@ -15,6 +16,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import LinearOperator, gmres, splu
 
 from mesh.types import Floats
+from solve.unsymmetric import Tangent
 
 KRYLOV_ITERATIONS = 9  # per cycle; two cycles
 
@@ -28,8 +30,8 @@ class Factorisation(Protocol):
 
     name: str
 
-    def factorise(self, upper: sp.csr_matrix) -> None:
-        """Factorise the symmetric matrix whose upper triangle is given."""
+    def factorise(self, tangent: Tangent) -> None:
+        """Factorise."""
 
     def back_substitute(self, rhs: Floats) -> Floats:
         """Solve with the last factorisation."""
@@ -39,33 +41,46 @@ class Factorisation(Protocol):
 
 
 class Pardiso:
-    """MKL PARDISO for symmetric indefinite matrices; the analysis of the pattern is kept."""
+    """MKL PARDISO; the analysis of the pattern is kept."""
 
     name = "pardiso"
 
     def __init__(self) -> None:
-        from pypardiso import PyPardisoSolver
+        self._solver: Any = None
+        self._matrix: sp.csr_matrix | None = None
 
-        self._solver: Any = PyPardisoSolver(mtype=-2)
-        for parameter, value in ((1, 1), (2, 3), (10, 13), (11, 0), (13, 0), (21, 1)):
-            self._solver.set_iparm(parameter, value)
-        self._upper: sp.csr_matrix | None = None
-
-    def factorise(self, upper: sp.csr_matrix) -> None:
+    def factorise(self, tangent: Tangent) -> None:
         """Factorise; analyse the pattern the first time."""
-        self._solver.set_phase(12 if self._upper is None else 22)
-        self._upper = upper
-        self._solver._call_pardiso(upper, np.zeros(upper.shape[0]))
+        symmetric = tangent.excess is None
+        matrix = tangent.upper if symmetric else tangent.full()
+        if self._solver is None:
+            self._solver = _pardiso(-2 if symmetric else 11)
+        self._solver.set_phase(12 if self._matrix is None else 22)
+        self._matrix = matrix
+        self._solver._call_pardiso(matrix, np.zeros(matrix.shape[0]))
 
     def back_substitute(self, rhs: Floats) -> Floats:
         """Solve with the last factorisation."""
         self._solver.set_phase(33)
-        solution: Floats = self._solver._call_pardiso(self._upper, rhs)
+        solution: Floats = self._solver._call_pardiso(self._matrix, rhs)
         return solution
 
     def free(self) -> None:
         """Give MKL's memory back."""
-        self._solver.free_memory(everything=True)
+        if self._solver is not None:
+            self._solver.free_memory(everything=True)
+
+
+def _pardiso(kind: int) -> Any:
+    """PyPardiso for a matrix type, with the parameters of MKL's iparm that differ from its defaults."""
+    from pypardiso import PyPardisoSolver
+
+    solver = PyPardisoSolver(mtype=kind)
+    symmetric = ((1, 1), (2, 3), (10, 13), (11, 0), (13, 0), (21, 1))
+    unsymmetric = ((1, 1), (2, 3), (10, 13), (11, 1), (13, 1))
+    for parameter, value in symmetric if kind == -2 else unsymmetric:
+        solver.set_iparm(parameter, value)
+    return solver
 
 
 class SuperLU:
@@ -76,11 +91,12 @@ class SuperLU:
     def __init__(self) -> None:
         self._factor: Any = None
 
-    def factorise(self, upper: sp.csr_matrix) -> None:
+    def factorise(self, tangent: Tangent) -> None:
         """Factorise the full matrix."""
-        full = (upper + sp.triu(upper, 1).T).tocsc()
-        options = {"SymmetricMode": True}
-        self._factor = splu(full, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.01, options=options)
+        options = {"SymmetricMode": tangent.excess is None}
+        ordering = "MMD_AT_PLUS_A" if tangent.excess is None else "COLAMD"
+        pivoting = 0.01 if tangent.excess is None else 1.0
+        self._factor = splu(tangent.full().tocsc(), permc_spec=ordering, diag_pivot_thresh=pivoting, options=options)
 
     def back_substitute(self, rhs: Floats) -> Floats:
         """Solve with the last factorisation."""
@@ -90,12 +106,6 @@ class SuperLU:
     def free(self) -> None:
         """Give its memory back."""
         self._factor = None
-
-
-def symmetric_product(upper: sp.csr_matrix, vector: Floats) -> Floats:
-    """A x of the symmetric matrix whose upper triangle is given."""
-    product: Floats = upper @ vector + upper.T @ vector - upper.diagonal() * vector
-    return product
 
 
 class LinearSolver:
@@ -114,21 +124,21 @@ class LinearSolver:
         """Name of the factorisation in use."""
         return self._registry[0].name
 
-    def solve(self, upper: sp.csr_matrix, rhs: Floats, tolerance: float, similar: bool = False) -> Floats:
-        """Solve A x = rhs, A given by its upper triangle, to a relative residual.
+    def solve(self, tangent: Tangent, rhs: Floats, tolerance: float, similar: bool = False) -> Floats:
+        """Solve A x = rhs to a relative residual.
 
         similar : the tangent has changed little since the last factorisation.
         LinearSolveError when every factorisation fails.
         """
         if similar and self._current is not None:
-            solution, residual = self._krylov(upper, rhs, tolerance)
+            solution, residual = self._krylov(tangent, rhs, tolerance)
             if residual <= tolerance:
                 return solution
         reasons = []
         while self._registry:
             try:
-                self._factorise(upper)
-                solution, residual = self._krylov(upper, rhs, tolerance)
+                self._factorise(tangent)
+                solution, residual = self._krylov(tangent, rhs, tolerance)
             except Exception as error:  # MKL absent, zero pivot, out of memory: the next one may do
                 reasons.append(f"{self.name}: {error}")
             else:
@@ -147,20 +157,21 @@ class LinearSolver:
             self._current.free()
         self._current = None
 
-    def _factorise(self, upper: sp.csr_matrix) -> None:
-        shifted = upper.copy()
-        shifted.data[upper.indptr[:-1]] += self._shift  # the diagonal leads each row of an upper triangle
+    def _factorise(self, tangent: Tangent) -> None:
+        shifted = tangent.upper.copy()
+        shifted.data[shifted.indptr[:-1]] += self._shift  # the diagonal leads each row of an upper triangle
         self._current = self._current or self._registry[0]()
-        self._current.factorise(shifted)
+        self._current.factorise(Tangent(shifted, tangent.excess))
 
-    def _krylov(self, upper: sp.csr_matrix, rhs: Floats, tolerance: float) -> tuple[Floats, float]:
+    def _krylov(self, tangent: Tangent, rhs: Floats, tolerance: float) -> tuple[Floats, float]:
         """GMRES preconditioned by the last factorisation, and the true relative residual."""
         assert self._current is not None
-        operator = LinearOperator(upper.shape, lambda v: symmetric_product(upper, v), dtype=float)
-        preconditioner = LinearOperator(upper.shape, self._current.back_substitute, dtype=float)
+        shape = tangent.upper.shape
+        operator = LinearOperator(shape, lambda v: tangent @ v, dtype=float)
+        preconditioner = LinearOperator(shape, self._current.back_substitute, dtype=float)
         solution, _ = gmres(
             operator, rhs, rtol=0.3 * tolerance, restart=KRYLOV_ITERATIONS, maxiter=2, M=preconditioner
         )
         scale = float(np.linalg.norm(rhs)) or 1.0
-        residual = float(np.linalg.norm(rhs - symmetric_product(upper, solution))) / scale
+        residual = float(np.linalg.norm(rhs - tangent @ solution)) / scale
         return solution, residual if np.isfinite(residual) else np.inf

@@ -1,48 +1,50 @@
 """The names of physics beyond the baseline: where each mechanism may sit and what it is given."""
 
-from typing import Any, Self
+from typing import Any, NamedTuple, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationError, model_validator
 
 from geometry.parameters import Table
+from solve import mechanism_parameters as given
 from solve.nearest import nearest
 
 MEDIA = ("effector", "medium1", "medium2")
 BONDS = ("bond-effector-medium1", "bond-medium1-film", "bond-film-medium2", "bond-base")
 CHANNELS = tuple(f"channel-{n}" for n in range(1, 17))
 
-# name -> (components, parameters)
-MECHANISMS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
-    "charge-leakage": (("readout", "film"), ("resistance_MOhm",)),
-    "parasitic-capacitance": (("readout",), ("capacitance_pF",)),
-    "low-pass": (("readout",), ("cutoff_Hz", "order")),
-    "saturation": (("readout",), ("limit_V",)),
-    "mains-hum": (("readout",), ("frequency_Hz", "amplitude_V")),
-    "pyroelectric-drift": (("film",), ("temperature_step_K", "time_constant_s")),
-    "contact-electrification": (("film",), ("charge_pC",)),
-    "viscoelasticity": ((*MEDIA, "film", *BONDS), ("relative_moduli", "relaxation_times_s")),
-    "hyperelastic-stiffening": (
-        MEDIA,
-        ("force_ratio", "c10_MPa", "c01_MPa", "c20_MPa", "c30_MPa", "mu_MPa", "alpha"),
-    ),
-    "foam-densification": (MEDIA, ("force_ratio", "mu_MPa", "alpha", "poisson_ratio")),
-    "stress-softening": (MEDIA, ("loss_ratio",)),
-    "film-yield": (("film",), ("yield_stress_MPa",)),
-    "adhesive-compliance": (BONDS, ("normal_stiffness_N_per_mm3", "shear_stiffness_N_per_mm3")),
-    "delamination": (BONDS, ("center_mm", "diameter_mm")),
-    "friction": (("dot",), ("coefficient",)),
-    "elastic-sides": (("sides",), ("stiffness_N_per_mm3",)),
-    "dot-offset": (("dot",), ("offset_mm",)),
-    "contact-gap": (("dot",), ("gap_mm",)),
-    "rig-compliance": (("rig",), ("compliance_mm_per_N",)),
-    "film-prestretch": (("film",), ("strain_x", "strain_y")),
-    "inertia": (("rig",), ("moving_mass_g",)),
-    "crosstalk": (CHANNELS, ("coupling",)),
-    "property-error": (
-        (*MEDIA, "film", "dot"),
-        ("modulus_factor", "thickness_factor", "d31_factor", "radius_factor", "height_factor"),
-    ),
-    "dimension-reduction": (("dot",), ()),
+
+class Kind(NamedTuple):
+    """Where a mechanism may sit and the table of its parameters."""
+
+    components: tuple[str, ...]
+    parameters: type[Table]
+
+
+MECHANISMS: dict[str, Kind] = {
+    "charge-leakage": Kind(("readout", "film"), given.ChargeLeakage),
+    "parasitic-capacitance": Kind(("readout",), given.ParasiticCapacitance),
+    "low-pass": Kind(("readout",), given.LowPass),
+    "saturation": Kind(("readout",), given.Saturation),
+    "mains-hum": Kind(("readout",), given.MainsHum),
+    "pyroelectric-drift": Kind(("film",), given.PyroelectricDrift),
+    "contact-electrification": Kind(("film",), given.ContactElectrification),
+    "viscoelasticity": Kind((*MEDIA, "film", *BONDS), given.Viscoelasticity),
+    "hyperelastic-stiffening": Kind(MEDIA, given.HyperelasticStiffening),
+    "foam-densification": Kind(MEDIA, given.FoamDensification),
+    "stress-softening": Kind(MEDIA, given.StressSoftening),
+    "film-yield": Kind(("film",), given.FilmYield),
+    "adhesive-compliance": Kind(BONDS, given.AdhesiveCompliance),
+    "delamination": Kind(BONDS, given.DelaminationPatch),
+    "friction": Kind(("dot",), given.Friction),
+    "elastic-sides": Kind(("sides",), given.ElasticSides),
+    "dot-offset": Kind(("dot",), given.DotOffset),
+    "contact-gap": Kind(("dot",), given.ContactGap),
+    "rig-compliance": Kind(("rig",), given.RigCompliance),
+    "film-prestretch": Kind(("film",), given.FilmPrestretch),
+    "inertia": Kind(("rig",), given.Inertia),
+    "crosstalk": Kind(CHANNELS, given.Crosstalk),
+    "property-error": Kind((*MEDIA, "film", "dot"), given.PropertyError),
+    "dimension-reduction": Kind(("dot",), given.DimensionReduction),
 }
 
 
@@ -61,11 +63,31 @@ class Mechanism(Table):
     def _known(self) -> Self:
         if self.name not in MECHANISMS:
             raise ValueError(f"name = '{self.name}': {nearest(self.name, MECHANISMS)}")
-        components, parameters = MECHANISMS[self.name]
+        components, table = MECHANISMS[self.name]
         if self.component not in components:
             raise ValueError(f"component = '{self.component}': {self.name} acts on {', '.join(components)}")
         for name in self.parameters:
-            if name not in parameters:
-                allowed = ", ".join(parameters) or "no parameters"
+            if name not in table.model_fields:
+                allowed = ", ".join(table.model_fields) or "no parameters"
                 raise ValueError(f"parameters.{name}: {self.name} takes {allowed}")
+        self.values()
         return self
+
+    def values(self) -> Any:
+        """The checked parameters, an instance of the mechanism's table. ValueError with one sentence."""
+        try:
+            return MECHANISMS[self.name].parameters.model_validate(self.parameters)
+        except ValidationError as error:
+            raise ValueError(_sentence(self.name, error)) from None
+
+
+def _sentence(name: str, error: ValidationError) -> str:
+    """The first problem: parameters.NAME = value: what is allowed."""
+    first = error.errors()[0]
+    where = ".".join(["parameters", *(str(part) for part in first["loc"])])
+    text = first["msg"].removeprefix("Value error, ").replace("Input should be", "must be")
+    if first["type"] == "missing":
+        return f"{where} is missing: {name} needs it"
+    if first["type"] == "value_error":  # our own text begins with the name of the parameter
+        return f"{where}.{text}"
+    return f"{where} = {first['input']!r}: {text}"

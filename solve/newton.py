@@ -1,27 +1,18 @@
 """Semismooth Newton iteration at fixed load."""
 
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 
-from mesh.types import Floats
+from mesh.types import Bools, Floats
 from solve.linear import LinearSolveError, LinearSolver
 from solve.solid import InvertedElementError
-from solve.system import Evaluation, Load, System
+from solve.system import Evaluation, Load, State, System
 
 TOLERANCE = 1e-9
 MAX_ITERATIONS = 25
 MAX_HALVINGS = 6
 SIMILAR_CONTACT = 6  # so many nodes may change contact and the last factorisation still be a good preconditioner
-
-
-@dataclass(frozen=True)
-class Equilibrium:
-    """A converged state: unknowns, iterations and the residual relative to the contact forces."""
-
-    x: Floats
-    iterations: int
-    relative_residual: float
 
 
 class NoEquilibriumError(RuntimeError):
@@ -32,25 +23,31 @@ class NoEquilibriumError(RuntimeError):
         self.x, self.worst = x, worst
 
 
-def equilibrate(system: System, linear: LinearSolver, x: Floats, load: Load) -> Equilibrium:
-    """Find the equilibrium near x (count,). NoEquilibriumError when there is none within the iterations."""
+def equilibrate(system: System, linear: LinearSolver, x: Floats, load: Load, time: float, previous: State) -> State:
+    """Find the equilibrium near x (count,) at a time after a converged state.
+
+    NoEquilibriumError when there is none within the iterations.
+    """
     x = x.copy()
     try:
-        now = system.evaluate(x, load)
-        previous = None
+        now = _evaluate(system, x, load, time, previous)
+        status: Bools | None = None
         for iteration in range(MAX_ITERATIONS):
             norm = float(np.linalg.norm(now.residual))
-            relative = norm / max(now.load_norm, 1e-12)
-            settled = previous is None or np.array_equal(previous, now.active)
+            scale = max(now.load_norm, previous.force_scale)
+            relative = norm / max(scale, 1e-12)
+            settled = status is None or np.array_equal(status, now.status)
             if relative <= TOLERANCE and settled:
-                return Equilibrium(x, iteration, relative)
+                converged = State(time, load, x, previous.histories, scale, iteration, relative)
+                trial = system.trial(x, load, time, previous)
+                return replace(converged, histories=system.advance(trial, previous.histories))
             if not np.isfinite(norm):
                 break
-            similar = previous is not None and int(np.sum(previous != now.active)) <= SIMILAR_CONTACT
+            similar = status is not None and int(np.sum(status != now.status)) <= SIMILAR_CONTACT
             # inexact Newton: the linear residual need only fall as the nonlinear one will
             step = linear.solve(now.tangent, -now.residual, min(0.1 * relative, 1e-3), similar)
-            previous = now.active
-            x, now = _advance(system, x, step, load)
+            status = now.status
+            x, now = _advance(system, x, step, load, time, previous)
     except LinearSolveError as error:
         raise NoEquilibriumError(f"the tangent is singular ({error})", x, None) from error
     except InvertedElementError as error:
@@ -59,12 +56,18 @@ def equilibrate(system: System, linear: LinearSolver, x: Floats, load: Load) -> 
     raise NoEquilibriumError(f"no convergence in {MAX_ITERATIONS} Newton iterations", x, worst)
 
 
-def _advance(system: System, x: Floats, step: Floats, load: Load) -> tuple[Floats, Evaluation]:
+def _evaluate(system: System, x: Floats, load: Load, time: float, previous: State) -> Evaluation:
+    return system.evaluate(system.trial(x, load, time, previous), previous.histories)
+
+
+def _advance(
+    system: System, x: Floats, step: Floats, load: Load, time: float, previous: State
+) -> tuple[Floats, Evaluation]:
     """The full Newton step, halved while it turns an element inside out."""
     for _ in range(MAX_HALVINGS):
         trial = x + step
         try:
-            return trial, system.evaluate(trial, load)
+            return trial, _evaluate(system, trial, load, time, previous)
         except InvertedElementError as error:
             failure = error
             step = 0.5 * step

@@ -1,23 +1,64 @@
 """From parameters and a mesh to the discrete problem in solver units."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
 from geometry.dot_shape import DotShape
 from geometry.parameters import Segment
 from mesh.types import Floats, TetMesh
+from solve.bond import bond
+from solve.circuit import Circuit
 from solve.contact import contact_facets
+from solve.delamination import opening_nodes, unilateral_interface
 from solve.dot_distance import RigidDot
+from solve.electrodes import electrode_rectangles
 from solve.film import FilmRegion, film_region
+from solve.friction import FrictionalContact
+from solve.interfaces import OpenInterface
+from solve.materials.film_plasticity import FilmPlasticity
+from solve.materials.film_yield import YieldLaw
 from solve.materials.laws import MediumLaw, medium_law
 from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.materials.piezoelectric import FilmLaw, film_law
-from solve.sides import SideSprings, side_springs
+from solve.materials.response import Inelastic
+from solve.parameters import Readout
+from solve.physics import Physics
+from solve.rig import Rig
+from solve.sides import side_springs
 from solve.solid import SolidRegion, solid_region
 from solve.sparsity import build_pattern
 from solve.system import System, Units
-from solve.unknowns import Unknowns, number
+from solve.term import Term
+from solve.unknowns import Numbers, Unknowns, number
+
+
+@dataclass(frozen=True)
+class Builder:
+    """What every term is built from; points in solver units."""
+
+    segment: Segment
+    materials: Mapping[str, Material]
+    physics: Physics
+    readout: Readout | None
+    tet_mesh: TetMesh
+    opened: tuple[OpenInterface, ...]
+    points: Floats
+    unknowns: Unknowns
+    units: Units
+
+    @property
+    def film_material(self) -> PiezoelectricFilm:
+        """TypeError when the film's material is none of a film."""
+        film = self.materials["film"]
+        if not isinstance(film, PiezoelectricFilm):
+            raise TypeError(f"the film needs a piezoelectric-film material, not {film.model}")
+        return film
+
+    def per_area(self, stiffness_N_per_mm3: float) -> float:
+        """A traction per displacement in solver units."""
+        return 1e9 * stiffness_N_per_mm3 * self.units.length / self.units.stress
 
 
 def build_system(
@@ -26,94 +67,156 @@ def build_system(
     dot: DotShape,
     tet_mesh: TetMesh,
     force_driven: bool = False,
+    physics: Physics | None = None,
+    readout: Readout | None = None,
+    opened: tuple[OpenInterface, ...] = (),
 ) -> System:
-    """Discretise a press. materials : region name -> material, one for each region of the mesh."""
+    """Discretise a press. materials : region name -> material, one for each region of the mesh.
+
+    tet_mesh and opened as solve.interfaces.open_interfaces gives them.
+    """
+    physics = physics or Physics()
     laws = {name: medium_law(materials[name]) for name in tet_mesh.region_names if name != "film"}
-    film = materials["film"]
-    if not isinstance(film, PiezoelectricFilm):
-        raise TypeError(f"the film needs a piezoelectric-film material, not {film.model}")
-    units = _units(segment, laws, film)
+    numbers = Numbers()
+    unknowns = _number(segment, materials, laws, tet_mesh, physics, readout, force_driven, numbers)
+    units = _units(segment, laws, materials)
     points = tet_mesh.points_mm * (1e-3 / units.length)
-    held = segment.held_layers if segment.boundary == "clamped" else ()
-    unknowns = number(
-        tet_mesh, held, segment.section == "plane-strain", max(1, len(segment.film.electrodes)),
-        film.coupling == "two-way", force_driven,
-    )
-    solids = tuple(_solid(name, law, points, tet_mesh, unknowns, units) for name, law in laws.items())
-    piezo = _film(segment, film, points, tet_mesh, unknowns, units)
-    sides = _sides(segment, points, tet_mesh, unknowns, units)
+    make = Builder(segment, materials, physics, readout, tet_mesh, opened, points, unknowns, units)
+    terms: list[Term] = [_solid(make, name, law) for name, law in laws.items()]
+    film = _film(make)
+    terms += [film, *_sides(make), *_bonds(make, numbers), *_circuit(make, film)]
     contact = contact_facets(points, tet_mesh.facets["contact"], unknowns, RigidDot(dot, 1e3 * units.length))
-    groups = [*(s.dofs for s in solids), piezo.dofs, *(s.dofs for s in sides), contact.dofs]
-    pattern = build_pattern(groups, unknowns.count)
-    return System(points, unknowns, units, solids, piezo, sides, contact, pattern)
+    if physics.friction > 0.0:
+        dofs = numbers.take(3 * len(contact.pressure_dofs)).reshape(-1, 3)
+        terms.append(FrictionalContact(contact, dofs, physics.friction))
+    else:
+        terms.append(contact)
+    terms += _rig(make, force_driven)
+    pattern = build_pattern([group for term in terms for group in term.groups], numbers.count)
+    return System(points, unknowns, numbers.count, units, tuple(terms), contact, pattern)
 
 
-def _units(segment: Segment, laws: Mapping[str, MediumLaw], film: PiezoelectricFilm) -> Units:
-    length = 1e-3 * segment.length_mm
-    coupling = 1e-12 * max(abs(film.d31_pC_per_N), abs(film.d33_pC_per_N), 1e-3)
+def _number(
+    segment: Segment,
+    materials: Mapping[str, Material],
+    laws: Mapping[str, MediumLaw],
+    tet_mesh: TetMesh,
+    physics: Physics,
+    readout: Readout | None,
+    force_driven: bool,
+    numbers: Numbers,
+) -> Unknowns:
+    film = materials["film"]
+    two_way = isinstance(film, PiezoelectricFilm) and film.coupling == "two-way"
+    virtual_ground = readout is not None and readout.mode == "charge"
+    return number(
+        tet_mesh,
+        numbers,
+        held_regions=segment.held_layers if segment.boundary == "clamped" else (),
+        plane_strain=segment.section == "plane-strain",
+        without_pressure=("film", *(name for name, law in laws.items() if law.compressible)),
+        electrodes=max(1, len(segment.film.electrodes)),
+        two_way=two_way and not virtual_ground,
+        parallel=readout is not None,
+        approach=force_driven or physics.rig_compliance_mm_per_N > 0.0,
+    )
+
+
+def _units(segment: Segment, laws: Mapping[str, MediumLaw], materials: Mapping[str, Material]) -> Units:
+    length, film = 1e-3 * segment.length_mm, materials["film"]
+    constants = (film.d31_pC_per_N, film.d33_pC_per_N) if isinstance(film, PiezoelectricFilm) else (0.0, 0.0)
+    coupling = 1e-12 * max(abs(constants[0]), abs(constants[1]), 1e-3)
     return Units(length, max(law.shear_modulus for law in laws.values()), length / coupling)
 
 
-def _solid(
-    name: str, law: MediumLaw, points: Floats, tet_mesh: TetMesh, unknowns: Unknowns, units: Units
-) -> SolidRegion:
-    index = tet_mesh.region_tets(name)
-    tets = tet_mesh.tets[index]
-    dofs = np.concatenate([unknowns.displacement[tets].reshape(-1, 30), unknowns.pressure[index]], axis=1)
-    return solid_region(name, law.scaled(1.0 / units.stress), points, tets, dofs)
+def _solid(make: Builder, name: str, law: MediumLaw) -> SolidRegion:
+    index = make.tet_mesh.region_tets(name)
+    tets = make.tet_mesh.tets[index]
+    dofs = make.unknowns.displacement[tets].reshape(-1, 30)
+    if not law.compressible:
+        dofs = np.concatenate([dofs, make.unknowns.pressure[index]], axis=1)
+    inelastic: list[Inelastic] = []
+    if name in make.physics.softening:
+        inelastic.append(make.physics.softening[name].scaled(1e6 / make.units.stress))
+    if name in make.physics.viscosity:
+        inelastic.append(make.physics.viscosity[name])
+    return solid_region(name, law.scaled(1.0 / make.units.stress), make.points, tets, dofs, tuple(inelastic))
 
 
-def _film(
-    segment: Segment, film: PiezoelectricFilm, points: Floats, tet_mesh: TetMesh, unknowns: Unknowns, units: Units
-) -> FilmRegion:
-    law = film_law(film, segment.film.draw_angle_deg)
+def _film(make: Builder) -> FilmRegion:
+    units, film = make.units, make.film_material
+    law = film_law(film, make.segment.film.draw_angle_deg)
     scaled = FilmLaw(
         stiffness=law.stiffness / units.stress,
         coupling=law.coupling * (units.voltage / units.length),
         permittivity=law.permittivity * units.voltage**2 / (units.length**2 * units.stress),
         to_film_axes=law.to_film_axes,
     )
-    tets = tet_mesh.tets[tet_mesh.region_tets("film")]
-    thickness = 1e-6 * segment.film.thickness_um / units.length
-    rectangles = electrode_rectangles(segment) * (1e-3 / units.length)
-    return film_region(scaled, points, tets, unknowns.displacement, unknowns.voltage, rectangles, thickness)
+    inelastic: list[Inelastic] = []
+    if make.physics.film_yield is not None:
+        limit = make.physics.film_yield
+        flow = YieldLaw(
+            scaled.stiffness, 1e6 * limit.stress_MPa / units.stress, 1e6 * limit.hardening_MPa / units.stress
+        )
+        inelastic.append(FilmPlasticity(flow))
+    if "film" in make.physics.viscosity:
+        inelastic.append(make.physics.viscosity["film"])
+    return film_region(
+        scaled,
+        make.points,
+        make.tet_mesh.tets[make.tet_mesh.region_tets("film")],
+        make.unknowns.displacement,
+        make.unknowns.voltage,
+        electrode_rectangles(make.segment) * (1e-3 / units.length),
+        1e-6 * make.segment.film.thickness_um / units.length,
+        make.physics.prestretch,
+        tuple(inelastic),
+    )
 
 
-def electrode_rectangles(segment: Segment) -> Floats:
-    """Electrodes as (e, 4) x0, x1, y0, y1 in mm; without any, one over everything.
-
-    In a plane-strain slice nothing varies over y: the electrodes then reach over the whole slice, and their
-    share of the width is applied with the width (see scale_of_section).
-    """
-    if not segment.film.electrodes:
-        return np.array([[-np.inf, np.inf, -np.inf, np.inf]])
-    centre = np.array([e.center_mm for e in segment.film.electrodes])
-    half = 0.5 * np.array([e.size_mm for e in segment.film.electrodes])
-    rectangles = np.column_stack([centre - half, centre + half])[:, [0, 2, 1, 3]]
-    if segment.section == "plane-strain":
-        rectangles[:, 2:] = -np.inf, np.inf
-    return rectangles
-
-
-def scale_of_section(segment: Segment, tet_mesh: TetMesh) -> tuple[float, Floats]:
-    """Factors from what is meshed to the whole segment: for the force, and for each electrode's charge (e,)."""
-    count = max(1, len(segment.film.electrodes))
-    if segment.section == "solid":
-        return 1.0, np.ones(count)
-    force = segment.width_mm / tet_mesh.thickness_mm
-    if not segment.film.electrodes:
-        return force, np.array([force])
-    widths = np.array([e.size_mm[1] for e in segment.film.electrodes])
-    return force, np.minimum(widths, segment.width_mm) / tet_mesh.thickness_mm
-
-
-def _sides(
-    segment: Segment, points: Floats, tet_mesh: TetMesh, unknowns: Unknowns, units: Units
-) -> tuple[SideSprings, ...]:
+def _sides(make: Builder) -> Iterator[Term]:
+    segment, facets = make.segment, make.tet_mesh.facets
     if segment.boundary != "elastic":
-        return ()
-    stiffness = 1e9 * segment.side_stiffness_N_per_mm3 * units.length / units.stress
-    names = [f"side-{name}" for name in segment.held_layers if f"side-{name}" in tet_mesh.facets]
-    return tuple(side_springs(points, tet_mesh.facets[name], unknowns.displacement, stiffness) for name in names)
+        return
+    stiffness = make.per_area(segment.side_stiffness_N_per_mm3)
+    for name in segment.held_layers:
+        if f"side-{name}" in facets:
+            yield side_springs(make.points, facets[f"side-{name}"], make.unknowns.displacement, stiffness)
 
 
+def _bonds(make: Builder, numbers: Numbers) -> Iterator[Term]:
+    dofs = make.unknowns.displacement
+    for face in make.opened:
+        line, glued = make.physics.bonds.get(face.name), ~face.delaminated
+        if line is not None and glued.any():
+            normal = make.per_area(line.normal_stiffness_N_per_mm3)
+            shear = make.per_area(line.shear_stiffness_N_per_mm3)
+            series = make.physics.viscosity.get(face.name)
+            yield bond(make.points, face.lower[glued], face.upper[glued], dofs, normal, shear, series)
+        if face.delaminated.any():
+            lower, upper = face.lower[face.delaminated], face.upper[face.delaminated]
+            multipliers = numbers.take(opening_nodes(lower, upper, dofs)[1])
+            yield unilateral_interface(make.points, lower, upper, dofs, multipliers)
+
+
+def _circuit(make: Builder, film: FilmRegion) -> Iterator[Term]:
+    """The amplifier's input where its voltage acts back on the film."""
+    readout, units = make.readout, make.units
+    if readout is None or make.unknowns.voltage[0] < 0:
+        return
+    farad = units.charge / units.voltage
+    share = make.tet_mesh.thickness_mm / make.segment.width_mm if make.segment.section == "plane-strain" else 1.0
+    resistance = 1e6 * (readout.input_resistance_MOhm or np.inf) * farad / share
+    input_capacitance = 1e-12 * readout.input_capacitance_pF / farad * share
+    dof = int(make.unknowns.voltage[0])
+    yield Circuit(dof, float(film.capacitance().sum()), input_capacitance, resistance)
+
+
+def _rig(make: Builder, force_driven: bool) -> Iterator[Term]:
+    if make.unknowns.approach < 0:
+        return
+    units, physics = make.units, make.physics
+    share = make.tet_mesh.thickness_mm / make.segment.width_mm if make.segment.section == "plane-strain" else 1.0
+    compliance = 1e-3 * physics.rig_compliance_mm_per_N * units.force / units.length / share
+    mass = 1e-3 * physics.moving_mass_g / units.mass * share
+    yield Rig(make.unknowns.approach, mass, None if force_driven else compliance)

@@ -1,11 +1,13 @@
 """The amplifier behind the film: from the charge of a press to the voltage that is recorded.
 
-The mechanics of the baseline does not depend on time, so the waveform only says when each depth is reached.
+The mechanics of the baseline does not depend on time, so its waveform only says when each depth is reached.
 Voltage mode: the film, a charge source with capacitance C_f, drives R parallel to C_f + C_in:
     (C_f + C_in) V' = Q' - V / R
 Charge mode: V' = -Q' / C_fb - V / (R_fb C_fb) (MSI Piezo Film Sensors Technical Manual, pp. 38-41).
-Both are integrated exactly for a charge that is linear between samples; Butterworth filters follow.
+Both are integrated exactly for a charge that is linear between samples; Butterworth filters and the hum follow.
 """
+
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
@@ -14,18 +16,65 @@ from scipy.signal import butter, lsim
 from geometry.errors import InputError
 from mesh.types import Floats
 from solve.parameters import Press, Readout, Waveform
+from solve.physics import Physics
 from solve.result import PressResult
 from solve.waveform import duration_s, fraction
 
 SAMPLES = 4001
 
 
-def readout_voltage(result: PressResult, press: Press, readout: Readout) -> Floats:
-    """Voltage (s,) at the moment each step is first reached. InputError for a slide on a waveform with a release."""
+@dataclass(frozen=True)
+class Recording:
+    """What one amplifier gives over time: time_s (t,), voltage_V (t,); progress (t,) load steps done."""
+
+    time_s: Floats
+    voltage_V: Floats
+    progress: Floats
+
+
+def readout_voltage(
+    result: PressResult, press: Press, readout: Readout, physics: Physics | None = None
+) -> Floats:
+    """Voltage (s,) of all electrodes in parallel at the moment each step is first reached.
+
+    InputError for a slide on a waveform with a release.
+    """
+    everything = np.ones(len(result.capacitance_F))
+    return _at_steps(result, record(result, press, readout, everything, physics))
+
+
+def channel_voltages(
+    result: PressResult, press: Press, readout: Readout, physics: Physics | None = None
+) -> Floats:
+    """Voltage (e, s) of every electrode behind an amplifier of its own, crosstalk between the channels included."""
+    physics = physics or Physics()
+    alone = [record(result, press, readout, share, physics) for share in np.eye(len(result.capacitance_F))]
+    voltage = np.array([_at_steps(result, recording) for recording in alone])
+    coupling = np.array([physics.crosstalk.get(channel + 1, 0.0) for channel in range(len(voltage))])
+    return np.asarray(voltage + coupling[:, None] * (voltage.sum(axis=0) - voltage))
+
+
+def record(
+    result: PressResult, press: Press, readout: Readout, wired: Floats, physics: Physics | None = None
+) -> Recording:
+    """The whole recording of a press; wired : (e,) 1 for the electrodes on this amplifier, else 0."""
     time, progress = _timetable(press)
-    voltage = _behind_amplifier(time, _charge(result, progress), float(result.capacitance_F.sum()), readout)
+    if result.follows_time:
+        trace = result.trace
+        time = np.union1d(np.linspace(trace.time_s[0], trace.time_s[-1], SAMPLES), trace.time_s)
+        progress = np.interp(time, [step.time_s for step in result.steps], np.arange(len(result.steps)))
+        charge = _interpolated(trace.time_s, trace.film_charge_C @ wired, time)
+    else:
+        steps = np.array([step.film_charge_C @ wired for step in result.steps])
+        charge = _interpolated(np.arange(len(steps), dtype=float), steps, progress)
+    capacitance = float(result.capacitance_F @ wired)
+    return Recording(time, amplify(time, charge, capacitance, readout, physics or Physics()), progress)
+
+
+def _at_steps(result: PressResult, recording: Recording) -> Floats:
+    progress = recording.progress
     first = [int(np.argmax(progress >= number - 1e-9)) for number in range(len(result.steps))]
-    return np.array([_at(progress, voltage, index, number) for number, index in enumerate(first)])
+    return np.array([_at(progress, recording.voltage_V, index, number) for number, index in enumerate(first)])
 
 
 def _at(progress: Floats, voltage: Floats, index: int, number: int) -> float:
@@ -52,16 +101,15 @@ def _timetable(press: Press) -> tuple[Floats, Floats]:
     return time, progress
 
 
-def _charge(result: PressResult, progress: Floats) -> Floats:
-    """Charge of all electrodes in parallel, C, interpolated without overshoot between the steps."""
-    charge = np.array([step.film_charge_C.sum() for step in result.steps])
-    if len(charge) == 1:
-        return np.zeros_like(progress)
-    done = np.arange(len(charge), dtype=float)
-    return np.asarray(PchipInterpolator(done, charge)(np.minimum(progress, done[-1])))
+def _interpolated(at: Floats, values: Floats, where: Floats) -> Floats:
+    """Values between known ones, without overshoot; the last one holds beyond the end."""
+    if len(at) == 1:
+        return np.zeros_like(where)
+    return np.asarray(PchipInterpolator(at, values)(np.clip(where, at[0], at[-1])))
 
 
-def _behind_amplifier(time: Floats, charge: Floats, film_capacitance: float, readout: Readout) -> Floats:
+def amplify(time: Floats, charge: Floats, film_capacitance: float, readout: Readout, physics: Physics) -> Floats:
+    """Voltage (t,) from the film's short-circuit charge (t,) in C at times (t,) in s, from rest."""
     if readout.mode == "charge":
         capacitance = -1e-12 * (readout.feedback_pF or np.inf)
         resistance = -1e6 * (readout.feedback_MOhm or np.inf)
@@ -69,13 +117,24 @@ def _behind_amplifier(time: Floats, charge: Floats, film_capacitance: float, rea
         capacitance = film_capacitance + 1e-12 * readout.input_capacitance_pF
         resistance = 1e6 * (readout.input_resistance_MOhm or np.inf)
     voltage = leaky_integral(time, charge, capacitance, resistance)
+    for frequency_Hz, amplitude_V in physics.hum:
+        voltage = voltage + amplitude_V * np.sin(2.0 * np.pi * frequency_Hz * time)
     if readout.limit_V is not None:
         voltage = np.clip(voltage, -readout.limit_V, readout.limit_V)
-    for corner_Hz, kind in ((readout.low_pass_Hz, "low"), (readout.high_pass_Hz, "high")):
+    filters = [(readout.low_pass_Hz, readout.filter_order, "low"), (readout.high_pass_Hz, readout.filter_order, "high")]
+    filters += [(corner_Hz, order, "low") for corner_Hz, order in physics.low_pass]
+    for corner_Hz, order, kind in filters:
         if corner_Hz is not None:
-            coefficients = butter(readout.filter_order, 2.0 * np.pi * corner_Hz, kind, analog=True)
-            voltage = lsim(coefficients, voltage, time)[1]
+            voltage = _filtered(time, voltage, corner_Hz, order, kind)
     return readout.polarity * np.asarray(voltage)
+
+
+def _filtered(time: Floats, voltage: Floats, corner_Hz: float, order: int, kind: str) -> Floats:
+    """An analog Butterworth filter from rest, on an even grid as fine as the closest samples' mean."""
+    even = np.linspace(time[0], time[-1], max(len(time), SAMPLES))
+    coefficients = butter(order, 2.0 * np.pi * corner_Hz, kind, analog=True)
+    response = lsim(coefficients, np.interp(even, time, voltage), even - even[0])[1]
+    return np.asarray(np.interp(time, even, response))
 
 
 def leaky_integral(time: Floats, charge: Floats, capacitance: float, resistance: float) -> Floats:

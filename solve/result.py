@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from mesh.types import Floats, Ints
+from mesh.types import Floats, Ints, TetMesh
 
 
 @dataclass(frozen=True)
@@ -39,9 +39,11 @@ class Fields:
 class Step:
     """One converged load step. Charges and voltages: one per electrode, shape (e,).
 
+    reaction_force_N is what the rig's force sensor reads, dot_force_N (3,) what the segment does to the dot.
     dot_position_m : (3,) origin of the dot's frame (see geometry.dot_shape) in the segment's frame.
     """
 
+    time_s: float
     indentation_m: float
     reaction_force_N: float
     film_charge_C: Floats
@@ -49,18 +51,58 @@ class Step:
     newton_iterations: int
     relative_residual: float
     dot_position_m: Floats
+    dot_force_N: Floats
     fields: Fields
 
 
 @dataclass(frozen=True)
+class Record:
+    """One converged state without its fields; names as in Trace."""
+
+    time_s: float
+    indentation_m: float
+    dot_path_m: float
+    contact_force_N: Floats
+    rig_force_N: float
+    film_charge_C: Floats
+    contact_area_m2: float
+    newton_iterations: int
+    relative_residual: float
+
+
+@dataclass(frozen=True)
+class Trace:
+    """Every converged state of a press, sub-steps included.
+
+    time_s (t,); indentation_m (t,) as the displacement sensor reads it; dot_path_m (t,) of the dot itself;
+    reaction_force_N (t,) of the force sensor; contact_force_N (t, 3) of the segment on the dot;
+    film_charge_C (t, e) since the rest; contact_area_m2 (t,), undeformed.
+    """
+
+    time_s: Floats
+    indentation_m: Floats
+    dot_path_m: Floats
+    reaction_force_N: Floats
+    contact_force_N: Floats
+    film_charge_C: Floats
+    contact_area_m2: Floats
+
+
+@dataclass(frozen=True)
 class PressResult:
-    """The history of a press. steps[0] is the unloaded state.
+    """The history of a press. steps[0] is the unloaded state, trace has every sub-step too.
+
+    follows_time : the press followed its waveform; else only loads were solved, whose order matters but not their time.
+    tet_mesh : the mesh of the fields, its nodes doubled where an interface opens.
 
     converged is False when the last asked depth was not reached; failure then says where and why.
     Forces and charges are those of the whole segment (a plane-strain slice is scaled to width_mm).
     """
 
     steps: tuple[Step, ...]
+    trace: Trace
+    follows_time: bool
+    tet_mesh: TetMesh
     converged: bool
     failure: str | None
     electrode_names: tuple[str, ...]

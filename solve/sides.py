@@ -1,25 +1,32 @@
 """Elastic sides: the case as springs, normal and tangential, per undeformed area of the held faces."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from mesh.types import Floats, Ints
 from solve.contact import SHAPES, facet_area
+from solve.term import Block, History, Term, Trial
 
 
 @dataclass(frozen=True)
-class SideSprings:
+class SideSprings(Term):
     """Traction -k u on facets. dofs : (k, 18); matrices : (k, 18, 18) constant."""
 
     facets: Ints
     dofs: Ints
     matrices: Floats
 
-    def elements(self, displacement: Floats) -> tuple[Floats, Floats]:
+    @property
+    def groups(self) -> tuple[Ints, ...]:
+        """Unknowns of the facets."""
+        return (self.dofs,)
+
+    def elements(self, trial: Trial, history: History) -> Iterator[Block]:
         """The constant matrices and their residuals (k, 18)."""
-        local = displacement[self.facets].reshape(-1, 18)
-        return self.matrices, np.einsum("kij,kj->ki", self.matrices, local)
+        local = trial.displacement[self.facets].reshape(-1, 18)
+        yield Block(0, slice(0, len(local)), self.matrices, np.einsum("kij,kj->ki", self.matrices, local))
 
 
 def side_springs(points: Floats, facets: Ints, displacement_dofs: Ints, stiffness: float) -> SideSprings:

@@ -1,4 +1,7 @@
-"""The media: quadratic displacement, linear pressure, any hyperelastic law."""
+"""The media: quadratic displacement, linear pressure, any hyperelastic law with or without memory.
+
+A compressible foam has no pressure unknown: its law gives the whole stress.
+"""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -6,10 +9,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from mesh.types import Floats, Ints
+from solve.compressible_kernel import compressible_solid
 from solve.element_kernels import mixed_solid
 from solve.materials.laws import MediumLaw
+from solve.materials.prony import Prony
+from solve.materials.response import Inelastic, Memory, Response
 from solve.quadrature import tetrahedron
 from solve.shape_functions import linear, physical_gradients, quadratic
+from solve.term import Block, History, Term, Trial
 
 CHUNK = 4096  # elements assembled at a time: bounds the memory of the element matrices
 
@@ -36,8 +43,11 @@ def refuse_inversion(f: Floats, region: str, tets: Ints) -> None:
 
 
 @dataclass(frozen=True)
-class SolidRegion:
-    """One medium. tets: (m, 10) nodes; dofs: (m, 34) unknowns, displacements first; gradient, weight: quadrature."""
+class SolidRegion(Term):
+    """One medium. tets: (m, 10) nodes; dofs: (m, 34) unknowns, displacements first, or (m, 30) of a foam.
+
+    gradient, weight : quadrature; inelastic : laws with memory, each acting on the response of the one before.
+    """
 
     name: str
     law: MediumLaw
@@ -45,27 +55,83 @@ class SolidRegion:
     dofs: Ints
     gradient: Floats
     weight: Floats
+    inelastic: tuple[Inelastic, ...] = ()
 
-    def elements(self, displacement: Floats, unknowns: Floats) -> Iterator[tuple[slice, Floats, Floats]]:
-        """Element matrices (upper triangle) and residuals, chunk by chunk."""
-        shape_p = linear(tetrahedron()[0])
+    @property
+    def groups(self) -> tuple[Ints, ...]:
+        """Unknowns of the elements."""
+        return (self.dofs,)
+
+    def start(self) -> History:
+        """Memory of every inelastic law at rest."""
+        return tuple(law.start(self.weight.size) for law in self.inelastic)
+
+    def elements(self, trial: Trial, history: History) -> Iterator[Block]:
+        """Element matrices and residuals, chunk by chunk. InvertedElementError."""
+        for part, f in self._chunks(trial):
+            response = self.respond(f, _part_of(history, part, self.weight), trial.time_step)[0]
+            yield Block(0, part, *self._integrate(part, f, response, trial.x))
+
+    def advance(self, trial: Trial, history: History) -> History:
+        """Memory at the converged state."""
+        if not self.inelastic:
+            return history
+        parts = [
+            self.respond(f, _part_of(history, part, self.weight), trial.time_step)[1] for part, f in self._chunks(trial)
+        ]
+        return tuple(tuple(np.concatenate(a) for a in zip(*m, strict=True)) for m in zip(*parts, strict=True))
+
+    def time_error(self, history: History, new: History, time_step: float) -> float:
+        """Error of the time integration in this step, relative to the largest stress."""
+        errors = [
+            law.time_error(old, now, time_step)
+            for law, old, now in zip(self.inelastic, history, new, strict=True)
+            if isinstance(law, Prony)
+        ]
+        return max(errors, default=0.0)
+
+    def respond(self, f: Floats, memory: tuple[Memory, ...], time_step: float) -> tuple[Response, tuple[Memory, ...]]:
+        """Isochoric (of a foam: whole) response at F (s, q, 3, 3) in points in order, and the new memory."""
+        c = (f.swapaxes(-1, -2) @ f).reshape(-1, 3, 3)
+        energy = self.law.energy(c) if any(law.needs_energy for law in self.inelastic) else None
+        response, new = Response(*self.law.stress(c), energy), []
+        for law, old in zip(self.inelastic, memory, strict=True):
+            response, now = law.update(response, old, time_step)
+            new.append(now)
+        return response, tuple(new)
+
+    def _chunks(self, trial: Trial) -> Iterator[tuple[slice, Floats]]:
         for start in range(0, len(self.tets), CHUNK):
             part = slice(start, start + CHUNK)
-            f = deformation_gradient(self.gradient[part], displacement[self.tets[part]])
+            f = deformation_gradient(self.gradient[part], trial.displacement[self.tets[part]])
             refuse_inversion(f, self.name, self.tets[part])
-            stress, tangent = self.law.stress((f.swapaxes(-1, -2) @ f).reshape(-1, 3, 3))
-            points = f.shape[:2]
-            ke = np.empty((len(f), 34, 34))
-            re = np.empty((len(f), 34))
-            mixed_solid(
-                self.gradient[part], self.weight[part], shape_p, f, unknowns[self.dofs[part, 30:]],
-                self.law.bulk_modulus, stress.reshape(*points, 6),
-                np.ascontiguousarray(tangent).reshape(*points, 6, 6), ke, re,
-            )
-            yield part, ke, re
+            yield part, f
 
-def solid_region(name: str, law: MediumLaw, points: Floats, tets: Ints, dofs: Ints) -> SolidRegion:
-    """Prepare a medium: points (n, 3), tets (m, 10), dofs (m, 34)."""
+    def _integrate(self, part: slice, f: Floats, response: Response, x: Floats) -> tuple[Floats, Floats]:
+        stress = response.stress.reshape(*f.shape[:2], 6)
+        tangent = np.ascontiguousarray(response.tangent).reshape(*f.shape[:2], 6, 6)
+        ke, re = np.empty((len(f), *2 * self.dofs.shape[1:])), np.empty((len(f), self.dofs.shape[1]))
+        if self.law.compressible:
+            compressible_solid(self.gradient[part], self.weight[part], f, stress, tangent, ke, re)
+            return ke, re
+        pressure = x[self.dofs[part, 30:]]
+        shape_p = linear(tetrahedron()[0])
+        mixed_solid(
+            self.gradient[part], self.weight[part], shape_p, f, pressure, self.law.bulk_modulus, stress, tangent, ke, re
+        )
+        return ke, re
+
+
+def _part_of(history: History, part: slice, weight: Floats) -> tuple[Memory, ...]:
+    """The memory of the quadrature points of some elements."""
+    points = weight.shape[1]
+    return tuple(tuple(a[part.start * points : part.stop * points] for a in memory) for memory in history)
+
+
+def solid_region(
+    name: str, law: MediumLaw, points: Floats, tets: Ints, dofs: Ints, inelastic: tuple[Inelastic, ...] = ()
+) -> SolidRegion:
+    """Prepare a medium: points (n, 3), tets (m, 10), dofs (m, 34), or (m, 30) for a compressible law."""
     reference, weight = tetrahedron()
     gradient, volume = physical_gradients(points[tets], quadratic(reference)[1], weight)
-    return SolidRegion(name, law, tets, np.ascontiguousarray(dofs), gradient, volume)
+    return SolidRegion(name, law, tets, np.ascontiguousarray(dofs), gradient, volume, inelastic)

@@ -1,24 +1,23 @@
-"""The discrete problem: residual and symmetric tangent of everything that acts on the segment.
+"""The discrete problem: residual and tangent of everything that acts on the segment.
 
 Unknowns live in one vector; all are in units of a length (the segment's) and a stress (the stiffest medium's shear
-modulus), so that the answer and the iterations do not depend on metres or millimetres.
+modulus), so that the answer and the iterations do not depend on metres or millimetres. Time is in seconds.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse as sp
 
 from mesh.types import Bools, Floats
 from solve.contact import ContactFacets
 from solve.element_kernels import scatter
 from solve.film import FilmRegion
-from solve.sides import SideSprings
+from solve.friction import FrictionalContact
 from solve.solid import SolidRegion
 from solve.sparsity import Pattern
+from solve.term import History, Term, Trial
 from solve.unknowns import Unknowns
-
-ACTIVE_SET_STIFFNESS = 10.0  # only steers the active set; the converged answer does not contain it
+from solve.unsymmetric import Tangent, scatter_unsymmetric
 
 CONTACT_SPRING = 1e4  # only steers the preconditioner of the linear solver
 
@@ -36,94 +35,151 @@ class Units:
         """N."""
         return self.stress * self.length**2
 
+    @property
+    def charge(self) -> float:
+        """C."""
+        return self.force * self.length / self.voltage
+
+    @property
+    def mass(self) -> float:
+        """kg, so that force = mass x length / s^2."""
+        return self.force / self.length
+
 
 @dataclass(frozen=True)
 class Load:
     """What the rig prescribes, in solver units: lateral position of the dot, and its approach or its force."""
 
     lateral: tuple[float, float]
-    approach: float = 0.0
-    force: float | None = None
+    drive: float
+
+
+@dataclass(frozen=True)
+class State:
+    """A converged state: time in s, load, unknowns, memory of each term, largest norm of contact forces so far."""
+
+    time: float
+    load: Load
+    x: Floats
+    histories: tuple[History, ...]
+    force_scale: float = 0.0
+    iterations: int = 0
+    relative_residual: float = 0.0
 
 
 @dataclass(frozen=True)
 class Evaluation:
-    """Residual (count,), tangent (upper triangle), norm of the contact forces, active contact nodes."""
+    """Residual (count,), tangent, norm of the contact forces, discrete states of all terms."""
 
     residual: Floats
-    tangent: sp.csr_matrix
+    tangent: Tangent
     load_norm: float
-    active: Bools
+    status: Bools
 
 
 @dataclass(frozen=True)
 class System:
-    """All parts of the problem; points in solver units."""
+    """All terms of the problem; points in solver units. contact is the contact's geometry, with or without friction."""
 
     points: Floats
     unknowns: Unknowns
+    count: int
     units: Units
-    solids: tuple[SolidRegion, ...]
-    film: FilmRegion
-    sides: tuple[SideSprings, ...]
+    terms: tuple[Term, ...]
     contact: ContactFacets
     pattern: Pattern
 
+    @property
+    def solids(self) -> tuple[SolidRegion, ...]:
+        """The media."""
+        return tuple(term for term in self.terms if isinstance(term, SolidRegion))
+
+    @property
+    def film(self) -> FilmRegion:
+        """The film."""
+        return next(term for term in self.terms if isinstance(term, FilmRegion))
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether the tangent is."""
+        return all(term.symmetric for term in self.terms)
+
+    def history_of(self, term: Term, state: State) -> History:
+        """Memory of one term in a state."""
+        return next(h for t, h in zip(self.terms, state.histories, strict=True) if t is term)
+
+    def at_rest(self, load: Load) -> State:
+        """The undeformed state."""
+        return State(0.0, load, np.zeros(self.count), tuple(term.start() for term in self.terms))
+
     def displacement(self, x: Floats) -> Floats:
         """Nodal displacements (n, 3) of an unknown vector (count,)."""
-        return self._with_zero(x)[self.unknowns.displacement]
-
-    def voltage(self, x: Floats) -> Floats:
-        """Electrode voltages (e,) that act back on the film; zero when the coupling is one-way."""
-        return self._with_zero(x)[self.unknowns.voltage]
+        return np.append(x, 0.0)[self.unknowns.displacement]  # index -1, a prescribed value, reads zero
 
     def move(self, x: Floats, load: Load) -> Floats:
         """Displacement of the dot (3,)."""
-        approach = load.approach if self.unknowns.approach < 0 else x[self.unknowns.approach]
+        approach = load.drive if self.unknowns.approach < 0 else x[self.unknowns.approach]
         return np.array([*load.lateral, -approach])
+
+    def trial(self, x: Floats, load: Load, time: float, previous: State) -> Trial:
+        """Everything that the terms see of a trial state after a converged one."""
+        return Trial(
+            x=x,
+            displacement=self.displacement(x),
+            move=self.move(x, load),
+            drive=load.drive,
+            previous_displacement=self.displacement(previous.x),
+            previous_move=self.move(previous.x, previous.load),
+            previous_drive=previous.load.drive,
+            time=time,
+            time_step=time - previous.time,
+        )
+
+    def dot_force(self, trial: Trial) -> Floats:
+        """Resultant of the dot on the meshed body (3,)."""
+        pressure = trial.x[self.contact.pressure_dofs]
+        for term in self.terms:
+            if isinstance(term, FrictionalContact):
+                return term.force(trial.displacement, trial.move, pressure, trial.x[term.friction_dofs])
+        return self.contact.force(trial.displacement, trial.move, pressure)
 
     @property
     def factorisation_shift(self) -> Floats:
         """Diagonal of the contact rows for the factorisation only: a stiff spring instead of a constraint."""
-        shift = np.zeros(self.unknowns.count)
+        shift = np.zeros(self.count)
         shift[self.contact.pressure_dofs] = -self.contact.nodal_area / CONTACT_SPRING
         return shift
 
-    @staticmethod
-    def _with_zero(x: Floats) -> Floats:
-        return np.append(x, 0.0)  # index -1, a prescribed value, reads zero
-
-    def active_nodes(self, x: Floats, load: Load) -> Bools:
-        """Nodes in contact: lambda_i - c g_i > 0, shape (c,) bool."""
-        gap = self.contact.weighted_gap(self.displacement(x), self.move(x, load)) / self.contact.nodal_area
-        return np.asarray(x[self.contact.pressure_dofs] - ACTIVE_SET_STIFFNESS * gap > 0.0)
-
-    def evaluate(self, x: Floats, load: Load) -> Evaluation:
-        """Residual and tangent at x; pressures of open nodes in x are set to zero. InvertedElementError."""
-        active = self.active_nodes(x, load)
-        pressure_dofs = self.contact.pressure_dofs
-        x[pressure_dofs[~active]] = 0.0
-        displacement = self.displacement(x)
-        residual = np.zeros(len(x))
+    def evaluate(self, trial: Trial, histories: tuple[History, ...]) -> Evaluation:
+        """Residual and tangent at a trial state. InvertedElementError."""
+        residual = np.zeros(self.count)
         data = np.zeros(len(self.pattern.indices))
-        slots = iter(self.pattern.slots)
+        excess = None if self.symmetric else np.zeros(len(data))
+        load_norm, status, slots = 0.0, [], iter(self.pattern.slots)
+        for term, history in zip(self.terms, histories, strict=True):
+            before = residual.copy()
+            own = [next(slots) for _ in term.groups]
+            for block in term.elements(trial, history):
+                dofs, slot = term.groups[block.group][block.part], own[block.group][block.part]
+                if term.symmetric:
+                    scatter(block.matrices, block.residuals, dofs, slot, data, residual)
+                else:
+                    scatter_unsymmetric(block.matrices, block.residuals, dofs, slot, data, excess, residual)
+            status.append(term.status(trial, history))
+            if isinstance(term, ContactFacets | FrictionalContact):
+                mechanical = self.unknowns.displacement.max() + 1
+                load_norm = float(np.linalg.norm((residual - before)[:mechanical]))
+        upper = self.pattern.matrix(data)
+        lower = None if excess is None else self.pattern.matrix(excess)
+        return Evaluation(residual, Tangent(upper, lower), load_norm, np.concatenate(status))
 
-        for solid in self.solids:
-            slot = next(slots)
-            for part, ke, re in solid.elements(displacement, x):
-                scatter(ke, re, solid.dofs[part], slot[part], data, residual)
-        ke, re = self.film.elements(displacement, self.voltage(x))
-        scatter(ke, re, self.film.dofs, next(slots), data, residual)
-        for side in self.sides:
-            ke, re = side.elements(displacement)
-            scatter(ke, re, side.dofs, next(slots), data, residual)
+    def advance(self, trial: Trial, histories: tuple[History, ...]) -> tuple[History, ...]:
+        """Memories once the trial state has converged."""
+        return tuple(term.advance(trial, history) for term, history in zip(self.terms, histories, strict=True))
 
-        internal = residual.copy()
-        ke, re = self.contact.elements(displacement, self.move(x, load), x[pressure_dofs], active)
-        scatter(ke, re, self.contact.dofs, next(slots), data, residual)
-        data[self.pattern.diagonal[pressure_dofs[~active]]] = -1.0
-        mechanical = np.arange(len(x)) <= self.unknowns.displacement.max()
-        load_norm = float(np.linalg.norm((residual - internal)[mechanical]))
-        if self.unknowns.approach >= 0:
-            residual[self.unknowns.approach] -= load.force or 0.0
-        return Evaluation(residual, self.pattern.matrix(data), load_norm, active)
+    def time_error(self, state: State, new: State) -> float:
+        """Largest error estimate of the terms that integrate in time, relative."""
+        return max(
+            term.time_error(old, now, new.time - state.time)
+            for term, old, now in zip(self.terms, state.histories, new.histories, strict=True)
+        )

@@ -7,13 +7,25 @@ import numpy as np
 from mesh.types import Ints, TetMesh
 
 
+class Numbers:
+    """Hands out the numbers of unknowns, one after the other."""
+
+    def __init__(self) -> None:
+        self.count = 0
+
+    def take(self, how_many: int) -> Ints:
+        """The next numbers (how_many,)."""
+        self.count += how_many
+        return np.arange(self.count - how_many, self.count)
+
+
 @dataclass(frozen=True)
 class Unknowns:
     """Global numbers; -1 stands for a value that is prescribed.
 
     displacement : (n, 3) one row a node, twins share theirs.
-    pressure : (m, 4) of the corners of each tetrahedron, continuous inside a region only; -1 in the film.
-    voltage : (e,) one per electrode, -1 where the voltage does not act back on the film.
+    pressure : (m, 4) of the corners of each tetrahedron, continuous inside a region only; -1 in film and foam.
+    voltage : (e,) one per electrode, the same for electrodes in parallel, -1 where it does not act back on the film.
     contact : (n,) contact pressure at the nodes of the contact facets, else -1.
     approach : number of the dot's approach, or -1 when it is prescribed.
     """
@@ -23,7 +35,6 @@ class Unknowns:
     voltage: Ints
     contact: Ints
     approach: int
-    count: int
 
 
 def fixed_nodes(tet_mesh: TetMesh, held_regions: tuple[str, ...]) -> Ints:
@@ -35,13 +46,16 @@ def fixed_nodes(tet_mesh: TetMesh, held_regions: tuple[str, ...]) -> Ints:
 
 def number(
     tet_mesh: TetMesh,
+    numbers: Numbers,
     held_regions: tuple[str, ...],
     plane_strain: bool,
+    without_pressure: tuple[str, ...],
     electrodes: int,
     two_way: bool,
-    force_driven: bool,
+    parallel: bool,
+    approach: bool,
 ) -> Unknowns:
-    """Number all unknowns of a problem."""
+    """Number the unknowns of a problem; two_way : voltages act back, of electrodes in parallel or each alone."""
     nodes, twin = len(tet_mesh.points_mm), tet_mesh.twin
     free = np.zeros((nodes, 3), bool)
     free[twin[tet_mesh.tets]] = True
@@ -49,27 +63,21 @@ def number(
     if plane_strain:
         free[:, 1] = False
     displacement = np.full((nodes, 3), -1)
-    displacement[free] = np.arange(free.sum())
-    displacement = displacement[twin]
-    count = int(free.sum())
+    displacement[free] = numbers.take(int(free.sum()))
 
     pressure = np.full((len(tet_mesh.tets), 4), -1)
-    for region in range(len(tet_mesh.region_names)):
-        if tet_mesh.region_names[region] == "film":
+    for region, name in enumerate(tet_mesh.region_names):
+        if name in without_pressure:
             continue
         inside = tet_mesh.region == region
         corners, local = np.unique(twin[tet_mesh.tets[inside, :4]], return_inverse=True)
-        pressure[inside] = count + local.reshape(-1, 4)
-        count += len(corners)
+        pressure[inside] = numbers.take(len(corners))[local.reshape(-1, 4)]
 
     voltage = np.full(electrodes, -1)
     if two_way:
-        voltage = count + np.arange(electrodes)
-        count += electrodes
+        voltage[:] = numbers.take(1 if parallel else electrodes)
     contact = np.full(nodes, -1)
     touching = np.unique(twin[tet_mesh.facets["contact"]])
-    contact[touching] = count + np.arange(len(touching))
-    contact = contact[twin]
-    count += len(touching)
-    approach = count if force_driven else -1
-    return Unknowns(displacement, pressure, voltage, contact, approach, count + int(force_driven))
+    contact[touching] = numbers.take(len(touching))
+    dot = int(numbers.take(1)[0]) if approach else -1
+    return Unknowns(displacement[twin], pressure, voltage, contact[twin], dot)

@@ -20,6 +20,19 @@ def duration_s(waveform: Waveform) -> float:
     return waveform.rise_s + (waveform.hold_s if waveform.shape in ("ramp", "trapezoid") else 0.0) + fall
 
 
+def corners_s(waveform: Waveform) -> Floats:
+    """Times (n,) from 0 to the end at which the rate may jump; of a file its samples, thinned to 200."""
+    if waveform.shape == "file":
+        table = _table(waveform)
+        return np.asarray(table[np.unique(np.linspace(0, len(table) - 1, min(len(table), 200)).astype(int)), 0])
+    corners = [0.0, waveform.rise_s]
+    if waveform.shape in ("ramp", "trapezoid") and waveform.hold_s > 0.0:
+        corners.append(waveform.rise_s + waveform.hold_s)
+    if duration_s(waveform) > corners[-1]:
+        corners.append(duration_s(waveform))
+    return np.array(corners)
+
+
 def fraction(waveform: Waveform, time_s: Floats) -> Floats:
     """Fraction of the final depth or force, 0 to 1, same shape as time_s. InputError for a bad file."""
     relative = np.clip(time_s / waveform.rise_s, 0.0, None)

@@ -1,4 +1,4 @@
-"""Stress and tangent of a polynomial in the isochoric invariants.
+"""Energy, stress and tangent of a polynomial in the isochoric invariants.
 
 With A = dI1/dC = J^(-2/3) (1 - I1/3 C^-1) and B = dI2/dC = J^(-4/3) (I1 1 - C - 2/3 I2 C^-1):
     S = 2 (W1 A + W2 B),     CC = 4 (W11 A x A + W1 dA/dC + W2 dB/dC)
@@ -82,3 +82,14 @@ def isochoric_stress(cauchy_green: Floats, constants: Floats) -> tuple[Floats, F
     c10, c01, c20, c30 = constants
     _stress_and_tangent(cauchy_green, c10, c01, c20, c30, stress, tangent)
     return stress, tangent
+
+
+def isochoric_energy(cauchy_green: Floats, constants: Floats) -> Floats:
+    """W_iso (n,) at C (n, 3, 3), real or complex, for the constants (c10, c01, c20, c30)."""
+    j23 = np.linalg.det(cauchy_green) ** (-1.0 / 3.0)
+    trace = np.trace(cauchy_green, axis1=1, axis2=2)
+    square = np.einsum("nij,nij->n", cauchy_green, cauchy_green)
+    c10, c01, c20, c30 = constants
+    x, y = j23 * trace - 3.0, 0.5 * j23**2 * (trace**2 - square) - 3.0
+    energy: Floats = x * (c10 + x * (c20 + x * c30)) + c01 * y
+    return energy

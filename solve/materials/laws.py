@@ -1,8 +1,8 @@
 """Isotropic hyperelastic laws of the media: W = W_iso(C) + p (J - 1) - p^2 / (2 K).
 
 The volumetric part is the same for all laws: eliminating p gives K (J - 1)^2 / 2 (Holzapfel, Nonlinear Solid
-Mechanics, 2000, ch. 6). A law states only the second Piola-Kirchhoff stress S = 2 dW_iso/dC and the material
-tangent 4 d2W_iso/dC2, both as six-component (Voigt) arrays.
+Mechanics, 2000, ch. 6). A law states only W_iso, the second Piola-Kirchhoff stress S = 2 dW_iso/dC and the material
+tangent 4 d2W_iso/dC2, both as six-component (Voigt) arrays. A compressible law (hyperfoam) states the whole W(C).
 """
 
 from dataclasses import dataclass, replace
@@ -11,11 +11,11 @@ from typing import Protocol
 import numpy as np
 
 from mesh.types import Floats
-from solve.materials.isochoric import isochoric_stress
-from solve.materials.parameters import Linear, Material, MooneyRivlin, NeoHookean, Yeoh
+from solve.materials.hyperfoam import HyperfoamLaw
+from solve.materials.isochoric import isochoric_energy, isochoric_stress
+from solve.materials.ogden import log_stretches, principal_stress
+from solve.materials.parameters import Hyperfoam, Linear, Material, MooneyRivlin, NeoHookean, Ogden, Yeoh
 from solve.materials.voigt import to_voigt
-
-IMPLEMENTED = frozenset({"neo-hookean", "linear", "mooney-rivlin", "yeoh", "piezoelectric-film"})
 
 
 class MediumLaw(Protocol):
@@ -29,11 +29,18 @@ class MediumLaw(Protocol):
     def shear_modulus(self) -> float:
         """Small-strain shear modulus, same unit."""
 
+    @property
+    def compressible(self) -> bool:
+        """True when stress and energy are whole; False when they are isochoric and the pressure is an unknown."""
+
     def scaled(self, factor: float) -> "MediumLaw":
         """The same law in another unit of stress."""
 
     def stress(self, cauchy_green: Floats) -> tuple[Floats, Floats]:
         """S (n, 6) and tangent (n, 6, 6) at C (n, 3, 3)."""
+
+    def energy(self, cauchy_green: Floats) -> Floats:
+        """Strain energy (n,) per undeformed volume at C (n, 3, 3)."""
 
 
 @dataclass(frozen=True)
@@ -54,6 +61,11 @@ class InvariantLaw:
         """Small-strain shear modulus."""
         return 2.0 * (self.c10 + self.c01)
 
+    @property
+    def compressible(self) -> bool:
+        """False: the pressure is an unknown."""
+        return False
+
     def scaled(self, factor: float) -> "InvariantLaw":
         """The same law in another unit of stress."""
         return InvariantLaw(*(factor * c for c in (self.c10, self.c01, self.c20, self.c30, self.bulk_modulus)))
@@ -62,6 +74,50 @@ class InvariantLaw:
         """S (n, 6) and tangent (n, 6, 6) at C (n, 3, 3)."""
         return isochoric_stress(cauchy_green, np.array([self.c10, self.c01, self.c20, self.c30]))
 
+    def energy(self, cauchy_green: Floats) -> Floats:
+        """W_iso (n,) at C (n, 3, 3)."""
+        return isochoric_energy(cauchy_green, np.array([self.c10, self.c01, self.c20, self.c30]))
+
+
+@dataclass(frozen=True)
+class OgdenLaw:
+    """W_iso = sum mu/alpha (l1^alpha + l2^alpha + l3^alpha - 3) in the stretches over J^(1/3).
+
+    Ogden, Proc. R. Soc. Lond. A 326, 1972, p. 565. One value of mu (unit of stress) and of alpha a term.
+    """
+
+    mu: tuple[float, ...]
+    alpha: tuple[float, ...]
+    bulk_modulus: float
+
+    @property
+    def shear_modulus(self) -> float:
+        """Small-strain shear modulus, half the sum of mu alpha."""
+        return 0.5 * float(np.dot(self.mu, self.alpha))
+
+    @property
+    def compressible(self) -> bool:
+        """False: the pressure is an unknown."""
+        return False
+
+    def scaled(self, factor: float) -> "OgdenLaw":
+        """The same law in another unit of stress."""
+        return OgdenLaw(tuple(factor * m for m in self.mu), self.alpha, factor * self.bulk_modulus)
+
+    def stress(self, cauchy_green: Floats) -> tuple[Floats, Floats]:
+        """S (n, 6) and tangent (n, 6, 6) at C (n, 3, 3)."""
+        return principal_stress(cauchy_green, np.array(self.mu), np.array(self.alpha))
+
+    def energy(self, cauchy_green: Floats) -> Floats:
+        """W_iso (n,) at C (n, 3, 3)."""
+        log = log_stretches(cauchy_green)
+        log -= log.mean(axis=1, keepdims=True)
+        energy = np.zeros(len(log))
+        for m, a in zip(self.mu, self.alpha, strict=True):
+            if a != 0.0:  # the term vanishes with alpha: the logarithms sum to zero
+                energy += m / a * np.expm1(a * log).sum(axis=1)
+        return energy
+
 
 @dataclass(frozen=True)
 class LinearLaw:
@@ -69,6 +125,11 @@ class LinearLaw:
 
     shear_modulus: float
     bulk_modulus: float
+
+    @property
+    def compressible(self) -> bool:
+        """False: the pressure is an unknown."""
+        return False
 
     def scaled(self, factor: float) -> "LinearLaw":
         """The same law in another unit of stress."""
@@ -82,6 +143,13 @@ class LinearLaw:
         tangent = self.shear_modulus * np.diag([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])
         tangent[:3, :3] -= self.shear_modulus * 2.0 / 3.0
         return strain @ tangent, np.broadcast_to(tangent, (len(strain), 6, 6))
+
+    def energy(self, cauchy_green: Floats) -> Floats:
+        """W_iso (n,) at C (n, 3, 3)."""
+        strain = 0.5 * (cauchy_green - np.eye(3))
+        trace = np.trace(strain, axis1=1, axis2=2)
+        energy: Floats = self.shear_modulus * (np.einsum("nij,nij->n", strain, strain) - trace**2 / 3.0)
+        return energy
 
 
 def bulk_modulus(shear_modulus: float, poisson_ratio: float) -> float:
@@ -97,10 +165,16 @@ def medium_law(material: Material) -> MediumLaw:
         if isinstance(material, Linear):
             return LinearLaw(shear, bulk)
         return InvariantLaw(shear / 2.0, 0.0, 0.0, 0.0, bulk)
+    if isinstance(material, Hyperfoam):
+        beta = tuple(nu / (1.0 - 2.0 * nu) for nu in material.poisson_ratio)
+        return HyperfoamLaw(tuple(1e6 * m for m in material.mu_MPa), material.alpha, beta)
+    law: InvariantLaw | OgdenLaw
     if isinstance(material, MooneyRivlin):
-        c10, c01, c20, c30 = 1e6 * material.c10_MPa, 1e6 * material.c01_MPa, 0.0, 0.0
+        law = InvariantLaw(1e6 * material.c10_MPa, 1e6 * material.c01_MPa, 0.0, 0.0, 0.0)
     elif isinstance(material, Yeoh):
-        c10, c01, c20, c30 = 1e6 * material.c10_MPa, 0.0, 1e6 * material.c20_MPa, 1e6 * material.c30_MPa
+        law = InvariantLaw(1e6 * material.c10_MPa, 0.0, 1e6 * material.c20_MPa, 1e6 * material.c30_MPa, 0.0)
+    elif isinstance(material, Ogden):
+        law = OgdenLaw(tuple(1e6 * m for m in material.mu_MPa), material.alpha, 0.0)
     else:
         raise TypeError(f"{material.model} is not a medium")
-    return InvariantLaw(c10, c01, c20, c30, bulk_modulus(2.0 * (c10 + c01), material.poisson_ratio))
+    return replace(law, bulk_modulus=bulk_modulus(law.shear_modulus, material.poisson_ratio))

@@ -19,6 +19,8 @@ PoissonRatio = Annotated[
     Field(json_schema_extra={"exclusiveMinimum": -1, "exclusiveMaximum": 0.5}),
 ]
 Terms = Annotated[tuple[Finite, ...], Field(min_length=1)]
+Exponent = Annotated[float, Field(ge=-100, le=100)]  # stretches to a higher power overflow
+Exponents = Annotated[tuple[Exponent, ...], Field(min_length=1)]
 
 
 class MaterialTable(Table):
@@ -78,7 +80,7 @@ class Ogden(MaterialTable):
 
     model: Literal["ogden"] = Field("ogden", description="Ogden rubber, any number of terms")
     mu_MPa: Terms = Field(description="modulus of each term")
-    alpha: Terms = Field(description="exponent of each term")
+    alpha: Exponents = Field(description="exponent of each term")
     poisson_ratio: PoissonRatio = Field(0.495, description="small-strain Poisson's ratio")
 
     @model_validator(mode="after")
@@ -96,7 +98,7 @@ class Hyperfoam(MaterialTable):
 
     model: Literal["hyperfoam"] = Field("hyperfoam", description="Ogden-Hill compressible foam")
     mu_MPa: Terms = Field(description="modulus of each term")
-    alpha: Terms = Field(description="exponent of each term, not zero")
+    alpha: Exponents = Field(description="exponent of each term, not zero")
     poisson_ratio: Annotated[tuple[PoissonRatio, ...], Field(min_length=1)] = Field(
         description="Poisson's ratio of each term"
     )
@@ -107,6 +109,11 @@ class Hyperfoam(MaterialTable):
         _require_terms("poisson_ratio", self.poisson_ratio, self.mu_MPa)
         if 0.0 in self.alpha:
             raise ValueError("alpha = 0: every exponent must differ from zero")
+        # K = sum 2 mu (beta + 1/3) = sum 2/3 mu (1 + nu) / (1 - 2 nu)
+        ratios = ((1.0 + nu) / (1.0 - 2.0 * nu) for nu in self.poisson_ratio)
+        bulk_MPa = 2.0 / 3.0 * sum(m * r for m, r in zip(self.mu_MPa, ratios, strict=True))
+        if not bulk_MPa > 0.0:
+            raise ValueError(f"small-strain bulk modulus = {bulk_MPa:g} MPa: must be above 0")
         return _require_shear_modulus(self, sum(self.mu_MPa), "the sum of mu_MPa")
 
 
@@ -125,6 +132,7 @@ class PiezoelectricFilm(MaterialTable):
     d32_pC_per_N: Finite = Field(2.3, description="charge per force across the draw direction")
     d33_pC_per_N: Finite = Field(-33.0, description="charge per force along the normal")
     relative_permittivity: Positive = Field(12.0, description="at constant stress, along the normal")
+    pyroelectric_uC_per_m2_K: Finite = Field(30.0, description="charge per area and temperature")
     yield_stress_MPa: Positive | None = Field(
         50.0, description="a run warns when the film is stressed beyond it"
     )

@@ -4,7 +4,7 @@ import numpy as np
 
 from geometry.dot_shape import DotShape
 from mesh.types import TetMesh
-from solve.result import Fields, PressResult, Step
+from solve.result import Fields, PressResult, Step, Trace
 
 
 def one_tetrahedron() -> TetMesh:
@@ -22,6 +22,8 @@ def cap_of_height(height_mm: float) -> DotShape:
 def step_at(depth_mm: float, stretch: float = 1.0) -> Step:
     """A converged step: 10 N, 20 pC and 2 V per mm on one electrode, the one element stretched as said."""
     return Step(
+        time_s=depth_mm,
+        dot_force_N=np.array([0.0, 0.0, 10.0 * depth_mm]),
         indentation_m=1e-3 * depth_mm,
         reaction_force_N=10.0 * depth_mm,
         film_charge_C=np.array([20e-12 * depth_mm]),
@@ -41,8 +43,17 @@ def fields_with_stretch(stretch: float) -> Fields:
 
 def result_of(depths_mm: list[float], failure: str | None = None, stress_MPa: float = 10.0) -> PressResult:
     """A press that reached these depths and then, with a failure, stopped."""
+    depths = np.array(depths_mm)
+    trace = Trace(
+        time_s=depths, indentation_m=1e-3 * depths, dot_path_m=1e-3 * depths, reaction_force_N=10.0 * depths,
+        contact_force_N=10.0 * depths[:, None] * [0, 0, 1], film_charge_C=20e-12 * depths[:, None],
+        contact_area_m2=1e-6 * depths,
+    )
     return PressResult(
         steps=tuple(step_at(depth) for depth in depths_mm),
+        trace=trace,
+        follows_time=False,
+        tet_mesh=one_tetrahedron(),
         converged=failure is None,
         failure=failure,
         electrode_names=("film",),

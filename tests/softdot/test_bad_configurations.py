@@ -20,6 +20,11 @@ def refusal(arguments, tmp_path, capfd):
     return printed.err.removeprefix("softdot: ").rstrip("\n")
 
 
+PRONY = (
+    "[[mechanisms]]\nname = 'viscoelasticity'\ncomponent = 'medium2'\n"
+    "parameters = {{relative_moduli = {}, relaxation_times_s = {}}}"
+)
+
 NUMBER = "must be a plain number, its unit stands in the key"
 BOND = "normal_stiffness_N_per_mm3 = 1.0\nshear_stiffness_N_per_mm3 = 1.0"
 CASES = {
@@ -99,16 +104,31 @@ CASES = {
         "mechanisms[0].parameters.mu: friction takes coefficient"
     ),
     "[[mechanisms]]\nname = 'viscoelasticity'\ncomponent = 'medium2'": (
-        "mechanisms: 'viscoelasticity' is not modelled by this version"
+        "mechanisms[0].parameters.relative_moduli is missing: viscoelasticity needs it"
     ),
-    f"[[segment.bonds]]\nbetween = ['film', 'medium2']\n{BOND}": (
-        "segment.bonds: the compliant bond 'film-medium2' is not modelled by this version"
+    PRONY.format("[0.6, 0.4]", "[0.1, 1.0]"): (
+        "mechanisms[0].parameters.relative_moduli = [0.6, 0.4]: their sum must be below 1"
+    ),
+    PRONY.format("[0.6]", "[0.1, 1.0]"): (
+        "mechanisms[0].parameters.relaxation_times_s has 2 values but relative_moduli has 1: one of each per term"
+    ),
+    PRONY.format("[0.6]", "[-0.1]"): (
+        "mechanisms[0].parameters.relaxation_times_s.0 = -0.1: must be greater than 0"
+    ),
+    "[[mechanisms]]\nname = 'friction'\ncomponent = 'dot'\nparameters = {coefficient = -0.1}": (
+        "mechanisms[0].parameters.coefficient = -0.1: must be greater than or equal to 0"
+    ),
+    "[[mechanisms]]\nname = 'viscoelasticity'\ncomponent = 'bond-film-medium2'\n"
+    "parameters = {relative_moduli = [0.5], relaxation_times_s = [1.0]}": (
+        "mechanisms: viscoelasticity of 'bond-film-medium2' needs a compliant bond there; "
+        "add adhesive-compliance or segment.bonds"
+    ),
+    "[[mechanisms]]\nname = 'crosstalk'\ncomponent = 'channel-2'\nparameters = {coupling = 0.1}": (
+        "mechanisms: crosstalk into 'channel-2' needs that electrode and another one; "
+        "segment.film.electrodes has 0"
     ),
     f"[[segment.bonds]]\nbetween = ['film', 'glue']\n{BOND}": (
         "segment.bonds[0].between[1] = 'glue': must be 'effector', 'medium1', 'film', 'medium2' or 'base'"
-    ),
-    "[segment.effector]\nmaterial = 'sponge-hyperfoam'": (
-        "segment.effector.material: model 'hyperfoam' is not modelled by this version"
     ),
 }
 

@@ -28,7 +28,7 @@ HOMES = (
 EXAMPLES = tomllib.loads((ROOT / "docs" / "configuration_examples.toml").read_text("utf-8"))
 
 
-@pytest.mark.parametrize("file", ["configuration.md", "geometry.md", "limits.md"])
+@pytest.mark.parametrize("file", ["configuration.md", "geometry.md", "mechanisms.md"])
 def test_generated_text_is_in_step(file):
     assert (ROOT / "docs" / file).read_text("utf-8") == maker.pages()[file]
 

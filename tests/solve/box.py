@@ -12,6 +12,7 @@ from solve.materials.laws import MediumLaw
 from solve.shape_functions import TET_EDGES
 from solve.solid import SolidRegion, solid_region
 from solve.sparsity import build_pattern
+from tests.solve.trial import trial
 
 KUHN = [list(itertools.accumulate((0, *(1 << a for a in axes)))) for axes in itertools.permutations(range(3))]
 
@@ -61,8 +62,9 @@ class MixedBody:
         for _ in range(12):
             displacement = np.where(fixed, prescribed, np.append(x, 0.0)[self.displacement_dofs])
             residual, data = -external, np.zeros(len(pattern.indices))
-            for part, ke, re in self.solid.elements(displacement, x):
-                scatter(ke, re, self.solid.dofs[part], pattern.slots[0][part], data, residual)
+            for block in self.solid.elements(trial(displacement, x), self.solid.start()):
+                slots = pattern.slots[0][block.part]
+                scatter(block.matrices, block.residuals, self.solid.dofs[block.part], slots, data, residual)
             if np.linalg.norm(residual) < 1e-12:
                 break
             upper = pattern.matrix(data)

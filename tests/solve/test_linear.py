@@ -5,7 +5,8 @@ import pytest
 import scipy.sparse as sp
 
 import solve.linear
-from solve.linear import LinearSolveError, LinearSolver, Pardiso, SuperLU, symmetric_product
+from solve.linear import LinearSolveError, LinearSolver, Pardiso, SuperLU
+from solve.unsymmetric import Tangent
 
 TOLERANCE = 1e-10
 
@@ -37,14 +38,34 @@ def test_saddle_point_system(saddle, registry):
     solver = LinearSolver(shift(upper))
     solver._registry = list(registry)
     full = (upper + sp.triu(upper, 1).T).toarray()
-    np.testing.assert_allclose(solver.solve(upper, rhs, TOLERANCE), np.linalg.solve(full, rhs), rtol=1e-6)
+    np.testing.assert_allclose(solver.solve(Tangent(upper), rhs, TOLERANCE), np.linalg.solve(full, rhs), rtol=1e-6)
     solver.close()
+
+
+@pytest.mark.parametrize("registry", [[Pardiso], [SuperLU]], ids=["pardiso", "superlu"])
+def test_unsymmetric_system(saddle, registry):
+    upper, rhs = saddle
+    excess = sp.triu(upper, 1, format="csr") * 0.3
+    tangent = Tangent(upper, sp.csr_matrix((padded(excess, upper), upper.indices, upper.indptr), upper.shape))
+    full = (upper + 1.3 * sp.triu(upper, 1).T).toarray()
+    np.testing.assert_allclose(tangent @ rhs, full @ rhs, atol=1e-12)
+    np.testing.assert_allclose(tangent.full().toarray(), full, atol=1e-12)
+    solver = LinearSolver(shift(upper))
+    solver._registry = list(registry)
+    np.testing.assert_allclose(solver.solve(tangent, rhs, TOLERANCE), np.linalg.solve(full, rhs), rtol=1e-6)
+    solver.close()
+
+
+def padded(strict, upper):
+    """Values of a strict triangle on the pattern that has the diagonal too."""
+    rows = np.repeat(np.arange(upper.shape[0]), np.diff(upper.indptr))
+    return np.asarray(strict[rows, upper.indices]).ravel()
 
 
 def test_product_with_the_upper_triangle(saddle):
     upper, rhs = saddle
     full = (upper + sp.triu(upper, 1).T).toarray()
-    np.testing.assert_allclose(symmetric_product(upper, rhs), full @ rhs, atol=1e-12)
+    np.testing.assert_allclose(Tangent(upper) @ (rhs), full @ rhs, atol=1e-12)
 
 
 class Wrong(SuperLU):
@@ -70,8 +91,8 @@ def test_a_bad_factorisation_is_noticed_and_replaced(saddle, bad):
     upper, rhs = saddle
     solver = LinearSolver(shift(upper))
     solver._registry = [bad, SuperLU]
-    solution = solver.solve(upper, rhs, TOLERANCE)
-    assert np.linalg.norm(rhs - symmetric_product(upper, solution)) <= TOLERANCE * np.linalg.norm(rhs)
+    solution = solver.solve(Tangent(upper), rhs, TOLERANCE)
+    assert np.linalg.norm(rhs - Tangent(upper) @ (solution)) <= TOLERANCE * np.linalg.norm(rhs)
     assert solver.name == "superlu"
 
 
@@ -81,16 +102,16 @@ def test_a_singular_matrix_is_refused(saddle):
     singular.data[:] = 0.0
     solver = LinearSolver(np.zeros(len(rhs)))
     with pytest.raises(LinearSolveError, match=r"pardiso.*superlu"):
-        solver.solve(singular, rhs, TOLERANCE)
+        solver.solve(Tangent(singular), rhs, TOLERANCE)
 
 
 def test_an_old_factorisation_serves_a_similar_matrix(saddle, monkeypatch):
     upper, rhs = saddle
     solver = LinearSolver(shift(upper))
-    solver.solve(upper, rhs, TOLERANCE)
+    solver.solve(Tangent(upper), rhs, TOLERANCE)
     monkeypatch.setattr(LinearSolver, "_factorise", lambda *_: pytest.fail("factorised again"))
     similar = upper.copy()
     similar.data *= 1.0 + 1e-3 * np.sin(np.arange(len(upper.data)))
-    solution = solver.solve(similar, rhs, 1e-6, similar=True)
-    assert np.linalg.norm(rhs - symmetric_product(similar, solution)) <= 1e-6 * np.linalg.norm(rhs)
+    solution = solver.solve(Tangent(similar), rhs, 1e-6, similar=True)
+    assert np.linalg.norm(rhs - Tangent(similar) @ (solution)) <= 1e-6 * np.linalg.norm(rhs)
     assert solve.linear.KRYLOV_ITERATIONS < 20

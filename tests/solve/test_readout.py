@@ -16,7 +16,8 @@ FILM_F = 971e-12  # 16 x 16 mm, 28 um
 def press_with(charge_C, capacitance_F=FILM_F):
     """A result that carries only what the circuit needs."""
     steps = tuple(SimpleNamespace(film_charge_C=np.array([q])) for q in charge_C)
-    return SimpleNamespace(steps=steps, capacitance_F=np.array([capacitance_F]))
+    trace = SimpleNamespace(film_charge_C=np.array(charge_C)[:, None])
+    return SimpleNamespace(steps=steps, trace=trace, follows_time=False, capacitance_F=np.array([capacitance_F]))
 
 
 LINEAR = press_with(np.linspace(0.0, 1e-9, 7))

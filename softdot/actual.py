@@ -1,0 +1,64 @@
+"""What a configuration really asks for, once its bonds and mechanisms are switched on."""
+
+from geometry.errors import InputError
+from geometry.stack import layers
+from softdot.config import Config
+from solve.model import Model, declared_bonds
+from solve.physics import Physics
+from solve.switch_on import with_mechanisms
+
+
+def actual(config: Config) -> tuple[Config, Physics]:
+    """The configuration with every change that mechanisms make to it, and the physics beyond the baseline.
+
+    InputError with one sentence for a mechanism that this segment cannot have.
+    """
+    physics = Physics(bonds=declared_bonds(config.segment))
+    model = Model(config.segment, config.layer_materials(), config.dot, config.press, config.readout, physics)
+    for number, mechanism in enumerate(config.mechanisms):
+        key = f"mechanisms[{number}]"
+        _refuse_missing_layer(key, mechanism.component, model)
+        try:
+            model = with_mechanisms(model, [mechanism])
+        except ValueError as error:
+            raise InputError(f"{key}.{error}") from None
+    _refuse_viscous_perfect_bonds(model)
+    _refuse_missing_channels(model)
+    return _as_config(config, model), model.physics
+
+
+def _refuse_missing_layer(key: str, component: str, model: Model) -> None:
+    if "effector" in component and model.segment.effector is None:
+        raise InputError(f"{key}.component = '{component}': segment.effector is absent")
+
+
+def _refuse_viscous_perfect_bonds(model: Model) -> None:
+    for name in model.physics.viscosity:
+        if name.startswith("bond-") and name not in model.physics.bonds:
+            raise InputError(
+                f"mechanisms: viscoelasticity of '{name}' needs a compliant bond there; "
+                "add adhesive-compliance or segment.bonds"
+            )
+
+
+def _refuse_missing_channels(model: Model) -> None:
+    channels = max(1, len(model.segment.film.electrodes))
+    for channel in model.physics.crosstalk:
+        if channel > channels or channels == 1:
+            raise InputError(
+                f"mechanisms: crosstalk into 'channel-{channel}' needs that electrode and another one; "
+                f"segment.film.electrodes has {len(model.segment.film.electrodes)}"
+            )
+
+
+def _as_config(config: Config, model: Model) -> Config:
+    """The changes as a configuration; a changed material gets a name of its own."""
+    segment, materials = model.segment, dict(config.materials)
+    for layer in layers(segment):
+        if model.materials[layer.name] is not config.layer_materials().get(layer.name):
+            name = f"{layer.material} of {layer.name}"
+            table = getattr(segment, layer.name).model_copy(update={"material": name})
+            segment = segment.model_copy(update={layer.name: table})
+            materials[name] = model.materials[layer.name]
+    changes = {"segment": segment, "materials": materials, "dot": model.dot, "readout": model.readout}
+    return config.model_copy(update=changes)

@@ -1,0 +1,109 @@
+"""March from target to target: sub-steps that adapt to convergence and to the error of the time integration."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from mesh.types import Floats
+from solve.linear import LinearSolver
+from solve.newton import NoEquilibriumError, equilibrate
+from solve.schedule import Target, between
+from solve.system import Load, State, System
+
+SMALLEST_SUBSTEP = 1.0 / 64.0
+TIME_TOLERANCE = 1e-3  # of the largest stress, or of the dot's path, in one sub-step
+
+OnState = Callable[[State, State], None]  # a converged state and the one before it
+
+
+def rest_state(system: System, linear: LinearSolver, start: Target) -> State:
+    """The segment before the press; with a prestretched film at its equilibrium, the electrodes discharged.
+
+    NoEquilibriumError.
+    """
+    rest = replace(system.at_rest(start.load), time=start.time)
+    pull = system.film.prestress_resultant()
+    if pull == 0.0:
+        return rest
+    long_ago = replace(rest, time=-np.inf, force_scale=pull)
+    return equilibrate(system, linear, rest.x, start.load, start.time, long_ago)
+
+
+def march(
+    system: System, linear: LinearSolver, past: list[State], target: Target, kink: bool, on_state: OnState
+) -> str | None:
+    """Walk to the target, halving the step where Newton fails or time is cut too coarsely.
+
+    past : the last converged states, extended in place. kink : the rate of loading jumped at the last of them.
+    Returns why it stopped short, or None.
+    """
+    start, done, size, first = past[-1], 0.0, 1.0, kink
+    while done < 1.0:
+        size = min(size, 1.0 - done)
+        load = between(start.load, target.load, done + size)
+        time = start.time + (done + size) * (target.time - start.time)
+        try:
+            state = _equilibrate(system, linear, past, load, time)
+            error = 0.0 if first else system.time_error(past[-1], state)
+        except NoEquilibriumError as failure:
+            size *= 0.5
+            if size < SMALLEST_SUBSTEP:
+                return f"{failure}{_place(system, failure.worst)}"
+            continue
+        if error > TIME_TOLERANCE and size > SMALLEST_SUBSTEP:
+            size *= max(0.5, 0.9 * np.sqrt(TIME_TOLERANCE / error)) if error < 4.0 * TIME_TOLERANCE else 0.5
+            continue
+        done, first = done + size, False
+        size *= 2.0 if error < 0.2 * TIME_TOLERANCE else 1.0
+        on_state(state, past[-1])
+        past.append(state)
+        del past[:-3]
+    return None
+
+
+def _equilibrate(system: System, linear: LinearSolver, past: list[State], load: Load, time: float) -> State:
+    """Newton from the extrapolated past and, where that fails, from the last state."""
+    last = past[-1]
+    if len(past) > 1:
+        try:
+            return equilibrate(system, linear, _extrapolate(past, time), load, time, last)
+        except NoEquilibriumError:
+            pass
+    return equilibrate(system, linear, _touching(system, last, load, time), load, time, last)
+
+
+def _extrapolate(past: list[State], time: float) -> Floats:
+    """The polynomial through the last two or three states, at a later time (Lagrange)."""
+    guess = np.zeros_like(past[-1].x)
+    for state in past:
+        others = [(time - other.time) / (state.time - other.time) for other in past if other is not state]
+        guess += float(np.prod(others)) * state.x
+    return guess
+
+
+def _touching(system: System, last: State, load: Load, time: float) -> Floats:
+    """A force needs contact to start from: move the dot until it overlaps some nodes."""
+    approach = system.unknowns.approach
+    if approach < 0 or load.drive <= last.load.drive:
+        return last.x
+    trial = system.trial(last.x, load, time, last)
+    gap = system.contact.weighted_gap(trial.displacement, trial.move) / system.contact.nodal_area
+    if (last.x[system.contact.pressure_dofs] > 0.0).any() or (gap < 0.0).any():
+        return last.x
+    x = last.x.copy()
+    x[approach] += 1.01 * np.sort(gap)[min(3, len(gap) - 1)]
+    return x
+
+
+def _place(system: System, worst: int | None) -> str:
+    """Where the worst residual is, in mm."""
+    if worst is None:
+        return ""
+    nodes = np.flatnonzero((system.unknowns.displacement == worst).any(axis=1))
+    if len(nodes) == 0:
+        nodes = np.flatnonzero(system.unknowns.contact == worst)
+    if len(nodes) == 0:
+        return ""
+    x, y, z = 1e3 * system.units.length * system.points[nodes[0]]
+    return f", worst at x = {x:.2f}, y = {y:.2f}, z = {z:.2f} mm"

@@ -1,0 +1,51 @@
+"""Stress softening of filled rubber (Mullins effect) after Ogden and Roxburgh.
+
+    S = eta S0,      eta = 1 - (1/r) erf((W_max - W) / (m + beta W_max))
+with the largest isochoric energy W_max that the point has seen; eta = 1 on the primary curve (Ogden and Roxburgh,
+Proc. R. Soc. A 455, 1999, in the form with beta of Abaqus). With dW = S0 : dE the tangent below W_max is
+    eta CC0 + d eta/dW S0 x S0,      d eta/dW = 2 exp(-z^2) / (sqrt(pi) r (m + beta W_max)).
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.special import erf
+
+from mesh.types import Floats
+from solve.materials.response import Memory, Response
+
+
+@dataclass(frozen=True)
+class Softening:
+    """loss : 1/r, the largest relative loss of stress; energy : m, in the unit of stress; beta : without unit."""
+
+    loss: float
+    energy: float = 0.0
+    beta: float = 0.3
+    needs_energy = True
+
+    def scaled(self, factor: float) -> "Softening":
+        """The same law in another unit of stress."""
+        return replace(self, energy=factor * self.energy)
+
+    def start(self, points: int) -> Memory:
+        """The largest energy so far (n,)."""
+        return (np.zeros(points),)
+
+    def update(self, elastic: Response, memory: Memory, time_step: float) -> tuple[Response, Memory]:
+        """Softened response and the new largest energy."""
+        assert elastic.energy is not None
+        largest = np.maximum(memory[0], elastic.energy)
+        factor, slope = self._factor(elastic.energy, largest)
+        stress = factor[:, None] * elastic.stress
+        rank_one = elastic.stress[:, :, None] * elastic.stress[:, None, :]
+        tangent = factor[:, None, None] * elastic.tangent + slope[:, None, None] * rank_one
+        return Response(stress, tangent, elastic.energy), (largest,)
+
+    def _factor(self, energy: Floats, largest: Floats) -> tuple[Floats, Floats]:
+        """eta and d eta/dW, (n,) each."""
+        below = energy < largest
+        width = np.where(below, self.energy + self.beta * largest, 1.0)
+        z = np.where(below, (largest - energy) / width, 0.0)
+        slope = np.where(below, 2.0 / np.sqrt(np.pi) * self.loss * np.exp(-(z**2)) / width, 0.0)
+        return 1.0 - self.loss * erf(z), slope

@@ -1,0 +1,213 @@
+"""The parameters of each mechanism, with what is allowed."""
+
+from typing import Annotated, Self
+
+from pydantic import Field, model_validator
+
+from geometry.parameters import BondStiffness, Finite, NonNegative, Positive, Table
+
+Strain = Annotated[float, Field(gt=-0.2, lt=0.2, allow_inf_nan=False)]
+Moduli = tuple[Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False)], ...]
+Terms = tuple[Finite, ...]
+
+
+class ChargeLeakage(Table):
+    """A resistance parallel to the read-out's."""
+
+    resistance_MOhm: Positive = Field(description="in parallel to the input resistance")
+
+
+class ParasiticCapacitance(Table):
+    """A capacitance parallel to the read-out's."""
+
+    capacitance_pF: NonNegative = Field(description="added to the input capacitance")
+
+
+class LowPass(Table):
+    """A Butterworth low-pass behind the read-out."""
+
+    cutoff_Hz: Positive = Field(description="corner frequency")
+    order: Annotated[int, Field(ge=1, le=8)] = Field(1, description="order")
+
+
+class Saturation(Table):
+    """The amplifier's limit."""
+
+    limit_V: Positive = Field(description="the voltage stays between plus and minus this")
+
+
+class MainsHum(Table):
+    """A sine added to the voltage."""
+
+    frequency_Hz: Positive = Field(50.0, description="of the mains")
+    amplitude_V: NonNegative = Field(description="of the sine")
+
+
+class PyroelectricDrift(Table):
+    """A temperature step of the film."""
+
+    temperature_step_K: Finite = Field(description="final change of temperature")
+    time_constant_s: Positive = Field(1.0, description="of the exponential approach, from the first touch")
+
+
+class ContactElectrification(Table):
+    """Charge that the touch leaves on the electrodes."""
+
+    charge_pC: Finite = Field(description="at the largest contact area; in proportion to the area before")
+
+
+class Viscoelasticity(Table):
+    """A Prony series."""
+
+    relative_moduli: Moduli = Field(description="share of the instantaneous stress that each term relaxes")
+    relaxation_times_s: tuple[Positive, ...] = Field(description="one for each modulus")
+
+    @model_validator(mode="after")
+    def _series(self) -> Self:
+        if len(self.relative_moduli) != len(self.relaxation_times_s):
+            raise ValueError(
+                f"relaxation_times_s has {len(self.relaxation_times_s)} values but relative_moduli has "
+                f"{len(self.relative_moduli)}: one of each per term"
+            )
+        if sum(self.relative_moduli) >= 1.0:
+            raise ValueError(f"relative_moduli = {list(self.relative_moduli)}: their sum must be below 1")
+        return self
+
+
+class HyperelasticStiffening(Table):
+    """Another law of the same layer: Yeoh or Mooney-Rivlin (c10 ...), or Ogden (mu, alpha)."""
+
+    c10_MPa: Finite | None = Field(None, description="Yeoh or Mooney-Rivlin; none: half the layer's shear modulus")
+    c01_MPa: Finite | None = Field(None, description="Mooney-Rivlin")
+    c20_MPa: Finite | None = Field(None, description="Yeoh")
+    c30_MPa: Finite | None = Field(None, description="Yeoh")
+    mu_MPa: Terms | None = Field(None, description="Ogden, one per term")
+    alpha: Terms | None = Field(None, description="Ogden, one per term")
+
+    @model_validator(mode="after")
+    def _one_law(self) -> Self:
+        polynomial = [self.c01_MPa, self.c20_MPa, self.c30_MPa]
+        if (self.mu_MPa is None) != (self.alpha is None):
+            raise ValueError("mu_MPa and alpha make an Ogden law together: give both")
+        laws = [self.c01_MPa is not None, any(c is not None for c in polynomial[1:]), self.mu_MPa is not None]
+        if sum(laws) > 1 or (self.mu_MPa is not None and self.c10_MPa is not None):
+            raise ValueError("c01_MPa, or c20_MPa and c30_MPa, or mu_MPa and alpha: give the constants of one law")
+        return self
+
+
+class FoamDensification(Table):
+    """The layer as a hyperfoam."""
+
+    mu_MPa: Terms = Field(description="modulus of each term")
+    alpha: Terms = Field(description="exponent of each term")
+    poisson_ratio: Terms = Field(description="Poisson's ratio of each term")
+
+
+class StressSoftening(Table):
+    """Ogden-Roxburgh softening."""
+
+    loss_ratio: Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False)] = Field(
+        description="largest relative loss of stress, 1/r: second against first cycle well below the deepest press"
+    )
+    energy_MPa: NonNegative = Field(0.0, description="m: energy below which nothing softens")
+    beta: Positive = Field(0.3, description="width of the transition back to the first curve")
+
+
+class FilmYield(Table):
+    """Plasticity of the film."""
+
+    yield_stress_MPa: Positive = Field(description="von Mises stress at which it flows")
+    hardening_modulus_MPa: NonNegative = Field(0.0, description="0: perfectly plastic")
+
+
+class AdhesiveCompliance(Table):
+    """Stiffness of a bond, directly or as a layer of glue."""
+
+    normal_stiffness_N_per_mm3: BondStiffness | None = Field(None, description="traction per opening")
+    shear_stiffness_N_per_mm3: BondStiffness | None = Field(None, description="traction per slip")
+    thickness_um: Positive | None = Field(None, description="of the glue, instead of the stiffnesses")
+    youngs_modulus_MPa: Positive | None = Field(None, description="of the glue")
+    poisson_ratio: Annotated[float, Field(ge=0, lt=0.5)] = Field(0.45, description="of the glue")
+
+    @model_validator(mode="after")
+    def _one_way(self) -> Self:
+        stiffness = (self.normal_stiffness_N_per_mm3, self.shear_stiffness_N_per_mm3)
+        glue = (self.thickness_um, self.youngs_modulus_MPa)
+        if (None in stiffness) == (None in glue) or (stiffness.count(None) == 1 or glue.count(None) == 1):
+            raise ValueError(
+                "normal_stiffness_N_per_mm3 and shear_stiffness_N_per_mm3, or thickness_um and youngs_modulus_MPa: "
+                "give one pair"
+            )
+        return self
+
+
+class DelaminationPatch(Table):
+    """A region without bond."""
+
+    center_mm: tuple[Finite, Finite] = Field((0.0, 0.0), description="centre, x and y")
+    diameter_mm: NonNegative = Field(description="of the disc; plane strain: width of the strip")
+
+
+class Friction(Table):
+    """Coulomb friction of the dot."""
+
+    coefficient: Annotated[float, Field(ge=0, le=3, allow_inf_nan=False)] = Field(description="Coulomb's")
+
+
+class ElasticSides(Table):
+    """Springs at the held sides."""
+
+    stiffness_N_per_mm3: NonNegative = Field(description="normal and tangential traction per displacement")
+
+
+class DotOffset(Table):
+    """The dot stands elsewhere."""
+
+    offset_mm: tuple[Finite, Finite] = Field(description="added to the dot's position, x and y")
+
+
+class ContactGap(Table):
+    """Lost motion before the touch."""
+
+    gap_mm: NonNegative = Field(description="travel of the rig before the dot touches")
+
+
+class RigCompliance(Table):
+    """A spring between displacement sensor and dot."""
+
+    compliance_mm_per_N: NonNegative = Field(description="of the rig")
+
+
+class FilmPrestretch(Table):
+    """The film was stretched before it was bonded."""
+
+    strain_x: Strain = Field(0.0, description="nominal strain in x")
+    strain_y: Strain = Field(0.0, description="nominal strain in y")
+
+
+class Inertia(Table):
+    """Mass that moves with the dot."""
+
+    moving_mass_g: NonNegative = Field(description="between the force sensor and the dot")
+
+
+class Crosstalk(Table):
+    """Other channels leak into this one."""
+
+    coupling: Annotated[float, Field(gt=-1, lt=1, allow_inf_nan=False)] = Field(
+        description="share of the other channels' voltage that adds to this one"
+    )
+
+
+class PropertyError(Table):
+    """A wrong number in the configuration."""
+
+    modulus_factor: Positive = Field(1.0, description="on every modulus of the layer")
+    thickness_factor: Positive = Field(1.0, description="on the layer's thickness")
+    d31_factor: Positive = Field(1.0, description="film: on d31, d32 and d33")
+    radius_factor: Positive = Field(1.0, description="dot: on its radius")
+    height_factor: Positive = Field(1.0, description="dot: on its height")
+
+
+class DimensionReduction(Table):
+    """A ridge for a cap, or the reverse."""

@@ -1,0 +1,201 @@
+"""What is recorded of every converged state: loads and charges; and fields at the reported steps."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from geometry.parameters import Segment
+from mesh.types import Floats, TetMesh
+from solve.electrodes import scale_of_section
+from solve.fields import fields
+from solve.inertia import prescribed_acceleration
+from solve.materials.parameters import Material, PiezoelectricFilm
+from solve.materials.voigt import from_voigt
+from solve.parameters import Press
+from solve.physics import Physics
+from solve.result import PressResult, Record, Step, Trace
+from solve.rig import Rig
+from solve.system import State, System
+
+PENETRATION_LIMIT = 0.05  # of the depth; contact holds in weighted means, so a coarse surface can overlap at points
+
+
+class Recorder:
+    """Collects the history of a press in SI units."""
+
+    def __init__(
+        self,
+        system: System,
+        tet_mesh: TetMesh,
+        physics: Physics,
+        segment: Segment,
+        materials: Mapping[str, Material],
+    ) -> None:
+        self.system, self.tet_mesh, self.physics = system, tet_mesh, physics
+        self.segment, self.film = segment, materials["film"]
+        self.force_scale, self.charge_scale = scale_of_section(segment, tet_mesh)
+        self.steps: list[Step] = []
+        self.records: list[Record] = []
+        self._rest_charge: Floats | float = 0.0
+        self._last: tuple[State, State] | None = None
+
+    def start(self, rest: State) -> None:
+        """The unloaded state: its charge, of a prestretch, has long leaked away."""
+        self._last = (rest, rest)
+        self._rest_charge = self._mechanical_charge(rest, rest)
+        self.record(rest, rest)
+        self.report()
+
+    def record(self, state: State, before: State) -> None:
+        """Add a converged state; before : the one its step started from."""
+        self._last = (state, before)
+        units, system = self.system.units, self.system
+        trial = system.trial(state.x, state.load, state.time, before)
+        resultant = system.dot_force(trial)
+        drive = state.load.drive
+        sensor = -float(trial.move[2]) if system.unknowns.approach < 0 or self._force_driven else drive
+        pressed = state.x[system.contact.pressure_dofs] > 0.0
+        self.records.append(
+            Record(
+                time_s=state.time,
+                indentation_m=sensor * units.length,
+                dot_path_m=-float(trial.move[2]) * units.length,
+                contact_force_N=-resultant * units.force * self.force_scale,
+                rig_force_N=self._rig_force(state, before) * units.force * self.force_scale,
+                film_charge_C=(self._mechanical_charge(state, before) - self._rest_charge),
+                contact_area_m2=float(system.contact.nodal_area[pressed].sum()) * units.length**2,
+                newton_iterations=state.iterations,
+                relative_residual=state.relative_residual,
+            )
+        )
+
+    def report(self) -> None:
+        """Make the last recorded state a step with its fields."""
+        assert self._last is not None
+        state, before = self._last
+        record, system = self.records[-1], self.system
+        move = system.move(state.x, state.load)
+        self.steps.append(
+            Step(
+                time_s=record.time_s,
+                indentation_m=record.indentation_m,
+                reaction_force_N=record.rig_force_N,
+                film_charge_C=record.film_charge_C,
+                open_circuit_voltage_V=record.film_charge_C / self.capacitance_F,
+                newton_iterations=sum(r.newton_iterations for r in self.records[self._reported :]),
+                relative_residual=max(r.relative_residual for r in self.records[self._reported :]),
+                dot_position_m=1e-3 * system.contact.dot.shape.origin_mm + move * system.units.length,
+                dot_force_N=record.contact_force_N,
+                fields=fields(system, self.tet_mesh, state, before),
+            )
+        )
+        self._reported = len(self.records)
+
+    _reported = 0
+
+    def result(self, failure: str | None, linear_solver: str, press: Press, follows_time: bool) -> PressResult:
+        """The whole history; sources of charge that do not depend on the mechanics are added here."""
+        trace = self._with_inertia(self._trace(), press)
+        charge = trace.film_charge_C + self._other_charge(trace)
+        trace = replace(trace, film_charge_C=charge)
+        at = np.searchsorted(trace.time_s, [step.time_s for step in self.steps])
+        steps = tuple(
+            replace(
+                step,
+                reaction_force_N=float(trace.reaction_force_N[i]),
+                film_charge_C=charge[i],
+                open_circuit_voltage_V=charge[i] / self.capacitance_F,
+            )
+            for step, i in zip(self.steps, at, strict=True)
+        )
+        last = steps[-1].fields
+        return PressResult(
+            steps=steps,
+            trace=trace,
+            follows_time=follows_time,
+            tet_mesh=self.tet_mesh,
+            converged=failure is None,
+            failure=failure,
+            electrode_names=tuple(e.name for e in self.segment.film.electrodes) or ("film",),
+            capacitance_F=self.capacitance_F,
+            unknowns=self.system.count,
+            linear_solver=linear_solver,
+            max_relative_residual=max(step.relative_residual for step in steps),
+            max_principal_film_strain=_largest_principal(last.film_strain),
+            max_principal_film_stress_Pa=_largest_principal(last.film_stress_Pa),
+            warnings=_penetration(steps[-1]),
+        )
+
+    @property
+    def capacitance_F(self) -> Floats:
+        """Of the undeformed film under each electrode (e,)."""
+        units = self.system.units
+        return self.system.film.capacitance() * (units.charge / units.voltage) * self.charge_scale
+
+    @property
+    def _rig(self) -> Rig | None:
+        return next((term for term in self.system.terms if isinstance(term, Rig)), None)
+
+    @property
+    def _force_driven(self) -> bool:
+        return self._rig is not None and self._rig.compliance is None
+
+    def _mechanical_charge(self, state: State, before: State) -> Floats:
+        """Short-circuit charge of each electrode in C, (e,)."""
+        film, system = self.system.film, self.system
+        trial = system.trial(state.x, state.load, state.time, before)
+        return film.charge(trial, system.history_of(film, before)) * self.charge_scale * system.units.charge
+
+    def _rig_force(self, state: State, before: State) -> float:
+        """What the rig's force sensor reads, solver units; positive in compression."""
+        trial = self.system.trial(state.x, state.load, state.time, before)
+        rig = self._rig
+        return -float(self.system.dot_force(trial)[2]) if rig is None else rig.drive_force(trial)
+
+    def _trace(self) -> Trace:
+        return Trace(
+            time_s=np.array([r.time_s for r in self.records]),
+            indentation_m=np.array([r.indentation_m for r in self.records]),
+            dot_path_m=np.array([r.dot_path_m for r in self.records]),
+            reaction_force_N=np.array([r.rig_force_N for r in self.records]),
+            contact_force_N=np.array([r.contact_force_N for r in self.records]),
+            film_charge_C=np.array([r.film_charge_C for r in self.records]),
+            contact_area_m2=np.array([r.contact_area_m2 for r in self.records]),
+        )
+
+    def _with_inertia(self, trace: Trace, press: Press) -> Trace:
+        """Where the dot's path is prescribed the force sensor also feels its mass: F = F_contact + m a''."""
+        if self._rig is not None or self.physics.moving_mass_g == 0.0:
+            return trace
+        acceleration = prescribed_acceleration(press, trace)
+        force = trace.reaction_force_N + 1e-3 * self.physics.moving_mass_g * acceleration
+        return replace(trace, reaction_force_N=force)
+
+    def _other_charge(self, trace: Trace) -> Floats:
+        """Pyroelectric charge p A dT(t), and charge left by the touch, (t, e) in C."""
+        assert isinstance(self.film, PiezoelectricFilm)
+        area = self.system.film.area() * self.system.units.length**2 * self.charge_scale
+        heat = self.physics.pyroelectric
+        elapsed = np.maximum(trace.time_s, 0.0)
+        temperature = -heat.temperature_step_K * np.expm1(-elapsed / heat.time_constant_s)
+        pyroelectric = 1e-6 * self.film.pyroelectric_uC_per_m2_K * temperature[:, None] * area
+        touched = trace.contact_area_m2 / max(float(trace.contact_area_m2.max()), 1e-300)
+        deposited = 1e-12 * self.physics.contact_charge_pC * touched[:, None] * area / area.sum()
+        return np.asarray(pyroelectric + deposited)
+
+
+def _penetration(step: Step) -> tuple[str, ...]:
+    """A warning where the dot overlaps the surface by more than a share of the depth."""
+    overlap = -float(step.fields.gap_m.min())
+    if overlap <= PENETRATION_LIMIT * max(step.indentation_m, 0.0) or overlap <= 1e-9:
+        return ()
+    return (
+        f"the dot overlaps the surface by up to {1e3 * overlap:.2g} mm at single points: "
+        "a smaller mesh.contact_element_size_mm is needed",
+    )
+
+
+def _largest_principal(voigt: Floats) -> float:
+    """Largest principal value of symmetric tensors (k, 6)."""
+    return float(np.linalg.eigvalsh(from_voigt(voigt))[:, -1].max())

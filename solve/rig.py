@@ -1,0 +1,70 @@
+"""What stands between the rig's sensor and the dot: a spring, a moving mass, or a prescribed force.
+
+The dot's approach a is unknown (Newton's law for the mass m that moves with it):
+    m a'' + F_contact(a) = (u - a) / c    driven by a sensor displacement u through the compliance c, or
+    m a'' + F_contact(a) = F              driven by a force F.
+Time integration by Newmark's average acceleration, second order and without damping (Newmark, J. Eng. Mech. Div. 85,
+1959). The contact adds F_contact.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from mesh.types import Floats, Ints
+from solve.term import Block, History, Term, Trial
+
+
+@dataclass(frozen=True)
+class Rig(Term):
+    """approach_dof : unknown number; mass, compliance : solver units, None where a force drives."""
+
+    approach_dof: int
+    mass: float
+    compliance: float | None
+
+    @property
+    def groups(self) -> tuple[Ints, ...]:
+        """The dot's approach."""
+        return (np.array([[self.approach_dof]]),)
+
+    def start(self) -> History:
+        """Velocity, acceleration of the dot and the approach itself, (3,)."""
+        return np.zeros(3)
+
+    def _motion(self, trial: Trial, history: History) -> Floats:
+        """Velocity, acceleration and approach at the end of the step."""
+        velocity, acceleration, before = history
+        now, dt = float(trial.x[self.approach_dof]), trial.time_step
+        if np.isinf(dt):  # long at rest
+            return np.array([0.0, 0.0, now])
+        new = 4.0 / dt**2 * (now - before - dt * velocity) - acceleration
+        return np.array([velocity + 0.5 * dt * (acceleration + new), new, now])
+
+    def elements(self, trial: Trial, history: History) -> Iterator[Block]:
+        """Residual and tangent of the balance of forces without the contact's."""
+        residual, tangent = -self.drive_force(trial), 0.0
+        if self.compliance is not None:
+            tangent += 1.0 / self.compliance
+        elif np.isinf(trial.time_step):  # nothing pushes the dot yet: it stays where it is
+            residual, tangent = float(trial.x[self.approach_dof]), 1.0
+        if self.mass > 0.0:
+            residual += self.mass * float(self._motion(trial, history)[1])
+            tangent += 4.0 * self.mass / trial.time_step**2
+        yield Block(0, slice(0, 1), np.array([[[tangent]]]), np.array([[residual]]))
+
+    def drive_force(self, trial: Trial) -> float:
+        """What the rig's force sensor reads, in solver units."""
+        if self.compliance is None:
+            return trial.drive
+        return (trial.drive - float(trial.x[self.approach_dof])) / self.compliance
+
+    def advance(self, trial: Trial, history: History) -> History:
+        """Motion at the converged state."""
+        return self._motion(trial, history) if self.mass > 0.0 else history
+
+    def time_error(self, history: History, new: History, time_step: float) -> float:
+        """Local error dt^2 (a_new - a_old) / 12 of the approach (Zienkiewicz and Xie, 1991), relative to it."""
+        largest = max(abs(float(new[2])), abs(float(history[2])), 1e-12)
+        return 0.0 if self.mass == 0.0 else time_step**2 * abs(float(new[1] - history[1])) / 12.0 / largest

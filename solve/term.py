@@ -1,0 +1,76 @@
+"""What every part of the discrete problem offers: element residuals, element tangents and its memory."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from mesh.types import Bools, Floats, Ints
+
+History = Any  # arrays that a term carries from one converged state to the next; None for one without memory
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A trial state and the converged state before it, in solver units (time in s).
+
+    x : (count,) unknowns; displacement : (n, 3) nodes; move : (3,) displacement of the dot; drive : what the rig
+    prescribes of the approach (displacement of the sensor, or force). previous_... : the same, last converged.
+    """
+
+    x: Floats
+    displacement: Floats
+    move: Floats
+    drive: float
+    previous_displacement: Floats
+    previous_move: Floats
+    previous_drive: float
+    time: float
+    time_step: float
+
+
+class Block(NamedTuple):
+    """Element matrices (s, k, k) and residuals (s, k) of the elements in part of one group of a term.
+
+    Symmetric terms fill the upper triangles only.
+    """
+
+    group: int
+    part: slice
+    matrices: Floats
+    residuals: Floats
+
+
+class Term:
+    """One part of the problem: a medium, the film, a bond, the contact, the rig.
+
+    groups : arrays (m, k) of unknowns, -1 where prescribed, one row an element.
+    """
+
+    symmetric = True
+
+    @property
+    def groups(self) -> tuple[Ints, ...]:
+        """Unknowns (m, k) of each group of elements."""
+        raise NotImplementedError
+
+    def start(self) -> History:
+        """Memory of the undeformed state at rest."""
+        return None
+
+    def elements(self, trial: Trial, history: History) -> Iterator[Block]:
+        """Residuals and consistent tangents, group by group and chunk by chunk."""
+        raise NotImplementedError
+
+    def advance(self, trial: Trial, history: History) -> History:
+        """Memory once the trial state has converged."""
+        return history
+
+    def status(self, trial: Trial, history: History) -> Bools:
+        """Discrete states (open or touching, stick or slip) that must repeat before Newton has converged."""
+        return np.zeros(0, bool)
+
+    def time_error(self, history: History, new: History, time_step: float) -> float:
+        """Estimated error of the time integration in a step, relative; zero for a term without rates."""
+        return 0.0

@@ -1,0 +1,64 @@
+"""Unsymmetric tangents (friction) beside the symmetric one: the upper triangle and the excess of the lower one.
+
+A = U + strict(U)^t + L^t, where U is the upper triangle and L, on the same pattern and zero on its diagonal, holds
+A_ji - A_ij at (i, j). Symmetric terms leave L alone, so that only friction pays for it.
+"""
+
+from dataclasses import dataclass
+
+import numba as nb
+import numpy as np
+import scipy.sparse as sp
+
+from mesh.types import Floats
+
+
+@dataclass(frozen=True)
+class Tangent:
+    """upper : (n, n) upper triangle; excess : L on the same pattern, None for a symmetric tangent."""
+
+    upper: sp.csr_matrix
+    excess: sp.csr_matrix | None = None
+
+    def __matmul__(self, vector: Floats) -> Floats:
+        product: Floats = self.upper @ vector + self.upper.T @ vector - self.upper.diagonal() * vector
+        if self.excess is not None:
+            product += self.excess.T @ vector
+        return product
+
+    def full(self) -> sp.csr_matrix:
+        """Both triangles, explicit zeros kept so that the pattern never changes."""
+        upper = self.upper
+        rows = np.repeat(np.arange(upper.shape[0]), np.diff(upper.indptr))
+        strict = rows != upper.indices
+        lower = upper.data if self.excess is None else upper.data + self.excess.data
+        row, col = np.append(rows, upper.indices[strict]), np.append(upper.indices, rows[strict])
+        full = sp.csr_matrix((np.append(upper.data, lower[strict]), (row, col)), upper.shape)
+        full.sort_indices()
+        return full
+
+
+@nb.njit(cache=True)
+def scatter_unsymmetric(ke, re, dofs, slots, data, excess, residual):  # type: ignore[no-untyped-def]
+    """Add full element matrices (m, k, k) to the upper triangle and to the excess of the lower one.
+
+    slots as in sparsity.Pattern: packed upper triangle of local pairs.
+    """
+    for e in range(ke.shape[0]):
+        n = 0
+        for i in range(ke.shape[1]):
+            if dofs[e, i] >= 0:
+                residual[dofs[e, i]] += re[e, i]
+            for j in range(i, ke.shape[1]):
+                slot = slots[e, n]
+                n += 1
+                if slot < 0:
+                    continue
+                if i == j:
+                    data[slot] += ke[e, i, i]
+                elif dofs[e, i] == dofs[e, j]:
+                    data[slot] += ke[e, i, j] + ke[e, j, i]
+                else:
+                    above, below = (i, j) if dofs[e, i] < dofs[e, j] else (j, i)
+                    data[slot] += ke[e, above, below]
+                    excess[slot] += ke[e, below, above] - ke[e, above, below]

@@ -1,0 +1,109 @@
+"""Frictional contact on a patch of facets: tangent against differences, what each state of a node means."""
+
+import numpy as np
+import pytest
+
+from geometry.dot_shape import DotShape
+from solve.contact import contact_facets
+from solve.dot_distance import RigidDot
+from solve.friction import FrictionalContact
+from solve.term import Trial
+from solve.unknowns import Unknowns
+
+NOTHING = np.zeros((0, 4), int)
+
+
+def tilted(degrees):
+    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    return np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
+
+
+def rigid(kind="cap", rotation=None):
+    """A dot of radius 0.8 that rests on the patch's middle."""
+    turn = np.eye(3) if rotation is None else rotation
+    height = 0.0 if kind == "plate" else 0.5
+    return RigidDot(DotShape(kind, 0.8, height, 0.0, np.zeros((1, 2)), np.array([0.5, 0.5, 0.0]), turn), 1.0)
+
+
+def patch():
+    """Nodes (25, 3) and 8 quadratic facets (8, 6) of the unit square."""
+    grid = np.stack(np.meshgrid(*2 * [np.linspace(0.0, 1.0, 5)], indexing="ij"), -1).reshape(-1, 2)
+    node = np.arange(25).reshape(5, 5)
+    facets = []
+    for i, j in ((0, 0), (0, 2), (2, 0), (2, 2)):
+        n = node[i : i + 3, j : j + 3]
+        facets += [[n[0, 0], n[2, 0], n[2, 2], n[1, 0], n[2, 1], n[1, 1]]]
+        facets += [[n[0, 0], n[2, 2], n[0, 2], n[1, 1], n[1, 2], n[0, 1]]]
+    return np.column_stack([grid, np.zeros(25)]), np.array(facets)
+
+
+class Patch:
+    """All unknowns free but those named; the approach of the dot is the last unknown."""
+
+    def __init__(self, dot, coefficient, prescribed=(), stiffness=10.0):
+        points, facets = patch()
+        displacement = np.arange(75).reshape(25, 3)
+        for node, component in prescribed:
+            displacement[node, component] = -1
+        unknowns = Unknowns(displacement, NOTHING, NOTHING, 75 + np.arange(25), 175)
+        contact = contact_facets(points, facets, unknowns, dot)
+        self.term = FrictionalContact(contact, 100 + np.arange(75).reshape(25, 3), coefficient, stiffness)
+        self.displacement = displacement
+
+    def trial(self, x, before=0.0, move_before=(0.0, 0.0, 0.0), lateral=(0.0, 0.0)):
+        x = np.array(x)
+        u = np.append(x, 0.0)[np.where(self.displacement < 0, len(x), self.displacement)]
+        old = np.broadcast_to(before, u.shape)
+        return Trial(x, u, np.array([*lateral, -x[175]]), 0.0, old, np.array(move_before), 0.0, 0.0, 1.0)
+
+    def residual(self, trial):
+        total = np.zeros(176)
+        for block in self.term.elements(trial, None):
+            dofs = self.term.groups[block.group][block.part]
+            np.add.at(total, np.where(dofs < 0, 0, dofs), np.where(dofs < 0, 0.0, block.residuals))
+        return total
+
+    def tangent(self, trial):
+        total = np.zeros((177, 177))
+        for block in self.term.elements(trial, None):
+            dofs = self.term.groups[block.group][block.part]
+            np.add.at(total, (dofs[:, :, None], dofs[:, None, :]), block.matrices)
+        return total[:176, :176]
+
+    def state(self, trial):
+        return np.split(self.term.status(trial, None), 2)
+
+
+def random_state(rng, roughness, drag):
+    """Unknowns of a rough surface under pressure (open at some nodes) and its friction."""
+    pressure = rng.uniform(-0.3, 1.0, 25)
+    return np.concatenate(
+        [roughness * rng.standard_normal(75), pressure, drag * rng.standard_normal(75), [0.05]]
+    )
+
+
+STATES = {"stick": (60.0, 0.2, 0.0), "slip": (0.2, 0.3, 0.4), "mixed": (0.6, 0.3, 0.1), "frictionless": (0.0, 0.3, 0.1)}
+
+
+@pytest.mark.parametrize("name", STATES)
+@pytest.mark.parametrize("kind", ["cap", "ridge", "plate"])
+def test_tangent_is_the_derivative_of_the_residual(name, kind):
+    """In all unknowns, the dot's approach too, with a tilted dot that moves sideways and some held displacements."""
+    coefficient, drag, lateral = STATES[name]
+    rng = np.random.default_rng(5)
+    body = Patch(rigid(kind, tilted(7.0)), coefficient, prescribed=[(3, 0), (12, 1), (24, 0), (24, 1), (24, 2)])
+    before = 0.01 * rng.standard_normal((25, 3))
+    x, past = random_state(rng, 0.02, drag), dict(before=before, move_before=(0.0, 0.0, -0.04), lateral=(lateral, 0.02))
+    now = body.trial(x, **past)
+    active, slips = body.state(now)
+    assert 0 < active.sum() < 25
+    expected = {"stick": slips.sum() == 0, "slip": slips.sum() >= 0.9 * active.sum()}
+    assert expected.get(name, 0 < slips.sum() <= active.sum())
+    tangent = body.tangent(now)
+    difference = np.empty_like(tangent)
+    for k, step in enumerate(1e-6 * np.eye(176)):
+        ahead, behind = body.trial(x + step, **past), body.trial(x - step, **past)
+        for other in (ahead, behind):
+            np.testing.assert_array_equal(body.term.status(other, None), body.term.status(now, None))
+        difference[:, k] = (body.residual(ahead) - body.residual(behind)) / 2e-6
+    np.testing.assert_allclose(tangent, difference, atol=1e-6 * np.abs(tangent).max())
