@@ -93,7 +93,7 @@ def press(
 
 
 def readout_voltage(config: Config, physics: Physics, result: PressResult) -> tuple[Floats, Floats] | None:
-    """Voltage behind the amplifier at each step, electrodes in parallel (s,) and each alone (e, s); None without one."""
+    """Voltage behind the amplifier at each step: electrodes in parallel (s,), each alone (e, s); None without one."""
     if config.readout is None and not (physics.low_pass or physics.hum or physics.crosstalk):
         return None
     from solve.parameters import Readout

@@ -9,38 +9,61 @@ import numpy as np
 from mesh.types import Floats
 
 
+def deformation_gradient(gradient: Floats, displacement: Floats) -> Floats:
+    """F = 1 + du/dX at (m, q, n, 3) gradients and (m, n, 3) nodal displacements: (m, q, 3, 3)."""
+    f = np.empty((*gradient.shape[:2], 3, 3))
+    _deformation_gradient(gradient, displacement, f)
+    return f
+
+
+def cauchy_green(f: Floats) -> Floats:
+    """C = F^t F (m q, 3, 3), points in order, of F (m, q, 3, 3)."""
+    c = np.empty((f.shape[0] * f.shape[1], 3, 3))
+    _cauchy_green(f.reshape(-1, 3, 3), c)
+    return c
+
+
+def smallest_jacobian(f: Floats) -> Floats:
+    """Smallest det F of each element (m,), of F (m, q, 3, 3); not-a-number where there is one."""
+    smallest = np.empty(len(f))
+    _smallest_jacobian(f, smallest)
+    return smallest
+
+
 @nb.njit(parallel=True, cache=True)
-def _kinematics(grad, nodal, f, c, smallest):  # type: ignore[no-untyped-def]
-    for e in nb.prange(grad.shape[0]):
+def _deformation_gradient(gradient, displacement, f):  # type: ignore[no-untyped-def]
+    for e in nb.prange(gradient.shape[0]):
+        for q in range(gradient.shape[1]):
+            for i in range(3):
+                x, y, z = 0.0, 0.0, 0.0
+                for a in range(gradient.shape[2]):
+                    u = displacement[e, a, i]
+                    x += u * gradient[e, q, a, 0]
+                    y += u * gradient[e, q, a, 1]
+                    z += u * gradient[e, q, a, 2]
+                f[e, q, i, 0], f[e, q, i, 1], f[e, q, i, 2] = x, y, z
+                f[e, q, i, i] += 1.0
+
+
+@nb.njit(parallel=True, cache=True)
+def _cauchy_green(f, c):  # type: ignore[no-untyped-def]
+    for n in nb.prange(len(f)):
+        for i in range(3):
+            for j in range(3):
+                c[n, i, j] = f[n, 0, i] * f[n, 0, j] + f[n, 1, i] * f[n, 1, j] + f[n, 2, i] * f[n, 2, j]
+
+
+@nb.njit(parallel=True, cache=True)
+def _smallest_jacobian(f, smallest):  # type: ignore[no-untyped-def]
+    for e in nb.prange(f.shape[0]):
         low = np.inf
-        for q in range(grad.shape[1]):
+        for q in range(f.shape[1]):
             h = f[e, q]
-            for i in range(3):
-                for j in range(3):
-                    h[i, j] = 1.0 if i == j else 0.0
-            for a in range(grad.shape[2]):
-                x, y, z = grad[e, q, a, 0], grad[e, q, a, 1], grad[e, q, a, 2]
-                for i in range(3):
-                    u = nodal[e, a, i]
-                    h[i, 0] += u * x
-                    h[i, 1] += u * y
-                    h[i, 2] += u * z
-            for i in range(3):
-                for j in range(3):
-                    c[e, q, i, j] = h[0, i] * h[0, j] + h[1, i] * h[1, j] + h[2, i] * h[2, j]
             det = (
                 h[0, 0] * (h[1, 1] * h[2, 2] - h[1, 2] * h[2, 1])
                 - h[0, 1] * (h[1, 0] * h[2, 2] - h[1, 2] * h[2, 0])
                 + h[0, 2] * (h[1, 0] * h[2, 1] - h[1, 1] * h[2, 0])
             )
-            if not det >= low:  # also takes not-a-number
+            if not det >= low:  # takes not-a-number too, and keeps it
                 low = det
         smallest[e] = low
-
-
-def kinematics(gradient: Floats, nodal: Floats) -> tuple[Floats, Floats, Floats]:
-    """F (m, q, 3, 3), C (m, q, 3, 3) and min J (m,) from gradients (m, q, n, 3) and displacements (m, n, 3)."""
-    f = np.empty((*gradient.shape[:2], 3, 3))
-    c, smallest = np.empty_like(f), np.empty(len(f))
-    _kinematics(gradient, nodal, f, c, smallest)
-    return f, c, smallest
