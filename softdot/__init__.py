@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from geometry.errors import InputError
     from mesh.errors import MeshingError
     from softdot.config import Config, config_hash, load_config
+    from softdot.differentiate import derivatives
     from softdot.run import run_config
     from softdot.schema import config_schema
 
@@ -22,6 +23,7 @@ __all__ = [
     "__version__",
     "config_hash",
     "config_schema",
+    "derivatives",
     "load_config",
     "run_config",
 ]
@@ -31,6 +33,7 @@ _HOMES = {
     "MeshingError": "mesh.errors",
     "config_hash": "softdot.config",
     "config_schema": "softdot.schema",
+    "derivatives": "softdot.differentiate",
     "load_config": "softdot.config",
     "run_config": "softdot.run",
 }

@@ -83,6 +83,10 @@ class ContactFacets(Term):
         gap = self._at_quadrature(displacement, move)[0]
         return self._sum(np.einsum("kq,qi,kq->ki", self.area, HATS, gap))
 
+    def constraints(self) -> tuple[Ints, Floats]:
+        """The contact pressures."""
+        return self.pressure_dofs, self.nodal_area
+
     def status(self, trial: Trial, history: History) -> Bools:
         """Nodes in contact: lambda_i - c g_i > 0, shape (c,) bool."""
         gap = self.weighted_gap(trial.displacement, trial.move) / self.nodal_area

@@ -55,6 +55,10 @@ class UnilateralInterface(Term):
         """int phi_i opening dA, shape (c,), of an opening (k, q)."""
         return self._sum(np.einsum("kqi,kq->ki", self.hats, self.facets.area * opening))
 
+    def constraints(self) -> tuple[Ints, Floats]:
+        """The pressures."""
+        return self.multipliers, self.nodal_area
+
     def status(self, trial: Trial, history: History) -> Bools:
         """Closed nodes (c,): lambda_i - c g_i >= 0. The faces touch at rest."""
         return self._closed(trial, self.weighted_opening(trial.displacement))

@@ -24,6 +24,7 @@ from mesh.types import Bools, Floats, Ints
 from solve.contact import ACTIVE_SET_STIFFNESS, HATS, SHAPES, ContactFacets
 from solve.term import Block, History, Term, Trial
 
+SLIP_LIMIT = 1.9  # below 2, see _shift; it, too, only steers the iteration
 MOTION = np.r_[0:18, 24]  # columns of a facet that move its surface against the dot
 
 
@@ -41,11 +42,13 @@ DIRECTION = relative_motion()
 class Nodal(NamedTuple):
     """State of the c surface nodes.
 
-    normal : (c, 3) N; length : (c,) |n|; moved : (c, 3) d; tau : (c, 3); target : (c, 3) tau - c d / A, not projected;
-    radius : (c,) of the disc; active, slips : (c,) bool, slips only where active.
+    normal : (c, 3) N; projector : (c, 3, 3) 1 - NN; length : (c,) |n|; moved : (c, 3) d; tau : (c, 3);
+    target : (c, 3) tau - c s in the tangent plane; radius : (c,) b; active, slips : (c,) bool, slips where active;
+    trial_by_slip (c, 3, 3), trial_by_radius (c, 3) : derivatives of c s.
     """
 
     normal: Floats
+    projector: Floats
     length: Floats
     moved: Floats
     tau: Floats
@@ -53,6 +56,8 @@ class Nodal(NamedTuple):
     radius: Floats
     active: Bools
     slips: Bools
+    trial_by_slip: Floats
+    trial_by_radius: Floats
 
 
 class Law(NamedTuple):
@@ -87,6 +92,10 @@ class FrictionalContact(Term):
         tau = self.friction_dofs[self.contact.index].reshape(-1, 18)
         nodes = np.column_stack([self.contact.pressure_dofs, self.friction_dofs])
         return np.concatenate([self.contact.dofs, tau], axis=1), nodes
+
+    def constraints(self) -> tuple[Ints, Floats]:
+        """The contact pressures; friction rows of open nodes have a diagonal of their own."""
+        return self.contact.constraints()
 
     def status(self, trial: Trial, history: History) -> Bools:
         """Nodes in contact (c,), then nodes that slip (c,)."""
@@ -154,45 +163,59 @@ class FrictionalContact(Term):
         length = np.maximum(np.linalg.norm(n, axis=1), 1e-12 * nodal_area)  # opposite flanks may cancel, far away
         augmented = trial.x[contact.pressure_dofs] - ACTIVE_SET_STIFFNESS * weighted_gap / nodal_area
         active, radius = augmented > 0.0, self.coefficient * augmented
-        tau = trial.x[self.friction_dofs]
-        target = tau - self.slip_stiffness * moved / nodal_area[:, None]
-        normal = n / length[:, None]
-        slips = active & (np.linalg.norm(_tangential(target, normal), axis=1) >= radius)
-        return Nodal(normal, length, moved, tau, target, radius, active, slips)
+        tau, normal = trial.x[self.friction_dofs], n / length[:, None]
+        projector = np.eye(3) - normal[:, :, None] * normal[:, None, :]
+        slip = _apply(projector, moved[..., None])[..., 0] / nodal_area[:, None]
+        shift, by_slip, by_radius = self._shift(slip, np.maximum(radius, 0.0))
+        target = _apply(projector, tau[..., None])[..., 0] - shift
+        slips = active & (np.linalg.norm(target, axis=1) >= radius)
+        return Nodal(normal, projector, length, moved, tau, target, radius, active, slips, by_slip, by_radius)
+
+    def _shift(self, slip: Floats, radius: Floats) -> tuple[Floats, Floats, Floats]:
+        """c s (c, 3), c so small that c |s| <= 1.9 b, and its derivatives by s (c, 3, 3) and b (c, 3).
+
+        A node that slips too far, tau = b s / |s|, then has |tau - c s| < b: it sticks in the next iteration instead of
+        slipping back, which could go on for ever.
+        """
+        size = np.linalg.norm(slip, axis=1)[:, None]
+        direction, limit = _quotient(slip, size), SLIP_LIMIT * radius[:, None]
+        capped = self.slip_stiffness * size > limit
+        c = np.where(capped, _quotient(limit, size), self.slip_stiffness)
+        turning = capped[..., None] * direction[:, :, None] * direction[:, None, :]
+        return c * slip, c[..., None] * (np.eye(3) - turning), SLIP_LIMIT * capped * direction
 
     def _rows(self, nodal: Nodal) -> Law:
         """Slip along t: -A (tau - b t) = 0; stick: -(1 - NN) d - A NN tau = 0; open or prescribed: -tau = 0."""
-        area, c = self.contact.nodal_area[:, None, None], self.slip_stiffness
-        normal, one = nodal.normal, np.eye(3)
-        projector = one - normal[:, :, None] * normal[:, None, :]
-        turn = projector / nodal.length[:, None, None]  # dN / dn
-        tangential = _tangential(nodal.target, normal)
-        size = np.linalg.norm(tangential, axis=1)[:, None]
-        t = np.divide(tangential, size, out=np.zeros_like(tangential), where=size > 0.0)
-        shrink = np.divide(nodal.radius[:, None], size, out=np.zeros_like(size), where=size > 0.0)[:, :, None]
-        across = shrink * (projector - t[:, :, None] * t[:, None, :])  # b dt / d target
-        slip = Law(
-            -area[:, 0] * (nodal.tau - nodal.radius[:, None] * t),
-            -c * across,
-            area * shrink * _apply(one - t[:, :, None] * t[:, None, :], _projection_slope(nodal.target, normal, turn)),
-            area * (across - one),
-            -ACTIVE_SET_STIFFNESS * self.coefficient * t,
-            area[:, 0] * self.coefficient * t,
+        turn = nodal.projector / nodal.length[:, None, None]  # dN / dn
+        by_n = [_projection_slope(v, nodal.normal, turn) for v in (nodal.tau, nodal.moved)]
+        touching = _where(nodal.slips, self._slip(nodal, *by_n), self._stick(nodal, *by_n))
+        zero = np.zeros_like(turn)
+        none = Law(-nodal.tau, zero, zero, zero - np.eye(3), np.zeros_like(nodal.tau), np.zeros_like(nodal.tau))
+        return _where(nodal.active[:, None] & self._free, touching, none)
+
+    def _stick(self, nodal: Nodal, tau_by_n: Floats, moved_by_n: Floats) -> Law:
+        area, normal, projector = self.contact.nodal_area[:, None], nodal.normal, nodal.projector
+        along = np.einsum("ci,ci->c", normal, nodal.tau)[:, None] * normal
+        slip = _apply(projector, nodal.moved[..., None])[..., 0]
+        zero = np.zeros_like(nodal.tau)
+        by_n = area[..., None] * tau_by_n - moved_by_n
+        return Law(-slip - area * along, -projector, by_n, area[..., None] * (projector - np.eye(3)), zero, zero)
+
+    def _slip(self, nodal: Nodal, tau_by_n: Floats, moved_by_n: Floats) -> Law:
+        area, radius = self.contact.nodal_area[:, None], nodal.radius[:, None]
+        size = np.linalg.norm(nodal.target, axis=1)[:, None]
+        t = _quotient(nodal.target, size)
+        across = _quotient(radius, size)[..., None] * (np.eye(3) - t[:, :, None] * t[:, None, :])  # b dt / d target
+        by_slip = _apply(across, nodal.trial_by_slip)
+        by_radius = area * (t - _apply(across, nodal.trial_by_radius[..., None])[..., 0])
+        return Law(
+            -area * (nodal.tau - radius * t),
+            -_apply(by_slip, nodal.projector),
+            area[..., None] * _apply(across, tau_by_n) - _apply(by_slip, moved_by_n),
+            area[..., None] * (_apply(across, nodal.projector) - np.eye(3)),
+            -ACTIVE_SET_STIFFNESS * self.coefficient * by_radius / area,
+            self.coefficient * by_radius,
         )
-        along = np.einsum("ci,ci->c", normal, nodal.tau)[:, None]
-        stick = Law(
-            -_tangential(nodal.moved, normal) - area[:, 0] * along * normal,
-            -projector,
-            area * _projection_slope(nodal.tau, normal, turn) - _projection_slope(nodal.moved, normal, turn),
-            area * (projector - one),
-            np.zeros_like(t),
-            np.zeros_like(t),
-        )
-        zero = np.zeros_like(projector)
-        none = Law(-nodal.tau, zero, zero, zero - one, np.zeros_like(t), np.zeros_like(t))
-        touching = [np.where(_like(nodal.slips, a), a, b) for a, b in zip(slip, stick, strict=True)]
-        holds = nodal.active[:, None] & self._free
-        return Law(*(np.where(_like(holds, a), a, b) for a, b in zip(touching, none, strict=True)))
 
     def _add_friction(self, trial: Trial, nodal: Nodal, law: Law, ke: Floats, re: Floats) -> None:
         """Virtual work of tau and the derivatives of the nodes' rows by motion, facet by facet."""
@@ -211,12 +234,6 @@ class FrictionalContact(Term):
         ke[:, 25:, MOTION] = rows.reshape(count, 18, 19)
 
 
-def _tangential(vectors: Floats, normal: Floats) -> Floats:
-    """(1 - NN) v; all (c, 3)."""
-    tangential: Floats = vectors - np.einsum("ci,ci->c", vectors, normal)[:, None] * normal
-    return tangential
-
-
 def _projection_slope(vectors: Floats, normal: Floats, turn: Floats) -> Floats:
     """Derivative (c, 3, 3) of (1 - NN) v by n: -(N . v) dN/dn - N (v . dN/dn)."""
     along = np.einsum("ci,ci->c", vectors, normal)[:, None, None]
@@ -229,7 +246,14 @@ def _apply(a: Floats, b: Floats) -> Floats:
     return product
 
 
-def _like(mask: Bools, values: Floats) -> Bools:
-    """The mask (c,) or (c, 3), with axes appended to fit the values (c, 3) or (c, 3, 3)."""
-    fitted: Bools = mask.reshape(*mask.shape, *(1,) * (values.ndim - mask.ndim))
-    return fitted
+def _quotient(a: Floats, b: Floats) -> Floats:
+    """a / b, zero where b is."""
+    shape = np.broadcast_shapes(a.shape, b.shape)
+    quotient: Floats = np.divide(a, b, out=np.zeros(shape), where=np.broadcast_to(b > 0.0, shape))
+    return quotient
+
+
+def _where(mask: Bools, a: Law, b: Law) -> Law:
+    """Rows of a where the mask (c,) or (c, 3) holds, else of b."""
+    fitted = (mask.reshape(*mask.shape, *(1,) * (x.ndim - mask.ndim)) for x in a)
+    return Law(*(np.where(m, x, y) for m, x, y in zip(fitted, a, b, strict=True)))

@@ -70,16 +70,17 @@ def build_system(
     physics: Physics | None = None,
     readout: Readout | None = None,
     opened: tuple[OpenInterface, ...] = (),
+    units: Units | None = None,
 ) -> System:
     """Discretise a press. materials : region name -> material, one for each region of the mesh.
 
-    tet_mesh and opened as solve.interfaces.open_interfaces gives them.
+    tet_mesh and opened as solve.interfaces.open_interfaces gives them; units : to share them with another system.
     """
     physics = physics or Physics()
     laws = {name: medium_law(materials[name]) for name in tet_mesh.region_names if name != "film"}
     numbers = Numbers()
     unknowns = _number(segment, materials, laws, tet_mesh, physics, readout, force_driven, numbers)
-    units = _units(segment, laws, materials)
+    units = units or _units(segment, laws, materials)
     points = tet_mesh.points_mm * (1e-3 / units.length)
     make = Builder(segment, materials, physics, readout, tet_mesh, opened, points, unknowns, units)
     terms: list[Term] = [_solid(make, name, law) for name, law in laws.items()]

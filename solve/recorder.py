@@ -96,9 +96,8 @@ class Recorder:
 
     def result(self, failure: str | None, linear_solver: str, press: Press, follows_time: bool) -> PressResult:
         """The whole history; sources of charge that do not depend on the mechanics are added here."""
-        trace = self._with_inertia(self._trace(), press)
-        charge = trace.film_charge_C + self._other_charge(trace)
-        trace = replace(trace, film_charge_C=charge)
+        trace = self.trace(press)
+        charge = trace.film_charge_C
         at = np.searchsorted(trace.time_s, [step.time_s for step in self.steps])
         steps = tuple(
             replace(
@@ -152,6 +151,11 @@ class Recorder:
         trial = self.system.trial(state.x, state.load, state.time, before)
         rig = self._rig
         return -float(self.system.dot_force(trial)[2]) if rig is None else rig.drive_force(trial)
+
+    def trace(self, press: Press) -> Trace:
+        """All that was recorded, with the force of the moving mass and the charge of heat and touch."""
+        trace = self._with_inertia(self._trace(), press)
+        return replace(trace, film_charge_C=trace.film_charge_C + self._other_charge(trace))
 
     def _trace(self) -> Trace:
         return Trace(

@@ -47,7 +47,7 @@ class Rig(Term):
         residual, tangent = -self.drive_force(trial), 0.0
         if self.compliance is not None:
             tangent += 1.0 / self.compliance
-        elif np.isinf(trial.time_step):  # nothing pushes the dot yet: it stays where it is
+        elif np.isinf(trial.time_step) or (trial.drive == 0.0 and self.mass == 0.0):  # nothing pushes: it is at rest
             residual, tangent = float(trial.x[self.approach_dof]), 1.0
         if self.mass > 0.0:
             residual += self.mass * float(self._motion(trial, history)[1])

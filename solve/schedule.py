@@ -29,9 +29,11 @@ def schedule(press: Press, full: float, unit_length: float, follows_time: bool) 
     waveform = press.waveform or Waveform()
     if follows_time:
         times, kinks = _sampled(waveform, 1 if waveform.shape == "file" else press.load_steps)
+        share = fraction(waveform, times)
+        share[share < 1e-12] = 0.0  # released, not all but
         targets = [
             Target(float(t), Load((0.0, 0.0), full * float(f)), bool(k))
-            for t, f, k in zip(times, fraction(waveform, times), kinks, strict=True)
+            for t, f, k in zip(times, share, kinks, strict=True)
         ]
         if targets[0].load.drive > 0.0:  # a file that starts pressed: get there from rest in the time of the rise
             targets.insert(0, Target(targets[0].time - waveform.rise_s, Load((0.0, 0.0), 0.0), True))

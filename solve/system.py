@@ -147,7 +147,8 @@ class System:
     def factorisation_shift(self) -> Floats:
         """Diagonal of the contact rows for the factorisation only: a stiff spring instead of a constraint."""
         shift = np.zeros(self.count)
-        shift[self.contact.pressure_dofs] = -self.contact.nodal_area / CONTACT_SPRING
+        for multipliers, area in (term.constraints() for term in self.terms):
+            shift[multipliers] = -area / CONTACT_SPRING
         return shift
 
     def evaluate(self, trial: Trial, histories: tuple[History, ...]) -> Evaluation:

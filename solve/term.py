@@ -71,6 +71,10 @@ class Term:
         """Discrete states (open or touching, stick or slip) that must repeat before Newton has converged."""
         return np.zeros(0, bool)
 
+    def constraints(self) -> tuple[Ints, Floats]:
+        """Lagrange multipliers without a diagonal entry: their unknowns (c,) and nodal areas (c,)."""
+        return np.zeros(0, np.int64), np.zeros(0)
+
     def time_error(self, history: History, new: History, time_step: float) -> float:
         """Estimated error of the time integration in a step, relative; zero for a term without rates."""
         return 0.0

@@ -93,7 +93,8 @@ def test_tangent_is_the_derivative_of_the_residual(name, kind):
     rng = np.random.default_rng(5)
     body = Patch(rigid(kind, tilted(7.0)), coefficient, prescribed=[(3, 0), (12, 1), (24, 0), (24, 1), (24, 2)])
     before = 0.01 * rng.standard_normal((25, 3))
-    x, past = random_state(rng, 0.02, drag), dict(before=before, move_before=(0.0, 0.0, -0.04), lateral=(lateral, 0.02))
+    x = random_state(rng, 0.02, drag)
+    past = {"before": before, "move_before": (0.0, 0.0, -0.04), "lateral": (lateral, 0.02)}
     now = body.trial(x, **past)
     active, slips = body.state(now)
     assert 0 < active.sum() < 25
@@ -107,3 +108,34 @@ def test_tangent_is_the_derivative_of_the_residual(name, kind):
             np.testing.assert_array_equal(body.term.status(other, None), body.term.status(now, None))
         difference[:, k] = (body.residual(ahead) - body.residual(behind)) / 2e-6
     np.testing.assert_allclose(tangent, difference, atol=1e-6 * np.abs(tangent).max())
+
+
+def test_open_nodes_and_held_displacements_carry_no_friction():
+    """Their rows are -tau = 0, so that none is singular, whatever else happens."""
+    held = [(3, 0), (12, 1), (24, 0), (24, 1), (24, 2)]
+    body = Patch(rigid(), 0.3, prescribed=held)
+    x = random_state(np.random.default_rng(7), 0.02, 0.1)
+    trial = body.trial(x, lateral=(0.2, 0.0))
+    active, _ = body.state(trial)
+    idle = np.repeat(~active[:, None], 3, axis=1)
+    idle[tuple(np.transpose(held))] = True
+    unknowns = body.term.friction_dofs[idle]
+    np.testing.assert_array_equal(body.tangent(trial)[unknowns], -np.eye(176)[unknowns])
+    np.testing.assert_array_equal(body.residual(trial)[unknowns], -x[unknowns])
+
+
+def test_friction_changes_the_force_by_its_own_resultant():
+    body = Patch(rigid("plate"), 0.3)
+    pressure, friction = np.full(25, 2.0), np.tile([0.3, -0.4, 0.0], (25, 1))
+    force = body.term.force(np.zeros((25, 3)), np.zeros(3), pressure, friction)
+    np.testing.assert_allclose(force, [0.3, -0.4, -2.0], atol=1e-14)
+
+
+def test_work_of_a_constant_friction_is_its_traction_times_the_path():
+    """On a plate that drags the resting unit square along by (0.2, 0.1)."""
+    body = Patch(rigid("plate"), 0.3)
+    x = np.zeros(176)
+    x[body.term.friction_dofs] = [0.3, 0.4, 0.0]
+    trial = body.trial(x, lateral=(0.2, 0.1))
+    assert body.term.dissipation(trial, body.term.advance(trial, body.term.start())) == pytest.approx(0.1, rel=1e-12)
+    assert body.term.dissipation(trial, body.term.start()) == pytest.approx(0.05, rel=1e-12)

@@ -1,0 +1,108 @@
+"""Derivatives of a run by any number of its configuration: force, charge and voltage over the press."""
+
+import copy
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from geometry.errors import InputError
+from mesh.types import Floats
+from softdot.actual import actual
+from softdot.config import Config, config_from
+from solve.model import Model
+
+RELATIVE_STEP = 1e-4
+
+
+@dataclass(frozen=True)
+class Derivative:
+    """d(quantity)/d(key), in the quantity's unit over the key's own; (t,) over the times of the press.
+
+    readout_voltage_V is None without a [readout].
+    """
+
+    key: str
+    value: float
+    time_s: Floats
+    reaction_force_N: Floats
+    film_charge_pC: Floats
+    open_circuit_voltage_V: Floats
+    readout_voltage_V: Floats | None
+
+
+def derivatives(config: Config, keys: Sequence[str]) -> list[Derivative]:
+    """Differentiate the press of a configuration by its keys, such as "materials.vnr.youngs_modulus_MPa",
+    "segment.film.thickness_um" or "mechanisms[0].parameters.coefficient" (see solve.sensitivity).
+
+    InputError for a key that is absent, no number, zero or decides which parts there are.
+    """
+    from softdot import stages
+    from solve.sensitivity import Variation, press_with_sensitivities
+
+    changed, _ = actual(config)
+    dot_shape, _ = stages.check(changed)
+    tet_mesh = stages.build_mesh(changed, dot_shape)
+    variations = {}
+    for key in keys:
+        step = RELATIVE_STEP * abs(value_of(config, key))
+        below, above = (_model(_varied(config, key, sign * step)) for sign in (-1.0, 1.0))
+        variations[key] = Variation(below, above, 2.0 * step)
+    try:
+        result, slopes = press_with_sensitivities(_model(config), variations, tet_mesh)
+    except ValueError as error:
+        raise InputError(str(error)) from None
+    if not result.converged:
+        raise InputError(f"the press stopped short: {result.failure}")
+    return [
+        Derivative(
+            key=key,
+            value=value_of(config, key),
+            time_s=slope.trace.time_s,
+            reaction_force_N=slope.trace.reaction_force_N,
+            film_charge_pC=1e12 * slope.trace.film_charge_C.sum(axis=1),
+            open_circuit_voltage_V=slope.open_circuit_voltage_V,
+            readout_voltage_V=slope.readout_voltage_V,
+        )
+        for key, slope in slopes.items()
+    ]
+
+
+def value_of(config: Config, key: str) -> float:
+    """The number under a dotted key. InputError where there is none."""
+    found: Any = config.model_dump(mode="json")
+    for part in _parts(key):
+        try:
+            found = found[part]
+        except (KeyError, IndexError, TypeError):
+            raise InputError(f"{key}: the configuration has no such key") from None
+    if isinstance(found, bool) or not isinstance(found, int | float) or found == 0.0:
+        raise InputError(f"{key} = {found!r}: must be a number that is not zero")
+    return float(found)
+
+
+def _parts(key: str) -> list[str | int]:
+    """segment.film.electrodes[0].size_mm[1] -> its names and indices."""
+    parts: list[str | int] = []
+    for name in key.split("."):
+        head, *indices = name.replace("]", "").split("[")
+        parts += [head, *(int(i) for i in indices)]
+    return parts
+
+
+def _varied(config: Config, key: str, change: float) -> Config:
+    tables = copy.deepcopy(config.model_dump(mode="json", exclude_none=True))
+    table: Any = tables
+    *path, last = _parts(key)
+    for part in path:
+        table = table[part]
+    table[last] += change
+    return config_from(tables)
+
+
+def _model(config: Config) -> Model:
+    """What the solver is told by a configuration, mechanisms switched on."""
+    changed, physics = actual(config)
+    return Model(
+        changed.segment, changed.layer_materials(), changed.dot, changed.press, changed.readout, physics
+    )
+

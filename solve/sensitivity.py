@@ -1,0 +1,167 @@
+"""Derivatives of a whole press by any parameter, by direct differentiation along the march.
+
+The state of a step obeys R(x, history, p) = 0. Differentiated, with the converged tangent K,
+    K dx/dp = -(R(x, history + e dhistory, p + e) - R(x, history - e dhistory, p - e)) / 2e,
+and the new memory follows from the terms' own advance at x +- e dx. Each parameter so carries two twins, systems at
+p + e and p - e whose states stay within first order of their equilibria; one factorisation serves all of them.
+The difference quotient of the residual makes this the semi-analytical method (Tsay and Arora, Comput. Methods Appl.
+Mech. Eng. 81, 1990, for path dependence; van Keulen, Haftka and Kim, ibid. 194, 2005): no law states derivatives of
+its own.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+
+from geometry.dot_shape import resolve_dot
+from mesh.morph import morphed
+from mesh.types import Floats, TetMesh
+from solve.interfaces import open_interfaces
+from solve.linear import LinearSolver
+from solve.march import march, rest_state
+from solve.model import Model
+from solve.readout import amplify
+from solve.result import PressResult, Trace
+from solve.setup import Setup, set_up
+from solve.system import Load, State
+
+SOLVE_TOLERANCE = 1e-9
+
+
+@dataclass(frozen=True)
+class Variation:
+    """A parameter by its models a little below and above, apart by span in the unit of the parameter."""
+
+    below: Model
+    above: Model
+    span: float
+
+
+@dataclass(frozen=True)
+class Slopes:
+    """Derivatives of a press by one parameter: of its trace, whose time_s holds the times themselves; of the
+    open-circuit voltage (t,) of all electrodes in parallel; and of the voltage behind the amplifier (t,), None
+    without one.
+    """
+
+    trace: Trace
+    open_circuit_voltage_V: Floats
+    readout_voltage_V: Floats | None
+
+
+class Twin:
+    """A system at p + e or p - e, and the state that follows the base to first order."""
+
+    def __init__(self, setup: Setup, drive_ratio: float) -> None:
+        self.setup, self.drive_ratio = setup, drive_ratio
+        self.state: State | None = None
+
+    def load(self, base: Load) -> Load:
+        """The load at this parameter."""
+        return replace(base, drive=base.drive * self.drive_ratio)
+
+    def start(self, base: State) -> None:
+        """At rest."""
+        self.state = replace(base, load=self.load(base.load), histories=self.setup.system.at_rest(base.load).histories)
+        self.setup.recorder.start(self.state)
+
+    def residual(self, x: Floats, base: State) -> Floats:
+        """Of the base's unknowns under this parameter and this memory (count,)."""
+        assert self.state is not None
+        trial = self.setup.system.trial(x, self.load(base.load), base.time, self.state)
+        return self.setup.system.evaluate(trial, self.state.histories).residual
+
+    def history(self) -> Slopes:
+        """The histories themselves, not yet derivatives."""
+        model, recorder = self.setup.model, self.setup.recorder
+        trace, capacitance = recorder.trace(model.press), float(recorder.capacitance_F.sum())
+        charge = trace.film_charge_C.sum(axis=1)
+        amplified = None
+        if model.readout is not None:
+            amplified = amplify(trace.time_s, charge, capacitance, model.readout, model.physics)
+        return Slopes(trace, charge / capacitance, amplified)
+
+    def follow(self, x: Floats, base: State) -> None:
+        """Take the step to the unknowns x."""
+        assert self.state is not None
+        load = self.load(base.load)
+        trial = self.setup.system.trial(x, load, base.time, self.state)
+        new = State(base.time, load, x, self.setup.system.advance(trial, self.state.histories))
+        self.setup.recorder.record(new, self.state)
+        self.state = new
+
+
+def press_with_sensitivities(
+    model: Model, variations: Mapping[str, Variation], tet_mesh: TetMesh
+) -> tuple[PressResult, dict[str, Slopes]]:
+    """Solve a press and its derivatives by every variation, along its waveform; tet_mesh : of the model's segment.
+
+    Of a press that stops short they end where it does. ValueError for a parameter that changes the mesh or the number
+    of unknowns; InputError as press_segment.
+    """
+    physics, plane_strain = model.physics, model.segment.section == "plane-strain"
+    opened_mesh, opened = open_interfaces(tet_mesh, physics.bonds, physics.delaminations, plane_strain)
+    base = set_up(model, resolve_dot(model.dot, model.segment), opened_mesh, opened)
+    twins: dict[str, tuple[Twin, Twin]] = {}
+    for name, variation in variations.items():
+        pair = []
+        for changed in (variation.below, variation.above):
+            moved = morphed(opened_mesh, model.segment, changed.segment)
+            dot = resolve_dot(changed.dot, changed.segment)
+            setup = set_up(changed, dot, moved, opened, base.system.units)
+            if setup.system.count != base.system.count:
+                raise ValueError(f"{name}: this parameter switches something on or off at its present value")
+            pair.append(Twin(setup, setup.full_drive / base.full_drive))
+        twins[name] = (pair[0], pair[1])
+    linear = LinearSolver(base.system.factorisation_shift)
+    failure = _march(base, linear, twins)
+    linear.close()
+    result = base.recorder.result(failure, linear.name, model.press, follows_time=True)
+    return result, {name: _difference(*pair, variations[name].span) for name, pair in twins.items()}
+
+
+def _march(base: Setup, linear: LinearSolver, twins: Mapping[str, tuple[Twin, Twin]]) -> str | None:
+    """Along the schedule, twins in tow; why it stopped short, or None. NoEquilibriumError at rest."""
+    targets = base.targets(follows_time=True)
+    rest = rest_state(base.system, linear, targets[0])
+    base.recorder.start(rest)
+    for pair in twins.values():
+        for twin in pair:
+            twin.start(rest)
+
+    def on_state(state: State, before: State) -> None:
+        base.recorder.record(state, before)
+        _tow(base, linear, twins, state, before)
+
+    past, kink, failure = [rest], targets[0].kink, None
+    for target in targets[1:]:
+        failure = march(base.system, linear, past, target, kink, on_state)
+        if past[-1].time > base.recorder.steps[-1].time_s:
+            base.recorder.report()
+        if failure is not None:
+            break
+        kink = target.kink
+    return failure
+
+
+def _tow(
+    base: Setup, linear: LinearSolver, twins: Mapping[str, tuple[Twin, Twin]], state: State, before: State
+) -> None:
+    """Bring all twins to first order to a converged state of the base."""
+    trial = base.system.trial(state.x, state.load, state.time, before)
+    tangent = base.system.evaluate(trial, before.histories).tangent
+    for number, (below, above) in enumerate(twins.values()):
+        change = above.residual(state.x, state) - below.residual(state.x, state)
+        half = 0.5 * linear.solve(tangent, -change, SOLVE_TOLERANCE, similar=number > 0)
+        below.follow(state.x - half, state)
+        above.follow(state.x + half, state)
+
+
+def _difference(below: Twin, above: Twin, span: float) -> Slopes:
+    """Central differences of the two histories; the times are the same."""
+    low, high = below.history(), above.history()
+    trace = {f.name: (getattr(high.trace, f.name) - getattr(low.trace, f.name)) / span for f in fields(Trace)}
+    amplified = None
+    if low.readout_voltage_V is not None and high.readout_voltage_V is not None:
+        amplified = (high.readout_voltage_V - low.readout_voltage_V) / span
+    open_circuit = (high.open_circuit_voltage_V - low.open_circuit_voltage_V) / span
+    return Slopes(Trace(**{**trace, "time_s": low.trace.time_s}), open_circuit, amplified)

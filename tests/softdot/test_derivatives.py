@@ -1,0 +1,49 @@
+"""Derivatives by the keys of a configuration."""
+
+import numpy as np
+import pytest
+
+import softdot
+from geometry.errors import InputError
+from softdot.config import config_from
+from softdot.differentiate import derivatives, value_of
+
+TABLES = {
+    "segment": {
+        "effector": {}, "medium1": {"thickness_mm": 0.5}, "film": {"thickness_um": 28.0},
+        "medium2": {"thickness_mm": 2.0},
+    },
+    "press": {"indentation_mm": 0.1, "load_steps": 2},
+    "readout": {"input_resistance_MOhm": 1000.0, "input_capacitance_pF": 100.0},
+    "mesh": {"element_size_mm": 1.2, "contact_element_size_mm": 0.8, "mesher": "layered"},
+}
+
+
+def test_voltage_follows_d_and_the_circuit():
+    """Q is linear in (d31, d32, d33): their derivatives times values add up to V. dV/dC < 0, dV/dR > 0."""
+    film = [f"materials.pvdf.d3{i}_pC_per_N" for i in (1, 2, 3)]
+    keys = [*film, "readout.input_capacitance_pF", "readout.input_resistance_MOhm"]
+    config = config_from(TABLES)
+    found = {one.key: one for one in derivatives(config, keys)}
+    total = sum(found[key].value * found[key].readout_voltage_V for key in film)
+    scaled = config_from({**TABLES, "readout": {**TABLES["readout"], "input_capacitance_pF": 100.001}})
+    assert value_of(scaled, "readout.input_capacitance_pF") == 100.001
+    assert total[-1] > 0.0
+    assert found[keys[3]].readout_voltage_V[-1] < 0.0 < found[keys[4]].readout_voltage_V[-1]
+    open_circuit = sum(found[key].value * found[key].open_circuit_voltage_V for key in film)
+    charge = sum(found[key].value * found[key].film_charge_pC for key in film)
+    np.testing.assert_allclose(open_circuit[1:], charge[1:] / 23.716, rtol=1e-3)  # eps A / t in pF
+    assert not found[film[0]].reaction_force_N.any()
+
+
+@pytest.mark.parametrize(
+    ("key", "sentence"),
+    [
+        ("segment.film.colour", "segment.film.colour: the configuration has no such key"),
+        ("segment.section", "segment.section = 'solid': must be a number that is not zero"),
+        ("segment.film.draw_angle_deg", "segment.film.draw_angle_deg = 0.0: must be a number that is not zero"),
+    ],
+)
+def test_a_key_that_is_no_number_is_refused(key, sentence):
+    with pytest.raises(InputError, match=sentence.replace("[", r"\[").replace(".", r"\.")):
+        softdot.derivatives(config_from(TABLES), [key])

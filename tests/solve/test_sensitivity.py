@@ -1,0 +1,92 @@
+"""Sensitivities of a whole press against differences of whole presses."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import solve.march
+from geometry.dot_shape import resolve_dot
+from geometry.parameters import Dot
+from mesh.build import build
+from mesh.parameters import MeshOptions
+from solve.mechanisms import Mechanism
+from solve.model import Model
+from solve.parameters import Press, Waveform
+from solve.sensitivity import Variation, press_with_sensitivities
+from solve.switch_on import with_mechanisms
+from tests.solve.segments import materials, segment
+
+COARSE = MeshOptions(element_size_mm=1.2, contact_element_size_mm=0.8, mesher="layered")
+PRESS = Press(
+    indentation_mm=0.15, load_steps=2, waveform=Waveform(shape="trapezoid", rise_s=0.1, hold_s=0.2, fall_s=0.1)
+)
+
+
+def model(*mechanisms, press=PRESS, coupling="one-way", **sides):
+    base = Model(segment(**sides), materials(coupling=coupling), Dot(), press)
+    return with_mechanisms(base, [Mechanism(name=n, component=c, parameters=p) for n, c, p in mechanisms])
+
+
+def with_modulus(base, layer, value):
+    changed = base.materials[layer].model_copy(update={"youngs_modulus_MPa": value})
+    return replace(base, materials={**base.materials, layer: changed})
+
+
+def with_segment(base, **changes):
+    return replace(base, segment=base.segment.model_copy(update=changes))
+
+
+def thickness(base, layer, key, value):
+    return with_segment(base, **{layer: getattr(base.segment, layer).model_copy(update={key: value})})
+
+
+VISCOUS = ("viscoelasticity", "medium2", {"relative_moduli": [0.3], "relaxation_times_s": [0.1]})
+CASES = {
+    "modulus of an elastic layer": (1.0, lambda p: with_modulus(model(), "medium2", p)),
+    "modulus of a viscous stack": (5.0, lambda p: with_modulus(model(VISCOUS), "medium1", p)),
+    "relative modulus": (0.3, lambda p: model(("viscoelasticity", "medium2", {
+        "relative_moduli": [p], "relaxation_times_s": [0.1]}))),
+    "relaxation time": (0.1, lambda p: model(("viscoelasticity", "medium2", {
+        "relative_moduli": [0.3], "relaxation_times_s": [p]}))),
+    "thickness of a medium": (0.5, lambda p: thickness(model(), "medium1", "thickness_mm", p)),
+    "thickness of the film": (28.0, lambda p: thickness(model(), "film", "thickness_um", p)),
+    "side stiffness": (5.0, lambda p: with_segment(model(), boundary="elastic", side_stiffness_N_per_mm3=p)),
+    "bond stiffness": (10.0, lambda p: model(("adhesive-compliance", "bond-film-medium2", {
+        "normal_stiffness_N_per_mm3": 50.0, "shear_stiffness_N_per_mm3": p}))),
+    "friction": (0.4, lambda p: model(("friction", "dot", {"coefficient": p}))),
+    "softening": (0.3, lambda p: model(("stress-softening", "medium2", {"loss_ratio": p}))),
+    "rig compliance": (0.1, lambda p: model(("rig-compliance", "rig", {"compliance_mm_per_N": p}))),
+    "moving mass": (50.0, lambda p: model(
+        ("inertia", "rig", {"moving_mass_g": p}), ("rig-compliance", "rig", {"compliance_mm_per_N": 0.1}))),
+    "dot offset": (0.1, lambda p: model(("dot-offset", "dot", {"offset_mm": [p, 0.0]}))),
+    "dot radius": (1.1, lambda p: model(("property-error", "dot", {"radius_factor": p}))),
+    "prestretch": (0.004, lambda p: model(("film-prestretch", "film", {"strain_x": p}))),
+    "depth": (0.15, lambda p: model(press=PRESS.model_copy(update={"indentation_mm": p}))),
+    "force": (0.1, lambda p: model(press=PRESS.model_copy(update={"indentation_mm": None, "force_N": p}))),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_sensitivity_is_the_difference_of_two_presses(case, monkeypatch):
+    monkeypatch.setattr(solve.march, "TIME_TOLERANCE", np.inf)  # the same times for all presses
+    value, at = CASES[case]
+    small = 1e-4 * value
+    base = at(value)
+    tet_mesh = build(base.segment, resolve_dot(base.dot, base.segment), COARSE)
+    variation = Variation(at(value - small), at(value + small), 2.0 * small)
+    _, slopes = press_with_sensitivities(base, {"p": variation}, tet_mesh)
+    low, high = (whole_press(at(value + sign * small), base, tet_mesh) for sign in (-1.0, 1.0))
+    for quantity in ("reaction_force_N", "film_charge_C"):
+        difference = (getattr(high, quantity) - getattr(low, quantity)) / (2.0 * small)
+        ours = getattr(slopes["p"].trace, quantity)
+        scale = np.abs(difference).max()
+        np.testing.assert_allclose(ours, difference, atol=2e-4 * scale)
+
+
+def whole_press(changed, base, tet_mesh):
+    """The trace of a press of its own at the same times, on the moved mesh."""
+    from mesh.morph import morphed
+
+    moved = morphed(tet_mesh, base.segment, changed.segment)
+    return press_with_sensitivities(changed, {}, moved)[0].trace
