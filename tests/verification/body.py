@@ -1,0 +1,158 @@
+"""Any body of mixed quadratic tetrahedra under prescribed displacements, dead loads and a follower pressure.
+
+Newton's method on the solver's own terms, pattern, scatter and linear solver; only the boundary conditions are
+the test's own. All unknowns are numbered, the prescribed ones too, so that reactions are plain residuals.
+"""
+
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+
+import numpy as np
+
+from mesh.types import Floats, Ints
+from solve.contact import ContactFacets, contact_facets
+from solve.dot_distance import RigidDot
+from solve.element_kernels import scatter
+from solve.linear import LinearSolver
+from solve.solid import solid_region
+from solve.sparsity import build_pattern
+from solve.term import Term, Trial
+from solve.unsymmetric import Tangent
+from tests.verification.loads import FollowerPressure
+
+FREE = np.nan
+MAX_ITERATIONS = 30
+
+
+@dataclass
+class Body:
+    """points (n, 3); displacement (n, 3) numbers of its unknowns; pressure : region -> (m, 4); x (count,) the state."""
+
+    points: Floats
+    displacement: Ints
+    count: int
+    terms: list[Term] = field(default_factory=list)
+    pressure: list[Ints] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.x, self.residual, self.move = np.zeros(self.count), np.zeros(self.count), np.zeros(3)
+
+    @property
+    def u(self) -> Floats:
+        """Displacement (n, 3)."""
+        return self.x[self.displacement]
+
+    @property
+    def trial(self) -> Trial:
+        """The state as the terms see it, without a past."""
+        return Trial(self.x, self.u, self.move, 0.0, self.u, self.move, 0.0, 0.0, 1.0)
+
+    def number(self, count: int) -> Ints:
+        """Further unknowns."""
+        self.count += count
+        self.x, self.residual = np.zeros(self.count), np.zeros(self.count)
+        return np.arange(self.count - count, self.count)
+
+    def add_region(self, name: str, law, tets: Ints, twin: Ints | None = None) -> None:
+        """A medium of tets (m, 10), with its own pressures unless its law is compressible."""
+        dofs = self.displacement[tets].reshape(-1, 30)
+        if not law.compressible:
+            corners, local = np.unique((tets if twin is None else twin[tets])[:, :4], return_inverse=True)
+            self.pressure.append(self.number(len(corners))[local.reshape(-1, 4)])
+            dofs = np.hstack([dofs, self.pressure[-1]])
+        self.terms.append(solid_region(name, law, self.points, tets, dofs))
+
+    def add_pressure(self, facets: Ints) -> FollowerPressure:
+        """A follower pressure, zero until its value is set."""
+        self.terms.append(FollowerPressure(self.points, facets, self.displacement[facets].reshape(-1, 18)))
+        return self.terms[-1]
+
+    def add_contact(self, facets: Ints, dot: RigidDot) -> ContactFacets:
+        """Frictionless contact of facets (k, 6) with a dot whose displacement is move."""
+        nodes = np.unique(self.displacement[facets, 0], return_inverse=True)[1].reshape(facets.shape)
+        contact = np.full(len(self.points), -1)
+        contact[facets] = self.number(int(nodes.max()) + 1)[nodes]
+        unknowns = SimpleNamespace(displacement=self.displacement, contact=contact, approach=-1)
+        self.terms.append(contact_facets(self.points, facets, unknowns, dot))
+        return self.terms[-1]
+
+    def reaction(self, nodes: Ints) -> Floats:
+        """Force (3,) that holds the nodes."""
+        return self.residual[np.unique(self.displacement[nodes], axis=0)].sum(axis=0)
+
+    def reactions(self) -> Floats:
+        """Forces (n, 3) that hold each node; a body with twins shows each force at every twin."""
+        return self.residual[self.displacement]
+
+    def free(self) -> Floats:
+        """Prescribed displacements (n, 3), none so far."""
+        return np.full(self.points.shape, FREE)
+
+    def solve(
+        self, prescribed: Floats, force: Floats | float = 0.0, steps: int = 1, held=None, move=None, tolerance=1e-10
+    ) -> None:
+        """Move from the present state to prescribed (n, 3), NaN = free, and dead nodal forces (n, 3).
+
+        move : (3,) displacement of the dot. held : {unknown: value} of any other unknown.
+        tolerance : residual over reactions and loads. ArithmeticError where Newton does not converge.
+        """
+        target = np.full(self.count, FREE)
+        target[self.displacement] = prescribed
+        for unknown, value in (held or {}).items():
+            target[unknown] = value
+        external = np.zeros(self.count)
+        np.add.at(external, self.displacement, np.broadcast_to(force, self.points.shape))
+        pattern = build_pattern([g for term in self.terms for g in term.groups], self.count)
+        fixed, start = ~np.isnan(target), self.x.copy()
+        linear = LinearSolver(self._shift()[~fixed])
+        loads = [term for term in self.terms if isinstance(term, FollowerPressure)]
+        full = [term.value for term in loads]
+        first, last = self.move, self.move if move is None else np.asarray(move)
+        for fraction in np.arange(1, steps + 1) / steps:
+            for term, value in zip(loads, full, strict=True):
+                term.value = fraction * value
+            self.move = first + fraction * (last - first)
+            aim = np.where(fixed, start + fraction * (target - start), 0.0)
+            self._newton(pattern, linear, fixed, aim, fraction * external, tolerance)
+        linear.close()
+
+    def _shift(self) -> Floats:
+        """Diagonal of the contact rows for the factorisation only, as in solve.system."""
+        shift = np.zeros(self.count)
+        for term in self.terms:
+            if isinstance(term, ContactFacets):
+                shift[term.pressure_dofs] = -1e-4 * term.nodal_area
+        return shift
+
+    def assemble(self, pattern, external: Floats):
+        """Residual and tangent (upper triangle) with all unknowns free."""
+        residual, data, first = -external, np.zeros(len(pattern.indices)), 0
+        for term in self.terms:
+            for group, part, ke, re in term.elements(self.trial, term.start()):
+                scatter(ke, re, term.groups[group][part], pattern.slots[first + group][part], data, residual)
+            first += len(term.groups)
+        return residual, pattern.matrix(data)
+
+    def _newton(self, pattern, linear, fixed, aim, external, tolerance) -> None:
+        change, before = np.where(fixed, aim - self.x, 0.0), None
+        for _ in range(MAX_ITERATIONS):
+            self.residual, tangent = self.assemble(pattern, external)
+            status = np.concatenate([term.status(self.trial, term.start()) for term in self.terms])
+            settled = not change.any() and (before is None or np.array_equal(status, before))
+            scale = np.linalg.norm(self.residual[fixed]) + np.linalg.norm(external)
+            if settled and np.linalg.norm(self.residual[~fixed]) <= tolerance * scale:
+                return
+            rhs = (self.residual + Tangent(tangent) @ change)[~fixed]
+            self.x[~fixed] -= linear.solve(Tangent(tangent[~fixed][:, ~fixed].sorted_indices()), rhs, 1e-6)
+            self.x[fixed], before = aim[fixed], status
+            change[:] = 0.0
+        raise ArithmeticError(f"no equilibrium: residual {np.linalg.norm(self.residual[~fixed]) / scale:.1e}")
+
+
+def solid_body(points: Floats, law, tets: Ints, twin: Ints | None = None) -> Body:
+    """One medium; twin (n,) names the node whose displacement each node shares."""
+    _, local = np.unique(np.arange(len(points)) if twin is None else twin, return_inverse=True)
+    numbers = 3 * local.reshape(-1, 1) + np.arange(3)
+    body = Body(points, numbers, int(numbers.max()) + 1)
+    body.add_region("body", law, tets, twin)
+    return body

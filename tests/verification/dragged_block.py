@@ -1,0 +1,91 @@
+"""A block on a rigid base, in plane strain along y, under a rigid cylinder that presses and drags.
+
+Newton's method on the solver's own solid and contact terms, with SciPy's SuperLU.
+"""
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import splu
+
+from geometry.dot_shape import DotShape
+from mesh.types import Floats
+from solve.contact import ContactFacets, contact_facets
+from solve.dot_distance import RigidDot
+from solve.friction import FrictionalContact
+from solve.materials.laws import MediumLaw
+from solve.solid import solid_region
+from solve.term import Term, Trial
+from solve.unknowns import Unknowns
+from tests.verification.lattice import Grid
+
+MAX_ITERATIONS, TOLERANCE = 30, 1e-10  # of the contact forces
+
+
+class DraggedBlock:
+    """block : base at z = 0; x, u, move : unknowns, displacement (n, 3) and that of the cylinder, last converged."""
+
+    def __init__(self, block: Grid, law: MediumLaw, radius: float, friction: float) -> None:
+        points, tets = block.points, block.tets
+        top = points[:, 2].max()
+        numbers = np.full(points.shape, -1)
+        moving = np.flatnonzero(points[:, 2] > 0.0)
+        numbers[moving[:, None], [0, 2]] = np.arange(2 * len(moving)).reshape(-1, 2)
+        corners, local = np.unique(tets[:, :4], return_inverse=True)
+        count = 2 * len(moving) + len(corners)
+        pressure = 2 * len(moving) + local.reshape(-1, 4)
+        solid = solid_region("block", law, points, tets, np.hstack([numbers[tets].reshape(-1, 30), pressure]))
+        facets = block.facets(lambda p: np.isclose(p[:, 2], top))
+        surface = np.unique(facets)
+        contact = np.full(len(points), -1)
+        contact[surface] = count + np.arange(len(surface))
+        dot = DotShape("ridge", radius, radius, 0.0, np.zeros((1, 2)), np.array([0.0, 0.0, top]), np.eye(3))
+        none = np.zeros((0, 4), int)
+        unknowns = Unknowns(numbers, none, none, contact, -1)
+        self.contact = contact_facets(points, facets, unknowns, RigidDot(dot, 1.0))
+        self.touch: Term = self.contact
+        count += len(surface)
+        if friction > 0.0:
+            tau = count + np.arange(3 * len(surface)).reshape(-1, 3)
+            self.touch = FrictionalContact(self.contact, tau, friction)
+            count += tau.size
+        self.terms, self.numbers = (solid, self.touch), numbers
+        self.x, self.u, self.move = np.zeros(count), np.zeros_like(points), np.zeros(3)
+
+    @property
+    def force(self) -> Floats:
+        """Of the cylinder on the block (3,)."""
+        pressure = self.x[self.contact.pressure_dofs]
+        if isinstance(self.touch, ContactFacets):
+            return self.contact.force(self.u, self.move, pressure)
+        assert isinstance(self.touch, FrictionalContact)
+        return self.touch.force(self.u, self.move, pressure, self.x[self.touch.friction_dofs])
+
+    def drag(self, x: float, z: float) -> Floats:
+        """Move the cylinder to (x, z) in one step; the force there. ArithmeticError."""
+        move, unknown, before = np.array([x, 0.0, z]), self.x.copy(), None
+        for _ in range(MAX_ITERATIONS):
+            u = np.append(unknown, 0.0)[self.numbers]
+            trial = Trial(unknown, u, move, 0.0, self.u, self.move, 0.0, 0.0, 1.0)
+            residual, tangent = self._assemble(trial)
+            status = self.touch.status(trial, None)
+            scale = np.linalg.norm(unknown[self.contact.pressure_dofs] * self.contact.nodal_area)
+            if before is not None and np.array_equal(status, before) and np.linalg.norm(residual) < TOLERANCE * scale:
+                self.x, self.u, self.move = unknown, u, move
+                return self.force
+            unknown, before = unknown - splu(tangent).solve(residual), status
+        raise ArithmeticError(f"no equilibrium at x = {x:g}, z = {z:g}")
+
+    def _assemble(self, trial: Trial) -> tuple[Floats, sp.csc_matrix]:
+        count, entries = len(trial.x), []
+        residual = np.zeros(count + 1)  # the last one collects what is prescribed
+        for term in self.terms:
+            for group, part, ke, re in term.elements(trial, term.start()):
+                dofs = term.groups[group][part]
+                if term.symmetric:
+                    ke = np.triu(ke) + np.triu(ke, 1).swapaxes(1, 2)
+                np.add.at(residual, dofs, re)
+                rows, columns = np.broadcast_arrays(dofs[:, :, None], dofs[:, None, :])
+                inside = (rows >= 0) & (columns >= 0)
+                entries.append((ke[inside], rows[inside], columns[inside]))
+        data, rows, columns = (np.concatenate(e) for e in zip(*entries, strict=True))
+        return residual[:count], sp.csc_matrix((data, (rows, columns)), (count, count))

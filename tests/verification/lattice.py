@@ -1,0 +1,106 @@
+"""Structured meshes of quadratic tetrahedra: boxes, slices, discs and rings, graded and curved."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from mesh.types import Bools, Floats, Ints
+from solve.shape_functions import TET_EDGES
+from tests.solve.box import KUHN
+
+FACES = np.array([[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 3, 2, 7, 9, 6]])  # outward
+
+
+@dataclass(frozen=True)
+class Grid:
+    """points (n, 3), tets (m, 10) and the outer facets skin (k, 6), normals outward."""
+
+    points: Floats
+    tets: Ints
+    skin: Ints
+
+    def facets(self, where: Callable[[Floats], Bools]) -> Ints:
+        """Outer facets whose six nodes satisfy a condition on the points (n, 3)."""
+        return self.skin[where(self.points)[self.skin].all(axis=1)]
+
+    def nodes(self, where: Callable[[Floats], Bools]) -> Ints:
+        return np.flatnonzero(where(self.points))
+
+    @property
+    def centres(self) -> Floats:
+        """Mean of the corners of each tetrahedron, (m, 3)."""
+        return self.points[self.tets[:, :4]].mean(axis=1)
+
+
+def straight(a: Floats, b: Floats) -> Floats:
+    return 0.5 * (a + b)
+
+
+def around_axis(a: Floats, b: Floats) -> Floats:
+    """Middle of an edge at the mean distance from the z axis: edges of constant radius follow the circle."""
+    middle = 0.5 * (a + b)
+    radius = 0.5 * (np.linalg.norm(a[:, :2], axis=1) + np.linalg.norm(b[:, :2], axis=1))
+    middle[:, :2] *= (radius / np.maximum(np.linalg.norm(middle[:, :2], axis=1), 1e-300))[:, None]
+    return middle
+
+
+def grid(axes, mapping=lambda p: p, middle=straight, jitter: float = 0.0) -> Grid:
+    """Six tetrahedra in each cell of a lattice with the given coordinates along its three axes.
+
+    mapping : lattice (n, 3) -> points; corners that fall together are one, and cells may so become wedges.
+    middle : position of the mid-side node from the two ends. jitter moves inner corners, as a share of the cell.
+    """
+    counts = np.array([len(a) for a in axes])
+    index = np.stack(np.meshgrid(*(np.arange(n) for n in counts), indexing="ij"), -1).reshape(-1, 3)
+    corners = np.column_stack([np.asarray(a, float)[i] for a, i in zip(axes, index.T, strict=True)])
+    if jitter:
+        inner = ((index > 0) & (index < counts - 1)).all(axis=1)
+        cell = np.array([np.diff(a).min() for a in axes])
+        corners[inner] += np.random.default_rng(1).uniform(-jitter, jitter, (inner.sum(), 3)) * cell
+    corners = mapping(corners)
+    scale = np.ptp(corners, axis=0).max()
+    _, first, same = np.unique(np.round(corners / scale, 9) + 0.0, axis=0, return_index=True, return_inverse=True)
+    linear = same.ravel()[_linear_tets(counts)]
+    linear = linear[(np.diff(np.sort(linear, axis=1), axis=1) > 0).all(axis=1)]
+    return _quadratic(corners[first], linear, middle)
+
+
+def _linear_tets(counts: Ints) -> Ints:
+    stride = np.array([counts[1] * counts[2], counts[2], 1])
+    cells = np.stack(np.meshgrid(*(np.arange(n - 1) for n in counts), indexing="ij"), -1).reshape(-1, 3) @ stride
+    offset = np.array([stride @ [(k >> a) & 1 for a in range(3)] for k in range(8)])
+    return np.concatenate([cells[:, None] + offset[path] for path in np.array(KUHN)])
+
+
+def _quadratic(corners: Floats, linear: Ints, middle) -> Grid:
+    edge = corners[linear[:, 1:]] - corners[linear[:, :1]]
+    flip = np.linalg.det(edge) < 0
+    linear[flip, 2:] = linear[flip, :1:-1]
+    pairs = np.sort(linear[:, TET_EDGES].reshape(-1, 2), axis=1)
+    unique, number = np.unique(pairs, axis=0, return_inverse=True)
+    points = np.vstack([corners, middle(corners[unique[:, 0]], corners[unique[:, 1]])])
+    tets = np.hstack([linear, len(corners) + number.reshape(-1, 6)])
+    faces = tets[:, FACES].reshape(-1, 6)
+    _, inverse, count = np.unique(np.sort(faces[:, :3], axis=1), axis=0, return_inverse=True, return_counts=True)
+    return Grid(points, tets, faces[count[inverse.ravel()] == 1])
+
+
+def polar(p: Floats) -> Floats:
+    """(r, angle, z) -> (x, y, z)."""
+    return np.column_stack([p[:, 0] * np.cos(p[:, 1]), p[:, 0] * np.sin(p[:, 1]), p[:, 2]])
+
+
+def disc(r, angle, z) -> Grid:
+    """A disc or ring about the z axis from its radii, angles and heights, with curved elements."""
+    return grid((r, angle, z), polar, around_axis)
+
+
+def graded(start: float, end: float, first: float, last: float) -> Floats:
+    """Coordinates from start to end whose steps grow geometrically, about first and last long."""
+    ratio = last / first
+    mean = first if ratio == 1.0 else (last - first) / np.log(ratio)
+    count = max(1, round((end - start) / mean))
+    steps = first * ratio ** (np.arange(count) / max(count - 1, 1))
+    inner = start + np.cumsum(steps[:-1]) * (end - start) / steps.sum()
+    return np.concatenate([[start], inner, [end]])
