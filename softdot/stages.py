@@ -1,5 +1,6 @@
 """The rooms as the pipeline calls them. Heavy libraries are imported here, inside the functions."""
 
+import hashlib
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -8,7 +9,7 @@ from geometry.dot_shape import DotShape, resolve_dot
 from geometry.errors import InputError
 from geometry.part import Part
 from mesh.types import Floats, TetMesh
-from softdot.config import Config
+from softdot.config import Config, config_hash
 from solve.physics import Physics
 from solve.result import PressResult, Step
 
@@ -85,11 +86,24 @@ def press(
     config: Config, physics: Physics, dot_shape: DotShape, tet_mesh: TetMesh, on_step: OnStep
 ) -> PressResult:
     """The solved press, as far as it converged."""
+    from mesh.cache import folder
+    from solve.checkpoint import Checkpoint
     from solve.press import press_segment
 
+    key = press_key(config, physics, tet_mesh)
     return press_segment(
-        config.segment, config.layer_materials(), dot_shape, config.press, tet_mesh, on_step, physics, config.readout
+        config.segment, config.layer_materials(), dot_shape, config.press, tet_mesh, on_step, physics, config.readout,
+        Checkpoint(folder() / f"press-{key}.npz", key),
     )
+
+
+def press_key(config: Config, physics: Physics, tet_mesh: TetMesh) -> str:
+    """Hash of all that a press depends on: configuration, physics, mesh and version."""
+    from softdot.version import installed_version
+
+    text = f"{installed_version()} {config_hash(config)} {physics}"
+    arrays = (tet_mesh.points_mm, tet_mesh.tets, tet_mesh.region)
+    return hashlib.sha256(text.encode() + b"".join(array.tobytes() for array in arrays)).hexdigest()
 
 
 def readout_voltage(config: Config, physics: Physics, result: PressResult) -> tuple[Floats, Floats] | None:

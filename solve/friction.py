@@ -8,8 +8,8 @@ the normal N_i = n_i / |n_i|, n_i = int phi_i grad g dA, of the present state:
     Coulomb's law       tau_i = P_b (tau_i - c s_i),    P_b = projection on the disc |t| <= b_i, t . N_i = 0
 It says |tau| <= mu lambda and tau = -mu lambda s / |s| where s is not zero, whatever c > 0 (Alart and Curnier, Comput.
 Methods Appl. Mech. Eng. 92, 1991). The radius b_i = mu (lambda_i - c g_i / A_i) is mu lambda_i where g_i = 0. Newton's
-method on it is the primal-dual active set of Hueeber, Stadler and Wohlmuth (SIAM J. Sci. Comput. 30, 2008); divided by
-|tau - c s|, a row that slips has a positive semidefinite derivative without their further damping. The linearised
+method on it is the primal-dual active set of Hueeber, Stadler and Wohlmuth (SIAM J. Sci. Comput. 30, 2008); in a row
+that slips the direction of slip stands where they have tau / b, which they damp for stability. The linearised
 normal is that of Gitterle, Popp, Gee and Wall (Int. J. Numer. Meth. Eng. 84, 2010). The slip is integrated by backward
 Euler, exact for any path on which its direction keeps still within a step.
 """

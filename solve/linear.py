@@ -50,12 +50,12 @@ class Pardiso:
         self._matrix: sp.csr_matrix | None = None
 
     def factorise(self, tangent: Tangent) -> None:
-        """Factorise; analyse the pattern the first time."""
+        """Factorise; analyse the pattern the first time, an unsymmetric one each time: its pivots follow values."""
         symmetric = tangent.excess is None
         matrix = tangent.upper if symmetric else tangent.full()
         if self._solver is None:
             self._solver = _pardiso(-2 if symmetric else 11)
-        self._solver.set_phase(12 if self._matrix is None else 22)
+        self._solver.set_phase(22 if symmetric and self._matrix is not None else 12)
         self._matrix = matrix
         self._solver._call_pardiso(matrix, np.zeros(matrix.shape[0]))
 
@@ -158,10 +158,12 @@ class LinearSolver:
         self._current = None
 
     def _factorise(self, tangent: Tangent) -> None:
-        shifted = tangent.upper.copy()
-        shifted.data[shifted.indptr[:-1]] += self._shift  # the diagonal leads each row of an upper triangle
         self._current = self._current or self._registry[0]()
-        self._current.factorise(Tangent(shifted, tangent.excess))
+        if tangent.excess is None:
+            shifted = tangent.upper.copy()
+            shifted.data[shifted.indptr[:-1]] += self._shift  # the diagonal leads each row of an upper triangle
+            tangent = Tangent(shifted)
+        self._current.factorise(tangent)
 
     def _krylov(self, tangent: Tangent, rhs: Floats, tolerance: float) -> tuple[Floats, float]:
         """GMRES preconditioned by the last factorisation, and the true relative residual."""

@@ -10,6 +10,7 @@ from solve.solid import InvertedElementError
 from solve.system import Evaluation, Load, State, System
 
 TOLERANCE = 1e-9
+LINEAR_TOLERANCE = 1e-9  # the least that is asked of the linear solver, relative to the nonlinear residual
 MAX_ITERATIONS = 25
 MAX_HALVINGS = 6
 SIMILAR_CONTACT = 6  # so many nodes may change contact and the last factorisation still be a good preconditioner
@@ -45,7 +46,8 @@ def equilibrate(system: System, linear: LinearSolver, x: Floats, load: Load, tim
                 break
             similar = status is not None and int(np.sum(status != now.status)) <= SIMILAR_CONTACT
             # inexact Newton: the linear residual need only fall as the nonlinear one will
-            step = linear.solve(now.tangent, -now.residual, min(0.1 * relative, 1e-3), similar)
+            tolerance = min(max(0.1 * relative, LINEAR_TOLERANCE), 1e-3)
+            step = linear.solve(now.tangent, -now.residual, tolerance, similar)
             status = now.status
             x, now = _advance(system, x, step, load, time, previous)
     except LinearSolveError as error:

@@ -6,6 +6,7 @@ from itertools import pairwise
 from geometry.dot_shape import DotShape
 from geometry.parameters import Dot, Segment
 from mesh.types import TetMesh
+from solve.checkpoint import Checkpoint
 from solve.interfaces import open_interfaces
 from solve.linear import LinearSolver
 from solve.march import march, rest_state
@@ -29,10 +30,12 @@ def press_segment(
     on_step: OnStep | None = None,
     physics: Physics | None = None,
     readout: Readout | None = None,
+    checkpoint: Checkpoint | None = None,
 ) -> PressResult:
     """Solve a press; materials : region name -> material. on_step(step, number, count) follows the progress.
 
     readout matters only where the film's voltage acts back on it (coupling = "two-way").
+    checkpoint : where a long press leaves its state, and goes on from one that was killed.
     Want of convergence raises nothing: the result then holds what converged and says where and why it ended.
     InputError for a delaminated patch outside its interface.
     """
@@ -42,22 +45,28 @@ def press_segment(
     model = Model(segment, materials, Dot(), press, readout, physics)
     setup = set_up(model, dot, opened_mesh, opened)
     linear = LinearSolver(setup.system.factorisation_shift)
-    failure = _follow(setup, linear, on_step)
+    failure = _follow(setup, linear, on_step, checkpoint)
     linear.close()
+    if checkpoint is not None:
+        checkpoint.discard()
     return setup.recorder.result(failure, linear.name, press, physics.follows_time)
 
 
-def _follow(setup: Setup, linear: LinearSolver, on_step: OnStep | None) -> str | None:
+def _follow(
+    setup: Setup, linear: LinearSolver, on_step: OnStep | None, checkpoint: Checkpoint | None
+) -> str | None:
     """March along the schedule; returns why it stopped short, or None."""
     system, recorder, targets = setup.system, setup.recorder, setup.targets(setup.model.physics.follows_time)
-    try:
-        past = [rest_state(system, linear, targets[0])]
-    except NoEquilibriumError as error:
-        recorder.start(system.at_rest(targets[0].load))
-        return f"the prestretched film finds no equilibrium: {error}"
-    recorder.start(past[0])
-    count = len(targets) - 1
-    for number, (before, target) in enumerate(pairwise(targets), start=1):
+    past = [] if checkpoint is None else checkpoint.load(recorder, system.count)
+    if not past:
+        try:
+            past = [rest_state(system, linear, targets[0])]
+        except NoEquilibriumError as error:
+            recorder.start(system.at_rest(targets[0].load))
+            return f"the prestretched film finds no equilibrium: {error}"
+        recorder.start(past[0])
+    count, done = len(targets) - 1, len(recorder.steps)
+    for number, (before, target) in list(enumerate(pairwise(targets), start=1))[done - 1 :]:
         failure = march(system, linear, past, target, before.kink, recorder.record)
         if past[-1].time > before.time:
             recorder.report()
@@ -67,4 +76,6 @@ def _follow(setup: Setup, linear: LinearSolver, on_step: OnStep | None) -> str |
             reached = recorder.steps[-1]
             depth = f"{1e3 * reached.indentation_m:.3f} mm and {reached.reaction_force_N:.3g} N"
             return f"step {number} of {count} stopped at {depth}: {failure}"
+        if checkpoint is not None:
+            checkpoint.save(past, recorder)
     return None

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -37,8 +38,9 @@ class Recorder:
         self.force_scale, self.charge_scale = scale_of_section(segment, tet_mesh)
         self.steps: list[Step] = []
         self.records: list[Record] = []
-        self._rest_charge: Floats | float = 0.0
+        self._rest_charge = np.zeros(system.film.electrodes)
         self._last: tuple[State, State] | None = None
+        self._reported = 0
 
     def start(self, rest: State) -> None:
         """The unloaded state: its charge, of a prestretch, has long leaked away."""
@@ -46,6 +48,15 @@ class Recorder:
         self._rest_charge = self._mechanical_charge(rest, rest)
         self.record(rest, rest)
         self.report()
+
+    def memory(self) -> list[Any]:
+        """All that was recorded, to be restored later."""
+        return [self.records, self.steps, self._rest_charge]
+
+    def restore(self, memory: list[Any]) -> None:
+        """Go on after what was recorded."""
+        self.records, self.steps, self._rest_charge = memory
+        self._reported = len(self.records)
 
     def record(self, state: State, before: State) -> None:
         """Add a converged state; before : the one its step started from."""
@@ -91,8 +102,6 @@ class Recorder:
             )
         )
         self._reported = len(self.records)
-
-    _reported = 0
 
     def result(self, failure: str | None, linear_solver: str, press: Press, follows_time: bool) -> PressResult:
         """The whole history; sources of charge that do not depend on the mechanics are added here."""
