@@ -10,7 +10,6 @@ from solve.solid import InvertedElementError
 from solve.system import Evaluation, Load, State, System
 
 TOLERANCE = 1e-9
-LINEAR_TOLERANCE = 1e-9  # the least that is asked of the linear solver, relative to the nonlinear residual
 MAX_ITERATIONS = 25
 MAX_HALVINGS = 6
 SIMILAR_CONTACT = 6  # so many nodes may change contact and the last factorisation still be a good preconditioner
@@ -45,8 +44,8 @@ def equilibrate(system: System, linear: LinearSolver, x: Floats, load: Load, tim
             if not np.isfinite(norm):
                 break
             similar = status is not None and int(np.sum(status != now.status)) <= SIMILAR_CONTACT
-            # inexact Newton: the linear residual need only fall as the nonlinear one will
-            tolerance = min(max(0.1 * relative, LINEAR_TOLERANCE), 1e-3)
+            # inexact Newton: the linear residual need only fall as the nonlinear one will, nor below what is asked of it
+            tolerance = min(max(0.1 * relative, 0.1 * TOLERANCE / max(relative, 1e-300)), 1e-3)
             step = linear.solve(now.tangent, -now.residual, tolerance, similar)
             status = now.status
             x, now = _advance(system, x, step, load, time, previous)
