@@ -1,4 +1,4 @@
-"""Reaction force and voltage against indentation."""
+"""Reaction force and voltage against indentation or time."""
 
 from pathlib import Path
 from typing import Any
@@ -12,18 +12,17 @@ RED, GREEN = "#b5263b", "#3f7a4d"
 
 
 def draw_curves(
-    indentation_mm: Floats,
+    abscissa: tuple[Floats, str],
     reaction_force_N: Floats,
     open_circuit_voltage_V: Floats,
     readout_voltage_V: Floats | None,
     path: Path,
 ) -> None:
-    """Two panels over the indentation (over the step number where it does not rise). Arrays of shape (s,)."""
+    """Two panels over the abscissa, its values (s,) and label. Arrays of shape (s,)."""
     from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-    rises = bool(np.all(np.diff(indentation_mm) > 0))
-    x = indentation_mm if rises else np.arange(len(indentation_mm), dtype=np.float64)
+    x, below = abscissa
     figure = Figure(
         figsize=(WIDTH_IN, HEIGHT_IN * 0.6),
         dpi=DPI,
@@ -32,12 +31,12 @@ def draw_curves(
     )
     force, voltage = figure.subplots(1, 2)
     force.plot(x, reaction_force_N, "o-", color="#33658a", lw=1.8, ms=4)
-    _label(force, rises, "reaction force (N)")
+    _label(force, below, "reaction force (N)")
     scale, unit = _voltage_unit(open_circuit_voltage_V)
     lines = voltage.plot(
         x, scale * open_circuit_voltage_V, "o-", color=RED, lw=1.8, ms=4, label="open circuit"
     )
-    _label(voltage, rises, f"voltage ({unit})")
+    _label(voltage, below, f"voltage ({unit})")
     if readout_voltage_V is not None:
         lines += _plot_readout(voltage, x, open_circuit_voltage_V, readout_voltage_V)
     voltage.legend(
@@ -64,8 +63,8 @@ def _voltage_unit(voltage_V: Floats) -> tuple[float, str]:
     return (1e3, "mV") if np.abs(voltage_V).max() < 1.0 else (1.0, "V")
 
 
-def _label(axes: Any, rises: bool, label: str) -> None:
-    axes.set_xlabel("indentation (mm)" if rises else "step", fontsize=12, color=INK)
+def _label(axes: Any, below: str, label: str) -> None:
+    axes.set_xlabel(below, fontsize=12, color=INK)
     axes.set_ylabel(label, fontsize=12, color=INK)
     axes.grid(alpha=0.3)
     axes.locator_params(axis="x", nbins=5)

@@ -11,7 +11,7 @@ from export.film_map import draw_film
 from export.units import MM_PER_M
 from geometry.dot_shape import DotShape
 from mesh.types import Floats, TetMesh
-from solve.result import PressResult
+from solve.result import PressResult, Step
 
 FILES = ("undeformed", "deformed", "von_mises", "film", "force_voltage")
 
@@ -28,7 +28,7 @@ def write_pictures(
     readout_voltage_V : (s,) voltage behind the amplifier at each step, where there is one.
     Raises InputError when this machine lacks the system libraries to draw.
     """
-    first, last = result.steps[0], result.steps[-1]
+    first, last = result.steps[0], deepest(result)
     depth, force = last.indentation_m * MM_PER_M, last.reaction_force_N
     pressed = f"Pressed {depth:.3g} mm deep with {force:.3g} N"
     with whole_folder(folder) as scratch:
@@ -40,15 +40,30 @@ def write_pictures(
         draw_parts(scene, pressed, files["deformed"])
         draw_von_mises(scene, pressed, files["von_mises"])
         draw_film(tet_mesh, last, f"Film at {depth:.3g} mm", files["film"], is_slice(tet_mesh))
-        draw_curves(*_history(result), readout_voltage_V, files["force_voltage"])
+        draw_curves(abscissa(result), *_history(result), readout_voltage_V, files["force_voltage"])
     return {name: folder / f"{name}.png" for name in FILES}
 
 
-def _history(result: PressResult) -> tuple[Floats, Floats, Floats]:
-    """Indentation (mm), force (N) and open-circuit voltage (V) of the electrodes in parallel, each (s,)."""
+def deepest(result: PressResult) -> Step:
+    """The step to show: the deepest, of equal ones the last."""
+    depth = [round(step.indentation_m, 12) for step in result.steps]
+    return result.steps[len(depth) - 1 - int(np.argmax(depth[::-1]))]
+
+
+def abscissa(result: PressResult) -> tuple[Floats, str]:
+    """What the curves are drawn over (s,), and its name: time where it matters, else depth, on a slide the step."""
+    if result.follows_time:
+        return np.array([step.time_s for step in result.steps]), "time (s)"
+    depth = np.array([step.indentation_m * MM_PER_M for step in result.steps])
+    if bool(np.all(np.diff(depth) > 0)):
+        return depth, "indentation (mm)"
+    return np.arange(len(depth), dtype=np.float64), "step"
+
+
+def _history(result: PressResult) -> tuple[Floats, Floats]:
+    """Force (N) and open-circuit voltage (V) of the electrodes in parallel, each (s,)."""
     share = result.capacitance_F / result.capacitance_F.sum()
     return (
-        np.array([step.indentation_m * MM_PER_M for step in result.steps]),
         np.array([step.reaction_force_N for step in result.steps]),
         np.array([step.open_circuit_voltage_V @ share for step in result.steps]),
     )

@@ -117,7 +117,6 @@ class Recorder:
             )
             for step, i in zip(self.steps, at, strict=True)
         )
-        last = steps[-1].fields
         return PressResult(
             steps=steps,
             trace=trace,
@@ -130,9 +129,9 @@ class Recorder:
             unknowns=self.system.count,
             linear_solver=linear_solver,
             max_relative_residual=max(step.relative_residual for step in steps),
-            max_principal_film_strain=_largest_principal(last.film_strain),
-            max_principal_film_stress_Pa=_largest_principal(last.film_stress_Pa),
-            warnings=_penetration(steps[-1]),
+            max_principal_film_strain=max(_largest_principal(step.fields.film_strain) for step in steps),
+            max_principal_film_stress_Pa=max(_largest_principal(step.fields.film_stress_Pa) for step in steps),
+            warnings=_penetration(max(steps, key=lambda step: step.indentation_m)),
         )
 
     @property

@@ -9,7 +9,7 @@ import numpy as np
 
 from geometry.dot_shape import DotShape
 from mesh.types import TetMesh
-from solve.result import Fields, PressResult, Step
+from solve.result import Fields, PressResult, Step, Trace
 
 LAYERS = (("medium2", 2.0, 2), ("film", 0.028, 1), ("medium1", 0.5, 1), ("effector", 1.0, 2))
 HEIGHT_MM = sum(thickness for _, thickness, _ in LAYERS)
@@ -116,6 +116,9 @@ def made_up_press(tet_mesh: TetMesh, converged: bool = True) -> PressResult:
     last = steps[-1].fields
     return PressResult(
         steps=steps,
+        trace=_trace(steps),
+        follows_time=False,
+        tet_mesh=tet_mesh,
         converged=converged,
         failure=None if converged else "the contact did not converge beyond 0.2 mm",
         electrode_names=("film",),
@@ -126,6 +129,17 @@ def made_up_press(tet_mesh: TetMesh, converged: bool = True) -> PressResult:
         max_principal_film_strain=float(last.film_strain[:, :2].max()),
         max_principal_film_stress_Pa=float(last.film_stress_Pa[:, :2].max()),
         warnings=("the film's stress of 62 MPa exceeds its yield stress of 50 MPa",),
+    )
+
+
+def _trace(steps) -> Trace:
+    """The histories of the steps alone."""
+    depth = np.array([step.indentation_m for step in steps])
+    force = np.array([step.reaction_force_N for step in steps])
+    return Trace(
+        time_s=np.arange(len(steps), dtype=float), indentation_m=depth, dot_path_m=depth, reaction_force_N=force,
+        contact_force_N=force[:, None] * [0, 0, 1], film_charge_C=np.array([step.film_charge_C for step in steps]),
+        contact_area_m2=1e-6 * force,
     )
 
 
@@ -162,6 +176,8 @@ def _step(tet_mesh: TetMesh, depth: float, ridge: bool) -> Step:
         contact_pressure_Pa=np.where(gap < 0.01, 1e6 * depth, 0.0),
     )
     return Step(
+        time_s=0.0,
+        dot_force_N=np.zeros(3),
         indentation_m=depth * 1e-3,
         reaction_force_N=2.0 * depth**1.5,
         film_charge_C=np.array([4e-9 * depth**2]),

@@ -1,0 +1,133 @@
+"""Make a reduced model from presses of the 3D model with memories that do not fade.
+
+One elastic press; for each layer that may relax, presses with the memory of a long hold at two depths and with half
+of the deeper one; for each pair of layers a press with both memories: 1 + 3 k + k (k - 1) / 2 presses for k layers.
+Prony series, rig and circuit come in only when the model is asked, so that they can be changed freely.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+
+from geometry.dot_shape import DotShape
+from geometry.parameters import Dot, Segment
+from mesh.types import Floats, TetMesh
+from solve.interfaces import open_interfaces
+from solve.materials.parameters import Material, PiezoelectricFilm
+from solve.model import Model
+from solve.parameters import Press
+from solve.physics import Physics
+from solve.reduced import store
+from solve.reduced.accuracy import measured
+from solve.reduced.fit import fit
+from solve.reduced.frozen import Frozen
+from solve.reduced.model import Accuracy, ReducedModel, structure
+from solve.reduced.sampling import Sample, Sampler
+from solve.setup import set_up
+
+DEPTH_NODES = 14
+UNKNOWN = Accuracy(np.inf, np.inf, np.inf)
+
+
+@dataclass(frozen=True)
+class Case:
+    """What is reduced: a segment on its mesh, the dot, the deepest press, what may relax, and the other physics."""
+
+    segment: Segment
+    materials: Mapping[str, Material]
+    dot: DotShape
+    tet_mesh: TetMesh
+    depth_mm: float
+    relaxing: Mapping[str, float]
+    physics: Physics
+    depth_nodes: int
+
+
+def build_reduced(
+    segment: Segment,
+    materials: Mapping[str, Material],
+    dot: DotShape,
+    tet_mesh: TetMesh,
+    depth_mm: float,
+    relaxing: Mapping[str, float] | None = None,
+    physics: Physics | None = None,
+    depth_nodes: int = DEPTH_NODES,
+    check: bool = True,
+    cache: bool = True,
+) -> ReducedModel:
+    """A reduced model down to depth_mm. materials : layer -> material.
+
+    relaxing : layer or compliant bond -> largest sum of its relative moduli, between 0 and 1. physics : its bonds,
+    delaminations and prestretch are built in, the rest is given when the model is asked. depth_nodes : states sampled
+    on the way down. check : measure the error on 3D presses kept out of the fit; without it the bound is infinite.
+    cache : keep the model on disk by what it depends on. ValueError with one sentence for what it cannot describe;
+    NoEquilibriumError where the 3D model has no answer.
+    """
+    asked = Case(segment, materials, dot, tet_mesh, depth_mm, dict(relaxing or {}), physics or Physics(), depth_nodes)
+    _refuse(asked)
+    if not cache:
+        return _build(asked, check)
+    return store.remembered(store.key(asked, check), lambda: _build(asked, check))
+
+
+def _refuse(case: Case) -> None:
+    """What the reduction does not describe."""
+    film = case.materials["film"]
+    if isinstance(film, PiezoelectricFilm) and film.coupling == "two-way":
+        raise ValueError("coupling = 'two-way': the reduced model needs a film whose voltage does not act back")
+    if case.physics.friction > 0.0 or case.physics.softening or case.physics.film_yield is not None:
+        raise ValueError("friction, softening and yield depend on the path: they stay with the full solve")
+    if case.relaxing and case.physics.prestretch != (0.0, 0.0):
+        raise ValueError("a prestretched film with relaxing layers stays with the full solve")
+    for layer, share in case.relaxing.items():
+        if not 0.0 < share < 1.0:
+            raise ValueError(f"relaxing: {layer} = {share:g}, must lie between 0 and 1")
+    if not case.depth_mm > 0.0:
+        raise ValueError(f"depth_mm = {case.depth_mm:g}: must be above 0")
+
+
+def _build(case: Case, check: bool) -> ReducedModel:
+    layers = tuple(case.relaxing)
+    sampler = _sampler(case, layers)
+    samples = list(_samples(sampler, case.relaxing))
+    sampler.linear.close()
+    film = case.materials["film"]
+    assert isinstance(film, PiezoelectricFilm)
+    recorder = sampler.recorder
+    area = sampler.system.film.area() * sampler.system.units.length**2 * recorder.charge_scale
+    electrodes = np.column_stack([recorder.capacitance_F, area])
+    model = ReducedModel(
+        fit(samples, layers), case.depth_mm, case.relaxing, electrodes, film.pyroelectric_uC_per_m2_K,
+        structure(case.physics), UNKNOWN,
+    )  # fmt: skip
+    if not check:
+        return model
+    told = (case.segment, case.materials, case.dot, case.tet_mesh, case.physics)
+    return replace(model, accuracy=measured(model, *told))
+
+
+def _sampler(case: Case, layers: tuple[str, ...]) -> Sampler:
+    kept = Physics(
+        bonds=case.physics.bonds, delaminations=case.physics.delaminations, prestretch=case.physics.prestretch,
+        viscosity={layer: Frozen(layer=layer) for layer in layers},
+    )  # fmt: skip
+    plane_strain = case.segment.section == "plane-strain"
+    opened_mesh, opened = open_interfaces(case.tet_mesh, kept.bonds, kept.delaminations, plane_strain)
+    press = Press(indentation_mm=case.depth_mm)
+    model = Model(case.segment, case.materials, Dot(), press, None, kept)
+    return Sampler(set_up(model, case.dot, opened_mesh, opened), layers, case.depth_nodes)
+
+
+def _samples(sampler: Sampler, relaxing: Mapping[str, float]) -> Iterator[Sample]:
+    """The elastic press first."""
+    elastic, fields = sampler.press({}, keep=True)
+    yield elastic
+    deep, middle = len(fields) - 1, round(len(fields) * 0.6)
+    held: dict[str, Floats] = {layer: share * fields[deep][layer] for layer, share in relaxing.items()}
+    for layer, share in relaxing.items():
+        for memory in (held[layer], 0.5 * held[layer], share * fields[middle][layer]):
+            yield sampler.press({layer: memory})[0]
+    for one, other in combinations(relaxing, 2):
+        yield sampler.press({one: held[one], other: held[other]})[0]
