@@ -3,20 +3,44 @@
 import numba as nb
 import numpy as np
 
-from solve.element_kernels import _add_displacement_part, _strain_operator
+from solve.stiffness_blocks import (
+    COLUMNS,
+    MATH,
+    add_weighted_rows,
+    displacement_stiffness,
+    first_tangent_rows,
+    strain_rows,
+    transpose_gradients,
+)
+
+BLOCK = 64  # elements of one task: they share its scratch arrays
 
 
-@nb.njit(parallel=True, cache=True)
+@nb.njit(parallel=True, cache=True, fastmath=MATH)
 def compressible_solid(grad, weight, f, s, cc, ke, re):  # type: ignore[no-untyped-def]
     """P2 elements, unknowns (10 nodes x 3 displacements); r_u and K_uu of element_kernels.py.
 
     grad (m, q, 10, 3), weight (m, q), f (m, q, 3, 3), s (m, q, 6) and cc (m, q, 6, 6) the whole stress and
-    tangent; ke (m, 30, 30) upper triangle and re (m, 30) are overwritten.
+    tangent; the upper triangle of ke (m, 30, 30) and re (m, 30) are overwritten.
     """
-    for e in nb.prange(grad.shape[0]):
-        b, cb = np.empty((6, 30)), np.empty((6, 30))
-        ke[e] = 0.0
-        re[e] = 0.0
-        for q in range(grad.shape[1]):
-            _strain_operator(f[e, q], grad[e, q], b)
-            _add_displacement_part(b, grad[e, q], s[e, q], cc[e, q], weight[e, q], cb, ke[e], re[e])
+    points = grad.shape[1]
+    for block in nb.prange((grad.shape[0] + BLOCK - 1) // BLOCK):
+        b, cb, t = np.zeros((6, COLUMNS)), np.zeros((6, COLUMNS + 8)), np.empty((3, 3 * points, COLUMNS))
+        g, k, ru = np.empty((3 * points, 10)), np.empty((10, COLUMNS)), np.empty(COLUMNS)
+        sw, ccw = np.empty(6), np.empty((6, 6))
+        for e in range(block * BLOCK, min(grad.shape[0], (block + 1) * BLOCK)):
+            ru[:] = 0.0
+            for q in range(points):
+                gq = g[3 * q : 3 * q + 3]
+                transpose_gradients(grad[e, q], gq)
+                for v in range(6):
+                    sw[v] = weight[e, q] * s[e, q, v]
+                    for m in range(6):
+                        ccw[v, m] = weight[e, q] * cc[e, q, v, m]
+                strain_rows(f[e, q], gq, b)
+                first_tangent_rows(f[e, q], gq, sw, ccw, b, cb, t, 3 * q)
+                add_weighted_rows(sw, b, ru)
+            displacement_stiffness(g, t, k, ke[e])
+            for a in range(10):
+                for i in range(3):
+                    re[e, 3 * a + i] = ru[10 * i + a]

@@ -3,11 +3,12 @@
 import numpy as np
 
 from mesh.types import Floats, Ints, TetMesh
+from solve.kinematics import deformation_gradient
 from solve.materials.voigt import from_voigt, to_voigt
 from solve.quadrature import tetrahedron
 from solve.result import Fields
 from solve.shape_functions import linear
-from solve.solid import SolidRegion, deformation_gradient
+from solve.solid import SolidRegion
 from solve.system import State, System
 from solve.term import History, Trial
 

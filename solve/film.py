@@ -7,13 +7,14 @@ import numpy as np
 
 from mesh.types import Floats, Ints
 from solve.film_kernel import film_solid
+from solve.kinematics import deformation_gradient
 from solve.materials.piezoelectric import FilmLaw
 from solve.materials.prony import Prony
 from solve.materials.response import Inelastic, Response
 from solve.materials.voigt import to_voigt
 from solve.quadrature import tetrahedron
 from solve.shape_functions import physical_gradients, quadratic
-from solve.solid import deformation_gradient, refuse_inversion
+from solve.solid import refuse_inversion
 from solve.term import Block, History, Term, Trial
 
 

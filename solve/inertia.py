@@ -17,6 +17,6 @@ def prescribed_acceleration(press: Press, trace: Trace) -> Floats:
     if len(time) < 2:
         return np.zeros_like(time)
     h = float(np.diff(time).min())
-    depth = 1e-3 * (press.indentation_mm or 0.3)
+    depth = 1e-3 * press.depth_mm
     before, now, after = (fraction(waveform, time + shift) for shift in (-h, 0.0, h))
     return np.asarray(depth * (after - 2.0 * now + before) / h**2)

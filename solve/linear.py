@@ -9,6 +9,8 @@ for Sparse Linear Systems, 2003, ch. 9). A factorisation costs some thirty of th
 step is used again where the tangent has changed little.
 """
 
+import os
+from importlib.metadata import files
 from typing import Any, Protocol
 
 import numpy as np
@@ -75,12 +77,23 @@ def _pardiso(kind: int) -> Any:
     """PyPardiso for a matrix type, with the parameters of MKL's iparm that differ from its defaults."""
     from pypardiso import PyPardisoSolver
 
+    _tell_where_mkl_is()
     solver = PyPardisoSolver(mtype=kind)
     symmetric = ((1, 1), (2, 3), (10, 13), (11, 0), (13, 0), (21, 1))
     unsymmetric = ((1, 1), (2, 3), (10, 13), (11, 1), (13, 1))
     for parameter, value in symmetric if kind == -2 else unsymmetric:
         solver.set_iparm(parameter, value)
     return solver
+
+
+def _tell_where_mkl_is() -> None:
+    """PyPardiso would search the whole environment for MKL's library; its wheel knows."""
+    if "PYPARDISO_MKL_RT" in os.environ:
+        return
+    for file in files("mkl") or ():
+        if "mkl_rt" in file.name:
+            os.environ["PYPARDISO_MKL_RT"] = str(file.locate())
+            return
 
 
 class SuperLU:

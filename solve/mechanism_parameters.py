@@ -1,8 +1,9 @@
 """The parameters of each mechanism, with what is allowed."""
 
-from typing import Annotated, Self
+from typing import Annotated, Any, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
+from pydantic_core import PydanticCustomError
 
 from geometry.parameters import BondStiffness, Finite, NonNegative, Positive, Table
 
@@ -11,52 +12,63 @@ Moduli = tuple[Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False)], ...]
 Terms = tuple[Finite, ...]
 
 
-class ChargeLeakage(Table):
+class Parameters(Table):
+    """Numbers only: neither texts nor true and false stand for them."""
+
+    @field_validator("*", mode="before")
+    @classmethod
+    def _plain(cls, value: Any) -> Any:
+        if any(isinstance(one, str | bool) for one in (value if isinstance(value, list) else [value])):
+            raise PydanticCustomError("plain_number", "must be a plain number, its unit stands in the key")
+        return value
+
+
+class ChargeLeakage(Parameters):
     """A resistance parallel to the read-out's."""
 
     resistance_MOhm: Positive = Field(description="in parallel to the input resistance")
 
 
-class ParasiticCapacitance(Table):
+class ParasiticCapacitance(Parameters):
     """A capacitance parallel to the read-out's."""
 
     capacitance_pF: NonNegative = Field(description="added to the input capacitance")
 
 
-class LowPass(Table):
+class LowPass(Parameters):
     """A Butterworth low-pass behind the read-out."""
 
     cutoff_Hz: Positive = Field(description="corner frequency")
     order: Annotated[int, Field(ge=1, le=8)] = Field(1, description="order")
 
 
-class Saturation(Table):
+class Saturation(Parameters):
     """The amplifier's limit."""
 
     limit_V: Positive = Field(description="the voltage stays between plus and minus this")
 
 
-class MainsHum(Table):
+class MainsHum(Parameters):
     """A sine added to the voltage."""
 
     frequency_Hz: Positive = Field(50.0, description="of the mains")
     amplitude_V: NonNegative = Field(description="of the sine")
 
 
-class PyroelectricDrift(Table):
+class PyroelectricDrift(Parameters):
     """A temperature step of the film."""
 
     temperature_step_K: Finite = Field(description="final change of temperature")
     time_constant_s: Positive = Field(1.0, description="of the exponential approach, from the first touch")
 
 
-class ContactElectrification(Table):
+class ContactElectrification(Parameters):
     """Charge that the touch leaves on the electrodes."""
 
     charge_pC: Finite = Field(description="at the largest contact area; in proportion to the area before")
 
 
-class Viscoelasticity(Table):
+class Viscoelasticity(Parameters):
     """A Prony series."""
 
     relative_moduli: Moduli = Field(description="share of the instantaneous stress that each term relaxes")
@@ -74,7 +86,7 @@ class Viscoelasticity(Table):
         return self
 
 
-class HyperelasticStiffening(Table):
+class HyperelasticStiffening(Parameters):
     """Another law of the same layer: Yeoh or Mooney-Rivlin (c10 ...), or Ogden (mu, alpha)."""
 
     c10_MPa: Finite | None = Field(None, description="Yeoh or Mooney-Rivlin; none: half the layer's shear modulus")
@@ -95,7 +107,7 @@ class HyperelasticStiffening(Table):
         return self
 
 
-class FoamDensification(Table):
+class FoamDensification(Parameters):
     """The layer as a hyperfoam."""
 
     mu_MPa: Terms = Field(description="modulus of each term")
@@ -103,7 +115,7 @@ class FoamDensification(Table):
     poisson_ratio: Terms = Field(description="Poisson's ratio of each term")
 
 
-class StressSoftening(Table):
+class StressSoftening(Parameters):
     """Ogden-Roxburgh softening."""
 
     loss_ratio: Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False)] = Field(
@@ -113,14 +125,14 @@ class StressSoftening(Table):
     beta: Positive = Field(0.3, description="width of the transition back to the first curve")
 
 
-class FilmYield(Table):
+class FilmYield(Parameters):
     """Plasticity of the film."""
 
     yield_stress_MPa: Positive = Field(description="von Mises stress at which it flows")
     hardening_modulus_MPa: NonNegative = Field(0.0, description="0: perfectly plastic")
 
 
-class AdhesiveCompliance(Table):
+class AdhesiveCompliance(Parameters):
     """Stiffness of a bond, directly or as a layer of glue."""
 
     normal_stiffness_N_per_mm3: BondStiffness | None = Field(None, description="traction per opening")
@@ -141,57 +153,57 @@ class AdhesiveCompliance(Table):
         return self
 
 
-class DelaminationPatch(Table):
+class DelaminationPatch(Parameters):
     """A region without bond."""
 
     center_mm: tuple[Finite, Finite] = Field((0.0, 0.0), description="centre, x and y")
     diameter_mm: NonNegative = Field(description="of the disc; plane strain: width of the strip")
 
 
-class Friction(Table):
+class Friction(Parameters):
     """Coulomb friction of the dot."""
 
     coefficient: Annotated[float, Field(ge=0, le=3, allow_inf_nan=False)] = Field(description="Coulomb's")
 
 
-class ElasticSides(Table):
+class ElasticSides(Parameters):
     """Springs at the held sides."""
 
     stiffness_N_per_mm3: NonNegative = Field(description="normal and tangential traction per displacement")
 
 
-class DotOffset(Table):
+class DotOffset(Parameters):
     """The dot stands elsewhere."""
 
     offset_mm: tuple[Finite, Finite] = Field(description="added to the dot's position, x and y")
 
 
-class ContactGap(Table):
+class ContactGap(Parameters):
     """Lost motion before the touch."""
 
     gap_mm: NonNegative = Field(description="travel of the rig before the dot touches")
 
 
-class RigCompliance(Table):
+class RigCompliance(Parameters):
     """A spring between displacement sensor and dot."""
 
     compliance_mm_per_N: NonNegative = Field(description="of the rig")
 
 
-class FilmPrestretch(Table):
+class FilmPrestretch(Parameters):
     """The film was stretched before it was bonded."""
 
     strain_x: Strain = Field(0.0, description="nominal strain in x")
     strain_y: Strain = Field(0.0, description="nominal strain in y")
 
 
-class Inertia(Table):
+class Inertia(Parameters):
     """Mass that moves with the dot."""
 
     moving_mass_g: NonNegative = Field(description="between the force sensor and the dot")
 
 
-class Crosstalk(Table):
+class Crosstalk(Parameters):
     """Other channels leak into this one."""
 
     coupling: Annotated[float, Field(gt=-1, lt=1, allow_inf_nan=False)] = Field(
@@ -199,7 +211,7 @@ class Crosstalk(Table):
     )
 
 
-class PropertyError(Table):
+class PropertyError(Parameters):
     """A wrong number in the configuration."""
 
     modulus_factor: Positive = Field(1.0, description="on every modulus of the layer")
@@ -209,5 +221,5 @@ class PropertyError(Table):
     height_factor: Positive = Field(1.0, description="dot: on its height")
 
 
-class DimensionReduction(Table):
+class DimensionReduction(Parameters):
     """A ridge for a cap, or the reverse."""

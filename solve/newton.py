@@ -44,7 +44,7 @@ def equilibrate(system: System, linear: LinearSolver, x: Floats, load: Load, tim
             if not np.isfinite(norm):
                 break
             similar = status is not None and int(np.sum(status != now.status)) <= SIMILAR_CONTACT
-            # inexact Newton: the linear residual need only fall as the nonlinear one will, nor below what is asked of it
+            # inexact Newton: the linear residual need fall neither faster than the nonlinear one nor below its goal
             tolerance = min(max(0.1 * relative, 0.1 * TOLERANCE / max(relative, 1e-300)), 1e-3)
             step = linear.solve(now.tangent, -now.residual, tolerance, similar)
             status = now.status

@@ -19,6 +19,9 @@ class Waveform(Table):
     file: str | None = Field(None, description="shape = file: the CSV file")
 
 
+DEFAULT_INDENTATION_MM = 0.3
+
+
 class Press(Table):
     """How the dot is pressed."""
 
@@ -27,6 +30,11 @@ class Press(Table):
     load_steps: Annotated[int, Field(ge=1, le=1000)] = Field(6, description="equal steps that are reported")
     path_xy_mm: tuple[tuple[Finite, Finite], ...] = Field((), description="way points of a slide at full depth")
     waveform: Waveform | None = Field(None, description="time course, for the read-out and time-dependent physics")
+
+    @property
+    def depth_mm(self) -> float:
+        """Final depth where no force is given."""
+        return self.indentation_mm or DEFAULT_INDENTATION_MM
 
 
 class Readout(Table):

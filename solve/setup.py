@@ -12,8 +12,6 @@ from solve.recorder import Recorder
 from solve.schedule import Target, schedule
 from solve.system import System, Units
 
-DEFAULT_INDENTATION_MM = 0.3
-
 
 @dataclass(frozen=True)
 class Setup:
@@ -29,7 +27,7 @@ class Setup:
         press, segment = self.model.press, self.model.segment
         if press.force_N is not None:
             return press.force_N / scale_of_section(segment, self.recorder.tet_mesh)[0] / self.system.units.force
-        return 1e-3 * (press.indentation_mm or DEFAULT_INDENTATION_MM) / self.system.units.length
+        return 1e-3 * press.depth_mm / self.system.units.length
 
     def targets(self, follows_time: bool) -> list[Target]:
         """What is to be reached, and when (see solve.schedule)."""

@@ -11,6 +11,7 @@ import numpy as np
 from mesh.types import Floats, Ints
 from solve.compressible_kernel import compressible_solid
 from solve.element_kernels import mixed_solid
+from solve.kinematics import cauchy_green, deformation_gradient, smallest_jacobian
 from solve.materials.laws import MediumLaw
 from solve.materials.prony import Prony
 from solve.materials.response import Inelastic, Memory, Response
@@ -19,12 +20,6 @@ from solve.shape_functions import linear, physical_gradients, quadratic
 from solve.term import Block, History, Term, Trial
 
 CHUNK = 4096  # elements assembled at a time: bounds the memory of the element matrices
-
-
-def deformation_gradient(gradient: Floats, displacement: Floats) -> Floats:
-    """F = 1 + du/dX at (m, q, n, 3) gradients and (m, n, 3) nodal displacements: (m, q, 3, 3)."""
-    f: Floats = np.matmul(displacement.transpose(0, 2, 1)[:, None], gradient) + np.eye(3)
-    return f
 
 
 class InvertedElementError(ArithmeticError):
@@ -37,7 +32,7 @@ class InvertedElementError(ArithmeticError):
 
 def refuse_inversion(f: Floats, region: str, tets: Ints) -> None:
     """InvertedElementError when det F <= 0 anywhere; f (m, q, 3, 3), tets (m, 10)."""
-    smallest = np.linalg.det(f).min(axis=1)
+    smallest = smallest_jacobian(f)
     if not smallest.min() > 0.0:
         raise InvertedElementError(region, tets[int(np.argmin(smallest))])
 
@@ -92,7 +87,7 @@ class SolidRegion(Term):
 
     def respond(self, f: Floats, memory: tuple[Memory, ...], time_step: float) -> tuple[Response, tuple[Memory, ...]]:
         """Isochoric (of a foam: whole) response at F (s, q, 3, 3) in points in order, and the new memory."""
-        c = (f.swapaxes(-1, -2) @ f).reshape(-1, 3, 3)
+        c = cauchy_green(f)
         energy = self.law.energy(c) if any(law.needs_energy for law in self.inelastic) else None
         response, new = Response(*self.law.stress(c), energy), []
         for law, old in zip(self.inelastic, memory, strict=True):

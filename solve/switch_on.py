@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from geometry.dot_shape import resolve_dot
+from solve.bond import layer_stiffness
 from solve.materials.parameters import (
     Hyperfoam,
     Linear,
@@ -95,18 +96,8 @@ def _yield(model: Model, component: str, values: Any) -> Model:
 def _adhesive(model: Model, component: str, values: Any) -> Model:
     normal, shear = values.normal_stiffness_N_per_mm3, values.shear_stiffness_N_per_mm3
     if normal is None:
-        normal, shear = glue_stiffness(values.thickness_um, values.youngs_modulus_MPa, values.poisson_ratio)
+        normal, shear = layer_stiffness(values.thickness_um, values.youngs_modulus_MPa, values.poisson_ratio)
     return _physics(model, bonds={**model.physics.bonds, component: BondLine(normal, shear)})
-
-
-def glue_stiffness(thickness_um: float, youngs_modulus_MPa: float, poisson_ratio: float) -> tuple[float, float]:
-    """Normal and shear stiffness (N/mm3) of a thin layer: confined modulus and shear modulus over its thickness.
-
-    A layer much thinner than wide cannot contract sideways, so E (1 - nu) / ((1 + nu) (1 - 2 nu)) / t and G / t.
-    """
-    shear = youngs_modulus_MPa / (2.0 * (1.0 + poisson_ratio))
-    confined = youngs_modulus_MPa * (1.0 - poisson_ratio) / ((1.0 + poisson_ratio) * (1.0 - 2.0 * poisson_ratio))
-    return 1e3 * confined / thickness_um, 1e3 * shear / thickness_um
 
 
 def _delamination(model: Model, component: str, values: Any) -> Model:

@@ -16,7 +16,8 @@ from solve.friction import FrictionalContact
 from solve.materials.laws import InvariantLaw, bulk_modulus
 from solve.quadrature import tetrahedron
 from solve.shape_functions import linear
-from solve.solid import InvertedElementError, deformation_gradient, solid_region
+from solve.kinematics import deformation_gradient
+from solve.solid import InvertedElementError, solid_region
 from solve.term import Trial
 from solve.unknowns import Unknowns
 from tests.solve.box import box

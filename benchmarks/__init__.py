@@ -1,0 +1,1 @@
+"""Measurements of speed; each program says how to run it."""

@@ -1,0 +1,85 @@
+"""Put the measured tables into the page: python -m benchmarks.document docs/speed.json docs/speed.md.
+
+Each table stands between <!-- name --> and <!-- /name -->, and only that is rewritten.
+"""
+
+import json
+import re
+import sys
+from pathlib import Path
+
+from benchmarks.growth import efficiency, exponents
+from benchmarks.press import CODES, errors, of_code, seconds_at
+
+
+def _table(head: tuple[str, ...], body: list[list[str]]) -> str:
+    """A Markdown table."""
+    lines = [head, ["---"] * len(head), *body]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def newton_step(rows: list[dict]) -> str:
+    """Seconds and ratios, code by code."""
+    ours = {(row["size"], row["law"]): row["seconds"] for row in rows if row["code"] == "softdot"}
+    body = []
+    for row in rows:
+        seconds, own = row["seconds"], ours[row["size"], row["law"]]
+        times = [f"{seconds[name]:.3f}" for name in ("assemble", "factorise", "solve", "total")]
+        ratios = [f"{own[name] / seconds[name]:.2f}" for name in ("assemble", "total")]
+        body.append([str(row["unknowns"]), row["law"], row["code"], *times, *ratios])
+    head = ("unknowns", "element", "code", "assembly s", "factorisation s", "solution s", "step s")
+    return _table((*head, "ours/theirs, assembly", "ours/theirs, step"), body)
+
+
+def growth(rows: list[dict]) -> str:
+    """Seconds of the phases, memory, and the share of what the machine can do."""
+    phases, body = ("assemble", "factorise", "back substitute", "gmres"), []
+    for row in rows:
+        flops, read = efficiency(row)
+        times = [f"{row['seconds'][name]:.3f}" for name in phases]
+        shares = [f"{100 * flops:.0f} %", f"{100 * read:.0f} %"]
+        body.append([str(row["unknowns"]), *times, f"{row['peak_GB']:.2f}", f"{row['factor_gflop']:.1f}", *shares])
+    slope = exponents(rows)
+    if slope:
+        fitted = [f"{slope[name]:.2f}" for name in (*phases, "peak_GB", "factor_gflop")]
+        body.append(["exponent", *fitted, "", ""])
+    head = ("unknowns", "assembly s", "factorisation s", "back substitution s", "GMRES s", "peak GB", "factor GFlop")
+    return _table((*head, "of the dense product's speed", "of the memory's speed"), body)
+
+
+def press(rows: list[dict]) -> str:
+    """Answers, error and time of each mesh, and the ratio of times at the error of ours."""
+    body = []
+    for code in CODES:
+        for row, error in zip(of_code(rows, code), errors(rows, code), strict=True):
+            ratio = seconds_at(rows, "softdot", error) / seconds_at(rows, "NGSolve", error)
+            answers = [f"{row['force_N']:.5f}", f"{row['voltage_V']:.4f}", f"{100 * error:.2f}"]
+            mesh = [code, f"{row['factor']:g}", str(row["unknowns"])]
+            body.append([*mesh, *answers, f"{row['seconds']:.1f}", f"{ratio:.2f}"])
+    head = ("code", "size factor", "unknowns", "force N", "voltage V", "error %", "seconds")
+    return _table((*head, "ours/theirs at this error"), body)
+
+
+def machine(section: dict) -> str:
+    """One line on what it ran."""
+    on = section["measured_on"]
+    versions = ", ".join(f"{name} {version}" for name, version in on["versions"].items())
+    where = f"{on['cpu']}, {on['cores']} cores, {on['memory_GB']} GB, load {on['load_before']} before the run"
+    return f"Measured on {where}; Python {on['python']}, {versions}."
+
+
+TABLES = {"newton_step": newton_step, "growth": growth, "press": press}
+
+
+def main(table: Path, page: Path) -> None:
+    """Rewrite the tables of the sections that the file has."""
+    text = page.read_text("utf-8")
+    for name, section in json.loads(table.read_text()).items():
+        content = f"{TABLES[name](section['rows'])}\n\n{machine(section)}"
+        pattern = rf"(<!-- {name} -->\n).*?(<!-- /{name} -->)"
+        text = re.sub(pattern, lambda found, content=content: f"{found[1]}{content}\n{found[2]}", text, flags=re.DOTALL)
+    page.write_text(text, "utf-8")
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), Path(sys.argv[2]))

@@ -1,0 +1,92 @@
+"""Time and memory of one Newton step, and what the machine could do: python -m benchmarks.growth_point CELLS.
+
+The operations of the factorisation are PARDISO's own count, those of the machine a dense product and a long read,
+all in one process.
+"""
+
+import json
+import resource
+import sys
+import time
+
+import numba as nb
+import numpy as np
+from pypardiso import PyPardisoSolver
+
+from benchmarks.cube import cube
+from benchmarks.step_ours import assembler
+from benchmarks.timing import REPEATS, Phases
+from solve.linear import LinearSolver, Pardiso
+from solve.unsymmetric import Tangent
+
+FACTOR_ENTRIES, FACTOR_MFLOP, TWO_LEVEL = 17, 18, 23  # iparm, counted from 0
+SIMILAR = 1e-3  # a tolerance of the inexact Newton method
+
+
+@nb.njit(parallel=True, fastmath=True)
+def _sum(x):  # type: ignore[no-untyped-def]
+    total = 0.0
+    for i in nb.prange(len(x)):
+        total += x[i]
+    return total
+
+
+def _best(work, repeats: int = 3) -> float:
+    """Shortest of some seconds: a capacity, not a performance."""
+    work()
+    seconds = []
+    for _ in range(repeats):
+        start = time.perf_counter()
+        work()
+        seconds.append(time.perf_counter() - start)
+    return min(seconds)
+
+
+def capacity() -> dict[str, float]:
+    """GFlop/s of a dense product and GB/s of a read, both on all cores."""
+    a, x = np.ones((3000, 3000)), np.ones(50_000_000)
+    return {"dgemm_gflops": 2e-9 * 3000**3 / _best(lambda: a @ a), "read_gb_s": 8e-9 * len(x) / _best(lambda: _sum(x))}
+
+
+def counts(tangent: Tangent, direct: Pardiso) -> dict[str, float]:
+    """Entries and operations of the factor, from an analysis with the same parameters."""
+    probe = PyPardisoSolver(mtype=-2)
+    probe.iparm[:] = direct._solver.iparm
+    probe.iparm[FACTOR_ENTRIES] = probe.iparm[FACTOR_MFLOP] = -1
+    probe.iparm[TWO_LEVEL] = 0  # its other values do not count
+    probe.set_phase(11)
+    probe._call_pardiso(tangent.upper, np.zeros(tangent.upper.shape[0]))
+    answer = {"factor_entries": int(probe.iparm[FACTOR_ENTRIES]), "factor_gflop": 1e-3 * int(probe.iparm[FACTOR_MFLOP])}
+    probe.free_memory(everything=True)
+    return answer
+
+
+def measure(cells: int) -> dict:
+    """Medians of the phases, peak memory, counts and capacity."""
+    case, phases, once = cube(cells), Phases(), Phases()
+    assemble = once("prepare", assembler, case, "mixed")
+    tangent, residual = assemble()
+    direct = Pardiso()
+    once("analyse and factorise", direct.factorise, tangent)
+    for _ in range(REPEATS if cells < 20 else 3):
+        tangent, residual = phases("assemble", assemble)
+        phases("factorise", direct.factorise, tangent)
+        phases("back substitute", direct.back_substitute, -residual)
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
+    count = counts(tangent, direct)
+    direct.free()
+    linear = LinearSolver(np.zeros(case.count))
+    linear.solve(tangent, -residual, SIMILAR)
+    again = Phases()
+    for _ in range(REPEATS):
+        again("gmres", linear.solve, tangent, -residual, SIMILAR, True)
+    linear.close()
+    seconds = {**phases.medians(), "gmres": again.medians()["gmres"]}
+    return {
+        "cells": cells, "unknowns": case.count, "elements": len(case.tets), "entries": tangent.upper.nnz,
+        "seconds": seconds, "once": once.medians(), "peak_GB": peak, **count, **capacity(),
+    }
+
+
+if __name__ == "__main__":
+    print(json.dumps(measure(int(sys.argv[1]))))

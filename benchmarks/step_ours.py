@@ -1,0 +1,72 @@
+"""Assembly and one Newton step of the cube by softdot: python -m benchmarks.step_ours CELLS [LAW [REPEATS]].
+
+LAW : "mixed" (what softdot uses for rubber) or "displacement" (FElupe's law for step_felupe, by our foam's kernel).
+"""
+
+import json
+import sys
+from collections.abc import Callable
+
+import numpy as np
+
+from benchmarks.cube import BULK, SHEAR, Cube, cube, state
+from benchmarks.displacement_law import DisplacementLaw
+from benchmarks.timing import REPEATS, Phases
+from solve.element_kernels import scatter
+from solve.linear import Pardiso
+from solve.materials.laws import InvariantLaw
+from solve.solid import solid_region
+from solve.sparsity import build_pattern
+from solve.term import Trial
+from solve.unsymmetric import Tangent
+
+
+def law_and_dofs(case: Cube, name: str) -> tuple[InvariantLaw, np.ndarray, int]:
+    """The law, the unknowns of its elements and their count."""
+    if name == "displacement":
+        return DisplacementLaw(SHEAR / 2.0), np.ascontiguousarray(case.dofs[:, :30]), case.count - len(case.corners)
+    return InvariantLaw(SHEAR / 2.0, 0.0, 0.0, 0.0, BULK), case.dofs, case.count
+
+
+def assembler(case: Cube, name: str) -> Callable[[], tuple[Tangent, np.ndarray]]:
+    """Assembly of tangent and residual at the case's state."""
+    law, dofs, count = law_and_dofs(case, name)
+    solid = solid_region("cube", law, case.points, case.tets, dofs)
+    pattern = build_pattern([dofs], count)
+    u, p = state(case.points)
+    x = np.append(u[case.displacement_dofs >= 0], p[case.corners])[:count]
+    trial = Trial(x, u, np.zeros(3), 0.0, u, np.zeros(3), 0.0, 0.0, 1.0)
+
+    def assemble() -> tuple[Tangent, np.ndarray]:
+        residual, data = np.zeros(count), np.zeros(len(pattern.indices))
+        for _, part, ke, re in solid.elements(trial, solid.start()):
+            scatter(ke, re, dofs[part], pattern.slots[0][part], data, residual)
+        return Tangent(pattern.matrix(data)), residual
+
+    return assemble
+
+
+def measure(cells: int, law: str, repeats: int) -> dict:
+    """Medians of the phases; the analysis of the pattern is done once, as in a press."""
+    case, once, phases = cube(cells), Phases(), Phases()
+    assemble = once("prepare", assembler, case, law)
+    tangent, _ = assemble()
+    direct = Pardiso()
+    once("analyse and factorise", direct.factorise, tangent)
+    for _ in range(repeats):
+        tangent, residual = phases("assemble", assemble)
+        phases("factorise", direct.factorise, tangent)
+        step = phases("solve", direct.back_substitute, -residual)
+    error = np.linalg.norm(tangent @ step + residual) / np.linalg.norm(residual)
+    first = case.displacement_dofs[case.corners].max(axis=1) >= 0
+    corner = step[case.displacement_dofs[case.corners][first]]
+    answer = {"corners": float(np.linalg.norm(corner)), "pressure": float(np.linalg.norm(step[-len(case.corners) :]))}
+    return {
+        "unknowns": len(step), "elements": len(case.tets), "seconds": phases.medians(), "once": once.medians(),
+        "linear_residual": float(error), "step": answer,
+    }
+
+
+if __name__ == "__main__":
+    chosen = sys.argv[2] if len(sys.argv) > 2 else "mixed"
+    print(json.dumps(measure(int(sys.argv[1]), chosen, int(sys.argv[3]) if len(sys.argv) > 3 else REPEATS)))

@@ -1,0 +1,72 @@
+"""The input of the amplifier alone: the film is a given charge Q_s with the capacitance C_f."""
+
+import numpy as np
+import pytest
+
+from solve.circuit import Circuit
+from solve.readout import leaky_integral
+from tests.solve.trial import trial
+
+C_FILM, C_INPUT = 3.0, 2.0
+TIME = np.array([0.0, 0.1, 0.15, 0.4, 1.0, 1.3])
+CHARGE = np.array([0.0, 0.2, 1.0, 0.7, 0.7, 0.0])
+
+
+def voltages(circuit, charge=CHARGE, time=TIME):
+    """Voltage (t,) at which film and circuit balance: the film's row is Q_s - C_f V."""
+    history, result = circuit.start(), [0.0]
+    for q, dt in zip(charge[1:], np.diff(time), strict=True):
+        state = trial(np.zeros((1, 3)), [0.0], dt)
+        block = next(iter(circuit.elements(state, history)))
+        v = -(q + block.residuals[0, 0]) / (block.matrices[0, 0, 0] - C_FILM)
+        history = circuit.advance(trial(np.zeros((1, 3)), [v], dt), history)
+        assert history == pytest.approx((q, v), abs=1e-14)
+        result.append(v)
+    return np.array(result)
+
+
+def circuit(resistance, input_capacitance=C_INPUT):
+    return Circuit(0, C_FILM, input_capacitance, resistance)
+
+
+@pytest.mark.parametrize("resistance", [0.02, 0.1, 3.0])
+def test_it_is_the_read_out_after_the_press(resistance):
+    expected = leaky_integral(TIME, CHARGE, C_FILM + C_INPUT, resistance)
+    np.testing.assert_allclose(voltages(circuit(resistance)), expected, atol=1e-14)
+
+
+def test_a_charge_step_decays_with_rc():
+    time = np.array([0.0, 1e-12, 0.1, 0.7])
+    ours = voltages(circuit(0.05), np.array([0.0, 1.0, 1.0, 1.0]), time)
+    np.testing.assert_allclose(ours[1:], np.exp(-time[1:] / 0.25) / 5.0, rtol=1e-10)
+
+
+def test_a_charge_ramp_saturates_at_r_times_the_current():
+    time = np.linspace(0.0, 1.0, 7)
+    ours = voltages(circuit(0.05), 2.0 * time, time)
+    np.testing.assert_allclose(ours, 0.05 * 2.0 * -np.expm1(-time / 0.25), atol=1e-14)
+
+
+def test_a_sine_has_the_gain_and_lead_of_the_high_pass():
+    """Gain w tau / sqrt(1 + (w tau)^2), lead atan(1 / w tau)."""
+    w, tau = 2.0 * np.pi * 3.0, 0.25
+    time = np.linspace(0.0, 5.0, 6001)
+    ours = voltages(circuit(0.05), np.sin(w * time), time)[-1200:]
+    expected = w * tau / np.hypot(1.0, w * tau) * np.sin(w * time + np.arctan(1.0 / (w * tau))) / 5.0
+    np.testing.assert_allclose(ours, expected[-1200:], atol=1e-5)
+
+
+def test_an_infinite_resistance_is_open_circuit():
+    np.testing.assert_allclose(voltages(circuit(np.inf, 0.0)), CHARGE / C_FILM, atol=1e-15)
+
+
+def test_a_small_resistance_is_a_short_circuit():
+    """V tends to R dQ/dt."""
+    ours = voltages(circuit(1e-9))
+    np.testing.assert_allclose(ours[1:], 1e-9 * np.diff(CHARGE) / np.diff(TIME), atol=1e-20)
+
+
+def test_long_at_rest_it_is_discharged():
+    block = next(iter(circuit(3.0).elements(trial(np.zeros((1, 3)), [0.0], np.inf), (7.0, 2.0))))
+    assert block.residuals[0, 0] == 0.0
+    assert block.matrices[0, 0, 0] < -1e8

@@ -1,0 +1,93 @@
+"""Spring and mass between sensor and dot, against the linear oscillator.
+
+The contact is a linear spring k here: m a'' + k a = F, or (u - a) / c on the right side.
+"""
+
+import numpy as np
+import pytest
+
+from solve.rig import Rig
+from tests.solve.trial import trial
+
+STIFFNESS, MASS = 5.0, 0.02
+OMEGA = np.sqrt(STIFFNESS / MASS)
+
+
+def drive(rig, loads, time, stiffness=STIFFNESS):
+    """Approach, velocity and acceleration (t, 3) of the dot under drives (t,) at times (t,), from rest."""
+    history, a, motion = rig.start(), 0.0, [np.zeros(3)]
+    for load, dt in zip(loads[1:], np.diff(time), strict=True):
+        for _ in range(2):  # linear: the second iteration finds no residual
+            state = trial(np.zeros((1, 3)), [a], dt, drive=load)
+            block = next(iter(rig.elements(state, history)))
+            residual = block.residuals[0, 0] + stiffness * a
+            a -= residual / (block.matrices[0, 0, 0] + stiffness)
+        history = rig.advance(trial(np.zeros((1, 3)), [a], dt, drive=load), history)
+        motion.append(np.array([a, history[0], history[1]]))
+    return np.array(motion)
+
+
+def half_sine(time, ratio):
+    """x k / F0 of an oscillator from rest under F0 sin(r w t)."""
+    return (np.sin(ratio * OMEGA * time) - ratio * np.sin(OMEGA * time)) / (1.0 - ratio**2)
+
+
+def test_a_tapped_mass_follows_the_closed_form_with_second_order():
+    errors = []
+    for steps in (50, 100, 200):
+        time = np.linspace(0.0, np.pi / (0.4 * OMEGA), steps + 1)
+        ours = drive(Rig(0, MASS, None), np.sin(0.4 * OMEGA * time), time)[:, 0] * STIFFNESS
+        errors.append(np.abs(ours - half_sine(time, 0.4)).max())
+    assert errors[-1] < 1e-3
+    np.testing.assert_allclose(np.log2(np.divide(errors[:-1], errors[1:])), 2.0, atol=0.1)
+
+
+def test_energy_is_kept_over_a_hundred_free_oscillations():
+    period = 2.0 * np.pi / OMEGA
+    time = np.concatenate([np.linspace(0.0, 0.5 * period, 20), 0.5 * period + np.arange(1, 4001) * period / 40.0])
+    loads = np.where(time < 0.5 * period, np.sin(OMEGA * time), 0.0)
+    a, velocity, _ = drive(Rig(0, MASS, None), loads, time)[20:].T
+    energy = 0.5 * MASS * velocity**2 + 0.5 * STIFFNESS * a**2
+    assert energy[0] > 0.01 / STIFFNESS
+    np.testing.assert_allclose(energy, energy[0], rtol=1e-10)
+
+
+def test_two_springs_in_series_share_the_travel():
+    """a = u / (1 + c k), F = u k / (1 + c k)."""
+    rig, travel = Rig(0, 0.0, 0.3), np.array([0.0, 0.5, 1.0])
+    a = drive(rig, travel, np.arange(3.0))[:, 0]
+    np.testing.assert_allclose(a, travel / (1.0 + 0.3 * STIFFNESS), rtol=1e-14)
+    state = trial(np.zeros((1, 3)), [a[-1]], drive=1.0)
+    assert rig.drive_force(state) == pytest.approx(STIFFNESS * a[-1], rel=1e-14)
+
+
+def test_a_force_on_a_massless_dot_is_the_force_of_the_contact():
+    a = drive(Rig(0, 0.0, None), np.array([0.0, 2.0, 4.0]), np.arange(3.0))[:, 0]
+    np.testing.assert_allclose(STIFFNESS * a, [0.0, 2.0, 4.0], rtol=1e-14)
+
+
+def test_a_mass_behind_a_spring_rings_at_the_frequency_of_both_springs():
+    """A travel that grows slowly, then rests: a'' m = (u - a) / c - k a, w^2 = (k + 1/c) / m."""
+    compliance = 0.3
+    w = np.sqrt((STIFFNESS + 1.0 / compliance) / MASS)
+    time = np.linspace(0.0, 2.25 * 2.0 * np.pi / w, 2001)
+    a = drive(Rig(0, MASS, compliance), time, time)[:, 0]
+    expected = (time - np.sin(w * time) / w) / (1.0 + compliance * STIFFNESS)
+    np.testing.assert_allclose(a, expected, atol=1e-4 * expected.max())
+
+
+def test_long_at_rest_a_mass_does_not_move():
+    rig = Rig(0, MASS, 0.3)
+    block = next(iter(rig.elements(trial(np.zeros((1, 3)), [0.0], np.inf), rig.start())))
+    assert (block.residuals[0, 0], block.matrices[0, 0, 0]) == (0.0, 1.0 / 0.3)
+
+
+def test_the_estimated_error_of_a_step_falls_with_its_cube():
+    """The local error dt^2 (a_new - a_old) / 12 of average acceleration: a third order quantity."""
+    rig, errors = Rig(0, MASS, None), []
+    for steps in (100, 200):
+        time = np.linspace(0.0, 1.3 / OMEGA, steps + 1)
+        motion = drive(rig, np.sin(0.5 * OMEGA * time), time)
+        old, new = (np.array([v, acc, a]) for a, v, acc in motion[-2:])
+        errors.append(rig.time_error(old, new, time[1]) * abs(new[2]))
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(3.0, abs=0.1)
