@@ -1,11 +1,18 @@
 """What a configuration really asks for, once its bonds and mechanisms are switched on."""
 
+from pydantic import ValidationError
+
 from geometry.errors import InputError
+from geometry.patch_checks import check_patch
 from geometry.stack import layers
 from softdot.config import Config
+from softdot.config_errors import sentence
+from solve.mechanisms import Mechanism
 from solve.model import Model, declared_bonds
 from solve.physics import Physics
 from solve.switch_on import with_mechanisms
+
+STIFFEST_BOND_N_PER_MM3 = 1e6  # as in segment.bonds
 
 
 def actual(config: Config) -> tuple[Config, Physics]:
@@ -20,9 +27,13 @@ def actual(config: Config) -> tuple[Config, Physics]:
         _refuse_missing_layer(key, mechanism.component, model)
         try:
             model = with_mechanisms(model, [mechanism])
+        except ValidationError as error:  # of the material that the mechanism makes of its constants
+            raise InputError(f"{key}.parameters: {sentence(error, mechanism.parameters, Mechanism)}") from None
         except ValueError as error:
             raise InputError(f"{key}.{error}") from None
+        _refuse_beyond_bounds(key, model)
     _refuse_viscous_perfect_bonds(model)
+    _refuse_patches_outside(model)
     _refuse_missing_channels(model)
     return _as_config(config, model), model.physics
 
@@ -32,6 +43,26 @@ def _refuse_missing_layer(key: str, component: str, model: Model) -> None:
         raise InputError(f"{key}.component = '{component}': segment.effector is absent")
 
 
+def _refuse_beyond_bounds(key: str, model: Model) -> None:
+    """What a mechanism makes of a table must be allowed in a configuration too."""
+    tables = {"segment": model.segment, "dot": model.dot, **{f"{n} material": m for n, m in model.materials.items()}}
+    if model.readout is not None:
+        tables["readout"] = model.readout
+    for name, table in tables.items():
+        values = table.model_dump()
+        try:
+            type(table).model_validate(values)
+        except ValidationError as error:
+            raise InputError(f"{key} makes {name}.{sentence(error, values, type(table))}") from None
+    for name, line in model.physics.bonds.items():
+        stiffest = max(line.normal_stiffness_N_per_mm3, line.shear_stiffness_N_per_mm3)
+        if stiffest > STIFFEST_BOND_N_PER_MM3:
+            raise InputError(
+                f"{key} makes the stiffness of '{name}' {stiffest:.3g} N/mm3: must be at most "
+                f"{STIFFEST_BOND_N_PER_MM3:.0e}; leave a bond as good as perfect out"
+            )
+
+
 def _refuse_viscous_perfect_bonds(model: Model) -> None:
     for name in model.physics.viscosity:
         if name.startswith("bond-") and name not in model.physics.bonds:
@@ -39,6 +70,11 @@ def _refuse_viscous_perfect_bonds(model: Model) -> None:
                 f"mechanisms: viscoelasticity of '{name}' needs a compliant bond there; "
                 "add adhesive-compliance or segment.bonds"
             )
+
+
+def _refuse_patches_outside(model: Model) -> None:
+    for patch in model.physics.delaminations:
+        check_patch(model.segment, patch.bond, patch.center_mm, patch.diameter_mm)
 
 
 def _refuse_missing_channels(model: Model) -> None:

@@ -18,9 +18,7 @@ from softdot.toml_file import parse_toml, read_toml
 from solve.materials.library import find_material, library_tables
 from solve.materials.parameters import AnyMaterial, Material, PiezoelectricFilm
 from solve.mechanisms import Mechanism
-from solve.parameters import Press, Readout
-
-DEFAULT_INDENTATION_MM = 0.3
+from solve.parameters import DEFAULT_INDENTATION_MM, Press, Readout
 
 
 class Config(Table):

@@ -16,6 +16,7 @@ BOUNDS = {
     "less_than": ("lt", "below"),
     "less_than_equal": ("le", "at most"),
 }
+LENGTHS = {"too_short": ("min_length", "at least"), "too_long": ("max_length", "at most")}
 KINDS = {
     "float_type": "must be a plain number, its unit stands in the key",
     "float_parsing": "must be a plain number, its unit stands in the key",
@@ -68,6 +69,9 @@ def _explain(
     if kind in BOUNDS:
         name, word = BOUNDS[kind]
         return f"{key} = {_shown(problem['input'])}: must be {word} {context[name]:g}"
+    if kind in LENGTHS:
+        name, word = LENGTHS[kind]
+        return f"{key} = {_shown(problem['input'])}: must have {word} {_values(context[name])}"
     text = KINDS.get(kind, problem["msg"][:1].lower() + problem["msg"][1:])
     return f"{key} = {_shown(problem['input'])}: {text}"
 
@@ -98,6 +102,11 @@ def _own_message(key: str, problem: ErrorDetails, model: type[BaseModel]) -> str
     names = {name for table in _tables_at(problem["loc"], model) for name in table.model_fields}
     first = text.split(maxsplit=1)[0].split(".")[0].rstrip(":")
     return f"{key}.{text}" if first in names else f"{key}: {text}"
+
+
+def _values(count: int) -> str:
+    """1 -> '1 value', 2 -> '2 values'."""
+    return f"{count} value" if count == 1 else f"{count} values"
 
 
 def _either(choices: Sequence[str]) -> str:

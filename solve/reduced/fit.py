@@ -19,7 +19,7 @@ from solve.reduced.modes import leading_modes
 from solve.reduced.sampling import CROWDING, Sample
 
 CELLS = 1024
-MODES = 3  # of each layer
+MODES = 2  # of each layer: as many as memories are sampled; more would be directions without samples
 
 
 @dataclass(frozen=True)

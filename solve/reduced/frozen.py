@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mesh.types import Floats
 from solve.materials.prony import Prony
 from solve.materials.response import Memory, Response
 
