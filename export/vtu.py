@@ -46,7 +46,9 @@ def write_results(tet_mesh: TetMesh, result: PressResult, dot_shape: DotShape, f
 
 
 def step_times(result: PressResult) -> list[float]:
-    """Indentation of each step in mm, or the step numbers where the indentation does not rise throughout."""
+    """Time in s where the press follows its waveform; else the indentation in mm, or the step where that stays."""
+    if result.follows_time:
+        return [step.time_s for step in result.steps]
     depths = np.array([step.indentation_m for step in result.steps]) * MM_PER_M
     if np.all(np.diff(depths) > 0):
         return [float(depth) for depth in depths]

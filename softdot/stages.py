@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 from geometry.dot_shape import DotShape, resolve_dot
-from geometry.errors import InputError
 from geometry.part import Part
 from mesh.types import Floats, TetMesh
 from softdot.config import Config, config_hash
@@ -50,8 +49,6 @@ def _check_waveform(config: Config) -> None:
     if waveform is None:
         return
     duration_s(waveform)  # reads the file of shape = "file"
-    if config.press.path_xy_mm and waveform.shape not in ("ramp", "raised-cosine"):
-        raise InputError(f"press.waveform.shape = '{waveform.shape}': a slide stays at depth, use 'ramp'")
 
 
 def build_parts(config: Config, dot_shape: DotShape) -> Sequence[Part]:

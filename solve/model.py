@@ -20,6 +20,11 @@ class Model:
     readout: Readout | None = None
     physics: Physics = field(default_factory=Physics)
 
+    @property
+    def follows_time(self) -> bool:
+        """Whether the press follows its waveform to the end; else only the loads count, not when they come."""
+        return self.physics.follows_time or self.press.slides_in_hold
+
 
 def declared_bonds(segment: Segment) -> dict[str, BondLine]:
     """The compliant bonds of [[segment.bonds]] by name."""

@@ -1,8 +1,8 @@
 """What the configuration says of the press and of the read-out."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from geometry.parameters import Finite, NonNegative, Positive, Table
 
@@ -28,8 +28,26 @@ class Press(Table):
     indentation_mm: Positive | None = Field(None, description="final depth; 0.3 when neither depth nor force is given")
     force_N: Positive | None = Field(None, description="final force instead of indentation_mm")
     load_steps: Annotated[int, Field(ge=1, le=1000)] = Field(6, description="equal steps that are reported")
-    path_xy_mm: tuple[tuple[Finite, Finite], ...] = Field((), description="way points of a slide at full depth")
+    path_xy_mm: tuple[tuple[Finite, Finite], ...] = Field(
+        (), description="way points of a slide at full load; within the hold of a trapezoid, else after the waveform"
+    )
     waveform: Waveform | None = Field(None, description="time course, for the read-out and time-dependent physics")
+
+    @model_validator(mode="after")
+    def _slide_and_waveform(self) -> Self:
+        shape = self.waveform.shape if self.waveform is not None else "ramp"
+        if not self.path_xy_mm or shape in ("ramp", "raised-cosine"):
+            return self
+        if shape != "trapezoid":
+            raise ValueError(f"waveform.shape = '{shape}': a slide needs a load that stays, 'ramp' or 'trapezoid'")
+        if self.waveform is not None and self.waveform.hold_s == 0.0:
+            raise ValueError("waveform.hold_s = 0: a slide (path_xy_mm) takes place during the hold of a trapezoid")
+        return self
+
+    @property
+    def slides_in_hold(self) -> bool:
+        """Whether the dot is pressed, slid and lifted again."""
+        return bool(self.path_xy_mm) and self.waveform is not None and self.waveform.shape == "trapezoid"
 
     @property
     def depth_mm(self) -> float:

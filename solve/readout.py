@@ -13,7 +13,6 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 from scipy.signal import butter, lsim
 
-from geometry.errors import InputError
 from mesh.types import Floats
 from solve.parameters import Press, Readout, Waveform
 from solve.physics import Physics
@@ -35,10 +34,7 @@ class Recording:
 def readout_voltage(
     result: PressResult, press: Press, readout: Readout, physics: Physics | None = None
 ) -> Floats:
-    """Voltage (s,) of all electrodes in parallel at the moment each step is first reached.
-
-    InputError for a slide on a waveform with a release.
-    """
+    """Voltage (s,) of all electrodes in parallel at the moment each step is first reached."""
     everything = np.ones(len(result.capacitance_F))
     return _at_steps(result, record(result, press, readout, everything, physics))
 
@@ -91,10 +87,6 @@ def _timetable(press: Press) -> tuple[Floats, Floats]:
     time = np.linspace(0.0, duration_s(waveform), SAMPLES)
     progress = press.load_steps * fraction(waveform, time)
     if press.path_xy_mm:
-        if waveform.shape not in ("ramp", "raised-cosine"):
-            raise InputError(
-                f"press.waveform.shape = '{waveform.shape}': a slide (press.path_xy_mm) stays at depth; use 'ramp'"
-            )
         legs = np.linspace(0.0, float(len(press.path_xy_mm)), SAMPLES)[1:]
         progress = np.append(progress, press.load_steps * (1.0 + legs))
         time = np.append(time, time[-1] + waveform.rise_s * legs)

@@ -24,9 +24,11 @@ def schedule(press: Press, full: float, unit_length: float, follows_time: bool) 
     """Targets in solver units, the first one at rest; full : depth or force at the end of the press.
 
     follows_time : along the waveform to its end, else once up to full in equal steps, in the time of its rise; then
-    along the legs of the slide at that load, each in the time of the rise.
+    along the legs of the slide at that load, each in the time of the rise. In a trapezoid the slide takes its hold.
     """
     waveform = press.waveform or Waveform()
+    if press.slides_in_hold:
+        return _press_slide_lift(press, waveform, full, unit_length)
     if follows_time:
         times, kinks = _sampled(waveform, 1 if waveform.shape == "file" else press.load_steps)
         share = fraction(waveform, times)
@@ -41,6 +43,16 @@ def schedule(press: Press, full: float, unit_length: float, follows_time: bool) 
         share = np.linspace(0.0, 1.0, press.load_steps + 1)
         targets = [Target(waveform.rise_s * f, Load((0.0, 0.0), full * f), f in (0.0, 1.0)) for f in share]
     return targets + _slide(press, targets[-1], waveform.rise_s, unit_length)
+
+
+def _press_slide_lift(press: Press, waveform: Waveform, full: float, unit_length: float) -> list[Target]:
+    """Down in the rise, along the path in the hold, up in the fall."""
+    share = np.linspace(0.0, 1.0, press.load_steps + 1)
+    down = [Target(waveform.rise_s * f, Load((0.0, 0.0), full * f), f in (0.0, 1.0)) for f in share]
+    along = _slide(press, down[-1], waveform.hold_s / len(press.path_xy_mm), unit_length)
+    end = along[-1]
+    up = [Target(end.time + waveform.fall_s * f, Load(end.load.lateral, full * (1.0 - f)), f == 1.0) for f in share[1:]]
+    return down + along + up
 
 
 def _sampled(waveform: Waveform, steps: int) -> tuple[Floats, Bools]:

@@ -68,7 +68,8 @@ indentation_mm = 0.3
 load_steps = 6
 path_xy_mm = [[0, 0], [0.5, 0]]
 [press.waveform]
-shape = "half-sine"
+shape = "trapezoid"
+hold_s = 0.2
 [readout]
 input_resistance_MOhm = 1.0
 input_capacitance_pF = 100.0

@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from pydantic import ValidationError
 
 from geometry.errors import InputError
 from solve.parameters import Press, Readout, Waveform
@@ -92,7 +93,8 @@ def test_waveform_file(tmp_path):
         fraction(Waveform(shape="file", file=str(table)), np.array([0.0]))
 
 
-def test_a_slide_cannot_release():
-    press = Press(path_xy_mm=((1.0, 0.0),), waveform=Waveform(shape="trapezoid"))
-    with pytest.raises(InputError, match=r"press\.waveform\.shape = 'trapezoid'"):
-        readout_voltage(LINEAR, press, Readout())
+def test_a_slide_needs_a_load_that_stays():
+    with pytest.raises(ValidationError, match=r"waveform\.shape = 'half-sine': a slide needs a load that stays"):
+        Press(path_xy_mm=((1.0, 0.0),), waveform=Waveform(shape="half-sine"))
+    with pytest.raises(ValidationError, match=r"waveform\.hold_s = 0: a slide"):
+        Press(path_xy_mm=((1.0, 0.0),), waveform=Waveform(shape="trapezoid"))
