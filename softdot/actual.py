@@ -3,6 +3,7 @@
 from pydantic import ValidationError
 
 from geometry.errors import InputError
+from geometry.parameters import Table
 from geometry.patch_checks import check_patch
 from geometry.stack import layers
 from softdot.config import Config
@@ -45,7 +46,8 @@ def _refuse_missing_layer(key: str, component: str, model: Model) -> None:
 
 def _refuse_beyond_bounds(key: str, model: Model) -> None:
     """What a mechanism makes of a table must be allowed in a configuration too."""
-    tables = {"segment": model.segment, "dot": model.dot, **{f"{n} material": m for n, m in model.materials.items()}}
+    tables: dict[str, Table] = {"segment": model.segment, "dot": model.dot}
+    tables |= {f"{layer} material": material for layer, material in model.materials.items()}
     if model.readout is not None:
         tables["readout"] = model.readout
     for name, table in tables.items():

@@ -7,11 +7,10 @@ import numpy as np
 
 from mesh.types import Floats, Ints
 from solve.film_kernel import film_solid
-from solve.kinematics import deformation_gradient
+from solve.kinematics import deformation_gradient, green_lagrange
 from solve.materials.piezoelectric import FilmLaw
 from solve.materials.prony import Prony
 from solve.materials.response import Inelastic, Response
-from solve.materials.voigt import to_voigt
 from solve.quadrature import tetrahedron
 from solve.shape_functions import physical_gradients, quadratic
 from solve.solid import refuse_inversion
@@ -89,8 +88,7 @@ class FilmRegion(Term):
         return np.broadcast_to(-voltage[:, None] / self.thickness, self.weight.shape)
 
     def _strain(self, displacement: Floats) -> Floats:
-        f = deformation_gradient(self.gradient, displacement[self.tets])
-        return to_voigt(0.5 * (f.swapaxes(-1, -2) @ f - np.eye(3)), 2.0) + self.prestrain
+        return green_lagrange(self.gradient, displacement[self.tets]) + self.prestrain
 
     def _respond(self, trial: Trial, history: History) -> tuple[Response, History]:
         """Response at the quadrature points (m q) in order, and the new memory."""

@@ -7,6 +7,7 @@ import numba as nb
 import numpy as np
 
 from mesh.types import Floats
+from solve.materials.isochoric import I_OF, J_OF
 
 
 def deformation_gradient(gradient: Floats, displacement: Floats) -> Floats:
@@ -21,6 +22,16 @@ def cauchy_green(f: Floats) -> Floats:
     c = np.empty((f.shape[0] * f.shape[1], 3, 3))
     _cauchy_green(f.reshape(-1, 3, 3), c)
     return c
+
+
+def green_lagrange(gradient: Floats, displacement: Floats) -> Floats:
+    """E = (H + H^t + H^t H) / 2, H = du/dX, (m, q, 6) with engineering shears, of the arguments of F.
+
+    Not from F^t F - 1: a stiff film at a strain near round-off would not know its stress.
+    """
+    strain = np.empty((*gradient.shape[:2], 6))
+    _green_lagrange(gradient, displacement, strain)
+    return strain
 
 
 def smallest_jacobian(f: Floats) -> Floats:
@@ -43,6 +54,22 @@ def _deformation_gradient(gradient, displacement, f):  # type: ignore[no-untyped
                     z += u * gradient[e, q, a, 2]
                 f[e, q, i, 0], f[e, q, i, 1], f[e, q, i, 2] = x, y, z
                 f[e, q, i, i] += 1.0
+
+
+@nb.njit(parallel=True, cache=True)
+def _green_lagrange(gradient, displacement, strain):  # type: ignore[no-untyped-def]
+    for e in nb.prange(gradient.shape[0]):
+        h = np.empty((3, 3))
+        for q in range(gradient.shape[1]):
+            for i in range(3):
+                for j in range(3):
+                    h[i, j] = 0.0
+                    for a in range(gradient.shape[2]):
+                        h[i, j] += displacement[e, a, i] * gradient[e, q, a, j]
+            for v in range(6):
+                i, j = I_OF[v], J_OF[v]
+                twice = h[i, j] + h[j, i] + h[0, i] * h[0, j] + h[1, i] * h[1, j] + h[2, i] * h[2, j]
+                strain[e, q, v] = 0.5 * twice if v < 3 else twice
 
 
 @nb.njit(parallel=True, cache=True)

@@ -8,7 +8,7 @@ import numpy as np
 from mesh.types import Floats
 from solve.linear import LinearSolver
 from solve.newton import NoEquilibriumError, equilibrate
-from solve.schedule import Target, between
+from solve.schedule import Target, load_between
 from solve.system import Load, State, System
 
 SMALLEST_SUBSTEP = 1.0 / 64.0
@@ -38,13 +38,14 @@ def march(
     past : the last converged states, extended in place. kink : the rate of loading jumped at the last of them.
     Returns why it stopped short, or None.
     """
-    start, done, size, first = past[-1], 0.0, 1.0, kink
+    start, done, size, first = Target(past[-1].time, past[-1].load, kink), 0.0, 1.0, kink
     while done < 1.0:
-        size = min(size, 1.0 - done)
-        load = between(start.load, target.load, done + size)
-        time = start.time + (done + size) * (target.time - start.time)
+        left = 1.0 - done
+        size = left / np.ceil(left / size - 1e-6)  # equal parts: a sliver that is left over would help nobody
+        load, time = load_between(start, target, done + size)
         try:
-            state = _equilibrate(system, linear, past, load, time)
+            # across a kink the past says nothing of the future
+            state = _equilibrate(system, linear, past[-1:] if first else past, load, time)
             error = 0.0 if first else system.time_error(past[-1], state)
         except NoEquilibriumError as failure:
             size *= 0.5

@@ -10,6 +10,7 @@ from solve.solid import InvertedElementError
 from solve.system import Evaluation, Load, State, System
 
 TOLERANCE = 1e-9
+LEAST_LOAD = 1e-5  # solver units: what is less, the first touch of a moving mass, counts as this much
 MAX_ITERATIONS = 25
 MAX_HALVINGS = 6
 SIMILAR_CONTACT = 6  # so many nodes may change contact and the last factorisation still be a good preconditioner
@@ -35,7 +36,7 @@ def equilibrate(system: System, linear: LinearSolver, x: Floats, load: Load, tim
         for iteration in range(MAX_ITERATIONS):
             norm = float(np.linalg.norm(now.residual))
             scale = max(now.load_norm, previous.force_scale)
-            relative = norm / max(scale, 1e-12)
+            relative = norm / max(scale, LEAST_LOAD)
             settled = status is None or np.array_equal(status, now.status)
             if relative <= TOLERANCE and settled:
                 converged = State(time, load, x, previous.histories, scale, iteration, relative)

@@ -1,5 +1,6 @@
 """When what is pressed how far: the reported load steps as targets in time."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -13,11 +14,15 @@ from solve.waveform import corners_s, fraction
 
 @dataclass(frozen=True)
 class Target:
-    """A load to reach at a time (s). kink : whether the rate of loading may jump there."""
+    """A load to reach at a time (s). kink : whether the rate of loading may jump there.
+
+    drive_at : the drive at the times before, since the target before; None where it is linear.
+    """
 
     time: float
     load: Load
     kink: bool
+    drive_at: Callable[[float], float] | None = None
 
 
 def schedule(press: Press, full: float, unit_length: float, follows_time: bool) -> list[Target]:
@@ -33,8 +38,12 @@ def schedule(press: Press, full: float, unit_length: float, follows_time: bool) 
         times, kinks = _sampled(waveform, 1 if waveform.shape == "file" else press.load_steps)
         share = fraction(waveform, times)
         share[share < 1e-12] = 0.0  # released, not all but
+
+        def drive_at(time: float) -> float:
+            return full * float(fraction(waveform, np.array([time]))[0])
+
         targets = [
-            Target(float(t), Load((0.0, 0.0), full * float(f)), bool(k))
+            Target(float(t), Load((0.0, 0.0), full * float(f)), bool(k), drive_at)
             for t, f, k in zip(times, share, kinks, strict=True)
         ]
         if targets[0].load.drive > 0.0:  # a file that starts pressed: get there from rest in the time of the rise
@@ -75,7 +84,12 @@ def _slide(press: Press, start: Target, leg_s: float, unit_length: float) -> lis
     return targets
 
 
-def between(a: Load, b: Load, share: float) -> Load:
-    """The load a share of the way from a to b."""
+def load_between(start: Target, target: Target, share: float) -> tuple[Load, float]:
+    """Load and time a share of the way from start to target."""
+    time = start.time + share * (target.time - start.time)
+    if share == 1.0:
+        return target.load, target.time
+    a, b = start.load, target.load
     x, y = (1.0 - share) * np.array(a.lateral) + share * np.array(b.lateral)
-    return Load((float(x), float(y)), a.drive + share * (b.drive - a.drive))
+    drive = a.drive + share * (b.drive - a.drive) if target.drive_at is None else target.drive_at(time)
+    return Load((float(x), float(y)), drive), time

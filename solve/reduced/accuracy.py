@@ -1,6 +1,7 @@
 """The reduced model against presses of the 3D model that had no part in its making."""
 
 from collections.abc import Mapping
+from dataclasses import fields
 
 import numpy as np
 
@@ -13,7 +14,8 @@ from solve.newton import NoEquilibriumError
 from solve.parameters import Press, Waveform
 from solve.physics import Physics
 from solve.press import press_segment
-from solve.reduced.model import Accuracy, ReducedModel
+from solve.reduced.answer import Accuracy
+from solve.reduced.model import ReducedModel
 from solve.result import Trace
 
 BETWEEN = 20  # samples of the reduced model to each time step of the 3D model
@@ -40,7 +42,7 @@ def measured(
         if result.failure is not None:
             raise NoEquilibriumError(f"a press to check the reduced model: {result.failure}", np.zeros(0), None)
         found.append(compare(model, result.trace, tested))
-    return Accuracy(*np.array([(a.force, a.charge, a.charge_rate) for a in found]).max(axis=0))
+    return Accuracy(*(max(getattr(a, f.name) for a in found) for f in fields(Accuracy)))
 
 
 def _held_out(relaxes: bool) -> list[tuple[Waveform, float, float]]:

@@ -1,7 +1,8 @@
 """Make a reduced model from presses of the 3D model with memories that do not fade.
 
-One elastic press; for each layer that may relax, presses with the memory of a long hold at two depths and with half
-of the deeper one; for each pair of layers a press with both memories: 1 + 3 k + k (k - 1) / 2 presses for k layers.
+One elastic press in FINER times as many steps; for each layer that may relax, presses with the memory of a hold at
+full depth, as it begins and as it ends, with half of that, and with the memory of a hold midway; for each pair of
+layers a press with the memories of both: 1 + 4 k + k (k - 1) / 2 presses for k layers.
 Prony series, rig and circuit come in only when the model is asked, so that they can be changed freely.
 """
 
@@ -21,13 +22,14 @@ from solve.parameters import Press
 from solve.physics import Physics
 from solve.reduced import store
 from solve.reduced.accuracy import measured
-from solve.reduced.fit import fit
+from solve.reduced.answer import Accuracy
+from solve.reduced.fit import FINER, fit
 from solve.reduced.frozen import Frozen
-from solve.reduced.model import Accuracy, ReducedModel, structure
+from solve.reduced.model import ReducedModel, structure
 from solve.reduced.sampling import Sample, Sampler
 from solve.setup import set_up
 
-DEPTH_NODES = 14
+DEPTH_NODES = 16
 UNKNOWN = Accuracy(np.inf, np.inf, np.inf)
 
 
@@ -92,7 +94,7 @@ def _build(case: Case, check: bool) -> ReducedModel:
     layers = tuple(case.relaxing)
     sampler = _sampler(case, layers)
     samples = list(_samples(sampler, case.relaxing))
-    sampler.linear.close()
+    sampler.close()
     film = case.materials["film"]
     assert isinstance(film, PiezoelectricFilm)
     recorder = sampler.recorder
@@ -121,12 +123,19 @@ def _sampler(case: Case, layers: tuple[str, ...]) -> Sampler:
 
 
 def _samples(sampler: Sampler, relaxing: Mapping[str, float]) -> Iterator[Sample]:
-    """The elastic press first."""
-    elastic, fields = sampler.press({}, keep=True)
+    """The elastic press first.
+
+    The memory of a long hold is the share times the elastic stress that goes with that memory: one step of the fixed
+    point is taken.
+    """
+    elastic, fields = sampler.press({}, FINER)
     yield elastic
-    deep, middle = len(fields) - 1, round(len(fields) * 0.6)
-    held: dict[str, Floats] = {layer: share * fields[deep][layer] for layer, share in relaxing.items()}
+    middle = round(len(fields) * 0.6)
+    held: dict[str, Floats] = {}
     for layer, share in relaxing.items():
+        first, after = sampler.press({layer: share * fields[-1][layer]})
+        yield first
+        held[layer] = share * after[-1][layer]
         for memory in (held[layer], 0.5 * held[layer], share * fields[middle][layer]):
             yield sampler.press({layer: memory})[0]
     for one, other in combinations(relaxing, 2):

@@ -5,10 +5,12 @@ between the samples, as scipy.signal.lsim does (first-order hold; Franklin, Powe
 Dynamic Systems, 1998, section 6.3).
 """
 
+from functools import lru_cache
+
 import numba as nb
 import numpy as np
 from scipy.linalg import expm
-from scipy.signal import butter, tf2ss
+from scipy.signal import butter, impulse, tf2ss
 
 from mesh.types import Floats
 from solve.parameters import Readout
@@ -18,12 +20,7 @@ from solve.readout import SAMPLES
 
 def amplify(time_s: Floats, charge_C: Floats, capacitance_F: float, readout: Readout, physics: Physics) -> Floats:
     """Voltage (t,) from the film's short-circuit charge (t,) at times (t,), from rest; equals solve.readout.amplify."""
-    if readout.mode == "charge":
-        capacitance = -1e-12 * (readout.feedback_pF or np.inf)
-        resistance = -1e6 * (readout.feedback_MOhm or np.inf)
-    else:
-        capacitance = capacitance_F + 1e-12 * readout.input_capacitance_pF
-        resistance = 1e6 * (readout.input_resistance_MOhm or np.inf)
+    capacitance, resistance = input_of(readout, capacitance_F)
     voltage = leaky_integral(time_s, charge_C, capacitance, resistance)
     for frequency_Hz, amplitude_V in physics.hum:
         voltage += amplitude_V * np.sin(2.0 * np.pi * frequency_Hz * time_s)
@@ -32,6 +29,14 @@ def amplify(time_s: Floats, charge_C: Floats, capacitance_F: float, readout: Rea
     for corner_Hz, order, kind in filters(readout, physics):
         voltage = butterworth(time_s, voltage, corner_Hz, order, kind)
     return np.asarray(readout.polarity * voltage)
+
+
+def input_of(readout: Readout, film_capacitance_F: float) -> tuple[float, float]:
+    """Capacitance (F) and resistance (Ohm) into which the charge flows; both negative behind a charge amplifier."""
+    if readout.mode == "charge":
+        return -1e-12 * (readout.feedback_pF or np.inf), -1e6 * (readout.feedback_MOhm or np.inf)
+    capacitance = film_capacitance_F + 1e-12 * readout.input_capacitance_pF
+    return capacitance, 1e6 * (readout.input_resistance_MOhm or np.inf)
 
 
 def filters(readout: Readout, physics: Physics) -> list[tuple[float, int, str]]:
@@ -58,15 +63,34 @@ def leaky_integral(time: Floats, charge: Floats, capacitance: float, resistance:
 def butterworth(time: Floats, voltage: Floats, corner_Hz: float, order: int, kind: str) -> Floats:
     """An analog Butterworth filter from rest, (n,), on the even grid of solve.readout."""
     even = np.linspace(time[0], time[-1], max(len(time), SAMPLES))
+    step = float(even[1] - even[0])
+    recurrence = _discrete(corner_Hz, order, kind, step)
+    if len(even) == len(time) and np.abs(even - time).max() < 1e-9 * step:
+        return np.asarray(_march(*recurrence, voltage))
+    return np.asarray(np.interp(time, even, _march(*recurrence, np.interp(even, time, voltage))))
+
+
+@lru_cache(maxsize=64)
+def _discrete(corner_Hz: float, order: int, kind: str, step: float) -> tuple[Floats, Floats, Floats, Floats, float]:
+    """A, the gains of the sample before and of this one, c and d of _march, by the exponential of one matrix."""
     a, b, c, d = tf2ss(*butter(order, 2.0 * np.pi * corner_Hz, kind, analog=True))
     generator = np.zeros((order + 2, order + 2))
-    step = even[1] - even[0]
     generator[:order, :order], generator[:order, order], generator[order, order + 1] = step * a, step * b[:, 0], 1.0
     held = expm(generator)
-    rising = held[:order, order + 1]
-    state = np.ascontiguousarray(held[:order, :order])
-    filtered = _march(state, held[:order, order] - rising, rising, c[0], float(d[0, 0]), np.interp(even, time, voltage))
-    return np.asarray(np.interp(time, even, filtered))
+    rising = held[:order, order + 1].copy()
+    return np.ascontiguousarray(held[:order, :order]), held[:order, order] - rising, rising, c[0], float(d[0, 0])
+
+
+@lru_cache(maxsize=64)
+def largest_gain(order: int, kind: str) -> float:
+    """Integral of |impulse response|: by how much a Butterworth filter can enlarge the largest value, at any corner.
+
+    A high-pass of order n has, besides its direct passage, the impulse response of its state space.
+    """
+    a, b, c, d = tf2ss(*butter(order, 1.0, kind, analog=True))
+    time = np.linspace(0.0, 120.0, 24_001)
+    direct = np.abs(d[0, 0])
+    return float(direct + np.trapezoid(np.abs(impulse((a, b, c, 0.0 * d), T=time)[1]), time))
 
 
 @nb.njit(cache=True)

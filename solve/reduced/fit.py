@@ -19,41 +19,47 @@ from solve.reduced.modes import leading_modes
 from solve.reduced.sampling import CROWDING, Sample
 
 CELLS = 1024
-MODES = 2  # of each layer: as many as memories are sampled; more would be directions without samples
+FINER = 3  # depth nodes of the elastic press to one of the others: a coarse contact surface touches node by node
+MODES = 3  # of each layer at most: more would be directions that the samples do not tell apart
 
 
 @dataclass(frozen=True)
 class Fit:
     """table (cells + 1, f, o) and touch (f,) as solve.reduced.response_kernel.follow takes them.
 
-    owner (r,) layer of each amplitude; pairs (p, 2) of amplitudes; missing : largest share of a layer's elastic
-    stress that its modes leave out.
+    start (k + 1,) first amplitude of each layer; pairs (p, 2) of amplitudes; missing : largest share of a layer's
+    elastic stress that its modes leave out.
     """
 
     table: Floats
     touch: Floats
-    owner: Ints
+    start: Ints
     pairs: Ints
     missing: float
 
 
 def fit(samples: Sequence[Sample], layers: Sequence[str]) -> Fit:
     """The table; samples[0] is the elastic press, all others have a memory."""
-    stress, memory, owner, missing = [], [], [], 0.0
-    for number, name in enumerate(layers):
+    stress, memory, start, missing = [], [], [0], 0.0
+    for name in layers:
         snapshots, remembered = _coordinates(samples, name)
         rotation, left_out = leading_modes(snapshots, MODES)
         missing = max(missing, left_out)
-        stress.append((snapshots @ rotation).reshape(len(samples), -1, rotation.shape[1]))
+        ends = np.cumsum([len(sample.stress[name]) for sample in samples])
+        stress.append(np.split(snapshots @ rotation, ends[:-1]))
         memory.append(remembered @ rotation)
-        owner += [number] * rotation.shape[1]
-    pairs = _pairs(np.array(owner, dtype=np.int64), len(layers))
-    outputs = np.concatenate([np.array([s.outputs for s in samples]), *stress], axis=2)
+        start.append(start[-1] + rotation.shape[1])
+    pairs = np.array(list(combinations_with_replacement(start[:-1], 2)), dtype=np.int64).reshape(-1, 2)
+    outputs = [np.concatenate([s.outputs, *own], axis=1) for s, *own in zip(samples, *stress, strict=True)]
     alpha = np.concatenate(memory, axis=1) if memory else np.zeros((len(samples), 0))
     features = np.concatenate([alpha, alpha[:, pairs[:, 0]] * alpha[:, pairs[:, 1]]], axis=1)
+    changes = [now - outputs[0][::FINER] for now in outputs[1:]]
     touch = np.array([s.touch_mm for s in samples])
-    nodes = _affine(features, outputs)
-    return Fit(_table(nodes), _affine(features, touch), np.array(owner, dtype=np.int64), pairs, missing)
+    parts, moved = [_table(outputs[0])[:, None]], touch[:1]
+    if layers:
+        parts.append(_table(_slopes(features[1:], np.array(changes))))
+        moved = np.append(moved, _slopes(features[1:], (touch[1:] - touch[0])[:, None, None]))
+    return Fit(np.concatenate(parts, axis=1), moved, np.array(start, dtype=np.int64), pairs, missing)
 
 
 def _coordinates(samples: Sequence[Sample], layer: str) -> tuple[Floats, Floats]:
@@ -64,30 +70,18 @@ def _coordinates(samples: Sequence[Sample], layer: str) -> tuple[Floats, Floats]
     return np.array(stress), np.array([np.pad(c, (0, size - len(c))) for c in memory])
 
 
-def _pairs(owner: Ints, layers: int) -> Ints:
-    """Pairs (p, 2) of the first amplitudes of all layers."""
-    first = [int(np.argmax(owner == number)) for number in range(layers)]
-    return np.array(list(combinations_with_replacement(first, 2)), dtype=np.int64).reshape(-1, 2)
-
-
-def _affine(features: Floats, values: Floats) -> Floats:
-    """Coefficients (..., 1 + f, ...) of values (s, ...) over features (s, f): exact at s = 0, else least squares.
+def _slopes(features: Floats, changes: Floats) -> Floats:
+    """Coefficients (n, f, o) of changes (s, n, o) over features (s, f), by least squares.
 
     Scaled by what the samples span, so that a direction without samples gets a coefficient of zero.
     """
-    flat = values.reshape(len(values), -1)
-    coefficients = np.zeros((1 + features.shape[1], flat.shape[1]))
-    coefficients[0] = flat[0]
-    if len(values) > 1:
-        scale = np.maximum(np.abs(features).max(axis=0), 1e-300)
-        solved = np.linalg.lstsq(features[1:] / scale, flat[1:] - flat[0], rcond=1e-9)[0]
-        coefficients[1:] = solved / scale[:, None]
-    shaped = coefficients.reshape(-1, *values.shape[1:])
-    return shaped if values.ndim == 1 else np.ascontiguousarray(shaped.swapaxes(0, 1))
+    scale = np.maximum(np.abs(features).max(axis=0), 1e-300)
+    solved = np.linalg.lstsq(features / scale, changes.reshape(len(changes), -1), rcond=1e-9)[0] / scale[:, None]
+    return np.asarray(solved.reshape(-1, *changes.shape[1:]).swapaxes(0, 1))
 
 
 def _table(nodes: Floats) -> Floats:
-    """Values (cells + 1, f, o) on an even grid of depth from values (n, f, o) at the depth nodes."""
+    """Values (cells + 1, ...) on an even grid of depth from values (n, ...) at the depth nodes."""
     at = np.linspace(0.0, 1.0, CELLS + 1) ** (1.0 / CROWDING)
     given = np.linspace(0.0, 1.0, len(nodes))
-    return np.ascontiguousarray(Akima1DInterpolator(given, nodes, method="makima")(at))
+    return np.asarray(Akima1DInterpolator(given, nodes, method="makima")(at))

@@ -3,7 +3,7 @@
 With the amplitudes s of a layer's elastic stress, the Prony update of solve.materials.prony acts on the amplitudes,
     q_i <- exp(-a_i) q_i + g_i gain_i (s - s_old),      alpha = sum (g_i s - q_i),      a_i = dt / tau_i,
 and everything else is a function of the depth u and of alpha. As s depends on alpha the step is implicit; its fixed
-point contracts by about sum g_i (1 - gain_i). The rig's balance is that of solve.rig:
+point contracts by about sum g_i (1 - gain_i). The rig's balance and its Newmark integration are those of solve.rig:
     m a'' + F(a, alpha) = (u - a) / c,   or = the force that drives.
 """
 
@@ -11,157 +11,127 @@ import numba as nb
 import numpy as np
 
 from mesh.types import Floats, Ints
+from solve.reduced.table_kernel import balance, first_touch, force_and_slope, read, set_features
 
 BY_DEPTH, BY_FORCE = 0, 1
 FINE, TOO_DEEP = 0, 1
-TOLERANCE = 1e-9  # of the amplitudes, and of the full depth
+TOLERANCE = 1e-10  # of the amplitudes
 ROUNDS = 60
+PHASE = 0.5  # of the rig's fastest oscillation in one sub-step
+MOST_PARTS = 1000
 
 
-@nb.njit(cache=True)
-def _features(alpha: Floats, pairs: Ints, features: Floats) -> None:
-    """(1, alpha, products of pairs of alpha)."""
-    count = len(alpha)
-    features[0] = 1.0
-    features[1 : 1 + count] = alpha
-    for p in range(len(pairs)):
-        features[1 + count + p] = alpha[pairs[p, 0]] * alpha[pairs[p, 1]]
+@nb.njit(cache=True, error_model="numpy")
+def _decay(step: float, moduli: Floats, times: Floats, layer: Ints, start: Ints, fade: Floats, gain: Floats,
+           instant: Floats) -> None:  # fmt: skip
+    """exp(-a) and g (1 - exp(-a)) / a of each branch, and sum g - g (1 - exp(-a)) / a of each amplitude."""
+    instant[:] = 0.0
+    for b in range(len(moduli)):
+        a = step / times[b]
+        fade[b] = np.exp(-a)
+        gain[b] = moduli[b] * (-np.expm1(-a) / a if a > 0.0 else 1.0)
+        for r in range(start[layer[b]], start[layer[b] + 1]):
+            instant[r] += moduli[b] - gain[b]
 
 
-@nb.njit(cache=True)
-def _place(touch: float, full: float, cells: int, depth: float) -> tuple[int, float]:
-    """Cell of the table and the share of the way through it; below touch the table begins."""
-    at = max(0.0, (depth - touch) / (full - touch)) * cells
-    cell = min(int(at), cells - 1)
-    return cell, at - cell
+@nb.njit(cache=True, error_model="numpy")
+def _known(layer: Ints, start: Ints, fade: Floats, gain: Floats, memory: Floats, old: Floats, known: Floats) -> None:
+    """The part of alpha that does not depend on the new amplitudes."""
+    known[:] = 0.0
+    for b in range(len(layer)):
+        for r in range(start[layer[b]], start[layer[b] + 1]):
+            known[r] += gain[b] * old[r] - fade[b] * memory[b, r]
 
 
-@nb.njit(cache=True)
-def _force(table: Floats, features: Floats, touch: float, full: float, depth: float) -> tuple[float, float]:
-    """Contact force and its slope over depth; right of touch also at touch."""
-    cells = len(table) - 1
-    cell, x = _place(touch, full, cells, depth)
-    here, there = 0.0, 0.0
-    for f in range(len(features)):
-        here += table[cell, f, 0] * features[f]
-        there += table[cell + 1, f, 0] * features[f]
-    return here + x * (there - here), (there - here) * cells / (full - touch)
+@nb.njit(cache=True, error_model="numpy")
+def _remember(layer: Ints, start: Ints, fade: Floats, gain: Floats, memory: Floats, old: Floats, new: Floats) -> None:
+    """Take the step in the branches; old becomes new."""
+    for b in range(len(layer)):
+        for r in range(start[layer[b]], start[layer[b] + 1]):
+            memory[b, r] = fade[b] * memory[b, r] + gain[b] * (new[r] - old[r])
+    old[:] = new
 
 
-@nb.njit(cache=True)
-def _evaluate(table: Floats, features: Floats, touch: float, full: float, depth: float, outputs: Floats) -> None:
-    """All outputs at a depth."""
-    cell, x = _place(touch, full, len(table) - 1, depth)
-    outputs[:] = 0.0
-    for f in range(len(features)):
-        here, there = (1.0 - x) * features[f], x * features[f]
-        for o in range(len(outputs)):
-            outputs[o] += here * table[cell, f, o] + there * table[cell + 1, f, o]
+@nb.njit(cache=True, error_model="numpy")
+def _settle(
+    table: Floats, touch: Floats, full: float, pairs: Ints, features: Floats, alpha: Floats, instant: Floats,
+    known: Floats, spring: float, push: float, guess: float, observed: int, values: Floats,
+) -> float:  # fmt: skip
+    """Fixed point of alpha and, unless spring < 0, balance of the rig; returns the depth.
 
-
-@nb.njit(cache=True)
-def _balance(
-    table: Floats, features: Floats, touch: float, full: float, spring: float, push: float, guess: float
-) -> float:
-    """Depth where spring u + F(u) = push: Newton's method kept inside a shrinking bracket."""
-    if spring == 0.0 and push <= 0.0:
-        return touch
-    clear = push / spring if spring > 0.0 else touch
-    if clear <= touch and spring > 0.0:
-        return clear
-    low, high = touch, 2.0 * full - touch  # the last cell goes on, for the caller to see that it is too deep
-    depth = min(max(guess, low), high)
+    A round shrinks the error of alpha by about the largest of instant, of which twice is trusted.
+    """
+    depth, contraction = guess, 0.0
+    for r in range(len(alpha)):
+        contraction = max(contraction, 2.0 * instant[r])
     for _ in range(ROUNDS):
-        force, slope = _force(table, features, touch, full, depth)
-        excess = force + spring * depth - push
-        if excess > 0.0:
-            high = depth
-        else:
-            low = depth
-        step = -excess / max(slope + spring, 1e-300)
-        if abs(step) < 1e-3 * TOLERANCE * full or high - low < 1e-3 * TOLERANCE * full:
+        set_features(alpha, pairs, features)
+        first = first_touch(touch, features)
+        if spring >= 0.0:
+            depth = balance(table, features, first, full, spring, push, depth)
+        read(table, features, first, full, depth, values)
+        change, size = 0.0, 0.0
+        for r in range(len(alpha)):
+            new = instant[r] * values[observed + r] + known[r]
+            change = max(change, abs(new - alpha[r]))
+            size = max(size, abs(values[observed + r]))
+            alpha[r] = new
+        if contraction * change <= TOLERANCE * size:
             break
-        depth = depth + step
-        if not low < depth < high:
-            depth = 0.5 * (low + high)
     return depth
 
 
-@nb.njit(cache=True)
+@nb.njit(cache=True, error_model="numpy")
 def follow(
     time: Floats, drive: Floats, kind: int, compliance: float, mass: float, table: Floats, touch: Floats, full: float,
-    pairs: Ints, owner: Ints, moduli: Floats, times: Floats, layer: Ints, observed: int, path: Floats, outputs: Floats,
+    pairs: Ints, start: Ints, moduli: Floats, times: Floats, layer: Ints, observed: int, path: Floats, outputs: Floats,
 ) -> int:  # fmt: skip
     """Fill the dot's path (t,) in mm and the observed outputs (t, observed) over time (t,) in s; FINE or TOO_DEEP.
 
     drive (t,) mm or N by kind; compliance mm/N; mass N s2/mm; table (cells + 1, features, outputs), outputs being
-    force, area, charges and amplitudes; touch (features,) mm; full mm; pairs (p, 2) of amplitudes; owner (r,) layer of
-    each amplitude; moduli, times, layer (b,) of each Prony branch. At rest before the first sample.
+    force, area, charges and amplitudes; touch (features,) mm; full mm; pairs (p, 2) of amplitudes; start (k + 1,)
+    first amplitude of each layer; moduli, times, layer (b,) of each Prony branch. At rest before the first sample.
     """
-    modes, branches = len(owner), len(moduli)
-    alpha, new, known = np.zeros(modes), np.zeros(modes), np.zeros(modes)
-    instant = np.zeros(modes)
-    memory = np.zeros((branches, modes))
-    features, values = np.zeros(table.shape[1]), np.zeros(table.shape[2])
-    fade, gain = np.zeros(branches), np.ones(branches)
-    _features(alpha, pairs, features)
-    _evaluate(table, features, features @ touch, full, -full, values)
-    old = values[observed:].copy()
+    modes, branches = table.shape[2] - observed, len(moduli)
+    alpha, last_alpha, known, instant = np.zeros(modes), np.zeros(modes), np.zeros(modes), np.zeros(modes)
+    features, values, old = np.zeros(table.shape[1]), np.zeros(table.shape[2]), np.zeros(modes)
+    memory, fade, gain = np.zeros((branches, modes)), np.zeros(branches), np.zeros(branches)
     ruled = kind == BY_DEPTH and compliance == 0.0
-    spring = 0.0 if kind == BY_FORCE or ruled else 1.0 / compliance
+    spring = 1.0 / compliance if kind == BY_DEPTH and not ruled else 0.0
     inertia = 0.0 if ruled else mass
-    depth = velocity = acceleration = 0.0
-    before = 0.0
-    last_step = -1.0
+    set_features(alpha, pairs, features)
+    read(table, features, touch[0], full, touch[0], values)
+    old[:] = values[observed:]
+    stiffness = spring + abs(force_and_slope(table, features, touch[0], full, full)[1])
+    depth, velocity, acceleration, before, last = 0.0, 0.0, 0.0, 0.0, -1.0
     for n in range(len(time)):
         span = time[n] - time[n - 1] if n > 0 else 0.0
         parts = 1
-        if inertia > 0.0 and span > 0.0:
-            stiffness = spring + abs(_force(table, features, features @ touch, full, full)[1])
-            parts = min(1000, max(1, int(np.ceil(span * np.sqrt(stiffness / inertia) / 0.2))))
+        if inertia > 0.0:
+            parts = min(MOST_PARTS, 1 + int(span * np.sqrt(stiffness / inertia) / PHASE))
         step = span / parts
-        if step != last_step:
-            last_step = step
-            instant[:] = 0.0
-            for b in range(branches):
-                a = step / times[b]
-                fade[b] = np.exp(-a)
-                gain[b] = -np.expm1(-a) / a if a > 0.0 else 1.0
-                for r in range(modes):
-                    if owner[r] == layer[b]:
-                        instant[r] += moduli[b] * (1.0 - gain[b])
+        if abs(step - last) > 1e-9 * step:
+            _decay(step, moduli, times, layer, start, fade, gain, instant)
+            last = step
+        dynamic = 4.0 * inertia / step**2 if inertia > 0.0 and step > 0.0 else 0.0
         for part in range(1, parts + 1):
             asked = before + (drive[n] - before) * part / parts
-            known[:] = 0.0
-            for b in range(branches):
-                for r in range(modes):
-                    if owner[r] == layer[b]:
-                        known[r] += moduli[b] * gain[b] * old[r] - fade[b] * memory[b, r]
-            dynamic = 4.0 * inertia / step**2 if inertia > 0.0 and step > 0.0 else 0.0
-            push = asked * spring if kind == BY_DEPTH else asked
-            push += dynamic * (depth + step * velocity) + (inertia * acceleration if dynamic > 0.0 else 0.0)
-            now = depth
-            for _ in range(ROUNDS):
-                first = features @ touch
-                now = asked if ruled else _balance(table, features, first, full, spring + dynamic, push, now)
-                _evaluate(table, features, first, full, now, values)
-                change, size = 0.0, 1e-300
-                for r in range(modes):
-                    new[r] = instant[r] * values[observed + r] + known[r]
-                    change = max(change, abs(new[r] - alpha[r]))
-                    size = max(size, abs(new[r]), abs(values[observed + r]))
-                    alpha[r] = new[r]
-                if change <= TOLERANCE * size:
-                    break
-                _features(alpha, pairs, features)
+            _known(layer, start, fade, gain, memory, old, known)
+            for r in range(modes):  # goes on as it went
+                here = alpha[r]
+                alpha[r] += here - last_alpha[r]
+                last_alpha[r] = here
+            if ruled:
+                now = _settle(table, touch, full, pairs, features, alpha, instant, known, -1.0, 0.0, asked, observed,
+                              values)  # fmt: skip
+            else:
+                push = asked * spring if kind == BY_DEPTH else asked
+                push += dynamic * (depth + step * velocity) + (inertia * acceleration if dynamic > 0.0 else 0.0)
+                now = _settle(table, touch, full, pairs, features, alpha, instant, known, spring + dynamic, push,
+                              depth, observed, values)  # fmt: skip
             if now > full * (1.0 + 1e-6):
                 return TOO_DEEP
-            for b in range(branches):
-                for r in range(modes):
-                    if owner[r] == layer[b]:
-                        rise = values[observed + r] - old[r]
-                        memory[b, r] = fade[b] * memory[b, r] + moduli[b] * gain[b] * rise
-            old[:] = values[observed:]
+            _remember(layer, start, fade, gain, memory, old, values[observed:])
             if dynamic > 0.0:
                 faster = dynamic / inertia * (now - depth - step * velocity) - acceleration
                 velocity += 0.5 * step * (acceleration + faster)

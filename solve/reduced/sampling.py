@@ -13,12 +13,12 @@ from solve.linear import LinearSolver
 from solve.march import march, rest_state
 from solve.newton import NoEquilibriumError, equilibrate
 from solve.reduced.frozen import Frozen
-from solve.reduced.modes import Basis
+from solve.reduced.yardstick import Yardstick, held
 from solve.schedule import Target
 from solve.setup import Setup
 from solve.solid import SolidRegion
 from solve.system import Load, State
-from solve.term import Term
+from solve.term import History, Term
 
 CROWDING = 1.5  # exponent of the depth nodes: closer together near touch, where the force bends most
 
@@ -42,67 +42,74 @@ class Sample:
     memory: Mapping[str, Floats]
 
 
+Fields = dict[str, Floats]  # layer -> stress at its quadrature points (n, 6), of a bond its jump (n, 4)
+
+
 class Sampler:
-    """Presses one segment over and over."""
+    """Presses one segment over and over; the elastic press comes first."""
 
     def __init__(self, setup: Setup, layers: tuple[str, ...], nodes: int) -> None:
         self.setup, self.system, self.recorder = setup, setup.system, setup.recorder
-        self.layers, self.shares = layers, depth_shares(nodes)
+        self.nodes = nodes
         self.linear = LinearSolver(self.system.factorisation_shift)
         self.terms = {layer: _term(setup, layer) for layer in layers}
-        self.bases = {layer: Basis(_weights(term)) for layer, term in self.terms.items()}
-        rest = Target(0.0, Load((0.0, 0.0), 0.0), True)
-        self.rest = rest_state(self.system, self.linear, rest)
+        start = Target(0.0, Load((0.0, 0.0), 0.0), True)
+        self.rest = rest_state(self.system, self.linear, start)
         self.recorder.start(self.rest)
         self.force_scale = self.rest.force_scale
+        self.yardstick: Yardstick | None = None
 
-    def press(self, memory: Mapping[str, Floats], keep: bool = False) -> tuple[Sample, list[dict[str, Floats]]]:
-        """Press with overstress fields (n, 6); keep : also give back the elastic stress fields at every node.
+    def close(self) -> None:
+        """Give the solvers' memory back."""
+        self.linear.close()
+        if self.yardstick is not None:
+            self.yardstick.close()
 
-        NoEquilibriumError.
+    def press(self, memory: Fields, finer: int = 1) -> tuple[Sample, list[Fields]]:
+        """Press with overstress fields; the sample, and the elastic stress at every node. NoEquilibriumError.
+
+        finer : so many depth nodes to one.
         """
         state, touch = self._free(memory)
         full = self.setup.full_drive
-        outputs, stress, fields, past = [], {name: [] for name in self.layers}, [], [state]
-        for number, share in enumerate(self.shares):
-            if number > 0:
-                drive = touch + share * (full - touch)
-                target = Target(past[-1].time + 1.0, Load((0.0, 0.0), float(drive)), False)
-                failure = march(self.system, self.linear, past, target, False, lambda *_: None)
-                if failure is not None:
-                    raise NoEquilibriumError(f"a press for the reduced model stopped: {failure}", past[-1].x, None)
-            now = self._elastic(past[-1])
+        past, outputs, fields = [state], [self._outputs(state)], [self._elastic(state)]
+        for share in depth_shares(finer * self.nodes)[1:]:
+            drive = float(touch + share * (full - touch))
+            target = Target(past[-1].time + 1.0, Load((0.0, 0.0), drive), False)
+            failure = march(self.system, self.linear, past, target, False, lambda *_: None)
+            if failure is not None:
+                raise NoEquilibriumError(f"a press for the reduced model stopped: {failure}", past[-1].x, None)
             outputs.append(self._outputs(past[-1]))
-            for name, field in now.items():
-                stress[name].append(self.bases[name].add(field.ravel()))
-            fields += [now] if keep else []
+            fields.append(self._elastic(past[-1]))
+        if self.yardstick is None:
+            self.yardstick = Yardstick(self.system, past[-1], self.terms)
         self.force_scale = max(self.force_scale, past[-1].force_scale)
-        remembered = {name: self.bases[name].add(field.ravel()) for name, field in memory.items()}
-        touch_mm = 1e3 * self.system.units.length * touch
-        return Sample(touch_mm, np.array(outputs), stress, remembered), fields
+        measure = self.yardstick.coordinates
+        stress = {name: [measure(name, now[name]) for now in fields] for name in self.terms}
+        remembered = {name: measure(name, field) for name, field in memory.items()}
+        return Sample(1e3 * self.system.units.length * touch, np.array(outputs), stress, remembered), fields
 
-    def _free(self, memory: Mapping[str, Floats]) -> tuple[State, float]:
+    def _free(self, memory: Fields) -> tuple[State, float]:
         """The segment clear of the dot, and the approach at which they touch."""
-        histories = [
-            self._remember(term, history, memory)
-            for term, history in zip(self.system.terms, self.rest.histories, strict=True)
-        ]
-        lifted = Load((0.0, 0.0), -self.setup.full_drive)
-        start = replace(self.rest, load=lifted, histories=tuple(histories), force_scale=self.force_scale, time=-1.0)
+        pairs = zip(self.system.terms, self.rest.histories, strict=True)
+        histories = tuple(self._remember(term, history, memory) for term, history in pairs)
+        full = self.setup.full_drive
+        lifted = Load((0.0, 0.0), -full)
+        start = replace(self.rest, load=lifted, histories=histories, force_scale=self.force_scale, time=-1.0)
         state = equilibrate(self.system, self.linear, start.x, lifted, 0.0, start) if memory else start
-        touch = float(brentq(lambda drive: self._gap(state, drive), lifted.drive, self.setup.full_drive, xtol=1e-12))
+        touch = float(brentq(lambda drive: self._gap(state, drive), -full, full, xtol=1e-12))
         return replace(state, load=Load((0.0, 0.0), touch), time=0.0), touch
 
-    def _remember(self, term: Term, history: object, memory: Mapping[str, Floats]) -> object:
-        for name, own in self.terms.items():
-            if own is term:
-                field = self._elastic(self.rest)[name]
-                held = (field, memory.get(name, np.zeros_like(field)))
-                return held if isinstance(term, Bond) else (held,)
-        return history
+    def _remember(self, term: Term, history: History, memory: Fields) -> History:
+        """The history of a term that holds a memory."""
+        name = next((name for name, own in self.terms.items() if own is term), None)
+        if name is None:
+            return history
+        elastic = self._elastic(self.rest)[name]
+        return held(term, elastic, memory.get(name, np.zeros_like(elastic)))
 
     def _gap(self, state: State, drive: float) -> float:
-        """Smallest distance, a mean over a node's surroundings, with the dot at an approach."""
+        """Smallest distance, a mean over a node's surroundings, to the dot at an approach."""
         contact = self.system.contact
         gap = contact.weighted_gap(self.system.displacement(state.x), np.array([0.0, 0.0, -drive]))
         return float((gap / contact.nodal_area).min())
@@ -112,13 +119,9 @@ class Sampler:
         record = self.recorder.records.pop()
         return np.array([record.contact_force_N[2], record.contact_area_m2, *record.film_charge_C])
 
-    def _elastic(self, state: State) -> dict[str, Floats]:
-        """Elastic stress of every layer; of a bond its jump."""
-        found = {}
-        for name, term in self.terms.items():
-            history = self.system.history_of(term, state)
-            found[name] = history[0] if isinstance(term, Bond) else history[0][0]
-        return found
+    def _elastic(self, state: State) -> Fields:
+        histories = {name: self.system.history_of(term, state) for name, term in self.terms.items()}
+        return {name: h[0] if isinstance(self.terms[name], Bond) else h[0][0] for name, h in histories.items()}
 
 
 def _term(setup: Setup, layer: str) -> Term:
@@ -128,11 +131,3 @@ def _term(setup: Setup, layer: str) -> Term:
         if any(isinstance(law, Frozen) and law.layer == layer for law in laws):
             return term
     raise ValueError(f"relaxing: '{layer}' is no layer or compliant bond of this segment")
-
-
-def _weights(term: Term) -> Floats:
-    """One weight to each number of the field."""
-    if isinstance(term, Bond):
-        return np.repeat(term.facets.area.ravel(), 4)
-    assert isinstance(term, SolidRegion | FilmRegion)
-    return np.repeat(term.weight.ravel(), 6)

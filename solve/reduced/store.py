@@ -12,8 +12,9 @@ from zipfile import BadZipFile
 import numpy as np
 
 from mesh.cache import folder
+from solve.reduced.answer import Accuracy
 from solve.reduced.fit import Fit
-from solve.reduced.model import Accuracy, ReducedModel, structure
+from solve.reduced.model import ReducedModel, structure
 
 if TYPE_CHECKING:
     from solve.reduced.build import Case
@@ -57,8 +58,8 @@ def read(path: Path) -> ReducedModel | None:
     try:
         with np.load(path, allow_pickle=False) as data:
             told = json.loads(str(data["told"]))
-            fit = Fit(data["table"], data["touch"], data["owner"], data["pairs"], told["missing"])
-            if fit.table.shape[1] != len(fit.touch) or fit.table.shape[2] != 2 + len(data["film"]) + len(fit.owner):
+            fit = Fit(data["table"], data["touch"], data["start"], data["pairs"], told["missing"])
+            if fit.table.shape[1] != len(fit.touch) or fit.table.shape[2] != 2 + len(data["film"]) + fit.start[-1]:
                 return None
             rest = (data["film"], told["pyroelectric"], told["structure"], Accuracy(**told["accuracy"]))
             return ReducedModel(fit, told["depth_mm"], dict(told["relaxing"]), *rest)
@@ -77,8 +78,10 @@ def write(path: Path, model: ReducedModel) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         with NamedTemporaryFile(dir=path.parent, suffix=".part", delete=False) as file:
             beside = Path(file.name)
-            arrays = {"table": fit.table, "touch": fit.touch, "owner": fit.owner, "pairs": fit.pairs}
-            np.savez_compressed(file, told=np.array(json.dumps(told)), film=model.film, **arrays)
+            np.savez_compressed(
+                file, told=np.array(json.dumps(told)), film=model.film, table=fit.table, touch=fit.touch,
+                start=fit.start, pairs=fit.pairs,
+            )  # fmt: skip
         beside.replace(path)
     except OSError:
         return

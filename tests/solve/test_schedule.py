@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from solve.parameters import Press, Waveform
-from solve.schedule import between, schedule
+from solve.schedule import Target, load_between, schedule
 from solve.system import Load
 
 TRAPEZOID = Waveform(shape="trapezoid", rise_s=0.2, hold_s=0.5, fall_s=0.1)
@@ -73,6 +73,9 @@ def test_in_a_trapezoid_the_dot_is_pressed_slid_in_the_hold_and_lifted():
     np.testing.assert_allclose([t.load.lateral[0] for t in targets], [0, 0, 1, 0, 0])
 
 
-def test_between_two_loads_everything_is_linear():
-    load = between(Load((0.0, 1.0), 2.0), Load((4.0, 3.0), 6.0), 0.25)
-    assert (load.lateral, load.drive) == ((1.0, 1.5), 3.0)
+def test_between_two_targets_the_load_is_linear_or_on_its_waveform():
+    start, linear = Target(0.0, Load((0.0, 1.0), 2.0), True), Target(2.0, Load((4.0, 3.0), 6.0), True)
+    load, time = load_between(start, linear, 0.25)
+    assert (load.lateral, load.drive, time) == ((1.0, 1.5), 3.0, 0.5)
+    sine = schedule(Press(load_steps=1, waveform=Waveform(shape="half-sine", rise_s=1.0)), 2.0, 1.0, True)
+    assert load_between(sine[0], sine[1], 0.5)[0].drive == pytest.approx(2.0 * np.sin(np.pi / 4))

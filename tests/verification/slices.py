@@ -30,9 +30,9 @@ def plate(stack: Segment) -> DotShape:
 
 
 def foams() -> dict:
-    """Media whose whole stress relaxes when they are viscous, and a film."""
-    return {name: FOAM for name in ("effector", "medium1", "medium2")} | {
-        "film": PiezoelectricFilm(youngs_modulus_MPa=2000.0, poisson_ratio=0.29)
+    """Media whose whole stress relaxes when they are viscous, and a film about as soft: nearly one block."""
+    return dict.fromkeys(("effector", "medium1", "medium2"), FOAM) | {
+        "film": PiezoelectricFilm(youngs_modulus_MPa=2.0, poisson_ratio=0.29)
     }
 
 

@@ -1,0 +1,109 @@
+"""A press that cannot go on says why, where, at which step, and what to do; what converged is kept."""
+
+import re
+
+import numpy as np
+import pytest
+
+from geometry.dot_shape import DotShape
+from geometry.errors import InputError
+from geometry.parameters import Electrode, Film, Medium, Segment
+from geometry.stack import layers
+from mesh.build import build
+from mesh.parameters import MeshOptions
+from solve import newton
+from solve.materials.parameters import Linear, NeoHookean, PiezoelectricFilm
+from solve.parameters import Press
+from solve.press import press_segment
+
+SLICE = MeshOptions(element_size_mm=0.8, contact_element_size_mm=0.4, mesher="layered")
+FILM = PiezoelectricFilm()
+SOFT = NeoHookean(youngs_modulus_MPa=1.0, poisson_ratio=0.45)
+PLACE = re.compile(r" x = (-?\d+\.\d\d), y = (-?\d+\.\d\d), z = (-?\d+\.\d\d) mm; ")
+
+
+def slab(**changes) -> Segment:
+    """A plane-strain slice without effector, 1.528 mm high and 3 mm long."""
+    sizes = {"length_mm": 3.0, "width_mm": 2.0, "section": "plane-strain", "boundary": "free"}
+    soft = {"medium1": Medium(thickness_mm=0.5), "film": Film(thickness_um=28.0), "medium2": Medium(thickness_mm=1.0)}
+    return Segment(**{**sizes, **soft, **changes})
+
+
+def dot(kind: str, stack: Segment, x: float = 0.0, height_mm: float = 1.0) -> DotShape:
+    """A ridge of 1 mm radius, or a plate, at rest on the slab."""
+    origin = np.array([x, 0.0, layers(stack)[-1].top_mm])
+    height_mm = 0.0 if kind == "plate" else height_mm
+    return DotShape(kind, 1.0, height_mm, max(0.0, height_mm - 1.0), np.zeros((1, 2)), origin, np.eye(3))
+
+
+def stopped(stack: Segment, shape: DotShape, press: Press, medium=SOFT):
+    """A press that stops short; every message names the step, a part or the dot, a place in it, and advice."""
+    tables = {"medium1": medium, "medium2": medium, "film": FILM}
+    result = press_segment(stack, tables, shape, press, build(stack, shape, SLICE))
+    said = result.failure
+    assert not result.converged
+    assert "\n" not in said
+    reached = result.steps[-1]
+    depth = f"{1e3 * reached.indentation_m:.3f} mm and {reached.reaction_force_N:.3g} N"
+    assert re.match(rf"step \d of \d stopped at {re.escape(depth)}, sub-steps fell below 1/64 of it: ", said)
+    assert re.search(r"medium1|medium2|film", said)
+    x, y, z = (float(n) for n in PLACE.search(said).groups())
+    assert abs(x) <= 1.5
+    assert abs(y) <= 0.2
+    assert 0.0 <= z <= 1.53
+    return result, said
+
+
+def test_a_slab_crushed_flat_turns_an_element_inside_out_and_keeps_the_steps_before():
+    stack = slab()
+    softens_in_compression = Linear(youngs_modulus_MPa=1.0, poisson_ratio=0.3)
+    press = Press(indentation_mm=1.2, load_steps=4)
+    result, said = stopped(stack, dot("ridge", stack), press, softens_in_compression)
+    assert "an element of medium1 is turned inside out at x = " in said
+    assert "try more load steps (press.load_steps), a finer mesh" in said
+    assert [round(1e3 * step.indentation_m, 6) for step in result.steps[:3]] == [0.0, 0.3, 0.6]
+    assert all(np.isfinite(step.fields.cauchy_stress_Pa).all() for step in result.steps)
+    assert result.steps[-1].reaction_force_N > result.steps[1].reaction_force_N
+
+
+def test_a_plate_on_a_rim_that_the_case_holds_has_a_singular_tangent():
+    stack = slab(boundary="clamped", held_layers=("medium1",))
+    result, said = stopped(stack, dot("plate", stack), Press(indentation_mm=0.1, load_steps=2))
+    assert "the tangent is singular" in said
+    assert "the dot presses on what the case holds: change segment.held_layers" in said
+    assert len(result.steps) == 1
+
+
+def test_a_force_on_a_dot_beside_the_segment_finds_no_contact():
+    stack = slab()
+    on_a_stilt = dot("ridge", stack, x=4.0, height_mm=1e6)
+    _, said = stopped(stack, on_a_stilt, Press(force_N=0.1, load_steps=2))
+    assert "the dot that a force pushes loses contact" in said
+    assert "keep the dot over the segment (dot.offset_mm, press.path_xy_mm)" in said
+
+
+def test_a_dot_that_a_force_pushes_over_the_edge_stops_there_and_keeps_the_slide_before():
+    stack = slab()
+    press = Press(force_N=0.1, load_steps=2, path_xy_mm=((4.0, 0.0),))
+    result, said = stopped(stack, dot("ridge", stack), press)
+    assert "keep the dot over the segment (dot.offset_mm, press.path_xy_mm)" in said
+    assert len(result.steps) >= 3
+    assert result.steps[2].reaction_force_N == pytest.approx(0.1)
+    assert 0.5 < 1e3 * result.steps[-1].dot_position_m[0] < 3.0
+
+
+def test_newton_that_may_not_iterate_halves_its_steps_to_the_smallest_and_says_so(monkeypatch):
+    stack = slab()
+    monkeypatch.setattr(newton, "MAX_ITERATIONS", 1)
+    result, said = stopped(stack, dot("ridge", stack), Press(indentation_mm=0.1, load_steps=2))
+    assert "no convergence in 1 Newton iterations, worst in " in said
+    assert "try more load steps (press.load_steps), a finer mesh" in said
+    assert 1e3 * result.steps[-1].indentation_m < 0.1
+
+
+def test_an_electrode_smaller_than_the_mesh_resolves_is_refused_and_not_divided_by():
+    speck = Electrode(name="speck", center_mm=(0.1, 0.0), size_mm=(1e-6, 1.0))
+    stack, shape = slab(film=Film(thickness_um=28.0, electrodes=(speck,))), dot("ridge", slab())
+    tables = {"medium1": SOFT, "medium2": SOFT, "film": FILM}
+    with pytest.raises(InputError, match=r"segment.film.electrodes: 'speck' .* reduce mesh.film_element_size_mm"):
+        press_segment(stack, tables, shape, Press(indentation_mm=0.1), build(stack, shape, SLICE))

@@ -1,0 +1,99 @@
+"""The march from target to target: how it cuts its steps, and what it says when it cannot go on."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from solve.linear import LinearSolver
+from solve.march import _extrapolate, march, rest_state
+from solve.newton import NoEquilibriumError
+from solve.physics import Physics
+from solve.schedule import Target
+from solve.system import Load, State
+from tests.verification.slices import setup_of, waved
+
+
+@pytest.fixture(scope="module")
+def elastic():
+    return setup_of(waved("ramp"), Physics())
+
+
+@pytest.fixture
+def walk(elastic):
+    """Walks to 0.2 mm in a second; gives the failure and the times of the converged states."""
+    system = elastic.system
+    solver = LinearSolver(system.factorisation_shift)
+
+    def go(kink=True):
+        start = Target(0.0, Load((0.0, 0.0), 0.0), True)
+        past, times = [rest_state(system, solver, start)], []
+        failure = march(
+            system, solver, past, Target(1.0, Load((0.0, 0.0), elastic.full_drive), True), kink,
+            lambda state, before: times.append((before.time, state.time)),
+        )
+        return failure, times, past
+
+    yield go
+    solver.close()
+
+
+def refuse(monkeypatch, longest):
+    """Newton fails for steps longer than that."""
+    import solve.march as module
+
+    real = module._equilibrate
+
+    def equilibrate(system, linear, past, load, time):
+        if time - past[-1].time > longest:
+            raise NoEquilibriumError("it does not want to", past[-1].x, None)
+        return real(system, linear, past, load, time)
+
+    monkeypatch.setattr(module, "_equilibrate", equilibrate)
+
+
+def test_an_elastic_step_that_converges_is_one_step(walk):
+    failure, times, past = walk()
+    assert failure is None
+    assert times == [(0.0, 1.0)]
+    assert past[-1].load.drive > 0.0
+
+
+def test_a_step_that_does_not_converge_is_cut_and_still_arrives(walk, monkeypatch):
+    refuse(monkeypatch, 0.3)
+    failure, times, past = walk()
+    assert failure is None
+    assert times[0] == (0.0, 0.25)
+    assert past[-1].time == pytest.approx(1.0)
+    assert all(a == b for (_, a), (b, _) in pairwise(times))
+
+
+def test_it_gives_up_below_the_smallest_sub_step_and_says_why(walk, monkeypatch):
+    refuse(monkeypatch, 0.0)
+    failure, times, _ = walk()
+    assert failure == "it does not want to"
+    assert times == []
+
+
+def test_what_converged_before_a_failure_is_kept(walk, monkeypatch):
+    import solve.march as module
+
+    real = module._equilibrate
+
+    def until_half(system, linear, past, load, time):
+        if time > 0.5:
+            raise NoEquilibriumError("no further", past[-1].x, None)
+        return real(system, linear, past, load, time)
+
+    monkeypatch.setattr(module, "_equilibrate", until_half)
+    failure, _, past = walk()
+    assert failure == "no further"
+    assert past[-1].time == 0.5
+
+
+def test_the_guess_for_the_next_state_is_exact_for_a_parabola():
+    def state(t):
+        return State(t, Load((0.0, 0.0), 0.0), np.array([1.0 + t, t**2, 3.0 - 2.0 * t + 0.5 * t**2]), ())
+
+    guess = _extrapolate([state(t) for t in (0.0, 0.3, 0.4)], 0.9)
+    np.testing.assert_allclose(guess, state(0.9).x, rtol=1e-13)

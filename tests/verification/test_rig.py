@@ -1,0 +1,92 @@
+"""Rig compliance, force drive, gap and moving mass around the finite-element segment."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from solve.parameters import Press
+from solve.physics import Physics
+from solve.press import press_segment
+from tests.solve.segments import materials, ridge
+from tests.verification.slices import BLOCK, STACK, charge, foams, force, mesh_of, plate, pressed, waved
+
+COMPLIANCE = 0.05  # mm/N, as soft as the slice itself
+MASS_G = 20.0
+REACH_M = 1e-5  # F0 / k of the tap
+
+
+@pytest.fixture(scope="module")
+def rigid():
+    return pressed(Press(indentation_mm=0.2, load_steps=8))
+
+
+@pytest.fixture(scope="module")
+def soft():
+    return pressed(Press(indentation_mm=0.2, load_steps=4), Physics(rig_compliance_mm_per_N=COMPLIANCE))
+
+
+def test_a_spring_in_series_gives_the_rigid_curve_at_the_travel_that_is_left(soft):
+    """F_soft(u) = F(u - C F_soft): press rigidly to exactly that depth."""
+    sensor, f = soft.steps[-1].indentation_m, soft.steps[-1].reaction_force_N
+    left = 1e3 * sensor - COMPLIANCE * f
+    again = pressed(Press(indentation_mm=left, load_steps=4))
+    assert 0.05 < left / 0.2 < 0.95
+    assert f == pytest.approx(again.steps[-1].reaction_force_N, rel=1e-8)
+    assert charge(soft)[-1] == pytest.approx(charge(again)[-1], rel=1e-8)
+    assert 1e3 * soft.trace.dot_path_m[-1] == pytest.approx(left, rel=1e-8)
+
+
+def test_a_prescribed_force_reaches_the_state_of_the_prescribed_depth(rigid):
+    driven = pressed(Press(force_N=rigid.steps[-1].reaction_force_N, load_steps=4))
+    assert driven.steps[-1].indentation_m == pytest.approx(2e-4, rel=1e-8)
+    assert charge(driven)[-1] == pytest.approx(charge(rigid)[-1], rel=1e-8)
+
+
+def test_a_gap_shifts_the_curve(rigid):
+    """F(u) behind a gap g is F(u - g), and nothing happens before the touch."""
+    rest = ridge(STACK)
+    away = replace(rest, origin_mm=rest.origin_mm + np.array([0.0, 0.0, 0.05]))
+    press = Press(indentation_mm=0.25, load_steps=10)
+    result = press_segment(STACK, materials(), away, press, mesh_of(False))
+    assert result.steps[-1].reaction_force_N == pytest.approx(rigid.steps[-1].reaction_force_N, rel=1e-8)
+    assert abs(force(result)[1]) <= 1e-12 * force(result)[-1]
+
+
+def test_a_mass_on_a_prescribed_path_adds_its_inertia():
+    """F = F_contact + m a'', a of the raised cosine d/2 (1 - cos(pi t / T)), T = 20 ms."""
+    press = waved("raised-cosine", 16, rise_s=0.02)
+    result = pressed(press, Physics(moving_mass_g=MASS_G))
+    time = result.trace.time_s[1:-1]
+    acceleration = 0.5 * 2e-4 * (np.pi / 0.02) ** 2 * np.cos(np.pi * time / 0.02)
+    extra = force(result)[1:-1] + result.trace.contact_force_N[1:-1, 2] * np.sign(-result.trace.contact_force_N[-1, 2])
+    np.testing.assert_allclose(extra, 1e-3 * MASS_G * acceleration, atol=5e-3 * 1e-3 * MASS_G * acceleration.max())
+
+
+@pytest.fixture(scope="module")
+def stiffness():
+    """N/m of the plate on the block at a depth of 0.4 % of its height, where it is linear within that."""
+    press = Press(indentation_mm=1e3 * REACH_M, load_steps=1)
+    result = press_segment(BLOCK, foams(), plate(BLOCK), press, mesh_of(True))
+    return result.steps[-1].reaction_force_N / REACH_M
+
+
+def tapped(stiffness, steps):
+    """Path (t,) of a tapped mass over F0 / k, and that of the linear oscillator."""
+    omega = np.sqrt(stiffness / (1e-3 * MASS_G))
+    ratio, push = 0.5, REACH_M * stiffness
+    press = waved("half-sine", steps, force_N=push, rise_s=0.5 * np.pi / (ratio * omega))
+    result = pressed(press, Physics(moving_mass_g=MASS_G), flat=True)
+    time = result.trace.time_s
+    exact = (np.sin(ratio * omega * time) - ratio * np.sin(omega * time)) / (1.0 - ratio**2)
+    return result.trace.dot_path_m / REACH_M, exact
+
+
+def test_a_tapped_mass_follows_the_linear_oscillator(stiffness, monkeypatch):
+    """x = F0/k (sin r w t - r sin w t) / (1 - r^2), within the block's own 0.4 % and the step; of second order."""
+    monkeypatch.setattr("solve.march.TIME_TOLERANCE", np.inf)
+    paths = [tapped(stiffness, steps) for steps in (6, 12, 24)]
+    np.testing.assert_allclose(*paths[-1], atol=0.015)
+    coarse, middle, fine = (path[:: len(path) // 12] for path, _ in paths)
+    order = np.log2(np.abs(coarse - middle).max() / np.abs(middle - fine).max())
+    assert order == pytest.approx(2.0, abs=0.2)
