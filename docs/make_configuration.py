@@ -8,7 +8,7 @@ docs/mechanisms.md; tests/softdot/test_docs.py fails while they are out of step.
 import json
 import sys
 import tomllib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 

@@ -35,9 +35,20 @@ def check_press_depth(segment: Segment, indentation_mm: float) -> None:
         )
 
 
-def check_pushed_dot(dot: Dot, segment: Segment) -> None:
-    """A dot that is pushed with a force must stand over the segment: beside it nothing pushes back. InputError."""
-    for axis, half in enumerate((segment.length_mm / 2.0, segment.width_mm / 2.0)):
+def check_pushed_dot(dot: Dot, segment: Segment, path_xy_mm: tuple[tuple[float, float], ...] = ()) -> None:
+    """A dot that is pushed with a force must stand over the segment: beside it nothing pushes back. InputError.
+
+    path_xy_mm : way points of a slide, from where the dot stands at rest.
+    """
+    halves = (segment.length_mm / 2.0, segment.width_mm / 2.0)
+    for number, point in enumerate(path_xy_mm):
+        for axis, half in enumerate(halves):
+            if abs(dot.offset_mm[axis] + point[axis]) > half:
+                raise InputError(
+                    f"press.path_xy_mm[{number}] = {list(point)}: with press.force_N the dot must stay over the "
+                    f"segment, between {-half:g} and {half:g} in {'xy'[axis]}"
+                )
+    for axis, half in enumerate(halves):
         if abs(dot.offset_mm[axis]) > half:
             raise InputError(
                 f"dot.offset_mm[{axis}] = {dot.offset_mm[axis]:g}: with press.force_N the dot must stand over the "

@@ -13,12 +13,11 @@ TOO_MANY = 1_000_000
 POINTS = 100_000
 FILL = 6.0 * np.sqrt(2.0)
 """A regular tetrahedron of edge h has the volume h^3 / (6 sqrt 2)."""
+PRISMS = 12.0 / np.sqrt(3.0)
 
 
 def refuse_huge_mesh(segment: Segment, dot_shape: DotShape, options: MeshOptions) -> None:
-    """InputError when the wished edge lengths mean more than a million elements in a solid section."""
-    if segment.section == "plane-strain":
-        return
+    """InputError when the wished edge lengths mean more than a million elements."""
     count = expected_tetrahedra(segment, dot_shape, options)
     if count > TOO_MANY:
         sizes = {name: value for name, value in options if name.endswith("size_mm") and value is not None}
@@ -30,11 +29,17 @@ def refuse_huge_mesh(segment: Segment, dot_shape: DotShape, options: MeshOptions
 
 
 def expected_tetrahedra(segment: Segment, dot_shape: DotShape, options: MeshOptions) -> float:
-    """Rough number of elements of the soft layers: the mean of 6 sqrt 2 / h^3 over points in the stack."""
-    shape = outline(segment)
+    """Rough number of elements of the soft layers: the mean of 6 sqrt 2 / h^3 over points in the stack.
+
+    A slice is one layer of triangles of area sqrt 3 / 4 h^2, each of three tetrahedra.
+    """
+    sliced = segment.section == "plane-strain"
+    shape = outline(segment, slice_mm=options.contact_element_size_mm) if sliced else outline(segment)
     field = sizing(shape, dot_shape, options)
     high = np.array([shape.half_x, shape.half_y, shape.top])
     low = np.array([-shape.half_x, -shape.half_y, 0.0])
     points = np.random.default_rng(0).uniform(low, high, (POINTS, 3))
+    if sliced:
+        return float((high - low)[0] * (high - low)[2] * np.mean(PRISMS / field.at(points) ** 2))
     return float(np.prod(high - low) * np.mean(FILL / field.at(points) ** 3))
 

@@ -87,7 +87,7 @@ def _fill(
         readout, channels = amplified if amplified is not None else (None, None)
     tet_mesh = result.tet_mesh
     summary |= {"mesh": mesh_part(quality, result.unknowns), **press_part(config, result, readout, channels)}
-    summary["warnings"] += result_warnings(config, dot_shape, tet_mesh, result)
+    summary["warnings"] += result_warnings(config, dot_shape, tet_mesh, result, physics.film_yield is not None)
     progress.stage("export")
     with clock("export"):
         so_far = {"timing_s": dict(clock.seconds)}

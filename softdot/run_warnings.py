@@ -10,9 +10,14 @@ from solve.result import PressResult
 NEARLY_INCOMPRESSIBLE = 0.49
 
 
-def result_warnings(config: Config, dot_shape: DotShape, tet_mesh: TetMesh, result: PressResult) -> list[str]:
-    """Warnings that a solution gives: the solver's own, yield of the film, strain beyond the data."""
-    warnings = [*result.warnings, *_yield(config, result)]
+def result_warnings(
+    config: Config, dot_shape: DotShape, tet_mesh: TetMesh, result: PressResult, yields: bool = False
+) -> list[str]:
+    """Warnings that a solution gives: the solver's own, yield of the film, strain beyond the data.
+
+    yields : the film's yield is part of the solution.
+    """
+    warnings = [*result.warnings, *([] if yields else _yield(config, result))]
     for layer, material in config.layer_materials().items():
         warnings += _beyond_fit(layer, material, tet_mesh, result)
     if config.press.indentation_mm is None:

@@ -2,6 +2,7 @@
 
 import hashlib
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -31,7 +32,7 @@ def check(config: Config) -> tuple[DotShape, list[str]]:
     if depth is not None:
         check_press_depth(config.segment, depth)
     else:
-        check_pushed_dot(config.dot, config.segment)
+        check_pushed_dot(config.dot, config.segment, config.press.path_xy_mm)
     dot_shape = resolve_dot(config.dot, config.segment)
     refuse_huge_mesh(config.segment, dot_shape, config.mesh)
     if depth is not None:
@@ -69,7 +70,8 @@ def build_mesh(config: Config, dot_shape: DotShape) -> TetMesh:
     """The conforming mesh. MeshingError when there is none."""
     import mesh
 
-    return mesh.build(config.segment, dot_shape, config.mesh)
+    touching = replace(dot_shape, origin_mm=dot_shape.origin_mm - [0.0, 0.0, config.dot.gap_mm])  # not another mesh
+    return mesh.build(config.segment, touching, config.mesh)
 
 
 def mesh_quality(config: Config, tet_mesh: TetMesh) -> dict[str, Any]:

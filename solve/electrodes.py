@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from geometry.errors import InputError
 from geometry.parameters import Segment
 from mesh.types import Floats, TetMesh
 
@@ -32,3 +33,13 @@ def scale_of_section(segment: Segment, tet_mesh: TetMesh) -> tuple[float, Floats
         return force, np.array([force])
     widths = np.array([e.size_mm[1] for e in segment.film.electrodes])
     return force, np.minimum(widths, segment.width_mm) / tet_mesh.thickness_mm
+
+
+def refuse_unresolved(segment: Segment, area: Floats) -> None:
+    """InputError for an electrode that covers no quadrature point of the film; area (e,)."""
+    for electrode, covered in zip(segment.film.electrodes, area, strict=False):
+        if covered == 0.0:
+            raise InputError(
+                f"segment.film.electrodes: '{electrode.name}' with size_mm = {list(electrode.size_mm)} is smaller than "
+                "the elements of the film; reduce mesh.film_element_size_mm"
+            )

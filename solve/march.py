@@ -6,11 +6,14 @@ from dataclasses import replace
 import numpy as np
 
 from mesh.types import Floats
+from solve.failure import explained
 from solve.linear import LinearSolver
 from solve.newton import NoEquilibriumError, equilibrate
 from solve.schedule import Target, load_between
 from solve.system import Load, State, System
 
+MAX_APPROACHES = 20
+ROUND_OFF = 1e-9  # of the segment's length
 SMALLEST_SUBSTEP = 1.0 / 64.0
 TIME_TOLERANCE = 1e-3  # of the largest stress, or of the dot's path, in one sub-step
 
@@ -50,7 +53,7 @@ def march(
         except NoEquilibriumError as failure:
             size *= 0.5
             if size < SMALLEST_SUBSTEP:
-                return f"{failure}{_place(system, failure.worst)}"
+                return f"sub-steps fell below 1/{1 / SMALLEST_SUBSTEP:.0f} of it: {explained(system, failure)}"
             continue
         if error > TIME_TOLERANCE and size > SMALLEST_SUBSTEP:
             size *= max(0.5, 0.9 * np.sqrt(TIME_TOLERANCE / error)) if error < 4.0 * TIME_TOLERANCE else 0.5
@@ -71,7 +74,12 @@ def _equilibrate(system: System, linear: LinearSolver, past: list[State], load: 
             return equilibrate(system, linear, _extrapolate(past, time), load, time, last)
         except NoEquilibriumError:
             pass
-    return equilibrate(system, linear, _touching(system, last, load, time), load, time, last)
+    try:
+        return equilibrate(system, linear, _touching(system, last, load, time, 4), load, time, last)
+    except NoEquilibriumError:  # on a curved dot four nodes can be too far from each other for a small force
+        if system.unknowns.approach < 0:
+            raise
+    return equilibrate(system, linear, _touching(system, last, load, time, 1), load, time, last)
 
 
 def _extrapolate(past: list[State], time: float) -> Floats:
@@ -83,28 +91,24 @@ def _extrapolate(past: list[State], time: float) -> Floats:
     return guess
 
 
-def _touching(system: System, last: State, load: Load, time: float) -> Floats:
-    """A force needs contact to start from: move the dot until it overlaps some nodes."""
+def _touching(system: System, last: State, load: Load, time: float, nodes: int) -> Floats:
+    """A force needs contact to start from: move the dot until it overlaps so many nodes."""
     approach = system.unknowns.approach
     if approach < 0 or load.drive <= last.load.drive:
         return last.x
-    trial = system.trial(last.x, load, time, last)
-    gap = system.contact.weighted_gap(trial.displacement, trial.move) / system.contact.nodal_area
-    if (last.x[system.contact.pressure_dofs] > 0.0).any() or (gap < 0.0).any():
+    if (last.x[system.contact.pressure_dofs] > 0.0).any() or (_gap(system, last.x, load, time, last) < 0.0).any():
         return last.x
     x = last.x.copy()
-    x[approach] += 1.01 * np.sort(gap)[min(3, len(gap) - 1)]
+    for _ in range(MAX_APPROACHES):  # on a slope the gap closes more slowly than the dot moves
+        gap = _gap(system, x, load, time, last)
+        nearest = np.sort(gap)[min(nodes, len(gap)) - 1]
+        if nearest < 0.0:
+            break
+        x[approach] += 1.01 * nearest + ROUND_OFF
     return x
 
 
-def _place(system: System, worst: int | None) -> str:
-    """Where the worst residual is, in mm."""
-    if worst is None:
-        return ""
-    nodes = np.flatnonzero((system.unknowns.displacement == worst).any(axis=1))
-    if len(nodes) == 0:
-        nodes = np.flatnonzero(system.unknowns.contact == worst)
-    if len(nodes) == 0:
-        return ""
-    x, y, z = 1e3 * system.units.length * system.points[nodes[0]]
-    return f", worst at x = {x:.2f}, y = {y:.2f}, z = {z:.2f} mm"
+def _gap(system: System, x: Floats, load: Load, time: float, last: State) -> Floats:
+    """Mean gap (c,) at the nodes of the contact."""
+    trial = system.trial(x, load, time, last)
+    return system.contact.weighted_gap(trial.displacement, trial.move) / system.contact.nodal_area

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from geometry.parameters import Dot, Segment
-from solve.materials.parameters import Material
+from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.parameters import Press, Readout
 from solve.physics import BondLine, Physics
 
@@ -23,7 +23,9 @@ class Model:
     @property
     def follows_time(self) -> bool:
         """Whether the press follows its waveform to the end; else only the loads count, not when they come."""
-        return self.physics.follows_time or self.press.slides_in_hold
+        film = self.materials["film"]
+        coupled = self.readout is not None and isinstance(film, PiezoelectricFilm) and film.coupling == "two-way"
+        return self.physics.follows_time or self.press.slides_in_hold or coupled
 
 
 def declared_bonds(segment: Segment) -> dict[str, BondLine]:

@@ -17,11 +17,15 @@ SIMILAR_CONTACT = 6  # so many nodes may change contact and the last factorisati
 
 
 class NoEquilibriumError(RuntimeError):
-    """Newton did not converge; says why, and which unknown is worst."""
+    """Newton did not converge; says why, and at which node the forces are least in balance."""
 
     def __init__(self, reason: str, x: Floats, worst: int | None) -> None:
         super().__init__(reason)
         self.x, self.worst = x, worst
+
+
+class LostContactError(NoEquilibriumError):
+    """A force pushes the dot, and nothing pushes back."""
 
 
 def equilibrate(system: System, linear: LinearSolver, x: Floats, load: Load, time: float, previous: State) -> State:
@@ -29,9 +33,10 @@ def equilibrate(system: System, linear: LinearSolver, x: Floats, load: Load, tim
 
     NoEquilibriumError when there is none within the iterations.
     """
-    x = x.copy()
+    x, lost = x.copy(), False
     try:
         now = _evaluate(system, x, load, time, previous)
+        lost = system.force_driven and not now.touching
         status: Bools | None = None
         for iteration in range(MAX_ITERATIONS):
             norm = float(np.linalg.norm(now.residual))
@@ -46,16 +51,26 @@ def equilibrate(system: System, linear: LinearSolver, x: Floats, load: Load, tim
                 break
             similar = status is not None and int(np.sum(status != now.status)) <= SIMILAR_CONTACT
             # inexact Newton: the linear residual need fall neither faster than the nonlinear one nor below its goal
-            tolerance = min(max(0.1 * relative, 0.1 * TOLERANCE / max(relative, 1e-300)), 1e-3)
+            tolerance = min(max(0.01 * relative, 0.01 * TOLERANCE / max(relative, 1e-300)), 1e-3)
             step = linear.solve(now.tangent, -now.residual, tolerance, similar)
             status = now.status
             x, now = _advance(system, x, step, load, time, previous)
+            lost = lost or (system.force_driven and not now.touching)
     except LinearSolveError as error:
-        raise NoEquilibriumError(f"the tangent is singular ({error})", x, None) from error
+        if lost:
+            raise LostContactError("the dot that a force pushes loses contact", x, None) from error
+        raise NoEquilibriumError(f"the tangent is singular ({error})", x, _worst_node(system, now)) from error
     except InvertedElementError as error:
         raise NoEquilibriumError(str(error), x, None) from error
-    worst = int(np.nanargmax(np.abs(now.residual)))
-    raise NoEquilibriumError(f"no convergence in {MAX_ITERATIONS} Newton iterations", x, worst)
+    if lost:
+        raise LostContactError("the dot that a force pushes loses contact", x, None)
+    raise NoEquilibriumError(f"no convergence in {MAX_ITERATIONS} Newton iterations", x, _worst_node(system, now))
+
+
+def _worst_node(system: System, now: Evaluation) -> int:
+    """The node with the largest unbalanced force."""
+    force = np.nan_to_num(np.abs(np.append(now.residual, 0.0)[system.unknowns.displacement]), nan=np.inf)
+    return int(np.argmax(force.max(axis=1)))
 
 
 def _evaluate(system: System, x: Floats, load: Load, time: float, previous: State) -> Evaluation:

@@ -71,5 +71,10 @@ class Physics:
     def follows_time(self) -> bool:
         """Whether the path, or its speed, matters: the press then follows its waveform to the end."""
         return bool(
-            self.viscosity or self.softening or self.film_yield or self.friction > 0.0 or self.moving_mass_g > 0.0
+            self.viscosity
+            or self.softening
+            or self.film_yield
+            or self.friction > 0.0
+            or self.moving_mass_g > 0.0
+            or self.pyroelectric.temperature_step_K != 0.0
         )

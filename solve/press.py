@@ -7,6 +7,7 @@ from geometry.dot_shape import DotShape
 from geometry.parameters import Dot, Segment
 from mesh.types import TetMesh
 from solve.checkpoint import Checkpoint
+from solve.failure import explained
 from solve.interfaces import open_interfaces
 from solve.linear import LinearSolver
 from solve.march import march, rest_state
@@ -63,7 +64,8 @@ def _follow(
             past = [rest_state(system, linear, targets[0])]
         except NoEquilibriumError as error:
             recorder.start(system.at_rest(targets[0].load))
-            return f"the prestretched film finds no equilibrium: {error}"
+            reason = explained(system, error)
+            return f"step 0 of {len(targets) - 1}, the prestretched film at rest, has no equilibrium: {reason}"
         recorder.start(past[0])
     count, done = len(targets) - 1, len(recorder.steps)
     for number, (before, target) in list(enumerate(pairwise(targets), start=1))[done - 1 :]:
@@ -75,7 +77,7 @@ def _follow(
         if failure is not None:
             reached = recorder.steps[-1]
             depth = f"{1e3 * reached.indentation_m:.3f} mm and {reached.reaction_force_N:.3g} N"
-            return f"step {number} of {count} stopped at {depth}: {failure}"
+            return f"step {number} of {count} stopped at {depth}, {failure}"
         if checkpoint is not None:
             checkpoint.save(past, recorder)
     return None

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from geometry.dot_shape import DotShape
 from mesh.types import TetMesh
-from solve.electrodes import scale_of_section
+from solve.electrodes import refuse_unresolved, scale_of_section
 from solve.interfaces import OpenInterface
 from solve.model import Model
 from solve.problem import build_system
@@ -46,4 +46,5 @@ def set_up(
     system = build_system(
         model.segment, model.materials, dot, tet_mesh, driven, model.physics, model.readout, opened, units
     )
+    refuse_unresolved(model.segment, system.film.area())
     return Setup(model, system, Recorder(system, tet_mesh, model.physics, model.segment, model.materials))

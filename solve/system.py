@@ -13,6 +13,7 @@ from solve.contact import ContactFacets
 from solve.element_kernels import scatter
 from solve.film import FilmRegion
 from solve.friction import FrictionalContact
+from solve.rig import Rig
 from solve.solid import SolidRegion
 from solve.sparsity import Pattern
 from solve.term import History, Term, Trial
@@ -69,12 +70,13 @@ class State:
 
 @dataclass(frozen=True)
 class Evaluation:
-    """Residual (count,), tangent, norm of the contact forces, discrete states of all terms."""
+    """Residual (count,), tangent, norm of the contact forces, discrete states of all terms, any node in contact."""
 
     residual: Floats
     tangent: Tangent
     load_norm: float
     status: Bools
+    touching: bool
 
 
 @dataclass(frozen=True)
@@ -103,6 +105,11 @@ class System:
     def symmetric(self) -> bool:
         """Whether the tangent is."""
         return all(term.symmetric for term in self.terms)
+
+    @property
+    def force_driven(self) -> bool:
+        """Whether a force drives the dot."""
+        return any(isinstance(term, Rig) and term.compliance is None for term in self.terms)
 
     def history_of(self, term: Term, state: State) -> History:
         """Memory of one term in a state."""
@@ -156,7 +163,7 @@ class System:
         residual = np.zeros(self.count)
         data = np.zeros(len(self.pattern.indices))
         excess = None if self.symmetric else np.zeros(len(data))
-        load_norm, status, slots = 0.0, [], iter(self.pattern.slots)
+        load_norm, touching, status, slots = 0.0, False, [], iter(self.pattern.slots)
         for term, history in zip(self.terms, histories, strict=True):
             before = residual.copy()
             own = [next(slots) for _ in term.groups]
@@ -169,10 +176,13 @@ class System:
             status.append(term.status(trial, history))
             if isinstance(term, ContactFacets | FrictionalContact):
                 mechanical = self.unknowns.displacement.max() + 1
-                load_norm = float(np.linalg.norm((residual - before)[:mechanical]))
+                load_norm = max(load_norm, float(np.linalg.norm((residual - before)[:mechanical])))
+                touching = bool(self.contact.status(trial, history).any())
+            elif isinstance(term, Rig):
+                load_norm = max(load_norm, abs(term.drive_force(trial)))
         upper = self.pattern.matrix(data)
         lower = None if excess is None else self.pattern.matrix(excess)
-        return Evaluation(residual, Tangent(upper, lower), load_norm, np.concatenate(status))
+        return Evaluation(residual, Tangent(upper, lower), load_norm, np.concatenate(status), touching)
 
     def advance(self, trial: Trial, histories: tuple[History, ...]) -> tuple[History, ...]:
         """Memories once the trial state has converged."""

@@ -5,9 +5,10 @@ import re
 import numpy as np
 import pytest
 
+from geometry.checks import check_pushed_dot
 from geometry.dot_shape import DotShape
 from geometry.errors import InputError
-from geometry.parameters import Electrode, Film, Medium, Segment
+from geometry.parameters import Dot, Electrode, Film, Medium, Segment
 from geometry.stack import layers
 from mesh.build import build
 from mesh.parameters import MeshOptions
@@ -82,14 +83,9 @@ def test_a_force_on_a_dot_beside_the_segment_finds_no_contact():
     assert "keep the dot over the segment (dot.offset_mm, press.path_xy_mm)" in said
 
 
-def test_a_dot_that_a_force_pushes_over_the_edge_stops_there_and_keeps_the_slide_before():
-    stack = slab()
-    press = Press(force_N=0.1, load_steps=2, path_xy_mm=((4.0, 0.0),))
-    result, said = stopped(stack, dot("ridge", stack), press)
-    assert "keep the dot over the segment (dot.offset_mm, press.path_xy_mm)" in said
-    assert len(result.steps) >= 3
-    assert result.steps[2].reaction_force_N == pytest.approx(0.1)
-    assert 0.5 < 1e3 * result.steps[-1].dot_position_m[0] < 3.0
+def test_a_dot_that_a_force_pushes_over_the_edge_is_refused():
+    with pytest.raises(InputError, match=r"press\.path_xy_mm\[1\] = \[4\.0, 0\.0\]: with press\.force_N"):
+        check_pushed_dot(Dot(), slab(), ((0.5, 0.0), (4.0, 0.0)))
 
 
 def test_newton_that_may_not_iterate_halves_its_steps_to_the_smallest_and_says_so(monkeypatch):

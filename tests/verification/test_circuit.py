@@ -13,7 +13,7 @@ from tests.verification.slices import charge, force, pressed, waved
 
 STRONG = {"d31_pC_per_N": 60.0, "d32_pC_per_N": 60.0}
 COUPLING = (60e-12) ** 2 * 2.0 * 2e9 / (1.0 - 0.29) / (12.0 * 8.8541878128e-12)  # 2 d31^2 Y / (1 - nu) / eps
-PRESS = waved("ramp", 8, rise_s=0.1, hold_s=0.1)
+PRESS = waved("ramp", 8, rise_s=0.1)
 ALL = np.ones(1)
 
 

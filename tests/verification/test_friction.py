@@ -13,10 +13,10 @@ from geometry.dot_shape import DotShape
 from solve.contact import ContactFacets, contact_facets
 from solve.dot_distance import RigidDot
 from solve.friction import FrictionalContact
+from solve.kinematics import deformation_gradient
 from solve.materials.laws import InvariantLaw, bulk_modulus
 from solve.quadrature import tetrahedron
 from solve.shape_functions import linear
-from solve.kinematics import deformation_gradient
 from solve.solid import InvertedElementError, solid_region
 from solve.term import Trial
 from solve.unknowns import Unknowns

@@ -1,0 +1,54 @@
+"""Where a press stopped and what a user can do about it."""
+
+import numpy as np
+
+from mesh.types import Floats
+from solve.linear import LinearSolveError
+from solve.newton import LostContactError, NoEquilibriumError
+from solve.solid import InvertedElementError
+from solve.system import System
+
+FINER = (
+    "try more load steps (press.load_steps), a finer mesh (mesh.contact_element_size_mm), or a smaller depth or force"
+)
+HELD = (
+    "something moves freely, or the dot presses on what the case holds: change segment.held_layers, stiffen the bonds, "
+    "or move the dot"
+)
+OVER = "keep the dot over the segment (dot.offset_mm, press.path_xy_mm), or prescribe the depth (press.indentation_mm)"
+
+
+def explained(system: System, failure: NoEquilibriumError) -> str:
+    """The reason, the part and the place (undeformed, mm), and advice."""
+    return f"{failure}{_place(system, failure)}; {_advice(system, failure)}"
+
+
+def _advice(system: System, failure: NoEquilibriumError) -> str:
+    if isinstance(failure, LostContactError):
+        return OVER
+    advice = HELD if isinstance(failure.__cause__, LinearSolveError) else FINER
+    return f"{advice}; under a force, {OVER}" if system.force_driven else advice
+
+
+def _place(system: System, failure: NoEquilibriumError) -> str:
+    """In which part and where; empty where nothing is known."""
+    if isinstance(failure, LostContactError):
+        contact = system.contact
+        return f" over {_part(system, int(contact.facets[0, 0]))}{_at(system, system.points[contact.facets.ravel()])}"
+    if isinstance(failure.__cause__, InvertedElementError):  # which says in which part
+        return _at(system, system.points[failure.__cause__.nodes])
+    if failure.worst is None:
+        return ""
+    return f", worst in {_part(system, failure.worst)}{_at(system, system.points[[failure.worst]])}"
+
+
+def _part(system: System, node: int) -> str:
+    """A part that the node belongs to."""
+    regions = {solid.name: solid.tets for solid in system.solids} | {"film": system.film.tets}
+    return next(name for name, tets in regions.items() if (tets == node).any())
+
+
+def _at(system: System, points: Floats) -> str:
+    """The mean of points (n, 3)."""
+    x, y, z = 1e3 * system.units.length * np.mean(points, axis=0)
+    return f" at x = {x:.2f}, y = {y:.2f}, z = {z:.2f} mm"
