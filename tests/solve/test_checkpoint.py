@@ -48,9 +48,11 @@ def test_a_killed_press_ends_as_one_that_was_not(tmp_path, monkeypatch):
     assert solved == [4, 5, 6]  # the first three were not solved again
     assert not file.path.exists()
     for name in ("time_s", "reaction_force_N", "film_charge_C"):
-        np.testing.assert_array_equal(getattr(resumed.trace, name), getattr(whole.trace, name))
+        alone, once = getattr(resumed.trace, name), getattr(whole.trace, name)  # MKL's threads add up in any order
+        np.testing.assert_allclose(alone, once, rtol=0.0, atol=1e-11 * np.abs(once).max())
     assert [step.newton_iterations for step in resumed.steps] == [step.newton_iterations for step in whole.steps]
-    np.testing.assert_array_equal(resumed.steps[1].fields.film_strain, whole.steps[1].fields.film_strain)
+    strain, reference = (result.steps[1].fields.film_strain for result in (resumed, whole))
+    np.testing.assert_allclose(strain, reference, rtol=0.0, atol=1e-11 * np.abs(reference).max())
 
 
 def test_a_checkpoint_of_another_press_is_not_used(tmp_path, monkeypatch):

@@ -38,6 +38,7 @@ def test_an_elastic_press_stores_all_work_and_gives_it_back():
     assert balance.dissipated[-1] == 0.0
 
 
+@pytest.mark.slow
 def test_viscosity(monkeypatch):
     monkeypatch.setattr("solve.march.TIME_TOLERANCE", np.inf)
     series = Prony((0.3, 0.2), (0.05, 0.5))
@@ -46,6 +47,7 @@ def test_viscosity(monkeypatch):
     assert balance.error < TOLERANCE
 
 
+@pytest.mark.slow
 def test_stress_softening():
     law = Softening(0.4, 0.0, 0.3)
     balance = cycle(Physics(softening={"medium2": law, "effector": law}), steps=40)
@@ -53,6 +55,7 @@ def test_stress_softening():
     assert balance.error < TOLERANCE
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("hardening_MPa", [0.0, 200.0])
 def test_film_yield(hardening_MPa):
     balance = cycle(Physics(film_yield=Yield(3.0, hardening_MPa)), steps=40)
@@ -60,6 +63,7 @@ def test_film_yield(hardening_MPa):
     assert balance.error < TOLERANCE
 
 
+@pytest.mark.slow
 def test_friction():
     """Down 0.2 mm, 0.1 mm aside, back and up."""
     setup = setup_of(waved("ramp"), Physics(friction=0.4))

@@ -295,6 +295,7 @@ def energy_error(kind, coefficient, steps):
     return abs(body.work - body.energy - body.dissipated) / body.work
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "steps"), [("plate", 16), ("cap", 32)])
 def test_work_of_a_cycle_is_stored_or_lost_in_slip(kind, steps):
     """The cap needs smaller steps on this surface of 25 nodes: each that closes or opens within a step is an error."""

@@ -73,6 +73,7 @@ def test_without_relaxing_share_the_segment_is_elastic(series):
 RUBBER = Physics(viscosity={"medium2": SERIES, "effector": SERIES})
 
 
+@pytest.mark.slow
 def test_the_raised_cosine_press_is_second_order_in_time(monkeypatch):
     """Force at the end of the rise against Richardson's limit of the two finest."""
     monkeypatch.setattr("solve.march.TIME_TOLERANCE", np.inf)
@@ -82,6 +83,7 @@ def test_the_raised_cosine_press_is_second_order_in_time(monkeypatch):
     np.testing.assert_allclose(np.log2(errors[:-1] / errors[1:]), 2.0, atol=0.3)
 
 
+@pytest.mark.slow
 def test_a_smaller_tolerance_gives_a_smaller_error(monkeypatch):
     """The targets along the waveform stay: what changes is only the steps between them."""
 
