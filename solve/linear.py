@@ -20,6 +20,7 @@ from scipy.sparse.linalg import LinearOperator, gmres, splu
 from mesh.types import Floats
 from solve.unsymmetric import Tangent
 
+SMALL = 30_000  # unknowns; below it PARDISO runs on one thread
 KRYLOV_ITERATIONS = 9  # per cycle; two cycles
 
 
@@ -59,12 +60,22 @@ class Pardiso:
             self._solver = _pardiso(-2 if symmetric else 11)
         self._solver.set_phase(22 if symmetric and self._matrix is not None else 12)
         self._matrix = matrix
-        self._solver._call_pardiso(matrix, np.zeros(matrix.shape[0]))
+        self._call(np.zeros(matrix.shape[0]))
 
     def back_substitute(self, rhs: Floats) -> Floats:
         """Solve with the last factorisation."""
         self._solver.set_phase(33)
-        solution: Floats = self._solver._call_pardiso(self._matrix, rhs)
+        return self._call(rhs)
+
+    def _call(self, rhs: Floats) -> Floats:
+        """One phase; a small matrix on one thread, where waking the others costs more than they do."""
+        assert self._matrix is not None
+        threads = self._solver.libmkl.MKL_Set_Num_Threads_Local
+        before = threads(1 if self._matrix.shape[0] < SMALL else 0)
+        try:
+            solution: Floats = self._solver._call_pardiso(self._matrix, rhs)
+        finally:
+            threads(before)
         return solution
 
     def free(self) -> None:
