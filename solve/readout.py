@@ -8,6 +8,7 @@ Both are integrated exactly for a charge that is linear between samples; Butterw
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
@@ -17,9 +18,10 @@ from mesh.types import Floats
 from solve.parameters import Press, Readout, Waveform
 from solve.physics import Physics
 from solve.result import PressResult
-from solve.waveform import duration_s, fraction
+from solve.waveform import corners_s, duration_s, fraction
 
 SAMPLES = 4001
+ROUND_OFF_S = 1e-12
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,8 @@ def record(
         trace = result.trace
         time = np.union1d(np.linspace(trace.time_s[0], trace.time_s[-1], SAMPLES), trace.time_s)
         progress = np.interp(time, [step.time_s for step in result.steps], np.arange(len(result.steps)))
-        charge = _interpolated(trace.time_s, trace.film_charge_C @ wired, time)
+        corners = corners_s(press.waveform or Waveform())
+        charge = _between_corners(trace.time_s, trace.film_charge_C @ wired, time, corners)
     else:
         steps = np.array([step.film_charge_C @ wired for step in result.steps])
         charge = _interpolated(np.arange(len(steps), dtype=float), steps, progress)
@@ -98,6 +101,16 @@ def _interpolated(at: Floats, values: Floats, where: Floats) -> Floats:
     if len(at) == 1:
         return np.zeros_like(where)
     return np.asarray(PchipInterpolator(at, values)(np.clip(where, at[0], at[-1])))
+
+
+def _between_corners(at: Floats, values: Floats, where: Floats, corners: Floats) -> Floats:
+    """Interpolated piece by piece: across a corner of the waveform the slope may jump."""
+    result = np.zeros_like(where)
+    edges = np.unique(np.clip(np.concatenate([at[:1], corners, at[-1:]]), at[0], at[-1]))
+    for low, high in pairwise(edges):
+        known, asked = (at >= low - ROUND_OFF_S) & (at <= high + ROUND_OFF_S), (where >= low) & (where <= high)
+        result[asked] = _interpolated(at[known], values[known], where[asked])
+    return result
 
 
 def amplify(time: Floats, charge: Floats, film_capacitance: float, readout: Readout, physics: Physics) -> Floats:

@@ -98,3 +98,15 @@ def test_a_slide_needs_a_load_that_stays():
         Press(path_xy_mm=((1.0, 0.0),), waveform=Waveform(shape="half-sine"))
     with pytest.raises(ValidationError, match=r"waveform\.hold_s = 0: a slide"):
         Press(path_xy_mm=((1.0, 0.0),), waveform=Waveform(shape="trapezoid"))
+
+
+def test_the_charge_of_a_ramp_and_hold_keeps_its_corner():
+    """Q rises linearly in 0.1 s and stays: V at the end of the rise is Q / C (tau / T)(1 - exp(-T / tau))."""
+    time, tau = np.array([0.0, 0.05, 0.1, 0.3, 0.5]), 1e9 * FILM_F / 100.0
+    charge = np.array([0.0, 0.5e-9, 1e-9, 1e-9, 1e-9])
+    trace = SimpleNamespace(time_s=time, film_charge_C=charge[:, None])
+    steps = tuple(SimpleNamespace(time_s=t) for t in time)
+    result = SimpleNamespace(trace=trace, steps=steps, follows_time=True, capacitance_F=np.array([FILM_F]))
+    press = Press(waveform=Waveform(rise_s=0.1, hold_s=0.4))
+    voltage = readout_voltage(result, press, Readout(input_resistance_MOhm=10.0))
+    assert voltage[2] == pytest.approx(1e-9 / FILM_F * tau / 0.1 * (1.0 - np.exp(-0.1 / tau)), rel=1e-6)
