@@ -23,6 +23,7 @@ from softdot.run import run_config
 from softdot.summary import history
 from solve.mechanisms import MECHANISMS
 from solve.parameters import Readout
+from solve.physics import Physics
 from solve.readout import record
 from solve.result import PressResult
 
@@ -145,7 +146,7 @@ def test_neighbours_never_reach_a_segment_as_wide_as_the_pitch():
     found = summary_of("braille-cell", mesher="layered")
     dot_shape = resolve_dot(cell.dot, cell.segment)
     tet_mesh = stages.build_mesh(cell, dot_shape)
-    alone = history(stages.press(lone, resolve_dot(lone.dot, lone.segment), tet_mesh, lambda *_: None))
+    alone = history(stages.press(lone, Physics(), resolve_dot(lone.dot, lone.segment), tet_mesh, lambda *_: None))
     assert found["reaction_force_N"] == pytest.approx(alone.reaction_force_N, rel=1e-6)
     assert found["open_circuit_voltage_V"] == pytest.approx(alone.open_circuit_voltage_V, rel=1e-6)
 
@@ -158,7 +159,7 @@ def test_a_wider_segment_feels_all_six_dots():
     press = config.press.model_copy(update={"indentation_mm": depth, "load_steps": 1})
     dot_shape = resolve_dot(config.dot, config.segment)
     shallow = config.model_copy(update={"press": press})
-    result = stages.press(shallow, dot_shape, stages.build_mesh(shallow, dot_shape), lambda *_: None)
+    result = stages.press(shallow, Physics(), dot_shape, stages.build_mesh(shallow, dot_shape), lambda *_: None)
     per_modulus = 6.0 * 4.0 / 3.0 / (1.0 - nu**2) * radius**0.5 * depth**1.5
     assert result.converged
     assert 1.0 * per_modulus < result.steps[-1].reaction_force_N < 5.0 * per_modulus
