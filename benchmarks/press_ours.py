@@ -18,8 +18,8 @@ from solve.result import PressResult
 
 
 def press(config: Config, tet_mesh: TetMesh) -> PressResult:
-    """Three steps to 0.3 mm: elastic and frictionless, so that the path does not matter."""
-    path = config.press.model_copy(update={"indentation_mm": DEPTH_MM, "load_steps": STEPS})
+    """To 0.3 mm: elastic and frictionless, so that the path does not matter."""
+    path = config.press.model_copy(update={"indentation_mm": DEPTH_MM, "load_steps": STEPS["softdot"]})
     dot = resolve_dot(config.dot, config.segment)
     result = press_segment(config.segment, config.layer_materials(), dot, path, tet_mesh)
     if not result.converged:

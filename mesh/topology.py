@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from mesh.errors import MeshingError
 from mesh.types import Ints
 
 TET_EDGES = np.array([(0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)])
@@ -20,12 +21,15 @@ def unique_edges(tets: Ints) -> tuple[Ints, Ints]:
 def face_neighbours(tets: Ints) -> Ints:
     """For each tetrahedron and face (m, 4) the tetrahedron on the other side, -1 outside.
 
-    Raises ValueError when more than two tetrahedra share a face.
+    Raises MeshingError when more than two tetrahedra share a face.
     """
     corners = np.sort(tets[:, TET_FACES[:, :3]], axis=2).reshape(-1, 3)
     _, number, count = np.unique(corners, axis=0, return_inverse=True, return_counts=True)
     if count.max() > 2:
-        raise ValueError("more than two tetrahedra share a face")
+        raise MeshingError(
+            "more than two tetrahedra share a face, so a part is too small to mesh: "
+            "change its size or mesh.element_size_mm"
+        )
     number = number.ravel()
     order = np.argsort(number, kind="stable")
     paired = np.flatnonzero(number[order][1:] == number[order][:-1])

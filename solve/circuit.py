@@ -2,7 +2,7 @@
 
 With the film's short-circuit charge Q_s, its capacitance C_f, input C_in and R, and C = C_f + C_in,
     C V' = Q_s' - V / R.
-For a charge that is linear over the step the exact update is (as in readout.leaky_integral)
+For a charge that is linear over the step the exact update is (as in amplifier.leaky_integral)
     Q_s - Q_s,old - C (V - exp(-a) V_old) / phi = 0,      a = dt / (R C),    phi = (1 - exp(-a)) / a.
 The film's elements contribute Q_s - C_f V to the row of their voltage; this term adds the rest, so that the tangent
 stays symmetric. R = inf with C_in = 0 is open circuit: the total charge stays zero.

@@ -88,13 +88,17 @@ class ContactFacets(Term):
         return self.pressure_dofs, self.nodal_area
 
     def status(self, trial: Trial, history: History) -> Bools:
+        """Nodes in contact (c,)."""
+        return self.closed(trial)
+
+    def closed(self, trial: Trial) -> Bools:
         """Nodes in contact: lambda_i - c g_i > 0, shape (c,) bool."""
         gap = self.weighted_gap(trial.displacement, trial.move) / self.nodal_area
         return np.asarray(trial.x[self.pressure_dofs] - ACTIVE_SET_STIFFNESS * gap > 0.0)
 
     def elements(self, trial: Trial, history: History) -> Iterator[Block]:
         """-sum lambda_i g_i over the active nodes; -lambda_i = 0 in the rows of the others."""
-        active, pressure = self.status(trial, history), trial.x[self.pressure_dofs]
+        active, pressure = self.closed(trial), trial.x[self.pressure_dofs]
         yield Block(0, slice(0, len(self.facets)), *self._facets(trial, pressure, active))
         closed = np.where(active, 0.0, -1.0)
         yield Block(1, slice(0, len(closed)), closed[:, None, None], (closed * pressure)[:, None])

@@ -5,8 +5,8 @@ when its answer is wrong SciPy's SuperLU. PARDISO can return a wrong answer with
 the check.
 The contact rows have a zero diagonal, which costs pivots; the matrix that is factorised carries a small negative one
 instead, and GMRES preconditioned by it solves the true system in a few back substitutions (Saad, Iterative Methods
-for Sparse Linear Systems, 2003, ch. 9). A factorisation costs some thirty of them, so one of an earlier Newton
-step is used again where the tangent has changed little.
+for Sparse Linear Systems, 2003, ch. 9). A factorisation costs tens of them, so one of an earlier Newton step is used
+again where the tangent has changed little.
 """
 
 import os
@@ -21,7 +21,8 @@ from mesh.types import Floats
 from solve.unsymmetric import Tangent
 
 SMALL = 30_000  # unknowns; below it PARDISO runs on one thread
-KRYLOV_ITERATIONS = 9  # per cycle; two cycles
+KRYLOV_ITERATIONS = 18  # with a factorisation of the same matrix
+EVENS_OUT = 15_000, 20.0, 2.0 / 3.0  # unknowns, back substitutions that cost as much as a factorisation, exponent
 
 
 class LinearSolveError(RuntimeError):
@@ -155,14 +156,14 @@ class LinearSolver:
         LinearSolveError when every factorisation fails.
         """
         if similar and self._current is not None:
-            solution, residual = self._krylov(tangent, rhs, tolerance)
+            solution, residual = self._krylov(tangent, rhs, tolerance, self._patience)
             if residual <= tolerance:
                 return solution
         reasons = []
         while self._registry:
             try:
                 self._factorise(tangent)
-                solution, residual = self._krylov(tangent, rhs, tolerance)
+                solution, residual = self._krylov(tangent, rhs, tolerance, KRYLOV_ITERATIONS)
             except Exception as error:  # MKL absent, zero pivot, out of memory: the next one may do
                 reasons.append(f"{self.name}: {error}")
             else:
@@ -174,6 +175,19 @@ class LinearSolver:
             self.close()
             self._registry = self._registry[1:]
         raise LinearSolveError("; ".join(reasons))
+
+    def may_reuse(self, changed: int) -> bool:
+        """Whether the last factorisation is worth trying after so many constraints have changed their state.
+
+        Each costs GMRES up to two more back substitutions.
+        """
+        return 2 * changed <= self._patience // 2
+
+    @property
+    def _patience(self) -> int:
+        """Back substitutions that cost half a factorisation: more would be wasted if they fail (ski rental)."""
+        unknowns, worth, exponent = EVENS_OUT
+        return int(0.5 * worth * max(1.0, len(self._shift) / unknowns) ** exponent)
 
     def close(self) -> None:
         """Give the memory of the factorisation back."""
@@ -189,15 +203,13 @@ class LinearSolver:
             tangent = Tangent(shifted)
         self._current.factorise(tangent)
 
-    def _krylov(self, tangent: Tangent, rhs: Floats, tolerance: float) -> tuple[Floats, float]:
-        """GMRES preconditioned by the last factorisation, and the true relative residual."""
-        assert self._current is not None
-        shape = tangent.upper.shape
-        operator = LinearOperator(shape, lambda v: tangent @ v, dtype=float)
-        preconditioner = LinearOperator(shape, self._current.back_substitute, dtype=float)
-        solution, _ = gmres(
-            operator, rhs, rtol=0.3 * tolerance, restart=KRYLOV_ITERATIONS, maxiter=2, M=preconditioner
-        )
+    def _krylov(self, tangent: Tangent, rhs: Floats, tolerance: float, iterations: int) -> tuple[Floats, float]:
+        """GMRES preconditioned from the right by the last factorisation, and the true relative residual."""
+        direct = self._current
+        assert direct is not None
+        operator = LinearOperator(tangent.upper.shape, lambda v: tangent @ direct.back_substitute(v), dtype=float)
+        transformed, _ = gmres(operator, rhs, rtol=0.9 * tolerance, restart=iterations, maxiter=1)
+        solution = direct.back_substitute(transformed)
         scale = float(np.linalg.norm(rhs)) or 1.0
         residual = float(np.linalg.norm(rhs - tangent @ solution)) / scale
         return solution, residual if np.isfinite(residual) else np.inf

@@ -10,10 +10,12 @@ from solve.solid import InvertedElementError
 from solve.system import Evaluation, Load, State, System
 
 TOLERANCE = 1e-9
+ROUND_OFF = 1e-12  # of the largest displacement: a smaller correction changes nothing
+ROUNDED_TOLERANCE = 1e-6  # a stiff film on a soft foam: its own round-off may exceed TOLERANCE of a small load
 LEAST_LOAD = 1e-5  # solver units: what is less, the first touch of a moving mass, counts as this much
 MAX_ITERATIONS = 25
 MAX_HALVINGS = 6
-SIMILAR_CONTACT = 6  # so many nodes may change contact and the last factorisation still be a good preconditioner
+LOOSEST = 1e-2  # relative residual of a linear solution, far from the end
 
 
 class NoEquilibriumError(RuntimeError):
@@ -33,7 +35,7 @@ def equilibrate(system: System, linear: LinearSolver, x: Floats, load: Load, tim
 
     NoEquilibriumError when there is none within the iterations.
     """
-    x, lost = x.copy(), False
+    x, lost, correction = x.copy(), False, np.inf
     try:
         now = _evaluate(system, x, load, time, previous)
         lost = system.force_driven and not now.touching
@@ -43,18 +45,20 @@ def equilibrate(system: System, linear: LinearSolver, x: Floats, load: Load, tim
             scale = max(now.load_norm, previous.force_scale)
             relative = norm / max(scale, LEAST_LOAD)
             settled = status is None or np.array_equal(status, now.status)
-            if relative <= TOLERANCE and settled:
+            exact = correction <= ROUND_OFF and relative <= ROUNDED_TOLERANCE
+            if (relative <= TOLERANCE or exact) and settled:
                 converged = State(time, load, x, previous.histories, scale, iteration, relative)
                 trial = system.trial(x, load, time, previous)
                 return replace(converged, histories=system.advance(trial, previous.histories))
             if not np.isfinite(norm):
                 break
-            similar = status is not None and int(np.sum(status != now.status)) <= SIMILAR_CONTACT
+            similar = status is not None and linear.may_reuse(int(np.sum(status != now.status)))
             # inexact Newton: the linear residual need fall neither faster than the nonlinear one nor below its goal
-            tolerance = min(max(0.01 * relative, 0.01 * TOLERANCE / max(relative, 1e-300)), 1e-3)
+            tolerance = min(max(0.01 * relative, 0.01 * TOLERANCE / max(relative, 1e-300)), LOOSEST)
             step = linear.solve(now.tangent, -now.residual, tolerance, similar)
-            status = now.status
+            status, before = now.status, x
             x, now = _advance(system, x, step, load, time, previous)
+            correction = _relative_change(system, before, x)
             lost = lost or (system.force_driven and not now.touching)
     except LinearSolveError as error:
         if lost:
@@ -65,6 +69,12 @@ def equilibrate(system: System, linear: LinearSolver, x: Floats, load: Load, tim
     if lost:
         raise LostContactError("the dot that a force pushes loses contact", x, None)
     raise NoEquilibriumError(f"no convergence in {MAX_ITERATIONS} Newton iterations", x, _worst_node(system, now))
+
+
+def _relative_change(system: System, before: Floats, x: Floats) -> float:
+    """Largest change of a displacement, against the largest displacement."""
+    largest = float(np.abs(system.displacement(x)).max())
+    return float(np.abs(system.displacement(x - before)).max()) / largest if largest > 0.0 else np.inf
 
 
 def _worst_node(system: System, now: Evaluation) -> int:

@@ -1,10 +1,6 @@
-"""The amplifier behind the film: from the charge of a press to the voltage that is recorded.
+"""The recording of a press: its charge over the waveform, behind the amplifier.
 
 The mechanics of the baseline does not depend on time, so its waveform only says when each depth is reached.
-Voltage mode: the film, a charge source with capacitance C_f, drives R parallel to C_f + C_in:
-    (C_f + C_in) V' = Q' - V / R
-Charge mode: V' = -Q' / C_fb - V / (R_fb C_fb) (MSI Piezo Film Sensors Technical Manual, pp. 38-41).
-Both are integrated exactly for a charge that is linear between samples; Butterworth filters and the hum follow.
 """
 
 from dataclasses import dataclass
@@ -12,15 +8,14 @@ from itertools import pairwise
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
-from scipy.signal import butter, lsim
 
 from mesh.types import Floats
+from solve.amplifier import SAMPLES, amplify
 from solve.parameters import Press, Readout, Waveform
 from solve.physics import Physics
 from solve.result import PressResult
 from solve.waveform import corners_s, duration_s, fraction
 
-SAMPLES = 4001
 ROUND_OFF_S = 1e-12
 
 
@@ -111,44 +106,3 @@ def _between_corners(at: Floats, values: Floats, where: Floats, corners: Floats)
         known, asked = (at >= low - ROUND_OFF_S) & (at <= high + ROUND_OFF_S), (where >= low) & (where <= high)
         result[asked] = _interpolated(at[known], values[known], where[asked])
     return result
-
-
-def amplify(time: Floats, charge: Floats, film_capacitance: float, readout: Readout, physics: Physics) -> Floats:
-    """Voltage (t,) from the film's short-circuit charge (t,) in C at times (t,) in s, from rest."""
-    if readout.mode == "charge":
-        capacitance = -1e-12 * (readout.feedback_pF or np.inf)
-        resistance = -1e6 * (readout.feedback_MOhm or np.inf)
-    else:
-        capacitance = film_capacitance + 1e-12 * readout.input_capacitance_pF
-        resistance = 1e6 * (readout.input_resistance_MOhm or np.inf)
-    voltage = leaky_integral(time, charge, capacitance, resistance)
-    for frequency_Hz, amplitude_V in physics.hum:
-        voltage = voltage + amplitude_V * np.sin(2.0 * np.pi * frequency_Hz * time)
-    if readout.limit_V is not None:
-        voltage = np.clip(voltage, -readout.limit_V, readout.limit_V)
-    filters = [(readout.low_pass_Hz, readout.filter_order, "low"), (readout.high_pass_Hz, readout.filter_order, "high")]
-    filters += [(corner_Hz, order, "low") for corner_Hz, order in physics.low_pass]
-    for corner_Hz, order, kind in filters:
-        if corner_Hz is not None:
-            voltage = _filtered(time, voltage, corner_Hz, order, kind)
-    return readout.polarity * np.asarray(voltage)
-
-
-def _filtered(time: Floats, voltage: Floats, corner_Hz: float, order: int, kind: str) -> Floats:
-    """An analog Butterworth filter from rest, on an even grid as fine as the closest samples' mean."""
-    even = np.linspace(time[0], time[-1], max(len(time), SAMPLES))
-    coefficients = butter(order, 2.0 * np.pi * corner_Hz, kind, analog=True)
-    response = lsim(coefficients, np.interp(even, time, voltage), even - even[0])[1]
-    return np.asarray(np.interp(time, even, response))
-
-
-def leaky_integral(time: Floats, charge: Floats, capacitance: float, resistance: float) -> Floats:
-    """V of C V' = Q' - V / R from rest, shape (n,), exact for a charge linear between the samples."""
-    voltage = np.zeros(len(time))
-    step = np.diff(time)
-    decay = step / (resistance * capacitance)
-    gain = -np.expm1(-decay) / np.where(decay > 0.0, decay, 1.0) + (decay == 0.0)
-    jump = np.diff(charge) / capacitance * gain
-    for n in range(len(step)):
-        voltage[n + 1] = voltage[n] * np.exp(-decay[n]) + jump[n]
-    return voltage

@@ -5,10 +5,11 @@ modulus), so that the answer and the iterations do not depend on metres or milli
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from mesh.types import Bools, Floats
+from mesh.types import Bools, Floats, Ints
 from solve.contact import ContactFacets
 from solve.element_kernels import scatter
 from solve.film import FilmRegion
@@ -111,6 +112,12 @@ class System:
         """Whether a force drives the dot."""
         return any(isinstance(term, Rig) and term.compliance is None for term in self.terms)
 
+    @cached_property
+    def mechanical(self) -> Ints:
+        """Numbers of the displacements that are unknown."""
+        numbers = np.unique(self.unknowns.displacement)
+        return numbers[numbers >= 0]
+
     def history_of(self, term: Term, state: State) -> History:
         """Memory of one term in a state."""
         return next(h for t, h in zip(self.terms, state.histories, strict=True) if t is term)
@@ -175,9 +182,8 @@ class System:
                     scatter_unsymmetric(block.matrices, block.residuals, dofs, slot, data, excess, residual)
             status.append(term.status(trial, history))
             if isinstance(term, ContactFacets | FrictionalContact):
-                mechanical = self.unknowns.displacement.max() + 1
-                load_norm = max(load_norm, float(np.linalg.norm((residual - before)[:mechanical])))
-                touching = bool(self.contact.status(trial, history).any())
+                load_norm = max(load_norm, float(np.linalg.norm((residual - before)[self.mechanical])))
+                touching = bool(self.contact.closed(trial).any())
             elif isinstance(term, Rig):
                 load_norm = max(load_norm, abs(term.drive_force(trial)))
         upper = self.pattern.matrix(data)

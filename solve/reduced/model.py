@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from mesh.types import Floats
+from solve.amplifier import amplify, filters, input_of, largest_gain
 from solve.parameters import Readout
 from solve.physics import Physics
 from solve.reduced.answer import Accuracy, ErrorBound, Raw, Response
-from solve.reduced.circuit import amplify, filters, input_of, largest_gain
 from solve.reduced.fit import CELLS, Fit
 from solve.reduced.recording import branches, given, sensed
 from solve.reduced.response_kernel import BY_DEPTH, TOO_DEEP, follow

@@ -7,8 +7,9 @@ import pytest
 from pydantic import ValidationError
 
 from geometry.errors import InputError
+from solve.amplifier import leaky_integral
 from solve.parameters import Press, Readout, Waveform
-from solve.readout import leaky_integral, readout_voltage
+from solve.readout import readout_voltage
 from solve.waveform import fraction
 
 FILM_F = 971e-12  # 16 x 16 mm, 28 um

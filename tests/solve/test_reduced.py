@@ -13,8 +13,7 @@ import pytest
 from solve.materials.prony import Prony
 from solve.parameters import Readout
 from solve.physics import Physics
-from solve.readout import amplify
-from solve.reduced import circuit, store
+from solve.reduced import store
 from solve.reduced.answer import Accuracy
 from solve.reduced.fit import CELLS, Fit
 from solve.reduced.model import ReducedModel
@@ -128,27 +127,6 @@ def test_heat_and_touch_add_their_charge():
     answer = solid().respond(time, 0.4 * time, Physics(pyroelectric=heat, contact_charge_pC=5.0))
     expected = 0.4e-9 * time + 30e-6 * 1e-4 * 0.05 * -np.expm1(-time / 0.4) + 5e-12 * (time > 0.0)
     np.testing.assert_allclose(answer.charge_C[2:], expected[2:], rtol=1e-9)
-
-
-@pytest.mark.parametrize(
-    "readout",
-    [
-        Readout(),
-        Readout(input_resistance_MOhm=10.0, input_capacitance_pF=100.0, polarity=-1),
-        Readout(input_resistance_MOhm=1.0, low_pass_Hz=60.0, high_pass_Hz=0.5, filter_order=3, limit_V=0.05),
-        Readout(mode="charge", feedback_pF=100.0, feedback_MOhm=1000.0),
-    ],
-)
-@pytest.mark.parametrize("times", ["even", "uneven"])
-def test_the_fast_circuit_is_the_circuit(readout, times):
-    time = np.linspace(0.0, 2.0, 3001)
-    if times == "uneven":
-        time = time + 1e-4 * np.sin(40.0 * time)
-    charge = 1e-10 * np.sin(9.0 * time) ** 2
-    physics = Physics(low_pass=((40.0, 2),), hum=((50.0, 0.01),))
-    expected = amplify(time, charge, 24e-12, readout, physics)
-    found = circuit.amplify(time, charge, 24e-12, readout, physics)
-    np.testing.assert_allclose(found, expected, atol=1e-11 * np.abs(expected).max())
 
 
 TIME = np.linspace(0.0, 1.0, 11)

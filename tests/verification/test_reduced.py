@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from solve.amplifier import amplify
 from solve.materials.prony import Prony
 from solve.parameters import Press, Readout, Waveform
 from solve.physics import BondLine, Physics
 from solve.press import press_segment
-from solve.readout import amplify
 from solve.reduced.accuracy import BETWEEN, refined, relative_error
 from solve.reduced.build import build_reduced
 from tests.solve.segments import cap, coarse_mesh, materials, segment

@@ -1,8 +1,10 @@
-"""The amplifier of solve.readout for long recordings: the same exact recurrences, compiled.
+"""From the charge of the film to the voltage that is recorded.
 
-leaky_integral is that of solve.readout; a Butterworth filter is integrated exactly for an input that is linear
-between the samples, as scipy.signal.lsim does (first-order hold; Franklin, Powell and Workman, Digital Control of
-Dynamic Systems, 1998, section 6.3).
+Voltage mode: the film, a charge source with capacitance C_f, drives R parallel to C_f + C_in:
+    (C_f + C_in) V' = Q' - V / R
+Charge mode: V' = -Q' / C_fb - V / (R_fb C_fb) (MSI Piezo Film Sensors Technical Manual, pp. 38-41).
+The input and the Butterworth filters behind it are integrated exactly for what is linear between the samples: a
+first-order hold (Franklin, Powell and Workman, Digital Control of Dynamic Systems, 1998, section 6.3).
 """
 
 from functools import lru_cache
@@ -15,11 +17,12 @@ from scipy.signal import butter, impulse, tf2ss
 from mesh.types import Floats
 from solve.parameters import Readout
 from solve.physics import Physics
-from solve.readout import SAMPLES
+
+SAMPLES = 4001  # of the even grid of a filter, at least
 
 
 def amplify(time_s: Floats, charge_C: Floats, capacitance_F: float, readout: Readout, physics: Physics) -> Floats:
-    """Voltage (t,) from the film's short-circuit charge (t,) at times (t,), from rest; equals solve.readout.amplify."""
+    """Voltage (t,) from the film's short-circuit charge (t,) at times (t,), from rest."""
     capacitance, resistance = input_of(readout, capacitance_F)
     voltage = leaky_integral(time_s, charge_C, capacitance, resistance)
     for frequency_Hz, amplitude_V in physics.hum:
@@ -61,7 +64,7 @@ def leaky_integral(time: Floats, charge: Floats, capacitance: float, resistance:
 
 
 def butterworth(time: Floats, voltage: Floats, corner_Hz: float, order: int, kind: str) -> Floats:
-    """An analog Butterworth filter from rest, (n,), on the even grid of solve.readout."""
+    """An analog Butterworth filter from rest, (n,), on an even grid as fine as the samples' mean."""
     even = np.linspace(time[0], time[-1], max(len(time), SAMPLES))
     step = float(even[1] - even[0])
     recurrence = _discrete(corner_Hz, order, kind, step)
