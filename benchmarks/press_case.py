@@ -32,8 +32,8 @@ def save(path: Path, factor: float) -> None:
     names = ["base", "contact", *(f"side-{name}" for name in held)]
     np.savez(
         path, points=tet_mesh.points_mm, tets=tet_mesh.tets[:, :4], region=tet_mesh.region,
-        region_names=tet_mesh.region_names, facet_names=names, held=np.array(held, str), depth=DEPTH_MM, steps=STEPS["NGSolve"],
-        media=media, moduli=[materials[name].youngs_modulus_MPa for name in media],
+        region_names=tet_mesh.region_names, facet_names=names, held=np.array(held, str), depth=DEPTH_MM,
+        steps=STEPS["NGSolve"], media=media, moduli=[materials[name].youngs_modulus_MPa for name in media],
         poisson=[materials[name].poisson_ratio for name in media],
         film_thickness=1e-3 * config.segment.film.thickness_um,
         radius=resolve_dot(config.dot, config.segment).radius_mm, augmentation=AUGMENTATION_MPA_PER_MM,

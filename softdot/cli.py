@@ -7,11 +7,20 @@ import signal
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
+from importlib import import_module
 from typing import Any, NoReturn
 
 from geometry.errors import InputError
 
 GOOD, BAD_INPUT, NOT_CONVERGED, INTERRUPTED = 0, 2, 3, 130
+COMMANDS = {
+    "run": "softdot.run_command",
+    "paper": "softdot.paper.command",
+    "sweep": "softdot.sweep.command",
+    "kit": "softdot.kit.command",
+    "plate": "softdot.plate.command",
+}
+EXIT_STATUS = "Exit status: 0 good, 2 bad input, 3 a computation did not converge, 130 interrupted."
 NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EACCES, errno.EPERM}
 
 
@@ -41,29 +50,104 @@ def parser() -> argparse.ArgumentParser:
     )
     top.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
     commands = top.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    _add_run(commands)
+    _add_paper(commands)
+    _add_sweep(commands)
+    _add_kit(commands)
+    _add_plate(commands)
+    _add_schema(commands)
+    return top
+
+
+def _add_run(commands: Any) -> None:
     run = commands.add_parser(
         "run",
         help="geometry, mesh, solve and export from one configuration",
         description="Build, mesh and press one segment; write CAD, ParaView results, pictures and a report.",
         epilog="'softdot schema' explains every key of CONFIG.toml; examples/ has files to start from. "
-        "Exit status: 0 good, 2 bad input, 3 a computation did not converge, 130 interrupted.",
+        + EXIT_STATUS,
     )
     run.add_argument(
         "config", nargs="?", metavar="CONFIG.toml", help="without it: the final design of the paper"
     )
-    run.add_argument(
-        "-o", "--output", required=True, metavar="OUT", help="folder to write; an earlier run is replaced"
+    _add_output(run)
+
+
+def _add_paper(commands: Any) -> None:
+    paper = commands.add_parser(
+        "paper",
+        help="every table, figure and number of the paper, reproduced and questioned",
+        description="Solve the whole study of the paper and carry it on: its tables, figures and published "
+        "numbers beside ours, the calibration factor, and a design search. A second run uses the cache.",
+        epilog=EXIT_STATUS,
     )
-    run.add_argument(
-        "--json", action="store_true", help="print the summary, and nothing else, to standard output"
+    _add_output(paper)
+
+
+def _add_sweep(commands: Any) -> None:
+    sweep = commands.add_parser(
+        "sweep",
+        help="many presses over any keys of the configuration",
+        description="Solve every point of a design space on all cores, or on a Dask cluster, into one table. "
+        "A sweep that was stopped goes on where it was.",
+        epilog="examples/ has a SPACE.toml to start from. " + EXIT_STATUS,
     )
+    sweep.add_argument("space", metavar="SPACE.toml", help="a configuration and its axes")
+    sweep.add_argument("--scheduler", metavar="ADDRESS", help="an existing Dask scheduler, tcp://host:8786")
+    _add_output(sweep)
+
+
+def _add_kit(commands: Any) -> None:
+    kit = commands.add_parser(
+        "kit",
+        help="fabrication kit: moulds, frame, cut files, build sheet",
+        description="Write all that a bench needs to make the segment that was simulated.",
+        epilog=EXIT_STATUS,
+    )
+    kit.add_argument(
+        "config", nargs="?", metavar="CONFIG.toml", help="without it: the final design of the paper"
+    )
+    _add_output(kit)
+
+
+def _add_plate(commands: Any) -> None:
+    plate = commands.add_parser(
+        "plate",
+        help="printable Braille test plate",
+        description="Write a printable plate with a text in Braille, a single dot, a row of dots that grow, "
+        "or an indenter tip for a force gauge, and say by which printer it can be made.",
+        epilog="docs/plate.md explains each option. " + EXIT_STATUS,
+    )
+    plate.add_argument("text", nargs="?", help="the text, or Unicode Braille cells")
+    plate.add_argument("--standard", required=True, metavar="NAME", help="a Braille standard, such as ada")
+    plate.add_argument("--kind", default="text", choices=("text", "dot", "height-series", "tip"), help="what to make")
+    plate.add_argument("--table", metavar="TABLE", help="translate by this table of liblouis, such as en-ueb-g2.ctb")
+    plate.add_argument("--width-cells", type=int, metavar="N", help="break lines that are longer")
+    for size in ("base-diameter", "height", "dot-pitch", "cell-pitch", "line-pitch"):
+        plate.add_argument(f"--{size}-mm", type=float, metavar="MM", help="in place of the standard's")
+    plate.add_argument("--heights-mm", metavar="MM,MM", help="heights of a height series")
+    plate.add_argument("--thickness-mm", type=float, metavar="MM", help="of the plate")
+    plate.add_argument("--margin-mm", type=float, metavar="MM", help="around the text")
+    plate.add_argument("--thread", metavar="NAME", help="of the force gauge, M6 without it")
+    _add_output(plate)
+
+
+def _add_schema(commands: Any) -> None:
     schema = commands.add_parser(
         "schema",
         help="JSON Schema of the configuration",
         description="Print the JSON Schema of the configuration: each key, its meaning, bounds and default.",
     )
     schema.add_argument("--json", action="store_true", help="no difference: the schema is JSON")
-    return top
+
+
+def _add_output(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "-o", "--output", required=True, metavar="OUT", help="folder to write; an earlier result is replaced"
+    )
+    command.add_argument(
+        "--json", action="store_true", help="print the summary, and nothing else, to standard output"
+    )
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -95,9 +179,9 @@ def _command(chosen: argparse.Namespace) -> int:
 
         sys.stdout.write(json_text(config_schema()))
         return GOOD
-    from softdot.run_command import run_command
-
-    return run_command(chosen.config, chosen.output, chosen.json)
+    body = import_module(COMMANDS[chosen.command])
+    status: int = body.command(chosen)
+    return status
 
 
 def _say(text: str, status: int) -> int:

@@ -10,10 +10,12 @@ from typing import Any, Self
 from pydantic import Field, ValidationError, model_validator
 
 from geometry.errors import InputError
+from geometry.fabrication.parameters import Fabrication
 from geometry.parameters import Dot, Segment, Table
 from geometry.stack import layers
 from mesh.parameters import MeshOptions
 from softdot.config_errors import sentence
+from softdot.number_size import refuse_absurd_numbers
 from softdot.toml_file import parse_toml, read_toml
 from solve.materials.library import find_material, library_tables
 from solve.materials.parameters import AnyMaterial, Material, PiezoelectricFilm
@@ -33,6 +35,7 @@ class Config(Table):
     readout: Readout | None = Field(None, description="the amplifier; leave out for open circuit")
     mesh: MeshOptions = Field(MeshOptions(), description="element sizes and mesher")
     mechanisms: tuple[Mechanism, ...] = Field((), description="physics beyond the baseline")
+    fabrication: Fabrication = Field(Fabrication(), description="how the parts are made")
     seed: int = Field(
         0, ge=0, description="of everything random; a run has nothing random but the mesher's order"
     )
@@ -81,12 +84,13 @@ def load_config(path: Path | str | None = None) -> Config:
 
 def config_from(tables: Mapping[str, Any]) -> Config:
     """A complete configuration from the tables of a TOML file. InputError with one sentence."""
-    tables = _with_parents(_with_built_in_constants(tables))
+    tables = _with_parents(with_built_in_constants(tables))
     try:
         # JSON, because only there pydantic is strict about numbers and yet takes a list for a tuple
         config = Config.model_validate_json(json.dumps(tables, default=str), strict=True)
     except ValidationError as error:
         raise InputError(sentence(error, tables, Config)) from None
+    refuse_absurd_numbers(tables)
     return resolved(config)
 
 
@@ -99,7 +103,7 @@ def _with_parents(tables: Mapping[str, Any]) -> dict[str, Any]:
     return filled
 
 
-def _with_built_in_constants(tables: Mapping[str, Any]) -> dict[str, Any]:
+def with_built_in_constants(tables: Mapping[str, Any]) -> dict[str, Any]:
     """A table that overrides a built-in material of the same model keeps the constants it does not state."""
     own = tables.get("materials", {})
     if not isinstance(own, dict):
@@ -128,6 +132,10 @@ def resolved(config: Config) -> Config:
 
 
 def config_hash(config: Config) -> str:
-    """SHA-256 of the canonical text of the resolved configuration, in hexadecimal."""
-    text = json.dumps(resolved(config).model_dump(mode="json"), sort_keys=True, separators=(",", ":"))
+    """SHA-256 of the canonical text of the resolved configuration, in hexadecimal.
+
+    How the parts are made is left out: it changes no press.
+    """
+    tables = resolved(config).model_dump(mode="json", exclude={"fabrication"})
+    text = json.dumps(tables, sort_keys=True, separators=(",", ":"))
     return hashlib.sha256(text.encode()).hexdigest()

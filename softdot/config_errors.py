@@ -65,15 +65,15 @@ def _explain(
         known = {name.strip(" '") for name in str(context["expected_tags"]).split(",")}
         return f"{key}.model = '{tag}': {nearest(tag, known)}"
     if kind == "literal_error":
-        return f"{key} = {_shown(problem['input'])}: must be {_either(choices)}"
+        return f"{key} = {shown(problem['input'])}: must be {_either(choices)}"
     if kind in BOUNDS:
         name, word = BOUNDS[kind]
-        return f"{key} = {_shown(problem['input'])}: must be {word} {context[name]:g}"
+        return f"{key} = {shown(problem['input'])}: must be {word} {context[name]:g}"
     if kind in LENGTHS:
         name, word = LENGTHS[kind]
-        return f"{key} = {_shown(problem['input'])}: must have {word} {_values(context[name])}"
+        return f"{key} = {shown(problem['input'])}: must have {word} {_values(context[name])}"
     text = KINDS.get(kind, problem["msg"][:1].lower() + problem["msg"][1:])
-    return f"{key} = {_shown(problem['input'])}: {text}"
+    return f"{key} = {shown(problem['input'])}: {text}"
 
 
 def _meant(path: Sequence[str | int], known: set[str], model: type[BaseModel]) -> str:
@@ -96,11 +96,11 @@ def _own_message(key: str, problem: ErrorDetails, model: type[BaseModel]) -> str
     """A message of our own validators: about a value, about a key in a table, or about the whole."""
     text = str(problem["ctx"]["error"])
     if not isinstance(problem["input"], dict):
-        return f"{key} = {_shown(problem['input'])}: {text}"
+        return f"{key} = {shown(problem['input'])}: {text}"
     if not key:
         return text
     names = {name for table in _tables_at(problem["loc"], model) for name in table.model_fields}
-    first = text.split(maxsplit=1)[0].split(".")[0].rstrip(":")
+    first = re.split(r"[\s.:\[]", text, maxsplit=1)[0]
     return f"{key}.{text}" if first in names else f"{key}: {text}"
 
 
@@ -167,7 +167,7 @@ def _described(loc: Sequence[str | int], model: type[BaseModel]) -> str:
     return ""
 
 
-def _shown(value: Any) -> str:
+def shown(value: Any) -> str:
     """A value much as TOML writes it, cut when long."""
     if isinstance(value, str):
         text = f"'{value}'"

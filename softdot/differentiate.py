@@ -3,13 +3,17 @@
 import copy
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from geometry.errors import InputError
-from mesh.types import Floats
+from mesh.types import Floats, TetMesh
 from softdot.actual import actual
 from softdot.config import Config, config_from
 from solve.model import Model
+from solve.result import PressResult
+
+if TYPE_CHECKING:
+    from solve.sensitivity import Slopes
 
 RELATIVE_STEP = 1e-4
 
@@ -37,11 +41,24 @@ def derivatives(config: Config, keys: Sequence[str]) -> list[Derivative]:
     InputError for a key that is absent, no number, zero or decides which parts there are.
     """
     from softdot import stages
-    from solve.sensitivity import Variation, press_with_sensitivities
 
     changed, _ = actual(config)
     dot_shape, _ = stages.check(changed)
-    tet_mesh = stages.build_mesh(changed, dot_shape)
+    result, found = press_with_derivatives(config, keys, stages.build_mesh(changed, dot_shape))
+    if not result.converged:
+        raise InputError(f"the press stopped short: {result.failure}")
+    return found
+
+
+def press_with_derivatives(
+    config: Config, keys: Sequence[str], tet_mesh: TetMesh
+) -> tuple[PressResult, list[Derivative]]:
+    """The press of a configuration that passed its checks, as far as it converged, and its derivatives along it.
+
+    tet_mesh : of its segment. InputError for the keys.
+    """
+    from solve.sensitivity import Variation, press_with_sensitivities
+
     variations = {}
     for key in keys:
         step = RELATIVE_STEP * abs(value_of(config, key))
@@ -51,20 +68,19 @@ def derivatives(config: Config, keys: Sequence[str]) -> list[Derivative]:
         result, slopes = press_with_sensitivities(_model(config), variations, tet_mesh)
     except ValueError as error:
         raise InputError(str(error)) from None
-    if not result.converged:
-        raise InputError(f"the press stopped short: {result.failure}")
-    return [
-        Derivative(
-            key=key,
-            value=value_of(config, key),
-            time_s=slope.trace.time_s,
-            reaction_force_N=slope.trace.reaction_force_N,
-            film_charge_pC=1e12 * slope.trace.film_charge_C.sum(axis=1),
-            open_circuit_voltage_V=slope.open_circuit_voltage_V,
-            readout_voltage_V=slope.readout_voltage_V,
-        )
-        for key, slope in slopes.items()
-    ]
+    return result, [_derivative(config, key, slope) for key, slope in slopes.items()]
+
+
+def _derivative(config: Config, key: str, slope: "Slopes") -> Derivative:
+    return Derivative(
+        key=key,
+        value=value_of(config, key),
+        time_s=slope.trace.time_s,
+        reaction_force_N=slope.trace.reaction_force_N,
+        film_charge_pC=1e12 * slope.trace.film_charge_C.sum(axis=1),
+        open_circuit_voltage_V=slope.open_circuit_voltage_V,
+        readout_voltage_V=slope.readout_voltage_V,
+    )
 
 
 def value_of(config: Config, key: str) -> float:

@@ -5,36 +5,45 @@ import os
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from pathlib import Path
 
 from geometry.errors import InputError
 
-FORMAT = "softdot-run/1"
-SUMMARY = "summary.json"
-OWN_ENTRIES = frozenset({SUMMARY, "report.html", "cad", "results", "pictures"})
+
+@dataclass(frozen=True)
+class Product:
+    """What one command writes: entries of its folder, and the JSON file among them that names the format."""
+
+    format: str
+    summary: str
+    entries: frozenset[str]
+
+
+RUN = Product("softdot-run/1", "summary.json", frozenset({"summary.json", "report.html", "cad", "results", "pictures"}))
 
 
 @contextmanager
-def staged_folder(out: Path) -> Iterator[Path]:
+def staged_folder(out: Path, product: Product) -> Iterator[Path]:
     """Yield an empty folder beside out that takes its place when the block ends without an exception.
 
-    A folder of an earlier run is replaced. InputError, before the block starts, when out is a file, cannot be
-    written or holds anything that softdot did not write. After any exception, Ctrl-C too, nothing is left.
+    A folder of an earlier product of the same kind is replaced. InputError, before the block starts, when out
+    is a file, cannot be written or holds anything else. After any exception, Ctrl-C too, nothing is left.
     """
-    place = check_output(out)
+    place = check_output(out, product)
     made = _make_parents(place)
     staging = _make_staging(place, made)
     try:
         yield staging
-        _publish(staging, place)
+        _publish(staging, place, product)
         made = []
     finally:
         shutil.rmtree(staging, ignore_errors=True)
         _remove_empty(made)
 
 
-def check_output(out: Path) -> Path:
-    """The real path of out. InputError unless it is absent, empty or the folder of an earlier run."""
+def check_output(out: Path, product: Product) -> Path:
+    """The real path of out. InputError unless it is absent, empty or the folder of an earlier such product."""
     try:
         place = out.resolve()
         _require_folder(out, place)
@@ -42,8 +51,8 @@ def check_output(out: Path) -> Path:
     except (OSError, RuntimeError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
         raise InputError(f"output '{out}': cannot be read ({reason})") from None
-    foreign = sorted(entries - OWN_ENTRIES)
-    if foreign or (entries and not _is_earlier_run(place)):
+    foreign = sorted(entries - product.entries)
+    if foreign or (entries and not _is_earlier(place, product)):
         found = foreign[0] if foreign else sorted(entries)[0]
         raise InputError(
             f"output '{out}': holds '{found}', which softdot did not write; name a new or empty folder"
@@ -60,12 +69,12 @@ def _require_folder(out: Path, place: Path) -> None:
     raise InputError(f"output '{out}': {what} is a file, a folder is needed")
 
 
-def _is_earlier_run(folder: Path) -> bool:
+def _is_earlier(folder: Path, product: Product) -> bool:
     try:
-        summary = json.loads((folder / SUMMARY).read_text("utf-8"))
+        summary = json.loads((folder / product.summary).read_text("utf-8"))
     except (OSError, ValueError):
         return False
-    return isinstance(summary, dict) and summary.get("format") == FORMAT
+    return isinstance(summary, dict) and summary.get("format") == product.format
 
 
 def _make_parents(out: Path) -> list[Path]:
@@ -100,11 +109,11 @@ def _make_staging(out: Path, made: list[Path]) -> Path:
     raise InputError(f"output '{out}': not writable ({reason})")
 
 
-def _publish(staging: Path, out: Path) -> None:
+def _publish(staging: Path, out: Path, product: Product) -> None:
     """Put the staged folder in its place, by renaming where the file system allows it."""
     old = staging.with_name(f"{staging.name}-old")
     if staging.parent == out or out.is_mount() or Path.cwd().is_relative_to(out):
-        _replace_entries(staging, out)
+        _replace_entries(staging, out, product)
         return
     if out.exists():
         out.rename(old)
@@ -117,13 +126,13 @@ def _publish(staging: Path, out: Path) -> None:
     shutil.rmtree(old, ignore_errors=True)
 
 
-def _replace_entries(staging: Path, out: Path) -> None:
+def _replace_entries(staging: Path, out: Path, product: Product) -> None:
     """A mount point and the working folder keep their place: exchange what is in them, the summary last."""
-    for name in OWN_ENTRIES:
+    for name in product.entries:
         with suppress(FileNotFoundError):
             path = out / name
             shutil.rmtree(path) if path.is_dir() else path.unlink()
-    for path in sorted(staging.iterdir(), key=lambda entry: entry.name == SUMMARY):
+    for path in sorted(staging.iterdir(), key=lambda entry: entry.name == product.summary):
         shutil.move(path, out / path.name)
 
 

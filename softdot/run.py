@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from export.headless import ensure_rendering
 from geometry.dot_shape import DotShape
 from mesh.errors import MeshingError
 from mesh.types import Floats, TetMesh
@@ -13,7 +14,7 @@ from softdot import stages
 from softdot.actual import actual
 from softdot.config import Config
 from softdot.numbers import plain, write_json
-from softdot.output_folder import SUMMARY, staged_folder
+from softdot.output_folder import RUN, staged_folder
 from softdot.progress import Progress, Silent
 from softdot.run_warnings import design_warnings, result_warnings
 from softdot.summary import heading, mesh_part, press_part, stopped_solver
@@ -49,11 +50,12 @@ def run_config(config: Config, out: Path, progress: Progress | None = None) -> d
         progress.stage("check")
         changed, physics = actual(config)
         dot_shape, warnings = stages.check(changed)
-        with staged_folder(out) as folder:
+        ensure_rendering()
+        with staged_folder(out, RUN) as folder:
             summary: dict[str, Any] = heading(config) | plain(
                 _fill(changed, physics, dot_shape, warnings, folder, progress)
             )
-            write_json(folder / SUMMARY, summary)
+            write_json(folder / RUN.summary, summary)
     return summary
 
 

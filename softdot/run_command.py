@@ -2,6 +2,7 @@
 
 import os
 import sys
+from argparse import Namespace
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -12,28 +13,28 @@ from softdot.numbers import json_text
 GOOD, NOT_CONVERGED = 0, 3
 
 
-def run_command(config_path: str | None, output: str, as_json: bool) -> int:
-    """Run one configuration; 0, or 3 when a computation did not converge. InputError for bad input."""
+def command(chosen: Namespace) -> int:
+    """Run chosen.config into chosen.output; 0, or 3 when a computation did not converge. InputError."""
     from softdot.config import load_config
     from softdot.progress import progress_on_terminal
     from softdot.run import run_config
 
-    config = load_config(config_path)
-    with _only_the_summary_on_stdout(), progress_on_terminal() as progress:
-        summary = run_config(config, Path(output), progress)
-    if as_json:
+    config = load_config(chosen.config)
+    with only_the_summary_on_stdout(), progress_on_terminal() as progress:
+        summary = run_config(config, Path(chosen.output), progress)
+    if chosen.json:
         sys.stdout.write(json_text(summary))
     elif sys.stdout.isatty():
-        print(short_text(summary, output))
+        print(short_text(summary, chosen.output))
     if summary["solver"]["converged"]:
         return GOOD
     failure = " ".join(summary["solver"]["failure"].split())
-    print(f"softdot: not converged, {failure}; what converged is in '{output}'", file=sys.stderr)
+    print(f"softdot: not converged, {failure}; what converged is in '{chosen.output}'", file=sys.stderr)
     return NOT_CONVERGED
 
 
 @contextmanager
-def _only_the_summary_on_stdout() -> Iterator[None]:
+def only_the_summary_on_stdout() -> Iterator[None]:
     """Send what compiled libraries print to standard error while the pipeline runs."""
     sys.stdout.flush()
     kept = os.dup(1)

@@ -17,11 +17,10 @@ OnStep = Callable[[Step, int, int], None]
 
 
 def check(config: Config) -> tuple[DotShape, list[str]]:
-    """Refuse what cannot be built, drawn or solved, before any work. InputError.
+    """Refuse what cannot be built or solved, before any work. InputError.
 
     Returns the dot at rest and what a user should know about this design.
     """
-    from export.headless import ensure_rendering
     from geometry.checks import check_press_depth, check_pushed_dot, check_segment, press_warnings
     from softdot.held_rim import held_rim_warnings
     from softdot.mesh_limit import refuse_huge_mesh
@@ -38,7 +37,6 @@ def check(config: Config) -> tuple[DotShape, list[str]]:
     if depth is not None:
         warnings += press_warnings(dot_shape, config.segment, depth)
         warnings += held_rim_warnings(config.segment, dot_shape, depth)
-    ensure_rendering()
     return dot_shape, warnings
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from mesh.types import Floats
 from softdot.config import Config, config_hash
-from softdot.output_folder import FORMAT
+from softdot.output_folder import RUN
 from softdot.sensitivity import sensitivity
 from solve.result import PressResult
 
@@ -43,7 +43,7 @@ def heading(config: Config) -> dict[str, Any]:
     from softdot.version import installed_version
 
     return {
-        "format": FORMAT,
+        "format": RUN.format,
         "softdot_version": installed_version(),
         "config_hash": config_hash(config),
         "seed": config.seed,

@@ -50,6 +50,12 @@ CASES = {
     # numbers out of range
     "[press]\nindentation_mm = 0.0": "press.indentation_mm = 0: must be above 0",
     "[press]\nindentation_mm = -0.3": "press.indentation_mm = -0.3: must be above 0",
+    "[press]\nindentation_mm = 1e200": (
+        "press.indentation_mm = 1e+200: must be between 1e-12 and 1e+12 in size, or zero"
+    ),
+    "[dot]\noffset_mm = [0.0, 1e-200]": (
+        "dot.offset_mm[1] = 1e-200: must be between 1e-12 and 1e+12 in size, or zero"
+    ),
     "[press]\nload_steps = 0": "press.load_steps = 0: must be at least 1",
     "[dot]\ncell_dot = 9": "dot.cell_dot = 9: must be at most 8",
     "[segment]\nlength_mm = -2.5": "segment.length_mm = -2.5: must be above 0",

@@ -29,6 +29,7 @@ from solve.result import PressResult
 
 FOLDER = Path(__file__).parents[2] / "examples"
 SHORT = FOLDER / "mechanisms"
+RUNS = sorted(path for path in FOLDER.rglob("*.toml") if path.stem != "sweep")  # that one is a space, not a run
 LAWS = ("mooney-rivlin", "yeoh", "ogden", "hyperfoam")
 FACTOR = 337  # the paper's ratio of simulated to measured voltage
 SOLID_MESH = {"element_size_mm": 0.4, "contact_element_size_mm": 0.15}
@@ -170,10 +171,10 @@ def test_no_example_is_left_out():
         "paper-final-clamped", "paper-final-free", "paper-plane-strain", "readout", "true-segment", "dome",
         "braille-cell", "braille-cell-wide",
     }  # fmt: skip
-    assert {path.stem for path in FOLDER.glob("*.toml")} == tested
+    assert {path.stem for path in RUNS if path.parent == FOLDER} == tested
 
 
-@pytest.mark.parametrize("path", sorted(FOLDER.rglob("*.toml")), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", RUNS, ids=lambda path: path.stem)
 def test_every_example_passes_the_checks_of_a_run(path):
     config, _ = actual(load_config(path))
     stages.check(config)

@@ -1,0 +1,103 @@
+"""The numbers of one press without its files: what sweeps and studies ask for, kept on disk."""
+
+import hashlib
+import json
+import os
+from functools import cache
+from pathlib import Path
+from tempfile import NamedTemporaryFile
+from typing import Any
+
+from mesh.cache import folder
+from mesh.errors import MeshingError
+from softdot import stages
+from softdot.actual import actual
+from softdot.config import Config, config_hash
+from softdot.numbers import json_text, plain
+from softdot.run_warnings import design_warnings, result_warnings
+from softdot.summary import mesh_part, press_part, stopped_solver
+
+ROOMS = ("geometry/*", "mesh/*", "solve/**/*")
+FILES = ("actual", "outcome", "run_warnings", "sensitivity", "stages", "summary")
+
+
+def outcome(config: Config, on_step: stages.OnStep | None = None) -> dict[str, Any]:
+    """The summary of a press as `softdot run` gives it, without configuration and times. InputError.
+
+    Remembered under the hash of configuration and program, so that asking again costs nothing.
+    A press that does not converge is an outcome too: solver.converged is False, solver.failure says why;
+    it is not remembered.
+    """
+    return remembered(config) or _kept(_path(config), solved(config, on_step or _silent))
+
+
+def remembered(config: Config) -> dict[str, Any] | None:
+    """The outcome of an earlier call, None when there was none."""
+    return _read(_path(config))
+
+
+def outcome_key(config: Config) -> str:
+    """Hash of all that an outcome depends on: configuration, the file of its waveform, the program."""
+    waveform = config.press.waveform
+    file = Path(waveform.file) if waveform is not None and waveform.file is not None else None
+    content = file.read_bytes() if file is not None and file.is_file() else b""
+    return hashlib.sha256(f"{config_hash(config)} {source_hash()} ".encode() + content).hexdigest()
+
+
+def _path(config: Config) -> Path:
+    return folder() / f"outcome-{outcome_key(config)}.json"
+
+
+def solved(config: Config, on_step: stages.OnStep) -> dict[str, Any]:
+    """Check, mesh and press one configuration, numbers only. InputError for what cannot be built."""
+    changed, physics = actual(config)
+    dot_shape, warnings = stages.check(changed)
+    numbers: dict[str, Any] = {"warnings": [*warnings, *design_warnings(changed)]}
+    try:
+        tet_mesh = stages.build_mesh(changed, dot_shape)
+        quality = stages.mesh_quality(changed, tet_mesh)
+    except MeshingError as error:
+        return {**numbers, "solver": stopped_solver(f"meshing: {error}")}
+    result = stages.press(changed, physics, dot_shape, tet_mesh, on_step)
+    readout, channels = stages.readout_voltage(changed, physics, result) or (None, None)
+    numbers |= {"mesh": mesh_part(quality, result.unknowns), **press_part(changed, result, readout, channels)}
+    numbers["warnings"] += result_warnings(
+        changed, dot_shape, result.tet_mesh, result, physics.film_yield is not None
+    )
+    return dict(plain(numbers))
+
+
+@cache
+def source_hash() -> str:
+    """Hash of the files of the program that a press depends on: an edit forgets old outcomes."""
+    root = Path(__file__).parent.parent
+    sources = [path for room in ROOMS for path in root.glob(room) if path.suffix in (".py", ".toml", ".csv")]
+    sources += [root / "softdot" / f"{name}.py" for name in FILES]
+    return hashlib.sha256(b"".join(path.read_bytes() for path in sorted(sources))).hexdigest()
+
+
+def _silent(*_args: Any) -> None:
+    """No progress."""
+
+
+def _read(path: Path) -> dict[str, Any] | None:
+    """The outcome in a file, None when there is none or it is damaged."""
+    try:
+        found = json.loads(path.read_text("utf-8"))
+    except (OSError, ValueError):
+        return None
+    return found if isinstance(found, dict) else None
+
+
+def _kept(path: Path, numbers: dict[str, Any]) -> dict[str, Any]:
+    """Write beside, then rename; a cache that cannot be written is no cache."""
+    if not numbers["solver"]["converged"]:
+        return numbers
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with NamedTemporaryFile("w", dir=path.parent, suffix=".part", delete=False, encoding="utf-8") as file:
+            file.write(json_text(numbers))
+        os.replace(file.name, path)
+    except OSError:
+        pass
+    return numbers

@@ -1,0 +1,31 @@
+"""Many presses: designs over any keys of the configuration, solved on Dask, gathered in one table.
+
+Public names load on first use. A script that calls them needs `if __name__ == "__main__":` around its calls, since
+the processes that solve import it again.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from softdot.sweep.batch import solve_points
+    from softdot.sweep.run import run_sweep
+    from softdot.sweep.space import Space, load_space, space_from
+    from softdot.sweep.table import read_table
+
+__all__ = ["Space", "load_space", "read_table", "run_sweep", "solve_points", "space_from"]
+_HOMES = {
+    "Space": "softdot.sweep.space",
+    "load_space": "softdot.sweep.space",
+    "read_table": "softdot.sweep.table",
+    "run_sweep": "softdot.sweep.run",
+    "solve_points": "softdot.sweep.batch",
+    "space_from": "softdot.sweep.space",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name from its home."""
+    if name in _HOMES:
+        return getattr(import_module(_HOMES[name]), name)
+    raise AttributeError(f"module 'softdot.sweep' has no attribute '{name}'")

@@ -1,0 +1,52 @@
+"""softdot sweep: what it prints and how it exits."""
+
+import sys
+from argparse import Namespace
+from pathlib import Path
+from typing import Any
+
+from softdot.numbers import json_text
+from softdot.run_command import only_the_summary_on_stdout
+
+GOOD, NOT_CONVERGED, INTERRUPTED = 0, 3, 130
+
+
+def command(chosen: Namespace) -> int:
+    """Sweep chosen.space into chosen.output; 0, or 3 when not one point could be solved, or 130. InputError."""
+    from softdot.sweep.progress import points_on_terminal
+    from softdot.sweep.run import run_sweep
+    from softdot.sweep.space import load_space
+    from softdot.sweep.store import POINTS
+
+    space = load_space(chosen.space)
+    try:
+        with only_the_summary_on_stdout(), points_on_terminal() as progress:
+            summary = run_sweep(space, Path(chosen.output), chosen.scheduler, progress)
+    except KeyboardInterrupt:
+        if not (Path(chosen.output) / POINTS).exists():
+            raise
+        _say(f"interrupted; finished points are kept in '{chosen.output}', the same command goes on with the others")
+        return INTERRUPTED
+    if chosen.json:
+        sys.stdout.write(json_text(summary))
+    elif sys.stdout.isatty():
+        print(short_text(summary, chosen.output))
+    if summary["ended"]["solved"]:
+        return GOOD
+    _say(f"not one of {summary['points']} points could be solved; the reasons are in '{chosen.output}'")
+    return NOT_CONVERGED
+
+
+def short_text(summary: dict[str, Any], output: str) -> str:
+    """How the points ended, how fast, and where the table is."""
+    ended = ", ".join(f"{count} {status}" for status, count in summary["ended"].items() if count)
+    lines = [f"{summary['points']} points: {ended}"]
+    if summary["solved_now"]:
+        rate = f"{summary['points_per_minute']:.3g} points per minute on {summary['workers']} workers"
+        lines.append(f"{summary['solved_now']} solved now, {rate}; {summary['reused']} were there")
+    lines += [f"warning: {warning}" for warning in summary["warnings"]]
+    return "\n".join([*lines, f"{output}/sweep.parquet"])
+
+
+def _say(text: str) -> None:
+    print(f"softdot: {text}", file=sys.stderr)

@@ -1,0 +1,56 @@
+"""Dotted keys: 'mechanisms[0].parameters.coefficient' names one place in the tables of a configuration."""
+
+import copy
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from geometry.errors import InputError
+
+PART = re.compile(r'(?:(?:^|\.)(?:"([^"]+)"|([^.\[\]"\s]+)))|\[(\d+)\]')
+
+
+def parsed(key: str) -> tuple[str | int, ...]:
+    """'dot.offset_mm[1]' -> ('dot', 'offset_mm', 1); a name with a dot stands in quotes. ValueError."""
+    parts: list[str | int] = []
+    end = 0
+    while end < len(key):
+        match = PART.match(key, end)
+        if match is None or (not parts and match[3]):
+            raise ValueError("must be names joined by dots, with [0], [1], … for elements of lists")
+        parts.append(int(match[3]) if match[3] else match[1] or match[2])
+        end = match.end()
+    if not parts:
+        raise ValueError("must not be empty")
+    return tuple(parts)
+
+
+def with_value(tables: Mapping[str, Any], key: str, value: Any) -> dict[str, Any]:
+    """A copy of the tables with a value in one place; missing tables on the way are made.
+
+    InputError when the way leads through something that is no table, or to an element that a list does not have.
+    """
+    changed = copy.deepcopy(dict(tables))
+    *way, last = parsed(key)
+    place: Any = changed
+    for number, part in enumerate(way):
+        _require(place, part, key)
+        if isinstance(part, str) and part not in place:
+            place[part] = {}
+            if isinstance([*way, last][number + 1], int):
+                place[part] = []
+        place = place[part]
+    _require(place, last, key)
+    place[last] = value
+    return changed
+
+
+def _require(place: Any, part: str | int, key: str) -> None:
+    """A name needs a table, a number a list that has so many elements."""
+    if isinstance(part, str) and not isinstance(place, dict):
+        raise InputError(f"'{key}': what stands before '{part}' in this file is no table")
+    if isinstance(part, int) and not isinstance(place, list):
+        raise InputError(f"'{key}': what stands before [{part}] in this file is no list")
+    if isinstance(part, int) and part >= len(place):
+        has = f"has {len(place)}" if place else "is empty or absent in this file"
+        raise InputError(f"'{key}': there is no element [{part}], the list {has}; write it out first")

@@ -1,0 +1,107 @@
+"""A sweep from its space to its table."""
+
+import time
+from collections import Counter
+from collections.abc import Mapping
+from contextlib import AbstractContextManager
+from pathlib import Path
+from typing import Any
+
+from softdot.config import Config, config_hash
+from softdot.progress import Progress, Silent
+from softdot.sweep import store
+from softdot.sweep.cluster import local_cluster
+from softdot.sweep.hardware import hardware
+from softdot.sweep.point import REFUSED, STATUSES, Record, failed
+from softdot.sweep.sampling import sampling_warnings
+from softdot.sweep.scheduler import existing_cluster
+from softdot.sweep.space import Point, Space
+from softdot.sweep.stream import solve_all
+from softdot.sweep.table import row
+
+
+def run_sweep(
+    space: Space, out: Path | str, scheduler: str | None = None, progress: Progress | None = None
+) -> dict[str, Any]:
+    """Solve every point of a space into the folder out and return the summary (sweep.json).
+
+    On one process per core, or on the Dask cluster of a scheduler (tcp://HOST:PORT). Points that an earlier sweep
+    left in out are not solved again. InputError before any work for a folder that cannot be written and for a
+    scheduler that does not answer. After Ctrl-C, or when killed, the points that were finished stay.
+    """
+    place = store.check_folder(Path(out))
+    configs = {config_hash(point.config): point.config for point in space.points if point.config is not None}
+    records = {name: found for name, config in configs.items() if (found := store.kept(place, config)) is not None}
+    missing = {name: config for name, config in configs.items() if name not in records}
+    cluster = local_cluster(space.sweep.workers) if scheduler is None else existing_cluster(scheduler)
+    try:
+        measured = _measured(0, len(records))
+        if missing:
+            measured = _solve(missing, records, cluster, place, progress or Silent())
+        ends = [_record(point, records) for point in space.points]
+        summary = {**_heading(space, ends), "scheduler": scheduler, **measured, "hardware": hardware()}
+        rows = [row(number, space.points[number].values, record) for number, record in enumerate(ends)]
+        store.finish(place, rows, space.text, summary)
+    finally:
+        store.sweep_up(place)
+    return summary
+
+
+def _solve(
+    missing: Mapping[str, Config],
+    records: dict[str, Record],
+    cluster: AbstractContextManager[Any],
+    place: Path,
+    progress: Progress,
+) -> dict[str, Any]:
+    """Add what is missing to the records and to the folder, which is made once somebody can work."""
+    reused, count = len(records), len(records) + len(missing)
+    begun = time.perf_counter()
+    progress.stage("start")
+    with cluster as client:
+        store.begin(place)
+        workers = len(client.nthreads())
+        progress.stage("solve")
+        progress.step(reused, count, "")
+        ready = time.perf_counter()
+        for name, record in solve_all(client, missing):
+            records[name] = store.keep(place, missing[name], record)
+            progress.step(len(records), count, record["reason"] or "")
+        end = time.perf_counter()
+    return _measured(len(missing), reused, workers, ready - begun, end - ready)
+
+
+def _measured(solved: int, reused: int, workers: int = 0, start_s: float = 0.0, solve_s: float = 0.0) -> dict[str, Any]:
+    """What this call did, and how fast."""
+    return {
+        "solved_now": solved,
+        "reused": reused,
+        "workers": workers,
+        "timing_s": {"start": start_s, "solve": solve_s},
+        "points_per_minute": 60.0 * solved / solve_s if solved else None,
+    }
+
+
+def _record(point: Point, records: Mapping[str, Record]) -> Record:
+    """The record of a point; one without configuration has its reason."""
+    if point.config is None:
+        return failed(REFUSED, point.reason or "")
+    return records[config_hash(point.config)]
+
+
+def _heading(space: Space, ends: list[Record]) -> dict[str, Any]:
+    """Format, design and how the points ended."""
+    from softdot.version import installed_version
+
+    ended = Counter(record["status"] for record in ends)
+    return {
+        "format": store.SWEEP.format,
+        "complete": True,
+        "softdot_version": installed_version(),
+        "sampling": space.sweep.sampling,
+        "seed": space.sweep.seed,
+        "points": len(ends),
+        "ended": {status: ended[status] for status in STATUSES},
+        "warnings": sampling_warnings(space.sweep),
+        "space": space.tables,
+    }

@@ -1,0 +1,95 @@
+"""The folder of a sweep: points as they are solved, and at the end the table.
+
+Points are added one whole file at a time, named by the hash of their configuration, so they fit any sweep. Table,
+space and summary are replaced together when a sweep is complete: before that the folder has no table, or still that
+of the sweep before, with its own summary.
+"""
+
+import json
+import os
+from collections.abc import Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from geometry.errors import InputError
+from softdot.config import Config, config_hash
+from softdot.numbers import write_json
+from softdot.outcome import outcome_key
+from softdot.output_folder import Product, check_output
+from softdot.sweep.point import ACCIDENTS, Record
+
+POINTS, TABLE, SPACE_COPY = "points", "sweep.parquet", "space.toml"
+_WHOLE = ("sweep.json", TABLE, SPACE_COPY)
+SWEEP = Product(
+    "softdot-sweep/1", "sweep.json", frozenset({*_WHOLE, *(f".{name}.part" for name in _WHOLE), POINTS})
+)
+POINT_FORMAT = "softdot-point/1"
+
+
+def check_folder(out: Path) -> Path:
+    """The real path of out. InputError unless it can be made, or is empty or the folder of an earlier sweep."""
+    place = check_output(out, SWEEP)
+    existing = next(path for path in (place, *place.parents) if path.exists())
+    if not os.access(existing, os.W_OK):
+        raise InputError(f"output '{out}': not writable (Permission denied)")
+    return place
+
+
+def begin(place: Path) -> None:
+    """Make the folder; an earlier sweep in it stays."""
+    place.mkdir(parents=True, exist_ok=True)
+    if not (place / SWEEP.summary).exists():
+        write_json(place / SWEEP.summary, {"format": SWEEP.format, "complete": False})
+    (place / POINTS).mkdir(exist_ok=True)
+    sweep_up(place)
+
+
+def sweep_up(place: Path) -> None:
+    """Remove what a process that was stopped may have left half-written."""
+    for folder in (place, place / POINTS):
+        for path in folder.glob(".*.part"):
+            path.unlink(missing_ok=True)
+
+
+def kept(place: Path, config: Config) -> Record | None:
+    """The record of a point from an earlier sweep, None without one, after an accident and of another program."""
+    with suppress(OSError, ValueError):
+        found = json.loads(_path(place, config).read_text("utf-8"))
+        if found["key"] == outcome_key(config) and found["status"] not in ACCIDENTS:
+            return dict(found)
+    return None
+
+
+def keep(place: Path, config: Config, record: Record) -> Record:
+    """Write the summary of a point, whole or not at all, and return it."""
+    from softdot.version import installed_version
+
+    summary = {
+        "format": POINT_FORMAT,
+        "softdot_version": installed_version(),
+        "key": outcome_key(config),
+        "config_hash": config_hash(config),
+        **record,
+        "config": config.model_dump(mode="json"),
+    }
+    write_json(_path(place, config), summary)
+    return summary
+
+
+def _path(place: Path, config: Config) -> Path:
+    return place / POINTS / f"{config_hash(config)}.json"
+
+
+def finish(place: Path, rows: list[dict[str, Any]], text: str | None, summary: Mapping[str, Any]) -> None:
+    """Replace table, space and, last, the summary."""
+    from softdot.sweep.table import write_table
+
+    write_table(place / TABLE, rows)
+    if text is None:
+        (place / SPACE_COPY).unlink(missing_ok=True)
+    else:
+        beside = place / f".{SPACE_COPY}.part"
+        beside.write_text(text, "utf-8")
+        beside.replace(place / SPACE_COPY)
+    write_json(place / SWEEP.summary, summary)
