@@ -19,36 +19,44 @@ ANGULAR_DEFLECTION = 0.1
 def write_cad(parts: Sequence[Part], folder: Path) -> None:
     """Write segment.step (AP214), segment.3mf and <part>.stl; the folder appears whole or not at all."""
     with whole_folder(folder) as scratch:
-        _write_step(parts, scratch / "segment.step")
-        _write_3mf(parts, scratch / "segment.3mf")
+        write_step(parts, scratch / "segment.step")
+        write_3mf(parts, scratch / "segment.3mf")
         for part in parts:
-            _write_stl(part, scratch / f"{part.label}.stl")
+            write_stl(part, scratch / f"{part.label}.stl")
 
 
-def _write_step(parts: Sequence[Part], path: Path) -> None:
+def write_step(parts: Sequence[Part], path: Path) -> None:
+    """Write one assembly, labelled as the file is named, STEP AP214."""
     from build123d import Compound, export_step
 
     # copies, because an assembly takes its children from other assemblies
-    export_step(Compound(label="segment", children=[copy(part.solid) for part in parts]), str(path))
+    export_step(Compound(label=path.stem, children=[copy(part.solid) for part in parts]), str(path))
 
 
-def _write_3mf(parts: Sequence[Part], path: Path) -> None:
+def write_3mf(parts: Sequence[Part], path: Path, angular_deflection: float = ANGULAR_DEFLECTION) -> None:
+    """Write the parts as triangles with names, colours and millimetres, 3MF core specification."""
     from build123d import Mesher
 
     mesher = Mesher()
     for part in parts:
         mesher.add_shape(
-            _without_facets(part.solid), RELATIVE_DEFLECTION, ANGULAR_DEFLECTION, part_number=part.label
+            _without_facets(part.solid), RELATIVE_DEFLECTION, angular_deflection, part_number=part.label
         )
     mesher.write(str(path))
 
 
-def _write_stl(part: Part, path: Path) -> None:
-    """A binary STL with merged vertices, without flat facets."""
+def write_stl(
+    part: Part, path: Path, deflection_mm: float | None = None, angular_deflection: float = ANGULAR_DEFLECTION
+) -> None:
+    """Write a binary STL with merged vertices, without flat facets.
+
+    deflection_mm : largest distance of a facet from the true surface, if other than RELATIVE_DEFLECTION says.
+    """
     import trimesh
 
     solid = _without_facets(part.solid)
-    points, triangles = solid.tessellate(RELATIVE_DEFLECTION * _longest_side(part), ANGULAR_DEFLECTION)
+    deflection = RELATIVE_DEFLECTION * _longest_side(part) if deflection_mm is None else deflection_mm
+    points, triangles = solid.tessellate(deflection, angular_deflection)
     surface = trimesh.Trimesh(np.array([tuple(p) for p in points]), np.array(triangles), process=True)
     surface.update_faces(surface.nondegenerate_faces(height=1e-9))
     if not surface.is_volume:

@@ -53,18 +53,23 @@ def _plate_corners(dot_shape: DotShape, segment: Segment) -> tuple[Floats, Float
     return points.min(axis=0) - PLATE_MARGIN_MM, points.max(axis=0) + PLATE_MARGIN_MM
 
 
+def cap_solid(radius_mm: float, height_mm: float, foot_mm: float) -> Any:
+    """One round dot as a build123d Solid: its tip at the origin, its base at z = height_mm."""
+    from build123d import Pos
+
+    equator = min(radius_mm, height_mm)
+    lower = upright_box(2 * radius_mm, 2 * radius_mm, -radius_mm, equator)
+    cap = ((Pos(0, 0, radius_mm) * ball(radius_mm)) & lower).solid()
+    return cap.fuse(upright_cylinder(radius_mm, equator, height_mm)).solid() if foot_mm > 0.0 else cap
+
+
 def _bump(dot_shape: DotShape, center: Floats, low_y: float, high_y: float) -> Any:
     """One cap on its foot, or one ridge over the whole plate, in the dot frame."""
     from build123d import Pos
 
-    radius, face = dot_shape.radius_mm, dot_shape.height_mm
-    equator = min(radius, face)
     if dot_shape.kind == "ridge":
         return _ridge(dot_shape, low_y, high_y)
-    lower = upright_box(2 * radius, 2 * radius, -radius, equator)
-    cap = ((Pos(0, 0, radius) * ball(radius)) & lower).solid()
-    if dot_shape.foot_mm > 0.0:
-        cap = cap.fuse(upright_cylinder(radius, equator, face)).solid()
+    cap = cap_solid(dot_shape.radius_mm, dot_shape.height_mm, dot_shape.foot_mm)
     return Pos(center[0], center[1], 0) * cap
 
 

@@ -124,7 +124,7 @@ def test_an_error_leaves_the_earlier_folder(written, tmp_path, monkeypatch):
     def fail(*_):
         raise OSError("disk full")
 
-    monkeypatch.setattr("export.cad._write_stl", fail)
+    monkeypatch.setattr("export.cad.write_stl", fail)
     with pytest.raises(OSError, match="disk full"):
         write_cad(parts, old)
     assert [path.name for path in tmp_path.iterdir()] == ["cad"]

@@ -1,0 +1,61 @@
+"""softdot plate: what it prints and how it exits."""
+
+import sys
+from argparse import Namespace
+from pathlib import Path
+from typing import Any
+
+from geometry.braille import QUANTITIES
+from geometry.errors import InputError
+from softdot.numbers import json_text
+from softdot.plate.request import PlateRequest
+from softdot.run_command import only_the_summary_on_stdout
+
+GOOD = 0
+
+
+def command(chosen: Namespace) -> int:
+    """Write the plate that is asked for into chosen.output. InputError."""
+    from softdot.plate.make import make_plate
+    from softdot.progress import progress_on_terminal
+
+    request = request_of(chosen)
+    with only_the_summary_on_stdout(), progress_on_terminal() as progress:
+        summary = make_plate(request, Path(chosen.output), progress)
+    if chosen.json:
+        sys.stdout.write(json_text(summary))
+    elif sys.stdout.isatty():
+        print(short_text(summary, chosen.output))
+    return GOOD
+
+
+def request_of(chosen: Namespace) -> PlateRequest:
+    """The request of the command line. InputError for a list of heights that is none."""
+    given = {name: value for name in QUANTITIES if (value := getattr(chosen, name)) is not None}
+    return PlateRequest(
+        standard=chosen.standard,
+        kind=chosen.kind,
+        text=chosen.text,
+        given=given,
+        table=chosen.table,
+        width_cells=chosen.width_cells,
+        heights_mm=None if chosen.heights_mm is None else _heights(chosen.heights_mm),
+        thickness_mm=chosen.thickness_mm,
+        margin_mm=chosen.margin_mm,
+        thread=chosen.thread,
+    )
+
+
+def short_text(summary: dict[str, Any], output: str) -> str:
+    """Cells, size, advice and where to look, in a few lines."""
+    size = " x ".join(f"{value:.4g}" for value in summary["size_mm"])
+    advice = [f"{answer['profile']}: {answer['advice']}" for answer in summary["printability"]]
+    warnings = [f"warning: {warning}" for warning in summary["warnings"]]
+    return "\n".join([*summary.get("cells", []), f"{size} mm", *advice, *warnings, f"{output}/plate.stl"])
+
+
+def _heights(text: str) -> tuple[float, ...]:
+    try:
+        return tuple(float(value) for value in text.split(","))
+    except ValueError:
+        raise InputError(f"--heights-mm = '{text}': must be numbers in mm separated by commas") from None
