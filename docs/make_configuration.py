@@ -1,8 +1,8 @@
 """Make the tables of the documents from the configuration schema and from the data tables of the program.
 
 Run ``python docs/make_configuration.py`` at the top of the repository after a key, a material or a Braille
-standard has changed. It writes docs/configuration.md and the marked blocks of docs/geometry.md and
-docs/mechanisms.md; tests/softdot/test_docs.py fails while they are out of step.
+standard has changed. It writes docs/configuration.md and the marked blocks of docs/geometry.md,
+docs/kit_parts.md and docs/mechanisms.md; tests/softdot/test_docs.py fails while they are out of step.
 """
 
 import json
@@ -16,6 +16,8 @@ DOCS = Path(__file__).resolve().parent
 sys.path.insert(0, str(DOCS.parent))  # the rooms of this repository, whatever is installed
 
 from geometry.braille import QUANTITIES, Quantity, standard, standard_names  # noqa: E402
+from geometry.fabrication.parameters import Fabrication  # noqa: E402
+from geometry.fabrication.recipes import castable_materials, recipe_for  # noqa: E402
 from softdot.schema import config_schema  # noqa: E402
 from solve.materials.library import library_tables  # noqa: E402
 from solve.mechanisms import MECHANISMS  # noqa: E402
@@ -36,6 +38,8 @@ TABLES = {
     "`[readout]`": "Readout",
     "`[mesh]`": "MeshOptions",
     "`[[mechanisms]]`": "Mechanism",
+    "`[fabrication]`": "Fabrication",
+    "`[fabrication.casting.NAME]`": "CastingNumbers",
     "`[materials.NAME]`, model `neo-hookean`": "NeoHookean",
     "`[materials.NAME]`, model `linear`": "Linear",
     "`[materials.NAME]`, model `mooney-rivlin`": "MooneyRivlin",
@@ -58,6 +62,8 @@ HINTS = {
     "Dot.tilt_deg": "list of 2: number above -90 and below 90, without overlap at rest",
     "Dot.cell": "one character, U+2800 to U+28FF, with `cell_dot` raised",
     "Press.indentation_mm": "number above 0 and below the height of the stack",
+    "Fabrication.routes": "a table: `effector`, `medium1` and `medium2`, each `auto`, `cast` or `sheet`",
+    "Fabrication.casting": "a table for each material",
     "Mechanism.name": "a name of the [table of mechanisms](mechanisms.md#table)",
     "Mechanism.component": "a component of the same table",
 }
@@ -67,6 +73,9 @@ UNITS = {
     "_N_per_mm3": "N/mm³",
     "_pC_per_N": "pC/N",
     "_kg_m3": "kg/m³",
+    "_g_cm3": "g/cm³",
+    "_percent": "%",
+    "_min": "min",
     "_MPa": "MPa",
     "_MOhm": "MΩ",
     "_deg": "degree",
@@ -76,6 +85,8 @@ UNITS = {
     "_Hz": "Hz",
     "_N": "N",
     "_V": "V",
+    "_g": "g",
+    "_h": "h",
     "_s": "s",
 }
 """Ending of a key -> its unit; the first that fits counts."""
@@ -165,7 +176,7 @@ def _example(title: str, key: str, value: Json, examples: Json) -> str:
     if key in examples:
         return f"`{key} = {toml(examples[key])}`"
     parent = title.strip("[]`") + "." if title.startswith("`") else ""
-    head = f"[{parent}{key}{'.my-rubber' if key == 'materials' else ''}]"
+    head = f"[{parent}{key}{'.my-rubber' if key in ('materials', 'casting') else ''}]"
     return f"`[{head}]`" if value.get("type") == "array" else f"`{head}`"
 
 
@@ -268,8 +279,23 @@ def _read_toml(name: str) -> Json:
     return tomllib.loads((DOCS / name).read_text("utf-8"))
 
 
+def casting_table() -> str:
+    """What can be cast, and from what mix."""
+    none, rows = Fabrication(), []
+    for name in castable_materials(none):
+        recipe = recipe_for(name, none)
+        assert recipe is not None
+        numbers = (100 * recipe.shrinkage, recipe.density_g_cm3, recipe.pot_life_min, recipe.cure_time_h)
+        mix = f"{recipe.parts[0]:g} : {recipe.parts[1]:g} by {recipe.ratio_by}"
+        poured = f"`{recipe.name}`" if recipe.name != name else "itself"
+        rows.append([f"`{name}`", poured, *(f"{number:g}" for number in numbers), mix, recipe.note or recipe.source])
+    heads = ["material", "poured", "shrinkage %", "g/cm³", "pot life min", "cure h", "A : B", "source or note"]
+    return _table(heads, rows)
+
+
 BLOCKS: dict[str, tuple[str, Callable[[], str]]] = {
     "geometry.md": ("Braille table", braille_table),
+    "kit_parts.md": ("casting table", casting_table),
     "mechanisms.md": ("mechanism table", mechanism_table),
 }
 """Document -> its generated block."""

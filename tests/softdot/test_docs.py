@@ -10,6 +10,7 @@ import pytest
 from pydantic import TypeAdapter
 
 import docs.make_configuration as maker
+import geometry.fabrication.parameters
 import geometry.parameters
 import mesh.parameters
 import solve.materials.parameters
@@ -23,12 +24,13 @@ from tests.softdot.stand_ins import result_of
 ROOT = Path(__file__).parents[2]
 DOCUMENTS = sorted([*(ROOT / "docs").glob("*.md"), ROOT / "README.md", ROOT / "CHANGELOG.md"])
 HOMES = (
-    geometry.parameters, mesh.parameters, solve.parameters, solve.mechanisms, solve.materials.parameters,
+    geometry.parameters, geometry.fabrication.parameters, mesh.parameters, solve.parameters, solve.mechanisms,
+    solve.materials.parameters,
 )  # fmt: skip
 EXAMPLES = tomllib.loads((ROOT / "docs" / "configuration_examples.toml").read_text("utf-8"))
 
 
-@pytest.mark.parametrize("file", ["configuration.md", "geometry.md", "mechanisms.md"])
+@pytest.mark.parametrize("file", ["configuration.md", "geometry.md", "kit_parts.md", "mechanisms.md"])
 def test_generated_text_is_in_step(file):
     assert (ROOT / "docs" / file).read_text("utf-8") == maker.pages()[file]
 

@@ -1,0 +1,139 @@
+"""Pictures of the build sheet: the kit taken apart and cut open, every mould, and each step of the assembly."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from export.build_sheet.contents import Contents, spoken
+from export.build_sheet.scene import Thing, draw_things, sheet_thing, solid_thing
+from export.cut_files.write import draw_cut_file
+from export.printability import draw_findings
+from geometry.colours import PART_COLOURS
+from geometry.fabrication.jig import stacked_tops
+from geometry.flat.pattern import Outline
+from geometry.layer_solids import layer_solids
+
+APART = 1.1
+"""Between things that are drawn apart, in widths of the segment."""
+MOULD_APART = 0.6
+"""In widths of the mould."""
+METAL_COLOUR, METAL_MM = "#e3a93c", 0.004
+
+Group = list[Thing]
+
+
+def draw_all(contents: Contents, cut: Path, folder: Path) -> None:
+    """Write every picture into a folder; cut : folder of the DXF files. InputError without OpenGL."""
+    drawer = Drawer(contents, folder)
+    drawer.whole()
+    drawer.moulds()
+    drawer.jig()
+    drawer.assembly()
+    for pattern in contents.flat.patterns:
+        draw_cut_file(cut / f"{pattern.name}.dxf", folder / f"cut-{pattern.name}.png")
+    for part, answer in zip(contents.solid.parts, contents.printability, strict=True):
+        if answer.findings:
+            draw_findings(part.solid, answer, folder / f"printability-{part.label}.png")
+
+
+class Drawer:
+    """Things of a kit where they belong, made once; those that move together form a group."""
+
+    def __init__(self, contents: Contents, folder: Path) -> None:
+        self.contents, self.folder = contents, folder
+        segment = contents.segment
+        solids = layer_solids(segment, segment.film.thickness_um * 1e-3)
+        self.single = {
+            layer.name: [solid_thing(solids[layer.name], PART_COLOURS[layer.name], spoken(layer.name))]
+            for layer in contents.layers
+        }
+        self.single["film"] = self._film()
+        self.places = contents.centers
+        self.layers = {name: self._everywhere(group) for name, group in self.single.items()}
+        self.printed = {part.label: solid_thing(part.solid, part.colour, part.label) for part in contents.solid.parts}
+        self.space = APART * max(segment.length_mm, segment.width_mm)
+
+    def whole(self) -> None:
+        """All that stays in the finished segment: pulled apart upwards, and with its front half cut away."""
+        stack = self._stack()
+        self._draw(_apart(stack, self.space), "What you build, taken apart", "exploded")
+        opened = [[thing.cut_open(self.places[0][1]) for thing in group] for group in stack]
+        self._draw(opened, "Cut through the segment", "section")
+
+    def moulds(self) -> None:
+        """One picture for each cast component."""
+        for pour in self.contents.solid.pours:
+            own = [[thing] for label, thing in self.printed.items() if label.startswith(f"mould-{pour.component}-")]
+            space = MOULD_APART * max(thing.surface.length for group in own for thing in group)
+            floor, *bars = own[:-1]
+            opened = _apart([floor, [thing for group in bars for thing in group], own[-1]], space)
+            self._draw(opened, f"Mould of {spoken(pour.component)}, opened", f"mould-{pour.component}")
+
+    def jig(self) -> None:
+        """What is stacked in the corner of the jig, each thing over the one below."""
+        tops = stacked_tops(self.contents.segment, self.contents.fabrication)
+        base = next(layer.bottom_mm for layer in self.contents.layers if layer.name == next(iter(tops)))
+        stack = [_lifted(self.single[name], -base) for name in tops]
+        locator = [[thing] for label, thing in self.printed.items() if label == "jig-locator"]
+        stack[-1:-1] = locator
+        raised = [_lifted(group, (number + 1) * self.space) for number, group in enumerate(stack)]
+        self._draw([[self.printed["jig"]], *raised], "Stack in the corner of the jig", "jig")
+
+    def assembly(self) -> None:
+        """One picture for each thing that is added; the newest hovers over its place."""
+        order = self._stack()
+        for number in range(1, len(order)):
+            new = order[number]
+            name = new[0].name
+            shown = [order[0], *map(_unnamed, order[1:number]), _lifted(new, self.space)]
+            self._draw(shown, f"{name[:1].upper()}{name[1:]} goes on", f"assembly-{number}")
+
+    def _draw(self, groups: Sequence[Group], title: str, name: str) -> None:
+        draw_things([thing for group in groups for thing in group], title, self.folder / f"{name}.png")
+
+    def _stack(self) -> list[Group]:
+        """Frame and layers from the base up, in the order in which they are put together."""
+        parts = [[self.printed[label]] for label in ("base", "frame-body") if label in self.printed]
+        ring = [[self.printed["frame-ring"]]] if "frame-ring" in self.printed else []
+        upper = [self.layers[layer.name] for layer in self.contents.layers if layer.name in ("medium1", "effector")]
+        return [*parts, self.layers["medium2"], self.layers["film"], *ring, *upper]
+
+    def _everywhere(self, group: Group) -> Group:
+        """A copy at each place of the array, the first one with its name."""
+        first, *others = self.places
+        copies = [thing.moved(*place) for place in others for thing in _unnamed(group)]
+        return [thing.moved(*first) for thing in group] + copies
+
+    def _film(self) -> Group:
+        """The film and the metal on its top, which shows which way it lies."""
+        pattern, frame = self.contents.flat.patterns[0], self.contents.frame
+        outline = pattern.cuts[-1]
+        assert isinstance(outline, Outline)
+        thickness = frame.film_top - frame.film_bottom
+        metal = [one for one in pattern.marks if isinstance(one, Outline) and one.layer == "ELECTRODE-TOP"]
+        return [
+            sheet_thing(outline, frame.film_bottom, thickness, PART_COLOURS["film"], "film with its tab"),
+            *(sheet_thing(one, frame.film_top, METAL_MM, METAL_COLOUR) for one in metal),
+        ]
+
+
+def _lifted(group: Group, by_mm: float) -> Group:
+    return [thing.lifted(by_mm) for thing in group]
+
+
+def _unnamed(group: Group) -> Group:
+    return [replace(thing, name="") for thing in group]
+
+
+def _apart(groups: Sequence[Group], space: float) -> list[Group]:
+    """Each lifted until it is clear of what is below."""
+    found: list[Group] = []
+    top = -float("inf")
+    for group in groups:
+        if not group:
+            continue
+        low, high = (pick(thing.surface.bounds[k] for thing in group) for k, pick in ((4, min), (5, max)))
+        lift = max(top + space - low, 0.0)
+        found.append(_lifted(group, lift))
+        top = high + lift
+    return found

@@ -1,0 +1,1 @@
+"""Cut files of flat patterns: DXF and SVG in millimetres, with named layers."""

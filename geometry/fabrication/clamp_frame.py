@@ -1,0 +1,106 @@
+"""The clamp frame of held sides and the open base of free ones. Lengths in millimetres, in the segment's frame."""
+
+from typing import Any
+
+from geometry.fabrication.frame_checks import check_frame
+from geometry.fabrication.frame_layout import TAB_CLEARANCE_MM, TIE_MM, FrameLayout, Run, frame_layout
+from geometry.fabrication.parameters import Fabrication
+from geometry.fabrication.part import PROCESSES, FabricationPart, fabrication_part
+from geometry.fabrication.shapes import box, joined, post, without
+from geometry.parameters import Segment
+from geometry.printers import printer_profile
+
+
+def frame_parts(segment: Segment, fabrication: Fabrication) -> tuple[FabricationPart, ...]:
+    """Body and ring of the clamp frame, or the open base where no sides are held. InputError for impossible ones.
+
+    The film lies on the body, whose top is the top of medium 2; the ring closes over its flange.
+    """
+    layout = frame_layout(segment, fabrication)
+    check_frame(segment, layout, fabrication)
+    fine = PROCESSES[fabrication.printer]
+    if layout.body is None:
+        solid = layout.frame.placed(_base(layout, fabrication))
+        purpose = "Carries the free segment, which is glued inside the groove; the tab is tied down on the shelf."
+        return (fabrication_part("base", solid, "frame", purpose, fine),)
+    body = layout.frame.placed(_body(layout, layout.body, fabrication))
+    purpose = "Carries the segment; the film's flange lies on its top and its tab is tied down on the shelf."
+    parts = [fabrication_part("frame-body", body, "frame", purpose, fine)]
+    if layout.ring:
+        ring = layout.frame.placed(_ring(layout, fabrication))
+        purpose = "Is screwed onto the body, clamps the film and holds the sides of the layers above it with glue."
+        parts.append(fabrication_part("frame-ring", ring, "frame", purpose, fine))
+    return tuple(parts)
+
+
+def _body(layout: FrameLayout, opening: Run, fabrication: Fabrication) -> Any:
+    top = layout.film_bottom
+    block = _block(layout, (-fabrication.floor_mm, top))
+    shelf = _shelf(layout, (-fabrication.floor_mm, top - fabrication.tab_slot_mm), fabrication)
+    cuts = [*_openings(layout, opening, 1.0), *_screw_holes(layout, fabrication), *_tie_slots(layout, fabrication)]
+    return without(joined(block, [shelf]), [*cuts, *_tab_channels(layout, fabrication)])
+
+
+def _ring(layout: FrameLayout, fabrication: Fabrication) -> Any:
+    top = layout.ring[-1].top
+    block = _block(layout, (layout.film_top, top))
+    cuts = [one for run in layout.ring for one in _openings(layout, run, 1.0 if run.top == top else 0.0)]
+    return without(block, [*cuts, *_screw_holes(layout, fabrication)])
+
+
+def _base(layout: FrameLayout, fabrication: Fabrication) -> Any:
+    """A plate with a groove around each footprint, which takes up the glue that is pressed out."""
+    groove = printer_profile(fabrication.printer)["groove_mm"]
+    tall = (-fabrication.floor_mm, 0.0)
+    plate = joined(_block(layout, tall), [_shelf(layout, tall, fabrication)])
+    rings = []
+    for x, y in layout.centers:
+        half_x, half_y = layout.frame.along / 2, layout.frame.across / 2
+        outer = _around(x, y, half_x + groove, half_y + groove, (-groove, 1.0))
+        rings.append(without(outer, [_around(x, y, half_x, half_y, (-2 * groove, 2.0))]))
+    return without(plate, [*rings, *_screw_holes(layout, fabrication), *_tie_slots(layout, fabrication)])
+
+
+def _block(layout: FrameLayout, tall: tuple[float, float]) -> Any:
+    return box((-layout.half_along, layout.half_along), (-layout.half_across, layout.half_across), tall)
+
+
+def _shelf(layout: FrameLayout, tall: tuple[float, float], fabrication: Fabrication) -> Any:
+    """Beyond the frame, a little into it so that both join."""
+    far = layout.half_along + fabrication.shelf_mm
+    return box((layout.half_along - 0.1, far), (-layout.half_across, layout.half_across), tall)
+
+
+def _around(x: float, y: float, half_x: float, half_y: float, tall: tuple[float, float]) -> Any:
+    return box((x - half_x, x + half_x), (y - half_y, y + half_y), tall)
+
+
+def _openings(layout: FrameLayout, run: Run, beyond: float) -> list[Any]:
+    """One for each segment; cut beyond an open top, so that no skin is left there."""
+    half_x, half_y = layout.frame.along / 2 + run.gap, layout.frame.across / 2 + run.gap
+    return [_around(x, y, half_x, half_y, (run.bottom, run.top + beyond)) for x, y in layout.centers]
+
+
+def _screw_holes(layout: FrameLayout, fabrication: Fabrication) -> list[Any]:
+    top = layout.ring[-1].top if layout.ring else layout.film_top
+    tall = (-fabrication.floor_mm - 1.0, top + 1.0)
+    return [post(0.0, side * layout.screws_across, tall, fabrication.screw_diameter_mm) for side in (-1, 1)]
+
+
+def _tab_channels(layout: FrameLayout, fabrication: Fabrication) -> list[Any]:
+    """One for each row of segments, from its middle to the shelf."""
+    half = fabrication.tab_width_mm / 2 + TAB_CLEARANCE_MM
+    tall = (layout.film_bottom - fabrication.tab_slot_mm, layout.film_bottom + 1.0)
+    near = min(x for x, _ in layout.centers)
+    rows = sorted({y for _, y in layout.centers})
+    return [box((near, layout.half_along + 1.0), (y - half, y + half), tall) for y in rows]
+
+
+def _tie_slots(layout: FrameLayout, fabrication: Fabrication) -> list[Any]:
+    """Two slots beside the tabs, half-way along the shelf."""
+    middle, (long, wide) = layout.half_along + fabrication.shelf_mm / 2, TIE_MM
+    rows = [y for _, y in layout.centers]
+    inner = max(rows) + fabrication.tab_width_mm / 2 + 2 * TAB_CLEARANCE_MM
+    tall = (-fabrication.floor_mm - 1.0, layout.film_top + 1.0)
+    spans = ((inner, inner + wide), (-inner - wide, -inner))
+    return [box((middle - long / 2, middle + long / 2), span, tall) for span in spans]

@@ -1,0 +1,117 @@
+"""The assembly jig: a corner in which the layers are stacked, and a locator for a narrow effector. In mm."""
+
+from typing import Any
+
+import numpy as np
+
+from geometry.bodies import Box, bodies
+from geometry.effector_checks import covers_footprint
+from geometry.fabrication.exit_frame import ExitFrame, exit_frame
+from geometry.fabrication.frame_layout import held_names
+from geometry.fabrication.parameters import Fabrication
+from geometry.fabrication.part import PROCESSES, FabricationPart, fabrication_part
+from geometry.fabrication.shapes import box, joined, pin, post, without
+from geometry.parameters import Segment
+from geometry.stack import layers
+
+RELIEF_MM = 1.0
+"""Diameter of the hole in the corner: sharp edges of the layers find room there."""
+STEP_MM = 3.0
+"""Width of a step of the gauge."""
+REACH_MM = 4.0
+"""Floor beyond the footprint, for tweezers; also the thickness of what carries the locator's pins."""
+LOCATOR_MM = 1.2
+
+
+def jig_parts(segment: Segment, fabrication: Fabrication) -> tuple[FabricationPart, ...]:
+    """The jig, and the locator where the effector is narrower than the footprint.
+
+    They lie in the frame of the segment but for the height: the floor of the jig is at z = 0.
+    """
+    frame, tops = exit_frame(segment, fabrication), stacked_tops(segment, fabrication)
+    narrow = not covers_footprint(segment)
+    stops = list(tops.values())[-2 if narrow else -1]
+    jig = joined(_corner(frame, stops, fabrication), _steps(tops, frame, fabrication))
+    if narrow:
+        tall = (-fabrication.floor_mm / 2, stops + LOCATOR_MM)
+        jig = joined(jig, [pin(x, y, tall, fabrication.pin_diameter_mm) for x, y in _pins(frame, fabrication)])
+    heights = ", ".join(f"{top:.3g} mm ({name})" for name, top in tops.items() if name != "film")
+    purpose = (
+        f"{', '.join(tops)} are stacked in this order against its corner stop; the steps beside it have the height "
+        f"of the stack after each layer: {heights}."
+    )
+    fine = PROCESSES[fabrication.printer]
+    parts = [fabrication_part("jig", frame.placed(jig), "jig", purpose, fine)]
+    if narrow:
+        plate = frame.placed(_locator(segment, frame, stops, fabrication))
+        purpose = "Lies on the jig's stops and pins and centres the effector on medium 1."
+        parts.append(fabrication_part("jig-locator", plate, "jig", purpose, fine))
+    return tuple(parts)
+
+
+def stacked_tops(segment: Segment, fabrication: Fabrication) -> dict[str, float]:
+    """Name -> height over the floor of the jig, in mm, of the layers that are stacked there, in order.
+
+    A film with a flange does not go into the corner: then the jig takes what lies above the film, and the frame
+    takes the rest.
+    """
+    flanged = "film" in held_names(segment) and fabrication.film_flange_mm > 0.0
+    stack = [layer for layer in layers(segment) if not flanged or layer.name in ("medium1", "effector")]
+    return {layer.name: layer.top_mm - stack[0].bottom_mm for layer in stack}
+
+
+def _corner(frame: ExitFrame, stops: float, fabrication: Fabrication) -> Any:
+    """Floor and two walls: one away from the cable, one beside it."""
+    half_x, half_y, thick = frame.along / 2, frame.across / 2, _thick(fabrication)
+    whole_x, whole_y = (-half_x - thick, half_x + REACH_MM), (-half_y - thick, half_y + REACH_MM)
+    floor = box(whole_x, whole_y, (-fabrication.floor_mm, 0.0))
+    low = -fabrication.floor_mm / 2
+    behind = box((-half_x - thick, -half_x), whole_y, (low, stops))
+    beside = box(whole_x, (-half_y - thick, -half_y), (low, stops))
+    return without(joined(floor, [behind, beside]), [post(-half_x, -half_y, (0.0, stops + 1.0), RELIEF_MM)])
+
+
+def _steps(tops: dict[str, float], frame: ExitFrame, fabrication: Fabrication) -> list[Any]:
+    """A staircase along the outer side of the wall beside the cable; the film is too thin for a step of its own."""
+    start = -frame.along / 2 - _thick(fabrication)
+    outer = -frame.across / 2 - _thick(fabrication)
+    return [
+        box(
+            (start + number * STEP_MM, start + (number + 1) * STEP_MM),
+            (outer - STEP_MM, outer),
+            (-fabrication.floor_mm, top),
+        )
+        for number, top in enumerate(top for name, top in tops.items() if name != "film")
+    ]
+
+
+def _thick(fabrication: Fabrication) -> float:
+    """Of the stops: they carry the pins of the locator."""
+    return max(2 * fabrication.wall_mm, fabrication.pin_diameter_mm + 2 * fabrication.wall_mm)
+
+
+def _pins(frame: ExitFrame, fabrication: Fabrication) -> list[tuple[float, float]]:
+    """On the stop behind, at its ends; not symmetric, so that the locator fits one way only."""
+    x = -frame.along / 2 - _thick(fabrication) / 2
+    return [(x, -frame.across / 2 - _thick(fabrication) / 2), (x, frame.across / 2 + REACH_MM / 2)]
+
+
+def _locator(segment: Segment, frame: ExitFrame, stops: float, fabrication: Fabrication) -> Any:
+    thick, tall = _thick(fabrication), (stops, stops + LOCATOR_MM)
+    low_x, low_y = -frame.along / 2 - thick, -frame.across / 2 - thick
+    plate = box((low_x, frame.along / 2 + REACH_MM), (low_y, frame.across / 2 + REACH_MM), tall)
+    through = (tall[0] - 1.0, tall[1] + 1.0)
+    hole = fabrication.pin_diameter_mm + 2 * fabrication.pin_clearance_mm
+    holes = [post(x, y, through, hole) for x, y in _pins(frame, fabrication)]
+    return without(plate, [*holes, _effector_hole(segment, frame, through, fabrication)])
+
+
+def _effector_hole(segment: Segment, frame: ExitFrame, through: tuple[float, float], fabrication: Fabrication) -> Any:
+    """The outline of the effector's foot, wider by the glue gap on each side."""
+    body, gap = bodies(segment)[-1], fabrication.glue_gap_mm
+    if isinstance(body, Box):
+        halves = (body.half_x + gap, body.half_y + gap)
+        half_x, half_y = halves if frame.turn_deg in (0.0, 180.0) else halves[::-1]
+        return box((-half_x, half_x), (-half_y, half_y), through)
+    radius = float(body.reach(np.array([1.0, 0.0, 0.0])))
+    return post(0.0, 0.0, through, 2 * (radius + gap))

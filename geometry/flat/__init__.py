@@ -1,0 +1,1 @@
+"""Flat patterns: what is cut from film, adhesive and sheet. Lengths in millimetres, seen from the dot's side."""

@@ -1,0 +1,189 @@
+"""A flat pattern: closed lines on named layers, with the dimensions that a bench needs."""
+
+from dataclasses import dataclass, replace
+from math import cos, hypot, pi, radians, sin
+from typing import Literal
+
+LayerName = Literal["CUT", "ELECTRODE-TOP", "ELECTRODE-BOTTOM", "ENGRAVE", "DIMENSION"]
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Outline:
+    """A closed polygon, counter-clockwise around material, on a layer. hole : material lies outside it."""
+
+    layer: LayerName
+    points: tuple[Point, ...]
+    hole: bool = False
+
+    @property
+    def length_mm(self) -> float:
+        """Of the closed line."""
+        after = (*self.points[1:], self.points[0])
+        return sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in zip(self.points, after, strict=True))
+
+    @property
+    def area_mm2(self) -> float:
+        """By the shoelace formula."""
+        after = (*self.points[1:], self.points[0])
+        return abs(sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(self.points, after, strict=True))) / 2
+
+
+@dataclass(frozen=True)
+class Circle:
+    """A circle on a layer. hole : material lies outside it."""
+
+    layer: LayerName
+    center: Point
+    radius: float
+    hole: bool = True
+
+    @property
+    def length_mm(self) -> float:
+        """Of the closed line."""
+        return 2 * pi * self.radius
+
+    @property
+    def area_mm2(self) -> float:
+        """Inside the line."""
+        return pi * self.radius**2
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """An open line, to be engraved."""
+
+    layer: LayerName
+    points: tuple[Point, ...]
+
+
+@dataclass(frozen=True)
+class Label:
+    """Words on the pattern, centred at a point; height in mm; upright: read from the right."""
+
+    layer: LayerName
+    place: Point
+    text: str
+    height: float = 1.0
+    upright: bool = False
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """A size of the finished part: between two points, along x, along y or a diameter through them.
+
+    shift : distance of the dimension line, upwards for x and to the right for y; negative for the other side.
+    """
+
+    start: Point
+    end: Point
+    along: Literal["x", "y"]
+    shift: float
+
+    @property
+    def length_mm(self) -> float:
+        """The size."""
+        axis = 0 if self.along == "x" else 1
+        return abs(self.end[axis] - self.start[axis])
+
+
+@dataclass(frozen=True)
+class FlatPattern:
+    """One thing to cut.
+
+    name : of the files; title, material, instruction : for people. thickness_mm : of the sheet.
+    count : how many for the whole array.
+    cuts : closed lines on CUT at their finished size; marks : everything else.
+    kerf_mm : width of the cut. Written cut lines lie half of it outside of the part.
+    """
+
+    name: str
+    title: str
+    material: str
+    thickness_mm: float
+    count: int
+    instruction: str
+    cuts: tuple[Outline | Circle, ...]
+    marks: tuple[Outline | Stroke | Label, ...] = ()
+    dimensions: tuple[Dimension, ...] = ()
+    kerf_mm: float = 0.0
+
+    @property
+    def on_panel(self) -> bool:
+        """Whether it is cut within a panel with registration holes."""
+        return sum(isinstance(cut, Circle) and cut.hole for cut in self.cuts) > 1
+
+    @property
+    def points(self) -> list[Point]:
+        """Points that span the pattern."""
+        found: list[Point] = []
+        for one in (*self.cuts, *self.marks):
+            if isinstance(one, Circle):
+                found += [(one.center[0] + s * one.radius, one.center[1] + s * one.radius) for s in (-1.0, 1.0)]
+            else:
+                found += [one.place] if isinstance(one, Label) else one.points
+        return found
+
+    @property
+    def size_mm(self) -> Point:
+        """Of the sheet that it needs, x and y, cuts included."""
+        xs, ys = zip(*self.points, strict=True)
+        return (max(xs) - min(xs) + self.kerf_mm, max(ys) - min(ys) + self.kerf_mm)
+
+
+def rectangle(layer: LayerName, x: tuple[float, float], y: tuple[float, float], hole: bool = False) -> Outline:
+    """A rectangle from its intervals."""
+    return Outline(layer, ((x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1])), hole)
+
+
+def turned(pattern: FlatPattern, angle_deg: float) -> FlatPattern:
+    """The pattern turned about the origin by a multiple of 90 degrees."""
+    quarter = round(angle_deg / 90.0) % 4
+    return replace(
+        pattern,
+        cuts=tuple(_turned_cut(cut, quarter) for cut in pattern.cuts),
+        marks=tuple(_turned_mark(mark, quarter) for mark in pattern.marks),
+        dimensions=tuple(_turned_dimension(one, quarter) for one in pattern.dimensions),
+    )
+
+
+def arrow(layer: LayerName, middle: Point, angle_deg: float, length: float) -> Stroke:
+    """A double-headed arrow: a direction without a sense."""
+    c, s = cos(radians(angle_deg)), sin(radians(angle_deg))
+
+    def at(u: float, v: float) -> Point:
+        return (middle[0] + u * c - v * s, middle[1] + u * s + v * c)
+
+    half, head = length / 2, length / 8
+    left = (at(-half + head, head), at(-half, 0.0), at(-half + head, -head), at(-half, 0.0))
+    right = (at(half, 0.0), at(half - head, head), at(half, 0.0), at(half - head, -head))
+    return Stroke(layer, (*left, *right))
+
+
+def _turned_point(point: Point, quarter: int) -> Point:
+    x, y = point
+    return ((x, y), (-y, x), (-x, -y), (y, -x))[quarter]
+
+
+def _turned_cut(cut: Outline | Circle, quarter: int) -> Outline | Circle:
+    if isinstance(cut, Circle):
+        return replace(cut, center=_turned_point(cut.center, quarter))
+    return replace(cut, points=tuple(_turned_point(p, quarter) for p in cut.points))
+
+
+def _turned_mark(mark: Outline | Stroke | Label, quarter: int) -> Outline | Stroke | Label:
+    if isinstance(mark, Label):
+        return replace(mark, place=_turned_point(mark.place, quarter), upright=mark.upright ^ bool(quarter % 2))
+    return replace(mark, points=tuple(_turned_point(p, quarter) for p in mark.points))
+
+
+def _turned_dimension(one: Dimension, quarter: int) -> Dimension:
+    """The side on which its line lies turns too; from left to right, and upwards."""
+    along, shift = one.along, one.shift
+    if quarter % 2:
+        along = "y" if along == "x" else "x"
+    up = (0.0, shift) if one.along == "x" else (shift, 0.0)
+    moved = _turned_point(up, quarter)
+    ends = (_turned_point(one.start, quarter), _turned_point(one.end, quarter))
+    start, end = sorted(ends, key=lambda point: point[0 if along == "x" else 1])
+    return Dimension(start, end, along, moved[1] if along == "x" else moved[0])

@@ -1,0 +1,43 @@
+"""softdot kit: what it prints and how it exits."""
+
+import sys
+from argparse import Namespace
+from pathlib import Path
+from typing import Any
+
+from softdot.numbers import json_text
+from softdot.run_command import only_the_summary_on_stdout
+
+GOOD, NOT_CONVERGED = 0, 3
+ROWS = 5
+
+
+def command(chosen: Namespace) -> int:
+    """Write the kit of chosen.config into chosen.output; 0, or 3 when its press did not converge. InputError."""
+    from softdot.config import load_config
+    from softdot.kit.make import make_kit
+    from softdot.progress import progress_on_terminal
+
+    config = load_config(chosen.config)
+    with only_the_summary_on_stdout(), progress_on_terminal() as progress:
+        summary = make_kit(config, Path(chosen.output), progress)
+    if chosen.json:
+        sys.stdout.write(json_text(summary))
+    elif sys.stdout.isatty():
+        print(short_text(summary, chosen.output))
+    if summary["failure"] is None:
+        return GOOD
+    failure = " ".join(summary["failure"].split())
+    print(f"softdot: not converged, {failure}; the rest of the kit is in '{chosen.output}'", file=sys.stderr)
+    return NOT_CONVERGED
+
+
+def short_text(summary: dict[str, Any], output: str) -> str:
+    """What there is to make, what matters most, and where to look."""
+    lines = [f"{len(summary['parts'])} parts to print, {len(summary['flat_patterns'])} to cut"]
+    budget = summary["tolerance_budget"]
+    for row in budget["rows"][:ROWS] if budget else []:
+        change = f"{row['voltage_percent']:+.0f} % voltage, {row['force_percent']:+.0f} % force"
+        lines.append(f"{row['label']} ±{row['plus_minus']:.3g} {row['unit']}: {change}")
+    lines += [f"warning: {warning}" for warning in summary["warnings"]]
+    return "\n".join([*lines, f"{output}/kit.html"])

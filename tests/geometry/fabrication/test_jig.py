@@ -1,0 +1,69 @@
+"""The jig puts the layers above each other."""
+
+import pytest
+from build123d import Pos
+
+from geometry.fabrication.jig import jig_parts, stacked_tops
+from geometry.fabrication.parameters import Fabrication
+from geometry.fabrication.shapes import box, volume
+from geometry.layer_solids import layer_solids
+from geometry.parameters import Effector
+
+CYLINDER = Effector(shape="cylinder", diameter_mm=1.6, height_mm=0.7)
+
+
+def parts_of(segment, **keys):
+    return {part.label: part.solid for part in jig_parts(segment, Fabrication(**keys))}
+
+
+@pytest.mark.parametrize("side", ["+x", "-x", "+y", "-y"])
+def test_two_sides_of_every_layer_touch_the_stops_and_two_are_open(make_kit_segment, side):
+    segment = make_kit_segment(boundary="free", length_mm=3.0)
+    jig = parts_of(segment, cable_exit=side)["jig"]
+    for layer in layer_solids(segment, 0.028).values():
+        assert volume(jig.intersect(layer)) < 1e-9
+        ways = [(0.1, 0.0), (-0.1, 0.0), (0.0, 0.1), (0.0, -0.1)]
+        blocked = [way for way in ways if volume(jig.intersect(Pos(*way, 0) * layer)) > 1e-4]
+        assert len(blocked) == 2
+        assert blocked[0][0] * blocked[1][0] == 0.0  # one along x, one along y
+        tab = {"+x": (0.1, 0.0), "-x": (-0.1, 0.0), "+y": (0.0, 0.1), "-y": (0.0, -0.1)}[side]
+        assert tab not in blocked
+
+
+def test_the_steps_have_the_heights_of_the_stack(make_kit_segment):
+    segment = make_kit_segment(boundary="free")
+    tops = {
+        round(face.center().Z, 6) for face in parts_of(segment)["jig"].faces() if abs(face.normal_at().Z - 1.0) < 1e-9
+    }
+    assert {2.0, 2.528, 3.528} <= tops
+
+
+def test_a_film_with_a_flange_stays_out_of_the_jig(make_kit_segment):
+    assert stacked_tops(make_kit_segment(), Fabrication()) == pytest.approx({"medium1": 0.5, "effector": 1.5})
+    whole = stacked_tops(make_kit_segment(), Fabrication(film_flange_mm=0.0))
+    assert list(whole) == ["medium2", "film", "medium1", "effector"]
+
+
+def test_the_locator_centres_a_narrow_effector(make_kit_segment):
+    segment = make_kit_segment(effector=CYLINDER, boundary="free")
+    parts = parts_of(segment)
+    effector, locator = layer_solids(segment, 0.028)["effector"], parts["jig-locator"]
+    assert volume(parts["jig"].intersect(locator)) < 1e-9
+    assert locator.distance_to(effector) == pytest.approx(0.05)
+    assert pytest.approx(2.528) == locator.bounding_box().min.Z
+    moved = Pos(0.1, 0, 0) * effector
+    assert volume(locator.intersect(moved)) > 0.01
+
+
+def test_no_locator_for_a_layer(make_kit_segment):
+    assert set(parts_of(make_kit_segment())) == {"jig"}
+
+
+def test_the_locator_of_a_block_turns_with_the_cable(make_kit_segment):
+    block = Effector(shape="block", length_mm=2.0, width_mm=1.0, height_mm=0.7)
+    segment = make_kit_segment(effector=block, boundary="free")
+    for side in ("+x", "+y"):
+        locator = parts_of(segment, cable_exit=side)["jig-locator"]
+        hole = box((-1.05, 1.05), (-0.55, 0.55), (2.6, 3.6))
+        assert volume(locator.intersect(hole)) < 1e-9
+        assert locator.distance_to(box((-1.0, 1.0), (-0.5, 0.5), (2.6, 3.6))) == pytest.approx(0.05)

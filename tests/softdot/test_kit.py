@@ -1,0 +1,274 @@
+"""softdot kit: every file, one page that needs nothing else, refusals in one sentence."""
+
+import json
+import re
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+from softdot.cli import main
+from softdot.kit import make
+from softdot.kit.budget import Budget, Effect
+from softdot.kit.responses import Response, StoppedShortError
+from softdot.kit.tolerances import Tolerance
+
+FREE = """
+[segment]
+boundary = "free"
+[segment.medium1]
+thickness_mm = 0.5
+material = "dragon-skin-10"
+[segment.film]
+thickness_um = 28.0
+[segment.medium2]
+thickness_mm = 2.0
+material = "sponge"
+[fabrication]
+cavities = [1, 1]
+"""
+DOME = """
+[segment.effector]
+shape = "dome"
+diameter_mm = 2.0
+height_mm = 0.8
+material = "dragon-skin-10"
+[segment.medium1]
+thickness_mm = 0.5
+[segment.film]
+thickness_um = 28.0
+[segment.medium2]
+thickness_mm = 2.0
+"""
+COARSE = """
+[segment.effector]
+[segment.medium1]
+thickness_mm = 0.5
+[segment.film]
+thickness_um = 28.0
+[segment.medium2]
+thickness_mm = 2.0
+material = "vnr-soft"
+[fabrication]
+cavities = [1, 1]
+[press]
+indentation_mm = 0.1
+load_steps = 2
+[mesh]
+element_size_mm = 0.6
+contact_element_size_mm = 0.4
+mesher = "layered"
+"""
+NOMINAL, CHANGE, NOTHING = Response(0.5, 9.0), Response(0.05, 1.8), Response(0.0, 0.0)
+MADE_UP = Budget(
+    NOMINAL, NOTHING, CHANGE,
+    (Effect(Tolerance("height of the dot", 0.5, 0.1, "mm", "a book", "high"), CHANGE, NOTHING, "derivative"),),
+    (0.6, 0.2),
+)  # fmt: skip
+
+
+def white_pictures(contents, _cut, folder):
+    """A small white picture for every one that the page can ask for."""
+    from matplotlib.image import imsave
+
+    names = ["exploded", "section", "jig", *(f"assembly-{number}" for number in range(1, 7))]
+    names += [f"mould-{pour.component}" for pour in contents.solid.pours]
+    names += [f"cut-{pattern.name}" for pattern in contents.flat.patterns]
+    names += [f"printability-{part.label}" for part in contents.solid.parts]
+    for name in names:
+        imsave(folder / f"{name}.png", np.ones((2, 2, 3)))
+
+
+@pytest.fixture(scope="module")
+def kit(tmp_path_factory):
+    """The kit of a free segment without an effector, its pictures and its budget made up; what was printed."""
+    folder = tmp_path_factory.mktemp("kit")
+    (folder / "free.toml").write_text(FREE)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(make, "ensure_rendering", lambda: None)
+        patch.setattr(make, "draw_all", white_pictures)
+        patch.setattr(make, "budget_of", lambda *_: MADE_UP)
+        status = main(["kit", str(folder / "free.toml"), "-o", str(folder / "out"), "--json"])
+    assert status == 0
+    return folder / "out"
+
+
+@pytest.fixture(scope="module")
+def summary(kit):
+    return json.loads((kit / "kit.json").read_text("utf-8"))
+
+
+def test_everything_is_there(kit, summary):
+    assert {entry.name for entry in kit.iterdir()} == make.KIT.entries
+    assert summary["format"] == "softdot-kit/1"
+    assert {f"parts/{path.name}" for path in (kit / "parts").iterdir()} == {part["file"] for part in summary["parts"]}
+    files = {file for pattern in summary["flat_patterns"] for file in pattern["files"]}
+    assert {f"cut/{path.name}" for path in (kit / "cut").iterdir()} == files
+
+
+def test_stl_holds_the_volume_of_the_part(kit, summary):
+    for part in summary["parts"]:
+        surface = trimesh.load(kit / part["file"])
+        assert surface.is_volume
+        assert surface.volume == pytest.approx(part["volume_mm3"], rel=2e-3)
+        assert np.ptp(surface.bounds, axis=0) == pytest.approx(part["size_mm"], abs=0.02)
+
+
+def test_3mf_says_millimetres_and_names_and_colours_its_parts(kit, summary):
+    with zipfile.ZipFile(kit / "kit.3mf") as package:
+        model = package.read("3D/3dmodel.model").decode()
+    assert 'unit="millimeter"' in model
+    assert all(part["label"] in model for part in summary["parts"])
+    assert re.search(r'displaycolor="#[0-9A-F]{6}', model)
+
+
+def test_parts_lie_side_by_side(kit, summary):
+    """In the file for all of them no two boxes touch, and all stand on z = 0."""
+    from build123d import import_step
+
+    boxes = [solid.bounding_box() for solid in import_step(kit / "kit.step").solids()]
+    assert len(boxes) == len(summary["parts"])
+    for number, one in enumerate(boxes):
+        assert abs(one.min.Z) < 1e-6
+        for other in boxes[:number]:
+            apart_x = max(one.min.X - other.max.X, other.min.X - one.max.X)
+            assert max(apart_x, one.min.Y - other.max.Y, other.min.Y - one.max.Y) > 1.0
+
+
+def test_step_holds_every_part_by_name(kit, summary):
+    text = (kit / "kit.step").read_text()
+    assert "MILLI" in text
+    assert all(f"'{part['label']}'" in text for part in summary["parts"])
+
+
+def test_page_needs_nothing_else(kit):
+    """Pictures are in the page; it asks for no other file."""
+    page = (kit / "kit.html").read_text("utf-8")
+    assert set(re.findall(r'(?:src|href)="(\w+):', page)) == {"data"}
+    assert "@page" in page
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        "What you build", "What you need", "Parts to print", "Can they be printed?", "Moulds and pours",
+        "Flat patterns", "Step by step", "Checks on the way", "Tolerance budget",
+    ],
+)  # fmt: skip
+def test_page_has_every_chapter(kit, head):
+    assert f"<h2>{head}</h2>" in (kit / "kit.html").read_text("utf-8")
+
+
+def test_page_names_every_file_and_every_thickness(kit, summary):
+    page = (kit / "kit.html").read_text("utf-8")
+    for name in [part["label"] for part in summary["parts"]] + [one["name"] for one in summary["flat_patterns"]]:
+        assert name in page
+    for size in ("2.5 × 2.5 mm, 0.5 mm", "2.5 × 2.5 mm, 2 mm", "28 µm", "23.7 pF", "dragon-skin-10, component B"):
+        assert size in page
+
+
+def test_mass_is_density_times_volume(summary):
+    """Sponge of 0.2 g/cm3, 2.5 x 2.5 x 2 mm: 2.5 mg; film of 1.78 g/cm3: 0.3115 mg."""
+    masses = {one["name"]: one["mass_mg"] for one in summary["components"]}
+    assert masses["medium 2"] == pytest.approx(2.5)
+    assert masses["film"] == pytest.approx(0.3115)
+
+
+def test_bill_holds_both_components_of_the_mix(summary):
+    """10 g are the least that can be mixed, one to one."""
+    masses = {item["what"]: item["mass_g"] for item in summary["bill_of_materials"]}
+    assert masses["dragon-skin-10, component A"] == masses["dragon-skin-10, component B"] == pytest.approx(5.0)
+
+
+def test_capacitance_to_expect_is_that_of_a_plate(summary):
+    assert summary["film"]["capacitance_pF"]["film"] == pytest.approx(8.8541878e-3 * 12.0 * 2.5**2 / 0.028)
+
+
+def test_steps_end_with_a_press_and_use_what_is_there(summary):
+    text = " ".join(action for step in summary["steps"] for action in step["actions"])
+    named = set(re.findall(r"adhesive-[\w-]+\w", text))
+    assert named == {one["name"] for one in summary["flat_patterns"] if one["name"].startswith("adhesive")}
+    assert summary["checks"][-1]["what"].startswith("first press")
+
+
+def prepared(monkeypatch):
+    monkeypatch.setattr(make, "ensure_rendering", lambda: None)
+    monkeypatch.setattr(make, "draw_all", white_pictures)
+
+
+def test_a_press_that_stops_short_leaves_a_kit_without_a_budget(tmp_path, monkeypatch, capsys):
+    def stop(*_):
+        raise StoppedShortError("no equilibrium at 0.2 mm")
+
+    prepared(monkeypatch)
+    monkeypatch.setattr(make, "budget_of", stop)
+    (tmp_path / "free.toml").write_text(FREE)
+    assert main(["kit", str(tmp_path / "free.toml"), "-o", str(tmp_path / "out")]) == 3
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert said.err.startswith("softdot: not converged, tolerance budget: no equilibrium at 0.2 mm")
+    assert said.err.count("\n") == 1
+    page = (tmp_path / "out" / "kit.html").read_text("utf-8")
+    assert "no equilibrium at 0.2 mm" in page
+    assert "<h2>Tolerance budget</h2>" not in page
+
+
+@pytest.mark.parametrize(
+    ("more", "sentence"),
+    [
+        ("[fabrication]\nwall_mm = 0.3\n", "fabrication.wall_mm = 0.3: .*SLA limit for the unsupported wall of 0.6 mm"),
+        ('[fabrication]\nlid_face = "top"\n', "undercut.*where the limit is 0"),
+        ('[fabrication]\nmould_style = "open"\ndraft_deg = 0.2\n', "do not leave a mould without a parting"),
+        ("[fabrication]\ntab_width_mm = 0.9\n", "below the limit of 0.3 mm for patterned metal"),
+        ("[fabrication]\nkerf = 0.2\n", "fabrication.kerf is not a key"),
+    ],
+)
+def test_an_impossible_kit_is_refused_in_one_sentence(tmp_path, monkeypatch, capsys, more, sentence):
+    prepared(monkeypatch)
+    (tmp_path / "dome.toml").write_text(DOME + more)
+    assert main(["kit", str(tmp_path / "dome.toml"), "-o", str(tmp_path / "out")]) == 2
+    said = capsys.readouterr().err
+    assert re.search(sentence, said)
+    assert said.count("\n") == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["dome.toml"]
+
+
+def test_an_interrupt_leaves_nothing(tmp_path, monkeypatch):
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    prepared(monkeypatch)
+    monkeypatch.setattr(make, "budget_of", interrupt)
+    (tmp_path / "free.toml").write_text(FREE)
+    assert main(["kit", str(tmp_path / "free.toml"), "-o", str(tmp_path / "out")]) == 130
+    assert [path.name for path in tmp_path.iterdir()] == ["free.toml"]
+
+
+def test_another_folder_is_not_touched(tmp_path, monkeypatch, capsys):
+    prepared(monkeypatch)
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "letter.txt").write_text("mine")
+    assert main(["kit", "-o", str(tmp_path / "out")]) == 2
+    assert "holds 'letter.txt'" in capsys.readouterr().err
+    assert (tmp_path / "out" / "letter.txt").read_text() == "mine"
+
+
+@pytest.mark.slow
+def test_whole_kit_of_a_coarse_segment(tmp_path, capsys):
+    """With its own budget and pictures: a picture for every step, none of them empty, and a budget in order."""
+    from matplotlib.image import imread
+
+    (tmp_path / "coarse.toml").write_text(COARSE)
+    out: Path = tmp_path / "out"
+    assert main(["kit", str(tmp_path / "coarse.toml"), "-o", str(out), "--json"]) == 0
+    summary = json.loads(capsys.readouterr().out)
+    assert summary == json.loads((out / "kit.json").read_text("utf-8"))
+    rows = summary["tolerance_budget"]["rows"]
+    assert [abs(row["voltage_V"]) for row in rows] == sorted((abs(row["voltage_V"]) for row in rows), reverse=True)
+    pictures = sorted((out / "pictures").glob("*.png"))
+    assert {"exploded.png", "section.png", "jig.png", "mould-effector.png"} <= {path.name for path in pictures}
+    assert all(np.ptp(imread(path)[..., :3]) > 0.5 for path in pictures)
+    page = (out / "kit.html").read_text("utf-8")
+    assert page.count("data:image/png;base64,") >= len(pictures) - 1
