@@ -9,12 +9,8 @@ import functools
 
 import pytest
 
-from geometry.parameters import Medium
-from mesh.build import build
-from mesh.parameters import MeshOptions
-from solve.parameters import Press
-from solve.press import press_segment
-from tests.solve.segments import materials, ridge, segment
+from softdot.outcome import solved
+from softdot.paper.reading import segment_config
 
 MESHERS = [pytest.param("layered"), pytest.param("pytetwild", marks=pytest.mark.slow)]
 SOFT, MIDDLE, HARD = 0.05, 1.0, 5.0  # modulus of medium 2, MPa
@@ -22,15 +18,10 @@ SOFT, MIDDLE, HARD = 0.05, 1.0, 5.0  # modulus of medium 2, MPa
 
 @functools.cache
 def force_and_millivolts(mesher, boundary, h1_mm, e2_MPa):
-    stack = segment(
-        section="plane-strain", width_mm=16.0, boundary=boundary, medium1=Medium(thickness_mm=h1_mm)
-    )
-    dot = ridge(stack)
-    result = press_segment(
-        stack, materials(e_medium2=e2_MPa), dot, Press(load_steps=3), build(stack, dot, MeshOptions(mesher=mesher))
-    )
-    assert result.converged, result.failure
-    return result.steps[-1].reaction_force_N, 1e3 * float(result.steps[-1].open_circuit_voltage_V[0]) / 337
+    config = segment_config(boundary, h1_mm, e2_MPa, load_steps=3, mesh={"mesher": mesher})
+    found = solved(config, lambda *_: None)
+    assert found["solver"]["converged"], found["solver"]
+    return found["reaction_force_N"][-1], 1e3 * found["open_circuit_voltage_V"][-1] / 337
 
 
 @pytest.mark.parametrize("mesher", MESHERS)

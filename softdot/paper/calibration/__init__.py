@@ -1,0 +1,1 @@
+"""The paper's calibration rig, and its factor p predicted piece by piece."""

@@ -1,0 +1,1 @@
+"""The paper's simulations of one segment, pressed again in two readings."""

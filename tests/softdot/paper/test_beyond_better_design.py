@@ -1,0 +1,27 @@
+"""A better design against the paper's final one, in a true segment, on meshes that are not those of the search."""
+
+import pytest
+
+from softdot.outcome import outcome
+from softdot.paper.beyond.designs import PAPERS, Design, design_config
+from softdot.paper.beyond.final import beats
+from softdot.paper.beyond.trials import Trial, press_of
+
+FOUND = Design(0.55, 1.8, 1.2, 2.3, 0.36, 0.44, 52.0)
+MESH = {"element_size_mm": 0.6, "contact_element_size_mm": 0.3}
+
+
+def pressed(design, mesher):
+    presses = [
+        press_of(outcome(design_config(design, side, "solid", {**MESH, "mesher": mesher})))
+        for side in ("free", "clamped")
+    ]
+    return Trial(design, *presses)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("mesher", ["layered", "pytetwild"])
+def test_more_voltage_in_the_worse_boundary_at_no_more_film_stress_and_force(mesher):
+    found, papers = pressed(FOUND, mesher), pressed(PAPERS, mesher)
+    assert beats(found, papers)
+    assert found.worse_V() > 1.2 * papers.worse_V()
