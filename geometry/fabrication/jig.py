@@ -86,8 +86,9 @@ def _steps(tops: dict[str, float], frame: ExitFrame, fabrication: Fabrication) -
 
 
 def _thick(fabrication: Fabrication) -> float:
-    """Of the stops: they carry the pins of the locator."""
-    return max(2 * fabrication.wall_mm, fabrication.pin_diameter_mm + 2 * fabrication.wall_mm)
+    """Of the stops: they carry the pins of the locator, whose holes are wider by the clearance."""
+    beside = fabrication.wall_mm + fabrication.pin_clearance_mm
+    return max(2 * fabrication.wall_mm, fabrication.pin_diameter_mm + 2 * beside)
 
 
 def _pins(frame: ExitFrame, fabrication: Fabrication) -> list[tuple[float, float]]:
