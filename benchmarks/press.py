@@ -1,6 +1,7 @@
 """The frictionless press of the true segment against NGSolve: python -m benchmarks.press JSON [FINEST].
 
-Both codes press the same meshes, from coarse to fine (FINEST: smallest factor on the default element sizes). The
+Both codes press the same meshes, from coarse to fine (FINEST: smallest factor on the default element sizes), each in
+as few equal load steps as it converges in: softdot in one. The
 error is that of the force and of the voltage against the limit of both codes' finest meshes at second order. Time at
 equal error is read from straight lines through (log error, log time). Rows that the file has are not measured again.
 """
@@ -15,6 +16,7 @@ from benchmarks.timing import Table, run_alone
 
 FACTORS = (2.8, 2.0, 1.4, 1.0, 0.7)
 CODES = ("softdot", "NGSolve")
+STEPS = (3, 4, 6, 12)  # of NGSolve; it converged in 1 or 2 on none of the meshes
 ANSWERS = ("force_N", "voltage_V")
 
 
@@ -60,6 +62,16 @@ def show(rows: list[dict]) -> None:
         print(f"at {100 * error:.2f} % (our factor {row['factor']}): ours/theirs {ratio:.2f}")
 
 
+def by_ngsolve(case: Path) -> dict:
+    """Its press in the first of its load steps that converges; what did not is not counted."""
+    for steps in STEPS:
+        try:
+            return run_alone("press_ngsolve", case, steps)
+        except SystemExit as failure:
+            print(f"NGSolve, {steps} steps: {str(failure).strip().splitlines()[-1]}", flush=True)
+    raise SystemExit("NGSolve converged in none of its load steps")
+
+
 def main(path: Path, finest: float) -> None:
     """Measure what is missing."""
     table = Table(path, "press")
@@ -72,7 +84,7 @@ def main(path: Path, finest: float) -> None:
             if not table.has(factor=factor, code="softdot"):
                 table.add({"code": "softdot", "factor": factor, **ours})
             if not table.has(factor=factor, code="NGSolve"):
-                table.add({"code": "NGSolve", "factor": factor, **run_alone("press_ngsolve", case)})
+                table.add({"code": "NGSolve", "factor": factor, **by_ngsolve(case)})
     show(table.rows)
 
 

@@ -10,7 +10,6 @@ from mesh.types import TetMesh
 from softdot.config import Config, load_config
 
 DEPTH_MM = 0.3
-STEPS = {"softdot": 1, "NGSolve": 3}  # equal load steps, as few as each code converges in
 AUGMENTATION_MPA_PER_MM = 20.0  # of NGSolve's contact; see tests/verification/test_against_ngsolve_press.py
 
 
@@ -33,7 +32,7 @@ def save(path: Path, factor: float) -> None:
     np.savez(
         path, points=tet_mesh.points_mm, tets=tet_mesh.tets[:, :4], region=tet_mesh.region,
         region_names=tet_mesh.region_names, facet_names=names, held=np.array(held, str), depth=DEPTH_MM,
-        steps=STEPS["NGSolve"], media=media, moduli=[materials[name].youngs_modulus_MPa for name in media],
+        media=media, moduli=[materials[name].youngs_modulus_MPa for name in media],
         poisson=[materials[name].poisson_ratio for name in media],
         film_thickness=1e-3 * config.segment.film.thickness_um,
         radius=resolve_dot(config.dot, config.segment).radius_mm, augmentation=AUGMENTATION_MPA_PER_MM,

@@ -1,4 +1,4 @@
-"""The press of the true segment by NGSolve: python -m benchmarks.press_ngsolve CASE.npz.
+"""The press of the true segment by NGSolve in equal load steps: python -m benchmarks.press_ngsolve CASE.npz STEPS.
 
 The program of tests/verification/ngsolve_press.py with what makes it fast: the same quadrature points as ours in the
 volume, energies compiled by the C++ compiler, PARDISO symmetric with nested dissection, its analysis kept.
@@ -62,20 +62,21 @@ class FastPress(DotPress):
         raise RuntimeError(f"NGSolve did not converge at {self.depth.Get()} mm")
 
 
-def measure(path: str) -> dict:
+def measure(path: str, steps: int) -> dict:
     """Time and answers; the compilation, which depends on no mesh, is not counted."""
     ng.SetNumThreads(2)
     with np.load(path) as case, ng.TaskManager():
         problem = FastPress(case)
         start = time.perf_counter()
-        answer = problem.press(float(case["depth"]), int(case["steps"]))
+        answer = problem.press(float(case["depth"]), steps)
         seconds = time.perf_counter() - start
     last = answer["history"][-1]
     return {
-        "unknowns": answer["unknowns"], "seconds": seconds, "newton_iterations": len(answer["newton_steps"]),
+        "unknowns": answer["unknowns"], "load_steps": steps, "seconds": seconds,
+        "newton_iterations": len(answer["newton_steps"]),
         "force_N": last["force_N"], "voltage_V": last["voltage_V"],
     }
 
 
 if __name__ == "__main__":
-    print(json.dumps(measure(sys.argv[1])))
+    print(json.dumps(measure(sys.argv[1], int(sys.argv[2]))))

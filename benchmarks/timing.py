@@ -56,7 +56,7 @@ def _lines(path: str) -> list[str]:
 
 
 def run_alone(program: str, *arguments: object) -> dict:
-    """The JSON that a program of this folder prints last, from a process of its own."""
+    """The JSON that a program of this folder prints last, from a process of its own. SystemExit when it fails."""
     command = [sys.executable, "-m", f"benchmarks.{program}", *map(str, arguments)]
     done = subprocess.run(command, capture_output=True, text=True, cwd=Path(__file__).parents[1])
     if done.returncode:

@@ -25,8 +25,8 @@ def outcome(config: Config, on_step: stages.OnStep | None = None) -> dict[str, A
     """The summary of a press as `softdot run` gives it, without configuration and times. InputError.
 
     Remembered under the hash of configuration and program, so that asking again costs nothing.
-    A press that does not converge is an outcome too: solver.converged is False, solver.failure says why;
-    it is not remembered.
+    A press that does not converge is an outcome too: solver.converged is False, solver.failure says why. A mesh
+    that failed is not remembered: it may have run out of time.
     """
     return remembered(config) or _kept(_path(config), solved(config, on_step or _silent))
 
@@ -91,7 +91,7 @@ def _read(path: Path) -> dict[str, Any] | None:
 
 def _kept(path: Path, numbers: dict[str, Any]) -> dict[str, Any]:
     """Write beside, then rename; a cache that cannot be written is no cache."""
-    if not numbers["solver"]["converged"]:
+    if "mesh" not in numbers:
         return numbers
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -14,6 +14,7 @@ from export.cad import write_cad
 from geometry.colours import PART_COLOURS
 from geometry.dot_shape import resolve_dot
 from geometry.parameters import Dot, Effector, Film, Medium, Segment
+from geometry.part import volume_mm3
 from geometry.solids import build_parts
 
 CORE = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
@@ -65,7 +66,7 @@ def test_step_keeps_labels_volumes_and_colours(written):
     assert set(found) == {part.label for part in parts}
     for part in parts:
         child = found[part.label]
-        assert child.volume == pytest.approx(part.volume_mm3, rel=1e-6)
+        assert volume_mm3(child) == pytest.approx(part.volume_mm3, rel=1e-6)
         assert tuple(child.color)[:3] == pytest.approx(part.colour, abs=1e-3)
         low, expected = child.bounding_box().min, part.solid.bounding_box().min
         assert tuple(low) == pytest.approx(tuple(expected), abs=1e-4)

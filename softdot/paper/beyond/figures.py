@@ -131,8 +131,8 @@ def draw_final(compared: Mapping[str, Sequence[Trial]], names: Sequence[str], fo
                           label=f"{side}, {mesher}")  # fmt: skip
         panel.set_xticks(range(len(names)), names, fontsize=9)
         label(panel, "", words)
-    panels[0].margins(y=0.35)
-    panels[0].legend(frameon=False, fontsize=8, loc="upper left", ncols=2)
+    panels[0].margins(y=0.5)
+    panels[0].legend(frameon=False, fontsize=8, loc="upper left")
     return save(figure, folder, "design-comparison")
 
 

@@ -19,7 +19,7 @@ MESH = {"element_size_mm": 0.8, "contact_element_size_mm": 0.4, "mesher": "layer
 CABLE_PF = 100.0
 GOALS = {"open circuit": 0.0, "behind 100 pF": CABLE_PF}
 """What the voltage is taken behind: nothing, or a metre of cable with an amplifier that loses no charge."""
-FIRST, ROUNDS, EACH = 8, 6, 3
+FIRST, ROUNDS, EACH = 8, 8, 3
 FORCE_MARGIN, STRESS_MARGIN = 0.98, 0.9
 """Shares of the limits that the search uses: by so much force and film stress differ between meshes."""
 CANDIDATES_LOG2, NEAR, STEP = 11, 1024, 0.12

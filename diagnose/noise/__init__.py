@@ -1,0 +1,1 @@
+"""The noise of a channel, from samples that hold no answer of the segment."""

@@ -1,0 +1,117 @@
+"""The noise of every channel of a recording: from repeated runs, else from rest, else as the experimenter states it.
+
+Never from the residual that is to be explained: a model that is wrong must not widen its own error bars.
+"""
+
+from collections.abc import Mapping, Sequence
+from math import isclose
+
+import numpy as np
+
+from diagnose.noise.autoregression import Autoregression, fit_autoregression
+from diagnose.noise.lines import Line, find_lines, without_lines
+from diagnose.noise.model import NoiseModel
+from diagnose.noise.quantisation import quantisation_step
+from diagnose.noise.repeats import repeated, scatter
+from diagnose.noise.rest import resting, stretches
+from diagnose.phases import Segmentation
+from diagnose.recording import Recording, Run
+from geometry.errors import InputError
+from mesh.types import Floats
+
+REPEATS, REST, STATED = "repeated runs", "rest", "stated"
+ENOUGH = 50  # samples: their variance is known to 20 %
+
+
+def noise_models(recording: Recording) -> Mapping[tuple[str, str], NoiseModel]:
+    """(label, channel) -> noise, for every channel that is to be explained.
+
+    InputError where neither repeats nor rest nor the rig file tells the noise of a channel.
+    """
+    repeats = repeated(recording.runs, recording.phases)
+    pools: dict[tuple[str, str, tuple[int, ...]], NoiseModel | None] = {}
+
+    def pooled(source: str, channel: str, numbers: tuple[int, ...]) -> NoiseModel | None:
+        key = (source, channel, numbers)
+        if key not in pools:
+            chosen = [(recording.runs[n], recording.phases[n]) for n in numbers]
+            pools[key] = _of_repeats(chosen, channel) if source == REPEATS else _of_rest(chosen, channel)
+        return pools[key]
+
+    return {
+        (run.label, channel): pooled(REPEATS, channel, _group(repeats, number))
+        or pooled(REST, channel, _resting_alike(recording, run, channel))
+        or _stated(run, channel)
+        for number, run in enumerate(recording.runs)
+        for channel in run.answers
+    }
+
+
+def _group(repeats: Sequence[Sequence[int]], number: int) -> tuple[int, ...]:
+    """Numbers of the runs that repeat a run, itself included; none where it was not repeated."""
+    return next((tuple(group) for group in repeats if number in group), ())
+
+
+def _resting_alike(recording: Recording, run: Run, channel: str) -> tuple[int, ...]:
+    """Numbers of the runs whose rest can be pooled: same rate and amplifier. A coupon is held and never rests."""
+    if recording.specimen is not None:
+        return ()
+    return tuple(
+        number
+        for number, other in enumerate(recording.runs)
+        if channel in other.answers
+        and run.readout == other.readout
+        and isclose(run.step_s, other.step_s, rel_tol=0.01)
+    )
+
+
+def _of_repeats(chosen: Sequence[tuple[Run, Segmentation]], channel: str) -> NoiseModel | None:
+    """The noise in how repeats differ. No lines are sought: their phases differ."""
+    deviations = scatter([run for run, _ in chosen], [found for _, found in chosen], channel)
+    return _fitted(chosen[0][0], channel, (), deviations, REPEATS) if _enough(deviations) else None
+
+
+def _of_rest(chosen: Sequence[tuple[Run, Segmentation]], channel: str) -> NoiseModel | None:
+    """The noise at rest, of all runs together."""
+    rest = [stretches(run, channel, resting(run, found)) for run, found in chosen]
+    if not _enough([values for its in rest for _, values in its]):
+        return None
+    lines, left = _lines_apart(rest, chosen[0][0].step_s)
+    return _fitted(chosen[0][0], channel, lines, left, REST)
+
+
+def _stated(run: Run, channel: str) -> NoiseModel:
+    """White noise as rig.toml states it. InputError where it does not."""
+    if channel not in run.noise:
+        raise InputError(
+            f"recording '{run.file}', column {channel}: its noise is not known; record at least {ENOUGH} samples "
+            f"before the touch, repeat the run, or state noise.{channel} of the run in rig.toml"
+        )
+    white = Autoregression(np.zeros(0), run.noise[channel] ** 2)
+    return NoiseModel(white, run.step_s, STATED, 0, (), quantisation_step(run.channels[channel]))
+
+
+def _enough(values: Sequence[Floats]) -> bool:
+    return sum(map(len, values)) >= ENOUGH
+
+
+def _lines_apart(
+    rest: Sequence[Sequence[tuple[Floats, Floats]]], step_s: float
+) -> tuple[tuple[Line, ...], list[Floats]]:
+    """Mains lines of the run that rests longest, and the stretches of all runs without them; each has its own phase."""
+    longest = max(rest, key=lambda its: sum(len(values) for _, values in its))
+    lines = find_lines([time for time, _ in longest], [values for _, values in longest], step_s)
+    left = [without_lines(lines, [t for t, _ in its], [v for _, v in its]) for its in rest if its]
+    return lines, [values for its in left for values in its]
+
+
+def _fitted(run: Run, channel: str, lines: tuple[Line, ...], values: list[Floats], source: str) -> NoiseModel:
+    """An autoregression of samples without lines. InputError for a channel that is silent and states no noise."""
+    step = quantisation_step(run.channels[channel])
+    model = fit_autoregression(values, step**2 / 12.0 if step is not None else 0.0)
+    if model.variance <= 0.0:
+        raise InputError(
+            f"recording '{run.file}', column {channel}: has no noise at all at rest; state noise.{channel} of the run "
+            "in rig.toml"
+        )
+    return NoiseModel(model, run.step_s, source, sum(map(len, values)), lines, step)

@@ -1,0 +1,154 @@
+"""The noise of one channel: an autoregression, mains lines of random amplitude and phase, and rounding.
+
+Covariance of n samples: C = C_ar + B B', B (n, 2 l) the sinusoids of the lines. With C_ar = L D L' by one-step
+prediction (innovations.py) and W = (L D^(1/2))^-1 B, whitening is (1 + W W')^(-1/2) (L D^(1/2))^-1, its root by the
+singular values of W. So the whitened samples are independent of unit variance, and log_density is exact.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from scipy.signal import lfilter, lfiltic
+
+from diagnose.noise.autoregression import Autoregression
+from diagnose.noise.innovations import innovations
+from diagnose.noise.lines import Line, basis
+from diagnose.sampling import even_pieces, is_even
+from mesh.types import Bools, Floats
+
+SAME_RATE = 0.1  # relative: at another rate the autoregression says only how large the noise is
+
+
+@dataclass(frozen=True)
+class NoiseModel:
+    """step_s : sampling step at which it was fitted. source : from which samples, samples : how many of them.
+
+    quantisation : step of the converter in the unit of the channel, None where none was seen; its variance, a twelfth
+    of the square, is the least that the innovations can have.
+    """
+
+    autoregression: Autoregression
+    step_s: float
+    source: str
+    samples: int
+    lines: tuple[Line, ...] = ()
+    quantisation: float | None = None
+
+    @property
+    def rms(self) -> float:
+        """Standard deviation of one sample, lines included."""
+        own = float(self.autoregression.autocovariance(1)[0])
+        return float(np.sqrt(own + sum(0.5 * line.amplitude**2 for line in self.lines)))
+
+    def without_lines(self) -> "NoiseModel":
+        """The same without the mains: where hum is not to be excused as noise."""
+        return replace(self, lines=())
+
+    def whitening(self, observed: Bools, time_s: Floats | None = None) -> "Whitening":
+        """The map that whitens samples at times (n,), even if None, of which only the observed (n,) are there."""
+        time = self._time(len(observed)) if time_s is None else time_s
+        return Whitening(self, observed, time)
+
+    def whiten(self, residual: Floats, time_s: Floats | None = None) -> Floats:
+        """Independent samples (m,) of unit variance from the m finite ones of a residual (n,)."""
+        return self.whitening(np.isfinite(residual), time_s)(residual)
+
+    def log_density(self, residual: Floats, time_s: Floats | None = None) -> float:
+        """Natural logarithm of the normal density of the finite samples of a residual (n,)."""
+        whitening = self.whitening(np.isfinite(residual), time_s)
+        white = whitening(residual)
+        return -0.5 * float(white @ white) - 0.5 * len(white) * float(np.log(2.0 * np.pi)) - whitening.log_scale
+
+    def draw(self, rng: np.random.Generator, count: int, time_s: Floats | None = None) -> Floats:
+        """One realisation (count,), stationary from its first sample; every piece of time_s starts anew."""
+        time = self._time(count) if time_s is None else time_s
+        lines = basis(self.lines, time)
+        values = lines @ rng.standard_normal(lines.shape[1])
+        for piece in even_pieces(time):
+            values[piece] += _drawn(_at_rate(self, time[piece]), rng, piece.stop - piece.start)
+        return np.asarray(values)
+
+    def _time(self, count: int) -> Floats:
+        """Even times (count,) from 0."""
+        return np.asarray(self.step_s * np.arange(count), dtype=np.float64)
+
+    def summary(self) -> Mapping[str, Any]:
+        """Numbers for a verdict, by name; in the unit of the channel."""
+        return {
+            "source": self.source,
+            "samples": self.samples,
+            "rms": self.rms,
+            "order": len(self.autoregression.coefficients),
+            "innovation_rms": float(np.sqrt(self.autoregression.variance)),
+            "coefficients": self.autoregression.coefficients.tolist(),
+            "lines": [{"frequency_Hz": line.frequency_Hz, "amplitude": line.amplitude} for line in self.lines],
+            "quantisation_step": self.quantisation,
+            "sampling_Hz": 1.0 / self.step_s,
+        }
+
+
+class Whitening:
+    """Whitens any number of signals that share their times and missing samples: residuals, sensitivities.
+
+    log_scale : half the logarithm of the determinant of the covariance.
+    """
+
+    def __init__(self, noise: NoiseModel, observed: Bools, time_s: Floats) -> None:
+        self.noise, self.observed, self.time_s = noise, observed, time_s
+        self._pieces = even_pieces(time_s)
+        lines = basis(noise.lines, time_s)
+        white, deviations = self._innovations(lines)
+        self.log_scale = float(np.log(deviations).sum())
+        self._directions, self._shrink = np.zeros((len(white), 0)), np.zeros(0)
+        if lines.shape[1] and len(white):
+            self._directions, spread, _ = np.linalg.svd(white, full_matrices=False)
+            self._shrink = 1.0 / np.sqrt(1.0 + spread**2) - 1.0
+            self.log_scale += 0.5 * float(np.log1p(spread**2).sum())
+
+    def __call__(self, values: Floats) -> Floats:
+        """Whitened (m,) or (m, k) from (n,) or (n, k); only the m observed rows come back."""
+        columns = values.reshape(len(values), -1)
+        white, _ = self._innovations(columns)
+        white = white + self._directions @ (self._shrink[:, None] * (self._directions.T @ white))
+        return white.reshape(-1, *values.shape[1:])
+
+    def _innovations(self, columns: Floats) -> tuple[Floats, Floats]:
+        """Prediction errors over their deviations (m, k), and the deviations (m,), without the lines."""
+        filled = np.where(self.observed[:, None], columns, 0.0)
+        errors, deviations = np.empty_like(filled), np.empty(len(filled))
+        for piece in self._pieces:
+            model = _at_rate(self.noise, self.time_s[piece])
+            errors[piece], deviations[piece] = innovations(
+                np.ascontiguousarray(filled[piece]),
+                self.observed[piece],
+                model.coefficients if len(model.coefficients) else np.zeros(1),
+                model.variance,
+                model.start_covariance(),
+            )
+        spread = deviations[self.observed]
+        return errors[self.observed] / spread[:, None], spread
+
+
+def _at_rate(noise: NoiseModel, time_s: Floats) -> Autoregression:
+    """The autoregression on these samples: itself at its own rate, white of equal power at another."""
+    own = noise.autoregression
+    if len(time_s) < 2:
+        return own
+    same = abs(float(np.median(np.diff(time_s))) / noise.step_s - 1.0) < SAME_RATE
+    if len(own.coefficients) == 0 or (same and is_even(time_s)):
+        return own
+    return Autoregression(np.zeros(0), float(own.autocovariance(1)[0]))
+
+
+def _drawn(model: Autoregression, rng: np.random.Generator, count: int) -> Floats:
+    """Stationary samples (count,) of an autoregression."""
+    order = len(model.coefficients)
+    driven = np.sqrt(model.variance) * rng.standard_normal(count)
+    if order == 0:
+        return np.asarray(driven)
+    before = np.linalg.cholesky(model.start_covariance()) @ rng.standard_normal(order)
+    denominator = np.concatenate([[1.0], -model.coefficients])
+    values, _ = lfilter([1.0], denominator, driven, zi=lfiltic([1.0], denominator, before))
+    return np.asarray(values)

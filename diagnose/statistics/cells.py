@@ -1,0 +1,91 @@
+"""Where and at which frequency: the residual cut into cells, each with a chi-square energy under white noise.
+
+Every segment (samples in a row with the same run, channel, phase, cycle, position) gets an orthonormal cosine
+transform (DCT-II; Ahmed, Natarajan and Rao, IEEE Trans. Comput. 23 (1974) 90), and its coefficients are sorted into
+bands. The transform keeps sums of squares (Parseval), so cells are disjoint, cover everything, and the energy of a cell
+of white noise is chi-square with as many degrees of freedom as it has coefficients.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy.fft import dct
+
+from mesh.types import Floats, Ints
+
+
+@dataclass(frozen=True)
+class Segment:
+    """Samples in a row that share all labels. step_s : their sampling step."""
+
+    labels: Mapping[str, int]
+    samples: slice
+    step_s: float
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One segment in one band [low, high) Hz."""
+
+    labels: Mapping[str, int]
+    band_Hz: tuple[float, float]
+
+
+def segments(labels: Mapping[str, Ints], step_s: Floats) -> tuple[Segment, ...]:
+    """Cut n samples wherever one of the labels (n,) or the sampling step (n,) changes.
+
+    Steps must be the nominal ones of each even stretch: their jitter would cut everywhere.
+    """
+    columns = [np.asarray(column) for column in (*labels.values(), step_s)]
+    changes = np.any([np.diff(column) != 0 for column in columns], axis=0)
+    edges = [0, *(np.flatnonzero(changes) + 1).tolist(), len(step_s)]
+    return tuple(
+        Segment({name: int(values[a]) for name, values in labels.items()}, slice(a, b), float(step_s[a]))
+        for a, b in pairwise(edges)
+    )
+
+
+def octave_edges(duration_s: float, step_s: float) -> Floats:
+    """Edges (k,) of octaves in Hz from below one turn in the duration up to half the sampling rate; the first is 0."""
+    nyquist = 0.5 / step_s
+    octaves = max(1, int(np.ceil(np.log2(nyquist * duration_s))))
+    return np.concatenate([[0.0], nyquist * 2.0 ** np.arange(-octaves, 1)])
+
+
+class FilterBank:
+    """The transform from n samples to n coefficients and their sorting into cells.
+
+    cells : in order. cell : (n,) the cell of each coefficient. degrees : (c,) coefficients in each cell.
+    """
+
+    def __init__(self, pieces: Sequence[Segment], edges_Hz: Floats) -> None:
+        """edges_Hz : (k,) ascending from 0; what lies above the last one joins the highest band."""
+        self.pieces = tuple(pieces)
+        cells: list[Cell] = []
+        numbers: list[Ints] = []
+        for piece in self.pieces:
+            band = _bands(piece, edges_Hz)
+            present, own = np.unique(band, return_inverse=True)
+            numbers.append(own + len(cells))
+            cells += [Cell(piece.labels, (float(edges_Hz[b]), float(edges_Hz[b + 1]))) for b in present]
+        self.cells = tuple(cells)
+        self.cell = np.concatenate(numbers)
+        self.degrees = np.bincount(self.cell).astype(float)
+
+    def coefficients(self, values: Floats) -> Floats:
+        """Orthonormal coefficients (n,) or (n, k) of samples (n,) or (n, k)."""
+        return np.concatenate([dct(values[p.samples], type=2, norm="ortho", axis=0) for p in self.pieces])
+
+    def energies(self, values: Floats) -> Floats:
+        """Sum of squares (c,) in each cell of samples (n,)."""
+        return np.asarray(np.bincount(self.cell, self.coefficients(values) ** 2, len(self.cells)), dtype=np.float64)
+
+
+def _bands(piece: Segment, edges_Hz: Floats) -> Ints:
+    """The band of each coefficient of a segment: coefficient k of n has frequency k / (2 n step)."""
+    count = piece.samples.stop - piece.samples.start
+    frequency = np.arange(count) / (2.0 * count * piece.step_s)
+    found = np.searchsorted(edges_Hz, frequency, side="right") - 1
+    return np.asarray(np.clip(found, 0, len(edges_Hz) - 2), dtype=np.int64)

@@ -1,0 +1,75 @@
+"""Screening: does one candidate's sensitivity show in the residual? No refit is needed.
+
+Rao's efficient score test (Proc. Camb. Phil. Soc. 44 (1948) 50; Bera and Bilias, J. Stat. Plan. Inference 97 (2001) 9):
+nuisances are taken out of residual and sensitivities beforehand (nuisance.py). With white noise of unit variance the
+statistic is the gain in the sum of squares of the linearised fit, over the cone of allowed signs.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import nnls
+
+from diagnose.statistics.chi_bar_square import survival, weights
+from diagnose.statistics.nuisance import orthonormal
+from mesh.types import Bools, Floats
+
+PARALLEL = 1e-6  # of its length: what is left of a sensitivity that others in the same candidate already make
+
+
+@dataclass(frozen=True)
+class ScoreTest:
+    """statistic : twice the gain in log-likelihood of the linearised fit. estimate : (q,) its parameters."""
+
+    statistic: float
+    p_value: float
+    estimate: Floats
+
+
+def score_test(
+    residual: Floats, sensitivities: Floats, non_negative: Bools, noise_degrees: float = np.inf
+) -> ScoreTest:
+    """Test one candidate of q parameters, each counted from its off value.
+
+    residual : (n,), sensitivities : (n, q), both free of nuisances. non_negative : (q,) True for a parameter whose off
+    value is the lower end of its range (change the sign of one at an upper end). noise_degrees : of the estimated
+    noise variance. ValueError for too many non-negative parameters.
+    """
+    basis = orthonormal(sensitivities[:, ~non_negative])
+    along = basis.T @ residual
+    bounded = _independent(sensitivities[:, non_negative], basis)
+    columns = (sensitivities[:, non_negative] - basis @ (basis.T @ sensitivities[:, non_negative]))[:, bounded]
+    rotation, triangle = np.linalg.qr(columns)
+    target = rotation.T @ residual
+    positive, misfit = nnls(triangle, target) if bounded else (np.zeros(0), 0.0)
+    statistic = float(along @ along + target @ target - misfit**2)
+    p_value = survival(statistic, weights(_unit(triangle.T @ triangle)), basis.shape[1], noise_degrees)
+    estimate = np.zeros(len(non_negative))
+    estimate[np.flatnonzero(non_negative)[bounded]] = positive
+    left = residual - sensitivities @ estimate
+    estimate[~non_negative] = _least_squares(sensitivities[:, ~non_negative], left)
+    return ScoreTest(statistic, p_value, estimate)
+
+
+def _least_squares(columns: Floats, target: Floats) -> Floats:
+    """Coefficients (q,), the same fit in any units of the columns (n, q)."""
+    length = np.linalg.norm(columns, axis=0)
+    length[length == 0.0] = 1.0
+    return np.asarray(np.linalg.lstsq(columns / length, target, rcond=None)[0] / length)
+
+
+def _independent(columns: Floats, basis: Floats) -> list[int]:
+    """Columns that show beyond the basis (n, f) and the columns before them."""
+    kept: list[int] = []
+    for n, column in enumerate(columns.T):
+        left = column - basis @ (basis.T @ column)
+        if np.linalg.norm(left) > PARALLEL * np.linalg.norm(column):
+            kept.append(n)
+            basis = np.column_stack([basis, left / np.linalg.norm(left)])
+    return kept
+
+
+def _unit(information: Floats) -> Floats:
+    """Scaled to a unit diagonal: weights do not depend on units."""
+    scale = np.sqrt(np.diag(information))
+    return np.asarray(information / np.outer(scale, scale))

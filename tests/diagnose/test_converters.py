@@ -1,0 +1,154 @@
+"""Files of instruments become recordings."""
+
+import os
+import runpy
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.io import savemat
+
+from diagnose.noise.autoregression import fit_autoregression
+from diagnose.noise.estimate import noise_models
+from diagnose.noise.model import NoiseModel
+from geometry.errors import InputError
+from softdot.convert import read_mat, read_oscilloscope, read_sheet, white_noise, write_recording
+from softdot.rig_file import load_rig
+from tests.diagnose.rigs import HEAD, RUN, SEGMENT, samples
+
+TIME, FIRST, SECOND = [-0.02, -0.01, 0.0, 0.01], [0.1, 0.2, 0.3, 0.4], [1.0, 2.0, 3.0, 4.0]
+OSCILLOSCOPES = {
+    "tektronix": (
+        "Record Length,4,,-0.02,0.1\nSample Interval,0.01,,-0.01,0.2\n"
+        "Source,CH2,,0.0,0.3\nVertical Units,V,,0.01,0.4\n",
+        {"CH2": FIRST},
+    ),
+    "tektronix table": (
+        "Model,MSO24\nLabel,CH1,CH2\n\nTIME,CH1,CH2\n-0.02,0.1,1\n-0.01,0.2,2\n0,0.3,3\n0.01,0.4,4\n",
+        {"CH1": FIRST, "CH2": SECOND},
+    ),
+    "rigol": (
+        "X,CH1,CH2,Start,Increment,\nSequence,Volt,Volt,-2e-02,1e-02\n0,0.1,1,\n1,0.2,2,\n2,0.3,3,\n3,0.4,4,\n",
+        {"CH1": FIRST, "CH2": SECOND},
+    ),
+    "rigol table": (
+        "Time(s),CH1(mV),CH2(V)\n-0.02,100,1\n-0.01,200,2\n0,300,3\n0.01,400,4\n", {"CH1": FIRST, "CH2": SECOND},
+    ),
+    "keysight": (
+        "x-axis,1,2\nsecond,Volt,Volt\n-2E-2,+1.0E-1,1\n-1E-2,+2.0E-1,2\n0,+3.0E-1,3\n1E-2,+4.0E-1,4\n",
+        {"CH1": FIRST, "CH2": SECOND},
+    ),
+}  # fmt: skip
+RECORDINGS = os.environ.get("SOFTDOT_RECORDINGS", "")
+EXAMPLES = Path(__file__).parents[2] / "examples" / "recordings"
+
+
+@pytest.mark.parametrize("kind", OSCILLOSCOPES)
+def test_an_oscilloscope(kind, tmp_path):
+    text, channels = OSCILLOSCOPES[kind]
+    (tmp_path / "scope.csv").write_text(text)
+    found = read_oscilloscope(tmp_path / "scope.csv")
+    assert set(found) == {"time_s", *channels}
+    for name, values in {"time_s": TIME, **channels}.items():
+        assert found[name] == pytest.approx(values)
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("a,b\n1,2\n", "row 1: no header of an oscilloscope"),
+        ("x-axis,1\nsecond,Volt\n0,1\n1,over\n", "row 4, column 2 = 'over': must be a number"),
+        ("X,CH1,Start,Increment\nSequence,Volt\n0,1\n", "row 2: start and increment of the time are missing"),
+    ],
+)
+def test_an_oscilloscope_that_is_none(text, expected, tmp_path):
+    (tmp_path / "scope.csv").write_text(text)
+    with pytest.raises(InputError, match=r"scope.csv'") as caught:
+        read_oscilloscope(tmp_path / "scope.csv")
+    assert expected in str(caught.value)
+
+
+def test_matlab(tmp_path):
+    savemat(tmp_path / "a.mat", {"m": np.eye(2), "t": np.arange(5.0)[:, None], "daq": {"mV": 1000.0 * np.arange(5.0)}})
+    found = read_mat(tmp_path / "a.mat", {"time_s": "t", "voltage_V": "daq.mV"}, {"voltage_V": 1e-3})
+    assert found["time_s"] == pytest.approx(np.arange(5.0))
+    assert found["voltage_V"] == pytest.approx(np.arange(5.0))
+    with pytest.raises(InputError, match=r"a.mat': has no variable 'daq.V'; "):
+        read_mat(tmp_path / "a.mat", {"voltage_V": "daq.V"})
+    with pytest.raises(InputError, match=r"a.mat': variable 'm' has shape \(2, 2\), one column"):
+        read_mat(tmp_path / "a.mat", {"voltage_V": "m"})
+
+
+def test_a_mat_file_that_is_none(tmp_path):
+    (tmp_path / "a.mat").write_text("time,voltage")
+    with pytest.raises(InputError, match=r"a.mat': cannot be read as a .mat file"):
+        read_mat(tmp_path / "a.mat", {"time_s": "t"})
+
+
+def test_a_sheet(tmp_path):
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.Workbook()
+    for row in (["time", "force"], [0.0, 1.5], [1, None]):
+        book.active.append(row)
+    book.save(tmp_path / "a.xlsx")
+    assert np.array_equal(read_sheet(tmp_path / "a.xlsx", 1), [[0.0, 1.5], [1.0, np.nan]], equal_nan=True)
+
+
+def test_white_noise_of_a_smooth_curve():
+    values = np.sin(np.arange(5000) / 500.0) + 0.01 * np.random.default_rng(1).standard_normal(5000)
+    assert white_noise(values) == pytest.approx(0.01, rel=0.1)
+
+
+def test_what_is_written_is_read(tmp_path):
+    write_recording(tmp_path / "out", HEAD + SEGMENT + RUN, {"press.csv": samples()})
+    (run,) = load_rig(tmp_path / "out").recording.runs
+    assert run.channels["voltage_V"] == pytest.approx(samples()["voltage_V"], rel=1e-8)
+
+
+def test_nothing_is_written_that_is_no_recording(tmp_path):
+    with pytest.raises(InputError, match="runs is missing"):
+        write_recording(tmp_path / "out", HEAD + SEGMENT, {"press.csv": samples()})
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_nothing_is_overwritten(tmp_path):
+    (tmp_path / "mine.txt").write_text("")
+    with pytest.raises(InputError, match="exists already; name a new or empty folder"):
+        write_recording(tmp_path, HEAD + SEGMENT + RUN, {"press.csv": samples()})
+
+
+SETS = {
+    "pvdf_presses": "pvdf-presses",
+    "vhb_relaxation": "vhb-relaxation",
+    "adhesive_shear": "adhesive-shear",
+    "silicones_tensile": "silicones-tensile",
+    "rubber_treloar": "rubber-treloar",
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("script", SETS)
+def test_real_recordings(script, tmp_path):
+    data = Path(RECORDINGS) / SETS[script]
+    if not RECORDINGS or not data.is_dir():
+        pytest.skip("SOFTDOT_RECORDINGS names no folder with this set")
+    runpy.run_path(str(EXAMPLES / f"{script}.py"))["convert"](data, tmp_path / "out")
+    folders = [file.parent for file in (tmp_path / "out").rglob("rig.toml")]
+    assert folders
+    for folder in folders:
+        recording = load_rig(folder).recording
+        assert [len(found.presses) for found in recording.phases] == [1] * len(recording.runs)
+        assert all(noise.rms > 0.0 for noise in noise_models(recording).values())
+
+
+@pytest.mark.slow
+def test_noise_of_real_presses_whitens_a_trial_that_it_has_not_seen():
+    files = sorted((Path(RECORDINGS) / "pvdf-presses").glob("*Sp300*.npz"))[:2] if RECORDINGS else []
+    if len(files) < 2:
+        pytest.skip("SOFTDOT_RECORDINGS names no folder with this set")
+    read = runpy.run_path(str(EXAMPLES / "pvdf_presses.py"))["read"]
+    known, fresh = (read(file)[0]["voltage_1_V"][:4000] for file in files)  # 2 s before the touch
+    model = NoiseModel(fit_autoregression([known - known.mean()]), 1.0 / 2000.0, "rest", len(known))
+    white = model.whiten(fresh - fresh.mean())
+    assert white.var() == pytest.approx(1.0, abs=0.1)
+    assert np.abs([np.mean(white[k:] * white[:-k]) for k in range(1, 6)]).max() < 0.06
