@@ -64,16 +64,19 @@ def voltage_V(name: str, **changes: str) -> float:
     return summary_of(name, **changes)["open_circuit_voltage_V"][-1]
 
 
+@pytest.mark.slow
 def test_final_clamped_design():
     assert force_N("paper-final-clamped") == pytest.approx(14.44, rel=0.03)
     assert voltage_V("paper-final-clamped") == pytest.approx(FACTOR * 0.419, rel=0.04)
 
 
+@pytest.mark.slow
 def test_final_free_design():
     assert force_N("paper-final-free") == pytest.approx(5.05, rel=0.03)
     assert voltage_V("paper-final-free") == pytest.approx(FACTOR * 0.058, rel=0.04)
 
 
+@pytest.mark.slow
 def test_plane_strain_case_c1():
     """The voltage of the other code is that of C1 and F4 together; F4 differs by its free sides."""
     name = "paper-plane-strain"
@@ -82,6 +85,7 @@ def test_plane_strain_case_c1():
     assert total == pytest.approx(FACTOR * 0.433, rel=0.04)
 
 
+@pytest.mark.slow
 def test_readout_obeys_kirchhoff():
     """What flowed through R is what the film freed less what is left on the capacitors, through both filters.
 
@@ -216,6 +220,7 @@ def press_of(name: str, with_mechanisms: bool = True) -> PressResult:
     return result
 
 
+@pytest.mark.slow
 def test_a_leaking_film_decays_with_its_time_constant():
     """At depth V = V0 exp(-t / (R C)), with C the film's alone."""
     told, physics = actual(load_config(SHORT / "charge-leakage.toml"))

@@ -54,6 +54,7 @@ def test_a_force_of_what_the_depth_took_gives_the_depth():
     assert pushed.open_circuit_voltage_V == pytest.approx(deep.open_circuit_voltage_V, rel=1e-8)
 
 
+@pytest.mark.slow
 def test_elastic_sides_lie_between_free_and_clamped():
     """Stiffness 0 is free; a very stiff case is clamped."""
     def force(**sides):

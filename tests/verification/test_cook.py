@@ -61,6 +61,7 @@ def rubber(shear: float, bulk: float) -> InvariantLaw:
     return InvariantLaw(shear / 2.0, 0.0, 0.0, 0.0, bulk)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tied", [True, False], ids=["twins", "faces held"])
 def test_compressible_linear_panel(tied):
     """E 70, nu 1/3: corner rise 32.22 (own Q2; the CoFEA codes give 32.20 to 32.28)."""
@@ -68,6 +69,7 @@ def test_compressible_linear_panel(tied):
     agrees("Cook, linear", corner_rise(32, linear_law(1 / 3), tied, small * TRACTION) / small, 32.22, 0.002)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tied", [True, False], ids=["twins", "faces held"])
 def test_nearly_incompressible_neo_hookean_panel(tied):
     """mu 80.194, kappa 400889.8: 6.920 with 16 Q2/P1 elements a side, still rising slightly."""

@@ -31,6 +31,7 @@ def cycle(physics, own=None, steps=24, depth_mm=DEPTH_MM, **times):
     return follow(setup, setup.targets(True))
 
 
+@pytest.mark.slow
 def test_an_elastic_press_stores_all_work_and_gives_it_back():
     balance = cycle(Physics())
     assert balance.error < TOLERANCE

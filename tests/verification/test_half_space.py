@@ -74,6 +74,7 @@ def punch(size: float) -> float:
     return -4.0 * body.reactions()[under, 2].sum() / depth
 
 
+@pytest.mark.slow
 def test_flat_punch():
     """F = 2 a E* d (Johnson, Contact Mechanics, 1985, eq. 3.36)."""
     near, far = punch(12.0), punch(24.0)

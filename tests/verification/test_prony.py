@@ -40,6 +40,7 @@ def test_a_ramp_and_its_hold_follow_the_hereditary_integral():
     np.testing.assert_allclose(force(result), expected, atol=1e-3 * full)
 
 
+@pytest.mark.slow
 def test_a_cycle_loses_the_work_of_the_loss_modulus(tmp_path):
     """Depth d (1 - cos(w t)) / 2 of a plate that stays in contact: the work of the last cycle is pi G'' k (d/2)^2.
 

@@ -82,6 +82,7 @@ def tapped(stiffness, steps):
     return result.trace.dot_path_m / REACH_M, exact
 
 
+@pytest.mark.slow
 def test_a_tapped_mass_follows_the_linear_oscillator(stiffness, monkeypatch):
     """x = F0/k (sin r w t - r sin w t) / (1 - r^2), within the block's own 0.4 % and the step; of second order."""
     monkeypatch.setattr("solve.march.TIME_TOLERANCE", np.inf)

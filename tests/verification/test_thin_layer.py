@@ -38,6 +38,7 @@ def forces():
     return {x: force(x**2 / depth, depth) / (16 / 9 * x * depth) for x in (0.4, 0.8)}
 
 
+@pytest.mark.slow
 def test_sphere_on_a_bonded_layer_by_the_small_contact_series(forces):
     """F / Hertz = 1 + 1.133 x + 1.283 x^2 + 0.769 x^3 + 0.0975 x^4, nu 0.5 (Dimitriadis et al., Biophys. J. 82, 2002).
 

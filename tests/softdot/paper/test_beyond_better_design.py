@@ -7,7 +7,7 @@ from softdot.paper.beyond.designs import PAPERS, Design, design_config
 from softdot.paper.beyond.final import beats
 from softdot.paper.beyond.trials import Trial, press_of
 
-FOUND = Design(0.55, 1.8, 1.2, 2.3, 0.36, 0.44, 52.0)
+FOUND = Design(0.41, 1.1, 1.3, 2.9, 0.41, 0.58, 52.0)
 MESH = {"element_size_mm": 0.6, "contact_element_size_mm": 0.3}
 
 

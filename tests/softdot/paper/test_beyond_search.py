@@ -79,6 +79,7 @@ def found():
         return searching.search(Silent(), stand_in.CONSTANTS)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("goal", GOALS)
 def test_the_search_finds_what_many_times_as_many_random_designs_find(found, goal):
     best, crowd = found.best(goal), stand_in.trials(sample(11, 99))
@@ -88,6 +89,7 @@ def test_the_search_finds_what_many_times_as_many_random_designs_find(found, goa
     )
 
 
+@pytest.mark.slow
 def test_no_design_is_tried_twice(found):
     points = coordinates([each.design for each in found.trials])
     apart = np.linalg.norm(points[:, None] - points[None], axis=2) + 10 * np.eye(len(points))
