@@ -20,7 +20,6 @@ from scipy.sparse.linalg import LinearOperator, gmres, splu
 from mesh.types import Floats
 from solve.unsymmetric import Tangent
 
-SMALL = 30_000  # unknowns; below it PARDISO runs on one thread
 KRYLOV_ITERATIONS = 18  # with a factorisation of the same matrix
 EVENS_OUT = 15_000, 20.0, 2.0 / 3.0  # unknowns, back substitutions that cost as much as a factorisation, exponent
 
@@ -69,14 +68,8 @@ class Pardiso:
         return self._call(rhs)
 
     def _call(self, rhs: Floats) -> Floats:
-        """One phase; a small matrix on one thread, where waking the others costs more than they do."""
-        assert self._matrix is not None
-        threads = self._solver.libmkl.MKL_Set_Num_Threads_Local
-        before = threads(1 if self._matrix.shape[0] < SMALL else 0)
-        try:
-            solution: Floats = self._solver._call_pardiso(self._matrix, rhs)
-        finally:
-            threads(before)
+        """One phase."""
+        solution: Floats = self._solver._call_pardiso(self._matrix, rhs)
         return solution
 
     def free(self) -> None:
