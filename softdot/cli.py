@@ -11,8 +11,8 @@ from importlib import import_module
 from typing import Any, NoReturn
 
 from geometry.errors import InputError
+from softdot.command_output import BAD_INPUT, GOOD, INTERRUPTED, complain
 
-GOOD, BAD_INPUT, NOT_CONVERGED, INTERRUPTED = 0, 2, 3, 130
 COMMANDS = {
     "run": "softdot.run_command",
     "paper": "softdot.paper.command",
@@ -67,9 +67,7 @@ def _add_run(commands: Any) -> None:
         epilog="'softdot schema' explains every key of CONFIG.toml; examples/ has files to start from. "
         + EXIT_STATUS,
     )
-    run.add_argument(
-        "config", nargs="?", metavar="CONFIG.toml", help="without it: the final design of the paper"
-    )
+    _add_config(run)
     _add_output(run)
 
 
@@ -104,9 +102,7 @@ def _add_kit(commands: Any) -> None:
         description="Write all that a bench needs to make the segment that was simulated.",
         epilog=EXIT_STATUS,
     )
-    kit.add_argument(
-        "config", nargs="?", metavar="CONFIG.toml", help="without it: the final design of the paper"
-    )
+    _add_config(kit)
     _add_output(kit)
 
 
@@ -139,6 +135,12 @@ def _add_schema(commands: Any) -> None:
         description="Print the JSON Schema of the configuration: each key, its meaning, bounds and default.",
     )
     schema.add_argument("--json", action="store_true", help="no difference: the schema is JSON")
+
+
+def _add_config(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "config", nargs="?", metavar="CONFIG.toml", help="without it: the final design of the paper"
+    )
 
 
 def _add_output(command: argparse.ArgumentParser) -> None:
@@ -185,8 +187,7 @@ def _command(chosen: argparse.Namespace) -> int:
 
 
 def _say(text: str, status: int) -> int:
-    """One sentence on one line of standard error."""
-    print("softdot:", " ".join(text.split()), file=sys.stderr)
+    complain(text)
     return status
 
 

@@ -1,19 +1,16 @@
 """The numbers of one press without its files: what sweeps and studies ask for, kept on disk."""
 
 import hashlib
-import json
-import os
 from functools import cache
 from pathlib import Path
-from tempfile import NamedTemporaryFile
 from typing import Any
 
-from mesh.cache import folder
 from mesh.errors import MeshingError
 from softdot import stages
 from softdot.actual import actual
 from softdot.config import Config, config_hash
-from softdot.numbers import json_text, plain
+from softdot.numbers import plain
+from softdot.remembered import recall, remember
 from softdot.run_warnings import design_warnings, result_warnings
 from softdot.summary import mesh_part, press_part, stopped_solver
 
@@ -28,12 +25,19 @@ def outcome(config: Config, on_step: stages.OnStep | None = None) -> dict[str, A
     A press that does not converge is an outcome too: solver.converged is False, solver.failure says why. A mesh
     that failed is not remembered: it may have run out of time.
     """
-    return remembered(config) or _kept(_path(config), solved(config, on_step or _silent))
+    known = remembered(config)
+    if known is not None:
+        return known
+    numbers = solved(config, on_step or _silent)
+    if "mesh" in numbers:
+        remember(_name(config), numbers)
+    return numbers
 
 
 def remembered(config: Config) -> dict[str, Any] | None:
     """The outcome of an earlier call, None when there was none."""
-    return _read(_path(config))
+    found = recall(_name(config))
+    return found if isinstance(found, dict) else None
 
 
 def outcome_key(config: Config) -> str:
@@ -44,8 +48,8 @@ def outcome_key(config: Config) -> str:
     return hashlib.sha256(f"{config_hash(config)} {source_hash()} ".encode() + content).hexdigest()
 
 
-def _path(config: Config) -> Path:
-    return folder() / f"outcome-{outcome_key(config)}.json"
+def _name(config: Config) -> str:
+    return f"outcome-{outcome_key(config)}"
 
 
 def solved(config: Config, on_step: stages.OnStep) -> dict[str, Any]:
@@ -78,26 +82,3 @@ def source_hash() -> str:
 
 def _silent(*_args: Any) -> None:
     """No progress."""
-
-
-def _read(path: Path) -> dict[str, Any] | None:
-    """The outcome in a file, None when there is none or it is damaged."""
-    try:
-        found = json.loads(path.read_text("utf-8"))
-    except (OSError, ValueError):
-        return None
-    return found if isinstance(found, dict) else None
-
-
-def _kept(path: Path, numbers: dict[str, Any]) -> dict[str, Any]:
-    """Write beside, then rename; a cache that cannot be written is no cache."""
-    if "mesh" not in numbers:
-        return numbers
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with NamedTemporaryFile("w", dir=path.parent, suffix=".part", delete=False, encoding="utf-8") as file:
-            file.write(json_text(numbers))
-        os.replace(file.name, path)
-    except OSError:
-        pass
-    return numbers

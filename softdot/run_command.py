@@ -1,16 +1,10 @@
 """softdot run: what it prints and how it exits."""
 
-import os
-import sys
 from argparse import Namespace
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from softdot.numbers import json_text
-
-GOOD, NOT_CONVERGED = 0, 3
+from softdot.command_output import GOOD, NOT_CONVERGED, complain, only_the_summary_on_stdout, show
 
 
 def command(chosen: Namespace) -> int:
@@ -22,29 +16,11 @@ def command(chosen: Namespace) -> int:
     config = load_config(chosen.config)
     with only_the_summary_on_stdout(), progress_on_terminal() as progress:
         summary = run_config(config, Path(chosen.output), progress)
-    if chosen.json:
-        sys.stdout.write(json_text(summary))
-    elif sys.stdout.isatty():
-        print(short_text(summary, chosen.output))
+    show(summary, chosen, short_text)
     if summary["solver"]["converged"]:
         return GOOD
-    failure = " ".join(summary["solver"]["failure"].split())
-    print(f"softdot: not converged, {failure}; what converged is in '{chosen.output}'", file=sys.stderr)
+    complain(f"not converged, {summary['solver']['failure']}; what converged is in '{chosen.output}'")
     return NOT_CONVERGED
-
-
-@contextmanager
-def only_the_summary_on_stdout() -> Iterator[None]:
-    """Send what compiled libraries print to standard error while the pipeline runs."""
-    sys.stdout.flush()
-    kept = os.dup(1)
-    os.dup2(2, 1)
-    try:
-        yield
-    finally:
-        sys.stdout.flush()
-        os.dup2(kept, 1)
-        os.close(kept)
 
 
 def short_text(summary: dict[str, Any], output: str) -> str:

@@ -2,7 +2,7 @@
 
 from geometry.errors import InputError
 from geometry.fabrication.frame_layout import TAB_CLEARANCE_MM, TIE_MM, FrameLayout, held_names, widest_gap
-from geometry.fabrication.limits import ROUNDING_MM, refuse_thin
+from geometry.fabrication.limits import ROUNDING_MM, refuse_small_keys, refuse_thin
 from geometry.fabrication.parameters import Fabrication
 from geometry.parameters import Segment
 from geometry.printers import PrinterProfile, printer_profile
@@ -33,15 +33,7 @@ def _check_keys(fabrication: Fabrication, printer: PrinterProfile) -> None:
         ("tab_slot_mm", "a channel", printer["groove_mm"], "engraving"),
         ("pin_diameter_mm", "a pin", printer["feature_mm"], "pin"),
     )
-    for key, what, least, limit in checks:
-        value = getattr(fabrication, key)
-        refuse_thin(
-            f"fabrication.{key} = {value:g}: {what}",
-            value,
-            least,
-            f"the {printer.process.upper()} limit for the {limit}",
-            "make it larger",
-        )
+    refuse_small_keys(fabrication, printer, checks)
 
 
 def _check_cable(layout: FrameLayout, fabrication: Fabrication, printer: PrinterProfile) -> None:

@@ -5,7 +5,7 @@ from typing import Any, Literal
 
 from geometry.errors import InputError
 from geometry.fabrication.cavity import Cavity, cavity_of, draft_deviation
-from geometry.fabrication.limits import refuse_thin
+from geometry.fabrication.limits import refuse_small_keys, refuse_thin
 from geometry.fabrication.parameters import Fabrication
 from geometry.parameters import Segment
 from geometry.printers import PrinterProfile, printer_profile
@@ -52,15 +52,7 @@ def check_mould_sizes(fabrication: Fabrication, printer: PrinterProfile) -> None
         ("overflow_mm", "a channel", printer["groove_mm"], "engraving"),
         ("pin_diameter_mm", "a pin", printer["feature_mm"], "pin"),
     )
-    for key, what, least, limit in checks:
-        value = getattr(fabrication, key)
-        refuse_thin(
-            f"fabrication.{key} = {value:g}: {what}",
-            value,
-            least,
-            f"the {printer.process.upper()} limit for the {limit}",
-            "make it larger" if printer.process == "sla" else "make it larger or print with printer = 'sla'",
-        )
+    refuse_small_keys(fabrication, printer, checks)
 
 
 def _refuse_shallow(name: str, cavity: Cavity, printer: PrinterProfile) -> None:

@@ -1,14 +1,11 @@
 """softdot kit: what it prints and how it exits."""
 
-import sys
 from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
-from softdot.numbers import json_text
-from softdot.run_command import only_the_summary_on_stdout
+from softdot.command_output import GOOD, NOT_CONVERGED, complain, only_the_summary_on_stdout, show
 
-GOOD, NOT_CONVERGED = 0, 3
 ROWS = 5
 
 
@@ -21,14 +18,10 @@ def command(chosen: Namespace) -> int:
     config = load_config(chosen.config)
     with only_the_summary_on_stdout(), progress_on_terminal() as progress:
         summary = make_kit(config, Path(chosen.output), progress)
-    if chosen.json:
-        sys.stdout.write(json_text(summary))
-    elif sys.stdout.isatty():
-        print(short_text(summary, chosen.output))
+    show(summary, chosen, short_text)
     if summary["failure"] is None:
         return GOOD
-    failure = " ".join(summary["failure"].split())
-    print(f"softdot: not converged, {failure}; the rest of the kit is in '{chosen.output}'", file=sys.stderr)
+    complain(f"not converged, {summary['failure']}; the rest of the kit is in '{chosen.output}'")
     return NOT_CONVERGED
 
 

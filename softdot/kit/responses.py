@@ -1,23 +1,19 @@
 """Force and voltage at the deepest step, their derivatives, and their values at the ends of a shift."""
 
 import hashlib
-import json
-import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from tempfile import NamedTemporaryFile
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from mesh.cache import folder
 from mesh.types import TetMesh
 from softdot import stages
 from softdot.actual import actual
-from softdot.config import Config, config_hash
+from softdot.config import Config
 from softdot.differentiate import press_with_derivatives
-from softdot.numbers import json_text
-from softdot.outcome import source_hash
+from softdot.outcome import outcome_key
+from softdot.remembered import recall, remember
 from softdot.summary import history
 from solve.result import PressResult
 
@@ -76,14 +72,15 @@ def value(config: Config, tet_mesh: TetMesh) -> Response:
 
 def remembered(config: Config, what: str, make: Callable[[], Any]) -> Any:
     """Plain numbers kept on disk under the hash of a configuration, of the program and of what was asked."""
-    own = hashlib.sha256((what + source_hash()).encode())
+    own = hashlib.sha256((what + outcome_key(config)).encode())
     for name in ("differentiate.py", "kit/responses.py", "kit/factors.py"):
         own.update((Path(__file__).parents[1] / name).read_bytes())
-    path = folder() / f"response-{config_hash(config)[:32]}-{own.hexdigest()[:16]}.json"
-    try:
-        return json.loads(path.read_text("utf-8"))
-    except (OSError, ValueError):
-        return _kept(path, make())
+    name = f"response-{own.hexdigest()}"
+    known = recall(name)
+    if known is None:
+        known = make()
+        remember(name, known)
+    return known
 
 
 def _response(config: Config, result: PressResult) -> Response:
@@ -99,15 +96,3 @@ def _response(config: Config, result: PressResult) -> Response:
 def _deepest(result: PressResult) -> int:
     """Of equally deep steps the first."""
     return int(np.argmax(np.round([step.indentation_m for step in result.steps], 12)))
-
-
-def _kept(path: Path, numbers: Any) -> Any:
-    """Write beside, then rename; a cache that cannot be written is no cache."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with NamedTemporaryFile("w", dir=path.parent, suffix=".part", delete=False, encoding="utf-8") as file:
-            file.write(json_text(numbers))
-        os.replace(file.name, path)
-    except OSError:
-        pass
-    return numbers

@@ -1,12 +1,10 @@
 """softdot paper: what it prints and how it exits."""
 
-import sys
 from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
-from softdot.numbers import json_text
-from softdot.run_command import GOOD, NOT_CONVERGED, only_the_summary_on_stdout
+from softdot.command_output import GOOD, NOT_CONVERGED, complain, only_the_summary_on_stdout, show
 
 
 def command(chosen: Namespace) -> int:
@@ -19,12 +17,9 @@ def command(chosen: Namespace) -> int:
         with only_the_summary_on_stdout(), progress_on_terminal() as progress:
             summary = run_paper(Path(chosen.output), progress)
     except NotSolvedError as error:
-        print(f"softdot: paper, {error}; nothing was written, solved presses are remembered", file=sys.stderr)
+        complain(f"paper, {error}; nothing was written, solved presses are remembered")
         return NOT_CONVERGED
-    if chosen.json:
-        sys.stdout.write(json_text(summary))
-    elif sys.stdout.isatty():
-        print(short_text(summary, chosen.output))
+    show(summary, chosen, short_text)
     return GOOD
 
 

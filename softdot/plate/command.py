@@ -1,17 +1,13 @@
 """softdot plate: what it prints and how it exits."""
 
-import sys
 from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
 from geometry.braille import QUANTITIES
 from geometry.errors import InputError
-from softdot.numbers import json_text
+from softdot.command_output import GOOD, only_the_summary_on_stdout, show
 from softdot.plate.request import PlateRequest
-from softdot.run_command import only_the_summary_on_stdout
-
-GOOD = 0
 
 
 def command(chosen: Namespace) -> int:
@@ -22,10 +18,7 @@ def command(chosen: Namespace) -> int:
     request = request_of(chosen)
     with only_the_summary_on_stdout(), progress_on_terminal() as progress:
         summary = make_plate(request, Path(chosen.output), progress)
-    if chosen.json:
-        sys.stdout.write(json_text(summary))
-    elif sys.stdout.isatty():
-        print(short_text(summary, chosen.output))
+    show(summary, chosen, short_text)
     return GOOD
 
 

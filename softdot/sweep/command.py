@@ -1,14 +1,10 @@
 """softdot sweep: what it prints and how it exits."""
 
-import sys
 from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
-from softdot.numbers import json_text
-from softdot.run_command import only_the_summary_on_stdout
-
-GOOD, NOT_CONVERGED, INTERRUPTED = 0, 3, 130
+from softdot.command_output import GOOD, INTERRUPTED, NOT_CONVERGED, complain, only_the_summary_on_stdout, show
 
 
 def command(chosen: Namespace) -> int:
@@ -25,15 +21,13 @@ def command(chosen: Namespace) -> int:
     except KeyboardInterrupt:
         if not (Path(chosen.output) / POINTS).exists():
             raise
-        _say(f"interrupted; finished points are kept in '{chosen.output}', the same command goes on with the others")
+        kept = f"finished points are kept in '{chosen.output}', the same command goes on with the others"
+        complain(f"interrupted; {kept}")
         return INTERRUPTED
-    if chosen.json:
-        sys.stdout.write(json_text(summary))
-    elif sys.stdout.isatty():
-        print(short_text(summary, chosen.output))
+    show(summary, chosen, short_text)
     if summary["ended"]["solved"]:
         return GOOD
-    _say(f"not one of {summary['points']} points could be solved; the reasons are in '{chosen.output}'")
+    complain(f"not one of {summary['points']} points could be solved; the reasons are in '{chosen.output}'")
     return NOT_CONVERGED
 
 
@@ -46,7 +40,3 @@ def short_text(summary: dict[str, Any], output: str) -> str:
         lines.append(f"{summary['solved_now']} solved now, {rate}; {summary['reused']} were there")
     lines += [f"warning: {warning}" for warning in summary["warnings"]]
     return "\n".join([*lines, f"{output}/sweep.parquet"])
-
-
-def _say(text: str) -> None:
-    print(f"softdot: {text}", file=sys.stderr)

@@ -84,26 +84,14 @@ def overlapping_electrodes(draw, tables):
     return tables
 
 
-def impossible_mechanism(draw, tables):
-    """A mechanism with parameters that physics does not allow, at a component that it has not, or unknown."""
-    segment = tables["segment"]
-    size = draw(log_between(0.01, 10.0))
-    reach = max(segment["length_mm"], segment["width_mm"])
-    options = [
+def impossible_materials(size):
+    """Mechanism, component and parameters that no material has."""
+    return [
         ("viscoelasticity", "medium2", {"relative_moduli": [0.6, 0.4 + 0.01 * size], "relaxation_times_s": [0.1, 1.0]}),
         ("viscoelasticity", "medium2", {"relative_moduli": [0.2], "relaxation_times_s": [-size]}),
         ("viscoelasticity", "medium2", {"relative_moduli": [], "relaxation_times_s": [size]}),
         ("viscoelasticity", "medium2", {"relaxation_times_s": [size]}),
         ("viscoelasticity", "bond-medium1-film", {"relative_moduli": [0.2], "relaxation_times_s": [size]}),
-        ("friction", "dot", {"coefficient": -size}),
-        ("friction", "dot", {"coefficient": "0.5"}),
-        ("friction", "dot", {"coefficient": True}),
-        ("friction", "film", {"coefficient": size}),
-        ("friktion", "dot", {"coefficient": size}),
-        ("delamination", "bond-base", {"center_mm": [reach, 0.0], "diameter_mm": 0.3 * reach}),
-        ("delamination", "bond-film-medium2", {"diameter_mm": 1.1 * reach}),
-        ("delamination", "bond-film-medium2", {"diameter_mm": -size}),
-        ("delamination", "bond-film-medium2", {"diameter_mm": [size]}),
         ("hyperelastic-stiffening", "medium2", {"mu_MPa": [size], "alpha": [-2.0]}),
         ("hyperelastic-stiffening", "medium2", {"mu_MPa": [size], "alpha": [2.0, 3.0]}),
         ("hyperelastic-stiffening", "medium2", {"mu_MPa": [], "alpha": []}),
@@ -119,6 +107,21 @@ def impossible_mechanism(draw, tables):
         ("film-yield", "film", {"yield_stress_MPa": 0.0}),
         ("film-yield", "film", {"yield_stress_MPa": size, "hardening_modulus_MPa": -size}),
         ("film-prestretch", "film", {"strain_x": 0.2 + size}),
+    ]
+
+
+def impossible_rest(size, reach):
+    """The same of the dot, the bonds, the rig, the read-out and the numbers themselves."""
+    return [
+        ("friction", "dot", {"coefficient": -size}),
+        ("friction", "dot", {"coefficient": "0.5"}),
+        ("friction", "dot", {"coefficient": True}),
+        ("friction", "film", {"coefficient": size}),
+        ("friktion", "dot", {"coefficient": size}),
+        ("delamination", "bond-base", {"center_mm": [reach, 0.0], "diameter_mm": 0.3 * reach}),
+        ("delamination", "bond-film-medium2", {"diameter_mm": 1.1 * reach}),
+        ("delamination", "bond-film-medium2", {"diameter_mm": -size}),
+        ("delamination", "bond-film-medium2", {"diameter_mm": [size]}),
         ("adhesive-compliance", "bond-film-medium2", {"normal_stiffness_N_per_mm3": size}),
         ("adhesive-compliance", "bond-film-medium2", {}),
         ("adhesive-compliance", "bond-film-medium2", {"thickness_um": 1e-6, "youngs_modulus_MPa": 1e3}),
@@ -136,6 +139,13 @@ def impossible_mechanism(draw, tables):
         ("contact-gap", "dot", {"gap_mm": -0.1}),
         ("contact-gap", "dot", {"gap": 0.1}),
     ]
+
+
+def impossible_mechanism(draw, tables):
+    """A mechanism with parameters that physics does not allow, at a component that it has not, or unknown."""
+    segment = tables["segment"]
+    size = draw(log_between(0.01, 10.0))
+    options = impossible_materials(size) + impossible_rest(size, max(segment["length_mm"], segment["width_mm"]))
     if "effector" not in segment:
         options.append(("stress-softening", "effector", {"loss_ratio": 0.1}))
         options.append(("delamination", "bond-effector-medium1", {"diameter_mm": 0.5}))

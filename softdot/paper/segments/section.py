@@ -58,6 +58,17 @@ def _blocks(study: Study, folder: Path) -> list[Block]:
         "sides (C1 to C6), medium 1 being 0.8, 2 or 4 mm thick and medium 2 hard (5 MPa) or very soft (0.05 MPa). It "
         "then chose a medium 2 of 1 MPa and a medium 1 of 0.5 mm as its final design. All its voltages are the "
         "simulated ones over the calibration factor 337; ours are divided by the same factor, to be compared.",
+        *_two_readings(study, folder),
+        *_both_boundaries(study, folder),
+        *_selected(study, folder),
+        *_depth(study, folder),
+        *_every_press(study),
+    ]
+
+
+def _two_readings(study: Study, folder: Path) -> list[Block]:
+    """What the readings are, and their forces."""
+    return [
         Heading("Two readings"),
         "The paper shows a drawing of a cross-section and gives forces in newtons, but no width. Cross-section: "
         "nothing varies across a width of 16 mm, the width of the film in the experiment, and the dot is a ridge. "
@@ -75,6 +86,12 @@ def _blocks(study: Study, folder: Path) -> list[Block]:
             "Bars: ours, blue for free and red for clamped sides. Diamonds: the six forces that the paper states. The "
             "last one is not reached: the paper's force rises when medium 1 becomes thinner, ours falls.",
         ),
+    ]
+
+
+def _both_boundaries(study: Study, folder: Path) -> list[Block]:
+    """The free and the clamped cases."""
+    return [
         Heading("Free sides: the paper's Fig. 7"),
         Figure(
             figures.draw_cases(study, FREE, folder, "fig07-free"),
@@ -89,6 +106,12 @@ def _blocks(study: Study, folder: Path) -> list[Block]:
             "The thinner medium 1 (0.8 mm in C1, C2; 4 mm in C5, C6), the more the film is stretched. C1, C3, C5 have "
             "the soft medium 2.",
         ),
+    ]
+
+
+def _selected(study: Study, folder: Path) -> list[Block]:
+    """The designs that the paper chose from."""
+    return [
         Heading("Selected designs: the paper's Fig. 10, and the 50 mV criterion"),
         Figure(
             figures.draw_selected(study, folder),
@@ -97,6 +120,12 @@ def _blocks(study: Study, folder: Path) -> list[Block]:
         ),
         tables.criterion(study),
         changes(study),
+    ]
+
+
+def _depth(study: Study, folder: Path) -> list[Block]:
+    """How the voltage grows with depth."""
+    return [
         Heading("The voltage is not proportional to the depth"),
         Figure(
             figures.draw_depth(study, folder),
@@ -105,6 +134,12 @@ def _blocks(study: Study, folder: Path) -> list[Block]:
             "give a much larger n than free ones, since there the film is stretched and stretch grows with the square "
             "of the depth.",
         ),
+    ]
+
+
+def _every_press(study: Study) -> list[Block]:
+    """All numbers, and how far to trust them."""
+    return [
         Heading("Every press"),
         yielding(study),
         tables.presses(study, "plane-strain", "presses-cross-section", "Cross-section, 16 mm wide"),

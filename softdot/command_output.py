@@ -1,0 +1,39 @@
+"""What every command prints: its summary as JSON or in a few lines, and nothing from compiled libraries."""
+
+import os
+import sys
+from argparse import Namespace
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from softdot.numbers import json_text
+
+GOOD, BAD_INPUT, NOT_CONVERGED, INTERRUPTED = 0, 2, 3, 130
+
+
+def show(summary: dict[str, Any], chosen: Namespace, short_text: Callable[[dict[str, Any], str], str]) -> None:
+    """The summary as JSON when asked for, else in short on a terminal."""
+    if chosen.json:
+        sys.stdout.write(json_text(summary))
+    elif sys.stdout.isatty():
+        print(short_text(summary, chosen.output))
+
+
+def complain(text: str) -> None:
+    """One sentence on standard error."""
+    print("softdot:", " ".join(text.split()), file=sys.stderr)
+
+
+@contextmanager
+def only_the_summary_on_stdout() -> Iterator[None]:
+    """Send what compiled libraries print to standard error while the pipeline runs."""
+    sys.stdout.flush()
+    kept = os.dup(1)
+    os.dup2(2, 1)
+    try:
+        yield
+    finally:
+        sys.stdout.flush()
+        os.dup2(kept, 1)
+        os.close(kept)
