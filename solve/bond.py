@@ -61,9 +61,9 @@ class Bond(Term):
         """Memory at the converged jump."""
         return self._relax(self.facets.jump(trial.displacement), history, trial.time_step)[2]
 
-    def time_error(self, history: History, new: History, time_step: float) -> float:
+    def time_error(self, history: History, new: History, time_step: float, after_kink: bool) -> float:
         """Error of the time integration in this step, relative to the largest jump."""
-        return 0.0 if self.prony is None else self.prony.time_error(history, new, time_step)
+        return 0.0 if self.prony is None else self.prony.time_error(history, new, time_step, after_kink)
 
     def _relax(self, jump: Jump, history: History, time_step: float) -> tuple[Floats, float, History]:
         """Relaxed (d, d . n) (k, q, 4), its derivative by the jump, and the new memory."""

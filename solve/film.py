@@ -73,10 +73,10 @@ class FilmRegion(Term):
         """Memory at the converged state."""
         return self._respond(trial, history)[1]
 
-    def time_error(self, history: History, new: History, time_step: float) -> float:
+    def time_error(self, history: History, new: History, time_step: float, after_kink: bool) -> float:
         """Error of the time integration in this step, relative to the largest stress."""
         errors = [
-            law.time_error(old, now, time_step)
+            law.time_error(old, now, time_step, after_kink)
             for law, old, now in zip(self.inelastic, history, new, strict=True)
             if isinstance(law, Prony)
         ]

@@ -49,7 +49,7 @@ def march(
         try:
             # across a kink the past says nothing of the future
             state = _equilibrate(system, linear, past[-1:] if first else past, load, time)
-            error = 0.0 if first else system.time_error(past[-1], state)
+            error = system.time_error(past[-1], state, after_kink=first)
         except NoEquilibriumError as failure:
             size *= 0.5
             if size < SMALLEST_SUBSTEP:

@@ -194,9 +194,9 @@ class System:
         """Memories once the trial state has converged."""
         return tuple(term.advance(trial, history) for term, history in zip(self.terms, histories, strict=True))
 
-    def time_error(self, state: State, new: State) -> float:
+    def time_error(self, state: State, new: State, after_kink: bool) -> float:
         """Largest error estimate of the terms that integrate in time, relative."""
         return max(
-            term.time_error(old, now, new.time - state.time)
+            term.time_error(old, now, new.time - state.time, after_kink)
             for term, old, now in zip(self.terms, state.histories, new.histories, strict=True)
         )

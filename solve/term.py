@@ -1,5 +1,6 @@
 """What every part of the discrete problem offers: element residuals, element tangents and its memory."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -42,7 +43,7 @@ class Block(NamedTuple):
     residuals: Floats
 
 
-class Term:
+class Term(ABC):
     """One part of the problem: a medium, the film, a bond, the contact, the rig.
 
     groups : arrays (m, k) of unknowns, -1 where prescribed, one row an element.
@@ -51,17 +52,17 @@ class Term:
     symmetric = True
 
     @property
+    @abstractmethod
     def groups(self) -> tuple[Ints, ...]:
         """Unknowns (m, k) of each group of elements."""
-        raise NotImplementedError
 
     def start(self) -> History:
         """Memory of the undeformed state at rest."""
         return None
 
+    @abstractmethod
     def elements(self, trial: Trial, history: History) -> Iterator[Block]:
         """Residuals and consistent tangents, group by group and chunk by chunk."""
-        raise NotImplementedError
 
     def advance(self, trial: Trial, history: History) -> History:
         """Memory once the trial state has converged."""
@@ -75,6 +76,9 @@ class Term:
         """Lagrange multipliers without a diagonal entry: their unknowns (c,) and nodal areas (c,)."""
         return np.zeros(0, np.int64), np.zeros(0)
 
-    def time_error(self, history: History, new: History, time_step: float) -> float:
-        """Estimated error of the time integration in a step, relative; zero for a term without rates."""
+    def time_error(self, history: History, new: History, time_step: float, after_kink: bool) -> float:
+        """Estimated error of the time integration in a step, relative; zero for a term without rates.
+
+        after_kink : the rate of loading jumped at the start of the step.
+        """
         return 0.0

@@ -15,6 +15,7 @@ Boundary = Literal["free", "clamped"]
 
 LENGTH_MM = 2.5
 FILM_WIDTH_MM = 16.0  # section 2 of the paper
+FILM_UM = 28.0
 H2_MM = 2.0  # the tables; the text says 5
 E1_MPA = 5.0
 EFFECTOR_MPA = 1.0
@@ -32,14 +33,18 @@ def segment_config(
     e2_MPa: float,
     reading: Reading = "plane-strain",
     *,
+    h2_mm: float = H2_MM,
+    film_um: float = FILM_UM,
     effector_height_mm: float = EFFECTOR_HEIGHT_MM,
+    effector_MPa: float = EFFECTOR_MPA,
+    e1_MPa: float = E1_MPA,
     ridge_radius_mm: float = RIDGE_RADIUS_MM,
     poisson_ratio: float = POISSON_RATIO,
     held_layers: Sequence[str] = HELD_LAYERS,
     load_steps: int = 4,
     mesh: Mapping[str, Any] = DEFAULT_MESH,
 ) -> Config:
-    """One press of the paper's section 4: its segment with medium 1 of h1_mm and medium 2 of e2_MPa.
+    """One press of the paper's section 4: its segment with medium 1 of h1_mm and medium 2 of e2_MPa, and other designs.
 
     ridge_radius_mm : plane strain only; poisson_ratio : of all rubbers; load_steps : equal steps up to 0.3 mm;
     mesh : the table [mesh]. InputError for what cannot be built.
@@ -55,12 +60,12 @@ def segment_config(
                 "held_layers": list(held_layers),
                 "effector": {"shape": "layer", "height_mm": effector_height_mm, "material": "effector"},
                 "medium1": {"thickness_mm": h1_mm, "material": "medium1"},
-                "film": {"thickness_um": 28.0, "material": "pvdf"},
-                "medium2": {"thickness_mm": H2_MM, "material": "medium2"},
+                "film": {"thickness_um": film_um, "material": "pvdf"},
+                "medium2": {"thickness_mm": h2_mm, "material": "medium2"},
             },
             "materials": {
-                "effector": _rubber(EFFECTOR_MPA, poisson_ratio),
-                "medium1": _rubber(E1_MPA, poisson_ratio),
+                "effector": _rubber(effector_MPa, poisson_ratio),
+                "medium1": _rubber(e1_MPa, poisson_ratio),
                 "medium2": _rubber(e2_MPa, poisson_ratio),
             },
             "dot": {"shape": "cap", "standard": "marburg-medium"}

@@ -51,14 +51,14 @@ class Prony:
         rate = change / time_step if time_step > 0.0 else np.full_like(change, np.nan)
         return Response(stress, instant * elastic.tangent), (elastic.stress, rate, branches)
 
-    def time_error(self, memory: Memory, new: Memory, time_step: float) -> float:
+    def time_error(self, memory: Memory, new: Memory, time_step: float, after_kink: bool) -> float:
         """Largest error of the branch stresses in this step, relative to the largest elastic stress.
 
         For S0 with a constant second derivative the linear update errs by g dt^2 S0'' / 12 when a << 1, less for
         larger a. The derivative comes from the rates of this step and the last; after a kink there is none yet.
         """
         bend = np.abs(new[1] - memory[1]) * time_step
-        if not np.isfinite(bend).all():
+        if after_kink or not np.isfinite(bend).all():
             return 0.0
         largest = max(float(np.abs(new[0]).max()), float(np.abs(memory[0]).max()), 1e-300)
         fade, _ = self.decay(time_step)

@@ -32,6 +32,6 @@ class Frozen(Prony):
         """Response with the memory M, which stays."""
         return Response(elastic.stress - memory[1], elastic.tangent), (elastic.stress, memory[1])
 
-    def time_error(self, memory: Memory, new: Memory, time_step: float) -> float:
+    def time_error(self, memory: Memory, new: Memory, time_step: float, after_kink: bool) -> float:
         """No time passes."""
         return 0.0

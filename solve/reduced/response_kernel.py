@@ -3,8 +3,10 @@
 With the amplitudes s of a layer's elastic stress, the Prony update of solve.materials.prony acts on the amplitudes,
     q_i <- exp(-a_i) q_i + g_i gain_i (s - s_old),      alpha = sum (g_i s - q_i),      a_i = dt / tau_i,
 and everything else is a function of the depth u and of alpha. As s depends on alpha the step is implicit; its fixed
-point contracts by about sum g_i (1 - gain_i). The rig's balance and its Newmark integration are those of solve.rig:
-    m a'' + F(a, alpha) = (u - a) / c,   or = the force that drives.
+point contracts by about sum g_i (1 - gain_i). The rig's balance is that of solve.rig,
+    m a'' + F(a, alpha) = (u - a) / c,   or = the force that drives,
+by central differences (velocity Verlet, Phys. Rev. 159, 1967) in sub-steps that resolve every oscillation, with alpha
+extrapolated to the middle of the sample: both second order. Of a mass that rings faster than that the answer is static.
 """
 
 import numba as nb
@@ -17,7 +19,7 @@ BY_DEPTH, BY_FORCE = 0, 1
 FINE, TOO_DEEP = 0, 1
 TOLERANCE = 1e-10  # of the amplitudes
 ROUNDS = 60
-PHASE = 0.5  # of the rig's fastest oscillation in one sub-step
+PHASE = 0.25  # of the rig's fastest oscillation in one sub-step; central differences are stable up to 2
 MOST_PARTS = 1000
 
 
@@ -82,6 +84,26 @@ def _settle(
 
 
 @nb.njit(cache=True, error_model="numpy")
+def _swing(
+    motion: Floats, parts: int, step: float, inertia: float, spring: float, push: float, pushed: float, table: Floats,
+    touch: Floats, full: float, features: Floats,
+) -> None:  # fmt: skip
+    """Move depth, velocity and acceleration (3,) through a sample while the force on the mass goes from push to pushed.
+
+    The features stay; below touch nothing but spring and force acts.
+    """
+    first = first_touch(touch, features)
+    depth, velocity, acceleration = motion
+    for part in range(1, parts + 1):
+        velocity += 0.5 * step * acceleration
+        depth += step * velocity
+        force = force_and_slope(table, features, first, full, depth)[0] if depth > first else 0.0
+        acceleration = (push + (pushed - push) * part / parts - spring * depth - force) / inertia
+        velocity += 0.5 * step * acceleration
+    motion[0], motion[1], motion[2] = depth, velocity, acceleration
+
+
+@nb.njit(cache=True, error_model="numpy")
 def follow(
     time: Floats, drive: Floats, kind: int, compliance: float, mass: float, table: Floats, touch: Floats, full: float,
     pairs: Ints, start: Ints, moduli: Floats, times: Floats, layer: Ints, observed: int, path: Floats, outputs: Floats,
@@ -98,46 +120,36 @@ def follow(
     memory, fade, gain = np.zeros((branches, modes)), np.zeros(branches), np.zeros(branches)
     ruled = kind == BY_DEPTH and compliance == 0.0
     spring = 1.0 / compliance if kind == BY_DEPTH and not ruled else 0.0
-    inertia = 0.0 if ruled else mass
+    push = spring * drive if kind == BY_DEPTH else drive  # on the mass
     set_features(alpha, pairs, features)
     read(table, features, touch[0], full, touch[0], values)
     old[:] = values[observed:]
     stiffness = spring + abs(force_and_slope(table, features, touch[0], full, full)[1])
-    depth, velocity, acceleration, before, last = 0.0, 0.0, 0.0, 0.0, -1.0
+    motion, last = np.zeros(3), -1.0
     for n in range(len(time)):
         span = time[n] - time[n - 1] if n > 0 else 0.0
-        parts = 1
-        if inertia > 0.0:
-            parts = min(MOST_PARTS, 1 + int(span * np.sqrt(stiffness / inertia) / PHASE))
-        step = span / parts
-        if abs(step - last) > 1e-9 * step:
-            _decay(step, moduli, times, layer, start, fade, gain, instant)
-            last = step
-        dynamic = 4.0 * inertia / step**2 if inertia > 0.0 and step > 0.0 else 0.0
-        for part in range(1, parts + 1):
-            asked = before + (drive[n] - before) * part / parts
-            _known(layer, start, fade, gain, memory, old, known)
-            for r in range(modes):  # goes on as it went
-                here = alpha[r]
-                alpha[r] += here - last_alpha[r]
-                last_alpha[r] = here
-            if ruled:
-                now = _settle(table, touch, full, pairs, features, alpha, instant, known, -1.0, 0.0, asked, observed,
-                              values)  # fmt: skip
-            else:
-                push = asked * spring if kind == BY_DEPTH else asked
-                push += dynamic * (depth + step * velocity) + (inertia * acceleration if dynamic > 0.0 else 0.0)
-                now = _settle(table, touch, full, pairs, features, alpha, instant, known, spring + dynamic, push,
-                              depth, observed, values)  # fmt: skip
-            if now > full * (1.0 + 1e-6):
-                return TOO_DEEP
-            _remember(layer, start, fade, gain, memory, old, values[observed:])
-            if dynamic > 0.0:
-                faster = dynamic / inertia * (now - depth - step * velocity) - acceleration
-                velocity += 0.5 * step * (acceleration + faster)
-                acceleration = faster
-            depth = now
-        before = drive[n]
-        path[n] = depth
+        if abs(span - last) > 1e-9 * span:
+            _decay(span, moduli, times, layer, start, fade, gain, instant)
+            last = span
+        _known(layer, start, fade, gain, memory, old, known)
+        parts = 0 if ruled or mass == 0.0 or span == 0.0 else 1 + int(span * np.sqrt(stiffness / mass) / PHASE)
+        if 0 < parts <= MOST_PARTS:
+            set_features(alpha + 0.5 * (alpha - last_alpha), pairs, features)
+            _swing(motion, parts, span / parts, mass, spring, push[n - 1], push[n], table, touch, full, features)
+        for r in range(modes):  # goes on as it went
+            here = alpha[r]
+            alpha[r] += here - last_alpha[r]
+            last_alpha[r] = here
+        if ruled or 0 < parts <= MOST_PARTS:
+            asked = drive[n] if ruled else motion[0]
+            motion[0] = _settle(table, touch, full, pairs, features, alpha, instant, known, -1.0, 0.0, asked, observed,
+                                values)  # fmt: skip
+        else:
+            motion[0] = _settle(table, touch, full, pairs, features, alpha, instant, known, spring, push[n], motion[0],
+                                observed, values)  # fmt: skip
+        if motion[0] > full * (1.0 + 1e-6):
+            return TOO_DEEP
+        _remember(layer, start, fade, gain, memory, old, values[observed:])
+        path[n] = motion[0]
         outputs[n] = values[:observed]
     return FINE

@@ -2,11 +2,10 @@
 
 import numpy as np
 
+from tests.softdot.conftest import MINIMAL
+
 HEAD = 'format = "softdot-recording/1"\n'
-SEGMENT = (
-    "[segment.medium1]\nthickness_mm = 0.5\n[segment.film]\nthickness_um = 28.0\n"
-    "[segment.medium2]\nthickness_mm = 2.0\n"
-)
+SEGMENT = MINIMAL
 RUN = '[[runs]]\nfile = "press.csv"\n'
 COUPON = (
     "[specimen]\nkind = 'tension'\nmaterial = 'rubber'\nlength_mm = 20.0\nwidth_mm = 5.0\nthickness_mm = 2.0\n"

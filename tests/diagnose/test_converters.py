@@ -117,6 +117,10 @@ def test_nothing_is_overwritten(tmp_path):
         write_recording(tmp_path, HEAD + SEGMENT + RUN, {"press.csv": samples()})
 
 
+needs_recordings = pytest.mark.skipif(
+    not RECORDINGS,
+    reason="licences forbid copies of these recordings here; SOFTDOT_RECORDINGS names the folder that holds them",
+)
 SETS = {
     "pvdf_presses": "pvdf-presses",
     "vhb_relaxation": "vhb-relaxation",
@@ -127,11 +131,10 @@ SETS = {
 
 
 @pytest.mark.slow
+@needs_recordings
 @pytest.mark.parametrize("script", SETS)
 def test_real_recordings(script, tmp_path):
     data = Path(RECORDINGS) / SETS[script]
-    if not RECORDINGS or not data.is_dir():
-        pytest.skip("SOFTDOT_RECORDINGS names no folder with this set")
     runpy.run_path(str(EXAMPLES / f"{script}.py"))["convert"](data, tmp_path / "out")
     folders = [file.parent for file in (tmp_path / "out").rglob("rig.toml")]
     assert folders
@@ -142,10 +145,9 @@ def test_real_recordings(script, tmp_path):
 
 
 @pytest.mark.slow
+@needs_recordings
 def test_noise_of_real_presses_whitens_a_trial_that_it_has_not_seen():
-    files = sorted((Path(RECORDINGS) / "pvdf-presses").glob("*Sp300*.npz"))[:2] if RECORDINGS else []
-    if len(files) < 2:
-        pytest.skip("SOFTDOT_RECORDINGS names no folder with this set")
+    files = sorted((Path(RECORDINGS) / "pvdf-presses").glob("*Sp300*.npz"))[:2]
     read = runpy.run_path(str(EXAMPLES / "pvdf_presses.py"))["read"]
     known, fresh = (read(file)[0]["voltage_1_V"][:4000] for file in files)  # 2 s before the touch
     model = NoiseModel(fit_autoregression([known - known.mean()]), 1.0 / 2000.0, "rest", len(known))

@@ -14,6 +14,7 @@ from softdot.kit import make
 from softdot.kit.budget import Budget, Effect
 from softdot.kit.responses import Response, StoppedShortError
 from softdot.kit.tolerances import Tolerance
+from tests.softdot.conftest import MINIMAL
 
 FREE = """
 [segment]
@@ -35,21 +36,8 @@ shape = "dome"
 diameter_mm = 2.0
 height_mm = 0.8
 material = "dragon-skin-10"
-[segment.medium1]
-thickness_mm = 0.5
-[segment.film]
-thickness_um = 28.0
-[segment.medium2]
-thickness_mm = 2.0
-"""
-COARSE = """
-[segment.effector]
-[segment.medium1]
-thickness_mm = 0.5
-[segment.film]
-thickness_um = 28.0
-[segment.medium2]
-thickness_mm = 2.0
+""" + MINIMAL
+COARSE = "[segment.effector]" + MINIMAL + """
 material = "vnr-soft"
 [fabrication]
 cavities = [1, 1]

@@ -8,16 +8,8 @@ import numpy as np
 from scipy.stats import qmc
 
 from mesh.types import Floats
-from softdot.config import Config, config_from
-from softdot.paper.reading import (
-    FILM_WIDTH_MM,
-    INDENTATION_MM,
-    LENGTH_MM,
-    POISSON_RATIO,
-    RIDGE_RADIUS_MM,
-    Boundary,
-    Reading,
-)
+from softdot.config import Config
+from softdot.paper.reading import Boundary, Reading, segment_config
 
 FILMS_UM = (9.0, 28.0, 52.0, 110.0)
 """Thicknesses of drawn PVDF film that are sold: MSI Piezo Film Sensors Technical Manual, p. 3."""
@@ -76,28 +68,8 @@ def coordinates(designs: Sequence[Design]) -> Floats:
 
 def design_config(design: Design, boundary: Boundary, reading: Reading, mesh: Mapping[str, Any]) -> Config:
     """The press of a design. mesh : the table [mesh]."""
-    solid = reading == "solid"
-    layers = {"effector-rubber": design.effector_MPa, "medium1": design.e1_MPa, "medium2": design.e2_MPa}
-    return config_from(
-        {
-            "segment": {
-                "length_mm": LENGTH_MM,
-                "width_mm": LENGTH_MM if solid else FILM_WIDTH_MM,
-                "section": reading,
-                "boundary": boundary,
-                "effector": {"height_mm": design.effector_height_mm, "material": "effector-rubber"},
-                "medium1": {"thickness_mm": design.h1_mm, "material": "medium1"},
-                "film": {"thickness_um": design.film_um, "material": "pvdf"},
-                "medium2": {"thickness_mm": design.h2_mm, "material": "medium2"},
-            },
-            "materials": {
-                name: {"youngs_modulus_MPa": modulus, "poisson_ratio": POISSON_RATIO, "density_kg_m3": 950.0}
-                for name, modulus in layers.items()
-            },
-            "dot": {"shape": "cap", "standard": "marburg-medium"}
-            if solid
-            else {"shape": "ridge", "radius_mm": RIDGE_RADIUS_MM},
-            "press": {"indentation_mm": INDENTATION_MM, "load_steps": 3},
-            "mesh": dict(mesh),
-        }
-    )
+    return segment_config(
+        boundary, design.h1_mm, design.e2_MPa, reading, h2_mm=design.h2_mm, film_um=design.film_um,
+        effector_height_mm=design.effector_height_mm, effector_MPa=design.effector_MPa, e1_MPa=design.e1_MPa,
+        load_steps=3, mesh=mesh,
+    )  # fmt: skip
