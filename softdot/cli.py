@@ -17,6 +17,8 @@ COMMANDS = {
     "run": "softdot.run_command",
     "paper": "softdot.paper.command",
     "sweep": "softdot.sweep.command",
+    "diagnose": "softdot.diagnosis.command",
+    "prove": "softdot.proof.command",
     "kit": "softdot.kit.command",
     "plate": "softdot.plate.command",
 }
@@ -53,6 +55,8 @@ def parser() -> argparse.ArgumentParser:
     _add_run(commands)
     _add_paper(commands)
     _add_sweep(commands)
+    _add_diagnose(commands)
+    _add_prove(commands)
     _add_kit(commands)
     _add_plate(commands)
     _add_schema(commands)
@@ -93,6 +97,42 @@ def _add_sweep(commands: Any) -> None:
     sweep.add_argument("space", metavar="SPACE.toml", help="a configuration and its axes")
     sweep.add_argument("--scheduler", metavar="ADDRESS", help="an existing Dask scheduler, tcp://host:8786")
     _add_output(sweep)
+
+
+def _add_diagnose(commands: Any) -> None:
+    diagnose = commands.add_parser(
+        "diagnose",
+        help="where simulation and recordings differ, and what physics was left out",
+        description="Compare recordings of a real rig with its model: where they differ, which physics was left out, "
+        "how well the model does with it, and what to press next. A second diagnosis of a rig uses the cache.",
+        epilog="docs/recordings.md says how to hand over a recording, docs/diagnose.md how to read the verdict. "
+        + EXIT_STATUS,
+    )
+    diagnose.add_argument("recording", metavar="RECORDING", help="a folder with rig.toml and CSV files")
+    diagnose.add_argument(
+        "--all-presses", action="store_true", help="press every run again by the full model, however long it takes"
+    )
+    diagnose.add_argument(
+        "--without", action="append", default=[], metavar="MECHANISM", help="leave a mechanism out of the candidates"
+    )
+    diagnose.add_argument("--seed", type=int, metavar="N", help="of everything random, instead of rig.toml's")
+    _add_output(diagnose)
+
+
+def _add_prove(commands: Any) -> None:
+    prove = commands.add_parser(
+        "prove",
+        help="how often a diagnosis is right: hidden effects from another finite-element code",
+        description="Hide effects in recordings of another code, seal the truth, diagnose, reveal and count. "
+        "A proof that was stopped goes on where it was.",
+        epilog="docs/prove.md explains the cases and the table. " + EXIT_STATUS,
+    )
+    prove.add_argument("--cases", type=int, required=True, metavar="N", help="how many recordings")
+    prove.add_argument("--seed", type=int, default=0, metavar="S", help="of the cases")
+    prove.add_argument("--rigs", metavar="NAME,NAME", help="of ridge-clamped, ridge-free, dot-clamped; all without it")
+    prove.add_argument("--staged", action="store_true", help="the first eight mechanisms only")
+    prove.add_argument("--workers", type=int, metavar="N", help="processes, without it one per core")
+    _add_output(prove)
 
 
 def _add_kit(commands: Any) -> None:

@@ -17,7 +17,7 @@ class Progress(Protocol):
         """A stage begins."""
 
     def step(self, number: int, count: int, text: str) -> None:
-        """A load step of the running stage has converged."""
+        """A step of the running stage, a load step that has converged say."""
 
 
 class Silent:
@@ -53,16 +53,18 @@ class _OnTerminal:
     def __init__(self, bars: "Bars") -> None:
         self._bars = bars
         self._task: TaskID | None = None
+        self._name = ""
 
     def stage(self, name: str) -> None:
         """Finish the bar of the stage before and begin the next, of unknown length."""
         self.finish()
+        self._name = name
         self._task = self._bars.add_task(f"{name:<10}", total=None)
 
     def step(self, number: int, count: int, text: str) -> None:
         """Fill the bar of the running stage and write the state beside it."""
         if self._task is not None:
-            self._bars.update(self._task, total=count, completed=number, description=f"{'solve':<10} {text}")
+            self._bars.update(self._task, total=count, completed=number, description=f"{self._name:<10} {text}")
 
     def finish(self) -> None:
         """Fill the running bar."""

@@ -23,7 +23,19 @@ def innovations(
     errors, deviations = np.zeros((count, columns)), np.zeros(count)
     state, covariance = np.zeros((order, columns)), start.copy()  # of y_n, y_(n-1), ... given all that was seen
     known = 0  # samples seen without a gap up to this one
+    deviation = np.sqrt(variance)
     for n in range(count):
+        if known >= order and observed[n]:  # all that the state holds are the samples themselves
+            deviations[n] = deviation
+            for c in range(columns):
+                predicted = 0.0
+                for j in range(order):
+                    predicted += coefficients[j] * values[n - 1 - j, c]
+                errors[n, c] = values[n, c] - predicted
+            continue
+        if known >= order:
+            for j in range(order):
+                state[j] = values[n - 1 - j]
         if n > 0:
             _predict(state, coefficients)
             if known < order:
@@ -36,12 +48,8 @@ def innovations(
         deviations[n] = np.sqrt(covariance[0, 0])
         for c in range(columns):
             errors[n, c] = values[n, c] - state[0, c]
-        if known < order:
-            _condition(state, covariance, errors[n])
-            known += 1
-        else:
-            for c in range(columns):
-                state[0, c] = values[n, c]
+        _condition(state, covariance, errors[n])
+        known += 1
     return errors, deviations
 
 

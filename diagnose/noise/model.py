@@ -98,6 +98,8 @@ class Whitening:
     def __init__(self, noise: NoiseModel, observed: Bools, time_s: Floats) -> None:
         self.noise, self.observed, self.time_s = noise, observed, time_s
         self._pieces = even_pieces(time_s)
+        laws = [_at_rate(noise, time_s[piece]) for piece in self._pieces]
+        self._laws = [(law, law.start_covariance()) for law in laws]
         lines = basis(noise.lines, time_s)
         white, deviations = self._innovations(lines)
         self.log_scale = float(np.log(deviations).sum())
@@ -118,14 +120,13 @@ class Whitening:
         """Prediction errors over their deviations (m, k), and the deviations (m,), without the lines."""
         filled = np.where(self.observed[:, None], columns, 0.0)
         errors, deviations = np.empty_like(filled), np.empty(len(filled))
-        for piece in self._pieces:
-            model = _at_rate(self.noise, self.time_s[piece])
+        for piece, (model, start) in zip(self._pieces, self._laws, strict=True):
             errors[piece], deviations[piece] = innovations(
                 np.ascontiguousarray(filled[piece]),
                 self.observed[piece],
                 model.coefficients if len(model.coefficients) else np.zeros(1),
                 model.variance,
-                model.start_covariance(),
+                start,
             )
         spread = deviations[self.observed]
         return errors[self.observed] / spread[:, None], spread

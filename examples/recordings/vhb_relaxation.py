@@ -17,6 +17,7 @@ import numpy as np
 from mesh.types import Floats
 from softdot.convert import run_text, white_noise, write_recording
 
+MODULUS = 1.0  # one sigma, relative: it is what the test is for
 HEAD = """# Width is not documented and assumed here: it scales the modulus and nothing else.
 format = "softdot-recording/1"
 
@@ -44,7 +45,7 @@ def convert(data: Path, out: Path) -> None:
         name = file.stem.replace("__", "-") + ".csv"
         files[name] = dict(zip(("time_s", "displacement_mm", "force_N"), table.T, strict=True))
         noise = {"force_N": white_noise(table[:, 2])}
-        nuisance = {"modulus.specimen": 0.2, "offset_N": 0.01}
+        nuisance = {"modulus.specimen": MODULUS, "offset_N": 0.01}
         runs.append(run_text(name, label(file.stem), "displacement_mm", nuisance=nuisance, noise=noise))
     write_recording(out, "\n".join(runs), files)
 

@@ -1,0 +1,114 @@
+"""A whole history of the stress at one material point: relaxation by scans over time, softening by its running maximum.
+
+The formulas are those of solve.materials.prony and solve.materials.softening; tests hold both ways together.
+"""
+
+from dataclasses import dataclass, replace
+
+import numba as nb
+import numpy as np
+
+from mesh.types import Floats
+from solve.materials.prony import Prony
+from solve.materials.response import Response
+from solve.materials.softening import Softening
+
+NO_SERIES = Prony((), ())
+
+
+@dataclass(frozen=True)
+class Relaxation:
+    """A Prony series on one clock, at rest before the first sample.
+
+    moduli : g_i (b,); fade : exp(-a), gain : (1 - exp(-a)) / a with a = dt / tau_i, (t, b), dt = 0 at first.
+    """
+
+    moduli: Floats
+    fade: Floats
+    gain: Floats
+
+    @classmethod
+    def of(cls, series: Prony, time_s: Floats) -> "Relaxation":
+        """The series at times (t,)."""
+        a = np.diff(time_s, prepend=time_s[0])[:, None] / np.array(series.relaxation_times).reshape(1, -1)
+        gain = -np.expm1(-a) / np.where(a > 0.0, a, 1.0) + (a == 0.0)
+        return cls(np.array(series.relative_moduli, dtype=np.float64), np.exp(-a), gain)
+
+    @property
+    def instant(self) -> Floats:
+        """d stress / d elastic stress at the same time, (t,)."""
+        return np.asarray(1.0 - self.moduli.sum() + self.gain @ self.moduli)
+
+    def relaxed(self, elastic: Floats) -> Floats:
+        """Stress (t, c) of the history (t, c) of the elastic one."""
+        return np.asarray(_relaxed(elastic, self.moduli, self.fade, self.gain))
+
+    def newton_step(self, residual: Floats, by_stress: Floats, stress_by: Floats, by_unknown: Floats) -> Floats:
+        """Correction (t, m) of the unknowns that makes residual (t, m) vanish, memory included.
+
+        by_stress (t, m, c) : of the residual; stress_by (t, c, m) : of the elastic stress by the unknowns;
+        by_unknown (t, m, m) : of the residual at fixed stress.
+        """
+        return np.asarray(_newton_step(residual, by_stress, stress_by, by_unknown, self.moduli, self.fade, self.gain))
+
+
+def earlier_peaks(energy: Floats) -> Floats:
+    """Largest energy (t,) before each sample of a history (t,), 0 before the first."""
+    return np.concatenate([[0.0], np.maximum.accumulate(energy)[:-1]])
+
+
+def softened(law: Softening, elastic: Response, peaks: Floats) -> Response:
+    """The response (t points) where every sample remembers a largest energy (t,)."""
+    return replace(law.update(elastic, (peaks,), 0.0)[0], energy=None)
+
+
+@nb.njit(cache=True)
+def _relaxed(elastic, moduli, fade, gain):  # type: ignore[no-untyped-def]
+    samples, parts = elastic.shape
+    branches = np.zeros((len(moduli), parts))
+    stress = np.empty_like(elastic)
+    rest = 1.0 - moduli.sum()
+    for t in range(samples):
+        for c in range(parts):
+            change = elastic[t, c] - (elastic[t - 1, c] if t > 0 else 0.0)
+            stress[t, c] = rest * elastic[t, c]
+            for b in range(len(moduli)):
+                branches[b, c] = fade[t, b] * branches[b, c] + moduli[b] * gain[t, b] * change
+                stress[t, c] += branches[b, c]
+    return stress
+
+
+@nb.njit(cache=True)
+def _newton_step(residual, by_stress, stress_by, by_unknown, moduli, fade, gain):  # type: ignore[no-untyped-def]
+    """Forward substitution in time: the correction of a sample depends on those before through the branches."""
+    samples, size = residual.shape
+    parts = stress_by.shape[1]
+    branches, old, new = np.zeros((len(moduli), parts)), np.zeros(parts), np.zeros(parts)
+    matrix, right, step = np.empty((size, size)), np.empty(size), np.empty_like(residual)
+    for t in range(samples):
+        instant = 1.0 - moduli.sum()
+        for b in range(len(moduli)):
+            instant += moduli[b] * gain[t, b]
+        for i in range(size):
+            right[i] = -residual[t, i]
+            for c in range(parts):
+                for b in range(len(moduli)):
+                    right[i] -= by_stress[t, i, c] * (fade[t, b] * branches[b, c] - moduli[b] * gain[t, b] * old[c])
+            for j in range(size):
+                matrix[i, j] = by_unknown[t, i, j]
+                for c in range(parts):
+                    matrix[i, j] += instant * by_stress[t, i, c] * stress_by[t, c, j]
+        if size == 1:
+            step[t, 0] = right[0] / matrix[0, 0]
+        else:
+            determinant = matrix[0, 0] * matrix[1, 1] - matrix[0, 1] * matrix[1, 0]
+            step[t, 0] = (right[0] * matrix[1, 1] - right[1] * matrix[0, 1]) / determinant
+            step[t, 1] = (right[1] * matrix[0, 0] - right[0] * matrix[1, 0]) / determinant
+        for c in range(parts):
+            new[c] = 0.0
+            for j in range(size):
+                new[c] += stress_by[t, c, j] * step[t, j]
+            for b in range(len(moduli)):
+                branches[b, c] = fade[t, b] * branches[b, c] + moduli[b] * gain[t, b] * (new[c] - old[c])
+            old[c] = new[c]
+    return step

@@ -1,0 +1,113 @@
+"""What a diagnosis found: everything that the verdict and the report are written from."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from diagnose.forward import Setting, Signals
+from mesh.types import Floats
+
+
+@dataclass(frozen=True)
+class Detection:
+    """statistic : largest score over all cells and pools; p_value : family-wise; level : it is a mismatch below.
+
+    noise : (label, channel) -> summary of its noise model.
+    """
+
+    statistic: float
+    p_value: float
+    level: float
+    noise: Mapping[tuple[str, str], Mapping[str, Any]]
+
+
+@dataclass(frozen=True)
+class Place:
+    """A cell of the residual of the baseline. score : nearly standard normal; p_value : family-wise.
+
+    share : of all excess. component : whose sensitivities explain most of it here, "" for none.
+    """
+
+    run: str
+    channel: str
+    phase: str
+    press: int
+    band_Hz: tuple[float, float]
+    score: float
+    p_value: float
+    share: float
+    component: str
+
+
+@dataclass(frozen=True)
+class Interval:
+    """A parameter with its 90 % profile interval; bounded : an end is the bound of what is plausible."""
+
+    value: float
+    low: float
+    high: float
+    unit: str
+    bounded: bool = False
+
+
+@dataclass(frozen=True)
+class Model:
+    """One or two mechanisms fitted to all runs, with how it predicts presses that it was not fitted to.
+
+    gain, gain_lower : nats per press over the baseline, and the lower bound of its mean. probability : among all
+    models, the baseline and "none of these". p_left : family-wise p-value of what it leaves.
+    """
+
+    settings: tuple[Setting, ...]
+    parameters: tuple[Mapping[str, Interval], ...]
+    gain: float
+    gain_lower: float
+    probability: float
+    p_left: float
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Errors as root mean square over that of the recording, without samples that are missing or saturated.
+
+    presses : those that are meant. noise_floor : the error that noise alone makes.
+    """
+
+    presses: tuple[str, ...]
+    nrmse_before: float
+    nrmse_after: float
+    noise_floor_nrmse: float
+    log_score_gain_per_press: float
+
+
+@dataclass(frozen=True)
+class Findings:
+    """mismatch, named, unexplained as statistics.abstain decides, with its reasons as sentences.
+
+    models : all that were fitted, best first; best : the first of them where it is named, else None.
+    groups : indices into models that these recordings cannot tell apart, the best model's group first.
+    nuisances : name or "name of run" -> (value, one sigma of the prior) at the baseline.
+    baseline, improved : label -> fitted signals with nuisances; improved is None where nothing is named.
+    screened : (mechanism, component) -> p-value of the score test. shares : component -> share of all excess.
+    information : (p, p) of the best models' coordinates, in the order of models, see diagnose.next_press.
+    """
+
+    engine: str
+    detection: Detection
+    places: tuple[Place, ...]
+    shares: Mapping[str, float]
+    screened: Mapping[tuple[str, str], float]
+    mismatch: bool
+    unexplained: bool
+    reasons: tuple[str, ...]
+    models: tuple[Model, ...]
+    best: Model | None
+    groups: tuple[tuple[int, ...], ...]
+    train: Fit | None
+    held_out: Fit | None
+    nuisances: Mapping[str, tuple[float, float]]
+    baseline: Mapping[str, Signals]
+    improved: Mapping[str, Signals] | None
+    black_box_gain: float
+    warnings: tuple[str, ...] = ()
+    information: Floats | None = field(default=None, compare=False)

@@ -1,0 +1,116 @@
+"""What a diagnosis asks of a forward model, whatever solves it: the segment in 3D, a coupon, a proportional sensor."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+from diagnose.recording import Run
+from mesh.types import Floats
+from solve.mechanisms import Mechanism
+
+Signals = Mapping[str, Floats]
+"""Channel -> samples (t,) of one run, named as in the recording."""
+Report = Callable[[str, int, int], None]
+"""Told of long work: what, done, of how many."""
+
+
+@dataclass(frozen=True)
+class Coordinate:
+    """One number that is fitted; 0 is off. Chosen so that the answer is smooth in it, at best linear near 0.
+
+    low, high : what a real part can have; 0 lies between them or on one of them. At an end the value is implausible.
+    starts : from where nonlinear fits begin besides the linear estimate; not 0.
+    nodes : values at which the 3D model itself is pressed, without 0; () where no press of its own is needed.
+    """
+
+    name: str
+    low: float
+    high: float
+    starts: tuple[float, ...]
+    nodes: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A mechanism at a component, by its coordinates.
+
+    parameters : values of the coordinates -> parameters as in [[mechanisms]]; only for values that are not all off.
+    derived : the same -> quantities that are comparable between laws (relaxed_fraction, force_ratio, loss_ratio).
+    units : name of a parameter or derived quantity -> unit in the verdict.
+    """
+
+    mechanism: str
+    component: str
+    coordinates: tuple[Coordinate, ...]
+    parameters: Callable[[Sequence[float]], dict[str, Any]]
+    derived: Callable[[Sequence[float]], dict[str, float]] = lambda _: {}
+    units: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def name(self) -> tuple[str, str]:
+        """Mechanism and component."""
+        return self.mechanism, self.component
+
+    def switched_on(self, values: Sequence[float]) -> Mechanism:
+        """The mechanism as a configuration has it. ValueError for values beyond its bounds."""
+        return Mechanism(name=self.mechanism, component=self.component, parameters=self.parameters(values))
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A candidate at values (q,) of its coordinates; all 0: off."""
+
+    candidate: Candidate
+    values: tuple[float, ...]
+
+
+class Engine(Protocol):
+    """A forward model of all runs of a recording.
+
+    name : for the verdict. accuracy : "force_N", "voltage_V" or "displacement_mm" -> one sigma of its own error of
+    discretisation and reduction, relative to the signal. candidates : what may be missing here.
+    free_nuisances : what nobody states and every fit finds anew, without prior and never a mismatch, one coordinate
+    each: the sensitivity of a sensor of unknown geometry. 0 is only a start; linearise about what was fitted, since
+    gain and lag act on the fitted signal. () where everything is stated. They are no Mechanisms.
+    """
+
+    @property
+    def name(self) -> str:
+        """For the verdict."""
+
+    @property
+    def accuracy(self) -> Mapping[str, float]:
+        """Channel without number -> relative sigma."""
+
+    @property
+    def candidates(self) -> tuple[Candidate, ...]:
+        """In any order."""
+
+    @property
+    def free_nuisances(self) -> tuple[Candidate, ...]:
+        """None where everything is stated."""
+
+    def nuisance(self, name: str) -> Candidate | None:
+        """The candidate whose single coordinate is the relative error of "modulus.medium1", "thickness.film", "d31".
+
+        None where the model has no such part.
+        """
+
+    def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
+        """Do whatever full solves these candidates need, or recall them. Repeated calls cost nothing."""
+
+    def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
+        """Every answer of a run (number in the recording) in milliseconds, at its own times, without noise.
+
+        Settings add up; none is the baseline. ValueError where they lie beyond what was prepared.
+        """
+
+    def imagine(self, run: Run, settings: Sequence[Setting]) -> Signals:
+        """The same for a run that nobody has recorded: its drive as samples, its readout and dot_offset_mm, no answers.
+
+        Every channel that the sensor has, by the names of the recording. ValueError with one sentence where this is
+        beyond what the model can tell, such as deeper than was prepared or off the prepared position.
+        """
+
+    def solve(self, run: int, mechanisms: Sequence[Mechanism], report: Report) -> Signals:
+        """The same by the full model with these mechanisms switched on, in minutes. NoEquilibriumError."""

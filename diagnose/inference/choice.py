@@ -1,0 +1,150 @@
+"""Which of the fitted models is best, by how much, and what speaks against it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diagnose.forward import Report
+from diagnose.inference.ambiguity import alike, grouped, separations
+from diagnose.inference.baseline import within_priors
+from diagnose.inference.black_box import box_scores, memory, worth_of_form
+from diagnose.inference.descent import coordinates
+from diagnose.inference.excess import share_left
+from diagnose.inference.forecasts import Forecasted, forecasted, separation
+from diagnose.inference.observed_model import ObservedModel
+from diagnose.inference.rates import LEFT, RATES
+from diagnose.inference.refit import Fitted
+from diagnose.inference.residual_test import DRAWS, checked
+from diagnose.inference.search import Screening, pairs, singles
+from diagnose.statistics.abstain import Decision, Evidence, decide
+from diagnose.statistics.held_out import Gain, gain_over_noise
+from diagnose.statistics.information import held_out_probabilities
+from mesh.types import Floats
+
+FEWER_DRAWS = 499  # for models that are not the best
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A fitted model and what is said of it; p_left is 1 where it leaves less than LEFT of the excess."""
+
+    fit: Fitted
+    forecast: Forecasted
+    gain: Gain
+    left: float
+    p_left: float
+
+
+@dataclass(frozen=True)
+class Choice:
+    """models : best first. probabilities : (m,). groups : of models.
+
+    box_gain : nats per press of the black box over the best. base : the baseline's forecast, None without models.
+    """
+
+    models: tuple[Judged, ...]
+    probabilities: Floats
+    groups: tuple[tuple[int, ...], ...]
+    box_gain: float
+    decision: Decision
+    base: Forecasted | None
+
+
+class Judge:
+    """Judges fitted models against the baseline, on the same held-out presses."""
+
+    def __init__(self, model: ObservedModel, found: Screening, rng: np.random.Generator) -> None:
+        self.model, self.found, self.rng = model, found, rng
+        self.base = forecasted(model.samples, within_priors(found.start, found.baseline))
+
+    def judged(self, fit: Fitted, draws: int = FEWER_DRAWS) -> Judged:
+        """Forecast, gain and what is left."""
+        samples = self.model.samples
+        forecast = forecasted(samples, fit.system, fit)
+        left = share_left(fit, self.found.excess)
+        p_left = 1.0
+        if left > LEFT or self.found.excess == 0.0:
+            system = replace(fit.system, form=fit.largest_form)
+            p_left = checked(samples, system, self.rng, fit.slopes, draws).p_value
+        return Judged(fit, forecast, self.gained(forecast, self.base), left, p_left)
+
+    def gained(self, one: Forecasted, rival: Forecasted) -> Gain:
+        """Nats per press, with a lower bound that is corrected for all candidates."""
+        apart = separation(self.model.samples, one, rival)
+        return gain_over_noise(one.log_scores - rival.log_scores, apart, RATES.level, len(self.found.candidates))
+
+    def best(self, models: Sequence[Judged]) -> Judged:
+        """The fewest coordinates of those whose loss to the best score is within one standard error."""
+        top = max(models, key=lambda one: one.forecast.log_scores.sum())
+        near = [one for one in models if one is top or self._within_one_error(top, one)]
+        return min(near, key=lambda one: (_count(one.fit), -one.forecast.log_scores.sum()))
+
+    def _within_one_error(self, top: Judged, other: Judged) -> bool:
+        loss = self.gained(top.forecast, other.forecast)
+        return loss.mean <= loss.standard_error
+
+
+def choose(
+    model: ObservedModel, found: Screening, p_mismatch: float, rng: np.random.Generator, report: Report
+) -> Choice:
+    """Single mechanisms first; pairs only where the best single one leaves too much."""
+    fits = singles(model, found, report)
+    if not fits:
+        decision = decide(Evidence(p_mismatch, 0.0, 0.0, 0.0, (), 0), RATES)
+        return Choice((), np.zeros(0), (), 0.0, replace(decision, reasons=(NOTHING,)), None)
+    judge = Judge(model, found, rng)
+    models = []
+    for count, fit in enumerate(fits):
+        report("held-out presses", count, len(fits))
+        models.append(judge.judged(fit))
+    best = judge.best(models)
+    if best.p_left <= RATES.level:
+        second = [judge.judged(fit) for fit in pairs(model, found, best.fit, report)]
+        better = [one for one in second if judge.gained(one.forecast, best.forecast).lower > 0.0]
+        models += better
+        best = judge.best([best, *better])
+    rest = sorted((one for one in models if one is not best), key=lambda one: -one.forecast.log_scores.sum())
+    best = judge.judged(best.fit, DRAWS)
+    return _decided(judge, (best, *rest), p_mismatch)
+
+
+NOTHING = "None of the candidates shows in the residual more than chance allows."
+
+
+def _decided(judge: Judge, models: tuple[Judged, ...], p_mismatch: float) -> Choice:
+    samples, best = judge.model.samples, models[0]
+    past = memory(samples)
+    metric = replace(best.fit.system, form=best.fit.largest_form)
+    over = box_scores(samples, judge.found.baseline, metric, past) - forecasted(samples, metric, best.fit).log_scores
+    box = gain_over_noise(over, np.sqrt(2.0 * np.maximum(over, 0.0)), RATES.level)
+    none = box_scores(samples, judge.found.baseline, judge.found.baseline, past)
+    scores = np.array([*(one.forecast.log_scores for one in models), judge.base.log_scores, none])
+    apart = separations(samples, [one.fit for one in models])
+    evidence = Evidence(
+        p_mismatch, best.p_left, best.gain.lower, box.lower, _implausible(best.fit), alike(apart)
+    )
+    decision = decide(evidence, replace(RATES, margin=worth_of_form(samples, metric)))
+    return Choice(
+        models,
+        held_out_probabilities(scores, judge.rng)[: len(models)],
+        grouped(apart),
+        box.mean,
+        decision,
+        judge.base,
+    )
+
+
+def _implausible(fit: Fitted) -> tuple[str, ...]:
+    """Coordinates at an end of what a real part can have; 0 is always plausible."""
+    found = []
+    for coordinate, value in zip(coordinates(fit.candidates), fit.values, strict=True):
+        close = 1e-6 * (coordinate.high - coordinate.low)
+        for end in (coordinate.low, coordinate.high):
+            if end != 0.0 and abs(value - end) <= close:
+                found.append(f"{coordinate.name} = {value:.3g}")
+    return tuple(found)
+
+
+def _count(fit: Fitted) -> int:
+    return len(fit.values)

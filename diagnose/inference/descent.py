@@ -1,0 +1,136 @@
+"""Bounded Levenberg-Marquardt over the coordinates of mechanisms, with all that is excused integrated out.
+
+What is linear leaves only inner products (variable projection; Golub and Pereyra, SIAM J. Numer. Anal. 10 (1973) 413).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import lsq_linear
+
+from diagnose.forward import Candidate, Coordinate, Setting
+from diagnose.inference.observed_model import STEP, ObservedModel
+from diagnose.inference.system import System
+from mesh.types import Floats
+
+ITERATIONS = 12
+STILL = 0.02  # of a standard error: a step below it is none
+LEAST_GAIN = 1e-3  # in half squares: less is no progress
+TIGHTEST = 1e6  # damping beyond which no step is tried
+RIDGE = 1e-12  # on a unit diagonal: coordinates that act exactly alike
+
+
+@dataclass(frozen=True)
+class Place:
+    """values : (q,). predicted : (n,) there. left : weighted residual. cost : half its square."""
+
+    values: Floats
+    predicted: Floats
+    left: Floats
+    cost: float
+
+
+@dataclass(frozen=True)
+class Descent:
+    """Mechanisms in the metric of a system. origin : the prediction at which its residual was taken, and the residual.
+
+    The best values are those whose prediction comes nearest to the origin.
+    """
+
+    model: ObservedModel
+    system: System
+    candidates: tuple[Candidate, ...]
+    origin: Floats
+
+    def vector(self, values: Floats) -> Floats:
+        """The prediction (n,) at the system's nuisances."""
+        return self.model.vector(self.system.values, settings(self.candidates, values))
+
+    def at(self, values: Floats) -> Place:
+        """Residual and cost at values (q,)."""
+        predicted = self.vector(values)
+        left = self.system.weighted(self.origin - predicted)
+        return Place(values, predicted, left, 0.5 * self.system.quadratic.square(left))
+
+    def slopes(self, place: Place) -> Floats:
+        """(n, q) change per unit of each value, by differences towards the inside."""
+        columns = []
+        for number, coordinate in enumerate(coordinates(self.candidates)):
+            step = STEP * max(min(map(abs, coordinate.starts)), abs(place.values[number]))
+            step = -step if place.values[number] + step > coordinate.high else step
+            moved = place.values.copy()
+            moved[number] += step
+            columns.append((self.vector(moved) - place.predicted) / step)
+        return np.column_stack(columns)
+
+
+def descent(
+    model: ObservedModel, system: System, candidates: Sequence[Candidate], about: Sequence[Setting]
+) -> Descent:
+    """about : the mechanisms about which the system is linear."""
+    return Descent(model, system, tuple(candidates), model.vector(system.values, about) + system.residual)
+
+
+def descended(problem: Descent, start: Floats) -> tuple[Place, Floats]:
+    """The best place from a start (q,), and the slopes (n, q) there."""
+    limits = bounds(problem.candidates)
+    here = problem.at(np.clip(start, *limits.T))
+    slopes, damping = problem.slopes(here), 1e-3
+    for _ in range(ITERATIONS):
+        columns = problem.system.weighted(slopes)
+        cleared = problem.system.quadratic.cleared(columns)
+        after, damping = _improved(problem, here, columns.T @ cleared, cleared.T @ here.left, damping, limits)
+        if after is None:
+            break
+        gain, moved = here.cost - after.cost, after.values - here.values
+        still = float(moved @ columns.T @ cleared @ moved) < STILL**2
+        here = after
+        slopes = problem.slopes(here)
+        if gain < LEAST_GAIN or still:
+            break
+    return here, slopes
+
+
+def settings(candidates: Sequence[Candidate], values: Floats) -> tuple[Setting, ...]:
+    """Values (q,) dealt out to the candidates."""
+    edges = np.cumsum([0, *(len(c.coordinates) for c in candidates)])
+    return tuple(
+        Setting(candidate, tuple(values[a:b].tolist()))
+        for candidate, a, b in zip(candidates, edges[:-1], edges[1:], strict=True)
+    )
+
+
+def coordinates(candidates: Sequence[Candidate]) -> tuple[Coordinate, ...]:
+    """All of them, in order."""
+    return tuple(coordinate for candidate in candidates for coordinate in candidate.coordinates)
+
+
+def bounds(candidates: Sequence[Candidate]) -> Floats:
+    """(q, 2) of all coordinates."""
+    return np.array([(c.low, c.high) for c in coordinates(candidates)])
+
+
+def _improved(
+    problem: Descent, here: Place, hessian: Floats, gradient: Floats, damping: float, limits: Floats
+) -> tuple[Place | None, float]:
+    """A better place and the damping that found it; none where only steps too small to matter are left."""
+    while damping < TIGHTEST:
+        step = _step(hessian, gradient, damping, here.values, limits)
+        after = problem.at(here.values + step)
+        if after.cost < here.cost:
+            return after, damping / 10.0
+        if float(step @ hessian @ step) < STILL**2:
+            break
+        damping = max(damping * 10.0, 1e-3)
+    return None, damping
+
+
+def _step(hessian: Floats, gradient: Floats, damping: float, values: Floats, limits: Floats) -> Floats:
+    """The damped Newton step within the bounds."""
+    scale = np.sqrt(np.maximum(np.diag(hessian), np.finfo(float).tiny))
+    damped = hessian / np.outer(scale, scale) + (damping + RIDGE) * np.eye(len(values))
+    root = np.linalg.cholesky(damped)
+    low, high = ((limits - values[:, None]) * scale[:, None]).T
+    found = lsq_linear(root.T, np.linalg.solve(root, gradient / scale), (low, high), method="bvls")
+    return np.asarray(np.clip(found.x / scale, limits[:, 0] - values, limits[:, 1] - values))

@@ -1,0 +1,64 @@
+"""What a model may be wrong by without lacking physics: columns smooth over a press, and a variance for the rest.
+
+A signal with relative error sigma is taken as signal times (1 + sigma m(t)), with m a random function over each press.
+Its smooth part is a few cosines over the press, common to the presses of a run (columns with prior sigma). What no
+column can follow adds to the variance of the coefficients where the signal itself is, and of those next to them.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from diagnose.forward import Signals
+from diagnose.inference.samples import Samples
+from mesh.types import Floats
+
+FORM = 0.05
+"""One sigma by which the effect of a mechanism may differ from that of the right one by its law alone."""
+COSINES = 3
+Relative = Sequence[float]
+"""One sigma per channel, in the order of the samples' channels."""
+
+
+def columns(samples: Samples, signals: Sequence[Signals], relative: Relative) -> tuple[Floats, Floats]:
+    """Columns (n, k) and their prior sigmas (k,): each block times low cosines, and each channel as a whole."""
+    found: list[Floats] = []
+    sigma: list[float] = []
+    whole: dict[str, Floats] = {}
+    for block in samples.blocks:
+        size = relative[samples.channels.index(block.channel)]
+        if size == 0.0:
+            continue
+        waves = _waves(samples, block.run) * signals[block.run][block.channel][:, None]
+        own = samples.of_block(block, block.whitening(waves))
+        found += list(own.T)
+        sigma += [size] * COSINES
+        whole[block.channel] = whole.get(block.channel, np.zeros(len(samples))) + own[:, 0]
+    found += list(whole.values())
+    sigma += [relative[samples.channels.index(channel)] for channel in whole]
+    return (np.column_stack(found) if found else np.zeros((len(samples), 0))), np.array(sigma)
+
+
+def allowance(samples: Samples, vector: Floats, relative: Relative) -> Floats:
+    """Variance (n,) that is added to the coefficients of a signal (n,).
+
+    Half of the expected square is where the signal is (its cell), half is spread over its piece with the spectrum of
+    a random walk: an error of form is rougher than the signal.
+    """
+    size = np.asarray(relative)[samples.kind[samples.block_of]] ** 2
+    square = vector**2
+    here = (np.bincount(samples.bank.cell, square) / samples.bank.degrees)[samples.bank.cell]
+    falling = 1.0 / (1.0 + samples.order_in_piece) ** 2
+    piece = samples.piece_of
+    spread = (np.bincount(piece, square) / np.bincount(piece, falling))[piece] * falling
+    return np.asarray(size * 0.5 * (here + spread))
+
+
+def _waves(samples: Samples, run: int) -> Floats:
+    """Cosines (t, COSINES) over each press of a run, from its touch to its end."""
+    presses, count = samples.recording.phases[run].presses, len(samples.recording.runs[run].time_s)
+    place = np.zeros(count)
+    for press in presses:
+        length = max(press.end - press.touch, 1)
+        place[press.touch : press.end] = (np.arange(press.end - press.touch) + 0.5) / length
+    return np.cos(np.pi * place[:, None] * np.arange(COSINES))

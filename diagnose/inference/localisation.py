@@ -1,0 +1,93 @@
+"""Where the baseline fails, and which component's sensitivities explain it."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from diagnose.findings import Place
+from diagnose.inference.rates import RATES
+from diagnose.inference.refit import Fitted
+from diagnose.inference.residual_test import Checked
+from diagnose.inference.samples import Samples
+from diagnose.inference.search import Screening
+from diagnose.phases import PHASES
+from diagnose.statistics.nuisance import Marginal
+from diagnose.statistics.shares import component_shares, shares_of_excess
+from mesh.types import Bools, Floats
+
+COMPONENTS = 6  # whose shares are worked out
+ENOUGH = 0.5  # of a cell's excess that a component has to explain to be named there
+
+
+def explanations(found: Screening, fits: Sequence[Fitted]) -> dict[str, tuple[Floats, Bools]]:
+    """Component -> columns (n, q) that it can make, those that explain most first, and which cannot be negative.
+
+    The fitted effect where there is one, else the sensitivity of the candidate that shows most.
+    """
+    by_component: dict[str, tuple[Floats, Bools]] = {}
+    for fit in fits:
+        if len(fit.candidates) == 1:
+            own = fit.candidates[0].component
+            by_component.setdefault(own, (fit.system.effect[:, None], np.array([True])))
+    for number in found.survivors:
+        one = found.each[number]
+        by_component.setdefault(one.candidate.component, (one.columns, one.non_negative))
+    return dict(list(by_component.items())[:COMPONENTS])
+
+
+def shares(found: Screening, explained: dict[str, tuple[Floats, Bools]]) -> dict[str, float]:
+    """Component -> share of all excess."""
+    if not explained:
+        return {}
+    marginal = _marginal(found)
+    start = found.start
+    columns = [marginal(start.weighted(columns)) for columns, _ in explained.values()]
+    signs = [non_negative for _, non_negative in explained.values()]
+    found_shares = component_shares(marginal(start.weighted(start.residual)), columns, signs)
+    return {name: float(share) for name, share in zip(explained, found_shares, strict=True)}
+
+
+def places(
+    samples: Samples, checked: Checked, found: Screening, explained: dict[str, tuple[Floats, Bools]]
+) -> tuple[Place, ...]:
+    """Cells with an excess that stands out, the largest first."""
+    cells = samples.bank.cells
+    share = shares_of_excess(checked.energies, samples.bank.degrees)
+    kept = [int(n) for n in np.argsort(-share) if checked.p_values[n] <= RATES.level]
+    owner = _owners(samples, found, explained) if explained else {}
+    return tuple(
+        Place(
+            samples.recording.runs[cells[n].labels["run"]].label,
+            samples.channels[cells[n].labels["channel"]],
+            PHASES[cells[n].labels["phase"]],
+            cells[n].labels["press"],
+            cells[n].band_Hz,
+            float(checked.scores[n]),
+            float(checked.p_values[n]),
+            float(share[n]),
+            owner.get(n, ""),
+        )
+        for n in kept
+    )
+
+
+def _owners(samples: Samples, found: Screening, explained: dict[str, tuple[Floats, Bools]]) -> dict[int, str]:
+    """Cell -> the component whose best fit takes most of its excess away."""
+    marginal, start = _marginal(found), found.start
+    white = marginal(start.weighted(start.residual))
+    cell, count = samples.bank.cell[start.live], len(samples.bank.cells)
+    before = np.bincount(cell, white**2, count)
+    degrees = np.bincount(cell, minlength=count)
+    taken = []
+    for columns, _ in explained.values():
+        own = marginal(start.weighted(columns))
+        made = own @ np.linalg.lstsq(own, white, rcond=None)[0]
+        taken.append(before - np.bincount(cell, (white - made) ** 2, count))
+    best = np.argmax(taken, axis=0)
+    enough = np.max(taken, axis=0) > ENOUGH * np.maximum(before - degrees, 1.0)
+    names = list(explained)
+    return {int(n): names[best[n]] for n in np.flatnonzero(enough)}
+
+
+def _marginal(found: Screening) -> Marginal:
+    return Marginal(found.start.weighted(found.start.excused), found.start.sigma)

@@ -1,0 +1,17 @@
+"""The stated error rates and limits of a diagnosis. None of them was fitted to a recording."""
+
+from diagnose.statistics.abstain import Rates
+from diagnose.statistics.wilson import rate_for_promise
+
+RATES = Rates(rate_for_promise(4, 400), margin=0.0, largest_group=3)
+"""At most 4 false names in 400 cases without effect, with 99 % confidence; margin: see black_box.py."""
+LEFT = 0.05
+"""Share of the excess that a named model may leave although noise and the stated errors do not explain it."""
+LARGEST_FORM = 0.1
+"""Share of the excess that the error of form may excuse at most: an effect that nuisances cancel excuses nothing."""
+ALIKE = 0.05
+"""Chance of choosing the wrong one of two models above which they are called ambiguous."""
+FINALISTS = 6
+"""Single mechanisms that are fitted with all that floats, after a first fit of all survivors."""
+PAIRS = 4
+"""Pairs that are fitted."""

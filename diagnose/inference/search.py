@@ -1,0 +1,106 @@
+"""From the baseline to a short list of fitted models: screening, single mechanisms, pairs where one is not enough."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diagnose.forward import Candidate, Report
+from diagnose.inference.baseline import believed
+from diagnose.inference.descent import descended, descent
+from diagnose.inference.excess import excess
+from diagnose.inference.live import live_rows
+from diagnose.inference.observed_model import ObservedModel
+from diagnose.inference.rates import FINALISTS, PAIRS, RATES
+from diagnose.inference.refit import Fitted, common_metric, fitted
+from diagnose.inference.samples import noise_degrees
+from diagnose.inference.screening import Screened, screened
+from diagnose.inference.sensitivities import Sensitivity, sensitivity
+from diagnose.inference.system import System
+from mesh.types import Floats
+
+STARTS = 3  # of each candidate's first fit
+
+
+@dataclass(frozen=True)
+class Screening:
+    """baseline : fitted, with its live rows. start : about what the priors find plausible. each, tests : candidates.
+
+    excess : of the baseline.
+    """
+
+    candidates: tuple[Candidate, ...]
+    baseline: System
+    start: System
+    each: tuple[Sensitivity, ...]
+    tests: Screened
+    excess: float
+
+    @property
+    def survivors(self) -> list[int]:
+        """Numbers of the candidates that show, those that explain most first."""
+        order = np.argsort(-self.tests.explained, kind="stable")
+        return [int(n) for n in order if self.tests.p_values[n] <= RATES.level]
+
+
+def screen(model: ObservedModel, baseline: System, report: Report) -> Screening:
+    """Every candidate of the engine."""
+    candidates = model.engine.candidates
+    start = believed(model, baseline)
+    each = []
+    for number, candidate in enumerate(candidates):
+        report("screening", number, len(candidates))
+        each.append(sensitivity(model, start.values, candidate))
+    columns = [baseline.excused, *(s.columns for s in each), *(s.finite for s in each)]
+    live = live_rows(model.samples, columns)
+    baseline, start = baseline.reached(live), start.reached(live)
+    tests = screened(start, each, least_degrees(model))
+    return Screening(candidates, baseline, start, tuple(each), tests, excess(baseline))
+
+
+def least_degrees(model: ObservedModel) -> float:
+    """Degrees of freedom of the noise that is known worst."""
+    return min(noise_degrees(law) for law in model.samples.noise.values())
+
+
+def singles(model: ObservedModel, found: Screening, report: Report) -> list[Fitted]:
+    """Survivors fitted in one metric, and the best of them with all that floats."""
+    common = common_metric(model.samples, found.start)
+    firsts: list[tuple[float, int, Floats]] = []
+    for count, number in enumerate(found.survivors):
+        report("first fits", count, len(found.survivors))
+        only = (found.candidates[number],)
+        problem = descent(model, common, only, ())
+        tries = [descended(problem, start)[0] for start in found.tests.estimates[number][:STARTS]]
+        if tries:
+            best = min(tries, key=lambda place: place.cost)
+            firsts.append((best.cost, number, best.values))
+    firsts = sorted(firsts, key=lambda one: one[0])[:FINALISTS]
+    fits = []
+    for count, (_, number, values) in enumerate(firsts):
+        report("fits", count, len(firsts))
+        fits.append(fitted(model, found.start, (found.candidates[number],), values, found.excess))
+    return fits
+
+
+def pairs(model: ObservedModel, found: Screening, first: Fitted, report: Report) -> list[Fitted]:
+    """The first mechanism with each second one that shows in what it leaves."""
+    others = [c for c in found.candidates if c.name not in [own.name for own in first.candidates]]
+    each = [sensitivity(model, first.system.values, other, first.settings) for other in others]
+    beside = replace(
+        first.system,
+        excused=np.column_stack([first.slopes[first.system.live], first.system.excused]),
+        sigma_of_one=np.concatenate([np.full(first.slopes.shape[1], np.inf), first.system.sigma_of_one]),
+    )
+    tests = screened(beside, each, least_degrees(model))
+    shown = [int(n) for n in np.argsort(-tests.explained) if tests.p_values[n] <= RATES.level][:PAIRS]
+    fits = []
+    for count, number in enumerate(shown):
+        report("pairs", count, len(shown))
+        both = (*first.candidates, others[number])
+        problem = descent(model, first.system, both, first.settings)
+        starts = [np.concatenate([first.values, guess]) for guess in tests.estimates[number][:STARTS]]
+        tries = [descended(problem, start)[0] for start in starts]
+        if tries:
+            best = min(tries, key=lambda place: place.cost)
+            fits.append(fitted(model, first.system, both, best.values, found.excess))
+    return fits

@@ -1,0 +1,66 @@
+"""How every candidate would change the recording, near its off value and at a finite size."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnose.forward import Candidate, Coordinate, Setting
+from diagnose.inference.observed_model import STEP, ObservedModel
+from mesh.types import Bools, Floats
+
+FLAT = 0.05  # of the secant: a slope below it is none
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """columns : (n, q) change per unit of each coordinate, a secant where there is no slope at 0.
+
+    non_negative : (q,) whether 0 is the lower end. sign : (q,) -1 where 0 is the upper end; columns have it already.
+    finite : (n, s) change at starts, and coordinates (s, q) there.
+    """
+
+    candidate: Candidate
+    columns: Floats
+    non_negative: Bools
+    sign: Floats
+    finite: Floats
+    places: Floats
+
+
+def sensitivity(
+    model: ObservedModel, values: Floats, candidate: Candidate, others: Sequence[Setting] = ()
+) -> Sensitivity:
+    """Of one candidate beside others that are on, at nuisances (p,)."""
+    without = model.vector(values, others)
+    count = len(candidate.coordinates)
+
+    def change(number: int, value: float) -> Floats:
+        at = np.zeros(count)
+        at[number] = value
+        return model.vector(values, [*others, Setting(candidate, tuple(at.tolist()))]) - without
+
+    columns, finite, places = [], [], []
+    for number, coordinate in enumerate(candidate.coordinates):
+        secants = [change(number, start) / start for start in coordinate.starts]
+        finite += [secant * start for secant, start in zip(secants, coordinate.starts, strict=True)]
+        places += [np.eye(count)[number] * start for start in coordinate.starts]
+        step = STEP * min(coordinate.starts, key=abs)
+        slope = change(number, step) / step
+        largest = max(secants, key=lambda secant: float(np.linalg.norm(secant)))
+        flat = np.linalg.norm(slope) < FLAT * np.linalg.norm(largest)
+        columns.append(largest if flat else slope)
+    sign = np.array([-1.0 if c.high <= 0.0 else 1.0 for c in candidate.coordinates])
+    return Sensitivity(
+        candidate,
+        np.column_stack(columns) * sign,
+        np.array([one_sided(c) for c in candidate.coordinates]),
+        sign,
+        np.column_stack(finite),
+        np.array(places),
+    )
+
+
+def one_sided(coordinate: Coordinate) -> bool:
+    """Whether 0 is an end of its range."""
+    return coordinate.low >= 0.0 or coordinate.high <= 0.0

@@ -1,0 +1,1 @@
+"""Which press to make next, so that the explanations that are left part most clearly."""

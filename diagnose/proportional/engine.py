@@ -1,0 +1,186 @@
+"""The forward model of a sensor of unknown geometry."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from math import sinh
+
+import numpy as np
+
+from diagnose.coupon.one_layer import one_layer, switched, with_factors_last
+from diagnose.forward import Candidate, Report, Setting, Signals
+from diagnose.phases import Segmentation, rest_of, segmented
+from diagnose.proportional.candidates import (
+    CAPACITANCE,
+    SENSITIVITY,
+    film_capacitance,
+    proportional_candidates,
+    sensitivity,
+)
+from diagnose.proportional.sensor import MEDIUM, Loading, film_charge, other_charge, voltage
+from diagnose.recording import Recording, Run
+from diagnose.vocabulary.scene import Scene, film_capacitance_pF
+from geometry.errors import InputError
+from mesh.types import Floats
+from solve.mechanisms import Mechanism
+from solve.model import Model
+from solve.newton import NoEquilibriumError
+from solve.parameters import Readout
+
+HUM = "mains-hum"
+
+
+@dataclass(frozen=True)
+class ProportionalEngine:
+    """Charge in proportion to the measured force, behind the amplifier as stated.
+
+    largest_N : force above rest, of all runs. scene : sizes of the recording; its film is assumed, for only time
+    constants show. loadings : of each run.
+    sensitivity_C : (channels,) charge at the largest force at which the free sensitivities start. Nothing has to be
+    prepared, and solve is predict at those starts.
+    """
+
+    recording: Recording
+    largest_N: float
+    scene: Scene
+    loadings: tuple[Loading, ...]
+    sensitivity_C: Floats
+    candidates: tuple[Candidate, ...]
+    free_nuisances: tuple[Candidate, ...]
+    name: str = "charge proportional to force"
+    accuracy: Mapping[str, float] = field(default_factory=dict)
+
+    def nuisance(self, name: str) -> Candidate | None:
+        """None: moduli and thicknesses of a sensor that nobody knows hide in its sensitivity."""
+
+    def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
+        """Nothing."""
+
+    def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
+        """Voltages of a run. ValueError beyond the bounds of a value, or where a law turns over."""
+        hum = [s.values for s in settings if s.candidate.mechanism == HUM]
+        signals = self._answer(self.recording.runs[run], self.loadings[run], settings)
+        return {name: values + sum(self._hum(run, one) for one in hum) for name, values in signals.items()}
+
+    def imagine(self, run: Run, settings: Sequence[Setting]) -> Signals:
+        """The same of a run that was not made, without hum."""
+        phases = segmented(run.time_s, run.drive_values, from_touch=False)
+        return self._answer(run, _loading(run, phases, self.largest_N), settings)
+
+    def _answer(self, run: Run, loading: Loading, settings: Sequence[Setting]) -> Signals:
+        own = {s.candidate.name: s.values[0] for s in settings if s.candidate.mechanism in (SENSITIVITY, CAPACITANCE)}
+        rest = [s for s in settings if s.candidate.mechanism not in (SENSITIVITY, CAPACITANCE, HUM)]
+        more = sinh(own.get((CAPACITANCE, "film"), 0.0))
+        factors = [1.0 + own.get((SENSITIVITY, f"channel-{n + 1}"), 0.0) for n in range(len(self.sensitivity_C))]
+        try:
+            signals = self._voltages(run, loading, switched(rest), self.sensitivity_C * factors, more)
+        except NoEquilibriumError as error:
+            raise ValueError(str(error)) from None
+        return signals
+
+    def solve(self, run: int, mechanisms: Sequence[Mechanism], report: Report) -> Signals:
+        """The same. NoEquilibriumError."""
+        return self._voltages(self.recording.runs[run], self.loadings[run], mechanisms, self.sensitivity_C)
+
+    def _voltages(
+        self,
+        run: Run,
+        loading: Loading,
+        mechanisms: Sequence[Mechanism],
+        sensitivity_C: Floats,
+        more_capacitance: float = 0.0,
+    ) -> Signals:
+        model = with_factors_last(model_of(run, more_capacitance), mechanisms)
+        shape, other = film_charge(model, loading), other_charge(model, loading)
+        return {
+            name: voltage(model, loading, charge * shape + other)
+            for name, charge in zip(self.recording.runs[0].voltages, sensitivity_C, strict=True)
+        }
+
+    def _hum(self, run: int, values: Sequence[float]) -> Floats:
+        """Sine and cosine (t,) of a run: behind the amplifier, whose filters only change amplitude and phase."""
+        phase = 2.0 * np.pi * self.scene.mains_Hz * self.recording.runs[run].time_s
+        return np.asarray(values[2 * run] * np.sin(phase) + values[2 * run + 1] * np.cos(phase))
+
+
+def model_of(run: Run, more_capacitance: float = 0.0) -> Model:
+    """The idle segment with the medium of unit modulus and the amplifier of a run.
+
+    more_capacitance : of the film, in terms of the assumed one. Charge flows into film and input together, so that
+    it stands at the input.
+    """
+    model = one_layer(MEDIUM, 1.0, run.readout or Readout())
+    assert model.readout is not None
+    added = model.readout.input_capacitance_pF + more_capacitance * film_capacitance_pF(model)
+    return replace(model, readout=model.readout.model_copy(update={"input_capacitance_pF": added}))
+
+
+def proportional_engine(recording: Recording, report: Report) -> ProportionalEngine:
+    """The engine of a recording of force and voltages. InputError for another drive, or columns beside them."""
+    for run in recording.runs:
+        _refuse_unfit(run, recording.runs[0])
+    largest_N = max(_above_rest(run) for run in recording.runs)
+    loadings = tuple(
+        _loading(*pair, largest_N) for pair in zip(recording.runs, recording.phases, strict=True)
+    )
+    scene = _scene(recording)
+    free = [sensitivity(n + 1) for n in range(scene.channels)]
+    if any(readout.input_resistance_MOhm for readout in scene.readouts):
+        free.append(film_capacitance())
+    engine = ProportionalEngine(
+        recording, largest_N, scene, loadings, np.ones(scene.channels),
+        tuple(proportional_candidates(recording, scene)), tuple(free),
+    )  # fmt: skip
+    report("charge proportional to force", 1, 1)
+    return replace(engine, sensitivity_C=_start(engine))
+
+
+def _refuse_unfit(run: Run, first: Run) -> None:
+    where = f"recording '{run.file}'"
+    if run.drive != "force_N":
+        raise InputError(f"{where}: geometry = 'unknown' needs drive = 'force_N', for nothing tells how far it yields")
+    others = [name for name in run.answers if name not in run.voltages]
+    if others:
+        raise InputError(f"{where}: geometry = 'unknown' cannot explain column {others[0]}; leave it out")
+    if not run.voltages:
+        raise InputError(f"{where}: has no column of voltage")
+    if run.voltages != first.voltages:
+        raise InputError(f"{where}: has other columns of voltage than '{first.file}'")
+
+
+def _above_rest(run: Run) -> float:
+    """Largest distance of the force from its rest."""
+    return float(np.abs(run.drive_values - rest_of(run.drive_values)[0]).max())
+
+
+def _loading(run: Run, phases: Segmentation, largest_N: float) -> Loading:
+    """Force from its rest, over the largest of all runs."""
+    level = rest_of(run.drive_values)[0]
+    return Loading(run.time_s, (run.drive_values - level) / largest_N, float(run.time_s[phases.presses[0].touch]))
+
+
+def _scene(recording: Recording) -> Scene:
+    runs = recording.runs
+    return Scene(
+        model=model_of(runs[0]),
+        readouts=tuple(run.readout or Readout() for run in runs),
+        depth_mm=1.0,
+        force_N=1.0,
+        voltage_V=max(float(np.nanmax(np.abs(run.channels[name]))) for run in runs for name in run.voltages),
+        step_s=min(run.step_s for run in runs),
+        duration_s=max(float(run.time_s[-1] - run.time_s[0]) for run in runs),
+        channels=len(runs[0].voltages),
+    )
+
+
+def _start(engine: ProportionalEngine) -> Floats:
+    """Charge (channels,) in C at the largest force that makes voltages of the size and, mostly, sign recorded."""
+    recorded, predicted, product = (np.zeros(len(engine.sensitivity_C)) for _ in range(3))
+    for number, run in enumerate(engine.recording.runs):
+        signals = engine.solve(number, (), lambda *_: None)
+        for n, name in enumerate(run.voltages):
+            there = run.usable(name)
+            given, unit = run.channels[name][there], signals[name][there]
+            recorded[n] = max(recorded[n], float(np.abs(given).max()))
+            predicted[n] = max(predicted[n], float(np.abs(unit).max()))
+            product[n] += float((given - given.mean()) @ (unit - unit.mean()))
+    return np.asarray(np.where(product < 0.0, -1.0, 1.0) * recorded / predicted)

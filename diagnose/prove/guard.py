@@ -1,0 +1,58 @@
+"""Run softdot so that it can open nothing but its program, its cache and one room: python -m diagnose.prove.guard.
+
+    python -m diagnose.prove.guard ROOM CACHE ARGUMENT ...
+
+Everything that Python opens or lists is checked by an audit hook (PEP 578) before it happens. Compiled libraries that
+open files by themselves are not seen; what they need lies beside them.
+"""
+
+import sys
+import sysconfig
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+ROOMS = ("geometry", "mesh", "solve", "export", "diagnose", "softdot")
+SYSTEM = ("/dev", "/proc", "/sys", "/etc", "/usr", "/lib", "/lib64", "/opt")
+WATCHED = frozenset({"open", "os.listdir", "os.scandir"})
+
+
+def allowed_roots(room: Path, cache: Path) -> tuple[Path, ...]:
+    """Folders that the diagnosis may look into."""
+    program = Path(__file__).resolve().parents[2]
+    python = {sys.prefix, sys.base_prefix, *sysconfig.get_paths().values()}
+    here = (*(program / name for name in ROOMS), *program.glob("*.egg-info"), room, cache)
+    return tuple(path.resolve() for path in (*here, *map(Path, SYSTEM), *map(Path, python)))
+
+
+def watch(room: Path, cache: Path) -> None:
+    """From now on PermissionError for everything else. There is no way back."""
+    roots = allowed_roots(room, cache)
+    program = Path(__file__).resolve().parents[2]
+    open_to_list = {program, *program.parents}
+
+    def hook(event: str, arguments: tuple[Any, ...]) -> None:
+        if event not in WATCHED or not isinstance(arguments[0], str | bytes | Path):
+            return
+        name = arguments[0].decode() if isinstance(arguments[0], bytes) else str(arguments[0])
+        path = Path(name).resolve()
+        if any(path.is_relative_to(root) for root in roots):
+            return
+        if event != "open" and path in open_to_list:
+            return
+        raise PermissionError(13, "outside of the clean room", name)
+
+    sys.addaudithook(hook)
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Watch, then run the command line."""
+    room, cache, *command = arguments
+    watch(Path(room), Path(cache))
+    from softdot.cli import main as softdot
+
+    return softdot(command)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

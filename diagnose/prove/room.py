@@ -1,0 +1,66 @@
+"""The clean room: a diagnosis in a process of its own that is handed nothing but one recording."""
+
+import json
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+KEPT = ("PATH", "LANG", "LC_ALL", "LD_LIBRARY_PATH")
+THREADS = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS", "OPENBLAS_NUM_THREADS")
+LINES = 3
+
+
+@dataclass(frozen=True)
+class Heard:
+    """What came out of the room. verdict : None without one; reason : why; next_press : text of its waveform."""
+
+    verdict: Mapping[str, Any] | None
+    reason: str
+    seconds: float
+    next_press: str | None = None
+
+
+def diagnosed(files: Mapping[str, str], cache: Path, limit_s: float, options: tuple[str, ...] = ()) -> Heard:
+    """Diagnose a recording, name -> text of its files, within a limit of time."""
+    with TemporaryDirectory(prefix="room-") as name:
+        room = Path(name).resolve()
+        recording = room / "recording"
+        recording.mkdir()
+        (room / "tmp").mkdir()
+        for file, text in files.items():
+            (recording / file).write_text(text, "utf-8")
+        command = [sys.executable, "-m", "diagnose.prove.guard", str(room), str(cache), "diagnose", "recording"]
+        begun = time.perf_counter()
+        try:
+            ended = subprocess.run(
+                [*command, "-o", "verdict", "--json", *options], cwd=room, env=environment(room, cache),
+                capture_output=True, text=True, timeout=limit_s, check=False,
+            )
+        except subprocess.TimeoutExpired:
+            return Heard(None, f"no verdict within {limit_s:g} s", time.perf_counter() - begun)
+        return _heard(ended, room, time.perf_counter() - begun)
+
+
+def _heard(ended: "subprocess.CompletedProcess[str]", room: Path, seconds: float) -> Heard:
+    verdict, wave = room / "verdict" / "verdict.json", room / "verdict" / "next-press.csv"
+    if not verdict.exists():
+        last = " | ".join(ended.stderr.strip().splitlines()[-LINES:])
+        return Heard(None, f"exit {ended.returncode}: {last}", seconds)
+    following = wave.read_text("utf-8") if wave.exists() else None
+    return Heard(json.loads(verdict.read_text("utf-8")), "", seconds, following)
+
+
+def environment(room: Path, cache: Path) -> dict[str, str]:
+    """No variable of the generator gets in: no seed, no folder of recordings, no cache of its presses."""
+    program = Path(__file__).resolve().parents[2]
+    kept = {name: os.environ[name] for name in KEPT if name in os.environ}
+    return {
+        **kept, **dict.fromkeys(THREADS, "1"), "HOME": str(room), "TMPDIR": str(room / "tmp"),
+        "PYTHONPATH": str(program), "SOFTDOT_CACHE": str(cache), "MPLCONFIGDIR": str(room / "tmp"),
+    }

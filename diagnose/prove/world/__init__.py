@@ -1,0 +1,1 @@
+"""The world that is diagnosed: its own finite elements, laws, circuit and noise; nothing here is shared with solve."""

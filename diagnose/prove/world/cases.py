@@ -1,0 +1,177 @@
+"""The cases: which effects at which size on which bench, from a number and a seed alone."""
+
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from diagnose.prove.world.bench import BENCHES, VOLTAGE_ONLY, Bench
+from diagnose.prove.world.effects import EFFECTS, KNOWN, STAGED, UNKNOWN, applied, fits
+from diagnose.prove.world.made import Floats
+from diagnose.prove.world.noise import noises
+from diagnose.prove.world.reality import Reality, Signals, baseline, record
+from diagnose.prove.world.size import PER_RUN, Judge, channels, judge_of, noise_of, shares
+
+NONE, SINGLE, PAIR, LEFT_OUT, OUTSIDE, AMBIGUOUS = "none", "single", "pair", "left-out", "outside", "ambiguous"
+KINDS = (NONE, SINGLE, PAIR, LEFT_OUT, OUTSIDE, AMBIGUOUS)
+PATTERN = (
+    NONE, SINGLE, NONE, SINGLE, NONE, OUTSIDE, SINGLE, NONE, SINGLE, NONE,
+    SINGLE, NONE, LEFT_OUT, SINGLE, NONE, PAIR, NONE, SINGLE, NONE, AMBIGUOUS,
+)  # fmt: skip
+SIZES = (5.0, 10.0, 2.0, 20.0, 1.0, 0.5, 0.2)
+PAIRS: list[tuple[str, ...]] = [
+    ("leakage", "gap"), ("relaxing-medium2", "leakage"), ("soft-rig", "low-pass"), ("gap", "cable"),
+]  # fmt: skip
+SPECIMENS = 4
+DISPLACEMENT_NOISE_MM = 2e-4
+SIZING_STEPS = 4
+
+
+@dataclass(frozen=True)
+class Case:
+    """size : whitened root mean square per sample that is aimed at, of each effect. without : left out of the tool."""
+
+    number: int
+    seed: int
+    kind: str
+    bench: str
+    effects: tuple[str, ...] = ()
+    size: float = 0.0
+    without: str = ""
+
+    @property
+    def name(self) -> str:
+        """That of the recording; it says nothing."""
+        return f"case-{self.number:04d}"
+
+
+@dataclass(frozen=True)
+class Truth:
+    """What is concealed. size : reached; per_run : (run, channel) -> share of the effect's energy."""
+
+    case: Case
+    strengths: dict[str, float]
+    values: dict[str, dict[str, float]]
+    nuisance: dict[str, float]
+    size: float
+    sigma: float
+    per_run: dict[str, float] = field(default_factory=dict)
+
+    def plain(self) -> dict[str, Any]:
+        """As JSON has it."""
+        mechanisms = [
+            {
+                "effect": name, "mechanism": EFFECTS[name].mechanism, "component": EFFECTS[name].component,
+                "form": EFFECTS[name].form, "strength": s, "values": self.values[name],
+            }
+            for name, s in self.strengths.items()
+        ]
+        case = {"number": self.case.number, "seed": self.case.seed, "kind": self.case.kind, "bench": self.case.bench}
+        return {
+            **case, "without": self.case.without, "mechanisms": mechanisms, "nuisance": self.nuisance,
+            "aimed_rms": self.case.size, "whitened_rms": self.size, "sigma": self.sigma, "per_run": self.per_run,
+        }
+
+
+def plan(count: int, seed: int, rigs: tuple[str, ...], staged: bool = True) -> list[Case]:
+    """The first count cases; kinds follow a fixed pattern, mechanisms, sizes and rigs take turns."""
+    known = KNOWN[:STAGED] if staged else KNOWN
+    turns = dict.fromkeys(KINDS, 0)
+    cases = []
+    for number in range(count):
+        kind = PATTERN[number % len(PATTERN)]
+        cases.append(_case(number + 1, seed, kind, turns[kind], rigs, known))
+        turns[kind] += 1
+    return cases
+
+
+def _case(number: int, seed: int, kind: str, turn: int, rigs: tuple[str, ...], known: tuple[str, ...]) -> Case:
+    if kind == AMBIGUOUS:
+        hidden = ("cable", "weak-film")[turn % 2]
+        return Case(number, seed, kind, VOLTAGE_ONLY.name, (hidden,), SIZES[turn // 2 % 3])
+    if kind == NONE:
+        return Case(number, seed, kind, rigs[turn % len(rigs)])
+    alone: list[tuple[str, ...]] = [(name,) for name in known]
+    others: list[tuple[str, ...]] = [(name,) for name in UNKNOWN]
+    choice = {SINGLE: alone, LEFT_OUT: alone, OUTSIDE: others, PAIR: PAIRS}[kind]
+    effects = choice[turn % len(choice)]
+    lap = turn // len(choice)
+    size = (SIZES if kind == SINGLE else SIZES[:2])[lap % (len(SIZES) if kind == SINGLE else 2)]
+    fitting = [rig for rig in rigs if all(fits(name, BENCHES[rig]) for name in effects)] or [BENCHES_FIRST]
+    without = EFFECTS[effects[0]].mechanism if kind == LEFT_OUT else ""
+    return Case(number, seed, kind, fitting[(lap + turn) % len(fitting)], effects, size, without)
+
+
+BENCHES_FIRST = next(iter(BENCHES))
+
+
+def concealed(case: Case) -> tuple[Truth, list[Signals]]:
+    """What is true and what is recorded of it, noise included."""
+    bench, rng = BENCHES[case.bench], np.random.default_rng([case.seed, case.number])
+    judge = judge_of(case.bench)
+    nuisance = _nuisance(bench, rng)
+    plainly = replace(baseline(bench), nuisance=nuisance)
+    strengths = {name: _strength(judge, name, case.size) for name in case.effects}
+    reality = applied(plainly, bench, strengths)
+    left = judge.left(reality, plainly)
+    values = {name: EFFECTS[name].truth(bench, s) for name, s in strengths.items()}
+    values = {name: {**one, **_force_ratio(name, bench, plainly, reality)} for name, one in values.items()}
+    per_run = {f"{run} | {channel}": share for (run, channel), share in shares(left, bench).items()}
+    named = {key if isinstance(key, str) else f"{key[0]} of run {key[1]}": value for key, value in nuisance.items()}
+    truth = Truth(case, strengths, values, named, judge.rms(left), float(np.linalg.norm(left)), per_run)
+    return truth, [_noisy(run, bench, rng) for run in record(reality, bench)]
+
+
+def _nuisance(bench: Bench, rng: np.random.Generator) -> dict[Any, float]:
+    """Within the declared widths; specimens come from a pool, so that their presses are solved once."""
+    drawn: dict[Any, float] = {}
+    pool = np.random.default_rng(sum(map(ord, bench.name))).standard_normal((SPECIMENS, 20)).clip(-2.0, 2.0)
+    specimen = int(rng.integers(SPECIMENS))
+    for column, (name, width) in enumerate(bench.nuisance):
+        if name in PER_RUN:
+            drawn |= {(name, run): width * float(rng.standard_normal()) for run in range(len(bench.runs))}
+        else:
+            drawn[name] = width * float(pool[specimen, column])
+    return drawn
+
+
+@lru_cache(maxsize=512)
+def _strength(judge: Judge, name: str, size: float) -> float:
+    """At which an effect has a size on the nominal bench, or the most that is real."""
+    belief, effect, strength = baseline(judge.bench), EFFECTS[name], 1.0
+    for _ in range(SIZING_STEPS):
+        reached = judge.rms(judge.left(applied(belief, judge.bench, {name: strength}), belief))
+        better = float(np.clip(strength * np.clip(size / max(reached, 1e-6), 0.1, 10.0), 1e-3, effect.most))
+        if abs(better / strength - 1.0) < 0.05:
+            break
+        strength = better
+    return float(f"{strength:.2g}")
+
+
+def _force_ratio(name: str, bench: Bench, without: Reality, reality: Reality) -> dict[str, float]:
+    """With over without at the deepest press, for laws that stiffen."""
+    if EFFECTS[name].mechanism != "hyperelastic-stiffening" or not bench.force:
+        return {}
+    on, off = (max(float(run["force_N"].max()) for run in record(replace(r, nuisance={}), bench))
+               for r in (reality, without))
+    return {"force_ratio": on / off}
+
+
+def _noisy(run: Signals, bench: Bench, rng: np.random.Generator) -> Signals:
+    noisy = dict(run)
+    count = len(run["time_s"])
+    noisy["displacement_mm"] = run["displacement_mm"] + DISPLACEMENT_NOISE_MM * rng.standard_normal(count)
+    for name in channels(bench):
+        noisy[name] = run[name] + noise_of(bench)[name] * noises()[name].draw(rng, count)
+    return noisy
+
+
+def rival_family(case: Case, names: tuple[str, ...]) -> list[Floats]:
+    """What effects of these names leave on the bench, at the size of the case and at half of it."""
+    judge, belief = judge_of(case.bench), baseline(BENCHES[case.bench])
+    family = []
+    for name in names:
+        strength = _strength(judge, name, max(case.size, 1.0))
+        family += [judge.left(applied(belief, judge.bench, {name: s}), belief) for s in (strength, 0.5 * strength)]
+    return family

@@ -1,0 +1,77 @@
+"""Rectangular elements of the stack, graded towards dot, film and sides: quadrilaterals, or bricks of a quarter."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from skfem import MeshHex, MeshQuad  # type: ignore[import-untyped]
+
+from diagnose.prove.world.made import Film, Floats, Glue, Layer, Made
+
+AXIAL_MM = {"ridge": 0.08, "cap": 0.2}
+"""Size of elements along the surface, mm."""
+ACROSS_MM = {"ridge": 0.2, "cap": 0.3}
+"""Size of elements across the layers, mm."""
+MOST_ACROSS = 4
+TO_SIDES, TO_FACES = 1.6, 0.6
+"""Grading: found by comparison with grids twice as fine, which differ by less than 0.1 % in force and charge."""
+
+
+@dataclass(frozen=True)
+class Grid:
+    """mesh : of skfem, last coordinate up, top at 0. part : (m,) number of the layer of each element.
+
+    whole : both halves along x; a quarter of a cap, or half of a ridge in the middle, otherwise.
+    """
+
+    mesh: MeshQuad | MeshHex
+    part: NDArray[np.int64]
+    whole: bool
+
+    @property
+    def copies(self) -> int:
+        """How often the piece makes the whole."""
+        half = 1 if self.whole else 2
+        return half if self.mesh.dim() == 2 else 4
+
+
+def grid(made: Made) -> Grid:
+    """Elements for what was made."""
+    levels, parts = _levels(made)
+    whole = made.offset_mm != 0.0
+    x = _half(made.length_mm / 2.0, AXIAL_MM[made.dot] / made.fine)
+    if whole:
+        x = np.concatenate([-x[:0:-1], x])
+    if made.dot == "ridge":
+        mesh = MeshQuad.init_tensor(x, levels)
+    else:
+        mesh = MeshHex.init_tensor(x, _half(made.width_mm / 2.0, AXIAL_MM[made.dot] / made.fine), levels)
+    middle = mesh.p[:, mesh.t].mean(axis=1)
+    place = np.searchsorted(levels, middle[-1]) - 1
+    return Grid(mesh, np.asarray(parts)[place], whole)
+
+
+def _half(end: float, size: float) -> Floats:
+    """0 to end, finer towards the side, where the stress of a held film is singular."""
+    even = np.linspace(0.0, 1.0, max(2, round(end / size)) + 1)
+    return np.asarray(end * (1.0 - (1.0 - even) ** TO_SIDES))
+
+
+def _levels(made: Made) -> tuple[Floats, list[int]]:
+    """Heights of the rows of elements from the base (top at 0), and the layer of each row."""
+    heights, parts = [-made.height_mm], []
+    for number, layer in enumerate(made.layers):
+        rows = _rows(layer, made)
+        parts += [number] * (len(rows) - 1)
+        heights += list(heights[-1] + rows[1:])
+    heights[-1] = 0.0
+    return np.array(heights), parts
+
+
+def _rows(layer: Layer | Film | Glue, made: Made) -> Floats:
+    """Finer at both faces of a layer; film and glue are one row."""
+    if not isinstance(layer, Layer):
+        return np.array([0.0, layer.thickness_mm])
+    count = min(max(2, round(layer.thickness_mm / ACROSS_MM[made.dot])), MOST_ACROSS)
+    even = np.linspace(0.0, 1.0, round(made.fine * count) + 1)
+    return np.asarray(layer.thickness_mm * (even - TO_FACES * np.sin(2.0 * np.pi * even) / (2.0 * np.pi)))

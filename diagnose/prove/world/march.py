@@ -1,0 +1,157 @@
+"""What a stack answers: over depth where nothing is remembered, through time where something is. Kept on disk."""
+
+import hashlib
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+from tempfile import NamedTemporaryFile
+from zipfile import BadZipFile
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from diagnose.prove.world.made import Floats, Made
+from diagnose.prove.world.stack import Answer, Stack, State
+
+POINTS = {"ridge": 24, "cap": 10}
+GRADING = 1.3
+STEPS_PER_DEPTH = 18
+LONGEST, GROWTH, SHORTEST_S = 0.5, 1.5, 0.006
+MECHANICS = ("made", "grid", "laws", "memory", "parts", "stack", "march")
+"""Modules on which a solved press depends."""
+
+
+@dataclass(frozen=True)
+class Course:
+    """force_N, charge_pC, area_mm2, each (t,)."""
+
+    force_N: Floats
+    charge_pC: Floats
+    area_mm2: Floats
+
+
+@dataclass(frozen=True)
+class Table:
+    """The same over depth (k,) mm, rising from 0."""
+
+    depth_mm: Floats
+    course: Course
+
+    def at(self, depth_mm: Floats) -> Course:
+        """Interpolated at depths (t,), monotonic between the points; nothing before the touch."""
+        return _at(self.depth_mm, self.course, np.clip(depth_mm, 0.0, None))
+
+    def slope_N_per_mm(self, depth_mm: Floats) -> Floats:
+        """dF / d(depth)."""
+        spline = PchipInterpolator(self.depth_mm, self.course.force_N).derivative()
+        return np.where(depth_mm > 0.0, spline(np.clip(depth_mm, 0.0, self.depth_mm[-1])), 0.0)
+
+
+def table(made: Made, depth_mm: float) -> Table:
+    """Pressed once to a depth. ValueError for what has a memory; RuntimeError without equilibrium."""
+    if made.remembers:
+        raise ValueError("what remembers has no table over depth")
+    points = depth_mm * np.linspace(0.0, 1.0, POINTS[made.dot] + 1) ** GRADING
+    kept = _kept(f"table-{_mechanics()}-{made.key()}-{depth_mm:.6f}")
+    course = kept.read() or kept.write(_pressed(made, points, np.ones(len(points))))
+    return Table(points, course)
+
+
+def through_time(made: Made, time_s: Floats, depth_mm: Floats) -> Course:
+    """Answers (t,) to the path of the dot (t,), at rest and untouched at first."""
+    marks = steps(time_s, depth_mm)
+    kept = _kept(f"time-{_mechanics()}-{made.key()}-{_digest(time_s[marks], depth_mm[marks])}")
+    course = kept.read() or kept.write(_pressed(made, depth_mm[marks], np.diff(time_s[marks], prepend=time_s[0] - 1.0)))
+    return _at(time_s[marks], course, time_s)
+
+
+def steps(time_s: Floats, depth_mm: Floats) -> list[int]:
+    """Samples at which the equilibrium is solved: where the dot has moved on, and in rest at times that grow."""
+    deepest = float(depth_mm.max())
+    marks, wait = [0], SHORTEST_S
+    for n in range(1, len(time_s)):
+        moved = abs(max(depth_mm[n], 0.0) - max(depth_mm[marks[-1]], 0.0)) > deepest / STEPS_PER_DEPTH
+        waited = time_s[n] - time_s[marks[-1]] >= wait
+        if moved or waited or n == len(time_s) - 1:
+            marks.append(n)
+            wait = SHORTEST_S if moved else min(wait * GROWTH, LONGEST)
+    return marks
+
+
+def _pressed(made: Made, depth_mm: Sequence[float] | Floats, step_s: Floats) -> Course:
+    """One equilibrium after the other."""
+    stack = Stack(made)
+    state = stack.rest()
+    zero = stack.answer(state)
+    answers = []
+    for depth, step in zip(depth_mm, step_s, strict=True):
+        state = _moved(stack, state, float(depth), float(step))
+        answers.append(stack.answer(state))
+    return _course(answers, zero)
+
+
+def _moved(stack: Stack, state: State, depth_mm: float, step_s: float) -> State:
+    """The next equilibrium; without memory and touch nothing changes."""
+    if depth_mm <= 0.0 and not stack.made.remembers:
+        return replace(state, depth_mm=depth_mm)
+    return stack.press(state, depth_mm, step_s)
+
+
+def _course(answers: Sequence[Answer], zero: Answer) -> Course:
+    return Course(
+        np.array([a.force_N for a in answers]),
+        np.array([a.charge_pC - zero.charge_pC for a in answers]),
+        np.array([a.area_mm2 for a in answers]),
+    )
+
+
+def _at(known: Floats, course: Course, wanted: Floats) -> Course:
+    values = np.stack([course.force_N, course.charge_pC, course.area_mm2])
+    return Course(*PchipInterpolator(known, values, axis=1)(np.clip(wanted, known[0], known[-1])))
+
+
+@cache
+def _mechanics() -> str:
+    """Hash of the program, so that an edit forgets what was kept."""
+    sources = (Path(__file__).with_name(f"{name}.py").read_bytes() for name in MECHANICS)
+    return hashlib.sha256(b"".join(sources)).hexdigest()[:16]
+
+
+def _digest(*arrays: Floats) -> str:
+    return hashlib.sha256(b"".join(np.round(array, 9).tobytes() for array in arrays)).hexdigest()[:32]
+
+
+@dataclass(frozen=True)
+class _Kept:
+    """A course in a file."""
+
+    path: Path
+
+    def read(self) -> Course | None:
+        """None when there is none or it is damaged."""
+        try:
+            with np.load(self.path, allow_pickle=False) as data:
+                return Course(data["force_N"], data["charge_pC"], data["area_mm2"])
+        except (OSError, ValueError, KeyError, EOFError, BadZipFile):
+            return None
+
+    def write(self, course: Course) -> Course:
+        """Beside, then renamed."""
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        with NamedTemporaryFile(dir=self.path.parent, suffix=".part", delete=False) as file:
+            np.savez(file, force_N=course.force_N, charge_pC=course.charge_pC, area_mm2=course.area_mm2)
+        Path(file.name).replace(self.path)
+        return course
+
+
+def _kept(name: str) -> _Kept:
+    return _Kept(store() / f"{name}.npz")
+
+
+def store() -> Path:
+    """Where solved presses are kept: SOFTDOT_PROOF_CACHE or the user's cache. A diagnosis has no access to it."""
+    from platformdirs import user_cache_dir
+
+    return Path(os.environ.get("SOFTDOT_PROOF_CACHE") or user_cache_dir("softdot-proof"))

@@ -1,0 +1,62 @@
+"""What is done at the bench: presses with rounded ramps, alone or twice, at several speeds, depths and resistors."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from diagnose.prove.world.made import Floats
+
+CLEAR_MM = 0.04
+
+
+@dataclass(frozen=True)
+class Run:
+    """count presses to depth_mm: rise_s up, hold_s, rise_s down, pause_s clear of the segment; lead_s of rest first.
+
+    resistance_MOhm : input of the amplifier, None for that of the rig.
+    """
+
+    label: str
+    depth_mm: float
+    rise_s: float
+    hold_s: float
+    resistance_MOhm: float | None = None
+    count: int = 2
+    lead_s: float = 1.0
+    pause_s: float = 0.8
+
+    @property
+    def length_s(self) -> float:
+        """From the first to the last sample."""
+        return self.lead_s + self.count * (2.0 * self.rise_s + self.hold_s + self.pause_s)
+
+    def times(self, rate_Hz: float) -> Floats:
+        """Samples."""
+        return np.asarray(np.arange(round(self.length_s * rate_Hz) + 1) / rate_Hz)
+
+    def depth(self, time_s: Floats) -> Floats:
+        """Path of the stage, mm below the first touch, at any times."""
+        depth = np.full_like(time_s, -CLEAR_MM)
+        start = self.lead_s
+        for _ in range(self.count):
+            up = _rounded((time_s - start) / self.rise_s)
+            down = _rounded((time_s - start - self.rise_s - self.hold_s) / self.rise_s)
+            depth += (self.depth_mm + CLEAR_MM) * (up - down)
+            start += 2.0 * self.rise_s + self.hold_s + self.pause_s
+        return depth
+
+    def acceleration_mm_per_s2(self, time_s: Floats) -> Floats:
+        """Second derivative of the path by central differences of a tenth of a millisecond."""
+        h = 1e-4
+        return np.asarray((self.depth(time_s + h) - 2.0 * self.depth(time_s) + self.depth(time_s - h)) / h**2)
+
+    def speed_mm_per_s(self, time_s: Floats) -> Floats:
+        """First derivative of the path."""
+        h = 1e-4
+        return np.asarray((self.depth(time_s + h) - self.depth(time_s - h)) / (2.0 * h))
+
+
+def _rounded(share: Floats) -> Floats:
+    """0 to 1 with continuous acceleration (a quintic step)."""
+    x = np.clip(share, 0.0, 1.0)
+    return np.asarray(x**3 * (10.0 - 15.0 * x + 6.0 * x**2))

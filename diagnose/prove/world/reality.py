@@ -1,0 +1,154 @@
+"""One reality: what was made, and everything between the stage, the film and the recorder."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from scipy.special import erfc
+
+from diagnose.prove.world.amplifier import Amplifier
+from diagnose.prove.world.bench import Bench
+from diagnose.prove.world.made import Floats, Made
+from diagnose.prove.world.march import Course, Table, table
+from diagnose.prove.world.programme import Run
+from diagnose.prove.world.strengths import forgetful, scaled_memory
+
+PYRO_PC_PER_MM2_K = 30.0
+Signals = dict[str, Floats]
+
+
+@dataclass(frozen=True)
+class Reality:
+    """Everything is off by default but the baseline.
+
+    gap_mm, compliance_mm_per_N, mass_g : between stage and dot. leak_MOhm : across the film. heat : step (K) and
+    time (s) of a half-space that warms. touch_pC : charge left by the touch at the largest area. sensitivity : of the
+    film, on all its constants d. fatigue : share of its charge that the film loses from one press to the next.
+    drift : relative change of the gain over a minute. jump_s : the clock of the voltage jumps by this in the middle
+    of every run. pickup : volt per mm/s. nuisance : name, or (name, number of run), -> value.
+    """
+
+    made: Made
+    amplifier: Amplifier
+    gap_mm: float = 0.0
+    compliance_mm_per_N: float = 0.0
+    mass_g: float = 0.0
+    leak_MOhm: float | None = None
+    heat: tuple[float, float] = (0.0, 1.0)
+    touch_pC: float = 0.0
+    sensitivity: float = 1.0
+    fatigue: float = 0.0
+    drift: float = 0.0
+    jump_s: float = 0.0
+    pickup: float = 0.0
+    nuisance: Mapping[Any, float] = field(default_factory=dict)
+
+    def of(self, name: str, run: int) -> float:
+        """A nuisance of a run."""
+        return self.nuisance.get((name, run), self.nuisance.get(name, 0.0))
+
+
+def baseline(bench: Bench) -> Reality:
+    """What the experimenter believes."""
+    return Reality(bench.made, bench.amplifier)
+
+
+def record(reality: Reality, bench: Bench) -> list[Signals]:
+    """Signals of every run without noise: time_s, displacement_mm, force_N (when measured), voltage_V."""
+    real = replace(reality, made=with_scatter(reality))
+    known = table(forgetful(real.made), DEEPER * bench.deepest_mm)
+    nominal = table(forgetful(reality.made), DEEPER * bench.deepest_mm) if reality.made.remembers else known
+    return [
+        _run(real, bench, run, number, Mechanics(reality.made, known, nominal)) for number, run in enumerate(bench.runs)
+    ]
+
+
+DEEPER = 1.05
+
+
+@dataclass(frozen=True)
+class Mechanics:
+    """known : table of what is really there without its memory; nominal : of the same without the specimen's scatter.
+
+    made : without scatter, with its memory.
+    """
+
+    made: Made
+    known: Table
+    nominal: Table
+
+    def course(self, time: Floats, path: Floats) -> Course:
+        """Answers to the path of the dot."""
+        elastic = self.known.at(path)
+        if not self.made.remembers:
+            return elastic
+        return scaled_memory(self.made, time, path, elastic, self.nominal.at(path))
+
+
+def with_scatter(reality: Reality) -> Made:
+    """What was made, with the declared scatter of this specimen in it."""
+    made = reality.made
+    layers = []
+    for layer in made.layers:
+        name = getattr(layer, "name", "film")
+        modulus = 1.0 + reality.nuisance.get(f"modulus.{name}", 0.0)
+        layers.append(replace(layer, modulus_MPa=modulus * layer.modulus_MPa))
+    return replace(made, layers=tuple(layers))
+
+
+def _run(reality: Reality, bench: Bench, run: Run, number: int, mechanics: Mechanics) -> Signals:
+    time = run.times(bench.rate_Hz)
+    stage = run.depth(time) - reality.of("offset_mm", number)
+    course = mechanics.course(time, _path(reality, stage, mechanics.known))
+    force = course.force_N + 1e-6 * reality.mass_g * run.acceleration_mm_per_s2(time)
+    charge = reality.sensitivity * course.charge_pC * (1.0 - reality.fatigue) ** _presses_before(run, time)
+    charge += _warmth(reality, run, time) + reality.touch_pC * _touched(course)
+    voltage = _amplifier(reality, run).voltage(time, charge, reality.made.capacitance_pF, 1.7 * number)
+    voltage += reality.pickup * run.speed_mm_per_s(time)
+    voltage *= 1.0 + reality.drift * time / 60.0 * (number + 1)
+    late = reality.of("lag_s", number) + np.where(time > 0.5 * time[-1], reality.jump_s, 0.0)
+    voltage = np.interp(time - late, time, voltage)
+    signals = {"time_s": time, "displacement_mm": run.depth(time)}
+    if bench.force:
+        signals["force_N"] = (1.0 + reality.of("force_gain", number)) * force + reality.of("offset_N", number)
+    signals["voltage_V"] = (1.0 + reality.of("gain", number)) * voltage + reality.of("offset_V", number)
+    return signals
+
+
+def _path(reality: Reality, stage: Floats, known: Table) -> Floats:
+    """The dot behind gap and compliance. ValueError for a compliance with memory."""
+    path = stage - reality.gap_mm
+    if reality.compliance_mm_per_N == 0.0:
+        return path
+    if reality.made.remembers:
+        raise ValueError("a compliant rig with a medium that remembers is not in the proof")
+    dense = np.linspace(0.0, known.depth_mm[-1], 2000)
+    reached = dense + reality.compliance_mm_per_N * known.at(dense).force_N
+    return np.where(path > 0.0, np.interp(path, reached, dense), path)
+
+
+def _presses_before(run: Run, time: Floats) -> Floats:
+    """Number of presses that have been made in this run."""
+    each = 2.0 * run.rise_s + run.hold_s + run.pause_s
+    return np.asarray(np.clip(np.floor((time - run.lead_s) / each), 0, run.count - 1))
+
+
+def _warmth(reality: Reality, run: Run, time: Floats) -> Floats:
+    """Pyroelectric charge of a half-space that warms from the first touch on: erfc of the root of time."""
+    step, constant = reality.heat
+    since = np.clip(time - run.lead_s, 1e-9, None)
+    warm = np.where(time > run.lead_s, erfc(np.sqrt(constant / since)), 0.0)
+    return np.asarray(PYRO_PC_PER_MM2_K * reality.made.length_mm * reality.made.width_mm * step * warm)
+
+
+def _touched(course: Course) -> Floats:
+    """Share of the largest contact area, to the power 0.8."""
+    return np.asarray((course.area_mm2 / max(float(course.area_mm2.max()), 1e-12)) ** 0.8)
+
+
+def _amplifier(reality: Reality, run: Run) -> Amplifier:
+    """With the resistor of this run and the leak beside it."""
+    have = run.resistance_MOhm if run.resistance_MOhm is not None else reality.amplifier.resistance_MOhm
+    conductance = sum(1.0 / r for r in (have, reality.leak_MOhm) if r is not None)
+    return replace(reality.amplifier, resistance_MOhm=1.0 / conductance if conductance else None)

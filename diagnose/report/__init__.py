@@ -1,0 +1,1 @@
+"""Pictures of the evidence of a diagnosis."""

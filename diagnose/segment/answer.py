@@ -1,0 +1,106 @@
+"""From a table and a drive to what the instruments of a run show."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diagnose.recording import Run
+from diagnose.segment.drive import Drive
+from mesh.types import Floats
+from solve.amplifier import amplify
+from solve.model import Model
+from solve.parameters import Readout
+from solve.reduced.fit import Fit
+from solve.reduced.recording import branches, sensed
+from solve.reduced.response_kernel import TOO_DEEP, follow
+
+
+@dataclass(frozen=True)
+class FilmPlate:
+    """Per electrode the capacitance in F and the area in m2, (e, 2); pyroelectric constant in uC / m2 K."""
+
+    electrodes: Floats
+    pyroelectric_uC_per_m2_K: float
+
+    def thinner(self, factor: float) -> "FilmPlate":
+        """A film whose capacitance is larger by a factor."""
+        return replace(self, electrodes=self.electrodes * [factor, 1.0])
+
+
+@dataclass(frozen=True)
+class Mechanics:
+    """Over time (t,): the dot's path in mm, the contact force in N, its area in m2; charges (t, e) in C."""
+
+    path_mm: Floats
+    force_N: Floats
+    area_m2: Floats
+    charge_C: Floats
+
+
+def mechanics(fit: Fit, depth_mm: float, layers: tuple[str, ...], drive: Drive, values: Floats, on: Model) -> Mechanics:
+    """The dot and the segment under a drive of these values (t,). ValueError where it goes deeper than the table."""
+    physics, modes = on.physics, int(fit.start[-1])
+    observed = fit.table.shape[2] - modes
+    path, outputs = np.empty(len(values)), np.empty((len(values), observed))
+    moduli, times, layer = branches(physics.viscosity, layers)
+    mass = 1e-6 * physics.moving_mass_g  # N s2 / mm
+    status = follow(
+        drive.time_s, values, drive.kind, physics.rig_compliance_mm_per_N, mass, fit.table, fit.touch, depth_mm,
+        fit.pairs, fit.start, moduli, times, layer, observed, path, outputs,
+    )  # fmt: skip
+    if status == TOO_DEEP:
+        raise ValueError(f"the dot goes deeper than {depth_mm:.4g} mm, the most that was prepared")
+    return Mechanics(path, outputs[:, 0], outputs[:, 1], outputs[:, 2:])
+
+
+def shown(
+    run: Run, drive: Drive, values: Floats, found: Mechanics, film: FilmPlate, on: Model, ahead_s: float = 0.0
+) -> dict[str, Floats]:
+    """Every answer of the run (t,). Where nothing pushes, nobody can tell where a dot hangs: as recorded.
+
+    ahead_s : by which the mains are ahead of the first touch.
+    """
+    voltages = amplified(run, drive.time_s, found, film, on, ahead_s)
+    signals: dict[str, Floats] = {}
+    for name in run.answers:
+        if name == "force_N":
+            signals[name] = sensed(drive.time_s, values, drive.kind, found.path_mm, found.force_N, on.physics)
+        elif name == "displacement_mm":
+            signals[name] = np.where(drive.touching, found.path_mm + on.dot.gap_mm, run.channels[name])
+        else:
+            signals[name] = voltages[name]
+    return signals
+
+
+def amplified(
+    run: Run, time_s: Floats, found: Mechanics, film: FilmPlate, on: Model, ahead_s: float
+) -> dict[str, Floats]:
+    """Voltage channels (t,): one of all electrodes together, or one of each with what leaks in from the others."""
+    charge = found.charge_C + other_charge(time_s, found.area_m2, film, on)
+    time_s = time_s + ahead_s  # the amplifier itself knows differences of time only
+    readout = on.readout or Readout()
+    if run.voltages == ("voltage_V",):
+        told = (time_s, charge.sum(axis=1), float(film.electrodes[:, 0].sum()), readout, on.physics)
+        return {"voltage_V": amplify(*told)}
+    alone = [
+        amplify(time_s, np.ascontiguousarray(own), float(capacitance), readout, on.physics)
+        for own, capacitance in zip(charge.T, film.electrodes[:, 0], strict=True)
+    ]
+    total = np.sum(alone, axis=0)
+    coupling = on.physics.crosstalk
+    mixed = [own + coupling.get(number, 0.0) * (total - own) for number, own in enumerate(alone, start=1)]
+    return dict(zip(run.voltages, mixed, strict=False))
+
+
+def other_charge(time_s: Floats, area_m2: Floats, film: FilmPlate, on: Model) -> Floats:
+    """Charge of heat and of touch (t, e), as solve.recorder adds it; the heat comes with the first touch."""
+    area, heat = film.electrodes[:, 1], on.physics.pyroelectric
+    charge = np.zeros((len(time_s), len(area)))
+    if heat.temperature_step_K != 0.0:
+        elapsed = np.maximum(time_s, 0.0)
+        temperature = -heat.temperature_step_K * np.expm1(-elapsed / heat.time_constant_s)
+        charge += 1e-6 * film.pyroelectric_uC_per_m2_K * temperature[:, None] * area
+    if on.physics.contact_charge_pC != 0.0:
+        touched = area_m2 / max(float(area_m2.max()), 1e-300)
+        charge += 1e-12 * on.physics.contact_charge_pC * touched[:, None] * area / area.sum()
+    return charge

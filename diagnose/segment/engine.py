@@ -1,0 +1,177 @@
+"""The forward model of a rig with a known segment."""
+
+from collections.abc import Sequence
+from copy import copy
+from dataclasses import replace
+from functools import cached_property
+
+import numpy as np
+
+from diagnose.forward import Candidate, Report, Setting, Signals
+from diagnose.recording import Recording, Run
+from diagnose.segment import full
+from diagnose.segment.answer import FilmPlate, Mechanics, mechanics, shown
+from diagnose.segment.drive import Drive, drive_of
+from diagnose.segment.nuisances import ZERO, nuisance
+from diagnose.segment.path import with_history
+from diagnose.segment.prepared import Prepared
+from diagnose.segment.rig_mesh import mesh_of
+from diagnose.segment.tables import changed
+from diagnose.vocabulary.candidates import candidates
+from diagnose.vocabulary.scene import Scene
+from mesh.parameters import MeshOptions
+from mesh.types import Floats
+from solve.materials.parameters import PiezoelectricFilm
+from solve.mechanisms import Mechanism
+from solve.model import Model
+from solve.parameters import Readout
+from solve.reduced.fit import Fit
+from solve.switch_on import with_mechanisms
+
+DIRECT = frozenset({
+    "charge-leakage", "parasitic-capacitance", "low-pass", "saturation", "pyroelectric-drift", "crosstalk",
+    "contact-electrification", "viscoelasticity", "contact-gap", "rig-compliance", "inertia", "property-error",
+})  # fmt: skip
+"""Mechanisms, or parts of one, that act on the table as they do on the 3D model."""
+
+
+ROUNDS = 40
+SETTLED = 1e-6  # of the largest force
+
+
+def segment_engine(model: Model, mesh_settings: MeshOptions, recording: Recording, report: Report) -> "SegmentEngine":
+    """Press the baseline, or recall it. InputError, MeshingError, NoEquilibriumError."""
+    return SegmentEngine(model, mesh_settings, recording, report)
+
+
+class SegmentEngine:
+    """Implements diagnose.forward.Engine."""
+
+    name = "3D FEM"
+    free_nuisances: tuple[Candidate, ...] = ()
+
+    def __init__(self, model: Model, mesh_settings: MeshOptions, recording: Recording, report: Report) -> None:
+        self.model, self.recording = model, recording
+        self.drives = [drive_of(*pair) for pair in zip(recording.runs, recording.phases, strict=True)]
+        self.prepared: Prepared = Prepared(model, mesh_settings, recording, report)
+        self.prepared.add((), [run.dot_offset_mm for run in recording.runs], report)
+        self.accuracy = self.prepared.accuracy
+        self.candidates: tuple[Candidate, ...] = candidates(self.scene)
+
+    @cached_property
+    def scene(self) -> Scene:
+        """What the candidates depend on."""
+        runs = self.recording.runs
+        values = [run.channels[name][run.usable(name)] for run in runs for name in run.voltages]
+        return Scene(
+            model=self.model,
+            readouts=tuple(self._readout(run) or Readout() for run in runs),
+            depth_mm=self.prepared.pressed_mm,
+            force_N=float(self.prepared.fit.table[-1, 0, 0]),
+            voltage_V=max((float(np.abs(v).max()) for v in values if len(v)), default=0.0),
+            step_s=min(run.step_s for run in runs),
+            duration_s=max(float(run.time_s[-1] - run.time_s[0]) for run in runs),
+            channels=max(1, len(self.model.segment.film.electrodes)),
+        )
+
+    def nuisance(self, name: str) -> Candidate | None:
+        """See diagnose.forward.Engine; also "offset_mm", the error of the first touch where a displacement drives."""
+        return nuisance(self.scene, self.recording, name)
+
+    def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
+        """Press what these candidates need. NoEquilibriumError."""
+        self.prepared.add(candidates, (), report)
+
+    def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
+        """Every answer of a run. ValueError for what was not prepared."""
+        settings = [setting for setting in settings if any(setting.values)]
+        direct = [s.candidate.switched_on(s.values) for s in settings if s.candidate.mechanism in DIRECT]
+        drive, on = self.drives[run], with_mechanisms(self._believed(run), direct)
+        values = self._driven(drive, on, settings)
+        found = self._mechanics(run, drive, values, on, settings)
+        ahead_s, on = self._hum(run, settings, on)
+        return shown(self.recording.runs[run], drive, values, found, self._film(on), on, ahead_s)
+
+    def imagine(self, run: Run, settings: Sequence[Setting]) -> Signals:
+        """Every answer of a run that was not made. ValueError for what was not prepared, as a deeper press."""
+        other = copy(self)
+        other.recording = Recording((run,))
+        other.drives = [drive_of(run, other.recording.phases[0])]
+        return other.predict(0, settings)
+
+    def solve(self, run: int, mechanisms: Sequence[Mechanism], report: Report) -> Signals:
+        """The same by the 3D model along the run's own drive. ValueError, NoEquilibriumError."""
+        believed = self.prepared.moved(self.recording.runs[run].dot_offset_mm)
+        on = with_mechanisms(replace(believed, readout=self._believed(run).readout), mechanisms)
+        tet_mesh = mesh_of(on, self.model, self.prepared.tet_mesh, self.prepared.options)
+        drive, elastic = self.drives[run], replace(on, physics=replace(on.physics, viscosity={}))
+
+        base, values = self.prepared, self._driven(drive, on, ())
+
+        def shape(fit: Fit) -> full.Shape:
+            return lambda of, values: mechanics(fit, base.depth_mm, base.relaxing, of, values, elastic)
+
+        told = (self.recording.runs[run], drive, values, on, tet_mesh, self._film(on), shape(base.raw), shape(base.fit))
+        task = full.Task(*told)
+        return full.solve(task, report)
+
+    def _believed(self, run: int) -> Model:
+        """The model with the amplifier of a run."""
+        return replace(self.model, readout=self._readout(self.recording.runs[run]))
+
+    def _readout(self, run: Run) -> Readout | None:
+        return run.readout if run.readout is not None else self.model.readout
+
+    def _driven(self, drive: Drive, on: Model, settings: Sequence[Setting]) -> Floats:
+        """The drive (t,) from the first touch of a model, in mm, or in N."""
+        if not drive.by_depth:
+            return drive.values
+        zero = sum(setting.values[0] for setting in settings if setting.candidate.mechanism == ZERO)
+        return np.asarray(drive.values - on.dot.gap_mm - zero)
+
+    def _mechanics(self, run: int, drive: Drive, values: Floats, on: Model, settings: Sequence[Setting]) -> Mechanics:
+        """Path, force and charge. What depends on the path acts back on a compliant drive: a fixed point."""
+        base, fit = self.prepared, self._fit(run, on, settings)
+        found = mechanics(fit, base.depth_mm, base.relaxing, drive, values, on)
+        histories = base.histories(settings)
+        if not histories:
+            return found
+        give = on.physics.rig_compliance_mm_per_N if drive.by_depth else 1.0
+        added = np.zeros(len(values))
+        for _ in range(ROUNDS):
+            whole = with_history(found, histories, fit, base.depth_mm)
+            change = whole.force_N - found.force_N - added
+            added = added + change
+            if give == 0.0 or np.abs(change).max() <= SETTLED * np.abs(whole.force_N).max():
+                break
+            found = mechanics(fit, base.depth_mm, base.relaxing, drive, values - give * added, on)
+        return whole
+
+    def _fit(self, run: int, on: Model, settings: Sequence[Setting]) -> Fit:
+        """The table with all that changes it."""
+        base = self.prepared
+        change = base.change(self.recording.runs[run].dot_offset_mm, settings)
+        factor = _d31(on) / _d31(self.model)
+        if change is None and factor == 1.0:
+            return base.fit
+        return changed(base.fit, base.depths, base.nothing if change is None else change, factor)
+
+    def _film(self, on: Model) -> FilmPlate:
+        """A thinner film has more capacitance."""
+        return self.prepared.film.thinner(self.model.segment.film.thickness_um / on.segment.film.thickness_um)
+
+    def _hum(self, run: int, settings: Sequence[Setting], on: Model) -> tuple[float, Model]:
+        """By how much the mains are ahead of the touch, and the model with their hum."""
+        for setting in settings:
+            if setting.candidate.mechanism == "mains-hum":
+                sine, cosine = setting.values[2 * run : 2 * run + 2]
+                hum = (*on.physics.hum, (self.scene.mains_Hz, float(np.hypot(sine, cosine))))
+                ahead_s = float(np.arctan2(cosine, sine)) / (2.0 * np.pi * self.scene.mains_Hz)
+                return ahead_s, replace(on, physics=replace(on.physics, hum=hum))
+        return 0.0, on
+
+
+def _d31(model: Model) -> float:
+    film = model.materials["film"]
+    assert isinstance(film, PiezoelectricFilm)
+    return film.d31_pC_per_N or film.d33_pC_per_N

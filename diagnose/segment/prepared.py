@@ -1,0 +1,161 @@
+"""All that was pressed for one rig: the baseline's table, what layers remember, and changes by candidates."""
+
+from collections.abc import Container, Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from diagnose.forward import Candidate, Report, Setting
+from diagnose.recording import Recording
+from diagnose.segment import path
+from diagnose.segment.accuracy import accuracy
+from diagnose.segment.answer import FilmPlate
+from diagnose.segment.interpolation import effect_of
+from diagnose.segment.nuisances import offset_reach_mm
+from diagnose.segment.presses import Job
+from diagnose.segment.reach import deepest
+from diagnose.segment.reduction import Reduction
+from diagnose.segment.rig_mesh import finer_mesh, mesh_of, rig_mesh
+from diagnose.segment.tables import Depths, change, changed
+from diagnose.segment.workers import run_all
+from mesh.parameters import MeshOptions
+from mesh.types import Floats
+from solve.model import Model
+from solve.physics import Physics
+from solve.reduced.fit import Fit
+from solve.switch_on import with_mechanisms
+
+SHARES = 0.1, 0.25, 0.45, 0.7, 1.0
+"""Of the depth, at which changes are seen: they are smooth over it."""
+FINER_SHARES = 0.25, 0.6, 1.0
+MARGIN = 1.02  # of the depth of the table over the deepest press
+SLIPS = 3  # steps between two of them under friction
+Name = tuple[object, ...]
+Place = tuple[float, float]
+
+
+class Prepared:
+    """depth_mm : of the table. pressed_mm : the deepest that the runs go. relaxing : the layers whose memory is known.
+
+    raw : the baseline's table on the diagnosis mesh; fit : the same, corrected by one press on a finer mesh.
+    accuracy : see diagnose.forward.Engine.
+    """
+
+    def __init__(self, model: Model, options: MeshOptions, recording: Recording, report: Report) -> None:
+        self.model = model
+        self.tet_mesh, self.options = rig_mesh(model, options)
+        self.pressed_mm = deepest(model, self.tet_mesh, recording)
+        self.depth_mm = MARGIN * self.pressed_mm + offset_reach_mm(recording)
+        self.depths = Depths(SHARES)
+        self._changes: dict[Name, Floats] = {}
+        finer, sizes = finer_mesh(model, self.options)
+        pressed = self.job(model)
+        jobs = [replace(pressed, tet_mesh=each, shares=FINER_SHARES) for each in (finer, self.tet_mesh)]
+        reduction = self._reduction(model.physics.viscosity)
+        fine, coarse = run_all(jobs, report, [reduction])
+        self._finer_depths, self._correction = Depths(FINER_SHARES), change(coarse, fine)
+        self._take(reduction)
+        self.accuracy = accuracy(coarse, fine, sizes.element_size_mm / self.options.element_size_mm)
+
+    @property
+    def nothing(self) -> Floats:
+        """No change, (n, 2 + e)."""
+        return np.zeros((len(SHARES), 2 + len(self.film.electrodes)))
+
+    def add(self, candidates: Sequence[Candidate], places: Sequence[Place], report: Report) -> None:
+        """Press what these candidates, and dots at these places, need beyond what was pressed. NoEquilibriumError."""
+        wanted = {name: job for c in candidates for name, job in self._jobs(c) if name not in self._changes}
+        wanted |= {_at(p): self.job(self.moved(p)) for p in places if any(p) and _at(p) not in self._changes}
+        layers = {*self.relaxing, *(c.component for c in candidates if c.mechanism == "viscoelasticity")}
+        first = [self._reduction(layers)] if layers != set(self.relaxing) else []
+        if not wanted and not first:
+            return
+        base, *outputs = run_all([self.job(self.model), *wanted.values()], report, first)
+        if first:
+            self._take(first[0])
+        for (name, job), found in zip(wanted.items(), outputs, strict=True):
+            self._changes[name] = path.changes(found, base, SHARES, self.raw) if job.back else change(base, found)
+
+    def _reduction(self, layers: Container[str]) -> Reduction:
+        """The baseline with these layers relaxing, in a fixed order."""
+        order = (*self.model.materials, *self.model.physics.bonds)
+        pressed = self.job(self.model).model
+        return Reduction(pressed, self.tet_mesh, self.depth_mm, tuple(name for name in order if name in layers))
+
+    def _take(self, reduction: Reduction) -> None:
+        """Use this table from now on, corrected by the finer mesh."""
+        made = reduction.made()
+        self.relaxing, self.raw = reduction.relaxing, made.fit
+        self.film = FilmPlate(made.film, made.pyroelectric_uC_per_m2_K)
+        self.fit: Fit = changed(self.raw, self._finer_depths, self._correction, 1.0)
+
+    def moved(self, place: Place) -> Model:
+        """The model with the dot at a place, from where it stands."""
+        x, y = self.model.dot.offset_mm
+        dot = self.model.dot.model_copy(update={"offset_mm": (x + place[0], y + place[1])})
+        return replace(self.model, dot=dot)
+
+    def _jobs(self, candidate: Candidate) -> Iterator[tuple[Name, Job]]:
+        back = path.BACK if candidate.mechanism in path.MECHANISMS else ()
+        for point in effect_of(candidate).points:
+            job = self.job(with_mechanisms(self.model, [candidate.switched_on(point)]))
+            parts = SLIPS if job.model.physics.friction > 0.0 else 1
+            yield _name(candidate, point), replace(job, back=back, parts=parts)
+
+    def job(self, model: Model) -> Job:
+        """The press of a changed model on the same mesh, moved with its layers, at once: nothing relaxes."""
+        on = model.physics
+        own = replace(structural(on), friction=on.friction, softening=on.softening, film_yield=on.film_yield)
+        tet_mesh = mesh_of(model, self.model, self.tet_mesh, self.options)
+        return Job(replace(ungapped(model), physics=own, readout=None), tet_mesh, self.depth_mm, SHARES)
+
+    def change(self, place: Place, settings: Sequence[Setting]) -> Floats | None:
+        """The sum (n, 2 + e) of what elastic settings and the dot's place change; None for nothing. ValueError."""
+        parts = [] if not any(place) else [self._known(_at(place), f"a dot at {place} mm")]
+        elastic = [setting for setting in settings if setting.candidate.mechanism not in path.MECHANISMS]
+        parts += [values for values in map(self._values, elastic) if values is not None]
+        return np.sum(parts, axis=0) if parts else None
+
+    def histories(self, settings: Sequence[Setting]) -> list[path.History]:
+        """Of the settings that depend on the path. ValueError."""
+        found = []
+        for setting in settings:
+            if setting.candidate.mechanism in path.MECHANISMS:
+                values = self._values(setting)
+                assert values is not None
+                found.append(path.History(values, SHARES))
+        return found
+
+    def _values(self, setting: Setting) -> Floats | None:
+        """Changes (n, 2 + e), or of a path (n + b r, 2 + e); None where the setting needs no press."""
+        effect = effect_of(setting.candidate)
+        if not any(setting.values[n] for n in effect.pressed):
+            return None
+        what = f"{setting.candidate.mechanism} of {setting.candidate.component}"
+        known = np.array([self._known(_name(setting.candidate, point), what) for point in effect.points])
+        return np.tensordot(effect.weights(setting.values), known, 1)
+
+    def _known(self, name: Name, what: str) -> Floats:
+        if name not in self._changes:
+            raise ValueError(f"{what} was not prepared")
+        return self._changes[name]
+
+
+def _name(candidate: Candidate, point: Sequence[float]) -> Name:
+    """The same for a nuisance and for the candidate that has it among others."""
+    on = tuple((c.name, value) for c, value in zip(candidate.coordinates, point, strict=True) if value != 0.0)
+    return (*candidate.name, on)
+
+
+def _at(place: Place) -> Name:
+    return ("place", *place)
+
+
+def ungapped(model: Model) -> Model:
+    """The dot at its first touch."""
+    return replace(model, dot=model.dot.model_copy(update={"gap_mm": 0.0}))
+
+
+def structural(physics: Physics) -> Physics:
+    """What of the physics is in an elastic press."""
+    return Physics(bonds=physics.bonds, delaminations=physics.delaminations, prestretch=physics.prestretch)

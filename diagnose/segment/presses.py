@@ -1,0 +1,91 @@
+"""Presses of the 3D model that fill the tables: down, and from several depths up again."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from geometry.dot_shape import resolve_dot
+from mesh.types import Floats, TetMesh
+from solve.interfaces import open_interfaces
+from solve.linear import LinearSolver
+from solve.march import march, rest_state
+from solve.model import Model
+from solve.newton import NoEquilibriumError
+from solve.parameters import Press
+from solve.schedule import Target
+from solve.setup import Setup, set_up
+from solve.system import Load, State
+
+RETURN = 0.95, 0.85, 0.65, 0.4, 0.15, 0.03
+"""Of the depth from which the dot returns: closest where softened rubber leaves its first curve."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """One press of a model on a mesh to depth_mm, seen at shares (n,) of it, growing from above 0 to 1.
+
+    back : numbers of the shares from which the dot also returns; seen on the way at RETURN of that depth.
+    parts : steps to each share, where slip takes several.
+    """
+
+    model: Model
+    tet_mesh: TetMesh
+    depth_mm: float
+    shares: tuple[float, ...]
+    back: tuple[int, ...] = ()
+    parts: int = 1
+
+    def run(self) -> Floats:
+        """Outputs (n + b r, 2 + e): force in N, contact area in m2, charges in C; down, then way back by way back.
+
+        NoEquilibriumError.
+        """
+        setup = _set_up(self)
+        linear = LinearSolver(setup.system.factorisation_shift)
+        try:
+            return _walk(self, setup, linear)
+        finally:
+            linear.close()
+
+
+def _set_up(job: Job) -> Setup:
+    model = replace(job.model, press=Press(indentation_mm=job.depth_mm))
+    dot = resolve_dot(model.dot, model.segment)
+    plane_strain = model.segment.section == "plane-strain"
+    opened_mesh, opened = open_interfaces(
+        job.tet_mesh, model.physics.bonds, model.physics.delaminations, plane_strain
+    )
+    return set_up(model, dot, opened_mesh, opened)
+
+
+def _walk(job: Job, setup: Setup, linear: LinearSolver) -> Floats:
+    start = Target(0.0, Load((0.0, 0.0), 0.0), True)
+    rest = rest_state(setup.system, linear, start)
+    setup.recorder.start(rest)
+    past, down, back = [rest], list[Floats](), list[Floats]()
+    for number, (before, share) in enumerate(pairwise([0.0, *job.shares])):
+        for place in np.linspace(before, share, job.parts + 1)[1:]:
+            _go(setup, linear, past, float(place))
+        down.append(_outputs(setup, past))
+        if number in job.back:
+            returning = past[-1:]
+            for part in RETURN:
+                _go(setup, linear, returning, part * share)
+                back.append(_outputs(setup, returning))
+    return np.array([*down, *back])
+
+
+def _go(setup: Setup, linear: LinearSolver, past: list[State], share: float) -> None:
+    """March to a share of the depth; past is extended. NoEquilibriumError."""
+    target = Target(past[-1].time + 1.0, Load((0.0, 0.0), share * setup.full_drive), True)
+    failure = march(setup.system, linear, past, target, True, lambda *_: None)
+    if failure is not None:
+        raise NoEquilibriumError(f"a press at {share:.2f} of the depth: {failure}", past[-1].x, None)
+
+
+def _outputs(setup: Setup, past: Sequence[State]) -> Floats:
+    setup.recorder.record(past[-1], past[-2] if len(past) > 1 else past[-1])
+    record = setup.recorder.records.pop()
+    return np.array([record.contact_force_N[2], record.contact_area_m2, *record.film_charge_C])

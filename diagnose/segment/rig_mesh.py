@@ -1,0 +1,62 @@
+"""The mesh of a diagnosis: the user's own, or as much coarser as hundreds of presses ask for."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from geometry.dot_shape import DotShape, resolve_dot
+from mesh.build import build
+from mesh.morph import morphed
+from mesh.parameters import MeshOptions
+from mesh.types import TetMesh
+from solve.model import Model
+
+LARGEST = 3000  # nodes: some 8,000 unknowns, and 3 s a press on one core
+COARSER = 1.06
+FINER = 0.6  # element sizes of the mesh by which the diagnosis mesh is corrected
+
+
+def rig_mesh(model: Model, options: MeshOptions, largest: int = LARGEST) -> tuple[TetMesh, MeshOptions]:
+    """The mesh with as many nodes at most, and its sizes, which grow together until it is small enough.
+
+    Layered wherever that mesher can, as it is repeatable and takes no time. InputError, MeshingError.
+    """
+    options = options.model_copy(update={"film_layers": 1})
+    if model.segment.effector is None or model.segment.effector.shape != "dome":
+        options = options.model_copy(update={"mesher": "layered"})
+    while True:
+        made = build(model.segment, _resting(model), options)
+        count = len(np.unique(made.twin))
+        if count <= largest or options.contact_element_size_mm > model.segment.length_mm:
+            return made, options
+        options = scaled(options, max(COARSER, 0.7 * (count / largest) ** (1.0 / 3.0)))
+
+
+def finer_mesh(model: Model, options: MeshOptions) -> tuple[TetMesh, MeshOptions]:
+    """A mesh with finer elements all over, and its sizes."""
+    sizes = scaled(options, FINER)
+    return build(model.segment, _resting(model), sizes), sizes
+
+
+def mesh_of(model: Model, known: Model, tet_mesh: TetMesh, options: MeshOptions) -> TetMesh:
+    """The mesh of a changed model: the known one's, moved with its layers, unless it is of another dimension."""
+    if model.segment.section != known.segment.section:
+        return rig_mesh(model, options)[0]
+    return morphed(tet_mesh, known.segment, model.segment)
+
+
+def scaled(options: MeshOptions, factor: float) -> MeshOptions:
+    """All sizes times a factor."""
+    film = options.film_element_size_mm
+    sizes = {
+        "element_size_mm": factor * options.element_size_mm,
+        "contact_element_size_mm": factor * options.contact_element_size_mm,
+        "film_element_size_mm": None if film is None else factor * film,
+    }
+    return options.model_copy(update=sizes)
+
+
+def _resting(model: Model) -> DotShape:
+    """The dot as it touches: a gap makes no other mesh."""
+    dot = resolve_dot(model.dot, model.segment)
+    return replace(dot, origin_mm=dot.origin_mm - [0.0, 0.0, model.dot.gap_mm])

@@ -1,0 +1,35 @@
+"""A process that presses the 3D model: jobs come in on standard input, answers go out on standard output."""
+
+import os
+import pickle
+import sys
+
+from diagnose.segment.presses import Job
+from diagnose.segment.reduction import Reduction
+from mesh.types import Floats
+from solve.newton import NoEquilibriumError
+
+
+def answer(job: Job | Reduction) -> Floats | Exception:
+    """Outputs, or the error that can be sent."""
+    try:
+        return job.run()
+    except (NoEquilibriumError, ValueError) as error:
+        return RuntimeError(str(error))
+
+
+def work() -> None:
+    """Answer jobs on standard input until it ends. What libraries print goes to standard error."""
+    answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
+    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
+    while True:
+        try:
+            job = pickle.load(sys.stdin.buffer)
+        except EOFError:
+            return
+        pickle.dump(answer(job), answers)
+        answers.flush()
+
+
+if __name__ == "__main__":
+    work()

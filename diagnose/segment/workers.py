@@ -1,0 +1,96 @@
+"""Presses that are not on disk yet, on all cores: one process a core, fed one press at a time."""
+
+import os
+import pickle
+import subprocess
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from queue import Empty, SimpleQueue
+from threading import Thread
+from typing import Any
+
+import numpy as np
+
+from diagnose.forward import Report
+from diagnose.segment import store, worker
+from diagnose.segment.presses import Job
+from diagnose.segment.reduction import Reduction
+from mesh.types import Floats
+from solve.newton import NoEquilibriumError
+
+WORTH_A_PROCESS = 4  # presses: a process takes seconds to start
+ONE_THREAD = {"OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1"}
+WHAT = "pressing the 3D model"
+
+
+def run_all(jobs: Sequence[Job], report: Report, first: Sequence[Reduction] = ()) -> list[Floats]:
+    """Outputs of all jobs in order, each kept as soon as it is there. NoEquilibriumError for one that has none.
+
+    first : what takes longest, and is kept where it is made.
+    """
+    names = [store.key(job) for job in jobs]
+    found = {name: table for name in names if (table := store.recall(name)) is not None}
+    missing: dict[str, Job | Reduction] = {f"reduction {n}": job for n, job in enumerate(first)}
+    missing |= {name: job for name, job in zip(names, jobs, strict=True) if name not in found}
+    if missing:
+        report(WHAT, 0, len(missing))
+    for number, (name, table) in enumerate(_pressed(missing), start=1):
+        if isinstance(table, Exception):
+            raise NoEquilibriumError(str(table), np.zeros(0), None) from table
+        if isinstance(missing[name], Job):
+            found[name] = table
+            store.keep(name, table)
+        report(WHAT, number, len(missing))
+    return [found[name] for name in names]
+
+
+def _pressed(jobs: dict[str, Job | Reduction]) -> Iterator[tuple[str, Any]]:
+    """Name and outputs, or the error, of each job as it is done."""
+    count = min(os.cpu_count() or 1, len(jobs) // WORTH_A_PROCESS)
+    if count < 2:
+        for name, job in jobs.items():
+            yield name, worker.answer(job)
+        return
+    waiting: SimpleQueue[tuple[str, Job | Reduction]] = SimpleQueue()
+    done: SimpleQueue[tuple[str, Any]] = SimpleQueue()
+    for item in jobs.items():
+        waiting.put(item)
+    with _processes(count) as processes:
+        for process in processes:
+            Thread(target=_feed, args=(process, waiting, done), daemon=True).start()
+        for _ in jobs:
+            yield done.get()
+
+
+@contextmanager
+def _processes(count: int) -> Iterator[list["subprocess.Popen[bytes]"]]:
+    """Workers that end with the block, also when it is interrupted."""
+    command = [sys.executable, "-m", worker.__name__]
+    own = {**os.environ, **ONE_THREAD, "PYTHONPATH": os.pathsep.join(sys.path)}
+    pipe = subprocess.PIPE
+    started = [subprocess.Popen(command, env=own, stdin=pipe, stdout=pipe) for _ in range(count)]
+    try:
+        yield started
+    finally:
+        for process in started:
+            process.kill()
+            process.wait()
+
+
+def _feed(process: "subprocess.Popen[bytes]", waiting: "SimpleQueue[Any]", done: "SimpleQueue[Any]") -> None:
+    """One worker's share of the jobs. One that dies leaves an error in place of its answer."""
+    assert process.stdin is not None
+    assert process.stdout is not None
+    while True:
+        try:
+            name, job = waiting.get_nowait()
+        except Empty:
+            return
+        try:
+            pickle.dump(job, process.stdin)
+            process.stdin.flush()
+            answer = pickle.load(process.stdout)
+        except (OSError, EOFError, pickle.UnpicklingError):
+            answer = RuntimeError("a process that presses the 3D model ended by itself; perhaps memory is short")
+        done.put((name, answer))

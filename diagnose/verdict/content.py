@@ -1,0 +1,188 @@
+"""verdict.json: what a diagnosis found, for other programs. Units stand beside the values."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from diagnose.findings import Findings, Fit, Interval, Model
+from diagnose.next_press.choose import NextPress, surviving
+from diagnose.verdict.names import model_words
+from diagnose.verdict.resimulation import Resimulated
+from diagnose.verdict.where import significant
+
+FORMAT = "softdot-verdict/1"
+
+
+def verdict(
+    findings: Findings,
+    summary: Sequence[str],
+    following: NextPress | None,
+    resimulated: Sequence[Resimulated],
+    warnings: Sequence[str],
+) -> dict[str, Any]:
+    """The whole content. summary : sentences for people; following : the next press, None where none can be told.
+
+    Nothing is named unless the findings do, also where a best model is known.
+    """
+    named = findings.best if findings.mismatch and not findings.unexplained else None
+    return {
+        "format": FORMAT,
+        "summary": list(summary),
+        "mismatch": findings.mismatch,
+        "detection": _detection(findings),
+        "where": _where(findings),
+        "component_shares": dict(findings.shares),
+        "missing_physics": _missing(named) if named is not None else [],
+        "alternatives": [_alternative(model) for model in findings.models if model is not named],
+        "ambiguous_with": ambiguous(findings),
+        "unexplained": findings.unexplained,
+        "reasons": list(findings.reasons),
+        "fit": {
+            "train": _fit(findings.train),
+            "held_out": _fit(findings.held_out),
+            "engine": findings.engine,
+            "resimulated": [_resimulated(each) for each in resimulated],
+        },
+        "black_box_gain_over_best_per_press": findings.black_box_gain,
+        "nuisances": {name: {"value": v, "one_sigma": s} for name, (v, s) in findings.nuisances.items()},
+        "screened": [
+            {"mechanism": mechanism, "component": component, "p_value": p}
+            for (mechanism, component), p in sorted(findings.screened.items(), key=lambda item: item[1])
+        ],
+        "next_experiment": next_experiment(findings, following),
+        "warnings": [*findings.warnings, *warnings],
+    }
+
+
+def _detection(findings: Findings) -> dict[str, Any]:
+    noise: dict[str, dict[str, Any]] = {}
+    for (label, channel), summary in findings.detection.noise.items():
+        noise.setdefault(label, {})[channel] = dict(summary)
+    return {
+        "statistic": findings.detection.statistic,
+        "p_value_family_wise": findings.detection.p_value,
+        "level": findings.detection.level,
+        "noise_model": noise,
+    }
+
+
+def _where(findings: Findings) -> list[dict[str, Any]]:
+    """Nothing where there is no mismatch."""
+    return [
+        {
+            "run": place.run,
+            "channel": place.channel,
+            "phase": place.phase,
+            "press": place.press,
+            "band_hz": list(place.band_Hz),
+            "share_of_excess": place.share,
+            "component": place.component,
+            "score": place.score,
+            "p_value_family_wise": place.p_value,
+        }
+        for place in (significant(findings) if findings.mismatch else [])
+    ]
+
+
+def _missing(model: Model) -> list[dict[str, Any]]:
+    return [
+        {
+            "mechanism": setting.candidate.mechanism,
+            "component": setting.candidate.component,
+            "parameters": {name: _interval(interval) for name, interval in intervals.items()},
+            "configuration": setting.candidate.parameters(setting.values),
+            "probability": model.probability,
+        }
+        for setting, intervals in zip(model.settings, model.parameters, strict=True)
+    ]
+
+
+def _interval(interval: Interval) -> dict[str, Any]:
+    return {
+        "value": interval.value,
+        "low": interval.low,
+        "high": interval.high,
+        "unit": interval.unit,
+        "bounded": interval.bounded,
+    }
+
+
+def _alternative(model: Model) -> dict[str, Any]:
+    names = _names(model)
+    return {
+        "mechanism": " + ".join(each["mechanism"] for each in names),
+        "component": " + ".join(each["component"] for each in names),
+        "mechanisms": names,
+        "words": model_words(model),
+        "probability": model.probability,
+        "log_score_gain_per_press": model.gain,
+        "p_value_left": model.p_left,
+    }
+
+
+def _names(model: Model) -> list[dict[str, str]]:
+    pairs = (setting.candidate.name for setting in model.settings)
+    return [{"mechanism": mechanism, "component": component} for mechanism, component in pairs]
+
+
+def ambiguous(findings: Findings) -> list[list[dict[str, Any]]]:
+    """Groups of two or more models that the recordings cannot tell apart; a pair of mechanisms is one member."""
+    groups = [[findings.models[number] for number in group] for group in findings.groups if len(group) > 1]
+    return [[_member(model) for model in group] for group in groups]
+
+
+def _member(model: Model) -> dict[str, str]:
+    names = _names(model)
+    return {key: " + ".join(each[key] for each in names) for key in ("mechanism", "component")}
+
+
+def _fit(fit: Fit | None) -> dict[str, Any] | None:
+    if fit is None:
+        return None
+    return {
+        "nrmse_before": fit.nrmse_before,
+        "nrmse_after": fit.nrmse_after,
+        "log_score_gain_per_press": fit.log_score_gain_per_press,
+        "noise_floor_nrmse": fit.noise_floor_nrmse,
+        "presses": list(fit.presses),
+    }
+
+
+def _resimulated(one: Resimulated) -> dict[str, Any]:
+    return {
+        "run": one.run,
+        "role": one.role,
+        "engine": one.engine,
+        "nrmse_before": dict(one.before),
+        "nrmse_after": dict(one.after),
+        "reduced_against_full_nrmse": dict(one.reduced_error),
+    }
+
+
+def next_experiment(findings: Findings, following: NextPress | None) -> dict[str, Any]:
+    """The next press; without one, a sentence and null."""
+    if following is None:
+        return {"text": without_press(findings), "changes": {}, "separates": [], "expected_separation_sigma": None}
+    return {
+        "text": following.text,
+        "changes": dict(following.changes),
+        "separates": [_member(model) for model in following.rivals],
+        "expected_separation_sigma": following.separation,
+        "waveform": "next-press.csv",
+    }
+
+
+def without_press(findings: Findings) -> str:
+    """Why there is no next press, and what to do instead."""
+    if not findings.mismatch:
+        return "No press is needed: simulation and recordings agree."
+    if len(surviving(findings)) > 1:
+        return (
+            "No press that was tried parts them: they act alike in this rig. Measure one by itself, such as the "
+            "amplifier without the sensor, or a coupon of the material."
+        )
+    if findings.best is not None:
+        return "No press is needed: one explanation is left."
+    return (
+        "No two explanations are left to tell apart. Change one thing at a time (speed, depth, load, place) and "
+        "diagnose again: what moves the misfit tells where to look."
+    )

@@ -1,0 +1,1 @@
+"""What may be missing in a segment rig: every mechanism and component that the rig admits, by coordinates to fit."""

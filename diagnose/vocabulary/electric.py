@@ -1,0 +1,100 @@
+"""Candidates behind the film: input, filters, limits, hum, neighbouring channels. All are exact without new presses."""
+
+from collections.abc import Iterator, Sequence
+from math import hypot, pi, sinh, sqrt
+from typing import Any
+
+from diagnose.forward import Candidate, Coordinate
+from diagnose.vocabulary.scene import Scene, growing
+
+HIGHEST_ORDER = 8
+CLIPPED = 20.0  # an amplifier that stops at less than this part of what was recorded gives no signal
+HUM = 10.0  # of the largest voltage
+
+
+def electric(scene: Scene) -> Iterator[Candidate]:
+    """Those that the amplifiers and channels of this rig admit."""
+    if scene.voltage_mode:
+        yield _leakage(scene, "readout")
+        yield _leakage(scene, "film")
+        yield _parasitic(scene)
+    yield _low_pass(scene)
+    yield _saturation(scene)
+    yield _hum(scene)
+    if scene.channels > 1:
+        yield from (_crosstalk(channel) for channel in range(1, scene.channels + 1))
+
+
+def _leakage(scene: Scene, component: str) -> Candidate:
+    """Conductance. At most, the charge is gone within one sample."""
+    scale, most = scene.conductance_uS, 1e-6 * scene.capacitance_pF / scene.step_s
+    top = max(most, 100.0 * scale)
+    coordinate = growing("conductance", scale, top, (0.3 * scale, 3.0 * scale, sqrt(scale * top)))
+
+    def parameters(values: Sequence[float]) -> dict[str, Any]:
+        return {"resistance_MOhm": 1.0 / (scale * sinh(values[0]))}
+
+    return Candidate("charge-leakage", component, (coordinate,), parameters, units={"resistance_MOhm": "MOhm"})
+
+
+def _parasitic(scene: Scene) -> Candidate:
+    """Up to a hundred times what is there: then no signal is left."""
+    scale = scene.capacitance_pF
+    coordinate = growing("capacitance", scale, 100.0 * scale, (0.2 * scale, 2.0 * scale))
+
+    def parameters(values: Sequence[float]) -> dict[str, Any]:
+        return {"capacitance_pF": scale * sinh(values[0])}
+
+    return Candidate("parasitic-capacitance", "readout", (coordinate,), parameters, units={"capacitance_pF": "pF"})
+
+
+def _low_pass(scene: Scene) -> Candidate:
+    """Time constant 1 / (2 pi corner), from what one sample shows to the length of a run; order 1 plus a whole number.
+
+    The delay of a Butterworth filter hardly depends on its order, so that fits may begin at several.
+    """
+    scale = 2.0 * scene.step_s
+    time = growing("time_constant", scale, scene.duration_s, (scale, 10.0 * scale, 100.0 * scale))
+    order = Coordinate("more_order", 0.0, HIGHEST_ORDER - 1.0, (1.0, 3.0))
+
+    def parameters(values: Sequence[float]) -> dict[str, Any]:
+        time_constant = scale * sinh(max(values[0], 1e-9))
+        return {"cutoff_Hz": 1.0 / (2.0 * pi * time_constant), "order": 1 + round(values[1])}
+
+    return Candidate("low-pass", "readout", (time, order), parameters, units={"cutoff_Hz": "Hz", "order": ""})
+
+
+def _saturation(scene: Scene) -> Candidate:
+    """One over the limit, in terms of the largest voltage recorded: below about 1 nothing is cut."""
+    largest = scene.voltage_V or 1.0
+    coordinate = Coordinate("inverse_limit", 0.0, CLIPPED, (1.1, 1.5, 3.0))
+
+    def parameters(values: Sequence[float]) -> dict[str, Any]:
+        return {"limit_V": largest / values[0]}
+
+    return Candidate("saturation", "readout", (coordinate,), parameters, units={"limit_V": "V"})
+
+
+def _hum(scene: Scene) -> Candidate:
+    """Sine and cosine of each run: nobody knows the phase of the mains. The amplitude is the mean square's."""
+    most = HUM * (scene.voltage_V or 1.0)
+    start = 0.01 * (scene.voltage_V or 1.0)
+    names = (f"{part}_{run}" for run in range(scene.runs) for part in ("sine", "cosine"))
+    coordinates = tuple(Coordinate(name, -most, most, (start, -start)) for name in names)
+
+    def parameters(values: Sequence[float]) -> dict[str, Any]:
+        return {"frequency_Hz": scene.mains_Hz, "amplitude_V": hypot(*values) / sqrt(scene.runs)}
+
+    units = {"frequency_Hz": "Hz", "amplitude_V": "V"}
+    return Candidate("mains-hum", "readout", coordinates, parameters, units=units)
+
+
+def _crosstalk(channel: int) -> Candidate:
+    """Coupling of either sign."""
+    coordinate = Coordinate("coupling", -0.95, 0.95, (0.1, -0.1))
+
+    def parameters(values: Sequence[float]) -> dict[str, Any]:
+        return {"coupling": values[0]}
+
+    return Candidate("crosstalk", f"channel-{channel}", (coordinate,), parameters, units={"coupling": ""})
+

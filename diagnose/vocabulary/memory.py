@@ -1,0 +1,73 @@
+"""Viscoelasticity of a layer or a declared compliant bond."""
+
+from collections.abc import Iterator, Sequence
+from math import exp, log, log10
+from typing import Any
+
+import numpy as np
+
+from diagnose.forward import Candidate, Coordinate
+from diagnose.vocabulary.scene import Scene
+from solve.materials.prony import Prony
+
+BRANCHES = 3
+LARGEST_SHARE = 0.7
+"""Of the stress that may relax; the reduced model is made for it."""
+MOST = 1.0  # modulus of one branch, in terms of what never relaxes
+EARLY_S, LATE_S = 0.1, 10.0
+FEWEST_SAMPLES = 5.0  # within the shortest time of relaxation that is looked for
+
+
+def viscoelastic(scene: Scene) -> Iterator[Candidate]:
+    """Every layer, and every bond that is compliant: a perfect one has no jump that could relax."""
+    physics = scene.model.physics
+    if physics.prestretch != (0.0, 0.0):
+        return  # the reduced model has no memory of a prestretched film
+    for component in (*scene.model.materials, *physics.bonds):
+        yield _candidate(scene, component, physics.viscosity.get(component, Prony((), ())))
+
+
+def _candidate(scene: Scene, component: str, declared: Prony) -> Candidate:
+    """BRANCHES branches by their moduli over what never relaxes, and one shift of all their times.
+
+    At fixed times the answer is linear in small moduli. The shift, half the spacing to either side, lets one branch
+    alone have any time; several together take the form of any spectrum. What rig.toml declares stays beside them.
+    """
+    times, reach = relaxation_times(scene.step_s, scene.duration_s)
+    free = 1.0 - sum(declared.relative_moduli)
+    moduli = tuple(Coordinate(f"modulus_{n + 1}", 0.0, MOST, (0.1, 0.5)) for n in range(BRANCHES))
+    shift = Coordinate("log_time", -reach, reach, (-0.5 * reach, 0.5 * reach))
+
+    def series(values: Sequence[float]) -> tuple[list[float], list[float]]:
+        ratios = np.asarray(values[:BRANCHES])
+        shares = free * ratios / (1.0 + ratios.sum())
+        taus = [tau * exp(values[BRANCHES]) for tau in times]
+        kept = [(float(g), tau) for g, tau in zip(shares, taus, strict=True) if g > 0.0]
+        own = [*zip(declared.relative_moduli, declared.relaxation_times, strict=True), *kept]
+        return [g for g, _ in own], [tau for _, tau in own]
+
+    def parameters(values: Sequence[float]) -> dict[str, Any]:
+        moduli, taus = series(values)
+        return {"relative_moduli": moduli, "relaxation_times_s": taus}
+
+    def derived(values: Sequence[float]) -> dict[str, float]:
+        return {"relaxed_fraction": relaxed_fraction(*series(values))}
+
+    units = {"relative_moduli": "", "relaxation_times_s": "s", "relaxed_fraction": ""}
+    return Candidate("viscoelasticity", component, (*moduli, shift), parameters, derived, units)
+
+
+def relaxation_times(step_s: float, duration_s: float) -> tuple[list[float], float]:
+    """Times of the branches, evenly in the logarithm, and half their spacing; together they span what a run shows."""
+    low, high = log10(FEWEST_SAMPLES * step_s), log10(duration_s)
+    spacing = max((high - low) / BRANCHES, 0.1)
+    middle = 0.5 * (low + high)
+    times = [10.0 ** (middle + spacing * (n - 0.5 * (BRANCHES - 1))) for n in range(BRANCHES)]
+    return times, 0.5 * spacing * log(10.0)
+
+
+def relaxed_fraction(relative_moduli: Sequence[float], relaxation_times_s: Sequence[float]) -> float:
+    """1 - G(10 s) / G(0.1 s) of the relaxation modulus."""
+    g, tau = np.array(relative_moduli), np.array(relaxation_times_s)
+    early, late = (1.0 - float((g * -np.expm1(-t / tau)).sum()) for t in (EARLY_S, LATE_S))
+    return 1.0 - late / early

@@ -1,0 +1,74 @@
+"""What the candidates of a rig depend on: its model, and the sizes of what was recorded."""
+
+from dataclasses import dataclass
+from math import asinh
+
+from diagnose.forward import Coordinate
+from solve.materials.parameters import PiezoelectricFilm
+from solve.model import Model
+from solve.parameters import Readout
+
+VACUUM_PF_PER_MM = 8.8541878128e-3
+
+
+@dataclass(frozen=True)
+class Scene:
+    """model : as rig.toml has it, declared mechanisms switched on.
+
+    readouts : the amplifier of each run. depth_mm : deepest press. force_N, voltage_V : largest recorded; 0 where none
+    was. step_s, duration_s : sampling step and length of the runs. mains_Hz : of the hum, one per run its share.
+    """
+
+    model: Model
+    readouts: tuple[Readout, ...]
+    depth_mm: float
+    force_N: float
+    voltage_V: float
+    step_s: float
+    duration_s: float
+    channels: int = 1
+    mains_Hz: float = 50.0
+
+    @property
+    def runs(self) -> int:
+        """How many there are."""
+        return len(self.readouts)
+
+    @property
+    def voltage_mode(self) -> bool:
+        """Whether any amplifier is no charge amplifier: only there does the input's impedance count."""
+        return any(readout.mode == "voltage" for readout in self.readouts)
+
+    @property
+    def capacitance_pF(self) -> float:
+        """Of film and input together, the least of the runs."""
+        inputs = [readout.input_capacitance_pF for readout in self.readouts if readout.mode == "voltage"]
+        return film_capacitance_pF(self.model) + min(inputs, default=0.0)
+
+    @property
+    def conductance_uS(self) -> float:
+        """Of the input, the least of the runs, and what discharges film and input within a run, together."""
+        given = [1.0 / r.input_resistance_MOhm if r.input_resistance_MOhm else 0.0 for r in self.readouts]
+        return min(given) + 1e-6 * self.capacitance_pF / self.duration_s
+
+
+def film_capacitance_pF(model: Model) -> float:
+    """eps A / t under all electrodes."""
+    segment, film = model.segment, model.materials["film"]
+    assert isinstance(film, PiezoelectricFilm)
+    sizes = [electrode.size_mm for electrode in segment.film.electrodes] or [(segment.length_mm, segment.width_mm)]
+    area = sum(min(x, segment.length_mm) * min(y, segment.width_mm) for x, y in sizes)
+    return VACUUM_PF_PER_MM * film.relative_permittivity * area / (1e-3 * segment.film.thickness_um)
+
+
+def growing(
+    name: str, scale: float, most: float, starts: tuple[float, ...], nodes: tuple[float, ...] = ()
+) -> Coordinate:
+    """A quantity from 0 up as scale sinh(x): linear below the scale, logarithmic above. All are given in its unit.
+
+    So one step of x means as much at a thousandth of the range as at its end.
+    """
+    return Coordinate(
+        name, 0.0, asinh(most / scale), tuple(asinh(s / scale) for s in starts), tuple(asinh(n / scale) for n in nodes)
+    )
+

@@ -1,0 +1,120 @@
+"""A made-up recording to try softdot diagnose on: the paper's segment, whose charge leaks away faster than believed.
+
+    python examples/recordings/leaky_amplifier.py OUT
+
+No real sensor was pressed. The 3D model presses a plane-strain slice on a finer mesh than rig.toml asks for; its charge
+goes through the stated amplifier of 10 GOhm and a leak of 1 GOhm beside it, which rig.toml does not mention. On top are
+noise, 50 Hz hum and a step of the converter, and gains that are a few per cent off, as rig.toml allows them to be.
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from mesh.types import Floats
+from softdot import stages
+from softdot.actual import actual
+from softdot.config import config_from
+from softdot.convert import run_text, write_recording
+from softdot.toml_file import parse_toml
+from solve.amplifier import amplify
+from solve.parameters import Readout
+from solve.physics import Physics
+
+RIG = """# Made up by examples/recordings/leaky_amplifier.py; no real sensor was pressed.
+format = "softdot-recording/1"
+
+[segment]
+section = "plane-strain"
+length_mm = 2.5
+width_mm = 16.0
+boundary = "clamped"
+held_layers = ["effector", "medium1", "film"]
+
+[segment.effector]
+height_mm = 1.0
+material = "rubber"
+
+[segment.medium1]
+thickness_mm = 0.5
+material = "vnr"
+
+[segment.film]
+thickness_um = 28.0
+
+[segment.medium2]
+thickness_mm = 2.0
+material = "vnr-soft"
+
+[dot]
+shape = "ridge"
+radius_mm = 1.15
+
+[readout]
+input_resistance_MOhm = 10000.0   # data sheet of the electrometer
+input_capacitance_pF = 100.0      # amplifier and cable
+
+"""
+RUNS = {
+    "slow, 0.2 mm": (0.2, 0.5, 1.0),  # depth in mm, rise and hold in s
+    "slow, 0.3 mm": (0.3, 0.5, 1.0),
+    "quick, 0.2 mm": (0.2, 0.1, 0.5),
+    "quick, 0.3 mm": (0.3, 0.1, 0.5),
+}
+LEAK_MOHM = 1000.0
+RATE_HZ, LASTS_S, TOUCH_S = 200.0, 6.0, 1.5
+NUISANCE = {"gain": 0.03, "force_gain": 0.02}
+NOISE_V, HUM_V, STEP_V, NOISE_N = 0.2, 0.1, 0.01, 0.02
+
+
+def make(out: Path, seed: int = 1) -> None:
+    """Write the recording folder."""
+    rng = np.random.default_rng(seed)
+    depth, force, charge, capacitance = pressed(max(run[0] for run in RUNS.values()))
+    stated = Readout(input_resistance_MOhm=10000.0, input_capacitance_pF=100.0)
+    leaking = stated.model_copy(update={"input_resistance_MOhm": 1.0 / (1.0 / 10000.0 + 1.0 / LEAK_MOHM)})
+    time = np.arange(0.0, LASTS_S, 1.0 / RATE_HZ)
+    files, texts = {}, [RIG]
+    for number, (label, run) in enumerate(RUNS.items(), start=1):
+        drive = motion(time, *run)
+        at = np.clip(drive, 0.0, None)
+        voltage = amplify(time, np.interp(at, depth, charge), capacitance, leaking, Physics())
+        gain, force_gain = 1.0 + rng.standard_normal(2) * list(NUISANCE.values())
+        hum = HUM_V * np.sin(2.0 * np.pi * (50.0 * time + rng.random()))
+        voltage = gain * voltage + hum + NOISE_V * rng.standard_normal(len(time))
+        noisy_force = force_gain * np.interp(at, depth, force) + NOISE_N * rng.standard_normal(len(time))
+        name = f"press-{number}.csv"
+        files[name] = {
+            "time_s": time, "displacement_mm": np.round(drive, 5), "force_N": np.round(noisy_force, 4),
+            "voltage_V": STEP_V * np.round(voltage / STEP_V),
+        }  # fmt: skip
+        texts.append(run_text(name, label, "displacement_mm", nuisance=NUISANCE))
+    write_recording(out, "\n".join(texts), files)
+
+
+def pressed(depth_mm: float) -> tuple[Floats, Floats, Floats, float]:
+    """Depth (mm), force (N) and charge (C) of a press, (s,) each, and the film's capacitance (F)."""
+    tables = parse_toml(RIG, "rig.toml") | {
+        "press": {"indentation_mm": depth_mm, "load_steps": 30},
+        "mesh": {"element_size_mm": 0.2, "contact_element_size_mm": 0.05},
+    }
+    del tables["format"]
+    config, physics = actual(config_from(tables))
+    dot, _ = stages.check(config)
+    result = stages.press(config, physics, dot, stages.build_mesh(config, dot), lambda *_: None)
+    columns = [(1e3 * step.indentation_m, step.reaction_force_N, step.film_charge_C.sum()) for step in result.steps]
+    depth, force, charge = np.array(columns).T
+    return depth, force, charge, float(result.capacitance_F.sum())
+
+
+def motion(time_s: Floats, depth_mm: float, rise_s: float, hold_s: float) -> Floats:
+    """From 0.1 mm clear of the dot to a depth and back at one speed, (t,)."""
+    clear = -0.1
+    reach = rise_s * -clear / depth_mm
+    corners = TOUCH_S + np.array([-reach, rise_s, rise_s + hold_s, 2.0 * rise_s + hold_s + reach])
+    return np.interp(time_s, corners, [clear, depth_mm, depth_mm, clear])
+
+
+if __name__ == "__main__":
+    make(Path(sys.argv[1]))

@@ -1,0 +1,1 @@
+"""softdot diagnose: from a folder of recordings to a verdict, its evidence and an improved model."""

@@ -1,0 +1,37 @@
+"""softdot diagnose: what it prints and how it exits."""
+
+from argparse import Namespace
+from pathlib import Path
+from typing import Any
+
+from geometry.errors import InputError
+from softdot.command_output import GOOD, NOT_CONVERGED, complain, only_the_summary_on_stdout, show
+
+
+def command(chosen: Namespace) -> int:
+    """Diagnose chosen.recording into chosen.output; 0, or 3 when a press did not converge. InputError."""
+    from mesh.errors import MeshingError
+    from softdot.diagnosis.run import Options, run_diagnosis
+    from softdot.progress import progress_on_terminal
+    from solve.newton import NoEquilibriumError
+
+    if chosen.seed is not None and chosen.seed < 0:
+        raise InputError(f"--seed = {chosen.seed}: must be at least 0")
+    options = Options(chosen.all_presses, chosen.seed, tuple(chosen.without))
+    try:
+        with only_the_summary_on_stdout(), progress_on_terminal() as progress:
+            summary = run_diagnosis(Path(chosen.recording), Path(chosen.output), options, progress)
+    except (NoEquilibriumError, MeshingError) as error:
+        complain(f"diagnose, {error}; nothing was written")
+        return NOT_CONVERGED
+    show(summary, chosen, short_text)
+    if summary["fit"]["failure"] is None:
+        return GOOD
+    complain(f"not converged, {summary['fit']['failure']}; the verdict without it is in '{chosen.output}'")
+    return NOT_CONVERGED
+
+
+def short_text(summary: dict[str, Any], output: str) -> str:
+    """The sentences of the verdict and where to look."""
+    lines = [*summary["summary"], *(f"warning: {warning}" for warning in summary["warnings"])]
+    return "\n".join([*lines, f"{output}/report.html"])

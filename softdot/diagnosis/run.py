@@ -1,0 +1,156 @@
+"""From a folder of recordings to a verdict; everything appears at once or not at all."""
+
+from collections.abc import Sequence
+from copy import copy
+from dataclasses import dataclass, field
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from diagnose.checks import refuse_slow_sampling
+from diagnose.findings import Findings
+from diagnose.forward import Engine, Report
+from diagnose.next_press.choose import NextPress, next_press
+from diagnose.noise.estimate import noise_models
+from diagnose.verdict.content import FORMAT, verdict
+from diagnose.verdict.resimulation import OutOfTimeError, Resimulated, resimulate
+from diagnose.verdict.words import sentences
+from geometry.errors import InputError
+from softdot.numbers import plain, write_json
+from softdot.output_folder import Product, staged_folder
+from softdot.progress import Progress, Silent
+from softdot.rig_file import Rig, load_rig
+from solve.mechanisms import MECHANISMS
+from solve.nearest import nearest
+from solve.newton import NoEquilibriumError
+
+NEXT_PRESS = "next-press.csv"
+DIAGNOSIS = Product(
+    FORMAT, "verdict.json", frozenset({"verdict.json", "report.html", "plots", "improved.toml", NEXT_PRESS})
+)
+ACTS_UP_TO = {"mains-hum": "frequency_Hz", "low-pass": "cutoff_Hz"}
+FULL_MODEL_S = 240.0  # for presses by the full model, of the ten minutes that a first diagnosis may take
+
+
+@dataclass(frozen=True)
+class Options:
+    """all_presses : every run by the full model, however long. seed : of everything random; None: that of rig.toml.
+
+    without : mechanisms that are no candidates.
+    """
+
+    all_presses: bool = False
+    seed: int | None = None
+    without: tuple[str, ...] = ()
+
+
+@dataclass
+class Proof:
+    """Runs pressed again by the full model. failure : why one has no equilibrium. warnings : why one is missing."""
+
+    runs: list[Resimulated] = field(default_factory=list)
+    failure: str | None = None
+    warnings: list[str] = field(default_factory=list)
+
+
+def run_diagnosis(
+    folder: Path, out: Path, options: Options | None = None, progress: Progress | None = None
+) -> dict[str, Any]:
+    """Diagnose a recording into the folder out and return the content of verdict.json.
+
+    InputError before any work for what cannot be read or written; NoEquilibriumError when the baseline has none. In
+    both cases nothing is written. A named mechanism that the full model cannot press is told in fit.failure.
+    """
+    options, progress = options or Options(), progress or Silent()
+    progress.stage("read")
+    rig = load_rig(folder)
+    _refuse_what_sampling_misses(rig)
+    noise_models(rig.recording)  # refuses a channel without known noise before any press
+    with staged_folder(out, DIAGNOSIS) as staged:
+        summary: dict[str, Any] = plain(_fill(rig, options, progress, staged))
+        write_json(staged / DIAGNOSIS.summary, summary)
+    return summary
+
+
+def _refuse_what_sampling_misses(rig: Rig) -> None:
+    """InputError for a run that is too slow for a mechanism of rig.toml that acts up to a frequency."""
+    asked = rig.config.mechanisms if rig.config is not None else ()
+    for mechanism, run in product(asked, rig.recording.runs):
+        if mechanism.name in ACTS_UP_TO:
+            frequency_Hz = getattr(mechanism.values(), ACTS_UP_TO[mechanism.name])
+            refuse_slow_sampling(run, frequency_Hz, mechanism.name)
+
+
+def _fill(rig: Rig, options: Options, progress: Progress, folder: Path) -> dict[str, Any]:
+    """Everything but verdict.json; returns the verdict."""
+    from diagnose.inference.diagnose import diagnose
+    from softdot.diagnosis.engines import engine_for
+    from softdot.diagnosis.page import write_evidence
+    from softdot.version import installed_version
+
+    report = _reporting(progress)
+    seed = rig.bench.seed if options.seed is None else options.seed
+    progress.stage("model")
+    engine = narrowed(engine_for(rig, report), options.without)
+    progress.stage("compare")
+    findings = diagnose(rig.recording, engine, seed, report)
+    progress.stage("press again")
+    proof = _proof(rig, engine, findings, report, None if options.all_presses else FULL_MODEL_S)
+    progress.stage("plan")
+    following = next_press(rig.recording, engine, findings)
+    progress.stage("write")
+    told = sentences(rig.recording, findings, following, proof.runs)
+    warnings = [*rig.recording.warnings, *proof.warnings]
+    summary = verdict(findings, [str(sentence) for sentence in told], following, proof.runs, warnings)
+    summary["fit"]["failure"] = proof.failure
+    summary |= {"softdot_version": installed_version(), "seed": seed}
+    _write_files(rig, engine, findings, following, folder)
+    write_evidence(rig.recording, findings, told, plain(summary), proof.runs, folder)
+    return summary
+
+
+def narrowed(engine: Engine, without: Sequence[str]) -> Engine:
+    """The engine without the candidates of some mechanisms. InputError for a name that no mechanism has."""
+    for name in without:
+        if name not in MECHANISMS:
+            raise InputError(f"--without '{name}': {nearest(name, MECHANISMS)}")
+    fewer = copy(engine)
+    kept = tuple(one for one in engine.candidates if one.mechanism not in without)
+    object.__setattr__(fewer, "candidates", kept)  # engines may be frozen
+    return fewer
+
+
+def _proof(rig: Rig, engine: Engine, findings: Findings, report: Report, limit_s: float | None) -> Proof:
+    """As many runs by the full model as the time allows."""
+    proof = Proof()
+    try:
+        for run in resimulate(rig.recording, engine, findings, report, limit_s):
+            proof.runs.append(run)  # those before an error are kept
+    except OutOfTimeError as error:
+        proof.warnings.append(f"{error}; --all-presses takes the time")
+    except NoEquilibriumError as error:
+        proof.failure = str(error)
+    return proof
+
+
+def _write_files(rig: Rig, engine: Engine, findings: Findings, following: NextPress | None, folder: Path) -> None:
+    from softdot.diagnosis.improved import improved_text
+
+    improved = improved_text(rig, engine, findings)
+    if improved is not None:
+        (folder / "improved.toml").write_text(improved, "utf-8")
+    if following is not None:
+        run = following.run
+        columns = np.column_stack([run.time_s, run.drive_values])
+        np.savetxt(folder / NEXT_PRESS, columns, "%.9g", ",", header=f"time_s,{run.drive}", comments="")
+
+
+def _reporting(progress: Progress) -> Report:
+    """Pass on what long work says."""
+
+    def report(what: str, done: int, count: int) -> None:
+        progress.step(done, count, what)
+
+    return report

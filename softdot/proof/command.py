@@ -1,0 +1,44 @@
+"""softdot prove: what it prints and how it exits."""
+
+from argparse import Namespace
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from geometry.errors import InputError
+from softdot.command_output import GOOD, INTERRUPTED, NOT_CONVERGED, complain, only_the_summary_on_stdout, show
+
+
+def command(chosen: Namespace) -> int:
+    """Prove chosen.cases cases into chosen.output; 0, or 3 when not one was scored, or 130. InputError."""
+    if find_spec("skfem") is None:
+        raise InputError("prove needs scikit-fem, the other finite-element code: pip install 'softdot[prove]'")
+    from softdot.proof.run import RIGS, Request, run_proof
+    from softdot.proof.store import CASES
+    from softdot.sweep.progress import points_on_terminal
+
+    rigs = tuple(chosen.rigs.split(",")) if chosen.rigs else RIGS
+    request = Request(chosen.cases, chosen.seed, rigs, chosen.staged, chosen.workers)
+    try:
+        with only_the_summary_on_stdout(), points_on_terminal() as progress:
+            summary = run_proof(request, Path(chosen.output), progress)
+    except KeyboardInterrupt:
+        if not (Path(chosen.output) / CASES).exists():
+            raise
+        complain(f"interrupted; finished cases are kept in '{chosen.output}', the same command goes on with the others")
+        return INTERRUPTED
+    show(summary, chosen, short_text)
+    if summary["ended"].get("scored"):
+        return GOOD
+    complain(f"not one of {summary['cases']} cases has a verdict; the reasons are in '{chosen.output}/proof.json'")
+    return NOT_CONVERGED
+
+
+def short_text(summary: dict[str, Any], output: str) -> str:
+    """How the cases ended and the first rates."""
+    from softdot.proof.table import HEAD, percent
+
+    ended = ", ".join(f"{count} {status}" for status, count in summary["ended"].items())
+    lines = [f"{summary['cases']} cases: {ended}"]
+    lines += [f"{words}: {percent(summary['rates'][name])}" for name, words in HEAD.items()]
+    return "\n".join([*lines, f"{output}/proof.md"])

@@ -1,0 +1,55 @@
+"""The folder of a proof: commitments before, records after, and at the end the table."""
+
+import json
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from diagnose.prove.seal import verified
+from diagnose.prove.world.cases import Case
+from softdot.numbers import write_json
+from softdot.output_folder import Product, check_output
+
+FORMAT = "softdot-proof/1"
+COMMITMENTS, CASES, TABLE, CURVE = "commitments", "cases", "proof.md", "detection.png"
+PROOF = Product(FORMAT, "proof.json", frozenset({"proof.json", COMMITMENTS, CASES, TABLE, CURVE}))
+
+
+def begin(out: Path) -> Path:
+    """The folder, made where it is missing; an earlier proof in it stays. InputError."""
+    place = check_output(out, PROOF)
+    for name in (COMMITMENTS, CASES):
+        (place / name).mkdir(parents=True, exist_ok=True)
+    if not (place / PROOF.summary).exists():
+        write_json(place / PROOF.summary, {"format": FORMAT, "complete": False})
+    return place
+
+
+def commit(place: Path, name: str, digest: str) -> None:
+    """Publish a digest. An earlier one, of a case that was stopped, is replaced together with its record."""
+    (place / CASES / f"{name}.json").unlink(missing_ok=True)
+    write_json(place / COMMITMENTS / f"{name}.json", {"recording": name, "sha256": digest})
+
+
+def keep(place: Path, name: str, record: dict[str, Any]) -> None:
+    """Write a record, whole or not at all."""
+    write_json(place / CASES / f"{name}.json", record)
+
+
+def kept(place: Path, case: Case, program: str) -> dict[str, Any] | None:
+    """The record of an earlier proof of the same case by the same program, whose commitment it fulfils; else None."""
+    with suppress(OSError, ValueError, KeyError, TypeError):
+        record = json.loads((place / CASES / f"{case.name}.json").read_text("utf-8"))
+        committed = json.loads((place / COMMITMENTS / f"{case.name}.json").read_text("utf-8"))["sha256"]
+        same = Case(**{**record["case"], "effects": tuple(record["case"]["effects"])}) == case
+        ended = record["program"] == program and record["status"] == "scored"
+        if same and ended and verified(record["truth"], record["salt"], committed):
+            return dict(record)
+    return None
+
+
+def records(place: Path) -> Iterator[dict[str, Any]]:
+    """All that are there, in order."""
+    for path in sorted((place / CASES).glob("case-*.json")):
+        yield json.loads(path.read_text("utf-8"))

@@ -1,0 +1,111 @@
+"""proof.md: the rates beside what others reach."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from diagnose.prove.score import ALIKE
+from diagnose.prove.tally import CLEAR
+from diagnose.prove.world.cases import LEFT_OUT, NONE, OUTSIDE, SINGLE
+from diagnose.statistics.wilson import wilson_interval
+
+HEAD = {
+    "false_names_without_effect": "something named without any effect",
+    "clear_named_or_grouped": f"effects of size {CLEAR:g} or more: named, or in a fair group",
+    "clear_exact": f"effects of size {CLEAR:g} or more: exactly named",
+    "clear_component": f"effects of size {CLEAR:g} or more: component right",
+    "abstention_left_out": "mechanism left out of the tool: nothing named",
+    "abstention_outside": "effect outside the vocabulary: nothing named",
+    "pairs_exact": "two effects at once: both named",
+    "ambiguous_told": "designed ambiguity: told, or nothing named",
+    "held_out_on_floor": "held-out error within 1.2 times the noise floor, where named exactly",
+    "covered": "90 % intervals that hold the true value",
+}
+OURS, SPARSE = "softdot diagnose", "sparse regression"
+
+
+def rival_rates(records: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """Of every rival: false names without effect, clear effects named, unknown ones left unnamed, held-out error."""
+    scored = [record for record in records if record["score"] is not None]
+    names = sorted({name for record in scored for name in record["rivals"]})
+    return {name: _of_rival(name, scored) for name in names}
+
+
+def _of_rival(name: str, records: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    def rate(kinds: tuple[str, ...], least: float, holds: Any) -> dict[str, Any]:
+        inside = [r for r in records if r["truth"]["kind"] in kinds and r["truth"]["whitened_rms"] >= least]
+        count = sum(bool(holds(r["rivals"][name], r)) for r in inside)
+        low, high = wilson_interval(count, len(inside)) if inside else (None, None)
+        return {"count": count, "of": len(inside), "rate": count / len(inside) if inside else None, "low": low,
+                "high": high}
+
+    clear = [r["rivals"][name]["after"] for r in records
+             if r["truth"]["kind"] == SINGLE and r["truth"]["whitened_rms"] >= CLEAR]
+    return {
+        "false_names_without_effect": rate((NONE,), 0.0, lambda o, _: o["named"] is not None),
+        "clear_exact": rate((SINGLE,), CLEAR, lambda o, r: _is(o["named"], r)),
+        "unknown_not_named": rate((LEFT_OUT, OUTSIDE), 0.0, lambda o, _: o["named"] is None),
+        "held_out_over_noise": sorted(clear)[len(clear) // 2] if clear else None,
+    }
+
+
+def _is(named: Any, record: Mapping[str, Any]) -> bool:
+    true = [(one["mechanism"], one["component"]) for one in record["truth"]["mechanisms"]]
+    return named is not None and true == [ALIKE.get(tuple(named), tuple(named))]
+
+
+def percent(rate: Mapping[str, Any]) -> str:
+    """3 of 40, 7.5 % (2.6 to 20)."""
+    if not rate["of"]:
+        return "no case"
+    low, high = (f"{100.0 * rate[end]:.2g}" for end in ("low", "high"))
+    return f"{rate['count']} of {rate['of']}, {100.0 * rate['rate']:.3g} % ({low} to {high})"
+
+
+def text(summary: Mapping[str, Any]) -> str:
+    """The whole page."""
+    rates = summary["rates"]
+    ended = ", ".join(f"{count} {status}" for status, count in summary["ended"].items())
+    rigs = ", ".join(summary["rigs"])
+    what = f"{summary['cases']} cases, seed {summary['seed']}, {rigs}: {ended}."
+    lines = ["# Concealed proof", "", f"{what} In brackets: Wilson's 95 % intervals.", "", "| | |", "|---|---|"]
+    lines += [f"| {words} | {percent(rates[name])} |" for name, words in HEAD.items()]
+    lines += [f"| mean size of a fair group | {_figure(rates['mean_group'])} |",
+              f"| mean overlap of the places of the excess | {_figure(rates['mean_overlap'])} |", "", *_sizes(rates),
+              "", *_mechanisms(rates), "", *_others(summary), "", "![detection and naming](detection.png)", ""]
+    return "\n".join(lines)
+
+
+def _sizes(rates: Mapping[str, Any]) -> list[str]:
+    lines = ["| size of the effect | detected | named or fair group | wrong name |", "|---|---|---|---|"]
+    for one in rates["by_size"]:
+        reach = f"{one['from']:g} to {one['to']:g}" if one["to"] is not None else f"above {one['from']:g}"
+        lines.append(f"| {reach} | {percent(one['detected'])} | {percent(one['named'])} | {percent(one['wrong'])} |")
+    return lines
+
+
+def _mechanisms(rates: Mapping[str, Any]) -> list[str]:
+    lines = [f"| mechanism | size {CLEAR:g} or more | all sizes |", "|---|---|---|"]
+    return lines + [f"| {name} | {percent(one['clear'])} | {percent(one['all'])} |"
+                    for name, one in rates["by_mechanism"].items()]
+
+
+def _others(summary: Mapping[str, Any]) -> list[str]:
+    rates = summary["rates"]
+    unknown = [rates["abstention_left_out"], rates["abstention_outside"]]
+    count, of = (sum(one[key] for one in unknown) for key in ("count", "of"))
+    low, high = wilson_interval(count, of) if of else (None, None)
+    ours = {"count": count, "of": of, "rate": count / of if of else None, "low": low, "high": high}
+    head = ("", "named without effect", "clear effects exactly named", "unknown effects not named")
+    lines = [f"| {' | '.join(head)} |", "|---|---|---|---|"]
+    lines.append(f"| {OURS} | {percent(rates['false_names_without_effect'])} | {percent(rates['clear_exact'])} | "
+                 f"{percent(ours)} |")
+    for name, one in summary["rivals"].items():
+        lines.append(f"| {name} | {percent(one['false_names_without_effect'])} | {percent(one['clear_exact'])} | "
+                     f"{percent(one['unknown_not_named'])} |")
+    if SPARSE not in summary["rivals"]:
+        lines.append(f"| {SPARSE} | not run: pysindy is not installed | | |")
+    return lines
+
+
+def _figure(value: float | None) -> str:
+    return "no case" if value is None else f"{value:.2f}"

@@ -1,0 +1,152 @@
+"""A coupon's candidates: off is the baseline, every start is a material, and parameters mean what they say."""
+
+import numpy as np
+import pytest
+
+from diagnose.coupon import coupon_engine, improved_material
+from diagnose.forward import Setting
+from diagnose.recording import Recording
+from geometry.errors import InputError
+from softdot.config import config_from
+from solve.materials.parameters import Hyperfoam, Linear, MooneyRivlin, NeoHookean, Ogden, PiezoelectricFilm, Yeoh
+from tests.diagnose.coupon.coupons import RUBBER, TIME, TRAVEL, candidate, engine, run, silent, specimen
+
+MATERIALS = [
+    RUBBER,
+    Linear(youngs_modulus_MPa=1.2, poisson_ratio=0.49),
+    NeoHookean(youngs_modulus_MPa=0.1, poisson_ratio=0.3),
+    MooneyRivlin(c10_MPa=0.15, c01_MPa=0.05),
+    Yeoh(c10_MPa=0.2, c20_MPa=0.01),
+    Ogden(mu_MPa=(0.5,), alpha=(1.6,)),
+    Hyperfoam(mu_MPa=(0.03,), alpha=(8.0,), poisson_ratio=(0.1,)),
+]
+KINDS = ["tension", "compression", "shear"]
+
+
+def force(of, *settings):
+    """Of run 0."""
+    return of.predict(0, settings)["force_N"]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("material", MATERIALS)
+def test_every_candidate_is_off_at_zero_and_answers_within_its_bounds(kind, material):
+    of = engine(kind, material)
+    baseline = force(of)
+    for one in of.candidates:
+        assert np.array_equal(force(of, Setting(one, (0.0,) * len(one.coordinates))), baseline)
+        for number, coordinate in enumerate(one.coordinates):
+            for value in coordinate.starts:
+                at = np.zeros(len(one.coordinates))
+                at[number] = value
+                changed = force(of, Setting(one, tuple(at)))
+                assert np.isfinite(changed).all(), (one.name, coordinate.name, value)
+                assert not np.allclose(changed, baseline, rtol=1e-4), (one.name, coordinate.name, value)
+                assert one.derived(tuple(at)).keys() | one.parameters(tuple(at)).keys() <= one.units.keys()
+
+
+@pytest.mark.parametrize("material", MATERIALS)
+def test_the_answer_leaves_the_baseline_smoothly(material):
+    """Twice a small value does twice as much; laws of another family (linear, foam) start with a jump of their own."""
+    of, other = engine("tension", material), isinstance(material, Linear)
+    baseline = force(of)
+    for one in of.candidates:
+        if (other and one.mechanism == "hyperelastic-stiffening") or (
+            one.mechanism == "foam-densification" and not isinstance(material, Hyperfoam)
+        ):
+            continue
+        for number in range(len(one.coordinates)):
+            once, twice = (
+                force(of, Setting(one, tuple(value * np.eye(len(one.coordinates))[number]))) - baseline
+                for value in (1e-4, 2e-4)
+            )
+            np.testing.assert_allclose(twice, 2.0 * once, atol=2e-3 * np.abs(twice).max() + 1e-9)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_driven_by_its_force_a_coupon_answers_with_travel(kind):
+    of = engine(kind, drive="force_N")
+    for one in of.candidates:
+        for coordinate in one.coordinates:
+            at = tuple(coordinate.starts[0] * float(c is coordinate) for c in one.coordinates)
+            assert np.isfinite(of.predict(0, [Setting(one, at)])["displacement_mm"]).all()
+
+
+def test_modulus_thickness_and_zero_are_nuisances():
+    of = engine()
+    baseline = force(of)
+    modulus, thickness = (of.nuisance(f"{name}.specimen") for name in ("modulus", "thickness"))
+    np.testing.assert_allclose(force(of, Setting(modulus, (0.1,))), 1.1 * baseline, rtol=1e-9)
+    both = force(of, Setting(thickness, (0.1,)), Setting(modulus, (0.1,)))
+    np.testing.assert_allclose(both, 1.21 * baseline, rtol=1e-9)
+    shifted = force(of, Setting(of.nuisance("offset_mm"), (1.0,)))
+    there = coupon_engine(Recording((run(TRAVEL - 1.0),), specimen()), {"mine": RUBBER}, silent)
+    np.testing.assert_allclose(shifted, force(there), rtol=1e-9)
+    assert of.nuisance("d31") is None
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("material", [RUBBER, MATERIALS[3], MATERIALS[4], MATERIALS[5]])
+def test_force_ratio_is_the_force_with_over_without_at_the_largest_strain(kind, material):
+    of = engine(kind, material)
+    one = candidate(of, "hyperelastic-stiffening")
+    values = (0.8, 0.3, -0.1)[: len(one.coordinates)]
+    deepest = int(np.argmax(TRAVEL))
+    ratio = force(of, Setting(one, values))[deepest] / force(of)[deepest]
+    assert ratio == pytest.approx(one.derived(values)["force_ratio"], rel=1e-6)
+    early = int(np.argmax(TRAVEL > 0.0))
+    assert force(of, Setting(one, values))[early] == pytest.approx(force(of)[early], rel=0.06)
+
+
+def test_relaxed_fraction_is_what_a_held_coupon_loses_between_a_tenth_and_ten_seconds():
+    of = engine("shear")
+    one = candidate(of, "viscoelasticity")
+    values = tuple(0.3 + 0.1 * n for n in range(len(one.coordinates)))
+    time = np.array([0.0, 0.1, 10.0])
+    step = run(np.full(len(TIME), 8.0))
+    step = type(step)(**{**step.__dict__, "time_s": np.concatenate([time, 20.0 + np.arange(len(TIME) - 3)])})
+    held = coupon_engine(Recording((step,), specimen("shear")), {"mine": RUBBER}, silent)
+    found = held.predict(0, [Setting(one, values)])["force_N"]
+    assert 1.0 - found[2] / found[1] == pytest.approx(one.derived(values)["relaxed_fraction"], rel=1e-9)
+
+
+def test_solve_with_the_mechanism_is_predict_with_its_setting():
+    of = engine()
+    for one in of.candidates:
+        setting = Setting(one, tuple(coordinate.starts[0] for coordinate in one.coordinates))
+        solved = of.solve(0, [one.switched_on(setting.values)], silent)["force_N"]
+        assert np.array_equal(solved, force(of, setting))
+
+
+def test_the_improved_material_is_one_that_a_segment_can_be_made_of():
+    of = engine()
+    settings = [
+        Setting(candidate(of, "hyperelastic-stiffening"), (0.5, 0.1, 0.0)),
+        Setting(candidate(of, "viscoelasticity"), (0.2,) * len(candidate(of, "viscoelasticity").coordinates)),
+        Setting(of.nuisance("modulus.specimen"), (0.25,)),
+        Setting(of.nuisance("offset_mm"), (0.25,)),
+    ]
+    better = improved_material(of, settings, "medium2")
+    config = config_from({
+        "segment": {"medium1": {"thickness_mm": 0.5}, "film": {"thickness_um": 28.0},
+                    "medium2": {"thickness_mm": 2.0, "material": better.name}},
+        "materials": {better.name: better.table},
+        "mechanisms": list(better.mechanisms),
+        "press": {"waveform": {"shape": "trapezoid"}},
+    })  # fmt: skip
+    law = config.materials["mine"]
+    assert isinstance(law, Ogden)
+    assert 0.5 * np.dot(law.mu_MPa, law.alpha) == pytest.approx(1.25 * 1.2 / (2.0 * 1.499))
+    assert [one.component for one in config.mechanisms] == ["medium2"]
+
+
+def test_what_is_no_coupon_test():
+    film = PiezoelectricFilm()
+    with pytest.raises(InputError, match="a film is no coupon"):
+        coupon_engine(Recording((run(),), specimen()), {"mine": film}, silent)
+    with pytest.raises(InputError, match="reaches 25 mm, but the specimen is 20 mm thick"):
+        coupon_engine(Recording((run(TRAVEL * 25.0 / 8.0),), specimen("compression")), {"mine": RUBBER}, silent)
+    lone = run()
+    lone = type(lone)(**{**lone.__dict__, "channels": {"displacement_mm": TRAVEL, "voltage_V": TRAVEL}})
+    with pytest.raises(InputError, match="column force_N is missing"):
+        coupon_engine(Recording((lone,), specimen()), {"mine": RUBBER}, silent)

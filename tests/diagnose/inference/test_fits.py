@@ -1,0 +1,100 @@
+"""Fits and intervals on recordings whose truth the engine can reproduce."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from diagnose.forward import Candidate, Coordinate
+from diagnose.inference.baseline import believed, fitted_baseline
+from diagnose.inference.descent import descended, descent
+from diagnose.inference.discrepancy import FORM
+from diagnose.inference.excess import excess, share_left
+from diagnose.inference.intervals import intervals
+from diagnose.inference.observed_model import ObservedModel
+from diagnose.inference.refit import common_metric, fitted, largest_form
+from diagnose.inference.samples import Samples
+from diagnose.noise.estimate import noise_models
+from tests.diagnose.inference.toy import CANDIDATES, Sensor, ToyEngine, small
+
+LEAK, CAPACITANCE, BRANCHES = CANDIDATES[0], CANDIDATES[1], CANDIDATES[4]
+
+
+def seen(recording, **more):
+    return ObservedModel(Samples(recording, noise_models(recording)), ToyEngine(recording, **more))
+
+
+@cache
+def leaking():
+    model = seen(small(5, Sensor(leak=1.0), runs=4))
+    baseline = fitted_baseline(model)
+    return model, baseline, fitted(model, believed(model, baseline), (LEAK,), np.array([0.3]), excess(baseline))
+
+
+def test_the_baseline_finds_the_nuisances_that_were_put_in():
+    nuisance = {"gain": 0.2, "lag_s": 0.05, "offset_V": 0.1}
+    recording = small(8, runs=1, nuisance=nuisance, noise=0.002, distort=0.0, scatter=0.0)
+    run = recording.runs[0]
+    run.channels["voltage_V"][:] = 1.2 * np.interp(run.time_s - 0.1, run.time_s, run.channels["voltage_V"]) + 0.1
+    system = fitted_baseline(seen(recording))
+    assert system.values == pytest.approx([0.2, 0.1, 0.1], abs=0.01)
+
+
+@pytest.mark.parametrize("start", [0.05, 6.0])
+def test_a_fit_reaches_the_truth_from_far_away(start):
+    model, baseline, _ = leaking()
+    problem = descent(model, common_metric(model.samples, baseline), (LEAK,), ())
+    place, _ = descended(problem, np.array([start]))
+    assert place.values[0] == pytest.approx(1.0, abs=0.1)
+
+
+def test_a_fit_stops_at_its_bound():
+    model, baseline, _ = leaking()
+    narrow = Candidate("charge-leakage", "readout", (Coordinate("leak", 0.0, 0.4, (0.1,)),), LEAK.parameters)
+    problem = descent(model, common_metric(model.samples, baseline), (narrow,), ())
+    place, _ = descended(problem, np.array([0.1]))
+    assert place.values[0] == 0.4
+
+
+def test_the_right_mechanism_leaves_little_and_the_wrong_one_most():
+    model, baseline, right = leaking()
+    wrong = fitted(model, baseline, (CAPACITANCE,), np.array([0.3]), excess(baseline))
+    assert share_left(right, excess(baseline)) < 0.05
+    assert share_left(wrong, excess(baseline)) > 0.5
+
+
+def test_an_effect_that_nuisances_cancel_excuses_nothing():
+    _, baseline, right = leaking()
+    assert right.largest_form == pytest.approx(FORM, rel=0.5)
+    assert largest_form(right.system, 1e-6 * excess(baseline)) < 0.01 * FORM
+
+
+def test_an_interval_is_where_the_likelihood_has_fallen_by_its_quantile():
+    model, _, right = leaking()
+    (found,) = intervals(model, right)
+    leak = found["leak"]
+    assert leak.low < 1.0 < leak.high
+    columns = right.system.weighted(right.slopes)
+    error = 1.0 / np.sqrt(right.system.quadratic.product(columns, columns)[0, 0])
+    assert leak.high - leak.low == pytest.approx(2.0 * 1.645 * error, rel=0.1)
+
+
+def test_an_interval_that_a_bound_ends_says_so():
+    model = seen(small(6, Sensor(branches2=(0.1, 0.0, 0.0)), runs=3))
+    baseline = fitted_baseline(model)
+    (found,) = intervals(model, fitted(model, baseline, (BRANCHES,), np.full(3, 0.05), excess(baseline)))
+    assert found["relative_moduli[1]"].low == 0.0
+    assert found["relative_moduli[1]"].bounded
+    assert found["relative_moduli[0]"].low > 0.05
+
+
+@pytest.mark.slow
+def test_intervals_cover_the_truth():
+    """Forty fits of another law's size: the same law, with errors of numerics, at 90 %."""
+    covered = 0
+    for seed in range(40):
+        model = seen(small(100 + seed, Sensor(leak=1.0), runs=4))
+        baseline = fitted_baseline(model)
+        (found,) = intervals(model, fitted(model, baseline, (LEAK,), np.array([0.8]), excess(baseline)))
+        covered += found["leak"].low <= 1.0 <= found["leak"].high
+    assert covered >= 31  # 36 expected; fewer than 31 has a chance of 1 % at 90 %

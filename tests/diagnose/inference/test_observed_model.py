@@ -1,0 +1,91 @@
+"""What the instruments show: tangents are slopes, and the vector keeps energies."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from diagnose.forward import Setting
+from diagnose.inference.discrepancy import allowance, columns
+from diagnose.inference.drive_noise import drive_noise
+from diagnose.inference.live import KEPT, live_rows
+from diagnose.inference.observed_model import ObservedModel
+from diagnose.inference.samples import Samples
+from diagnose.noise.estimate import noise_models
+from tests.diagnose.inference.toy import CANDIDATES, NUISANCE, Sensor, ToyEngine, small
+
+
+@cache
+def observed():
+    floating = {**NUISANCE, "clock_ratio": 1e-3, "offset_mm": 0.01}
+    recording = small(3, Sensor(leak=0.5), runs=2, rate=400.0, nuisance=floating)
+    return ObservedModel(Samples(recording, noise_models(recording)), ToyEngine(recording))
+
+
+def test_every_tangent_is_the_slope_of_the_prediction():
+    model = observed()
+    values = 0.3 * model.sigma
+    tangents = model.tangents(values)
+    for number, nuisance in enumerate(model.nuisances):
+        step = np.zeros(len(values))
+        step[number] = nuisance.sigma
+        slope = (model.vector(values + step) - model.vector(values - step)) / 2.0
+        error = np.linalg.norm(tangents[:, number] * nuisance.sigma - slope) / np.linalg.norm(slope)
+        assert error < 0.2, nuisance.name  # the slope of a signal with kinks is only as sharp as its sampling
+
+
+def test_nuisances_of_a_run_leave_the_other_alone_and_shared_ones_are_counted_once():
+    model = observed()
+    names = [(n.name, n.run) for n in model.nuisances]
+    assert names.count(("gain", 0)) == names.count(("gain", 1)) == 1
+    assert names.count(("modulus.medium1", None)) == 1
+    tangents = model.tangents(np.zeros(len(names)))
+    assert not tangents[model.samples.run == 1, names.index(("gain", 0))].any()
+
+
+def test_the_vector_of_noise_is_white():
+    model = observed()
+    rng = np.random.default_rng(0)
+    noise = model.samples.noise
+    drawn = [
+        {c: noise[run.label, c].draw(rng, len(run.time_s)) for c in run.answers} for run in model.samples.recording.runs
+    ]
+    vector = model.samples.coefficients(drawn)
+    assert np.mean(vector**2) == pytest.approx(1.0, abs=5.0 * np.sqrt(2.0 / len(vector)))
+
+
+def test_allowance_has_the_energy_that_was_asked_for():
+    samples = observed().samples
+    vector = observed().vector(np.zeros(len(observed().sigma)))
+    total = allowance(samples, vector, [0.1, 0.1]).sum()
+    assert total == pytest.approx(0.01 * float(vector @ vector))
+
+
+def test_discrepancy_columns_hold_each_channel_as_a_whole():
+    model = observed()
+    shown = model.signals(np.zeros(len(model.sigma)))
+    found, sigma = columns(model.samples, shown, [0.02, 0.01])
+    voltage = [np.linalg.norm(c) for c, s in zip(found.T, sigma, strict=True) if s == 0.01]
+    assert len(sigma) == 2 * 2 * 3 + 2
+    assert voltage[-1] == pytest.approx(np.hypot(voltage[0], voltage[3]))
+
+
+def test_a_commanded_drive_adds_no_noise_and_a_measured_one_adds_its_own():
+    quiet = observed()
+    assert drive_noise(quiet.samples, quiet.signals(np.zeros(len(quiet.sigma)))).max() < 1e-12
+    recording = small(3, runs=1)
+    run = recording.runs[0]
+    run.channels["displacement_mm"] += 1e-3 * np.random.default_rng(0).standard_normal(len(run.time_s))
+    model = ObservedModel(Samples(recording, noise_models(recording)), ToyEngine(recording))
+    added = drive_noise(model.samples, model.signals(np.zeros(len(model.sigma))))
+    assert added[model.samples.phase == 2].mean() > 0.1  # force changes by some 10 N/mm under a noise of 1 um
+
+
+def test_live_rows_hold_the_sensitivities():
+    model = observed()
+    leak = CANDIDATES[0]
+    zero = np.zeros(len(model.sigma))
+    effect = model.vector(zero, [Setting(leak, (0.5,))]) - model.vector(zero)
+    live = live_rows(model.samples, [effect[:, None]])
+    assert (effect[live] ** 2).sum() / (effect**2).sum() >= KEPT
+    assert live.sum() < 0.5 * len(live)

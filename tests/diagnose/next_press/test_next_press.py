@@ -1,0 +1,145 @@
+"""The next press parts what the recording could not, and is one that a bench can make."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.linalg import block_diag
+
+from diagnose.forward import Setting
+from diagnose.next_press.choose import next_press, surviving
+from diagnose.next_press.judge import Judge
+from diagnose.next_press.proposals import base_setup, repeats
+from diagnose.next_press.shape import Shape, recorded_shape
+from diagnose.next_press.variations import variations
+from diagnose.phases import segmented
+from diagnose.recording import Recording
+from diagnose.statistics.design import expected_separation
+from tests.diagnose.verdict.toy import LEAK, RELAXING, ToyEngine, fitted, found, toy_recording, toy_run
+
+LEAKS, RELAXES = fitted(LEAK, 0.5), fitted(RELAXING, 0.3, 0.5)
+
+
+def planned(recording, models=(LEAKS, RELAXES), engine=None):
+    findings = found(recording, models, models[0], (tuple(range(len(models))),))
+    return next_press(recording, engine or ToyEngine(recording), findings)
+
+
+@pytest.fixture(scope="module")
+def recording():
+    return toy_recording([Setting(LEAK, (0.5,))])
+
+
+def separations(recording, proposals, engine=None):
+    judge = Judge(recording, engine or ToyEngine(recording), (LEAKS, RELAXES), {})
+    return [float(judge.separations(each).min()) for each in proposals]
+
+
+def test_the_choice_is_the_best_of_all_presses_that_the_model_can_tell(recording):
+    best = planned(recording)
+    shallower = [
+        v for v in variations(base_setup(recording)) if v.shape.deep <= 0.31 and "dot_offset_mm" not in v.changes
+    ]
+    rivals = separations(recording, [*repeats(recording), *(each.proposal() for each in shallower)])
+    assert best.separation == pytest.approx(max(rivals))
+    assert best.separation > separations(recording, repeats(recording))[0]
+    assert "dot_offset_mm" not in best.changes  # which the toy was not prepared for
+    assert best.run.drive_values.max() < 0.31
+
+
+def test_two_equal_rivals_are_not_parted(recording):
+    twin = fitted(LEAK, 0.5)
+    judge = Judge(recording, ToyEngine(recording), (LEAKS, twin), {})
+    assert judge.separations(repeats(recording)[0]) == pytest.approx([0.0], abs=1e-6)
+    assert planned(recording, (LEAKS, twin)) is None
+
+
+def test_an_error_of_the_model_hides_a_difference(recording):
+    press = repeats(recording)[:1]
+    rough = ToyEngine(recording)
+    rough.accuracy = {"voltage_V": 0.5}
+    assert separations(recording, press, rough)[0] < 0.5 * separations(recording, press)[0]
+
+
+def test_the_separation_is_the_one_of_the_statistics(recording):
+    judge = Judge(recording, ToyEngine(recording), (LEAKS, RELAXES), {})
+    press = repeats(recording)[0]
+    one, other = judge.answers(press)
+    weight = 1.0 / np.sqrt(np.maximum(one.system.variance, other.system.variance))[:, None]
+    columns = weight * np.column_stack([one.slopes, -other.slopes, one.system.excused, other.system.excused])
+    floating = np.diag(np.concatenate([one.system.sigma, other.system.sigma]))
+    dense = expected_separation(
+        weight[:, 0] * (one.prediction - other.prediction), columns, block_diag(*judge.spreads, floating)
+    )
+    assert judge.separations(press) == pytest.approx([dense], rel=1e-6)
+
+
+def test_a_declared_gain_takes_its_part_of_the_difference(recording):
+    loose = Recording(tuple(replace(run, nuisance={"gain": 0.5}) for run in recording.runs))
+    press = repeats(recording)[0], repeats(loose)[0]
+    tight, floating = separations(recording, press[:1]), separations(loose, press[1:])
+    assert floating[0] <= tight[0]
+
+
+def test_an_engine_that_knows_only_recorded_presses_repeats_one(recording):
+    best = planned(recording, engine=_without_imagine(ToyEngine(recording)))
+    assert best.text.startswith("Repeat “")
+    assert best.changes == {}
+
+
+def _without_imagine(engine):
+    class Narrow:
+        name, accuracy, candidates = engine.name, engine.accuracy, engine.candidates
+        predict, nuisance = engine.predict, engine.nuisance
+
+    return Narrow()
+
+
+def test_without_a_rival_there_is_nothing_to_part(recording):
+    assert planned(recording, (LEAKS,)) is None
+    assert surviving(found(recording, (LEAKS, RELAXES), mismatch=False)) == ()
+
+
+def test_rivals_are_those_that_are_left():
+    recording = toy_recording()
+    unlikely = fitted(RELAXING, 0.3, probability=1e-4)
+    assert surviving(found(recording, (LEAKS, unlikely), LEAKS, ((0,),))) == (LEAKS,)
+    assert surviving(found(recording, (LEAKS, RELAXES), None, ((0,), (1,)), unexplained=True)) == (LEAKS, RELAXES)
+
+
+def test_a_recorded_press_is_read_as_it_was_set():
+    shape = recorded_shape(toy_recording(runs=(toy_run(rise_s=0.2, hold_s=0.5),)), 0)
+    assert shape.deep == pytest.approx(0.3, rel=0.01)
+    assert shape.level == pytest.approx(-0.2, abs=0.01)
+    assert (shape.rise_s, shape.hold_s, shape.fall_s) == pytest.approx((0.2, 0.5, 0.2), abs=0.03)
+
+
+def test_the_drive_of_a_shape_is_that_shape():
+    time, drive = Shape(level=-0.1, deep=0.2, rise_s=0.2, hold_s=0.4, fall_s=0.1, cycles=2).sampled(0.001)
+    presses = segmented(time, drive).presses
+    assert len(presses) == 2
+    assert drive.max() == pytest.approx(0.2)
+    for press in presses:
+        lasts = np.diff([time[n] for n in (press.touch, press.held, press.released, press.clear)])
+        assert lasts == pytest.approx([0.2, 0.4, 0.1], abs=0.02)
+
+
+def test_every_change_is_said_noted_and_made(recording):
+    setup = base_setup(recording)
+    for changed in variations(setup):
+        proposal = changed.proposal()
+        assert proposal.text.startswith("Press as in “")
+        assert len(changed.changes) == 1
+        (key,) = changed.changes
+        same_drive = np.array_equal(proposal.run.drive_values, setup.proposal().run.drive_values)
+        if key.startswith("input_"):
+            assert getattr(proposal.run.readout, key) == changed.changes[key]
+            assert same_drive
+        elif key not in ("dot_offset_mm", "dot_temperature"):
+            assert not same_drive
+
+
+def test_a_dot_as_warm_as_the_film_takes_its_drift_away():
+    setup = base_setup(toy_recording())
+    (warm,) = [each.proposal() for each in variations(setup) if "dot_temperature" in each.changes]
+    assert warm.removes == "pyroelectric-drift"

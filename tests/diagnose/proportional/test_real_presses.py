@@ -1,0 +1,59 @@
+"""Real presses of a P(VDF-TrFE) fingertip: what shows, and what must not once nothing is left to find."""
+
+import os
+import runpy
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from diagnose.inference.diagnose import diagnose
+from diagnose.proportional import proportional_engine
+from softdot.rig_file import load_rig
+
+RECORDINGS = os.environ.get("SOFTDOT_RECORDINGS", "")
+EXAMPLES = Path(__file__).parents[3] / "examples" / "recordings"
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(not RECORDINGS, reason="licences forbid copies here; SOFTDOT_RECORDINGS names their folder"),
+]
+
+
+def silent(*_):
+    """A report that nobody reads."""
+
+
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory):
+    """Ten presses at two speeds."""
+    out = tmp_path_factory.mktemp("presses") / "out"
+    runpy.run_path(str(EXAMPLES / "pvdf_presses.py"))["convert"](Path(RECORDINGS) / "pvdf-presses", out)
+    return load_rig(out).recording
+
+
+def found_in(recording):
+    """Findings."""
+    return diagnose(recording, proportional_engine(recording, silent), 0, silent)
+
+
+def test_a_leak_predicts_the_presses_of_one_speed_best(recording):
+    """The voltage is there while the force changes and gone while it is held."""
+    fast = replace(recording, runs=tuple(run for run in recording.runs if "speed 300" in run.label))
+    found = found_in(fast)
+    single = [model for model in found.models if len(model.settings) == 1]
+    best = max(single, key=lambda model: model.gain)
+    assert best.settings[0].candidate.mechanism == "charge-leakage"
+    assert best.gain_lower > 0.0
+
+
+def test_voltages_of_other_presses_name_nothing(recording):
+    shuffled = runpy.run_path(str(EXAMPLES / "controls.py"))["shuffled"](recording)
+    found = found_in(shuffled)
+    assert found.best is None
+    assert min(found.screened.values()) > found.detection.level
+
+
+def test_the_difference_of_two_presses_names_nothing(recording):
+    replicates = runpy.run_path(str(EXAMPLES / "controls.py"))["replicates"]
+    fast = replace(recording, runs=tuple(run for run in recording.runs if "speed 300" in run.label))
+    assert found_in(replicates(fast)).best is None

@@ -1,0 +1,158 @@
+"""The diagnosis can read the recording and nothing else, and nobody can change the truth afterwards."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from diagnose.prove import room
+from diagnose.prove.guard import allowed_roots
+from diagnose.prove.seal import digest_of, seal, verified
+
+ROOT = Path(__file__).resolve().parents[3]
+FOREIGN = ("solve", "mesh", "geometry", "export", "softdot", "diagnose.forward", "diagnose.recording")
+
+
+def run_guarded(where, code):
+    """Python code in a process whose hook is on."""
+    begin = "from pathlib import Path; from diagnose.prove.guard import watch; watch(Path('room'), Path('cache'));"
+    return subprocess.run(
+        [sys.executable, "-c", begin + code], cwd=where, env=room.environment(where / "room", where / "cache"),
+        capture_output=True, text=True, check=False,
+    )
+
+
+@pytest.fixture
+def house(tmp_path):
+    """A room with a recording, and the truth next door."""
+    for name in ("room", "cache", "proof"):
+        (tmp_path / name).mkdir()
+    (tmp_path / "room" / "press.csv").write_text("time_s\n")
+    (tmp_path / "proof" / "truth.json").write_text("{}")
+    return tmp_path
+
+
+def test_the_recording_can_be_read(house):
+    assert run_guarded(house, "print(open('room/press.csv').read())").stdout.strip() == "time_s"
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "open('proof/truth.json')",
+        "Path('proof/truth.json').read_text()",
+        "import os; os.listdir('proof')",
+        "list(Path('proof').iterdir())",
+        "open('room/../proof/truth.json')",
+        "import os; os.symlink('../proof', 'room/way'); open('room/way/truth.json')",
+        "import numpy; numpy.loadtxt('proof/truth.json')",
+    ],
+)
+def test_nothing_beside_the_room_can_be_read(house, code):
+    ended = run_guarded(house, code)
+    assert ended.returncode != 0
+    assert "outside of the clean room" in ended.stderr
+
+
+def test_the_room_is_not_within_reach_of_the_presses_of_the_generator(house, monkeypatch):
+    from diagnose.prove.world.march import store
+
+    monkeypatch.delenv("SOFTDOT_PROOF_CACHE", raising=False)
+    roots = allowed_roots(house / "room", house / "cache")
+    assert not any(store().resolve().is_relative_to(root) for root in roots)
+
+
+def test_no_variable_gives_a_hint(house, monkeypatch):
+    for name in ("SOFTDOT_PROOF_CACHE", "SOFTDOT_RECORDINGS", "CASE", "SEED", "PYTHONSTARTUP"):
+        monkeypatch.setenv(name, "charge-leakage")
+    given = room.environment(house / "room", house / "cache")
+    assert "charge-leakage" not in given.values()
+    assert set(given) <= {
+        *room.KEPT, *room.THREADS, "HOME", "TMPDIR", "PYTHONPATH", "SOFTDOT_CACHE", "MPLCONFIGDIR"
+    }
+
+
+def test_the_process_gets_a_folder_with_the_recording_alone(monkeypatch, tmp_path):
+    seen = {}
+
+    def watched(command, cwd, **_):
+        seen["files"] = sorted(str(p.relative_to(cwd)) for p in Path(cwd).rglob("*"))
+        seen["words"] = " ".join(map(str, command))
+        return subprocess.CompletedProcess(command, 2, "", "softdot: no")
+
+    monkeypatch.setattr(room.subprocess, "run", watched)
+    heard = room.diagnosed({"rig.toml": "", "press-01.csv": ""}, tmp_path, 10.0)
+    assert seen["files"] == ["recording", "recording/press-01.csv", "recording/rig.toml", "tmp"]
+    assert "case" not in seen["words"]
+    assert heard.verdict is None
+    assert heard.reason == "exit 2: softdot: no"
+
+
+def test_the_truth_is_not_on_disk_while_a_case_is_diagnosed(monkeypatch, tmp_path):
+    from diagnose.prove import trial
+    from diagnose.prove.world.cases import Case, Truth
+    from softdot.proof import store, work
+
+    place = store.begin(tmp_path / "out")
+    truth = Truth(Case(1, 0, "single", "ridge-clamped", ("leakage",), 5.0), {"leakage": 0.123456789},
+                  {"leakage": {}}, {}, 5.0, 600.0)
+    monkeypatch.setattr(trial, "concealed", lambda _case: (truth, []))
+    monkeypatch.setattr(trial, "files", lambda _bench, _runs: {})
+    monkeypatch.setattr(trial.rivals, "opinions", lambda _bench, _runs: {})
+    written = {}
+
+    def diagnosed(*_):
+        written.update({p: p.read_text() for p in tmp_path.rglob("*") if p.is_file()})
+        return room.Heard(None, "stopped", 0.0)
+
+    monkeypatch.setattr(trial, "diagnosed", diagnosed)
+    record = work.prove_case(truth.case, trial.Terms(tmp_path / "cache"), place, "program")
+    assert "0.123456789" not in "".join(written.values())
+    assert record["digest"] in (place / "commitments" / "case-0001.json").read_text()
+    assert record["digest"] in "".join(written.values())  # committed before
+    assert "0.123456789" in (place / "cases" / "case-0001.json").read_text()  # revealed after
+
+
+def test_a_changed_truth_is_noticed():
+    sealed = seal({"mechanisms": ["charge-leakage"], "size": 5.0})
+    assert verified(sealed.truth, sealed.salt, sealed.digest)
+    assert not verified({**sealed.truth, "size": 5.1}, sealed.salt, sealed.digest)
+    assert not verified(sealed.truth, sealed.salt[::-1], sealed.digest)
+
+
+def test_a_commitment_survives_json_and_hides_a_truth_that_could_be_guessed():
+    truth = {"b": 0.1 + 0.2, "a": [1, "x"]}
+    sealed = seal(truth)
+    assert digest_of(json.loads(json.dumps(truth)), sealed.salt) == sealed.digest
+    assert seal(truth).digest != sealed.digest
+
+
+def test_a_record_whose_truth_was_changed_is_not_kept(tmp_path):
+    from dataclasses import asdict
+
+    from diagnose.prove.world.cases import Case
+    from softdot.proof import store
+
+    place, case = store.begin(tmp_path / "out"), Case(1, 0, "none", "ridge-free")
+    sealed = seal({"kind": "none"})
+    store.commit(place, case.name, sealed.digest)
+    record = {"case": asdict(case), "program": "p", "status": "scored", "truth": sealed.truth, "salt": sealed.salt}
+    store.keep(place, case.name, record)
+    assert store.kept(place, case, "p") is not None
+    assert store.kept(place, case, "another program") is None
+    store.keep(place, case.name, {**record, "truth": {"kind": "single"}})
+    assert store.kept(place, case, "p") is None
+
+
+def test_the_generator_shares_no_code_with_what_it_tests():
+    text = (
+        "import sys, diagnose.prove.world.cases, diagnose.prove.folder;"
+        "print(*(n for n in sys.modules if n.split('.')[0] in ('solve','mesh','geometry','export','softdot')"
+        " or (n.startswith('diagnose.') and not n.startswith('diagnose.prove'))))"
+    )
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    found = subprocess.run([sys.executable, "-c", text], env=environment, capture_output=True, text=True, check=True)
+    assert found.stdout.strip() == ""

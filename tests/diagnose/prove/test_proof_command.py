@@ -1,0 +1,100 @@
+"""softdot prove: its folder, its exit codes and going on after a stop. No case is diagnosed here."""
+
+import json
+from dataclasses import asdict
+
+import pytest
+
+from diagnose.prove.seal import seal
+from diagnose.prove.world.cases import LEFT_OUT, NONE, OUTSIDE
+from softdot.cli import main
+from softdot.proof import run, store
+
+RIDGES = "ridge-clamped,ridge-free"
+
+
+@pytest.fixture
+def tried(monkeypatch):
+    """Cases end at once: whatever is hidden is named exactly, unless the tool cannot know it."""
+    numbers = []
+
+    def fake(missing, _request, place, program):
+        for case in missing:
+            numbers.append(case.number)
+            truth = {"kind": case.kind, "whitened_rms": case.size, "mechanisms": []}
+            sealed = seal(truth)
+            store.commit(place, case.name, sealed.digest)
+            name = () if case.kind in (NONE, LEFT_OUT, OUTSIDE) else (("charge-leakage", "readout"),)
+            right = bool(name)
+            score = {
+                "case": case.number, "kind": case.kind, "bench": case.bench, "truth": name, "size": case.size,
+                "detected": case.kind != NONE, "named": name, "abstained": not right, "exact": right,
+                "grouped": right, "mechanism": right, "component": right,
+            }  # fmt: skip
+            record = {
+                "case": asdict(case), "truth": truth, "salt": sealed.salt, "digest": sealed.digest, "status": "scored",
+                "reason": None, "score": score, "program": program, "verdict": {},
+                "rivals": {"always leakage": {"detected": True, "named": ["charge-leakage", "readout"], "after": 2.0}},
+            }  # fmt: skip
+            store.keep(place, case.name, record)
+            yield case.name, record
+
+    monkeypatch.setattr(run, "_tried", fake)
+    return numbers
+
+
+@pytest.mark.usefixtures("tried")
+def test_a_proof_counts_and_writes_all_that_it_promises(tmp_path, capsys):
+    out = tmp_path / "proof"
+    assert main(["prove", "--cases", "40", "--staged", "--rigs", RIDGES, "-o", str(out), "--json"]) == 0
+    summary = json.loads(capsys.readouterr().out)
+    assert summary["ended"] == {"scored": 40}
+    assert summary["rates"]["false_names_without_effect"]["count"] == 0
+    assert summary["rates"]["clear_exact"]["rate"] == 1.0
+    assert summary["rivals"]["always leakage"]["false_names_without_effect"]["rate"] == 1.0
+    assert {path.name for path in out.iterdir()} == {"proof.json", "proof.md", "detection.png", "cases", "commitments"}
+    assert "not run: pysindy" in (out / "proof.md").read_text() or "sparse regression" in summary["rivals"]
+
+
+def test_a_proof_that_was_stopped_goes_on(tried, tmp_path):
+    command = ["prove", "--staged", "--rigs", RIDGES, "-o", str(tmp_path / "proof"), "--cases"]
+    assert main([*command, "10"]) == 0
+    (tmp_path / "proof" / "cases" / "case-0003.json").unlink()
+    assert main([*command, "20"]) == 0
+    assert sorted(tried[10:]) == [3, *range(11, 21)]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["--cases", "0"], "--cases 0: must be at least 1"),
+        (["--cases", "1", "--seed", "-1"], "--seed -1: must not be negative"),
+        (["--cases", "1", "--rigs", "table"], "--rigs 'table': must be of ridge-clamped"),
+        (["--cases", "1", "--workers", "0"], "--workers 0: must be at least 1"),
+    ],
+)
+def test_bad_input_is_one_sentence(arguments, sentence, tmp_path, capsys):
+    assert main(["prove", *arguments, "-o", str(tmp_path / "proof")]) == 2
+    assert sentence in capsys.readouterr().err
+    assert not (tmp_path / "proof").exists()
+
+
+def test_without_the_other_code_it_says_what_to_install(monkeypatch, tmp_path, capsys):
+    monkeypatch.setattr("softdot.proof.command.find_spec", lambda _: None)
+    assert main(["prove", "--cases", "1", "-o", str(tmp_path / "proof")]) == 2
+    assert "pip install 'softdot[prove]'" in capsys.readouterr().err
+
+
+def test_a_foreign_folder_is_left_alone(tmp_path, capsys):
+    (tmp_path / "diary.txt").write_text("dear")
+    assert main(["prove", "--cases", "1", "-o", str(tmp_path)]) == 2
+    assert "diary.txt" in capsys.readouterr().err
+
+
+def test_no_verdict_at_all_exits_3(monkeypatch, tmp_path, capsys):
+    def fail(missing, *_):
+        yield from ((case.name, {"status": "crashed", "reason": "no", "score": None}) for case in missing)
+
+    monkeypatch.setattr(run, "_tried", fail)
+    assert main(["prove", "--cases", "2", "--rigs", RIDGES, "-o", str(tmp_path / "proof")]) == 3
+    assert "not one of 2 cases has a verdict" in capsys.readouterr().err

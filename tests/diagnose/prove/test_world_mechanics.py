@@ -1,0 +1,132 @@
+"""The generator's own finite elements against closed forms and against the solver that they are to test."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diagnose.prove.world import laws
+from diagnose.prove.world.made import Damage, Film, Layer, Made, Spectrum
+from diagnose.prove.world.march import through_time
+from diagnose.prove.world.memory import at_rest, branches, relaxation, respond
+from diagnose.prove.world.stack import Stack
+from diagnose.prove.world.strengths import with_strength
+
+PAPER = Made(
+    (
+        Layer("medium2", 2.0, 1.0), Film(held=True), Layer("medium1", 0.5, 5.0, held=True),
+        Layer("effector", 1.0, 1.0, held=True),
+    ),
+    2.5, 16.0, "ridge", 0.8125,
+)  # fmt: skip
+
+
+def pressed(made, depth_mm, steps=4):
+    stack = Stack(made)
+    state = stack.rest()
+    for depth in depth_mm * np.arange(1, steps + 1) / steps:
+        state = stack.press(state, depth, 0.0)
+    return stack.answer(state)
+
+
+def stretched(along, across=None):
+    """F (1, 3, 3) of an incompressible bar, or of any stretch across."""
+    across = along**-0.5 if across is None else across
+    return np.diag([along, across, across])[None]
+
+
+@pytest.mark.parametrize("layer", [Layer("a", 1.0, 3.0), Layer("a", 1.0, 3.0, gent_limit=2.0)])
+def test_a_tangent_is_the_derivative_of_the_stress_and_this_of_the_energy(layer):
+    rng = np.random.default_rng(3)
+    f, way, h = np.eye(3)[None] + 0.2 * rng.standard_normal((1, 3, 3)), rng.standard_normal((1, 3, 3)), 1e-6
+    _, p, tangent = laws.isochoric(layer, f)
+    (up, p_up, _), (down, p_down, _) = laws.isochoric(layer, f + h * way), laws.isochoric(layer, f - h * way)
+    np.testing.assert_allclose((up - down) / (2 * h), np.einsum("nij,nij->n", p, way), rtol=1e-6)
+    np.testing.assert_allclose((p_up - p_down) / (2 * h), np.einsum("nijkl,nkl->nij", tangent, way), rtol=1e-6)
+
+
+def test_uniaxial_neo_hookean_stress_is_that_of_the_textbook():
+    # nominal stress mu (L - 1/L^2) of an incompressible bar: the pressure takes the stress across away
+    layer = Layer("a", 1.0, 3.0, 0.5 - 1e-9)
+    _, p, _ = laws.isochoric(layer, stretched(1.5))
+    pressure = p[0, 1, 1] * stretched(1.5)[0, 1, 1]
+    assert p[0, 0, 0] - pressure / 1.5 == pytest.approx(1.0 * (1.5 - 1.5**-2), rel=1e-6)
+
+
+def test_gent_tends_to_neo_hookean_far_from_its_limit_and_stiffens_near_it():
+    plain, far, near = (Layer("a", 1.0, 3.0, gent_limit=limit) for limit in (None, 1e7, 1.5))
+    soft, same, stiff = (laws.isochoric(layer, stretched(1.5))[1][0, 0, 0] for layer in (plain, far, near))
+    assert same == pytest.approx(soft, rel=1e-6)
+    # W' = mu / 2 / (1 - (I1 - 3) / Jm)
+    assert stiff / soft == pytest.approx(1.0 / (1.0 - (1.5**2 + 2 / 1.5 - 3.0) / 1.5))
+
+
+def test_the_spectrum_is_that_of_a_fractional_zener_solid():
+    # of order one half E(-x^(1/2)) = exp(x) erfc(x^(1/2)); x = t / tau
+    from scipy.special import erfcx
+
+    time = np.array([0.05, 0.4, 3.0])
+    exact = 1.0 - 0.3 * (1.0 - erfcx(np.sqrt(time / 0.4)))
+    np.testing.assert_allclose(relaxation(Spectrum(0.3, 0.4, 0.5), time), exact, atol=0.012)
+    assert branches(Spectrum(0.3, 0.4))[0].sum() == pytest.approx(0.3)
+
+
+def test_a_held_stretch_relaxes_along_the_spectrum():
+    layer = Layer("a", 1.0, 3.0, spectrum=Spectrum(0.3, 0.4))
+    times = np.geomspace(1e-3, 5.0, 120)
+    p0, memory, found = laws.isochoric(layer, stretched(1.2))[1], at_rest(layer, 1), []
+    _, _, memory = respond(layer, stretched(1.2), memory, 1e-9)
+    for step in np.diff(times, prepend=0.0):
+        p, _, memory = respond(layer, stretched(1.2), memory, step)
+        found.append(p[0, 0, 0] / p0[0, 0, 0])
+    np.testing.assert_allclose(found, relaxation(layer.spectrum, times), atol=5e-3)
+
+
+def test_damage_softens_below_the_largest_strain_and_not_on_the_first_loading():
+    layer, rest = Layer("a", 1.0, 3.0, damage=Damage(0.3, 1e-3)), None
+    first = {}
+    memory = at_rest(layer, 1)
+    for stretch in (1.1, 1.2, 1.3):
+        p, _, memory = respond(layer, stretched(stretch), memory, 0.0)
+        first[stretch] = p[0, 0, 0]
+        rest = laws.isochoric(layer, stretched(stretch))[1][0, 0, 0]
+        assert p[0, 0, 0] == pytest.approx(rest)
+    again = respond(layer, stretched(1.1), memory, 0.0)[0][0, 0, 0]
+    assert again / first[1.1] == pytest.approx(0.7, abs=1e-3)  # far below the largest energy all of the loss
+
+
+@pytest.mark.slow
+def test_a_finer_grid_changes_force_and_charge_by_less_than_half_a_percent():
+    coarse, fine = pressed(PAPER, 0.2), pressed(replace(PAPER, fine=1.6), 0.2)
+    assert coarse.force_N == pytest.approx(fine.force_N, rel=5e-3)
+    assert coarse.charge_pC == pytest.approx(fine.charge_pC, rel=5e-3)
+
+
+def test_a_memory_of_no_strength_gives_the_elastic_press_through_time():
+    time = np.linspace(0.0, 1.0, 5)
+    depth = 0.05 * np.sin(np.pi * time).clip(0.0)
+    layers, small = list(PAPER.layers), replace(PAPER, fine=0.5)
+    layers[0] = replace(layers[0], spectrum=Spectrum(1e-9, 0.4))
+    relaxed = through_time(replace(small, layers=tuple(layers)), time, depth)
+    elastic = through_time(with_strength(replace(small, layers=tuple(layers)), 0.0), time, depth)
+    np.testing.assert_allclose(relaxed.force_N, elastic.force_N, atol=1e-6 * elastic.force_N.max())
+
+
+@pytest.mark.slow
+def test_both_codes_press_the_same_slice_alike():
+    from softdot.config import config_from
+    from softdot.outcome import outcome
+
+    found = outcome(config_from({
+        "segment": {
+            "width_mm": 16.0, "section": "plane-strain", "effector": {"height_mm": 1.0},
+            "medium1": {"thickness_mm": 0.5}, "film": {"thickness_um": 28.0},
+            "medium2": {"thickness_mm": 2.0, "material": "vnr-soft"},
+        },
+        "dot": {"shape": "ridge", "radius_mm": 0.8125},
+        "press": {"indentation_mm": 0.3, "load_steps": 4},
+        "mesh": {"element_size_mm": 0.12, "contact_element_size_mm": 0.06},
+    }))  # fmt: skip
+    other = pressed(PAPER, 0.3)
+    assert other.force_N == pytest.approx(found["reaction_force_N"][-1], rel=5e-3)
+    assert other.charge_pC == pytest.approx(found["film_charge_pC"][-1], rel=5e-3)

@@ -1,0 +1,116 @@
+"""The generator's read-out, noise and measure of size against what theory says."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diagnose.prove.world.amplifier import Amplifier, Filter
+from diagnose.prove.world.bench import CLAMPED, FREE, VOLTAGE_ONLY
+from diagnose.prove.world.effects import EFFECTS, applied, fits
+from diagnose.prove.world.march import Course, Table
+from diagnose.prove.world.noise import Autoregression, noises, yule_walker
+from diagnose.prove.world.programme import Run
+from diagnose.prove.world.reality import Reality, _path, baseline
+from diagnose.prove.world.size import Judge
+
+TIME = np.arange(0.0, 2.0, 0.004)
+
+
+def test_a_step_of_charge_decays_with_the_time_constant_of_the_input():
+    charge = np.where(TIME < 0.1, 0.0, 500.0)
+    voltage = Amplifier(1000.0, 60.0).voltage(TIME, charge, 40.0, 0.0)  # 1 GOhm and 100 pF: 0.1 s
+    later = TIME > 0.2
+    np.testing.assert_allclose(voltage[later], 5.0 * np.exp(-(TIME[later] - 0.098) / 0.1), atol=0.02)
+
+
+def test_a_filter_passes_the_power_at_its_corner_by_half():
+    sine = np.sin(2.0 * np.pi * 20.0 * TIME)
+    for kind in ("bessel", "butterworth"):
+        passed = Filter(20.0, 2, kind).applied(sine, 250.0)
+        assert passed[TIME > 1.0].std() / sine[TIME > 1.0].std() == pytest.approx(2**-0.5, rel=0.02)
+
+
+def test_noise_has_the_size_and_the_whitening_that_are_stated():
+    for noise in noises().values():
+        drawn = noise.draw(np.random.default_rng(1), 40_000)
+        assert drawn.std() == pytest.approx(1.0, rel=0.03)
+        white = noise.whitened(drawn)[50:]
+        assert white.std() == pytest.approx(1.0, rel=0.02)
+        assert abs(np.corrcoef(white[1:], white[:-1])[0, 1]) < 0.02
+
+
+def test_yule_walker_finds_a_known_autoregression():
+    known = Autoregression((0.5, -0.3), 0.8)
+    drawn = known.draw(np.random.default_rng(0), 50_000)
+    np.testing.assert_allclose(yule_walker([drawn], 2).coefficients, (0.5, -0.3), atol=0.02)
+
+
+def test_a_compliant_rig_is_a_spring_in_series():
+    depth = np.linspace(0.0, 1.0, 11)
+    linear = Table(depth, Course(3.0 * depth, depth, depth))  # 3 N/mm
+    reality = replace(baseline(CLAMPED), compliance_mm_per_N=0.5)
+    reached = _path(reality, np.array([-0.2, 0.0, 0.5]), linear)
+    np.testing.assert_allclose(reached, [-0.2, 0.0, 0.5 / (1.0 + 0.5 * 3.0)], atol=1e-6)
+
+
+def test_ramps_are_smooth_and_come_back():
+    run = Run("a", 0.3, 0.2, 0.5)
+    time = run.times(1000.0)
+    depth = run.depth(time)
+    assert depth[0] == depth[-1] == pytest.approx(-0.04)
+    assert depth.max() == pytest.approx(0.3)
+    # a quintic step of height h in time T has the largest acceleration 10 h / sqrt(3) / T^2
+    largest = 10.0 / 3.0**0.5 * 0.34 / 0.2**2
+    assert np.abs(run.acceleration_mm_per_s2(time)).max() == pytest.approx(largest, rel=1e-2)
+
+
+def test_every_effect_is_off_at_strength_zero_and_names_what_the_vocabulary_knows():
+    from solve.mechanisms import MECHANISMS
+
+    belief = baseline(CLAMPED)
+    assert applied(belief, CLAMPED, dict.fromkeys(EFFECTS, 0.0)) == belief
+    for effect in EFFECTS.values():
+        assert effect.mechanism == "" or effect.component in MECHANISMS[effect.mechanism].components
+
+
+def test_effects_that_a_bench_cannot_have_are_barred():
+    assert fits("elastic-case", CLAMPED)
+    assert not fits("elastic-case", FREE)
+    assert not fits("leakage", VOLTAGE_ONLY)
+
+
+class Flat(Judge):
+    """A judge whose nuisances are given."""
+
+    def __init__(self, tangents):
+        object.__setattr__(self, "given", tangents)
+
+    @property
+    def _tangents(self):
+        return self.given
+
+
+def test_a_nuisance_takes_what_lies_along_it_as_far_as_its_width_goes(monkeypatch):
+    # an effect of 3 sigma of one nuisance, whose signal is 10 sigma of noise: it keeps 3 of 30, as prior
+    tangent = np.zeros((100, 1))
+    tangent[0] = 10.0
+    monkeypatch.setattr(Judge, "_tangents", tangent)
+    monkeypatch.setattr("diagnose.prove.world.size.record", lambda reality, _bench: reality)
+    effect = np.zeros(100)
+    effect[0], effect[1] = 30.0, 4.0
+    monkeypatch.setattr("diagnose.prove.world.size.whitened", lambda signals, _bench: signals)
+    left = Judge(CLAMPED).left(effect, np.zeros(100))
+    assert np.linalg.norm(left) == pytest.approx(np.hypot(30.0 / np.sqrt(101.0), 4.0))
+
+
+def test_an_effect_is_no_further_from_its_own_family_than_rounding():
+    rng = np.random.default_rng(0)
+    one, other = rng.standard_normal((2, 500))
+    assert Judge.separation(2.0 * one, [one, other]) < 1e-9
+    assert Judge.separation(one, [other]) == pytest.approx(np.linalg.norm(one), rel=0.05)
+
+
+def test_reality_looks_up_nuisances_of_a_run_before_those_of_all():
+    reality = Reality(CLAMPED.made, CLAMPED.amplifier, nuisance={"gain": 0.1, ("gain", 2): 0.3})
+    assert (reality.of("gain", 0), reality.of("gain", 2), reality.of("lag_s", 0)) == (0.1, 0.3, 0.0)

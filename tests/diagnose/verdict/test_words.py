@@ -1,0 +1,120 @@
+"""The first lines that a bench engineer reads."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diagnose.findings import Interval, Place
+from diagnose.forward import Setting
+from diagnose.next_press.choose import next_press
+from diagnose.verdict.names import WHAT, WHERE, figure, interval_words, listed, mechanism_words
+from diagnose.verdict.where import where_words
+from diagnose.verdict.words import sentences
+from solve.mechanisms import MECHANISMS
+from tests.diagnose.verdict.toy import LEAK, RELAXING, ToyEngine, fitted, found, toy_recording
+
+LEAKS, RELAXES = fitted(LEAK, 0.5), fitted(RELAXING, 0.3, 0.09)
+
+
+@pytest.fixture(scope="module")
+def recording():
+    return toy_recording([Setting(LEAK, (0.5,))])
+
+
+def told(recording, findings, following=None):
+    return [str(sentence) for sentence in sentences(recording, findings, following, ())]
+
+
+def place(run="slow", phase="hold", band=(0.0, 2.0), share=0.9, channel="voltage_V"):
+    return Place(run, channel, phase, 0, band, 12.0, 1e-4, share, "")
+
+
+def test_from_what_is_off_to_what_to_do(recording):
+    findings = found(recording, (LEAKS, RELAXES), LEAKS, ((0, 1),))
+    lines = told(recording, findings, next_press(recording, ToyEngine(recording), findings))
+    assert lines[0] == "Your simulation of the voltage is too high in the hold, below 2 Hz, in “slow”."
+    assert lines[1] == "Left out: charge leaks through the input; resistance 2000 MΩ (1600 to 2400)."
+    assert lines[2].startswith("With it: the error on presses that it was not fitted to falls from 84 % to 3 %")
+    assert lines[2].endswith("(noise alone makes 2.6 %).")
+    assert lines[3] == "Not excluded: that medium 2 relaxes (viscoelasticity); these recordings cannot tell."
+    assert re.fullmatch(r"To settle it: Press as in “.*\. Expected to part them by [\d.]+ sigma\.", lines[4])
+
+
+def test_agreement_is_good_news(recording):
+    lines = told(recording, found(recording, mismatch=False))
+    assert lines[0] == "Your simulation and the recordings agree: what is left is as large as noise makes it."
+    assert "in 2 presses of 2 runs nothing stands out" in lines[1]
+
+
+def test_rivals_that_no_press_parts_are_to_be_measured_by_themselves(recording):
+    lines = told(recording, found(recording, (LEAKS, RELAXES), LEAKS, ((0, 1),)))
+    assert lines[-1].startswith("To settle it: No press that was tried parts them: they act alike in this rig.")
+    assert not any(
+        line.startswith("To settle it") for line in told(recording, found(recording, (LEAKS,), LEAKS, ((0,),)))
+    )
+
+
+def test_the_unexplained_is_said_with_its_reasons(recording):
+    reason = "Its residual is still larger than noise makes it (p = 0.0001)."
+    findings = found(recording, (LEAKS,), None, ((0,),), unexplained=True, reasons=(reason,))
+    lines = told(recording, findings)
+    assert lines[1] == "Left out: something that none of the known mechanisms explains. Nothing is named."
+    assert lines[2] == f"Why nothing is named: {reason}"
+
+
+@pytest.mark.parametrize(
+    ("places", "expected"),
+    [
+        ([place(), place("quick")], "too high in the hold, below 2 Hz, in all runs."),
+        ([place(band=(10.0, 50.0))], "above 10 Hz, in “slow”."),
+        ([place(band=(5.0, 12.5))], "between 5 and 12 Hz, in “slow”."),
+        ([place(band=(0.0, 50.0))], "too high in the hold, in “slow”."),
+        ([place(), place(phase="loading", share=0.05)], "too high in the hold, below 2 Hz, in “slow”."),
+        (
+            [place(share=0.5), place(phase="after", share=0.4)],
+            "in the hold and after the press, below 2 Hz, in “slow”.",
+        ),
+    ],
+)
+def test_where(recording, places, expected):
+    findings = replace(found(recording, (LEAKS,), LEAKS, ((0,),)), places=tuple(places))
+    assert where_words(recording, findings).endswith(expected)
+
+
+@pytest.mark.parametrize(("factor", "side"), [(1.5, "too high"), (0.5, "too low"), (-1.5, "too high")])
+def test_high_and_low_are_meant_along_the_signal(recording, factor, side):
+    """A negative voltage that is simulated too negative is too high as well."""
+    sign = np.sign(factor)
+    runs = tuple(
+        replace(r, channels={**r.channels, "voltage_V": sign * r.channels["voltage_V"]}) for r in recording.runs
+    )
+    turned = replace(recording, runs=runs)
+    baseline = {r.label: {"voltage_V": abs(factor) * r.channels["voltage_V"]} for r in runs}
+    findings = replace(found(recording, (LEAKS,), LEAKS, ((0,),)), baseline=baseline)
+    assert f"is {side} in the hold" in where_words(turned, findings)
+
+
+def test_every_mechanism_and_component_has_words():
+    assert WHAT.keys() == MECHANISMS.keys()
+    components = {part for kind in MECHANISMS.values() for part in kind.components if not part.startswith("channel")}
+    assert components <= WHERE.keys()
+    assert mechanism_words("crosstalk", "channel-2") == "other channels leak into channel 2"
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(0.026, "0.026"), (84.3, "84"), (1234.0, "1200"), (-0.5, "−0.5"), (3e-7, "3.0e−07"), (0.0, "0"), (np.inf, "∞")],
+)
+def test_figures(value, text):
+    assert figure(value) == text
+
+
+def test_intervals_and_lists():
+    assert interval_words("resistance_MOhm", Interval(0.9, 0.7, 1.2, "MOhm")) == "resistance 0.9 MΩ (0.7 to 1.2)"
+    narrow = Interval(1993.3, 1963.5, 2023.4, "MOhm")
+    assert interval_words("resistance_MOhm", narrow) == "resistance 1990 MΩ (1960 to 2020)"
+    assert interval_words("relaxed_fraction", Interval(0.3, 0.2, 0.4, "1")) == "relaxed fraction 0.3 (0.2 to 0.4)"
+    assert listed(["a", "b", "c"], "or") == "a, b or c"
+    assert listed(["a"]) == "a"
