@@ -13,14 +13,14 @@ from diagnose.inference.descent import coordinates
 from diagnose.inference.excess import share_left
 from diagnose.inference.forecasts import Forecasted, forecasted, separation
 from diagnose.inference.observed_model import ObservedModel
-from diagnose.inference.rates import LEFT, RATES
+from diagnose.inference.rates import LEFT, LIKELY, RATES
 from diagnose.inference.refit import Fitted
 from diagnose.inference.residual_test import DRAWS, checked
 from diagnose.inference.search import Screening, pairs, singles
 from diagnose.statistics.abstain import Decision, Evidence, decide
 from diagnose.statistics.held_out import Gain, gain_over_noise
 from diagnose.statistics.information import held_out_probabilities
-from mesh.types import Floats
+from mesh.types import Bools, Floats
 
 FEWER_DRAWS = 499  # for models that are not the best
 
@@ -120,19 +120,23 @@ def _decided(judge: Judge, models: tuple[Judged, ...], p_mismatch: float) -> Cho
     box = gain_over_noise(over, np.sqrt(2.0 * np.maximum(over, 0.0)), RATES.level)
     none = box_scores(samples, judge.found.baseline, judge.found.baseline, past)
     scores = np.array([*(one.forecast.log_scores for one in models), judge.base.log_scores, none])
-    apart = separations(samples, [one.fit for one in models])
+    apart = np.where(_told_apart(judge, models), np.inf, separations(samples, [one.fit for one in models]))
     evidence = Evidence(
         p_mismatch, best.p_left, best.gain.lower, box.lower, _implausible(best.fit), alike(apart)
     )
     decision = decide(evidence, replace(RATES, margin=worth_of_form(samples, metric)))
-    return Choice(
-        models,
-        held_out_probabilities(scores, judge.rng)[: len(models)],
-        grouped(apart),
-        box.mean,
-        decision,
-        judge.base,
-    )
+    groups, probabilities = grouped(apart), held_out_probabilities(scores, judge.rng)[: len(models)]
+    likely = float(probabilities[list(groups[0])].sum())
+    if likely < LIKELY:
+        reason = f"Among all models and none of them its probability is {100.0 * likely:.0f} %."
+        decision = Decision(True, False, True, (*decision.reasons, reason))
+    return Choice(models, probabilities, groups, box.mean, decision, judge.base)
+
+
+def _told_apart(judge: Judge, models: Sequence[Judged]) -> Bools:
+    """(m, m) whether one of two models predicts held-out presses better for sure: then they are not alike."""
+    better = [[judge.gained(one.forecast, other.forecast).lower > 0.0 for other in models] for one in models]
+    return np.asarray(np.array(better) | np.array(better).T)
 
 
 def _implausible(fit: Fitted) -> tuple[str, ...]:

@@ -14,7 +14,7 @@ from diagnose.inference.observed_model import STEP, ObservedModel
 from diagnose.inference.system import System
 from mesh.types import Floats
 
-ITERATIONS = 12
+ITERATIONS = 40
 STILL = 0.02  # of a standard error: a step below it is none
 LEAST_GAIN = 1e-3  # in half squares: less is no progress
 TIGHTEST = 1e6  # damping beyond which no step is tried
@@ -48,21 +48,32 @@ class Descent:
         return self.model.vector(self.system.values, settings(self.candidates, values))
 
     def at(self, values: Floats) -> Place:
-        """Residual and cost at values (q,)."""
-        predicted = self.vector(values)
+        """Residual and cost at values (q,); an infinite cost where the model has no answer."""
+        try:
+            predicted = self.vector(values)
+        except ValueError:
+            return Place(values, self.origin, np.zeros(int(self.system.live.sum())), np.inf)
         left = self.system.weighted(self.origin - predicted)
         return Place(values, predicted, left, 0.5 * self.system.quadratic.square(left))
 
     def slopes(self, place: Place) -> Floats:
-        """(n, q) change per unit of each value, by differences towards the inside."""
+        """(n, q) change per unit of each value, by differences towards the inside, or where the model has an answer."""
         columns = []
         for number, coordinate in enumerate(coordinates(self.candidates)):
             step = STEP * max(min(map(abs, coordinate.starts)), abs(place.values[number]))
             step = -step if place.values[number] + step > coordinate.high else step
-            moved = place.values.copy()
-            moved[number] += step
-            columns.append((self.vector(moved) - place.predicted) / step)
+            columns.append(self._slope(place, number, step))
         return np.column_stack(columns)
+
+    def _slope(self, place: Place, number: int, step: float) -> Floats:
+        """(n,) per unit of one value; 0 where the model has an answer on neither side."""
+        for signed in (step, -step):
+            moved = place.values.copy()
+            moved[number] += signed
+            after = self.at(moved)
+            if np.isfinite(after.cost):
+                return np.asarray((after.predicted - place.predicted) / signed)
+        return np.zeros_like(place.predicted)
 
 
 def descent(
@@ -76,6 +87,8 @@ def descended(problem: Descent, start: Floats) -> tuple[Place, Floats]:
     """The best place from a start (q,), and the slopes (n, q) there."""
     limits = bounds(problem.candidates)
     here = problem.at(np.clip(start, *limits.T))
+    if not np.isfinite(here.cost):
+        return here, np.zeros((len(here.predicted), len(start)))
     slopes, damping = problem.slopes(here), 1e-3
     for _ in range(ITERATIONS):
         columns = problem.system.weighted(slopes)
@@ -111,6 +124,12 @@ def bounds(candidates: Sequence[Candidate]) -> Floats:
     return np.array([(c.low, c.high) for c in coordinates(candidates)])
 
 
+def scales(hessian: Floats) -> Floats:
+    """Root of the diagonal (q,), 1 for a coordinate that changes nothing."""
+    diagonal = np.diag(hessian)
+    return np.asarray(np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0)))
+
+
 def _improved(
     problem: Descent, here: Place, hessian: Floats, gradient: Floats, damping: float, limits: Floats
 ) -> tuple[Place | None, float]:
@@ -128,7 +147,7 @@ def _improved(
 
 def _step(hessian: Floats, gradient: Floats, damping: float, values: Floats, limits: Floats) -> Floats:
     """The damped Newton step within the bounds."""
-    scale = np.sqrt(np.maximum(np.diag(hessian), np.finfo(float).tiny))
+    scale = scales(hessian)
     damped = hessian / np.outer(scale, scale) + (damping + RIDGE) * np.eye(len(values))
     root = np.linalg.cholesky(damped)
     low, high = ((limits - values[:, None]) * scale[:, None]).T

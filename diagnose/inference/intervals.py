@@ -14,7 +14,7 @@ from scipy.stats import chi2
 
 from diagnose.findings import Interval
 from diagnose.forward import Candidate, Setting
-from diagnose.inference.descent import bounds, descent, settings
+from diagnose.inference.descent import bounds, descent, scales, settings
 from diagnose.inference.observed_model import ObservedModel
 from diagnose.inference.refit import Fitted
 from mesh.types import Bools, Floats
@@ -94,7 +94,10 @@ def _end(model: ObservedModel, fit: Fitted, function: Function, side: float) -> 
         columns = fit.system.weighted(problem.slopes(here))
         cleared = fit.system.quadratic.cleared(columns)
         step = _step(columns.T @ cleared, cleared.T @ here.left, slope, allowed - here.cost, here.values, limits)
-        here = problem.at(np.clip(here.values + step, *limits.T))
+        after = problem.at(np.clip(here.values + step, *limits.T))
+        if not np.isfinite(after.cost):
+            break
+        here = after
         before, reached = reached, function(here.values)
         if abs(reached - before) <= CLOSE * abs(reached - best):
             break
@@ -113,7 +116,7 @@ def _step(hessian: Floats, gradient: Floats, slope: Floats, room: float, values:
             break
         own = hessian[np.ix_(free, free)]
         pull = gradient[free] - hessian[np.ix_(free, ~free)] @ step[~free]
-        scale = np.sqrt(np.maximum(np.diag(own), np.finfo(float).tiny))
+        scale = scales(own)
         inverse = np.linalg.inv(own / np.outer(scale, scale) + 1e-9 * np.eye(len(own))) / np.outer(scale, scale)
         fixed = step[~free]
         held = float(0.5 * fixed @ hessian[np.ix_(~free, ~free)] @ fixed - gradient[~free] @ fixed)

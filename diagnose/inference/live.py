@@ -5,23 +5,27 @@ from collections.abc import Sequence
 import numpy as np
 
 from diagnose.inference.samples import Samples
+from diagnose.inference.system import System
 from mesh.types import Bools, Floats
 
-KEPT = 0.999  # of the energy of each sensitivity: a thousandth of the information is given up for speed
+SEEN = 0.3  # standard deviations: what no sensitivity, as large as all the residual, can make is not looked at
 
 
-def live_rows(samples: Samples, sensitivities: Sequence[Floats]) -> Bools:
-    """Coefficients (n,) that together hold all but a little of every column of each (n, k).
+def live_rows(samples: Samples, system: System, sensitivities: Sequence[Floats]) -> Bools:
+    """Coefficients (n,) in which a column of the (n, k), scaled to the length of the residual, shows at all.
 
-    They are chosen without regard to what was measured, so that no test is biased.
+    What is excused is scaled to its prior where that is less. Only the length of the residual counts, not its shape, so
+    that no test is biased.
     """
-    kept = np.zeros(len(samples), dtype=bool)
-    for column in (column for columns in sensitivities for column in columns.T):
-        energy = column**2
-        order = np.argsort(-energy)
-        total = np.cumsum(energy[order])
-        if total[-1] > 0.0:
-            kept[order[: int(np.searchsorted(total, KEPT * total[-1])) + 1]] = True
+    weight = system.weight
+    length = float(np.linalg.norm(system.residual * weight))
+    largest = np.zeros(len(samples))
+    for columns, sigma in [(system.excused, system.sigma), *((c, np.full(c.shape[1], np.inf)) for c in sensitivities)]:
+        shown = np.abs(columns) * weight[:, None]
+        size = np.linalg.norm(shown, axis=0)
+        scale = np.minimum(sigma, np.divide(length, size, out=np.zeros(len(size)), where=size > 0.0))
+        largest = np.maximum(largest, (shown * scale).max(axis=1, initial=0.0))
+    kept = largest > SEEN
     for label in np.unique(samples.fold):  # every press keeps something to be judged by
         own = samples.fold == label
         if not kept[own].any():

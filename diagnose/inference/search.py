@@ -50,8 +50,7 @@ def screen(model: ObservedModel, baseline: System, report: Report) -> Screening:
     for number, candidate in enumerate(candidates):
         report("screening", number, len(candidates))
         each.append(sensitivity(model, start.values, candidate))
-    columns = [baseline.excused, *(s.columns for s in each), *(s.finite for s in each)]
-    live = live_rows(model.samples, columns)
+    live = live_rows(model.samples, baseline, [*(s.columns for s in each), *(s.finite for s in each)])
     baseline, start = baseline.reached(live), start.reached(live)
     tests = screened(start, each, least_degrees(model))
     return Screening(candidates, baseline, start, tuple(each), tests, excess(baseline))
@@ -71,8 +70,9 @@ def singles(model: ObservedModel, found: Screening, report: Report) -> list[Fitt
         only = (found.candidates[number],)
         problem = descent(model, common, only, ())
         tries = [descended(problem, start)[0] for start in found.tests.estimates[number][:STARTS]]
-        if tries:
-            best = min(tries, key=lambda place: place.cost)
+        possible = [place for place in tries if np.isfinite(place.cost)]
+        if possible:
+            best = min(possible, key=lambda place: place.cost)
             firsts.append((best.cost, number, best.values))
     firsts = sorted(firsts, key=lambda one: one[0])[:FINALISTS]
     fits = []
@@ -100,7 +100,8 @@ def pairs(model: ObservedModel, found: Screening, first: Fitted, report: Report)
         problem = descent(model, first.system, both, first.settings)
         starts = [np.concatenate([first.values, guess]) for guess in tests.estimates[number][:STARTS]]
         tries = [descended(problem, start)[0] for start in starts]
-        if tries:
-            best = min(tries, key=lambda place: place.cost)
+        possible = [place for place in tries if np.isfinite(place.cost)]
+        if possible:
+            best = min(possible, key=lambda place: place.cost)
             fits.append(fitted(model, first.system, both, best.values, found.excess))
     return fits

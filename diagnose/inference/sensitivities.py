@@ -35,19 +35,26 @@ def sensitivity(
     without = model.vector(values, others)
     count = len(candidate.coordinates)
 
-    def change(number: int, value: float) -> Floats:
+    def change(number: int, value: float) -> Floats | None:
+        """(n,); None where the model has no answer."""
         at = np.zeros(count)
         at[number] = value
-        return model.vector(values, [*others, Setting(candidate, tuple(at.tolist()))]) - without
+        try:
+            return np.asarray(model.vector(values, [*others, Setting(candidate, tuple(at.tolist()))]) - without)
+        except ValueError:
+            return None
 
     columns, finite, places = [], [], []
     for number, coordinate in enumerate(candidate.coordinates):
-        secants = [change(number, start) / start for start in coordinate.starts]
-        finite += [secant * start for secant, start in zip(secants, coordinate.starts, strict=True)]
-        places += [np.eye(count)[number] * start for start in coordinate.starts]
+        made = {start: change(number, start) for start in coordinate.starts}
+        found = {start: column for start, column in made.items() if column is not None}
+        finite += list(found.values())
+        places += [np.eye(count)[number] * start for start in found]
         step = STEP * min(coordinate.starts, key=abs)
-        slope = change(number, step) / step
-        largest = max(secants, key=lambda secant: float(np.linalg.norm(secant)))
+        first = change(number, step)
+        slope = first / step if first is not None else np.zeros(len(without))
+        secants = [column / start for start, column in found.items()]
+        largest = max(secants, key=lambda secant: float(np.linalg.norm(secant)), default=slope)
         flat = np.linalg.norm(slope) < FLAT * np.linalg.norm(largest)
         columns.append(largest if flat else slope)
     sign = np.array([-1.0 if c.high <= 0.0 else 1.0 for c in candidate.coordinates])
@@ -56,8 +63,8 @@ def sensitivity(
         np.column_stack(columns) * sign,
         np.array([one_sided(c) for c in candidate.coordinates]),
         sign,
-        np.column_stack(finite),
-        np.array(places),
+        np.column_stack(finite) if finite else np.zeros((len(without), 0)),
+        np.array(places).reshape(-1, count),
     )
 
 

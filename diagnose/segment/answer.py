@@ -1,5 +1,6 @@
 """From a table and a drive to what the instruments of a run show."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -54,34 +55,43 @@ def mechanics(fit: Fit, depth_mm: float, layers: tuple[str, ...], drive: Drive, 
 
 
 def shown(
-    run: Run, drive: Drive, values: Floats, found: Mechanics, film: FilmPlate, on: Model, ahead_s: float = 0.0
-) -> dict[str, Floats]:
-    """Every answer of the run (t,). Where nothing pushes, nobody can tell where a dot hangs: as recorded.
+    run: Run, names: Sequence[str], drive: Drive, values: Floats, found: Mechanics, film: FilmPlate, on: Model,
+    ahead_s: float = 0.0,
+) -> dict[str, Floats]:  # fmt: skip
+    """Channels of the run (t,) by name. Where nothing pushes, nobody can tell where a dot hangs: as recorded.
 
     ahead_s : by which the mains are ahead of the first touch.
     """
-    voltages = amplified(run, drive.time_s, found, film, on, ahead_s)
     signals: dict[str, Floats] = {}
-    for name in run.answers:
-        if name == "force_N":
-            signals[name] = sensed(drive.time_s, values, drive.kind, found.path_mm, found.force_N, on.physics)
-        elif name == "displacement_mm":
-            signals[name] = np.where(drive.touching, found.path_mm + on.dot.gap_mm, run.channels[name])
-        else:
-            signals[name] = voltages[name]
-    return signals
+    voltages = sorted((name for name in names if name.startswith("voltage")), key=_electrode)
+    if voltages:
+        signals |= amplified(voltages, drive.time_s, found, film, on, ahead_s)
+    if "force_N" in names:
+        signals["force_N"] = sensed(drive.time_s, values, drive.kind, found.path_mm, found.force_N, on.physics)
+    if "displacement_mm" in names:
+        path = found.path_mm + on.dot.gap_mm
+        signals["displacement_mm"] = np.where(drive.touching, path, run.channels.get("displacement_mm", path))
+    return {name: signals[name] for name in names}
+
+
+def _electrode(name: str) -> int:
+    """voltage_3_V -> 3."""
+    return int("0" + "".join(filter(str.isdigit, name)))
 
 
 def amplified(
-    run: Run, time_s: Floats, found: Mechanics, film: FilmPlate, on: Model, ahead_s: float
+    names: Sequence[str], time_s: Floats, found: Mechanics, film: FilmPlate, on: Model, ahead_s: float
 ) -> dict[str, Floats]:
-    """Voltage channels (t,): one of all electrodes together, or one of each with what leaks in from the others."""
+    """Voltage channels (t,): one of all electrodes together, or one of each with what leaks in from the others.
+
+    names : in the order of the electrodes.
+    """
     charge = found.charge_C + other_charge(time_s, found.area_m2, film, on)
     time_s = time_s + ahead_s  # the amplifier itself knows differences of time only
     readout = on.readout or Readout()
-    if run.voltages == ("voltage_V",):
+    if len(names) == 1:
         told = (time_s, charge.sum(axis=1), float(film.electrodes[:, 0].sum()), readout, on.physics)
-        return {"voltage_V": amplify(*told)}
+        return {names[0]: amplify(*told)}
     alone = [
         amplify(time_s, np.ascontiguousarray(own), float(capacitance), readout, on.physics)
         for own, capacitance in zip(charge.T, film.electrodes[:, 0], strict=True)
@@ -89,7 +99,7 @@ def amplified(
     total = np.sum(alone, axis=0)
     coupling = on.physics.crosstalk
     mixed = [own + coupling.get(number, 0.0) * (total - own) for number, own in enumerate(alone, start=1)]
-    return dict(zip(run.voltages, mixed, strict=False))
+    return dict(zip(names, mixed, strict=True))
 
 
 def other_charge(time_s: Floats, area_m2: Floats, film: FilmPlate, on: Model) -> Floats:

@@ -1,7 +1,6 @@
 """The forward model of a rig with a known segment."""
 
 from collections.abc import Sequence
-from copy import copy
 from dataclasses import replace
 from functools import cached_property
 
@@ -11,10 +10,12 @@ from diagnose.forward import Candidate, Report, Setting, Signals
 from diagnose.recording import Recording, Run
 from diagnose.segment import full
 from diagnose.segment.answer import FilmPlate, Mechanics, mechanics, shown
+from diagnose.segment.derived import with_derived
 from diagnose.segment.drive import Drive, drive_of
 from diagnose.segment.nuisances import ZERO, nuisance
 from diagnose.segment.path import with_history
 from diagnose.segment.prepared import Prepared
+from diagnose.segment.refuse import refuse
 from diagnose.segment.rig_mesh import mesh_of
 from diagnose.segment.tables import changed
 from diagnose.vocabulary.candidates import candidates
@@ -33,10 +34,9 @@ DIRECT = frozenset({
     "contact-electrification", "viscoelasticity", "contact-gap", "rig-compliance", "inertia", "property-error",
 })  # fmt: skip
 """Mechanisms, or parts of one, that act on the table as they do on the 3D model."""
-
-
 ROUNDS = 40
 SETTLED = 1e-6  # of the largest force
+Hum = tuple[tuple[float, float], ...]
 
 
 def segment_engine(model: Model, mesh_settings: MeshOptions, recording: Recording, report: Report) -> "SegmentEngine":
@@ -51,12 +51,13 @@ class SegmentEngine:
     free_nuisances: tuple[Candidate, ...] = ()
 
     def __init__(self, model: Model, mesh_settings: MeshOptions, recording: Recording, report: Report) -> None:
+        refuse(model, recording)
         self.model, self.recording = model, recording
         self.drives = [drive_of(*pair) for pair in zip(recording.runs, recording.phases, strict=True)]
         self.prepared: Prepared = Prepared(model, mesh_settings, recording, report)
         self.prepared.add((), [run.dot_offset_mm for run in recording.runs], report)
         self.accuracy = self.prepared.accuracy
-        self.candidates: tuple[Candidate, ...] = candidates(self.scene)
+        self.candidates: tuple[Candidate, ...] = tuple(with_derived(c, self.prepared) for c in candidates(self.scene))
 
     @cached_property
     def scene(self) -> Scene:
@@ -84,40 +85,40 @@ class SegmentEngine:
 
     def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
         """Every answer of a run. ValueError for what was not prepared."""
-        settings = [setting for setting in settings if any(setting.values)]
-        direct = [s.candidate.switched_on(s.values) for s in settings if s.candidate.mechanism in DIRECT]
-        drive, on = self.drives[run], with_mechanisms(self._believed(run), direct)
-        values = self._driven(drive, on, settings)
-        found = self._mechanics(run, drive, values, on, settings)
-        ahead_s, on = self._hum(run, settings, on)
-        return shown(self.recording.runs[run], drive, values, found, self._film(on), on, ahead_s)
+        asked, drive = self.recording.runs[run], self.drives[run]
+        ahead_s, hum = self._hum(run, settings)
+        return self._answer(asked, drive, asked.answers, settings, hum, ahead_s)
 
     def imagine(self, run: Run, settings: Sequence[Setting]) -> Signals:
-        """Every answer of a run that was not made. ValueError for what was not prepared, as a deeper press."""
-        other = copy(self)
-        other.recording = Recording((run,))
-        other.drives = [drive_of(run, other.recording.phases[0])]
-        return other.predict(0, settings)
+        """Every channel of a run that was not made, its hum left out. ValueError for what was not prepared."""
+        names = dict.fromkeys(name for each in self.recording.runs for name in each.channels if name != run.drive)
+        return self._answer(run, drive_of(run, Recording((run,)).phases[0]), tuple(names), settings, (), 0.0)
+
+    def _answer(
+        self, run: Run, drive: Drive, names: Sequence[str], settings: Sequence[Setting], hum: Hum, ahead_s: float
+    ) -> Signals:
+        """Named channels of a run."""
+        settings = [setting for setting in settings if any(setting.values)]
+        direct = [s.candidate.switched_on(s.values) for s in settings if s.candidate.mechanism in DIRECT]
+        on = with_mechanisms(replace(self.model, readout=self._readout(run)), direct)
+        values = self._driven(drive, on, settings)
+        found = self._mechanics(run, drive, values, on, settings)
+        on = replace(on, physics=replace(on.physics, hum=(*on.physics.hum, *hum)))
+        return shown(run, names, drive, values, found, self._film(on), on, ahead_s)
 
     def solve(self, run: int, mechanisms: Sequence[Mechanism], report: Report) -> Signals:
         """The same by the 3D model along the run's own drive. ValueError, NoEquilibriumError."""
-        believed = self.prepared.moved(self.recording.runs[run].dot_offset_mm)
-        on = with_mechanisms(replace(believed, readout=self._believed(run).readout), mechanisms)
-        tet_mesh = mesh_of(on, self.model, self.prepared.tet_mesh, self.prepared.options)
-        drive, elastic = self.drives[run], replace(on, physics=replace(on.physics, viscosity={}))
-
-        base, values = self.prepared, self._driven(drive, on, ())
+        base, asked, drive = self.prepared, self.recording.runs[run], self.drives[run]
+        believed = replace(base.moved(asked.dot_offset_mm), readout=self._readout(asked))
+        on = with_mechanisms(believed, mechanisms)
+        elastic, values = replace(on, physics=replace(on.physics, viscosity={})), self._driven(drive, on, ())
 
         def shape(fit: Fit) -> full.Shape:
             return lambda of, values: mechanics(fit, base.depth_mm, base.relaxing, of, values, elastic)
 
-        told = (self.recording.runs[run], drive, values, on, tet_mesh, self._film(on), shape(base.raw), shape(base.fit))
-        task = full.Task(*told)
+        tet_mesh = mesh_of(on, self.model, base.tet_mesh, base.options)
+        task = full.Task(asked, drive, values, on, tet_mesh, self._film(on), shape(base.raw), shape(base.fit))
         return full.solve(task, report)
-
-    def _believed(self, run: int) -> Model:
-        """The model with the amplifier of a run."""
-        return replace(self.model, readout=self._readout(self.recording.runs[run]))
 
     def _readout(self, run: Run) -> Readout | None:
         return run.readout if run.readout is not None else self.model.readout
@@ -129,7 +130,7 @@ class SegmentEngine:
         zero = sum(setting.values[0] for setting in settings if setting.candidate.mechanism == ZERO)
         return np.asarray(drive.values - on.dot.gap_mm - zero)
 
-    def _mechanics(self, run: int, drive: Drive, values: Floats, on: Model, settings: Sequence[Setting]) -> Mechanics:
+    def _mechanics(self, run: Run, drive: Drive, values: Floats, on: Model, settings: Sequence[Setting]) -> Mechanics:
         """Path, force and charge. What depends on the path acts back on a compliant drive: a fixed point."""
         base, fit = self.prepared, self._fit(run, on, settings)
         found = mechanics(fit, base.depth_mm, base.relaxing, drive, values, on)
@@ -147,10 +148,10 @@ class SegmentEngine:
             found = mechanics(fit, base.depth_mm, base.relaxing, drive, values - give * added, on)
         return whole
 
-    def _fit(self, run: int, on: Model, settings: Sequence[Setting]) -> Fit:
+    def _fit(self, run: Run, on: Model, settings: Sequence[Setting]) -> Fit:
         """The table with all that changes it."""
         base = self.prepared
-        change = base.change(self.recording.runs[run].dot_offset_mm, settings)
+        change = base.change(run.dot_offset_mm, settings)
         factor = _d31(on) / _d31(self.model)
         if change is None and factor == 1.0:
             return base.fit
@@ -160,15 +161,14 @@ class SegmentEngine:
         """A thinner film has more capacitance."""
         return self.prepared.film.thinner(self.model.segment.film.thickness_um / on.segment.film.thickness_um)
 
-    def _hum(self, run: int, settings: Sequence[Setting], on: Model) -> tuple[float, Model]:
-        """By how much the mains are ahead of the touch, and the model with their hum."""
+    def _hum(self, run: int, settings: Sequence[Setting]) -> tuple[float, Hum]:
+        """By how much the mains are ahead of the touch in a run, and their hum."""
         for setting in settings:
             if setting.candidate.mechanism == "mains-hum":
                 sine, cosine = setting.values[2 * run : 2 * run + 2]
-                hum = (*on.physics.hum, (self.scene.mains_Hz, float(np.hypot(sine, cosine))))
                 ahead_s = float(np.arctan2(cosine, sine)) / (2.0 * np.pi * self.scene.mains_Hz)
-                return ahead_s, replace(on, physics=replace(on.physics, hum=hum))
-        return 0.0, on
+                return ahead_s, ((self.scene.mains_Hz, float(np.hypot(sine, cosine))),)
+        return 0.0, ()
 
 
 def _d31(model: Model) -> float:

@@ -54,7 +54,7 @@ def solve(task: Task, report: Report) -> Signals:
     """Every answer of the run. NoEquilibriumError."""
     found = _through_time(task, report) if task.model.follows_time else _by_depth(task, report)
     # path, force and charge are those of the press itself: only the amplifier is still to come
-    return shown(task.run, task.drive, task.values, found, task.film, task.model, task.ahead_s)
+    return shown(task.run, task.run.answers, task.drive, task.values, found, task.film, task.model, task.ahead_s)
 
 
 def _press(task: Task, press: Press, report: Report) -> PressResult:

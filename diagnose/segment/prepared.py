@@ -2,6 +2,7 @@
 
 from collections.abc import Container, Iterator, Sequence
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 
@@ -19,8 +20,9 @@ from diagnose.segment.rig_mesh import finer_mesh, mesh_of, rig_mesh
 from diagnose.segment.tables import Depths, change, changed
 from diagnose.segment.workers import run_all
 from mesh.parameters import MeshOptions
-from mesh.types import Floats
+from mesh.types import Floats, TetMesh
 from solve.model import Model
+from solve.newton import NoEquilibriumError
 from solve.physics import Physics
 from solve.reduced.fit import Fit
 from solve.switch_on import with_mechanisms
@@ -29,9 +31,16 @@ SHARES = 0.1, 0.25, 0.45, 0.7, 1.0
 """Of the depth, at which changes are seen: they are smooth over it."""
 FINER_SHARES = 0.25, 0.6, 1.0
 MARGIN = 1.02  # of the depth of the table over the deepest press
+FINEST, CONTACT = 0.4, 0.7
+"""Element sizes of the finest mesh, and of that for what moves the contact, in terms of the diagnosis mesh."""
+MOST_NODES = 25_000  # 2 s of one core for each Newton step
+MOVE_THE_CONTACT = frozenset({"dot-offset", "property-error", "dimension-reduction"})
+TRUSTED = 0.5, 2.0  # by which a finer mesh may change a charge
+ROUND_OFF = 1e-12  # of a weight
 SLIPS = 3  # steps between two of them under friction
 Name = tuple[object, ...]
 Place = tuple[float, float]
+Sizes = tuple[TetMesh, MeshOptions]
 
 
 class Prepared:
@@ -46,35 +55,64 @@ class Prepared:
         self.tet_mesh, self.options = rig_mesh(model, options)
         self.pressed_mm = deepest(model, self.tet_mesh, recording)
         self.depth_mm = MARGIN * self.pressed_mm + offset_reach_mm(recording)
-        self.depths = Depths(SHARES)
+        self.depths, self._finer_depths = Depths(SHARES), Depths(FINER_SHARES)
         self._changes: dict[Name, Floats] = {}
-        finer, sizes = finer_mesh(model, self.options)
-        pressed = self.job(model)
-        jobs = [replace(pressed, tet_mesh=each, shares=FINER_SHARES) for each in (finer, self.tet_mesh)]
-        reduction = self._reduction(model.physics.viscosity)
-        fine, coarse = run_all(jobs, report, [reduction])
-        self._finer_depths, self._correction = Depths(FINER_SHARES), change(coarse, fine)
+        finest = finer_mesh(model, self.options, FINEST, MOST_NODES)
+        pressed, reduction = replace(self.job(model), shares=FINER_SHARES), self._reduction(model.physics.viscosity)
+        jobs = [replace(pressed, tet_mesh=finest[0]), pressed]
+        fine, coarse = _all_there(run_all(jobs, report, [reduction]))
+        self._correction, self._finest = change(coarse, fine), fine[-1]
         self._take(reduction)
-        self.accuracy = accuracy(coarse, fine, sizes.element_size_mm / self.options.element_size_mm)
+        self.accuracy = accuracy(coarse, fine, finest[1].element_size_mm / self.options.element_size_mm)
 
     @property
     def nothing(self) -> Floats:
         """No change, (n, 2 + e)."""
         return np.zeros((len(SHARES), 2 + len(self.film.electrodes)))
 
+    @cached_property
+    def _contact_mesh(self) -> Sizes:
+        """For what moves the contact over the mesh, which a coarse one feels node by node."""
+        return finer_mesh(self.model, self.options, CONTACT, MOST_NODES)
+
     def add(self, candidates: Sequence[Candidate], places: Sequence[Place], report: Report) -> None:
         """Press what these candidates, and dots at these places, need beyond what was pressed. NoEquilibriumError."""
         wanted = {name: job for c in candidates for name, job in self._jobs(c) if name not in self._changes}
-        wanted |= {_at(p): self.job(self.moved(p)) for p in places if any(p) and _at(p) not in self._changes}
+        moved = {_at(place): self.moved(place) for place in places if any(place) and _at(place) not in self._changes}
+        wanted |= {name: (self.job(model, self._contact_mesh), 1) for name, model in moved.items()}
         layers = {*self.relaxing, *(c.component for c in candidates if c.mechanism == "viscoelasticity")}
         first = [self._reduction(layers)] if layers != set(self.relaxing) else []
         if not wanted and not first:
             return
-        base, *outputs = run_all([self.job(self.model), *wanted.values()], report, first)
+        bases = [self.job(self.model), self.job(self.model, self._contact_mesh)]
+        outputs = run_all([*bases, *(job for job, _ in wanted.values())], report, first)
         if first:
             self._take(first[0])
-        for (name, job), found in zip(wanted.items(), outputs, strict=True):
-            self._changes[name] = path.changes(found, base, SHARES, self.raw) if job.back else change(base, found)
+        _all_there(outputs[: len(bases)])
+        for (name, (job, base)), found in zip(wanted.items(), outputs[len(bases) :], strict=True):
+            if len(found):
+                self._changes[name] = self._change(job, outputs[base], found)
+        for candidate in candidates:
+            self._bridge(candidate)
+
+    def _change(self, job: Job, base: Floats, found: Floats) -> Floats:
+        """Against the baseline on the same mesh; charges scaled to those of the finest mesh."""
+        values = path.changes(found, base, SHARES, self.raw) if job.back else change(base, found)
+        per_force = (self._finest[2:] / self._finest[0]) / (base[-1, 2:] / base[-1, 0])
+        values[:, 2:] *= np.clip(np.nan_to_num(per_force, nan=1.0), *TRUSTED)
+        return values
+
+    def _bridge(self, candidate: Candidate) -> None:
+        """Where the 3D model found no equilibrium, take the nearest press of this candidate that has one.
+
+        Without any the candidate stays unprepared.
+        """
+        points = effect_of(candidate).points
+        known = [point for point in points if _name(candidate, point) in self._changes]
+        for point in points:
+            if known and point not in known:
+                far = [float(np.linalg.norm(np.subtract(other, point))) for other in known]
+                self._changes[_name(candidate, point)] = self._changes[_name(candidate, known[int(np.argmin(far))])]
 
     def _reduction(self, layers: Container[str]) -> Reduction:
         """The baseline with these layers relaxing, in a fixed order."""
@@ -95,18 +133,21 @@ class Prepared:
         dot = self.model.dot.model_copy(update={"offset_mm": (x + place[0], y + place[1])})
         return replace(self.model, dot=dot)
 
-    def _jobs(self, candidate: Candidate) -> Iterator[tuple[Name, Job]]:
+    def _jobs(self, candidate: Candidate) -> Iterator[tuple[Name, tuple[Job, int]]]:
+        """Presses by name, each with the number of its mesh: 0 for the diagnosis mesh, 1 for that of the contact."""
         back = path.BACK if candidate.mechanism in path.MECHANISMS else ()
+        moves = candidate.component == "dot" and candidate.mechanism in MOVE_THE_CONTACT
         for point in effect_of(candidate).points:
-            job = self.job(with_mechanisms(self.model, [candidate.switched_on(point)]))
+            changed = with_mechanisms(self.model, [candidate.switched_on(point)])
+            job = self.job(changed, self._contact_mesh if moves else None)
             parts = SLIPS if job.model.physics.friction > 0.0 else 1
-            yield _name(candidate, point), replace(job, back=back, parts=parts)
+            yield _name(candidate, point), (replace(job, back=back, parts=parts), int(moves))
 
-    def job(self, model: Model) -> Job:
-        """The press of a changed model on the same mesh, moved with its layers, at once: nothing relaxes."""
+    def job(self, model: Model, mesh: Sizes | None = None) -> Job:
+        """The press of a changed model on a mesh, moved with its layers, at once: nothing relaxes."""
         on = model.physics
         own = replace(structural(on), friction=on.friction, softening=on.softening, film_yield=on.film_yield)
-        tet_mesh = mesh_of(model, self.model, self.tet_mesh, self.options)
+        tet_mesh = mesh_of(model, self.model, *(mesh or (self.tet_mesh, self.options)))
         return Job(replace(ungapped(model), physics=own, readout=None), tet_mesh, self.depth_mm, SHARES)
 
     def change(self, place: Place, settings: Sequence[Setting]) -> Floats | None:
@@ -122,8 +163,7 @@ class Prepared:
         for setting in settings:
             if setting.candidate.mechanism in path.MECHANISMS:
                 values = self._values(setting)
-                assert values is not None
-                found.append(path.History(values, SHARES))
+                found += [path.History(values, SHARES)] if values is not None else []
         return found
 
     def _values(self, setting: Setting) -> Floats | None:
@@ -132,13 +172,21 @@ class Prepared:
         if not any(setting.values[n] for n in effect.pressed):
             return None
         what = f"{setting.candidate.mechanism} of {setting.candidate.component}"
-        known = np.array([self._known(_name(setting.candidate, point), what) for point in effect.points])
-        return np.tensordot(effect.weights(setting.values), known, 1)
+        weighed = zip(effect.weights(setting.values), effect.points, strict=True)
+        parts = [w * self._known(_name(setting.candidate, p), what) for w, p in weighed if abs(w) > ROUND_OFF]
+        return np.sum(parts, axis=0) if parts else None
 
     def _known(self, name: Name, what: str) -> Floats:
         if name not in self._changes:
             raise ValueError(f"{what} was not prepared")
         return self._changes[name]
+
+
+def _all_there(outputs: list[Floats]) -> list[Floats]:
+    """The baseline's. NoEquilibriumError where it has none."""
+    if not all(map(len, outputs)):
+        raise NoEquilibriumError("the baseline has no equilibrium at the depth of these runs", np.zeros(0), None)
+    return outputs
 
 
 def _name(candidate: Candidate, point: Sequence[float]) -> Name:

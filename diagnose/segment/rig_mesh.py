@@ -13,7 +13,6 @@ from solve.model import Model
 
 LARGEST = 3000  # nodes: some 8,000 unknowns, and 3 s a press on one core
 COARSER = 1.06
-FINER = 0.6  # element sizes of the mesh by which the diagnosis mesh is corrected
 
 
 def rig_mesh(model: Model, options: MeshOptions, largest: int = LARGEST) -> tuple[TetMesh, MeshOptions]:
@@ -32,10 +31,9 @@ def rig_mesh(model: Model, options: MeshOptions, largest: int = LARGEST) -> tupl
         options = scaled(options, max(COARSER, 0.7 * (count / largest) ** (1.0 / 3.0)))
 
 
-def finer_mesh(model: Model, options: MeshOptions) -> tuple[TetMesh, MeshOptions]:
-    """A mesh with finer elements all over, and its sizes."""
-    sizes = scaled(options, FINER)
-    return build(model.segment, _resting(model), sizes), sizes
+def finer_mesh(model: Model, options: MeshOptions, factor: float, largest: int) -> tuple[TetMesh, MeshOptions]:
+    """A mesh with elements smaller by a factor all over, if it has few enough nodes, and its sizes."""
+    return rig_mesh(model, scaled(options, factor), largest)
 
 
 def mesh_of(model: Model, known: Model, tet_mesh: TetMesh, options: MeshOptions) -> TetMesh:

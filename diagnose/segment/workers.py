@@ -25,9 +25,9 @@ WHAT = "pressing the 3D model"
 
 
 def run_all(jobs: Sequence[Job], report: Report, first: Sequence[Reduction] = ()) -> list[Floats]:
-    """Outputs of all jobs in order, each kept as soon as it is there. NoEquilibriumError for one that has none.
+    """Outputs of all jobs in order, each kept as soon as it is there; empty (0,) for a press without equilibrium.
 
-    first : what takes longest, and is kept where it is made.
+    first : what takes longest, and is kept where it is made. NoEquilibriumError for one of these.
     """
     names = [store.key(job) for job in jobs]
     found = {name: table for name in names if (table := store.recall(name)) is not None}
@@ -36,11 +36,11 @@ def run_all(jobs: Sequence[Job], report: Report, first: Sequence[Reduction] = ()
     if missing:
         report(WHAT, 0, len(missing))
     for number, (name, table) in enumerate(_pressed(missing), start=1):
-        if isinstance(table, Exception):
-            raise NoEquilibriumError(str(table), np.zeros(0), None) from table
         if isinstance(missing[name], Job):
-            found[name] = table
-            store.keep(name, table)
+            found[name] = np.zeros(0) if isinstance(table, Exception) else table
+            store.keep(name, found[name])
+        elif isinstance(table, Exception):
+            raise NoEquilibriumError(str(table), np.zeros(0), None) from table
         report(WHAT, number, len(missing))
     return [found[name] for name in names]
 
@@ -79,7 +79,7 @@ def _processes(count: int) -> Iterator[list["subprocess.Popen[bytes]"]]:
 
 
 def _feed(process: "subprocess.Popen[bytes]", waiting: "SimpleQueue[Any]", done: "SimpleQueue[Any]") -> None:
-    """One worker's share of the jobs. One that dies leaves an error in place of its answer."""
+    """One worker's share of the jobs. What a worker that dies leaves undone is done here."""
     assert process.stdin is not None
     assert process.stdout is not None
     while True:
@@ -92,5 +92,5 @@ def _feed(process: "subprocess.Popen[bytes]", waiting: "SimpleQueue[Any]", done:
             process.stdin.flush()
             answer = pickle.load(process.stdout)
         except (OSError, EOFError, pickle.UnpicklingError):
-            answer = RuntimeError("a process that presses the 3D model ended by itself; perhaps memory is short")
+            answer = worker.answer(job)  # here, if it ended by itself
         done.put((name, answer))

@@ -39,7 +39,8 @@ def _yield_stress(scene: Scene) -> Candidate:
     assert isinstance(film, PiezoelectricFilm)
     usual = film.yield_stress_MPa or 50.0
     most = max(usual / WEAKEST_MPA, 2.0)
-    coordinate = growing("inverse_stress", 1.0, most, (1.5, 0.5 * most), (0.12 * most, 0.22 * most, 0.35 * most, 0.6 * most, most))
+    nodes = tuple(share * most for share in (0.12, 0.22, 0.35, 0.6, 1.0))
+    coordinate = growing("inverse_stress", 1.0, most, (1.5, 0.5 * most), nodes)
 
     def parameters(values: Sequence[float]) -> dict[str, Any]:
         return {"yield_stress_MPa": usual / sinh(values[0])}

@@ -11,9 +11,9 @@ from diagnose.vocabulary.scene import Scene
 from solve.materials.prony import Prony
 
 BRANCHES = 3
-LARGEST_SHARE = 0.7
-"""Of the stress that may relax; the reduced model is made for it."""
 MOST = 1.0  # modulus of one branch, in terms of what never relaxes
+LARGEST_SHARE = BRANCHES * MOST / (1.0 + BRANCHES * MOST)
+"""Of the stress that may relax; the reduced model is made for it."""
 EARLY_S, LATE_S = 0.1, 10.0
 FEWEST_SAMPLES = 5.0  # within the shortest time of relaxation that is looked for
 
@@ -42,9 +42,7 @@ def _candidate(scene: Scene, component: str, declared: Prony) -> Candidate:
         ratios = np.asarray(values[:BRANCHES])
         shares = free * ratios / (1.0 + ratios.sum())
         taus = [tau * exp(values[BRANCHES]) for tau in times]
-        kept = [(float(g), tau) for g, tau in zip(shares, taus, strict=True) if g > 0.0]
-        own = [*zip(declared.relative_moduli, declared.relaxation_times, strict=True), *kept]
-        return [g for g, _ in own], [tau for _, tau in own]
+        return [*declared.relative_moduli, *map(float, shares)], [*declared.relaxation_times, *taus]
 
     def parameters(values: Sequence[float]) -> dict[str, Any]:
         moduli, taus = series(values)

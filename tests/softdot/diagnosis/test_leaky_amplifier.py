@@ -8,6 +8,7 @@ import pytest
 from examples.recordings.leaky_amplifier import LEAK_MOHM, make, motion
 from softdot.cli import main
 from softdot.config import load_config
+from softdot.diagnosis import engines
 from softdot.rig_file import load_rig
 from tests.diagnose.verdict.test_verdict import SHAPE, require
 
@@ -21,7 +22,16 @@ def test_the_motion_is_the_one_that_is_asked_for():
 
 
 @pytest.mark.slow
-def test_the_leak_is_named_with_its_resistance(tmp_path):
+def test_the_leak_is_named_with_its_resistance(tmp_path, monkeypatch):
+    """Among the candidates of the amplifier, which need no press of the 3D model but the baseline's."""
+    engine_for = engines.engine_for
+
+    def of_the_amplifier(rig, report):
+        engine = engine_for(rig, report)
+        engine.candidates = tuple(one for one in engine.candidates if one.component == "readout")
+        return engine
+
+    monkeypatch.setattr(engines, "engine_for", of_the_amplifier)
     make(tmp_path / "leaky")
     assert load_rig(tmp_path / "leaky").recording.warnings == ()
     assert main(["diagnose", str(tmp_path / "leaky"), "-o", str(tmp_path / "out")]) == 0

@@ -1,0 +1,26 @@
+"""What a diagnosis with the 3D model cannot take as its baseline."""
+
+from diagnose.recording import Recording
+from geometry.checks import check_press_depth
+from geometry.errors import InputError
+from solve.materials.parameters import PiezoelectricFilm
+from solve.model import Model
+
+
+def refuse(model: Model, recording: Recording) -> None:
+    """InputError with one sentence."""
+    film, physics = model.materials["film"], model.physics
+    if isinstance(film, PiezoelectricFilm) and film.coupling == "two-way":
+        raise InputError("coupling = 'two-way': a diagnosis needs a film whose voltage does not act back")
+    declared = {"friction": physics.friction, "stress-softening": physics.softening, "film-yield": physics.film_yield}
+    for name, value in declared.items():
+        if value:
+            raise InputError(f"mechanisms: '{name}' is looked for by a diagnosis, it cannot be declared; leave it out")
+    if physics.viscosity and physics.prestretch != (0.0, 0.0):
+        raise InputError("mechanisms: a diagnosis takes viscoelasticity or film-prestretch as declared, not both")
+    for run in recording.runs:
+        if run.drive == "displacement_mm":
+            try:
+                check_press_depth(model.segment, float(run.drive_values.max()))
+            except InputError as error:
+                raise InputError(f"run '{run.label}' goes too deep: {error}") from None

@@ -1,0 +1,212 @@
+"""The tables of a rig against the 3D model itself: every kind of mechanism, coarse mesh, slice."""
+
+import numpy as np
+import pytest
+
+from diagnose.forward import Setting
+from geometry.errors import InputError
+from solve.mechanisms import Mechanism
+from solve.parameters import Readout
+from tests.diagnose.segment.rigs import DEPTH_MM, candidate, engine, press, run, silent
+
+KINKS = 0.01  # of the peak: so coarse a surface touches node by node, which neither table nor press resolves
+FORCE = {"drive": "force_N"}
+
+
+@pytest.fixture(scope="module")
+def rig():
+    """One run of one press, driven by its depth."""
+    return engine()
+
+
+def peak(signal):
+    return float(np.abs(signal).max())
+
+
+def switched(of, mechanism, component, values):
+    """A prepared setting."""
+    chosen = candidate(of, mechanism, component)
+    of.prepare([chosen], silent)
+    return Setting(chosen, values)
+
+
+def errors(of, setting):
+    """Channel -> error of the tables against the 3D model, and the size of the effect, both of the baseline's peak."""
+    without, told = of.predict(0, []), of.predict(0, [setting])
+    true = of.solve(0, [setting.candidate.switched_on(setting.values)], silent)
+    sizes = {name: peak(without[name]) for name in told}
+    return {name: (peak(told[name] - true[name]) / size, peak(true[name] - without[name]) / size)
+            for name, size in sizes.items()}  # fmt: skip
+
+
+def test_the_baseline_is_that_of_the_3d_model(rig):
+    told, true = rig.predict(0, []), rig.solve(0, [], silent)
+    for name in told:
+        assert peak(told[name] - true[name]) < KINKS * peak(true[name])
+
+
+CASES = [
+    # mechanism, component, coordinates, largest error as a share of the effect, least effect on the voltage
+    ("charge-leakage", "readout", (1.0,), 0.02, 0.1),
+    ("rig-compliance", "rig", (0.3,), 0.02, 0.1),
+    ("property-error", "medium1", (0.3, 0.0), 0.05, 0.03),
+    ("property-error", "film", (0.2, 0.1, 0.3), 0.05, 0.3),
+    ("viscoelasticity", "medium2", (0.1, 0.1, 0.05, 0.3), 0.1, 0.05),
+    ("hyperelastic-stiffening", "effector", (0.3, 0.2), 0.08, 0.05),
+    ("adhesive-compliance", "bond-film-medium2", (1.2, 2.5), 0.08, 0.05),
+    ("elastic-sides", "sides", (2.0,), 0.08, 0.1),
+    ("stress-softening", "effector", (0.3,), 0.15, 0.1),
+]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("mechanism", "component", "values", "allowed", "least"), CASES)
+def test_a_mechanism_acts_as_in_the_3d_model(rig, mechanism, component, values, allowed, least):
+    found = errors(rig, switched(rig, mechanism, component, values))
+    assert found["voltage_V"][1] > least
+    for error, effect in found.values():
+        assert error < allowed * effect + KINKS
+
+
+def test_a_compliant_rig_in_the_tables_is_one_in_the_3d_model(rig):
+    """The same for one case that needs no press of its own: the fast suite too shall see the 3D model."""
+    for error, effect in errors(rig, switched(rig, "rig-compliance", "rig", (0.3,))).values():
+        assert effect > 0.1
+        assert error < 0.02 * effect + KINKS
+
+
+def test_all_off_is_the_baseline_exactly(rig):
+    plain = rig.predict(0, [])
+    for chosen in rig.candidates:
+        off = rig.predict(0, [Setting(chosen, tuple(0.0 for _ in chosen.coordinates))])
+        for name in plain:
+            np.testing.assert_array_equal(off[name], plain[name])
+
+
+def test_small_settings_add_up(rig):
+    """To first order what two do together is the sum of what each does."""
+    moduli = [rig.nuisance(f"modulus.{layer}") for layer in ("medium1", "medium2")]
+    rig.prepare(moduli, silent)
+    one, other = (Setting(modulus, (0.02,)) for modulus in moduli)
+    plain = rig.predict(0, [])
+    each = [rig.predict(0, [s]) for s in (one, other)]
+    both = rig.predict(0, [one, other])
+    for name in plain:
+        alone = sum(part[name] - plain[name] for part in each)
+        np.testing.assert_allclose(both[name] - plain[name], alone, atol=0.02 * peak(alone))
+
+
+def test_a_nuisance_is_the_factor_of_the_candidate(rig):
+    """The same presses serve both."""
+    nuisance = rig.nuisance("modulus.medium1")
+    rig.prepare([nuisance], silent)
+    chosen = Setting(candidate(rig, "property-error", "medium1"), (0.2, 0.0))
+    told, same = rig.predict(0, [Setting(nuisance, (0.2,))]), rig.predict(0, [chosen])
+    for name in told:
+        np.testing.assert_array_equal(told[name], same[name])
+
+
+def test_d31_scales_the_voltage_and_leaves_the_force(rig):
+    told, plain = rig.predict(0, [Setting(rig.nuisance("d31"), (np.log(1.1),))]), rig.predict(0, [])
+    np.testing.assert_allclose(told["voltage_V"], 1.1 * plain["voltage_V"], rtol=1e-9)
+    np.testing.assert_array_equal(told["force_N"], plain["force_N"])
+
+
+def test_a_gap_is_a_later_touch(rig):
+    """Lost motion of 0.02 mm is a press that is less deep by that much."""
+    told = rig.predict(0, [Setting(candidate(rig, "contact-gap", "dot"), (0.02,))])
+    shallower = rig.imagine(run(values=press(run().time_s) - 0.02), [])
+    np.testing.assert_allclose(told["force_N"], shallower["force_N"], atol=1e-9)
+
+
+def test_hum_has_the_amplitude_and_the_phase_that_its_coordinates_say(rig):
+    """Sine and cosine from the first touch on, before the amplifier."""
+    hum = candidate(rig, "mains-hum", "readout")
+    time = rig.drives[0].time_s
+    added = rig.predict(0, [Setting(hum, (0.03, 0.04))])["voltage_V"] - rig.predict(0, [])["voltage_V"]
+    wave = 2.0 * np.pi * 50.0 * time
+    np.testing.assert_allclose(added, 0.03 * np.sin(wave) + 0.04 * np.cos(wave), atol=1e-9)
+    assert hum.parameters((0.03, 0.04))["amplitude_V"] == pytest.approx(0.05)
+
+
+def test_what_was_not_prepared_is_refused(rig):
+    chosen = candidate(rig, "delamination", "bond-base")
+    with pytest.raises(ValueError, match="delamination of bond-base was not prepared"):
+        rig.predict(0, [Setting(chosen, (0.1,))])
+    with pytest.raises(ValueError, match="deeper than"):
+        rig.imagine(run(values=press(run().time_s, 2.0 * DEPTH_MM)), [])
+    with pytest.raises(ValueError, match="a dot at"):
+        rig.imagine(run(dot_offset_mm=(0.2, 0.0)), [])
+
+
+def test_another_resistor_is_that_of_its_run():
+    both = engine(run(), run(label="two", readout=Readout(input_resistance_MOhm=100.0, input_capacitance_pF=100.0)))
+    slow, fast = (both.predict(number, [])["voltage_V"] for number in (0, 1))
+    held = (both.drives[0].time_s > 0.55) & (both.drives[0].time_s < 0.58)
+    assert (fast[held] < 0.1 * slow[held]).all()
+
+
+def test_a_force_drives_as_far_as_the_depth_says(rig):
+    """Pushed by the force of a depth-driven press, the dot goes as deep as that press."""
+    depth = press(run().time_s)
+    force = rig.predict(0, [])["force_N"]
+    pushed = engine(run(values=force, **FORCE))
+    touching = depth > 0.02
+    path = pushed.predict(0, [])["displacement_mm"]
+    np.testing.assert_allclose(path[touching], depth[touching], atol=2 * KINKS * DEPTH_MM)
+
+
+@pytest.mark.slow
+def test_a_softer_bond_lets_a_force_go_deeper_as_in_the_3d_model(rig):
+    pushed = engine(run(values=0.6 * rig.predict(0, [])["force_N"], **FORCE))
+    setting = switched(pushed, "adhesive-compliance", "bond-medium1-film", (1.5, 1.5))
+    error, effect = errors(pushed, setting)["displacement_mm"]
+    assert effect > 0.02
+    assert error < 0.1 * effect + 2 * KINKS
+
+
+@pytest.mark.slow
+def test_softened_rubber_loses_on_the_way_back_and_the_second_time():
+    """Twice to one depth: the second way down follows the first way up, and both are below the first way down."""
+    time = run().time_s
+    quick = {"rise_s": 0.2, "hold_s": 0.1}
+    twice = np.maximum(press(time, touch_s=0.1, **quick), press(time, touch_s=0.9, **quick))
+    of = engine(run(values=twice))
+    setting = switched(of, "stress-softening", "effector", (0.3,))
+    told, true = of.predict(0, [setting]), of.solve(0, [setting.candidate.switched_on((0.3,))], silent)
+    assert peak(told["force_N"] - true["force_N"]) < 0.03 * peak(true["force_N"])
+    first, second = (np.argmin(np.abs(time - t)) for t in (0.2, 1.0))
+    assert twice[first] == pytest.approx(twice[second])
+    lost = 1.0 - told["force_N"][second] / told["force_N"][first]
+    assert lost == pytest.approx(setting.candidate.derived((0.3,))["loss_ratio"], abs=0.02)
+
+
+@pytest.mark.slow
+def test_force_ratio_is_what_the_3d_model_gains_at_the_deepest_press(rig):
+    setting = switched(rig, "hyperelastic-stiffening", "effector", (0.3, 0.2))
+    true = rig.solve(0, [setting.candidate.switched_on(setting.values)], silent)
+    plain = rig.solve(0, [], silent)
+    gained = peak(true["force_N"]) / peak(plain["force_N"])
+    assert setting.candidate.derived(setting.values)["force_ratio"] == pytest.approx(gained, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("tables", "reason"),
+    [
+        ({"mechanisms": [{"name": "friction", "component": "dot", "parameters": {"coefficient": 0.3}}]}, "friction"),
+        ({"materials": {"pvdf": {"model": "piezoelectric-film", "coupling": "two-way"}}}, "two-way"),
+    ],
+)
+def test_a_baseline_that_tables_cannot_describe_is_refused(tables, reason):
+    with pytest.raises(InputError, match=reason):
+        engine(**tables)
+
+
+def test_a_run_deeper_than_the_stack_is_refused():
+    with pytest.raises(InputError, match="run 'one' goes too deep"):
+        engine(run(values=press(run().time_s, 4.0)))
+
+
+def test_the_3d_model_refuses_what_the_rig_does_not_have(rig):
+    with pytest.raises(ValueError, match="component"):
+        rig.solve(0, [Mechanism(name="property-error", component="sides")], silent)

@@ -1,0 +1,119 @@
+"""The candidates of a rig: every mechanism and component that it admits, with parameters that a rig file takes."""
+
+from dataclasses import replace
+
+import pytest
+
+from diagnose.vocabulary.candidates import candidates
+from diagnose.vocabulary.memory import relaxed_fraction
+from diagnose.vocabulary.scene import Scene
+from diagnose.vocabulary.wrong_numbers import nuisance
+from solve.mechanisms import BONDS, MECHANISMS, MEDIA
+from solve.parameters import Readout
+from solve.switch_on import with_mechanisms
+from tests.diagnose.segment.rigs import LEAKY, model
+
+ELECTRODES = [{"name": name, "center_mm": [x, 0.0], "size_mm": [1.0, 2.5]} for name, x in (("a", -0.6), ("b", 0.6))]
+
+
+def scene(readouts=(LEAKY, LEAKY), channels=1, **tables) -> Scene:
+    return Scene(model(**tables), readouts, 0.3, 2.0, 0.5, 1e-3, 10.0, channels)
+
+
+def segment(**changes):
+    base = {"section": "plane-strain", "effector": {}, "medium1": {"thickness_mm": 0.5},
+            "film": {"thickness_um": 28.0}, "medium2": {"thickness_mm": 2.0}}  # fmt: skip
+    return {key: value for key, value in {**base, **changes}.items() if value is not None}
+
+
+def names(of: Scene) -> set:
+    return {c.name for c in candidates(of)}
+
+
+def every(scene_of_all: Scene):
+    return [pytest.param(c, id="-".join(c.name)) for c in candidates(scene_of_all)]
+
+
+GLUED = [{"between": ["film", "medium2"], "normal_stiffness_N_per_mm3": 100.0, "shear_stiffness_N_per_mm3": 20.0}]
+FULL = scene(channels=2, segment=segment(bonds=GLUED, film={"thickness_um": 28.0, "electrodes": ELECTRODES}))
+
+
+def test_a_rig_with_everything_admits_the_whole_vocabulary():
+    wanted = {(name, component) for name, kind in MECHANISMS.items() for component in kind.components}
+    absent = {("viscoelasticity", bond) for bond in BONDS if bond != "bond-film-medium2"}  # perfect: no jump to relax
+    absent |= {("crosstalk", f"channel-{n}") for n in range(3, 17)}
+    assert names(FULL) == wanted - absent
+
+
+def test_without_an_effector_nothing_is_looked_for_in_it():
+    assert not any("effector" in component for _, component in names(scene(segment=segment(effector=None))))
+
+
+def test_sides_that_are_free_have_no_stiffness():
+    assert ("elastic-sides", "sides") not in names(scene(segment=segment(boundary="free")))
+    assert ("elastic-sides", "sides") in names(scene(segment=segment(boundary="elastic")))
+
+
+def test_a_charge_amplifier_has_no_leaking_input():
+    charge = Readout(mode="charge", feedback_pF=100.0)
+    found = {mechanism for mechanism, _ in names(scene(readouts=(charge,)))}
+    assert not found & {"charge-leakage", "parasitic-capacitance"}
+
+
+def test_one_channel_hears_no_other():
+    assert not any(mechanism == "crosstalk" for mechanism, _ in names(scene()))
+
+
+@pytest.mark.parametrize("candidate", every(FULL))
+def test_coordinates_lie_within_their_bounds_and_switch_the_mechanism_on(candidate):
+    for coordinate in candidate.coordinates:
+        assert coordinate.low <= 0.0 <= coordinate.high
+        assert coordinate.starts
+        for value in (*coordinate.starts, *coordinate.nodes):
+            assert coordinate.low - 1e-9 <= value <= coordinate.high + 1e-9
+            assert value != 0.0
+    middle = tuple(coordinate.starts[0] for coordinate in candidate.coordinates)
+    mechanism = candidate.switched_on(middle)
+    assert set(candidate.derived(middle)) | set(mechanism.parameters) <= set(candidate.units)
+    with_mechanisms(FULL.model, [mechanism])
+
+
+def test_small_coordinates_are_small_physics():
+    """Near 0 the model goes over into the declared one."""
+    almost = {c.name: c.parameters(tuple(1e-6 for _ in c.coordinates)) for c in candidates(FULL)}
+    assert almost["charge-leakage", "readout"]["resistance_MOhm"] > 1e6
+    assert almost["film-yield", "film"]["yield_stress_MPa"] > 1e6
+    assert almost["low-pass", "readout"]["cutoff_Hz"] > 1e6
+    assert almost["elastic-sides", "sides"]["stiffness_N_per_mm3"] > 1e6
+    assert almost["adhesive-compliance", "bond-base"]["normal_stiffness_N_per_mm3"] == pytest.approx(1e6)
+    assert almost["adhesive-compliance", "bond-film-medium2"]["shear_stiffness_N_per_mm3"] == pytest.approx(20.0)
+    assert sum(almost["viscoelasticity", "medium1"]["relative_moduli"]) < 1e-5
+    foam = almost["foam-densification", "effector"]
+    assert foam["poisson_ratio"][0] == pytest.approx(0.495, abs=1e-5)
+    assert foam["alpha"][0] == pytest.approx(2.0, abs=1e-5)
+
+
+def test_what_is_declared_stays():
+    """A declared memory keeps its branches, and the new ones share what it leaves."""
+    declared = {"name": "viscoelasticity", "component": "medium2",
+                "parameters": {"relative_moduli": [0.2], "relaxation_times_s": [0.5]}}  # fmt: skip
+    found = next(c for c in candidates(scene(mechanisms=[declared])) if c.name == ("viscoelasticity", "medium2"))
+    moduli = found.parameters((0.5, 0.0, 0.0, 0.0))["relative_moduli"]
+    assert moduli == pytest.approx([0.2, 0.8 / 3.0, 0.0, 0.0])
+
+
+def test_relaxed_fraction_of_one_branch():
+    """1 - G(10) / G(0.1), G = 1 - g (1 - exp(-t / tau))."""
+    assert relaxed_fraction([0.4], [1e-3]) == pytest.approx(0.0)
+    assert relaxed_fraction([0.4], [1.0]) == pytest.approx(1.0 - 0.6000182 / 0.9619350, rel=1e-5)
+    assert relaxed_fraction([0.4], [1e6]) == pytest.approx(0.0, abs=1e-5)
+
+
+@pytest.mark.parametrize("medium", MEDIA)
+def test_nuisances_are_the_factors_of_the_rig(medium):
+    found = nuisance(FULL, f"modulus.{medium}")
+    assert found is not None
+    assert found.parameters((0.1,))["modulus_factor"] == pytest.approx(1.105, abs=1e-3)
+    assert len(found.coordinates) == 1
+    assert nuisance(FULL, "gain") is None
+    assert nuisance(replace(FULL, model=model(segment=segment(effector=None))), "modulus.effector") is None
