@@ -36,7 +36,7 @@ class Task:
 
     shape : the elastic answer of this mesh's table to any drive. Between the states of the 3D model only the
     difference from it is interpolated, which is smooth where force and charge bend. fine : the same of the table that
-    is corrected by a finer mesh. ahead_s : by which the mains are ahead of the touch.
+    is corrected by a finer mesh.
     """
 
     run: Run
@@ -47,14 +47,13 @@ class Task:
     film: FilmPlate
     shape: Shape
     fine: Shape
-    ahead_s: float = 0.0
 
 
 def solve(task: Task, report: Report) -> Signals:
     """Every answer of the run. NoEquilibriumError."""
     found = _through_time(task, report) if task.model.follows_time else _by_depth(task, report)
     # path, force and charge are those of the press itself: only the amplifier is still to come
-    return shown(task.run, task.run.answers, task.drive, task.values, found, task.film, task.model, task.ahead_s)
+    return shown(task.run, task.run.answers, task.drive, task.values, found, task.film, task.model)
 
 
 def _press(task: Task, press: Press, report: Report) -> PressResult:

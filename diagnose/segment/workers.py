@@ -7,7 +7,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from queue import Empty, SimpleQueue
-from threading import Thread
+from threading import Event, Thread
 from typing import Any
 
 import numpy as np
@@ -56,11 +56,15 @@ def _pressed(jobs: dict[str, Job | Reduction]) -> Iterator[tuple[str, Any]]:
     done: SimpleQueue[tuple[str, Any]] = SimpleQueue()
     for item in jobs.items():
         waiting.put(item)
+    over = Event()
     with _processes(count) as processes:
-        for process in processes:
-            Thread(target=_feed, args=(process, waiting, done), daemon=True).start()
-        for _ in jobs:
-            yield done.get()
+        try:
+            for process in processes:
+                Thread(target=_feed, args=(process, waiting, done, over), daemon=True).start()
+            for _ in jobs:
+                yield done.get()
+        finally:
+            over.set()
 
 
 @contextmanager
@@ -78,11 +82,13 @@ def _processes(count: int) -> Iterator[list["subprocess.Popen[bytes]"]]:
             process.wait()
 
 
-def _feed(process: "subprocess.Popen[bytes]", waiting: "SimpleQueue[Any]", done: "SimpleQueue[Any]") -> None:
+def _feed(
+    process: "subprocess.Popen[bytes]", waiting: "SimpleQueue[Any]", done: "SimpleQueue[Any]", over: Event
+) -> None:
     """One worker's share of the jobs. What a worker that dies leaves undone is done here."""
     assert process.stdin is not None
     assert process.stdout is not None
-    while True:
+    while not over.is_set():
         try:
             name, job = waiting.get_nowait()
         except Empty:
@@ -92,5 +98,7 @@ def _feed(process: "subprocess.Popen[bytes]", waiting: "SimpleQueue[Any]", done:
             process.stdin.flush()
             answer = pickle.load(process.stdout)
         except (OSError, EOFError, pickle.UnpicklingError):
-            answer = worker.answer(job)  # here, if it ended by itself
+            if over.is_set():
+                return
+            answer = worker.answer(job)
         done.put((name, answer))

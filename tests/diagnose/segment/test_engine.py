@@ -146,6 +146,7 @@ def test_another_resistor_is_that_of_its_run():
     assert (fast[held] < 0.1 * slow[held]).all()
 
 
+@pytest.mark.slow
 def test_a_force_drives_as_far_as_the_depth_says(rig):
     """Pushed by the force of a depth-driven press, the dot goes as deep as that press."""
     depth = press(run().time_s)

@@ -1,0 +1,34 @@
+"""Presses in processes of their own."""
+
+import numpy as np
+import pytest
+
+from diagnose.segment import store, workers
+from tests.diagnose.segment.rigs import engine, silent
+
+
+@pytest.fixture
+def jobs():
+    """Two presses to different depths."""
+    base = engine().prepared.job(engine().model)
+    return [type(base)(base.model, base.tet_mesh, depth, (0.5, 1.0)) for depth in (0.02, 0.03)]
+
+
+@pytest.mark.slow
+def test_a_process_answers_as_this_one_does(jobs, monkeypatch, tmp_path):
+    monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path))
+    here = [job.run() for job in jobs]
+    monkeypatch.setattr(workers, "WORTH_A_PROCESS", 1)
+    for found, wanted in zip(workers.run_all(jobs, silent), here, strict=True):
+        np.testing.assert_allclose(found, wanted, rtol=1e-9)
+    assert all(store.recall(store.key(job)) is not None for job in jobs)
+
+
+def test_a_damaged_table_is_none(tmp_path, monkeypatch):
+    monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path))
+    store.keep("one", np.ones((2, 3)))
+    np.testing.assert_array_equal(store.recall("one"), np.ones((2, 3)))
+    (path,) = tmp_path.glob("press-table-*")
+    path.write_bytes(path.read_bytes()[:50])
+    assert store.recall("one") is None
+    assert store.recall("other") is None
