@@ -13,7 +13,7 @@ from diagnose.inference.descent import coordinates
 from diagnose.inference.excess import share_left
 from diagnose.inference.forecasts import Forecasted, forecasted, separation
 from diagnose.inference.observed_model import ObservedModel
-from diagnose.inference.rates import LEFT, LIKELY, RATES
+from diagnose.inference.rates import LEFT, RATES
 from diagnose.inference.refit import Fitted
 from diagnose.inference.residual_test import DRAWS, checked
 from diagnose.inference.search import Screening, pairs, singles
@@ -56,7 +56,8 @@ class Judge:
 
     def __init__(self, model: ObservedModel, found: Screening, rng: np.random.Generator) -> None:
         self.model, self.found, self.rng = model, found, rng
-        self.base = forecasted(model.samples, within_priors(found.start, found.baseline))
+        self.declared = within_priors(found.start, found.baseline)
+        self.base = forecasted(model.samples, self.declared)
 
     def judged(self, fit: Fitted, draws: int = FEWER_DRAWS) -> Judged:
         """Forecast, gain and what is left."""
@@ -116,21 +117,17 @@ def _decided(judge: Judge, models: tuple[Judged, ...], p_mismatch: float) -> Cho
     samples, best = judge.model.samples, models[0]
     past = memory(samples)
     metric = replace(best.fit.system, form=best.fit.largest_form)
-    over = box_scores(samples, judge.found.baseline, metric, past) - forecasted(samples, metric, best.fit).log_scores
+    over = box_scores(samples, judge.declared, metric, past) - forecasted(samples, metric, best.fit).log_scores
     box = gain_over_noise(over, np.sqrt(2.0 * np.maximum(over, 0.0)), RATES.level)
-    none = box_scores(samples, judge.found.baseline, judge.found.baseline, past)
+    none = box_scores(samples, judge.declared, judge.declared, past)
     scores = np.array([*(one.forecast.log_scores for one in models), judge.base.log_scores, none])
     apart = np.where(_told_apart(judge, models), np.inf, separations(samples, [one.fit for one in models]))
     evidence = Evidence(
         p_mismatch, best.p_left, best.gain.lower, box.lower, _implausible(best.fit), alike(apart)
     )
     decision = decide(evidence, replace(RATES, margin=worth_of_form(samples, metric)))
-    groups, probabilities = grouped(apart), held_out_probabilities(scores, judge.rng)[: len(models)]
-    likely = float(probabilities[list(groups[0])].sum())
-    if likely < LIKELY:
-        reason = f"Among all models and none of them its probability is {100.0 * likely:.0f} %."
-        decision = Decision(True, False, True, (*decision.reasons, reason))
-    return Choice(models, probabilities, groups, box.mean, decision, judge.base)
+    probabilities = held_out_probabilities(scores, judge.rng)[: len(models)]
+    return Choice(models, probabilities, grouped(apart), box.mean, decision, judge.base)
 
 
 def _told_apart(judge: Judge, models: Sequence[Judged]) -> Bools:

@@ -135,7 +135,7 @@ def _improved(
 ) -> tuple[Place | None, float]:
     """A better place and the damping that found it; none where only steps too small to matter are left."""
     while damping < TIGHTEST:
-        step = _step(hessian, gradient, damping, here.values, limits)
+        step = bounded_step(hessian, gradient, damping, here.values, limits)
         after = problem.at(here.values + step)
         if after.cost < here.cost:
             return after, damping / 10.0
@@ -145,7 +145,7 @@ def _improved(
     return None, damping
 
 
-def _step(hessian: Floats, gradient: Floats, damping: float, values: Floats, limits: Floats) -> Floats:
+def bounded_step(hessian: Floats, gradient: Floats, damping: float, values: Floats, limits: Floats) -> Floats:
     """The damped Newton step within the bounds."""
     scale = scales(hessian)
     damped = hessian / np.outer(scale, scale) + (damping + RIDGE) * np.eye(len(values))

@@ -61,7 +61,7 @@ class HumEngine:
         self._places = [(n, c) for n, run in enumerate(recording.runs) for c in run.voltages if (run.label, c) in loud]
         self._lines = [loud[recording.runs[n].label, c] for n, c in self._places]
         self.name, self.accuracy = engine.name, engine.accuracy
-        self.free_nuisances: tuple[Candidate, ...] = getattr(engine, "free_nuisances", ())
+        self.free_nuisances = engine.free_nuisances
         given = next((c for c in engine.candidates if c.mechanism == "mains-hum"), None)
         self._hum = self._candidate(given) if given is not None and loud else None
         others = tuple(c for c in engine.candidates if c.mechanism != "mains-hum")

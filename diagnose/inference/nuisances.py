@@ -45,7 +45,7 @@ def nuisances(recording: Recording, engine: Engine) -> tuple[Nuisance, ...]:
     for name, sigma in shared.items():
         candidate = engine.nuisance(name)
         found += [Nuisance(name, None, sigma, candidate)] if candidate is not None else []
-    for candidate in getattr(engine, "free_nuisances", ()):
+    for candidate in engine.free_nuisances:
         for number, coordinate in enumerate(candidate.coordinates):
             found.append(Nuisance(coordinate.name, None, np.inf, candidate, number))
     return tuple(found)

@@ -11,8 +11,6 @@ LARGEST_FORM = 0.1
 """Share of the excess that the error of form may excuse at most: an effect that nuisances cancel excuses nothing."""
 ALIKE = 0.05
 """Chance of choosing the wrong one of two models above which they are called ambiguous."""
-LIKELY = 0.5
-"""Probability of the best model and those alike, among all models and "none of these", below which none is named."""
 FINALISTS = 6
 """Single mechanisms that are fitted with all that floats, after a first fit of all survivors."""
 PAIRS = 4

@@ -9,14 +9,15 @@ from diagnose.forward import Candidate, Setting
 from diagnose.inference import discrepancy
 from diagnose.inference.descent import Place, descended, descent, settings
 from diagnose.inference.discrepancy import FORM
+from diagnose.inference.joint import fitted_jointly
 from diagnose.inference.observed_model import ObservedModel
 from diagnose.inference.rates import LARGEST_FORM
 from diagnose.inference.samples import Samples
 from diagnose.inference.system import System, linearised
 from mesh.types import Floats
 
-ROUNDS = 3
-NEAR = 1.0  # standard deviations: nuisances are linear so far
+ROUNDS = 2
+NEAR = 1.0  # standard deviations: variances stay so far
 FORMS = np.array([0.0, 0.125, 0.25, 0.5, 1.0])  # of the largest error of form
 
 
@@ -58,10 +59,12 @@ def fitted(
     for _ in range(ROUNDS):
         system = linearised(model, nuisances, settings(candidates, values), FORM, system.live)
         system = replace(system, form=largest_form(system, excess))
-        before = system.effect
-        system, place, _ = _moved(model, system, candidates, values)
-        values, nuisances = place.values, system.nuisances(system.residual)
-        if system.quadratic.square(system.weighted(system.effect - before)) < NEAR**2:
+        found = fitted_jointly(model, system, candidates, values)
+        change = model.vector(found.nuisances, settings(candidates, found.values)) - model.vector(
+            nuisances, settings(candidates, values)
+        )
+        values, nuisances = found.values, found.nuisances
+        if np.linalg.norm(system.weighted(change)) < NEAR:
             break
     system = linearised(model, nuisances, settings(candidates, values), FORM, system.live)
     largest = largest_form(system, excess)

@@ -8,6 +8,7 @@ import pytest
 
 from diagnose.inference.diagnose import diagnose
 from diagnose.recording import Recording
+from solve.parameters import Readout
 from tests.diagnose.inference.toy import (
     CANDIDATES,
     CONCEALED,
@@ -144,7 +145,7 @@ def test_a_sensor_of_unknown_sensitivity_is_no_mismatch():
     assert findings.nuisances["d31"][0] == pytest.approx(4.0, rel=0.1)
 
 
-def test_missing_samples_and_samples_at_an_unstated_limit_are_understood():
+def test_missing_samples_are_left_out():
     recording = small(16, Sensor(leak=1.0), runs=3)
     runs = []
     for run in recording.runs:
@@ -154,8 +155,23 @@ def test_missing_samples_and_samples_at_an_unstated_limit_are_understood():
         channels[run.drive] = run.drive_values
         runs.append(replace(run, channels=channels, valid=dict.fromkeys(channels, there)))
     assert names(found(Recording(tuple(runs)))) == (LEAK,)
-    limit = one("saturation", "readout", "limit_V", -0.3, 0.0, -0.1)
-    assert limit.coordinates[0].high == 0.0
+
+
+def test_a_limit_that_nobody_stated_is_a_saturation_and_one_that_is_stated_is_no_mismatch():
+    candidate = one("saturation", "readout", "inverse_limit", 0.0, 20.0, 3.0, 6.0)
+    recording = small(17, runs=3)
+    limit = 0.6 * max(float(run.channels["voltage_V"].max()) for run in recording.runs)
+    unstated, stated = [], []
+    for run in recording.runs:
+        clipped = np.minimum(run.channels["voltage_V"], limit)
+        channels = {**run.channels, "voltage_V": clipped}
+        at_limit = {**run.saturated, "voltage_V": clipped >= limit}
+        unstated.append(replace(run, channels=channels, saturated=at_limit))
+        stated.append(replace(unstated[-1], readout=Readout(limit_V=limit)))
+    findings = found(Recording(tuple(unstated)), (*FEW[:3], candidate))
+    assert names(findings) == (("saturation", "readout"),)
+    assert findings.best.settings[0].values[0] == pytest.approx(1.0 / limit, rel=0.05)
+    assert not found(Recording(tuple(stated))).mismatch
 
 
 def test_the_same_seed_gives_the_same_findings():

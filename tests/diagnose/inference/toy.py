@@ -60,7 +60,7 @@ class Sensor:
     pyro: float = 0.0
     friction: float = 0.0
     touch_charge: float = 0.0
-    limit_V: float = np.inf
+    inverse_limit: float = 0.0  # 1/V
     # Other forms of the same physics, which the engine does not have:
     stiffening_power: float = 3.0
     pyro_s: float = 1.0
@@ -91,7 +91,8 @@ class Sensor:
         decay = np.exp(-step / tau)
         change = np.diff(charge, prepend=charge[0]) / total
         voltage = lfilter([-np.expm1(-step / tau) * tau / step], [1.0, -decay], change)
-        voltage = np.clip(voltage, -self.limit_V, self.limit_V)
+        if self.inverse_limit > 0.0:
+            voltage = np.clip(voltage, -1.0 / self.inverse_limit, 1.0 / self.inverse_limit)
         if self.low_pass_s > 0.0:
             share = -np.expm1(-step / self.low_pass_s)
             for _ in range(self.low_pass_order):

@@ -1,0 +1,98 @@
+"""Mechanisms and nuisances fitted together: bounded Levenberg-Marquardt where both are far from linear.
+
+The objective is the square of the residual, with discrepancies integrated out, plus that of the nuisances in units of
+their priors. Variances and discrepancies stay those of the system from which it starts.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diagnose.forward import Candidate
+from diagnose.inference.descent import Place, bounded_step, bounds, descent, settings
+from diagnose.inference.nuisances import Nuisance
+from diagnose.inference.observed_model import ObservedModel
+from diagnose.inference.quadratic import Quadratic
+from diagnose.inference.system import System
+from mesh.types import Floats
+
+ITERATIONS = 30
+LEAST_GAIN = 0.01  # in half squares: less is no progress
+STILL = 0.05  # of a standard error: a step below it is none
+TIGHTEST = 1e6  # damping beyond which no step is tried
+
+
+@dataclass(frozen=True)
+class Joint:
+    """values : (q,) of the mechanisms. nuisances : (p,). cost : half the objective."""
+
+    values: Floats
+    nuisances: Floats
+    cost: float
+
+
+class _Problem:
+    def __init__(self, model: ObservedModel, system: System, candidates: Sequence[Candidate]) -> None:
+        self.model, self.system, self.candidates = model, system, tuple(candidates)
+        self.count = len(bounds(candidates))
+        self.excused = Quadratic(
+            system.weighted(system.excused[:, len(system.values) :]), system.sigma[len(system.values) :]
+        )
+        self.precision = np.concatenate([np.zeros(self.count), 1.0 / model.sigma**2])
+        own = np.array([_limits(nuisance) for nuisance in model.nuisances]).reshape(-1, 2)
+        self.limits = np.concatenate([bounds(candidates), own])
+
+    def residual(self, point: Floats) -> tuple[Floats, float]:
+        """Weighted (l,), and the cost; infinite where the model has no answer."""
+        try:
+            predicted = self.model.vector(point[self.count :], settings(self.candidates, point[: self.count]))
+        except ValueError:
+            return np.zeros(int(self.system.live.sum())), np.inf
+        left = self.system.weighted(self.model.samples.recorded - predicted)
+        return left, 0.5 * self.excused.square(left) + 0.5 * float(self.precision @ point**2)
+
+    def columns(self, point: Floats) -> Floats:
+        """Weighted slopes (l, q + p)."""
+        values, nuisances = point[: self.count], point[self.count :]
+        on = settings(self.candidates, values)
+        problem = descent(self.model, _at(self.system, nuisances), self.candidates, on)
+        predicted = self.model.vector(nuisances, on)
+        slopes = problem.slopes(Place(values, predicted, np.zeros(0), 0.0))
+        return self.system.weighted(np.column_stack([slopes, self.model.tangents(nuisances, on)]))
+
+
+def _at(system: System, nuisances: Floats) -> System:
+    return replace(system, values=nuisances)
+
+
+def _limits(nuisance: Nuisance) -> tuple[float, float]:
+    if nuisance.candidate is None:
+        return -np.inf, np.inf
+    coordinate = nuisance.candidate.coordinates[nuisance.coordinate]
+    return coordinate.low, coordinate.high
+
+
+def fitted_jointly(model: ObservedModel, system: System, candidates: Sequence[Candidate], start: Floats) -> Joint:
+    """From values (q,) and the system's own nuisances."""
+    problem = _Problem(model, system, candidates)
+    point = np.clip(np.concatenate([start, system.values]), *problem.limits.T)
+    left, cost = problem.residual(point)
+    damping = 1e-3
+    for _ in range(ITERATIONS if np.isfinite(cost) else 0):
+        columns = problem.columns(point)
+        cleared = problem.excused.cleared(columns)
+        hessian = columns.T @ cleared + np.diag(problem.precision)
+        gradient = cleared.T @ left - problem.precision * point
+        gain, still = 0.0, False
+        while damping < TIGHTEST and not still:
+            step = bounded_step(hessian, gradient, damping, point, problem.limits)
+            after, lower = problem.residual(point + step)
+            gain, still = cost - lower, float(step @ hessian @ step) < STILL**2
+            if gain > 0.0:
+                point, left, cost, damping = point + step, after, lower, damping / 10.0
+                break
+            damping = max(10.0 * damping, 1e-3)
+        if gain < LEAST_GAIN or still:
+            break
+    return Joint(point[: problem.count], point[problem.count :], cost)
