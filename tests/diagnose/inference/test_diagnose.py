@@ -45,6 +45,7 @@ def quiet(cases, first=0):
     return sum(f.best is not None for f in all_of_them), sum(f.mismatch for f in all_of_them)
 
 
+@pytest.mark.slow
 def test_no_effect_is_named_in_forty_recordings():
     assert quiet(40) == (0, 0)
 
@@ -108,6 +109,7 @@ def test_four_that_act_alike_are_not_named():
     assert "4 models cannot be told apart" in " ".join(findings.reasons)
 
 
+@pytest.mark.slow
 def test_two_mechanisms_are_a_pair():
     findings = found(small(12, Sensor(leak=1.0, friction=0.1), runs=4))
     assert set(names(findings)) == {LEAK, ("friction", "dot")}
