@@ -19,7 +19,7 @@ class ImaginedEngine:
     def __init__(self, engine: Engine, proposal: Proposal) -> None:
         self._engine, self._proposal = engine, proposal
         self.name, self.accuracy, self.candidates = engine.name, engine.accuracy, engine.candidates
-        self.free_nuisances: tuple[Candidate, ...] = getattr(engine, "free_nuisances", ())
+        self.free_nuisances = engine.free_nuisances
 
     def nuisance(self, name: str) -> Candidate | None:
         """As the engine."""

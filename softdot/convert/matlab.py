@@ -30,7 +30,7 @@ def read_mat(
 def _loaded(file: Path) -> Mapping[str, object]:
     try:
         found: Mapping[str, object] = loadmat(file, squeeze_me=True, simplify_cells=True, appendmat=False)
-    except NotImplementedError:
+    except NotImplementedError:  # scipy's word for the HDF5 files of version 7.3
         raise InputError(f"'{file}': is a version 7.3 file; save it again in MATLAB with save(..., '-v7')") from None
     except (OSError, ValueError, TypeError, MatReadError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else error

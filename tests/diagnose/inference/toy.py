@@ -164,9 +164,6 @@ class ToyEngine:
     def imagine(self, run, settings):
         return sensor_of(settings).answers(run.time_s, run.drive_values)
 
-    def solve(self, run, mechanisms, report):
-        raise NotImplementedError
-
 
 def sensor_of(settings):
     """Settings add up."""

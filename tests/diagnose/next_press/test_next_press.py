@@ -90,7 +90,7 @@ def test_an_engine_that_knows_only_recorded_presses_repeats_one(recording):
 def _without_imagine(engine):
     class Narrow:
         name, accuracy, candidates = engine.name, engine.accuracy, engine.candidates
-        predict, nuisance = engine.predict, engine.nuisance
+        predict, nuisance, free_nuisances = engine.predict, engine.nuisance, engine.free_nuisances
 
     return Narrow()
 

@@ -42,6 +42,7 @@ class ToyEngine:
 
     name = "toy"
     candidates = (LEAK, RELAXING)
+    free_nuisances = ()
 
     def __init__(self, recording, full_error=0.0):
         self.recording, self.full_error = recording, full_error
