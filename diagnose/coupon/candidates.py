@@ -24,6 +24,7 @@ COMPRESSIBLE = 0.45  # Poisson's ratio below which a material may be a foam
 FACTOR = log(10.0)  # a modulus that is wrong by more is another material
 LARGEST_LOSS = 0.9
 STEEPEST = 60.0  # exponent of a foam
+MOST_OF_TRAVEL = 0.25  # a tester that takes more than a quarter of the travel is seen to bend
 
 
 def coupon_candidates(recording: Recording, material: Material, point: MaterialPoint) -> Iterator[Candidate]:
@@ -106,7 +107,7 @@ def _property() -> Candidate:
 
 def _compliance(scale: float) -> Candidate:
     """Of the tester; scale : largest travel over largest force, with which nothing is left to the coupon."""
-    coordinate = growing("compliance", scale, scale, (0.05 * scale, 0.5 * scale))
+    coordinate = growing("compliance", scale, MOST_OF_TRAVEL * scale, (0.05 * scale, 0.2 * scale))
 
     def parameters(values: Sequence[float]) -> dict[str, Any]:
         return {"compliance_mm_per_N": scale * sinh(values[0])}

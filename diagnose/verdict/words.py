@@ -65,7 +65,11 @@ def _named(findings: Findings, best: Model) -> Iterator[Sentence]:
 
 
 def _numbers(model: Model) -> str:
-    words = [interval_words(name, each) for its in model.parameters for name, each in its.items()]
+    """Of a law with many constants only what they come to."""
+    words = []
+    for setting, intervals in zip(model.settings, model.parameters, strict=True):
+        derived = setting.candidate.derived(setting.values)
+        words += [interval_words(name, each) for name, each in intervals.items() if not derived or name in derived]
     return f"; {', '.join(words)}" if words else ""
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from diagnose.findings import Interval, Place
-from diagnose.forward import Setting
+from diagnose.forward import Candidate, Coordinate, Setting
 from diagnose.next_press.choose import next_press
 from diagnose.verdict.names import WHAT, WHERE, figure, interval_words, listed, mechanism_words
 from diagnose.verdict.where import where_words
@@ -118,3 +118,16 @@ def test_intervals_and_lists():
     assert interval_words("relaxed_fraction", Interval(0.3, 0.2, 0.4, "1")) == "relaxed fraction 0.3 (0.2 to 0.4)"
     assert listed(["a", "b", "c"], "or") == "a, b or c"
     assert listed(["a"]) == "a"
+
+
+def test_of_a_law_with_many_constants_only_what_they_come_to(recording):
+    law = Candidate(
+        "hyperelastic-stiffening",
+        "medium1",
+        (Coordinate("far", 0.0, 9.0, (1.0,)),),
+        lambda values: {"c10_MPa": 1.0, "c20_MPa": values[0]},
+        lambda values: {"force_ratio": 1.0 + values[0]},
+    )
+    model = fitted(law, 1.5)
+    lines = told(recording, found(recording, (model,), model, ((0,),)))
+    assert lines[1] == "Left out: medium 1 stiffens at large strain; force ratio 2.5 (2 to 3)."
