@@ -1,11 +1,12 @@
 """Files and folders appear whole or not at all: written beside, then renamed."""
 
-import os
 import shutil
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+
+from geometry.whole_file import whole_file
 
 
 @contextmanager
@@ -30,12 +31,5 @@ def whole_folder(folder: Path) -> Iterator[Path]:
 def write_whole_text(path: Path, text: str) -> None:
     """Write a UTF-8 text file that never exists half-written."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(prefix=f".{path.name}-", dir=path.parent)
-    scratch = Path(name)
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8") as file:
-            file.write(text)
-        scratch.chmod(0o644)
-        scratch.replace(path)
-    finally:
-        scratch.unlink(missing_ok=True)
+    with whole_file(path, shared=True) as beside:
+        beside.write_text(text, "utf-8")

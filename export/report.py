@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from export.files import write_whole_text
+from export.page.environment import page_environment
 
 HERE = Path(__file__).parent
 CAPTIONS = {
@@ -61,11 +62,7 @@ def write_report(
     pictures : name -> PNG; captions come from CAPTIONS. view : from viewer_data, None for no 3D view.
     The file appears whole or not at all.
     """
-    import jinja2
-
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(HERE), autoescape=True, trim_blocks=True, lstrip_blocks=True
-    )
+    environment = page_environment(HERE)
     environment.filters["number"] = number
     page = environment.get_template("report.html").render(
         s=summary,

@@ -139,3 +139,11 @@ def config_hash(config: Config) -> str:
     tables = resolved(config).model_dump(mode="json", exclude={"fabrication"})
     text = json.dumps(tables, sort_keys=True, separators=(",", ":"))
     return hashlib.sha256(text.encode()).hexdigest()
+
+
+def input_hash(config: Config) -> str:
+    """SHA-256 of configuration and file of its waveform, where it names one: all that a user states of a press."""
+    waveform = config.press.waveform
+    file = Path(waveform.file) if waveform is not None and waveform.file is not None else None
+    content = file.read_bytes() if file is not None and file.is_file() else b""
+    return hashlib.sha256(config_hash(config).encode() + content).hexdigest()

@@ -2,9 +2,10 @@
 
 import json
 import math
-import os
 from pathlib import Path
 from typing import Any
+
+from geometry.whole_file import whole_file
 
 
 def plain(value: Any) -> Any:
@@ -27,6 +28,5 @@ def json_text(value: Any) -> str:
 
 def write_json(path: Path, value: Any) -> None:
     """Write JSON that never exists half-written."""
-    beside = path.with_name(f".{path.name}.part")
-    beside.write_text(json_text(value), "utf-8")
-    os.replace(beside, path)
+    with whole_file(path) as beside:
+        beside.write_text(json_text(value), "utf-8")

@@ -1,14 +1,14 @@
 """The numbers of one press without its files: what sweeps and studies ask for, kept on disk."""
 
-import hashlib
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 from mesh.errors import MeshingError
+from mesh.fingerprint import data_hash, files_hash
 from softdot import stages
 from softdot.actual import actual
-from softdot.config import Config, config_hash
+from softdot.config import Config, input_hash
 from softdot.numbers import plain
 from softdot.remembered import recall, remember
 from softdot.run_warnings import design_warnings, result_warnings
@@ -42,10 +42,7 @@ def remembered(config: Config) -> dict[str, Any] | None:
 
 def outcome_key(config: Config) -> str:
     """Hash of all that an outcome depends on: configuration, the file of its waveform, the program."""
-    waveform = config.press.waveform
-    file = Path(waveform.file) if waveform is not None and waveform.file is not None else None
-    content = file.read_bytes() if file is not None and file.is_file() else b""
-    return hashlib.sha256(f"{config_hash(config)} {source_hash()} ".encode() + content).hexdigest()
+    return data_hash([input_hash(config), source_hash()])
 
 
 def _name(config: Config) -> str:
@@ -77,7 +74,7 @@ def source_hash() -> str:
     root = Path(__file__).parent.parent
     sources = [path for room in ROOMS for path in root.glob(room) if path.suffix in (".py", ".toml", ".csv")]
     sources += [root / "softdot" / f"{name}.py" for name in FILES]
-    return hashlib.sha256(b"".join(path.read_bytes() for path in sorted(sources))).hexdigest()
+    return files_hash(sources)
 
 
 def _silent(*_args: Any) -> None:

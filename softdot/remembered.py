@@ -3,8 +3,9 @@
 import json
 from typing import Any
 
+from geometry.whole_file import whole_file
 from mesh.cache import folder
-from softdot.numbers import write_json
+from softdot.numbers import json_text
 
 
 def recall(name: str) -> Any | None:
@@ -19,6 +20,7 @@ def remember(name: str, value: Any) -> None:
     """Keep a value; a cache that cannot be written is no cache."""
     try:
         folder().mkdir(parents=True, exist_ok=True)
-        write_json(folder() / f"{name}.json", value)
+        with whole_file(folder() / f"{name}.json", shared=True) as beside:
+            beside.write_text(json_text(value), "utf-8")
     except OSError:
         return

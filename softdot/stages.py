@@ -1,6 +1,5 @@
 """The rooms as the pipeline calls them. Heavy libraries are imported here, inside the functions."""
 
-import hashlib
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -9,7 +8,7 @@ from typing import Any
 from geometry.dot_shape import DotShape, resolve_dot
 from geometry.part import Part
 from mesh.types import Floats, TetMesh
-from softdot.config import Config, config_hash
+from softdot.config import Config, input_hash
 from solve.physics import Physics
 from solve.result import PressResult, Step
 
@@ -95,12 +94,11 @@ def press(
 
 
 def press_key(config: Config, physics: Physics, tet_mesh: TetMesh) -> str:
-    """Hash of all that a press depends on: configuration, physics, mesh and version."""
+    """Hash of all that a press depends on: configuration, the file of its waveform, physics, mesh and version."""
+    from mesh.fingerprint import data_hash, mesh_hash
     from softdot.version import installed_version
 
-    text = f"{installed_version()} {config_hash(config)} {physics}"
-    arrays = (tet_mesh.points_mm, tet_mesh.tets, tet_mesh.region)
-    return hashlib.sha256(text.encode() + b"".join(array.tobytes() for array in arrays)).hexdigest()
+    return data_hash([installed_version(), input_hash(config), str(physics), mesh_hash(tet_mesh)])
 
 
 def readout_voltage(config: Config, physics: Physics, result: PressResult) -> tuple[Floats, Floats] | None:

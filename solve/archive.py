@@ -4,39 +4,25 @@ import json
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from pathlib import Path
-from tempfile import NamedTemporaryFile
 from typing import Any
-from zipfile import BadZipFile
 
 import numpy as np
 
+from mesh.arrays_file import read_arrays, write_arrays
 from mesh.types import Floats
 
 
 def write_archive(path: Path, content: Any) -> None:
-    """Write beside, then rename. TypeError for what is neither dataclass, list, tuple, array, number, text nor None."""
+    """Write the file whole. TypeError for what is neither dataclass, list, tuple, array, number, text nor None."""
     arrays: list[Floats] = []
     tree = _encoded(content, arrays)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    beside = None
-    try:
-        with NamedTemporaryFile(dir=path.parent, suffix=".part", delete=False) as file:
-            beside = Path(file.name)
-            named: dict[str, Any] = {f"a{n}": array for n, array in enumerate(arrays)}
-            np.savez(file, tree=np.array(json.dumps(tree)), **named)
-        beside.replace(path)
-    finally:
-        if beside is not None:
-            beside.unlink(missing_ok=True)
+    named = {f"a{n}": array for n, array in enumerate(arrays)}
+    write_arrays(path, {"tree": np.array(json.dumps(tree)), **named})
 
 
 def read_archive(path: Path, types: Mapping[str, type]) -> Any:
     """What was written, None when there is no file or it is damaged; types : dataclasses by name."""
-    try:
-        with np.load(path, allow_pickle=False) as data:
-            return _decoded(json.loads(str(data["tree"])), data, types)
-    except (OSError, ValueError, KeyError, TypeError, EOFError, BadZipFile):
-        return None
+    return read_arrays(path, lambda data: _decoded(json.loads(str(data["tree"])), data, types))
 
 
 def _encoded(value: Any, arrays: list[Floats]) -> Any:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnose.forward import Candidate
-from diagnose.inference.descent import Place, bounded_step, bounds, descent, settings
+from diagnose.inference.descent import TIGHTEST, Place, bounded_step, bounds, descent, settings
 from diagnose.inference.nuisances import Nuisance
 from diagnose.inference.observed_model import ObservedModel
 from diagnose.inference.quadratic import Quadratic
@@ -20,7 +20,6 @@ from mesh.types import Floats
 ITERATIONS = 30
 LEAST_GAIN = 0.01  # in half squares: less is no progress
 STILL = 0.05  # of a standard error: a step below it is none
-TIGHTEST = 1e6  # damping beyond which no step is tried
 
 
 @dataclass(frozen=True)

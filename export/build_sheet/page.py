@@ -11,6 +11,7 @@ from export.build_sheet.contents import RESIN_G_CM3, Contents, spoken
 from export.build_sheet.steps import steps
 from export.cut_files.layers import STYLES
 from export.files import write_whole_text
+from export.page.environment import page_environment
 from export.report import number
 
 HERE = Path(__file__).parent
@@ -21,11 +22,7 @@ def write_page(contents: Contents, heading: Mapping[str, Any], pictures: Path, p
 
     The file appears whole or not at all.
     """
-    import jinja2
-
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(HERE), autoescape=True, trim_blocks=True, lstrip_blocks=True
-    )
+    environment = page_environment(HERE)
     environment.filters["number"] = number
     environment.filters["spoken"] = spoken
     page = environment.get_template("page.html").render(

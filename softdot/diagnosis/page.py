@@ -15,6 +15,7 @@ from diagnose.verdict.names import component_words, mechanism_words, quantity_wo
 from diagnose.verdict.resimulation import Resimulated
 from diagnose.verdict.words import Sentence
 from export.files import write_whole_text
+from export.page.environment import page_environment
 from export.report import number
 from softdot.version import installed_version
 
@@ -42,11 +43,7 @@ def write_evidence(
     folder: Path,
 ) -> None:
     """folder/plots/*.png and folder/report.html. summary : content of verdict.json in plain data."""
-    import jinja2
-
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(HERE), autoescape=True, trim_blocks=True, lstrip_blocks=True
-    )
+    environment = page_environment(HERE)
     environment.filters |= {
         "number": lambda value: number(value, 3), "where": component_words, "unit": unit_words,
         "percent": lambda value: number(value if value is None else 100.0 * value, 2),

@@ -1,12 +1,12 @@
 """Force and voltage at the deepest step, their derivatives, and their values at the ends of a shift."""
 
-import hashlib
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from mesh.fingerprint import data_hash, files_hash
 from mesh.types import TetMesh
 from softdot import stages
 from softdot.actual import actual
@@ -19,6 +19,8 @@ from solve.result import PressResult
 
 LOAD_STEPS = 3
 """Enough for the march; what is asked for is the deepest step alone."""
+SOURCES = "differentiate.py", "kit/responses.py", "kit/factors.py"
+"""Any change of their code makes other responses, beside what an outcome depends on."""
 
 
 class StoppedShortError(RuntimeError):
@@ -72,10 +74,8 @@ def value(config: Config, tet_mesh: TetMesh) -> Response:
 
 def remembered(config: Config, what: str, make: Callable[[], Any]) -> Any:
     """Plain numbers kept on disk under the hash of a configuration, of the program and of what was asked."""
-    own = hashlib.sha256((what + outcome_key(config)).encode())
-    for name in ("differentiate.py", "kit/responses.py", "kit/factors.py"):
-        own.update((Path(__file__).parents[1] / name).read_bytes())
-    name = f"response-{own.hexdigest()}"
+    source = files_hash(Path(__file__).parents[1] / name for name in SOURCES)
+    name = f"response-{data_hash([what, outcome_key(config), source])}"
     known = recall(name)
     if known is None:
         known = make()

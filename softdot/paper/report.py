@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from export.files import write_whole_text
+from export.page.environment import page_environment
 from export.report import number
 from softdot.paper.collected import claims_table, inconsistencies_table, numbers_table
 from softdot.paper.section import Block, Figure, Heading, Section, Table
@@ -17,11 +18,7 @@ HERE = Path(__file__).parent
 
 def write_report(sections: Sequence[Section], path: Path) -> None:
     """Write the page with every section, figures within it. The file appears whole or not at all."""
-    import jinja2
-
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(HERE), autoescape=True, trim_blocks=True, lstrip_blocks=True
-    )
+    environment = page_environment(HERE)
     environment.filters["cell"] = cell
     page = environment.get_template("report.html").render(
         version=installed_version(),

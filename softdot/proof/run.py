@@ -1,6 +1,5 @@
 """A proof from its plan to its table."""
 
-import hashlib
 import os
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
@@ -12,6 +11,7 @@ from diagnose.prove.score import Score
 from diagnose.prove.trial import Terms
 from diagnose.prove.world.cases import Case, plan
 from geometry.errors import InputError
+from mesh.fingerprint import data_hash, files_hash
 from softdot.numbers import plain, write_json
 from softdot.progress import Progress, Silent
 from softdot.proof import store
@@ -132,5 +132,4 @@ def program_hash() -> str:
     files = (path for room in rooms for path in root.glob(f"{room}/**/*"))
     sources = [path for path in files if path.suffix in (".py", ".toml", ".csv")]
     recordings = os.environ.get("SOFTDOT_RECORDINGS", "")
-    content = b"".join(path.read_bytes() for path in sorted(sources))
-    return hashlib.sha256(content + recordings.encode()).hexdigest()
+    return data_hash([files_hash(sources), recordings])

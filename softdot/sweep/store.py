@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from geometry.errors import InputError
+from geometry.whole_file import whole_file
 from softdot.config import Config, config_hash
 from softdot.numbers import write_json
 from softdot.outcome import outcome_key
@@ -89,7 +90,6 @@ def finish(place: Path, rows: list[dict[str, Any]], text: str | None, summary: M
     if text is None:
         (place / SPACE_COPY).unlink(missing_ok=True)
     else:
-        beside = place / f".{SPACE_COPY}.part"
-        beside.write_text(text, "utf-8")
-        beside.replace(place / SPACE_COPY)
+        with whole_file(place / SPACE_COPY) as beside:
+            beside.write_text(text, "utf-8")
     write_json(place / SWEEP.summary, summary)

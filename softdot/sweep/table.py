@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from geometry.errors import InputError
+from geometry.whole_file import whole_file
 from softdot.numbers import plain
 from softdot.sweep.point import Record
 
@@ -49,9 +50,8 @@ def write_table(path: Path, rows: list[dict[str, Any]]) -> None:
 
     names = list(dict.fromkeys(name for one in rows for name in one))
     columns = {name: _column([one.get(name) for one in rows]) for name in names}
-    beside = path.with_name(f".{path.name}.part")
-    parquet.write_table(pa.table(columns), beside)
-    beside.replace(path)
+    with whole_file(path) as beside:
+        parquet.write_table(pa.table(columns), beside)
 
 
 def _column(values: list[Any]) -> "pa.Array":

@@ -1,0 +1,1 @@
+"""What the HTML pages share: frame, style and the filling of templates."""

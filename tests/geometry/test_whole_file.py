@@ -1,0 +1,39 @@
+"""Files that appear whole or not at all."""
+
+import pytest
+
+from geometry.whole_file import whole_file
+
+
+def test_the_file_is_there_when_the_block_has_ended(tmp_path):
+    path = tmp_path / "a.txt"
+    path.write_text("old")
+    with whole_file(path) as beside:
+        beside.write_text("new")
+        assert path.read_text() == "old"
+    assert [(entry.name, entry.read_text()) for entry in tmp_path.iterdir()] == [("a.txt", "new")]
+
+
+def stop_halfway(path, error):
+    with whole_file(path) as beside:
+        beside.write_text("ne")
+        raise error
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt, OSError])
+def test_after_an_interruption_the_old_file_is_all_there_is(tmp_path, error):
+    path = tmp_path / "a.txt"
+    path.write_text("old")
+    with pytest.raises(error):
+        stop_halfway(path, error)
+    assert [(entry.name, entry.read_text()) for entry in tmp_path.iterdir()] == [("a.txt", "old")]
+
+
+def test_of_two_who_write_at_once_the_last_to_end_wins_whole(tmp_path):
+    path = tmp_path / "a.txt"
+    with whole_file(path, shared=True) as first:
+        first.write_text("first")
+        with whole_file(path, shared=True) as second:
+            second.write_text("second")
+        assert path.read_text() == "second"
+    assert [(entry.name, entry.read_text()) for entry in tmp_path.iterdir()] == [("a.txt", "first")]

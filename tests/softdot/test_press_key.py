@@ -1,0 +1,37 @@
+"""A press that was stopped goes on only where all that it depends on is as it was."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from softdot.config import Config, config_from
+from softdot.stages import press_key
+from solve.physics import Physics
+from tests.softdot.stand_ins import one_tetrahedron
+
+SLOW, FAST = "time_s,fraction\n0,0\n2,1\n", "time_s,fraction\n0,0\n1,1\n"
+
+
+def configured(wave: str) -> Config:
+    layers = {"medium1": {"thickness_mm": 0.5}, "film": {"thickness_um": 28.0}, "medium2": {"thickness_mm": 2.0}}
+    return config_from({"segment": layers, "press": {"waveform": {"shape": "file", "file": wave}}})
+
+
+def test_a_waveform_that_was_edited_is_another_press(tmp_path):
+    wave = tmp_path / "wave.csv"
+    config = configured(str(wave))
+    wave.write_text(SLOW)
+    key = press_key(config, Physics(), one_tetrahedron())
+    assert press_key(config, Physics(), one_tetrahedron()) == key
+    wave.write_text(FAST)
+    assert press_key(config, Physics(), one_tetrahedron()) != key
+
+
+TOP = {"contact": np.array([[0, 1, 2, 3, 4, 5]])}
+
+
+@pytest.mark.parametrize("change", [{"facets": TOP}, {"thickness_mm": 2.0}, {"twin": np.zeros(10, int)}])
+def test_other_contact_facets_thickness_or_twins_are_another_press(change):
+    config, same = configured("none.csv"), one_tetrahedron()
+    assert press_key(config, Physics(), replace(same, **change)) != press_key(config, Physics(), same)
