@@ -109,8 +109,12 @@ def _add_diagnose(commands: Any) -> None:
         + EXIT_STATUS,
     )
     diagnose.add_argument("recording", metavar="RECORDING", help="a folder with rig.toml and CSV files")
-    diagnose.add_argument(
+    last_word = diagnose.add_mutually_exclusive_group()
+    last_word.add_argument(
         "--all-presses", action="store_true", help="press every run again by the full model, however long it takes"
+    )
+    last_word.add_argument(
+        "--fast-model-only", action="store_true", help="press no run again by the full model: for many recordings"
     )
     diagnose.add_argument(
         "--without", action="append", default=[], metavar="MECHANISM", help="leave a mechanism out of the candidates"

@@ -30,7 +30,7 @@ def _for(best: Judged) -> str:
     share = 100.0 * (1.0 - min(best.left, 1.0))
     return (
         f"Best is {named(best.fit)}: it explains {share:.0f} % of what the baseline leaves unexplained and predicts "
-        f"presses that it was not fitted to better by {best.gain.mean:.3g} nats each, {best.gain.lower:.3g} at least."
+        f"presses that it was not fitted to better by {best.gain.mean:,.0f} nats each, {best.gain.lower:,.0f} at least."
     )
 
 
@@ -41,14 +41,7 @@ def _alternatives(choice: Choice) -> tuple[str, ...]:
 
 def warnings_of(model: ObservedModel, baseline: System, choice: Choice | None) -> tuple[str, ...]:
     """What makes the findings less sure than they look."""
-    said = []
-    for nuisance, value in zip(model.nuisances, baseline.values, strict=True):
-        if abs(value) > FAR * nuisance.sigma:
-            of = "all runs" if nuisance.run is None else f"run '{model.runs[nuisance.run].label}'"
-            said.append(
-                f"The baseline fits best with {nuisance.name} = {value:.3g} in {of}, "
-                f"{abs(value) / nuisance.sigma:.1f} times the stated deviation."
-            )
+    said = _strained(model, baseline)
     folds = len(np.unique(model.samples.fold))
     if len(model.samples.presses) < 2:
         held = "its phases were held out instead" if folds > 1 else "nothing could be held out"
@@ -56,6 +49,25 @@ def warnings_of(model: ObservedModel, baseline: System, choice: Choice | None) -
     if choice is not None and len(choice.models) > 1:
         said += _second_opinion(choice)
     return tuple(said)
+
+
+def _strained(model: ObservedModel, baseline: System) -> list[str]:
+    """What floats farther than rig.toml says, a sentence for each name."""
+    far: dict[str, list[tuple[float, float, str]]] = {}
+    for nuisance, value in zip(model.nuisances, baseline.values, strict=True):
+        deviations = abs(value) / nuisance.sigma
+        if deviations > FAR:
+            of = "all runs" if nuisance.run is None else f"run '{model.runs[nuisance.run].label}'"
+            far.setdefault(nuisance.name, []).append((deviations, value, of))
+    said = []
+    for name, each in far.items():
+        deviations, value, of = max(each)
+        others = f", and less far in {len(each) - 1} more" if len(each) > 1 else ""
+        said.append(
+            f"The baseline fits best with {name} = {value:.3g} in {of}, {deviations:.1f} times the stated "
+            f"deviation{others}: it stands in for what is missing."
+        )
+    return said
 
 
 def _second_opinion(choice: Choice) -> list[str]:

@@ -17,6 +17,8 @@ from diagnose.prove.world.cases import Case, concealed, rival_family
 from diagnose.prove.world.effects import EFFECTS, fits
 from diagnose.prove.world.size import Judge
 
+FAST = "--fast-model-only"
+"""What the full model presses again comes after the name and changes no score."""
 Commit = Callable[[str, str], None]
 """Publishes name of the recording and digest, before the diagnosis begins."""
 
@@ -35,7 +37,7 @@ def tried(case: Case, terms: Terms, commit: Commit) -> dict[str, Any]:
     sealed = seal(truth.plain())
     digest = sealed.digest
     commit(case.name, digest)
-    options = ("--without", case.without) if case.without else ()
+    options = (FAST, "--without", case.without) if case.without else (FAST,)
     heard = diagnosed(files(case.bench, runs), terms.cache, terms.limit_s, options)
     if not verified(sealed.truth, sealed.salt, digest):
         raise RuntimeError(f"{case.name}: the truth is not what was committed")

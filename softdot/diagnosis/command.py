@@ -11,13 +11,14 @@ from softdot.command_output import GOOD, NOT_CONVERGED, complain, only_the_summa
 def command(chosen: Namespace) -> int:
     """Diagnose chosen.recording into chosen.output; 0, or 3 when a press did not converge. InputError."""
     from mesh.errors import MeshingError
-    from softdot.diagnosis.run import Options, run_diagnosis
+    from softdot.diagnosis.run import FULL_MODEL_S, Options, run_diagnosis
     from softdot.progress import progress_on_terminal
     from solve.newton import NoEquilibriumError
 
     if chosen.seed is not None and chosen.seed < 0:
         raise InputError(f"--seed = {chosen.seed}: must be at least 0")
-    options = Options(chosen.all_presses, chosen.seed, tuple(chosen.without))
+    limit_s = None if chosen.all_presses else 0.0 if chosen.fast_model_only else FULL_MODEL_S
+    options = Options(limit_s, chosen.seed, tuple(chosen.without))
     try:
         with only_the_summary_on_stdout(), progress_on_terminal() as progress:
             summary = run_diagnosis(Path(chosen.recording), Path(chosen.output), options, progress)

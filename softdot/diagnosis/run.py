@@ -36,12 +36,12 @@ FULL_MODEL_S = 240.0  # for presses by the full model, of the ten minutes that a
 
 @dataclass(frozen=True)
 class Options:
-    """all_presses : every run by the full model, however long. seed : of everything random; None: that of rig.toml.
+    """full_model_s : for runs by the full model; None: for every run, however long. 0 : for none.
 
-    without : mechanisms that are no candidates.
+    seed : of everything random; None: that of rig.toml. without : mechanisms that are no candidates.
     """
 
-    all_presses: bool = False
+    full_model_s: float | None = FULL_MODEL_S
     seed: int | None = None
     without: tuple[str, ...] = ()
 
@@ -97,7 +97,7 @@ def _fill(rig: Rig, options: Options, progress: Progress, folder: Path) -> dict[
     progress.stage("compare")
     findings = diagnose(rig.recording, engine, seed, report)
     progress.stage("press again")
-    proof = _proof(rig, engine, findings, report, None if options.all_presses else FULL_MODEL_S)
+    proof = _proof(rig, engine, findings, report, options.full_model_s)
     progress.stage("plan")
     following = next_press(rig.recording, engine, findings)
     progress.stage("write")
@@ -125,6 +125,9 @@ def narrowed(engine: Engine, without: Sequence[str]) -> Engine:
 def _proof(rig: Rig, engine: Engine, findings: Findings, report: Report, limit_s: float | None) -> Proof:
     """As many runs by the full model as the time allows."""
     proof = Proof()
+    if limit_s == 0.0:
+        proof.warnings += ["The full model pressed nothing again, as asked."] if findings.best is not None else []
+        return proof
     try:
         for run in resimulate(rig.recording, engine, findings, report, limit_s):
             proof.runs.append(run)  # those before an error are kept

@@ -173,6 +173,13 @@ def test_a_limit_of_time_is_told_and_can_be_lifted(tmp_path, diagnosed, finding,
     assert len(diagnosed(folder, "--all-presses")[1]["fit"]["resimulated"]) == 2
 
 
+def test_the_full_model_can_be_left_out_and_that_is_told(tmp_path, diagnosed, finding):
+    finding(**NAMED)
+    _, verdict, _ = diagnosed(write_toy(tmp_path / "rig"), "--fast-model-only")
+    assert verdict["fit"]["resimulated"] == []
+    assert verdict["warnings"][-1] == "The full model pressed nothing again, as asked."
+
+
 @pytest.mark.parametrize(
     "error", [NoEquilibriumError("it found no equilibrium", np.zeros(1), 0), MeshingError("it found no equilibrium")]
 )
