@@ -50,10 +50,11 @@ def shares(found: Screening, explained: dict[str, tuple[Floats, Bools]]) -> dict
 def places(
     samples: Samples, checked: Checked, found: Screening, explained: dict[str, tuple[Floats, Bools]]
 ) -> tuple[Place, ...]:
-    """Cells with an excess that stands out, the largest first."""
+    """Cells with an excess that stands out, the largest first; the strongest one where only sums of cells do."""
     cells = samples.bank.cells
     share = shares_of_excess(checked.energies, samples.bank.degrees)
     kept = [int(n) for n in np.argsort(-share) if checked.p_values[n] <= RATES.level]
+    kept = kept or [int(np.argmax(checked.scores[: len(cells)]))]
     owner = _owners(samples, found, explained) if explained else {}
     return tuple(
         Place(

@@ -69,6 +69,13 @@ def test_leakage_is_found_located_and_shown():
     assert "charge-leakage of the readout" in findings.reasons[0]
 
 
+def test_where_only_a_sum_of_cells_stands_out_the_strongest_cell_is_the_place():
+    findings = found(small(7, Sensor(leak=0.004), runs=4))
+    assert findings.mismatch
+    (place,) = findings.places
+    assert place.p_value > findings.detection.level
+
+
 def test_held_out_presses_come_down_to_the_noise():
     findings = leaking()
     assert set(findings.train.presses).isdisjoint(findings.held_out.presses)
