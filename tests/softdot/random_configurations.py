@@ -5,15 +5,17 @@ from hypothesis import strategies as st
 from tests.softdot.random_mechanisms import mechanisms
 from tests.softdot.random_numbers import between, log_between
 
+FLAT, ROUND = ("layer", "block"), ("cylinder", "dome")
+"""Shapes of the effector. Round ones need 3D and pytetwild: a press takes a minute, and with a moving mass many."""
 LAYERS = ("effector", "medium1", "film", "medium2")
 POISSON = between(0.2, 0.4995)
 
 
 @st.composite
-def valid_configurations(draw):
+def valid_configurations(draw, shapes=FLAT):
     """Tables of a configuration with every size, constant and mechanism drawn at random."""
-    section = draw(st.sampled_from(("plane-strain", "plane-strain", "plane-strain", "solid")))
-    segment = draw(segments(section))
+    section = draw(st.sampled_from(("solid",) if shapes == ROUND else ("plane-strain",) * 3 + ("solid",)))
+    segment = draw(segments(section, shapes))
     layers = [name for name in LAYERS if name in segment]
     materials = {f"own-{name}": draw(films() if name == "film" else media()) for name in layers}
     for name in layers:
@@ -21,20 +23,22 @@ def valid_configurations(draw):
     dot = draw(dots(segment))
     softest_MPa = min(modulus_MPa(m) for name, m in materials.items() if name != "own-film")
     press = draw(presses(segment, softest_MPa))
+    mesher = "pytetwild" if shapes == ROUND else "layered"
+    chosen = [one for one in draw(mechanisms(segment, dot)) if shapes != ROUND or one["name"] != "inertia"]
     tables = {
         "segment": segment,
         "materials": materials,
         "dot": dot,
         "press": press,
-        "mesh": {"element_size_mm": 1.6, "contact_element_size_mm": 0.8, "mesher": "layered"},
-        "mechanisms": draw(mechanisms(segment, dot)),
+        "mesh": {"element_size_mm": 1.6, "contact_element_size_mm": 0.8, "mesher": mesher},
+        "mechanisms": chosen,
     }
     readout = draw(st.none() | readouts())
     return tables if readout is None else {**tables, "readout": readout}
 
 
 @st.composite
-def segments(draw, section):
+def segments(draw, section, shapes):
     table = {
         "section": section,
         "length_mm": draw(between(1.5, 4.0)),
@@ -45,7 +49,8 @@ def segments(draw, section):
         "film": {"thickness_um": draw(log_between(10.0, 200.0)), "draw_angle_deg": draw(between(-90.0, 90.0))},
         "medium2": {"thickness_mm": draw(between(0.5, 3.0))},
     }
-    effector = draw(st.none() | effectors(section, table))
+    some = effectors(section, table, shapes)
+    effector = draw(some if shapes == ROUND else st.none() | some)
     if effector is not None:
         table["effector"] = effector
     present = [name for name in LAYERS if name in table]
@@ -64,13 +69,15 @@ def segments(draw, section):
 
 
 @st.composite
-def effectors(draw, section, segment):
-    shape = draw(st.sampled_from(("layer", "block")))  # the mesh of a cylinder is too fine, a dome needs pytetwild
+def effectors(draw, section, segment, shapes):
+    shape = draw(st.sampled_from(shapes))
     table = {"shape": shape, "height_mm": draw(between(0.3, 1.5))}
     if shape == "block":
         table["length_mm"] = draw(between(0.4, 1.0)) * segment["length_mm"]
         if section == "solid":
             table["width_mm"] = draw(between(0.4, 1.0)) * segment["width_mm"]
+    if shape in ROUND:
+        table["diameter_mm"] = draw(between(0.5, 0.9)) * min(segment["length_mm"], segment["width_mm"])
     return table
 
 

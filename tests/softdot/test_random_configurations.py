@@ -16,12 +16,12 @@ from softdot import stages
 from softdot.config import load_config
 from softdot.run import run_config
 from tests.softdot.press_checks import solved, wrong
-from tests.softdot.random_configurations import valid_configurations
+from tests.softdot.random_configurations import ROUND, valid_configurations
 from tests.softdot.random_mistakes import invalid_configurations
 from tests.softdot.toml_text import toml_text
 
 BLOCK = 10
-LIMIT_S = 60.0  # of processor time
+LIMIT_S, LIMIT_OF_ROUND_S = 60.0, 300.0  # of processor time
 LONGEST_SENTENCE = 600  # one that lists all known names
 STOPPED = re.compile(r"step \d+ of \d+.*(stopped at|has no equilibrium).*: ")
 
@@ -65,12 +65,12 @@ def drawn(strategy, start, check, count=BLOCK):
     run()
 
 
-def outcome(tables):
+def outcome(tables, limit_s=LIMIT_S):
     """'converged', 'stopped' or 'refused'. AssertionError for anything wrong."""
     note(toml_text(tables))
     refusal = ""
     try:
-        with no_longer_than(LIMIT_S):
+        with no_longer_than(limit_s):
             pressed = solved(tables)
     except InputError as error:
         refusal = str(error)
@@ -147,6 +147,13 @@ def test_two_hundred_random_configurations_converge_to_right_results_or_are_refu
     seen = [one for block in range(1, 21) for one in outcomes(block)]
     assert len(seen) >= 200
     assert seen.count("converged") >= 0.9 * len(seen)  # else the random numbers, or the solver, are bad
+
+
+@pytest.mark.slow
+def test_random_cylinders_and_domes_converge_to_right_results_or_are_refused():
+    seen = []
+    drawn(valid_configurations(ROUND), 1, lambda tables: seen.append(outcome(tables, LIMIT_OF_ROUND_S)), count=6)
+    assert seen.count("converged") >= 4
 
 
 @pytest.mark.slow
