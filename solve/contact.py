@@ -83,6 +83,10 @@ class ContactFacets(Term):
         gap = self._at_quadrature(displacement, move)[0]
         return self._sum(np.einsum("kq,qi,kq->ki", self.area, HATS, gap))
 
+    def mean_gap(self, displacement: Floats, move: Floats) -> Floats:
+        """The same as a mean around each node (c,)."""
+        return self.weighted_gap(displacement, move) / self.nodal_area
+
     def constraints(self) -> tuple[Ints, Floats]:
         """The contact pressures."""
         return self.pressure_dofs, self.nodal_area
@@ -93,7 +97,7 @@ class ContactFacets(Term):
 
     def closed(self, trial: Trial) -> Bools:
         """Nodes in contact: lambda_i - c g_i > 0, shape (c,) bool."""
-        gap = self.weighted_gap(trial.displacement, trial.move) / self.nodal_area
+        gap = self.mean_gap(trial.displacement, trial.move)
         return np.asarray(trial.x[self.pressure_dofs] - ACTIVE_SET_STIFFNESS * gap > 0.0)
 
     def elements(self, trial: Trial, history: History) -> Iterator[Block]:

@@ -2,11 +2,12 @@
 
 import numpy as np
 
-from mesh.types import Floats
+from mesh.types import Floats, Ints
+from solve.kinematics import deformation_gradient, smallest_jacobian
 from solve.linear import LinearSolveError
 from solve.newton import LostContactError, NoEquilibriumError
 from solve.solid import InvertedElementError
-from solve.system import System
+from solve.system import State, System
 
 FINER = (
     "try more load steps (press.load_steps), a finer mesh (mesh.contact_element_size_mm), or a smaller depth or force"
@@ -15,12 +16,34 @@ HELD = (
     "something moves freely, or the dot presses on what the case holds: change segment.held_layers, stiffen the bonds, "
     "or move the dot"
 )
+TIE = 1e-6  # of det F: round-off must not choose between two elements
 OVER = "keep the dot over the segment (dot.offset_mm, press.path_xy_mm), or prescribe the depth (press.indentation_mm)"
 
 
-def explained(system: System, failure: NoEquilibriumError) -> str:
-    """The reason, the part and the place (undeformed, mm), and advice."""
+def explained(system: System, failure: NoEquilibriumError, last: State) -> str:
+    """The reason, the part and the place (undeformed, mm), and advice; last : the last converged state.
+
+    Of an inversion the part and the place are those of the element that was nearest to it there: which one a diverging
+    iteration inverts first is round-off.
+    """
+    cause = failure.__cause__
+    if isinstance(cause, InvertedElementError):
+        inverted = _nearest_to_inversion(system, last) or cause
+        return f"{inverted}{_at(system, system.points[inverted.nodes])}; {_advice(system, failure)}"
     return f"{failure}{_place(system, failure)}; {_advice(system, failure)}"
+
+
+def _nearest_to_inversion(system: System, state: State) -> InvertedElementError | None:
+    """The element of smallest det F, of equal ones the first; None in a state that squeezes none."""
+    displacement = system.displacement(state.x)
+    least: list[tuple[float, str, Ints]] = []
+    for name, region in ({solid.name: solid for solid in system.solids} | {"film": system.film}).items():
+        smallest = smallest_jacobian(deformation_gradient(region.gradient, displacement[region.tets]))
+        first = int(np.argmax(smallest <= (1.0 + TIE) * smallest.min()))
+        least.append((float(smallest[first]), name, region.tets[first]))
+    bound = (1.0 + TIE) * min(volume for volume, _, _ in least)
+    volume, name, nodes = next(one for one in least if one[0] <= bound)
+    return InvertedElementError(name, nodes) if volume < 1.0 - TIE else None
 
 
 def _advice(system: System, failure: NoEquilibriumError) -> str:
@@ -35,8 +58,6 @@ def _place(system: System, failure: NoEquilibriumError) -> str:
     if isinstance(failure, LostContactError):
         contact = system.contact
         return f" over {_part(system, int(contact.facets[0, 0]))}{_at(system, system.points[contact.facets.ravel()])}"
-    if isinstance(failure.__cause__, InvertedElementError):  # which says in which part
-        return _at(system, system.points[failure.__cause__.nodes])
     if failure.worst is None:
         return ""
     return f", worst in {_part(system, failure.worst)}{_at(system, system.points[[failure.worst]])}"

@@ -9,12 +9,14 @@ from mesh.types import Floats
 from solve.failure import explained
 from solve.linear import LinearSolver
 from solve.newton import NoEquilibriumError, equilibrate
+from solve.opening import opens_too_coarsely, with_work
 from solve.schedule import Target, load_between
 from solve.system import Load, State, System
 
 MAX_APPROACHES = 20
 ROUND_OFF = 1e-9  # of the segment's length
-SMALLEST_SUBSTEP = 1.0 / 64.0
+SMALLEST_SUBSTEP = 1.0 / 64.0  # for convergence; one that time asks to be smaller than that, by as much again
+SMALLEST_IN_TIME = 1.0 / 128.0  # for the error of the time integration
 TIME_TOLERANCE = 1e-3  # of the largest stress, or of the dot's path, in one sub-step
 
 OnState = Callable[[State, State], None]  # a converged state and the one before it
@@ -36,8 +38,9 @@ def rest_state(system: System, linear: LinearSolver, start: Target) -> State:
 def march(
     system: System, linear: LinearSolver, past: list[State], target: Target, kink: bool, on_state: OnState
 ) -> str | None:
-    """Walk to the target, halving the step where Newton fails or time is cut too coarsely.
+    """Walk to the target, halving the step where Newton fails, time is cut too coarsely, or contact opens in midst.
 
+    Where time is cut too coarsely in the smallest step too, that step is damped, and the state keeps its error.
     past : the last converged states, extended in place. kink : the rate of loading jumped at the last of them.
     Returns why it stopped short, or None.
     """
@@ -50,16 +53,24 @@ def march(
             # across a kink the past says nothing of the future
             state = _equilibrate(system, linear, past[-1:] if first else past, load, time)
             error = system.time_error(past[-1], state, after_kink=first)
+            if error > TIME_TOLERANCE and size > SMALLEST_IN_TIME:
+                size *= max(0.5, 0.9 * np.sqrt(TIME_TOLERANCE / error)) if error < 4.0 * TIME_TOLERANCE else 0.5
+                continue
+            if size > SMALLEST_SUBSTEP and opens_too_coarsely(system, past[-1], state):
+                size *= 0.5
+                continue
+            if error > TIME_TOLERANCE:
+                damped = equilibrate(system, linear, state.x, load, time, past[-1], damped=True)
+                state = replace(damped, iterations=state.iterations + damped.iterations, time_error=error)
         except NoEquilibriumError as failure:
+            smallest = SMALLEST_SUBSTEP if size >= SMALLEST_SUBSTEP else SMALLEST_SUBSTEP**2
             size *= 0.5
-            if size < SMALLEST_SUBSTEP:
-                return f"sub-steps fell below 1/{1 / SMALLEST_SUBSTEP:.0f} of it: {explained(system, failure)}"
-            continue
-        if error > TIME_TOLERANCE and size > SMALLEST_SUBSTEP:
-            size *= max(0.5, 0.9 * np.sqrt(TIME_TOLERANCE / error)) if error < 4.0 * TIME_TOLERANCE else 0.5
+            if size < smallest:
+                return f"sub-steps fell below 1/{1 / smallest:.0f} of it: {explained(system, failure, past[-1])}"
             continue
         done, first = done + size, False
         size *= 2.0 if error < 0.2 * TIME_TOLERANCE else 1.0
+        state = with_work(system, past[-1], state)
         on_state(state, past[-1])
         past.append(state)
         del past[:-3]
@@ -118,4 +129,4 @@ def _touching(system: System, last: State, load: Load, time: float, nodes: int) 
 def _gap(system: System, x: Floats, load: Load, time: float, last: State) -> Floats:
     """Mean gap (c,) at the nodes of the contact."""
     trial = system.trial(x, load, time, last)
-    return system.contact.weighted_gap(trial.displacement, trial.move) / system.contact.nodal_area
+    return system.contact.mean_gap(trial.displacement, trial.move)

@@ -30,14 +30,16 @@ class LostContactError(NoEquilibriumError):
     """A force pushes the dot, and nothing pushes back."""
 
 
-def equilibrate(system: System, linear: LinearSolver, x: Floats, load: Load, time: float, previous: State) -> State:
-    """Find the equilibrium near x (count,) at a time after a converged state.
+def equilibrate(
+    system: System, linear: LinearSolver, x: Floats, load: Load, time: float, previous: State, damped: bool = False
+) -> State:
+    """Find the equilibrium near x (count,) at a time after a converged state; damped : see Trial.
 
     NoEquilibriumError when there is none within the iterations.
     """
     x, lost, correction = x.copy(), False, np.inf
     try:
-        now = _evaluate(system, x, load, time, previous)
+        now = _evaluate(system, x, load, time, previous, damped)
         lost = system.force_driven and not now.touching
         status: Bools | None = None
         for iteration in range(MAX_ITERATIONS):
@@ -48,7 +50,7 @@ def equilibrate(system: System, linear: LinearSolver, x: Floats, load: Load, tim
             exact = correction <= ROUND_OFF and relative <= ROUNDED_TOLERANCE
             if (relative <= TOLERANCE or exact) and settled:
                 converged = State(time, load, x, previous.histories, scale, iteration, relative)
-                trial = system.trial(x, load, time, previous)
+                trial = system.trial(x, load, time, previous, damped)
                 return replace(converged, histories=system.advance(trial, previous.histories))
             if not np.isfinite(norm):
                 break
@@ -57,7 +59,7 @@ def equilibrate(system: System, linear: LinearSolver, x: Floats, load: Load, tim
             tolerance = min(max(0.01 * relative, 0.01 * TOLERANCE / max(relative, 1e-300)), LOOSEST)
             step = linear.solve(now.tangent, -now.residual, tolerance, similar)
             status, before = now.status, x
-            x, now = _advance(system, x, step, load, time, previous)
+            x, now = _advance(system, x, step, load, time, previous, damped)
             correction = _relative_change(system, before, x)
             lost = lost or (system.force_driven and not now.touching)
     except LinearSolveError as error:
@@ -83,18 +85,18 @@ def _worst_node(system: System, now: Evaluation) -> int:
     return int(np.argmax(force.max(axis=1)))
 
 
-def _evaluate(system: System, x: Floats, load: Load, time: float, previous: State) -> Evaluation:
-    return system.evaluate(system.trial(x, load, time, previous), previous.histories)
+def _evaluate(system: System, x: Floats, load: Load, time: float, previous: State, damped: bool) -> Evaluation:
+    return system.evaluate(system.trial(x, load, time, previous, damped), previous.histories)
 
 
 def _advance(
-    system: System, x: Floats, step: Floats, load: Load, time: float, previous: State
+    system: System, x: Floats, step: Floats, load: Load, time: float, previous: State, damped: bool
 ) -> tuple[Floats, Evaluation]:
     """The full Newton step, halved while it turns an element inside out."""
     for _ in range(MAX_HALVINGS):
         trial = x + step
         try:
-            return trial, _evaluate(system, trial, load, time, previous)
+            return trial, _evaluate(system, trial, load, time, previous, damped)
         except InvertedElementError as error:
             failure = error
             step = 0.5 * step

@@ -63,8 +63,9 @@ def _follow(
         try:
             past = [rest_state(system, linear, targets[0])]
         except NoEquilibriumError as error:
-            recorder.start(system.at_rest(targets[0].load))
-            reason = explained(system, error)
+            flat = system.at_rest(targets[0].load)
+            recorder.start(flat)
+            reason = explained(system, error, flat)
             return f"step 0 of {len(targets) - 1}, the prestretched film at rest, has no equilibrium: {reason}"
         recorder.start(past[0])
     count, done = len(targets) - 1, len(recorder.steps)

@@ -8,6 +8,7 @@ import numpy as np
 
 from geometry.parameters import Segment
 from mesh.types import Floats, TetMesh
+from solve.doubts import doubts
 from solve.electrodes import scale_of_section
 from solve.fields import fields
 from solve.inertia import prescribed_acceleration
@@ -18,8 +19,6 @@ from solve.physics import Physics
 from solve.result import PressResult, Record, Step, Trace
 from solve.rig import Rig
 from solve.system import State, System
-
-PENETRATION_LIMIT = 0.05  # of the depth; contact holds in weighted means, so a coarse surface can overlap at points
 
 
 class Recorder:
@@ -78,6 +77,7 @@ class Recorder:
                 contact_area_m2=float(system.contact.nodal_area[pressed].sum()) * units.length**2,
                 newton_iterations=state.iterations,
                 relative_residual=state.relative_residual,
+                time_error=state.time_error,
             )
         )
 
@@ -131,7 +131,7 @@ class Recorder:
             max_relative_residual=max(step.relative_residual for step in steps),
             max_principal_film_strain=max(_largest_principal(step.fields.film_strain) for step in steps),
             max_principal_film_stress_Pa=max(_largest_principal(step.fields.film_stress_Pa) for step in steps),
-            warnings=_penetration(max(steps, key=lambda step: step.indentation_m)),
+            warnings=doubts(steps, self.records),
         )
 
     @property
@@ -195,17 +195,6 @@ class Recorder:
         touched = trace.contact_area_m2 / max(float(trace.contact_area_m2.max()), 1e-300)
         deposited = 1e-12 * self.physics.contact_charge_pC * touched[:, None] * area / area.sum()
         return np.asarray(pyroelectric + deposited)
-
-
-def _penetration(step: Step) -> tuple[str, ...]:
-    """A warning where the dot overlaps the surface by more than a share of the depth."""
-    overlap = -float(step.fields.gap_m.min())
-    if overlap <= PENETRATION_LIMIT * max(step.indentation_m, 0.0) or overlap <= 1e-9:
-        return ()
-    return (
-        f"the dot overlaps the surface by up to {1e3 * overlap:.2g} mm at single points: "
-        "a smaller mesh.contact_element_size_mm is needed",
-    )
 
 
 def _largest_principal(voigt: Floats) -> float:

@@ -57,7 +57,7 @@ class Step:
 
 @dataclass(frozen=True)
 class Record:
-    """One converged state without its fields; names as in Trace."""
+    """One converged state without its fields; names as in Trace, time_error as in State."""
 
     time_s: float
     indentation_m: float
@@ -68,6 +68,7 @@ class Record:
     contact_area_m2: float
     newton_iterations: int
     relative_residual: float
+    time_error: float
 
 
 @dataclass(frozen=True)

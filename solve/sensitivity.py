@@ -67,7 +67,7 @@ class Twin:
     def residual(self, x: Floats, base: State) -> Floats:
         """Of the base's unknowns under this parameter and this memory (count,)."""
         assert self.state is not None
-        trial = self.setup.system.trial(x, self.load(base.load), base.time, self.state)
+        trial = self.setup.system.trial(x, self.load(base.load), base.time, self.state, base.damped)
         return self.setup.system.evaluate(trial, self.state.histories).residual
 
     def history(self) -> Slopes:
@@ -84,7 +84,7 @@ class Twin:
         """Take the step to the unknowns x."""
         assert self.state is not None
         load = self.load(base.load)
-        trial = self.setup.system.trial(x, load, base.time, self.state)
+        trial = self.setup.system.trial(x, load, base.time, self.state, base.damped)
         new = State(base.time, load, x, self.setup.system.advance(trial, self.state.histories))
         self.setup.recorder.record(new, self.state)
         self.state = new
@@ -147,7 +147,7 @@ def _tow(
     base: Setup, linear: LinearSolver, twins: Mapping[str, tuple[Twin, Twin]], state: State, before: State
 ) -> None:
     """Bring all twins to first order to a converged state of the base."""
-    trial = base.system.trial(state.x, state.load, state.time, before)
+    trial = base.system.trial(state.x, state.load, state.time, before, state.damped)
     tangent = base.system.evaluate(trial, before.histories).tangent
     for number, (below, above) in enumerate(twins.values()):
         change = above.residual(state.x, state) - below.residual(state.x, state)

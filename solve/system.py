@@ -58,7 +58,11 @@ class Load:
 
 @dataclass(frozen=True)
 class State:
-    """A converged state: time in s, load, unknowns, memory of each term, largest norm of contact forces so far."""
+    """A converged state: time in s, load, unknowns, memory of each term, largest norm of contact forces so far.
+
+    time_error : of the step to it, where it exceeds the tolerance (see System.time_error), else zero.
+    work, most_work : what the dot has put into the segment, now and at most so far (see solve.opening).
+    """
 
     time: float
     load: Load
@@ -67,6 +71,14 @@ class State:
     force_scale: float = 0.0
     iterations: int = 0
     relative_residual: float = 0.0
+    time_error: float = 0.0
+    work: float = 0.0
+    most_work: float = 0.0
+
+    @property
+    def damped(self) -> bool:
+        """Whether the step to it was (see Trial)."""
+        return self.time_error > 0.0
 
 
 @dataclass(frozen=True)
@@ -135,7 +147,7 @@ class System:
         approach = load.drive if self.unknowns.approach < 0 else x[self.unknowns.approach]
         return np.array([*load.lateral, -approach])
 
-    def trial(self, x: Floats, load: Load, time: float, previous: State) -> Trial:
+    def trial(self, x: Floats, load: Load, time: float, previous: State, damped: bool = False) -> Trial:
         """Everything that the terms see of a trial state after a converged one."""
         return Trial(
             x=x,
@@ -147,6 +159,7 @@ class System:
             previous_drive=previous.load.drive,
             time=time,
             time_step=time - previous.time,
+            damped=damped,
         )
 
     def dot_force(self, trial: Trial) -> Floats:

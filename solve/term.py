@@ -18,6 +18,7 @@ class Trial:
 
     x : (count,) unknowns; displacement : (n, 3) nodes; move : (3,) displacement of the dot; drive : what the rig
     prescribes of the approach (displacement of the sensor, or force). previous_... : the same, last converged.
+    damped : the step is too coarse for the motion of a mass, whose oscillation is to fade.
     """
 
     x: Floats
@@ -29,6 +30,7 @@ class Trial:
     previous_drive: float
     time: float
     time_step: float
+    damped: bool = False
 
 
 class Block(NamedTuple):

@@ -60,7 +60,7 @@ def test_a_slab_crushed_flat_turns_an_element_inside_out_and_keeps_the_steps_bef
     softens_in_compression = Linear(youngs_modulus_MPa=1.0, poisson_ratio=0.3)
     press = Press(indentation_mm=1.2, load_steps=4)
     result, said = stopped(stack, dot("ridge", stack), press, softens_in_compression)
-    assert re.search("an element of medium[12] is turned inside out at x = ", said)  # round-off decides which
+    assert "an element of medium1 is turned inside out at x = " in said
     assert "try more load steps (press.load_steps), a finer mesh" in said
     assert [round(1e3 * step.indentation_m, 6) for step in result.steps[:3]] == [0.0, 0.3, 0.6]
     assert all(np.isfinite(step.fields.cauchy_stress_Pa).all() for step in result.steps)

@@ -1,5 +1,6 @@
 """The march from target to target: how it cuts its steps, and what it says when it cannot go on."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -10,8 +11,10 @@ from solve.march import _extrapolate, march, rest_state
 from solve.newton import NoEquilibriumError
 from solve.physics import Physics
 from solve.schedule import Target
+from solve.setup import set_up
 from solve.system import Load, State
-from tests.verification.slices import setup_of, waved
+from tests.solve.segments import ridge
+from tests.verification.slices import STACK, mesh_of, setup_of, waved
 
 
 @pytest.fixture(scope="module")
@@ -97,3 +100,24 @@ def test_the_guess_for_the_next_state_is_exact_for_a_parabola():
 
     guess = _extrapolate([state(t) for t in (0.0, 0.3, 0.4)], 0.9)
     np.testing.assert_allclose(guess, state(0.9).x, rtol=1e-13)
+
+
+def test_a_dot_that_is_lifted_clear_takes_no_work_that_the_segment_never_held(elastic):
+    """Down in eight steps across a gap of 0.07 mm, up in three, the last of which leaves the surface."""
+    rest = ridge(STACK)
+    away = replace(rest, origin_mm=rest.origin_mm + np.array([0.0, 0.0, 0.07]))
+    setup = set_up(elastic.model, away, mesh_of(False), ())
+    solver = LinearSolver(setup.system.factorisation_shift)
+    shares = [*np.linspace(0.0, 1.0, 9), 0.8, 0.6, 0.0]
+    targets = [Target(float(n), Load((0.0, 0.0), share * setup.full_drive), True) for n, share in enumerate(shares)]
+    past = [rest_state(setup.system, solver, targets[0])]
+    setup.recorder.start(past[0])
+    for target in targets[1:]:
+        assert march(setup.system, solver, past, target, True, setup.recorder.record) is None
+    solver.close()
+    trace = setup.recorder.trace(elastic.model.press)
+    force, path = trace.contact_force_N[:, 2], trace.dot_path_m
+    done = np.cumsum(0.5 * (force[1:] + force[:-1]) * np.diff(path))
+    assert len(path) < 20
+    assert done.max() > 0.0
+    assert done.min() > -0.05 * done.max()

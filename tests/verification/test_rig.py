@@ -91,3 +91,24 @@ def test_a_tapped_mass_follows_the_linear_oscillator(stiffness, monkeypatch):
     coarse, middle, fine = (path[:: len(path) // 12] for path, _ in paths)
     order = np.log2(np.abs(coarse - middle).max() / np.abs(middle - fine).max())
     assert order == pytest.approx(2.0, abs=0.2)
+
+
+def put_in(result):
+    """Work of the dot on the segment up to every converged state (t,), by straight lines."""
+    contact, path = result.trace.contact_force_N[:, 2], result.trace.dot_path_m
+    return np.append(0.0, np.cumsum(0.5 * (contact[1:] + contact[:-1]) * np.diff(path)))
+
+
+@pytest.mark.parametrize("steps", [1, 2, 3])
+def test_a_light_dot_that_strikes_too_fast_for_the_steps_gains_nothing_from_the_blow_and_the_result_says_so(steps):
+    """0.03 g under a force, across a gap: it would rebound within a thousandth of a load step."""
+    away = plate(BLOCK)
+    away = replace(away, origin_mm=away.origin_mm + np.array([0.0, 0.0, 0.09]))
+    press = Press(force_N=0.005, load_steps=steps)
+    result = press_segment(BLOCK, foams(), away, press, mesh_of(True), None, Physics(moving_mass_g=0.03))
+    work = put_in(result)
+    assert result.converged
+    assert work.min() > -0.05 * work.max()
+    (said,) = result.warnings
+    assert "the error of the time integration in one sub-step is" in said
+    assert "more load steps (press.load_steps)" in said
