@@ -13,6 +13,7 @@ from geometry.errors import InputError
 from mesh.types import Floats
 
 FEWEST = 8  # samples
+MOST_RATES = 4  # that are listed
 LARGEST = {"V": (100.0, "millivolts"), "N": (1000.0, "millinewtons")}
 UNITS = ("V", "N", "mm")
 UNEVEN = 0.05  # share of jumps above which sampling is called uneven
@@ -79,7 +80,8 @@ def suspicions(run: Run, path: Path, travel_mm: float) -> list[str]:
     if jumps:
         said.append(f"{place(path, jumps[0], 'time_s')}: time jumps, {len(jumps)} times in all")
     if len(rates) > 1:
-        said.append(f"recording '{path}': the rate changes, {', '.join(f'{rate:.4g}' for rate in rates)} Hz")
+        shown = ", ".join(f"{rate:.4g}" for rate in rates[:MOST_RATES]) + (", ..." if len(rates) > MOST_RATES else "")
+        said.append(f"recording '{path}': the rate changes, {shown} Hz")
     return said + _of_channels(run, path, largest)
 
 

@@ -76,10 +76,16 @@ class Judge:
         return gain_over_noise(one.log_scores - rival.log_scores, apart, RATES.level, len(self.found.candidates))
 
     def best(self, models: Sequence[Judged]) -> Judged:
-        """The fewest coordinates of those whose loss to the best score is within one standard error."""
+        """The fewest coordinates of those whose loss to the best score is within one standard error.
+
+        Where it leaves too much, or has a value that no part can have, one without such a fault takes its place that
+        does not predict worse for sure.
+        """
         top = max(models, key=lambda one: one.forecast.log_scores.sum())
         near = [one for one in models if one is top or self._within_one_error(top, one)]
-        return min(near, key=lambda one: (_count(one.fit), -one.forecast.log_scores.sum()))
+        best = _simplest(near)
+        sound = [one for one in models if not _doubtful(one) and self.gained(top.forecast, one.forecast).lower <= 0.0]
+        return _simplest(sound) if _doubtful(best) and sound else best
 
     def _within_one_error(self, top: Judged, other: Judged) -> bool:
         loss = self.gained(top.forecast, other.forecast)
@@ -101,7 +107,8 @@ def choose(
         models.append(judge.judged(fit))
     best = judge.best(models)
     if best.p_left <= RATES.level:
-        second = [judge.judged(fit) for fit in pairs(model, found, best.fit, report)]
+        same = [one.fit.candidates[0] for one in models if one is not best and _same(judge, best, one)]
+        second = [judge.judged(fit) for fit in pairs(model, found, best.fit, same, report)]
         better = [one for one in second if judge.gained(one.forecast, best.forecast).lower > 0.0]
         models += better
         best = judge.best([best, *better])
@@ -136,13 +143,27 @@ def _told_apart(judge: Judge, models: Sequence[Judged]) -> Bools:
     return np.asarray(np.array(better) | np.array(better).T)
 
 
+def _same(judge: Judge, one: Judged, other: Judged) -> bool:
+    """Whether two models are alike: both together are no more than one."""
+    return alike(separations(judge.model.samples, [one.fit, other.fit])) > 1
+
+
+def _simplest(models: Sequence[Judged]) -> Judged:
+    """The fewest coordinates, of equals the one that predicts best."""
+    return min(models, key=lambda one: (_count(one.fit), -one.forecast.log_scores.sum()))
+
+
+def _doubtful(one: Judged) -> bool:
+    return one.p_left <= RATES.level or bool(_implausible(one.fit))
+
+
 def _implausible(fit: Fitted) -> tuple[str, ...]:
     """Coordinates at an end of what a real part can have; 0 is always plausible."""
     found = []
     for coordinate, value in zip(coordinates(fit.candidates), fit.values, strict=True):
         close = 1e-6 * (coordinate.high - coordinate.low)
         for end in (coordinate.low, coordinate.high):
-            if end != 0.0 and abs(value - end) <= close:
+            if end != 0.0 and abs(value - end) <= close and not coordinate.levels_off:
                 found.append(f"{coordinate.name} = {value:.3g}")
     return tuple(found)
 

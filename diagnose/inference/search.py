@@ -1,5 +1,6 @@
 """From the baseline to a short list of fitted models: screening, single mechanisms, pairs where one is not enough."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -82,9 +83,12 @@ def singles(model: ObservedModel, found: Screening, report: Report) -> list[Fitt
     return fits
 
 
-def pairs(model: ObservedModel, found: Screening, first: Fitted, report: Report) -> list[Fitted]:
-    """The first mechanism with each second one that shows in what it leaves."""
-    others = [c for c in found.candidates if c.name not in [own.name for own in first.candidates]]
+def pairs(
+    model: ObservedModel, found: Screening, first: Fitted, same: Sequence[Candidate], report: Report
+) -> list[Fitted]:
+    """The first mechanism with each second one that shows in what it leaves; same : those that act as the first."""
+    names = [one.name for one in (*first.candidates, *same)]
+    others = [c for c in found.candidates if c.name not in names]
     each = [sensitivity(model, first.system.values, other, first.settings) for other in others]
     beside = replace(
         first.system,

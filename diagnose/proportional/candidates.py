@@ -41,7 +41,10 @@ def proportional_candidates(recording: Recording, scene: Scene) -> Iterator[Cand
 
 
 def _with_time_constant(scene: Scene, one: Candidate) -> Candidate:
-    """What a leak shows is its time constant; its resistance is that for the assumed capacitance."""
+    """What a leak shows is its time constant; its resistance is that for the assumed capacitance.
+
+    A charge that is gone within a sample leaves the derivative of the force, whose size the free sensitivity takes.
+    """
     if one.mechanism != "charge-leakage":
         return one
 
@@ -49,7 +52,8 @@ def _with_time_constant(scene: Scene, one: Candidate) -> Candidate:
         resistance_MOhm = float(one.parameters(values)["resistance_MOhm"])
         return {"time_constant_s": 1e-6 * scene.capacitance_pF * resistance_MOhm}
 
-    return replace(one, derived=derived, units={**one.units, "time_constant_s": "s"})
+    coordinates = tuple(replace(coordinate, levels_off=True) for coordinate in one.coordinates)
+    return replace(one, coordinates=coordinates, derived=derived, units={**one.units, "time_constant_s": "s"})
 
 
 def _stiffening() -> Candidate:

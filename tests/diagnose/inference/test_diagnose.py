@@ -116,6 +116,13 @@ def test_four_that_act_alike_are_not_named():
     assert "4 models cannot be told apart" in " ".join(findings.reasons)
 
 
+def test_of_two_equals_the_one_that_a_real_part_can_have_is_named():
+    capped = one("pyroelectric-drift", "film", "leak", 0.0, 0.98, 0.5)
+    richer = replace(CANDIDATES[0], coordinates=(*CANDIDATES[0].coordinates, *CANDIDATES[13].coordinates))
+    findings = found(small(5, Sensor(leak=1.0), runs=3), (capped, richer))
+    assert names(findings) == (LEAK,)
+
+
 @pytest.mark.slow
 def test_two_mechanisms_are_a_pair():
     findings = found(small(12, Sensor(leak=1.0, friction=0.1), runs=4))
@@ -140,7 +147,7 @@ def test_one_press_is_judged_by_its_phases_and_says_so():
 
 
 def test_a_value_no_part_can_have_is_not_named():
-    narrow = one(*LEAK, "leak", 0.0, 0.9, 0.5)
+    narrow = one(*LEAK, "leak", 0.0, 0.98, 0.5)
     findings = found(small(5, Sensor(leak=1.0), runs=3), (narrow,))
     assert findings.best is None
     assert "implausible" in " ".join(findings.reasons)
