@@ -14,7 +14,7 @@ from diagnose.segment.answer import FilmPlate
 from diagnose.segment.interpolation import effect_of
 from diagnose.segment.nuisances import offset_reach_mm
 from diagnose.segment.presses import Job
-from diagnose.segment.reach import deepest
+from diagnose.segment.reach import deepest, rung
 from diagnose.segment.reduction import Reduction
 from diagnose.segment.rig_mesh import finer_mesh, mesh_of, rig_mesh
 from diagnose.segment.tables import Depths, change, changed
@@ -44,7 +44,9 @@ Sizes = tuple[TetMesh, MeshOptions]
 
 
 class Prepared:
-    """depth_mm : of the table. pressed_mm : the deepest that the runs go. relaxing : the layers whose memory is known.
+    """depth_mm : of the table. pressed_mm : the deepest that the runs go, or a little more.
+
+    relaxing : the layers whose memory is known.
 
     raw : the baseline's table on the diagnosis mesh; fit : the same, corrected by one press on a finer mesh.
     accuracy : see diagnose.forward.Engine.
@@ -53,7 +55,7 @@ class Prepared:
     def __init__(self, model: Model, options: MeshOptions, recording: Recording, report: Report) -> None:
         self.model = model
         self.tet_mesh, self.options = rig_mesh(model, options)
-        self.pressed_mm = deepest(model, self.tet_mesh, recording)
+        self.pressed_mm = rung(deepest(model, self.tet_mesh, recording))
         self.depth_mm = MARGIN * self.pressed_mm + offset_reach_mm(recording)
         self.depths, self._finer_depths = Depths(SHARES), Depths(FINER_SHARES)
         self._changes: dict[Name, Floats] = {}

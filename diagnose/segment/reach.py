@@ -15,6 +15,7 @@ from solve.parameters import Press
 from solve.physics import Physics
 from solve.press import press_segment
 
+RUNG = 1.05
 DEEPER = 1.3  # of the depth that a force reaches: softer candidates go deeper, and layers creep
 
 
@@ -23,8 +24,13 @@ def deepest(model: Model, tet_mesh: TetMesh, recording: Recording) -> float:
     depths = [float(run.drive_values.max()) for run in recording.runs if run.drive == "displacement_mm"]
     forces = [float(run.drive_values.max()) for run in recording.runs if run.drive == "force_N"]
     if forces:
-        depths.append(DEEPER * reached(model, tet_mesh, max(forces)))
+        depths.append(DEEPER * reached(model, tet_mesh, rung(max(forces))))
     return max(depths)
+
+
+def rung(value: float) -> float:
+    """The next number up of a ladder in steps of RUNG, so that noise of the drive does not ask for presses anew."""
+    return float(RUNG ** np.ceil(np.log(value) / np.log(RUNG)))
 
 
 def reached(model: Model, tet_mesh: TetMesh, force_N: float) -> float:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from diagnose.forward import Setting
+from diagnose.segment import store
 from geometry.errors import InputError
 from solve.mechanisms import Mechanism
 from solve.parameters import Readout
@@ -43,6 +44,16 @@ def test_the_baseline_is_that_of_the_3d_model(rig):
     told, true = rig.predict(0, []), rig.solve(0, [], silent)
     for name in told:
         assert peak(told[name] - true[name]) < KINKS * peak(true[name])
+
+
+def test_a_second_recording_of_a_rig_needs_no_press_for_another_noise_of_its_drive(monkeypatch):
+    asked, recall = [], store.recall
+    monkeypatch.setattr(store, "recall", lambda name: asked.append(name) or recall(name))
+    for noise in (1e-4, -1e-4):
+        of = engine(run(values=press(np.arange(0.0, 1.6, 0.002)) + noise))
+        of.prepare([candidate(of, "adhesive-compliance", "bond-film-medium2")], silent)
+    half = len(asked) // 2
+    assert asked[:half] == asked[half:]
 
 
 CASES = [
