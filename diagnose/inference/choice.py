@@ -133,8 +133,17 @@ def _decided(judge: Judge, models: tuple[Judged, ...], p_mismatch: float) -> Cho
         p_mismatch, best.p_left, best.gain.lower, box.lower, _implausible(best.fit), alike(apart)
     )
     decision = decide(evidence, replace(RATES, margin=worth_of_form(samples, metric)))
-    probabilities = held_out_probabilities(scores, judge.rng)[: len(models)]
+    probabilities = _probabilities(models, scores, judge.rng)
     return Choice(models, probabilities, grouped(apart), box.mean, decision, judge.base)
+
+
+def _probabilities(models: Sequence[Judged], scores: Floats, rng: np.random.Generator) -> Floats:
+    """(m,) of held-out scores (m + 2, presses), baseline and none of these last; beside a sound best, faulty ones: 0."""
+    sound = not _doubtful(models[0])
+    counted = [n for n, one in enumerate(models) if not (sound and _doubtful(one))]
+    found = np.zeros(len(models))
+    found[counted] = held_out_probabilities(scores[[*counted, -2, -1]], rng)[: len(counted)]
+    return found
 
 
 def _told_apart(judge: Judge, models: Sequence[Judged]) -> Bools:
