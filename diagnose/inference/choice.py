@@ -138,7 +138,7 @@ def _decided(judge: Judge, models: tuple[Judged, ...], p_mismatch: float) -> Cho
 
 
 def _probabilities(models: Sequence[Judged], scores: Floats, rng: np.random.Generator) -> Floats:
-    """(m,) of held-out scores (m + 2, presses), baseline and none of these last; beside a sound best, faulty ones: 0."""
+    """(m,) from scores (m + 2, presses), baseline and none of these last; beside a sound best, faulty ones have 0."""
     sound = not _doubtful(models[0])
     counted = [n for n, one in enumerate(models) if not (sound and _doubtful(one))]
     found = np.zeros(len(models))
