@@ -18,6 +18,7 @@ from diagnose.prove.world.stack import Answer, Stack, State
 POINTS = {"ridge": 24, "cap": 10}
 GRADING = 1.3
 STEPS_PER_DEPTH = 18
+STILL = 1e-4  # of the deepest press
 LONGEST, GROWTH, SHORTEST_S = 0.5, 1.5, 0.006
 MECHANICS = ("made", "grid", "laws", "memory", "parts", "stack", "march")
 """Modules on which a solved press depends."""
@@ -59,21 +60,28 @@ def table(made: Made, depth_mm: float) -> Table:
     return Table(points, course)
 
 
-def through_time(made: Made, time_s: Floats, depth_mm: Floats) -> Course:
-    """Answers (t,) to the path of the dot (t,), at rest and untouched at first."""
+def through_time(made: Made, time_s: Floats, depth_mm: Floats) -> tuple[list[int], Course]:
+    """Samples (m,) of the path (t,) of the dot at which it was solved, and the answers there; at rest at first."""
     marks = steps(time_s, depth_mm)
     kept = _kept(f"time-{_mechanics()}-{made.key()}-{_digest(time_s[marks], depth_mm[marks])}")
     course = kept.read() or kept.write(_pressed(made, depth_mm[marks], np.diff(time_s[marks], prepend=time_s[0] - 1.0)))
-    return _at(time_s[marks], course, time_s)
+    return marks, course
 
 
 def steps(time_s: Floats, depth_mm: Floats) -> list[int]:
-    """Samples at which the equilibrium is solved: where the dot has moved on, and in rest at times that grow."""
+    """Samples at which the equilibrium is solved: where the dot has moved on, and in rest at times that grow.
+
+    Also the last sample at which it still stood: what moves after a rest has not moved before.
+    """
     deepest = float(depth_mm.max())
-    marks, wait = [0], SHORTEST_S
+    marks, wait, stood = [0], SHORTEST_S, 0
     for n in range(1, len(time_s)):
-        moved = abs(max(depth_mm[n], 0.0) - max(depth_mm[marks[-1]], 0.0)) > deepest / STEPS_PER_DEPTH
+        way = abs(max(depth_mm[n], 0.0) - max(depth_mm[marks[-1]], 0.0))
+        stood = n if way <= STILL * deepest else stood
+        moved = way > deepest / STEPS_PER_DEPTH
         waited = time_s[n] - time_s[marks[-1]] >= wait
+        if moved and marks[-1] < stood < n:
+            marks.append(stood)
         if moved or waited or n == len(time_s) - 1:
             marks.append(n)
             wait = SHORTEST_S if moved else min(wait * GROWTH, LONGEST)

@@ -7,6 +7,7 @@ The difference to the elastic press is interpolated over the strength by the par
 from dataclasses import replace
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
 from diagnose.prove.world.made import Floats, Layer, Made
 from diagnose.prove.world.march import Course, through_time
@@ -46,20 +47,26 @@ def scaled_memory(made: Made, time: Floats, path: Floats, elastic: Course, nomin
     value = strength(made)
     if value > NODES[-1]:
         raise ValueError(f"a strength of {value:g} is beyond {NODES[-1]:g}")
-    solved = [through_time(with_strength(made, node), time, path) for node in NODES]
-    return Course(
-        _scaled(value, elastic.force_N, nominal.force_N, [one.force_N for one in solved]),
-        _scaled(value, elastic.charge_pC, nominal.charge_pC, [one.charge_pC for one in solved]),
-        elastic.area_mm2,
-    )
+    marks, near = through_time(with_strength(made, NODES[0]), time, path)
+    far = through_time(with_strength(made, NODES[1]), time, path)[1]
+
+    def scaled(name: str) -> Floats:
+        own, base = getattr(elastic, name), getattr(nominal, name)
+        solved = [getattr(course, name) - base[marks] for course in (near, far)]
+        return _scaled(own, base, PchipInterpolator(time[marks], _parabola(value, *solved))(time))
+
+    return Course(np.where(path > 0.0, scaled("force_N"), 0.0), scaled("charge_pC"), elastic.area_mm2)
 
 
-def _scaled(value: float, elastic: Floats, nominal: Floats, solved: list[Floats]) -> Floats:
-    """elastic + ratio (a s + b s^2), which has the solved differences at both nodes."""
-    near, far = NODES
-    first, second = ((one - nominal) / node for one, node in zip(solved, NODES, strict=True))
-    bend = (second - first) / (far - near)
-    difference = value * (first + bend * (value - near))
+def _parabola(value: float, near: Floats, far: Floats) -> Floats:
+    """Difference to the elastic press at a strength: a s + b s^2, which has the solved differences at both nodes."""
+    first, second = near / NODES[0], far / NODES[1]
+    bend = (second - first) / (NODES[1] - NODES[0])
+    return np.asarray(value * (first + bend * (value - NODES[0])))
+
+
+def _scaled(elastic: Floats, nominal: Floats, difference: Floats) -> Floats:
+    """elastic + ratio times the difference: only that is interpolated in time, for the path itself is known."""
     faint = FAINT * float(np.abs(nominal).max())
     ratio = np.where(np.abs(nominal) > faint, elastic / np.where(np.abs(nominal) > faint, nominal, 1.0), 1.0)
     return np.asarray(elastic + ratio * difference)

@@ -7,10 +7,11 @@ import pytest
 
 from diagnose.prove.world import laws
 from diagnose.prove.world.made import Damage, Film, Layer, Made, Spectrum
-from diagnose.prove.world.march import through_time
+from diagnose.prove.world.march import table, through_time
 from diagnose.prove.world.memory import at_rest, branches, relaxation, respond
+from diagnose.prove.world.programme import Run
 from diagnose.prove.world.stack import Stack
-from diagnose.prove.world.strengths import with_strength
+from diagnose.prove.world.strengths import scaled_memory, with_strength
 
 PAPER = Made(
     (
@@ -107,9 +108,25 @@ def test_a_memory_of_no_strength_gives_the_elastic_press_through_time():
     depth = 0.05 * np.sin(np.pi * time).clip(0.0)
     layers, small = list(PAPER.layers), replace(PAPER, fine=0.5)
     layers[0] = replace(layers[0], spectrum=Spectrum(1e-9, 0.4))
-    relaxed = through_time(replace(small, layers=tuple(layers)), time, depth)
-    elastic = through_time(with_strength(replace(small, layers=tuple(layers)), 0.0), time, depth)
+    relaxed = through_time(replace(small, layers=tuple(layers)), time, depth)[1]
+    elastic = through_time(with_strength(replace(small, layers=tuple(layers)), 0.0), time, depth)[1]
     np.testing.assert_allclose(relaxed.force_N, elastic.force_N, atol=1e-6 * elastic.force_N.max())
+
+
+def test_a_medium_that_relaxes_answers_no_earlier_than_the_dot_moves(tmp_path, monkeypatch):
+    monkeypatch.setenv("SOFTDOT_PROOF_CACHE", str(tmp_path))
+    press = Run("one", 0.1, 0.1, 0.4, count=1, lead_s=1.0, pause_s=0.1)
+    time = press.times(250.0)
+    path = press.depth(time)
+    small = replace(PAPER, fine=0.4)
+    made = replace(small, layers=(replace(small.layers[0], spectrum=Spectrum(0.2, 0.4)), *small.layers[1:]))
+    elastic = table(small, 0.11).at(path)
+    force = scaled_memory(made, time, path, elastic, elastic).force_N
+    peak = force.max()
+    assert np.abs(force[path <= 0.0]).max() < 1e-3 * peak
+    held = (time > 1.11) & (time < 1.5)
+    np.testing.assert_array_less(np.diff(force[held]), 1e-4 * peak)  # it only falls, and not by the coming way back
+    assert force[held][-1] > 0.8 * force[held][0]
 
 
 @pytest.mark.slow
