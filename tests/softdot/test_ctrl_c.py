@@ -7,6 +7,8 @@ import time
 
 import pytest
 
+from tests.softdot.interrupts import heard
+
 SLOW_RUN = """
 import sys, time
 from pathlib import Path
@@ -27,8 +29,9 @@ sys.exit(main(["run", "-o", "out"]))
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupted_process_exits_130_and_leaves_nothing(tmp_path, number):
     process = subprocess.Popen(
-        [sys.executable, "-c", SLOW_RUN], cwd=tmp_path, stderr=subprocess.PIPE, text=True, env=_environment()
-    )
+        [sys.executable, "-c", SLOW_RUN], cwd=tmp_path, stderr=subprocess.PIPE, text=True, env=_environment(),
+        preexec_fn=heard,
+    )  # fmt: skip
     while not (tmp_path / "begun").exists():
         assert process.poll() is None, process.stderr.read()
         time.sleep(0.02)

@@ -24,6 +24,7 @@ from softdot.sweep import scheduler as scheduler_module
 from softdot.sweep.cluster import NO_DASHBOARD, local_cluster
 from softdot.sweep.point import TINY
 from softdot.sweep.stream import solve_all
+from tests.softdot.interrupts import heard
 from tests.softdot.sweep_spaces import DEPTHS, depths, space_of
 from tests.softdot.toml_text import toml_text
 
@@ -218,7 +219,7 @@ def test_a_sweep_that_is_stopped_goes_on_with_what_is_missing(number, tmp_path):
     space, out = tmp_path / "space.toml", tmp_path / "out"
     space.write_text(toml_text(space_of(depths(*DEPTHS_MM), workers=1)), "utf-8")
     command = [sys.executable, "-m", "softdot.cli", "sweep", str(space), "-o", str(out)]
-    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True)
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True, preexec_fn=heard)
     while len(list(out.glob("points/*.json"))) < 3:
         assert process.poll() is None, process.stderr.read()
         time.sleep(0.02)
