@@ -24,7 +24,7 @@ def deepest(model: Model, tet_mesh: TetMesh, recording: Recording) -> float:
     depths = [float(run.drive_values.max()) for run in recording.runs if run.drive == "displacement_mm"]
     forces = [float(run.drive_values.max()) for run in recording.runs if run.drive == "force_N"]
     if forces:
-        depths.append(DEEPER * reached(model, tet_mesh, rung(max(forces))))
+        depths.append(DEEPER * reached(model, tet_mesh, max(forces)))
     return max(depths)
 
 
