@@ -5,11 +5,14 @@ from pathlib import Path
 
 import numpy as np
 from scipy.io import loadmat
-from scipy.io.matlab import MatReadError
+from scipy.io.matlab import MatReadError, matfile_version
 
 from geometry.errors import InputError
 from mesh.types import Floats
 from solve.nearest import nearest
+
+HDF5 = 2
+"""Major version of files that MATLAB calls 7.3: an HDF5 library more would save their user one save(..., '-v7')."""
 
 
 def read_mat(
@@ -28,13 +31,16 @@ def read_mat(
 
 
 def _loaded(file: Path) -> Mapping[str, object]:
+    found: Mapping[str, object] = {}
     try:
-        found: Mapping[str, object] = loadmat(file, squeeze_me=True, simplify_cells=True, appendmat=False)
-    except NotImplementedError:  # scipy's word for the HDF5 files of version 7.3
-        raise InputError(f"'{file}': is a version 7.3 file; save it again in MATLAB with save(..., '-v7')") from None
+        version, _ = matfile_version(file, appendmat=False)
+        if version != HDF5:
+            found = loadmat(file, squeeze_me=True, simplify_cells=True, appendmat=False)
     except (OSError, ValueError, TypeError, MatReadError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else error
         raise InputError(f"'{file}': cannot be read as a .mat file ({reason})") from None
+    if version == HDF5:
+        raise InputError(f"'{file}': is a version 7.3 file; save it again in MATLAB with save(..., '-v7')")
     return found
 
 

@@ -79,6 +79,12 @@ def test_matlab(tmp_path):
         read_mat(tmp_path / "a.mat", {"voltage_V": "m"})
 
 
+def test_a_mat_file_of_the_hdf5_kind_is_told_how_to_save_it(tmp_path):
+    (tmp_path / "a.mat").write_bytes(b"MATLAB 7.3 MAT-file".ljust(124) + b"\x00\x02IM" + bytes(384))
+    with pytest.raises(InputError, match=r"a.mat': is a version 7.3 file; save it again in MATLAB with save"):
+        read_mat(tmp_path / "a.mat", {"time_s": "t"})
+
+
 def test_a_mat_file_that_is_none(tmp_path):
     (tmp_path / "a.mat").write_text("time,voltage")
     with pytest.raises(InputError, match=r"a.mat': cannot be read as a .mat file"):
