@@ -2,5 +2,7 @@
 
 import os
 
+from geometry.one_thread import ONE_THREAD
+
 if "PYTEST_XDIST_WORKER" in os.environ:
-    os.environ.update(dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"))
+    os.environ.update(ONE_THREAD)

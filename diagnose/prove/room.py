@@ -11,8 +11,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from geometry.one_thread import ONE_THREAD
+
 KEPT = ("PATH", "LANG", "LC_ALL", "LD_LIBRARY_PATH")
-THREADS = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS", "OPENBLAS_NUM_THREADS")
 LINES = 3
 
 
@@ -61,6 +62,6 @@ def environment(room: Path, cache: Path) -> dict[str, str]:
     program = Path(__file__).resolve().parents[2]
     kept = {name: os.environ[name] for name in KEPT if name in os.environ}
     return {
-        **kept, **dict.fromkeys(THREADS, "1"), "HOME": str(room), "TMPDIR": str(room / "tmp"),
+        **kept, **ONE_THREAD, "HOME": str(room), "TMPDIR": str(room / "tmp"),
         "PYTHONPATH": str(program), "SOFTDOT_CACHE": str(cache), "MPLCONFIGDIR": str(room / "tmp"),
     }

@@ -16,11 +16,11 @@ from diagnose.forward import Report
 from diagnose.segment import store, worker
 from diagnose.segment.presses import Job
 from diagnose.segment.reduction import Reduction
+from geometry.one_thread import ONE_THREAD
 from mesh.types import Floats
 from solve.newton import NoEquilibriumError
 
 WORTH_A_PROCESS = 4  # presses: a process takes seconds to start
-ONE_THREAD = {"OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1"}
 WHAT = "pressing the 3D model"
 
 

@@ -8,10 +8,10 @@ from contextlib import ExitStack, contextmanager
 from multiprocessing import resource_tracker
 from typing import Any
 
+from geometry.one_thread import ONE_THREAD
 from softdot.outcome import outcome, remembered
 from softdot.sweep.point import warm_up_config
 
-THREADS = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS", "OPENBLAS_NUM_THREADS")
 SILENT = 60  # above every level of Python's logging
 DEATHS = 1
 """A point whose worker has died more often than this is given up."""
@@ -67,7 +67,7 @@ async def _end_workers(cluster: Any) -> None:
 def _one_thread_each() -> Iterator[None]:
     """Processes started inside this block calculate on one thread: the workers share the cores, not their threads."""
     before = dict(os.environ)
-    os.environ.update(dict.fromkeys(THREADS, "1"))
+    os.environ.update(ONE_THREAD)
     try:
         yield
     finally:

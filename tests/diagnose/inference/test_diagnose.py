@@ -148,7 +148,7 @@ def test_one_press_is_judged_by_its_phases_and_says_so():
 
 
 def test_a_value_no_part_can_have_is_not_named():
-    narrow = one(*LEAK, "leak", 0.0, 0.98, 0.5)
+    narrow = one(*LEAK, "leak", 0.0, 0.9, 0.5)
     findings = found(small(5, Sensor(leak=1.0), runs=3), (narrow,))
     assert findings.best is None
     assert "implausible" in " ".join(findings.reasons)

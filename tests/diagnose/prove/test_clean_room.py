@@ -11,6 +11,7 @@ import pytest
 from diagnose.prove import room
 from diagnose.prove.guard import allowed_roots
 from diagnose.prove.seal import digest_of, seal, verified
+from geometry.one_thread import ONE_THREAD
 
 ROOT = Path(__file__).resolve().parents[3]
 FOREIGN = ("solve", "mesh", "geometry", "export", "softdot", "diagnose.forward", "diagnose.recording")
@@ -71,7 +72,7 @@ def test_no_variable_gives_a_hint(house, monkeypatch):
     given = room.environment(house / "room", house / "cache")
     assert "charge-leakage" not in given.values()
     assert set(given) <= {
-        *room.KEPT, *room.THREADS, "HOME", "TMPDIR", "PYTHONPATH", "SOFTDOT_CACHE", "MPLCONFIGDIR"
+        *room.KEPT, *ONE_THREAD, "HOME", "TMPDIR", "PYTHONPATH", "SOFTDOT_CACHE", "MPLCONFIGDIR"
     }
 
 
