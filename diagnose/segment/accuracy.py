@@ -1,21 +1,27 @@
-"""How far the table is off once it is corrected by a press on a finer mesh."""
+"""How far the baseline's table is off, which is a smoothed press on a finer mesh."""
 
 import numpy as np
 
+from diagnose.segment.smooth import Smooth
 from mesh.types import Floats
 
 LEAST = 0.003
 """What the table and its interpolation add: see tests/diagnose/segment."""
+SEEN: Floats = np.linspace(0.2, 1.0, 9)
+"""Shares of the depth at which both meshes are compared."""
 
 
-def accuracy(coarse: Floats, fine: Floats, ratio: float) -> dict[str, float]:
-    """One sigma of force, voltage and displacement, each relative to itself at full depth.
+def accuracy(middle: Smooth, fine: Smooth, ratio: float) -> dict[str, float]:
+    """One sigma of force, voltage and displacement, each relative to itself.
 
-    coarse, fine : outputs (n, 2 + e) on both meshes; ratio : finer over coarser element size. Where the error falls
-    with the square of the size, that of the finer mesh is r^2 / (1 - r^2) of the difference (Richardson).
+    middle, fine : presses on two meshes; ratio : finer over coarser element size. Where the error falls with the
+    square of the size, that of the finer mesh is r^2 / (1 - r^2) of the difference (Richardson); beside it stands the
+    standard error of the smoothing.
     """
     left = ratio**2 / (1.0 - ratio**2)
-    off = left * np.abs(fine - coarse).max(axis=0) / np.maximum(np.abs(fine).max(axis=0), 1e-300)
-    steepness = np.log(fine[-1, 0] / fine[0, 0])  # over the depths seen: a force error is a smaller error of depth
+    at_middle, at_fine = middle.at(SEEN), fine.at(SEEN)
+    size = np.maximum(np.abs(at_fine).max(axis=0), 1e-300)
+    off = np.hypot(left * np.abs(at_fine - at_middle).max(axis=0) / size, fine.error)
+    steepness = np.log(at_fine[-1, 0] / at_fine[0, 0])  # over the depths seen: a force error is a smaller one of depth
     errors = {"force_N": off[0], "voltage_V": off[2:].max(), "displacement_mm": off[0] / max(steepness, 1.0)}
     return {name: max(LEAST, float(error)) for name, error in errors.items()}

@@ -17,26 +17,27 @@ from diagnose.segment.presses import Job
 from diagnose.segment.reach import deepest, rung
 from diagnose.segment.reduction import Reduction
 from diagnose.segment.rig_mesh import finer_mesh, mesh_of, rig_mesh
-from diagnose.segment.tables import Depths, change, changed
+from diagnose.segment.smooth import SHARES as PRESSED
+from diagnose.segment.smooth import smooth
+from diagnose.segment.tables import TRUSTED, Depths, change, replaced
 from diagnose.segment.workers import run_all
 from mesh.parameters import MeshOptions
 from mesh.types import Floats, TetMesh
 from solve.model import Model
 from solve.newton import NoEquilibriumError
 from solve.physics import Physics
-from solve.reduced.fit import Fit
+from solve.reduced.fit import CELLS, Fit
 from solve.switch_on import with_mechanisms
 
 SHARES = 0.1, 0.25, 0.45, 0.7, 1.0
 """Of the depth, at which changes are seen: they are smooth over it."""
-FINER_SHARES = 0.25, 0.6, 1.0
 MARGIN = 1.02  # of the depth of the table over the deepest press
 FINEST, CONTACT = 0.4, 0.7
 """Element sizes of the finest mesh, and of that for what moves the contact, in terms of the diagnosis mesh."""
-MOST_NODES = 25_000  # 2 s of one core for each Newton step
+MOST_NODES = 20_000  # 2 s of one core for each Newton step
 MOVE_THE_CONTACT = frozenset({"dot-offset", "property-error", "dimension-reduction"})
-TRUSTED = 0.5, 2.0  # by which a finer mesh may change a charge
 ROUND_OFF = 1e-12  # of a weight
+TOUCH = 1e-6  # of the depth: there is no logarithm of 0
 SLIPS = 3  # steps between two of them under friction
 Name = tuple[object, ...]
 Place = tuple[float, float]
@@ -48,7 +49,7 @@ class Prepared:
 
     relaxing : the layers whose memory is known.
 
-    raw : the baseline's table on the diagnosis mesh; fit : the same, corrected by one press on a finer mesh.
+    raw : the baseline's table on the diagnosis mesh; fit : the same with the smoothed answer of a finer mesh.
     accuracy : see diagnose.forward.Engine.
     """
 
@@ -57,15 +58,16 @@ class Prepared:
         self.tet_mesh, self.options = rig_mesh(model, options)
         self.pressed_mm = rung(deepest(model, self.tet_mesh, recording))
         self.depth_mm = MARGIN * self.pressed_mm + offset_reach_mm(recording)
-        self.depths, self._finer_depths = Depths(SHARES), Depths(FINER_SHARES)
+        self.depths = Depths(SHARES)
         self._changes: dict[Name, Floats] = {}
         finest = finer_mesh(model, self.options, FINEST, MOST_NODES)
-        pressed, reduction = replace(self.job(model), shares=FINER_SHARES), self._reduction(model.physics.viscosity)
-        jobs = [replace(pressed, tet_mesh=finest[0]), pressed]
-        fine, coarse = _all_there(run_all(jobs, report, [reduction]))
-        self._correction, self._finest = change(coarse, fine), fine[-1]
+        meshes = finest, self._contact_mesh
+        jobs = [replace(self.job(model, mesh), shares=PRESSED) for mesh in meshes]
+        reduction = self._reduction(model.physics.viscosity)
+        self._fine, middle = (smooth(PRESSED, found) for found in _all_there(run_all(jobs, report, [reduction])))
         self._take(reduction)
-        self.accuracy = accuracy(coarse, fine, finest[1].element_size_mm / self.options.element_size_mm)
+        fine_mm, middle_mm = (options.element_size_mm for _, options in meshes)
+        self.accuracy = accuracy(middle, self._fine, fine_mm / middle_mm)
 
     @property
     def nothing(self) -> Floats:
@@ -100,7 +102,8 @@ class Prepared:
     def _change(self, job: Job, base: Floats, found: Floats) -> Floats:
         """Against the baseline on the same mesh; charges scaled to those of the finest mesh."""
         values = path.changes(found, base, SHARES, self.raw) if job.back else change(base, found)
-        per_force = (self._finest[2:] / self._finest[0]) / (base[-1, 2:] / base[-1, 0])
+        force, _, *charges = self._fine.at(np.ones(1))[0]
+        per_force = (np.array(charges) / force) / (base[-1, 2:] / base[-1, 0])
         values[:, 2:] *= np.clip(np.nan_to_num(per_force, nan=1.0), *TRUSTED)
         return values
 
@@ -127,7 +130,7 @@ class Prepared:
         made = reduction.made()
         self.relaxing, self.raw = reduction.relaxing, made.fit
         self.film = FilmPlate(made.film, made.pyroelectric_uC_per_m2_K)
-        self.fit: Fit = changed(self.raw, self._finer_depths, self._correction, 1.0)
+        self.fit: Fit = replaced(self.raw, self._fine.at(np.linspace(TOUCH, 1.0, CELLS + 1)))
 
     def moved(self, place: Place) -> Model:
         """The model with the dot at a place, from where it stands."""

@@ -11,7 +11,7 @@ from mesh.parameters import MeshOptions
 from mesh.types import TetMesh
 from solve.model import Model
 
-LARGEST = 3000  # nodes: some 8,000 unknowns, and 3 s a press on one core
+LARGEST = 3000  # nodes: some 8,000 unknowns, and 2 s a press on one core
 COARSER = 1.06
 
 

@@ -14,6 +14,7 @@ from mesh.types import Floats
 from solve.reduced.fit import CELLS, Fit
 
 LEAST = 1e-3  # factor of force and area where contact is all but lost
+TRUSTED = 0.5, 2.0  # by which a finer mesh may change an answer
 
 
 def change(base: Floats, other: Floats) -> Floats:
@@ -33,13 +34,27 @@ class Depths:
 
 def changed(fit: Fit, depths: Depths, change: Floats, charge_factor: float) -> Fit:
     """The table with the summed changes (n, 2 + e), and every charge times a factor."""
-    table, charges = fit.table.copy(), slice(2, change.shape[1])
     rows = depths.to_rows @ change
-    table[:, :, :2] *= np.exp(rows[:, None, :2])
-    own = fit.table[:, 0, charges]
-    added = fit.table[:, 0, :1] * rows[:, charges]
+    elastic = fit.table[:, 0, : change.shape[1]]
+    factors = np.exp(rows[:, :2])
+    found = np.concatenate([elastic[:, :2] * factors, elastic[:, 2:] + elastic[:, :1] * rows[:, 2:]], axis=1)
+    return _with_elastic(fit, found, factors, charge_factor)
+
+
+def replaced(fit: Fit, outputs: Floats) -> Fit:
+    """The table with other elastic outputs (cells + 1, 2 + e), of a dot that touches at once."""
+    own = fit.table[:, 0, :2]
+    factors = np.clip(np.divide(outputs[:, :2], own, out=np.ones_like(own), where=own > 0.0), *TRUSTED)
+    return _with_elastic(replace(fit, touch=np.array([0.0, *fit.touch[1:]])), outputs, factors, 1.0)
+
+
+def _with_elastic(fit: Fit, outputs: Floats, factors: Floats, charge_factor: float) -> Fit:
+    """What layers remember of force and area goes by factors (cells + 1, 2), of charges in proportion on the whole."""
+    table, charges = fit.table.copy(), slice(2, outputs.shape[1])
+    own = table[:, 0, charges]
     size = np.maximum((own**2).sum(axis=0), 1e-300)
-    table[:, 1:, charges] *= 1.0 + (added * own).sum(axis=0) / size
-    table[:, 0, charges] += added
+    table[:, 1:, :2] *= factors[:, None]
+    table[:, 1:, charges] *= (outputs[:, charges] * own).sum(axis=0) / size
+    table[:, 0, : outputs.shape[1]] = outputs
     table[:, :, charges] *= charge_factor
     return replace(fit, table=table)
