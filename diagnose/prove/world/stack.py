@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from scipy.sparse.linalg import splu
+from pypardiso import spsolve  # type: ignore[import-untyped]
 from skfem import ElementHex2, ElementQuad2, FacetBasis  # type: ignore[import-untyped]
 
 from diagnose.prove.world import laws
@@ -95,7 +95,7 @@ class Stack:
                 slope = (u - old.u) / way if abs(way) > STILL_MM and min(depth_mm, old.depth_mm) > 0.0 else 0.0 * u
                 return State(u, memory, depth_mm, slope)
             step = np.zeros(u.size)
-            step[self.free] = splu(matrix[self.free][:, self.free].tocsc()).solve(residual[self.free])
+            step[self.free] = spsolve(matrix[self.free][:, self.free], residual[self.free])
             u, residual, matrix, memory = self._stepped(u, step.reshape(u.shape), size, old, depth_mm, step_s)
         raise FloatingPointError(f"residual {size:.1e} N")
 
