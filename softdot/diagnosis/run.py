@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from copy import copy
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -14,6 +14,7 @@ from diagnose.findings import Findings
 from diagnose.forward import Engine, Report
 from diagnose.next_press.choose import NextPress, next_press
 from diagnose.noise.estimate import noise_models
+from diagnose.thinning import thinned
 from diagnose.verdict.content import FORMAT, verdict
 from diagnose.verdict.resimulation import OutOfTimeError, Resimulated, resimulate
 from diagnose.verdict.words import sentences
@@ -67,6 +68,7 @@ def run_diagnosis(
     progress.stage("read")
     rig = load_rig(folder)
     _refuse_what_sampling_misses(rig)
+    rig = replace(rig, recording=thinned(rig.recording))
     noise_models(rig.recording)  # refuses a channel without known noise before any press
     with staged_folder(out, DIAGNOSIS) as staged:
         summary: dict[str, Any] = plain(_fill(rig, options, progress, staged))
