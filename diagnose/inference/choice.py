@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnose.forward import Report
+from diagnose.forward import Candidate, Report
 from diagnose.inference.ambiguity import alike, grouped, separations
 from diagnose.inference.baseline import within_priors
 from diagnose.inference.black_box import box_scores, memory, worth_of_form
@@ -13,7 +13,7 @@ from diagnose.inference.descent import coordinates
 from diagnose.inference.excess import share_left
 from diagnose.inference.forecasts import Forecasted, forecasted, separation
 from diagnose.inference.observed_model import ObservedModel
-from diagnose.inference.rates import LEFT, RATES
+from diagnose.inference.rates import FIRSTS, LEFT, RATES
 from diagnose.inference.refit import Fitted
 from diagnose.inference.residual_test import DRAWS, checked
 from diagnose.inference.search import Screening, pairs, singles
@@ -107,14 +107,31 @@ def choose(
         models.append(judge.judged(fit))
     best = judge.best(models)
     if best.p_left <= RATES.level:
-        same = [one.fit.candidates[0] for one in models if one is not best and _same(judge, best, one)]
-        second = [judge.judged(fit) for fit in pairs(model, found, best.fit, same, report)]
-        better = [one for one in second if judge.gained(one.forecast, best.forecast).lower > 0.0]
-        models += better
-        best = judge.best([best, *better])
+        models, best = _with_pairs(judge, models, best, report)
     rest = sorted((one for one in models if one is not best), key=lambda one: -one.forecast.log_scores.sum())
     best = judge.judged(best.fit, DRAWS)
     return _decided(judge, (best, *rest), p_mismatch)
+
+
+def _with_pairs(
+    judge: Judge, singles: Sequence[Judged], best: Judged, report: Report
+) -> tuple[list[Judged], Judged]:
+    """Partners for the best single mechanism, then for the next ones, until nothing is left; the models and the best.
+
+    Where two act together, a third may imitate their sum better than either does alone.
+    """
+    models, tried = list(singles), list[Candidate]()
+    others = sorted((one for one in singles if one is not best), key=lambda one: -one.forecast.log_scores.sum())
+    for first in (best, *others)[:FIRSTS]:
+        same = [one.fit.candidates[0] for one in singles if one is not first and _same(judge, first, one)]
+        second = [judge.judged(fit) for fit in pairs(judge.model, judge.found, first.fit, [*same, *tried], report)]
+        better = [one for one in second if judge.gained(one.forecast, best.forecast).lower > 0.0]
+        models += better
+        best = judge.best([best, *better])
+        if best.p_left > RATES.level:
+            break
+        tried += first.fit.candidates
+    return models, best
 
 
 NOTHING = "None of the candidates shows in the residual more than chance allows."

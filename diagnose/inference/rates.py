@@ -13,5 +13,7 @@ ALIKE = 0.05
 """Chance of choosing the wrong one of two models above which they are called ambiguous."""
 FINALISTS = 6
 """Single mechanisms that are fitted with all that floats, after a first fit of all survivors."""
+FIRSTS = 3
+"""Single mechanisms beside which a second one is sought."""
 PAIRS = 4
-"""Pairs that are fitted."""
+"""Pairs that are fitted beside each."""
