@@ -16,7 +16,7 @@ ACROSS_MM = {"ridge": 0.2, "cap": 0.3}
 """Size of elements across the layers, mm."""
 MOST_ACROSS = 4
 TO_SIDES, TO_FACES = 1.6, 0.6
-"""Grading. On a clamped ridge a grid twice as fine differs by 0.1 %, on a free one by 1 %, so that one is made finer."""
+"""Grading. A grid twice as fine differs by 0.1 % on a clamped ridge and by 1 % on a free one, which is made finer."""
 
 
 @dataclass(frozen=True)
