@@ -11,7 +11,7 @@ from softdot.command_output import GOOD, INTERRUPTED, NOT_CONVERGED, complain, o
 
 def command(chosen: Namespace) -> int:
     """Prove chosen.cases cases into chosen.output; 0, or 3 when not one was scored, or 130. InputError."""
-    if find_spec("skfem") is None or find_spec("pypardiso") is None:
+    if find_spec("skfem") is None:
         raise InputError("prove needs scikit-fem, the other finite-element code: pip install 'softdot[prove]'")
     from softdot.proof.run import RIGS, Request, run_proof
     from softdot.proof.store import CASES

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from pypardiso import spsolve
 from skfem import ElementHex2, ElementQuad2, FacetBasis  # type: ignore[import-untyped]
 
 from diagnose.prove.world import laws
@@ -13,6 +12,11 @@ from diagnose.prove.world.grid import Grid, grid
 from diagnose.prove.world.made import Film, Floats, Layer, Made
 from diagnose.prove.world.memory import Memory
 from diagnose.prove.world.parts import Indices, parts
+
+try:
+    from pypardiso import spsolve
+except ImportError:  # there is no MKL for this processor
+    from scipy.sparse.linalg import spsolve
 
 WALL = 1e4
 """Stiffness of the contact, MPa/mm: at 1 MPa of pressure the surfaces overlap by a tenth of a micrometre."""
