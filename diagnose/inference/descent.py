@@ -4,6 +4,7 @@ What is linear leaves only inner products (variable projection; Golub and Pereyr
 """
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,7 +45,7 @@ class Descent:
     origin: Floats
 
     def vector(self, values: Floats) -> Floats:
-        """The prediction (n,) at the system's nuisances."""
+        """The prediction (n,) at the system's nuisances. ValueError where the model has no answer."""
         return self.model.vector(self.system.values, settings(self.candidates, values))
 
     def at(self, values: Floats) -> Place:
@@ -70,9 +71,8 @@ class Descent:
         for signed in (step, -step):
             moved = place.values.copy()
             moved[number] += signed
-            after = self.at(moved)
-            if np.isfinite(after.cost):
-                return np.asarray((after.predicted - place.predicted) / signed)
+            with suppress(ValueError):
+                return np.asarray((self.vector(moved) - place.predicted) / signed)
         return np.zeros_like(place.predicted)
 
 
@@ -83,8 +83,8 @@ def descent(
     return Descent(model, system, tuple(candidates), model.vector(system.values, about) + system.residual)
 
 
-def descended(problem: Descent, start: Floats) -> tuple[Place, Floats]:
-    """The best place from a start (q,), and the slopes (n, q) there."""
+def descended(problem: Descent, start: Floats, least: float = LEAST_GAIN) -> tuple[Place, Floats]:
+    """The best place from a start (q,), and the slopes (n, q) there; a step that gains less than least is the last."""
     limits = bounds(problem.candidates)
     here = problem.at(np.clip(start, *limits.T))
     if not np.isfinite(here.cost):
@@ -100,7 +100,7 @@ def descended(problem: Descent, start: Floats) -> tuple[Place, Floats]:
         still = float(moved @ columns.T @ cleared @ moved) < STILL**2
         here = after
         slopes = problem.slopes(here)
-        if gain < LEAST_GAIN or still:
+        if gain < least or still:
             break
     return here, slopes
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from diagnose.forward import Candidate, Report
 from diagnose.inference.baseline import believed
-from diagnose.inference.descent import descended, descent
+from diagnose.inference.descent import LEAST_GAIN, descended, descent
 from diagnose.inference.excess import excess
 from diagnose.inference.live import live_rows
 from diagnose.inference.observed_model import ObservedModel
@@ -20,6 +20,7 @@ from diagnose.inference.system import System
 from mesh.types import Floats
 
 STARTS = 3  # of each candidate's first fit
+ROUGH = 1e-3  # of the excess: what a last step of a first fit may gain, which only has to tell who is worth a second
 
 
 @dataclass(frozen=True)
@@ -65,12 +66,13 @@ def least_degrees(model: ObservedModel) -> float:
 def singles(model: ObservedModel, found: Screening, report: Report) -> list[Fitted]:
     """Survivors fitted in one metric, and the best of them with all that floats."""
     common = common_metric(model.samples, found.start)
+    rough = max(LEAST_GAIN, ROUGH * found.excess)
     firsts: list[tuple[float, int, Floats]] = []
     for count, number in enumerate(found.survivors):
         report("first fits", count, len(found.survivors))
         only = (found.candidates[number],)
         problem = descent(model, common, only, ())
-        tries = [descended(problem, start)[0] for start in found.tests.estimates[number][:STARTS]]
+        tries = [descended(problem, start, rough)[0] for start in found.tests.estimates[number][:STARTS]]
         possible = [place for place in tries if np.isfinite(place.cost)]
         if possible:
             best = min(possible, key=lambda place: place.cost)
