@@ -52,7 +52,7 @@ def smooth(shares: Sequence[float], outputs: Floats) -> Smooth:
     curves = found.at(x)
     size = np.abs(curves)
     size[:, 2:] = np.maximum(size[:, 2:], LITTLE * size[:, :1] * np.abs(curves[:, 2:] / curves[:, :1]).max(axis=0))
-    waves = ((weight[:, None] * (y - curves) / size) ** 2).sum(axis=0) / (weight**2).sum()
+    waves = ((weight[:, None] * (y - curves) / np.maximum(size, 1e-300)) ** 2).sum(axis=0) / (weight**2).sum()
     terms = np.array([len(curve) for curve in (*logarithms, *per_force)])
     return replace(found, error=np.sqrt(waves * terms / len(x)))
 

@@ -47,3 +47,11 @@ def test_a_share_without_contact_says_nothing():
     outputs = press(SHARES)
     outputs[0] = 0.0
     np.testing.assert_allclose(smooth(SHARES, outputs).at(BETWEEN), press(BETWEEN), rtol=2e-3)
+
+
+def test_an_electrode_without_charge_has_none():
+    outputs = press(SHARES)
+    outputs[:, 2] = 0.0
+    found = smooth(SHARES, outputs)
+    assert np.abs(found.at(BETWEEN)[:, 2]).max() == 0.0
+    assert found.error[2] == 0.0
