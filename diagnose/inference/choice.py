@@ -16,7 +16,7 @@ from diagnose.inference.observed_model import ObservedModel
 from diagnose.inference.rates import FIRSTS, LEFT, RATES
 from diagnose.inference.refit import Fitted
 from diagnose.inference.residual_test import DRAWS, checked
-from diagnose.inference.search import Screening, pairs, singles
+from diagnose.inference.search import Screening, paired, pairs, singles
 from diagnose.statistics.abstain import Decision, Evidence, decide
 from diagnose.statistics.held_out import Gain, gain_over_noise
 from diagnose.statistics.information import held_out_probabilities
@@ -118,9 +118,10 @@ def _with_pairs(
 ) -> tuple[list[Judged], Judged]:
     """Partners for the best single mechanism, then for the next ones, until nothing is left; the models and the best.
 
-    Where two act together, a third may imitate their sum better than either does alone.
+    Where two act together, a third may imitate their sum better than either does alone, or one of them beside the
+    other.
     """
-    models, tried = list(singles), list[Candidate]()
+    models, tried, single = list(singles), list[Candidate](), best
     others = sorted((one for one in singles if one is not best), key=lambda one: -one.forecast.log_scores.sum())
     for first in (best, *others)[:FIRSTS]:
         same = [one.fit.candidates[0] for one in singles if one is not first and _same(judge, first, one)]
@@ -131,7 +132,19 @@ def _with_pairs(
         if best.p_left > RATES.level:
             break
         tried += first.fit.candidates
-    return models, best
+    if best is single:
+        return models, best
+    rivals = _rivals(judge, singles, best)
+    return [*models, *rivals], judge.best([best, *rivals])
+
+
+def _rivals(judge: Judge, singles: Sequence[Judged], pair: Judged) -> list[Judged]:
+    """The second of a pair beside every other single mechanism: what imitates the first alone may not do so here."""
+    first, second = pair.fit.candidates
+    start = pair.fit.values[len(first.coordinates) :]
+    others = [one.fit for one in singles if one.fit.candidates[0].name not in (first.name, second.name)]
+    fits = [fit for other in others for fit in paired(judge.model, judge.found, other, second, [start])]
+    return [judge.judged(fit) for fit in fits]
 
 
 NOTHING = "None of the candidates shows in the residual more than chance allows."

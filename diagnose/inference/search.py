@@ -102,12 +102,19 @@ def pairs(
     fits = []
     for count, number in enumerate(shown):
         report("pairs", count, len(shown))
-        both = (*first.candidates, others[number])
-        problem = descent(model, first.system, both, first.settings)
-        starts = [np.concatenate([first.values, guess]) for guess in tests.estimates[number][:STARTS]]
-        tries = [descended(problem, start)[0] for start in starts]
-        possible = [place for place in tries if np.isfinite(place.cost)]
-        if possible:
-            best = min(possible, key=lambda place: place.cost)
-            fits.append(fitted(model, first.system, both, best.values, found.excess))
+        fits += paired(model, found, first, others[number], tests.estimates[number][:STARTS])
     return fits
+
+
+def paired(
+    model: ObservedModel, found: Screening, first: Fitted, second: Candidate, starts: Sequence[Floats]
+) -> list[Fitted]:
+    """Both together from starts (q,) of the second; none where the model has no answer."""
+    both = (*first.candidates, second)
+    problem = descent(model, first.system, both, first.settings)
+    tries = [descended(problem, np.concatenate([first.values, start]))[0] for start in starts]
+    possible = [place for place in tries if np.isfinite(place.cost)]
+    if not possible:
+        return []
+    best = min(possible, key=lambda place: place.cost)
+    return [fitted(model, first.system, both, best.values, found.excess)]
