@@ -19,7 +19,7 @@ from diagnose.inference.residual_test import DRAWS, checked
 from diagnose.inference.search import Screening, paired, pairs, singles
 from diagnose.statistics.abstain import Decision, Evidence, decide
 from diagnose.statistics.held_out import Gain, gain_over_noise
-from diagnose.statistics.information import held_out_probabilities
+from diagnose.statistics.information import bic, held_out_probabilities
 from mesh.types import Bools, Floats
 
 FEWER_DRAWS = 499  # for models that are not the best
@@ -81,7 +81,7 @@ class Judge:
         Where it leaves too much, or has a value that no part can have, one without such a fault takes its place that
         does not predict worse for sure.
         """
-        top = max(models, key=lambda one: one.forecast.log_scores.sum())
+        top = max(models, key=_score)
         near = [one for one in models if one is top or self._within_one_error(top, one)]
         best = _simplest(near)
         sound = [one for one in models if not _doubtful(one) and self.gained(top.forecast, one.forecast).lower <= 0.0]
@@ -108,7 +108,7 @@ def choose(
     best = judge.best(models)
     if best.p_left <= RATES.level:
         models, best = _with_pairs(judge, models, best, report)
-    rest = sorted((one for one in models if one is not best), key=lambda one: -one.forecast.log_scores.sum())
+    rest = _others(models, best)
     best = judge.judged(best.fit, DRAWS)
     return _decided(judge, (best, *rest), p_mismatch)
 
@@ -122,8 +122,7 @@ def _with_pairs(
     other.
     """
     models, tried, single = list(singles), list[Candidate](), best
-    others = sorted((one for one in singles if one is not best), key=lambda one: -one.forecast.log_scores.sum())
-    for first in (best, *others)[:FIRSTS]:
+    for first in [best, *_others(singles, best)][:FIRSTS]:
         same = [one.fit.candidates[0] for one in singles if one is not first and _same(judge, first, one)]
         second = [judge.judged(fit) for fit in pairs(judge.model, judge.found, first.fit, [*same, *tried], report)]
         better = [one for one in second if judge.gained(one.forecast, best.forecast).lower > 0.0]
@@ -134,17 +133,20 @@ def _with_pairs(
         tried += first.fit.candidates
     if best is single:
         return models, best
-    rivals = _rivals(judge, singles, best)
+    rivals = _rivals(judge, singles, best, report)
     return [*models, *rivals], judge.best([best, *rivals])
 
 
-def _rivals(judge: Judge, singles: Sequence[Judged], pair: Judged) -> list[Judged]:
+def _rivals(judge: Judge, singles: Sequence[Judged], pair: Judged, report: Report) -> list[Judged]:
     """The second of a pair beside every other single mechanism: what imitates the first alone may not do so here."""
     first, second = pair.fit.candidates
     start = pair.fit.values[len(first.coordinates) :]
     others = [one.fit for one in singles if one.fit.candidates[0].name not in (first.name, second.name)]
-    fits = [fit for other in others for fit in paired(judge.model, judge.found, other, second, [start])]
-    return [judge.judged(fit) for fit in fits]
+    found = []
+    for count, other in enumerate(others):
+        report("rivals of the pair", count, len(others))
+        found += [judge.judged(fit) for fit in paired(judge.model, judge.found, other, second, [start])]
+    return found
 
 
 NOTHING = "None of the candidates shows in the residual more than chance allows."
@@ -158,7 +160,9 @@ def _decided(judge: Judge, models: tuple[Judged, ...], p_mismatch: float) -> Cho
     box = gain_over_noise(over, np.sqrt(2.0 * np.maximum(over, 0.0)), RATES.level)
     none = box_scores(samples, judge.declared, judge.declared, past)
     scores = np.array([*(one.forecast.log_scores for one in models), judge.base.log_scores, none])
-    apart = np.where(_told_apart(judge, models), np.inf, separations(samples, [one.fit for one in models]))
+    apart = separations(samples, [one.fit for one in models])
+    apart[contradicted(models)] = 0.0
+    apart[_told_apart(judge, models)] = np.inf
     evidence = Evidence(
         p_mismatch, best.p_left, best.gain.lower, box.lower, _implausible(best.fit), alike(apart)
     )
@@ -182,6 +186,19 @@ def _told_apart(judge: Judge, models: Sequence[Judged]) -> Bools:
     return np.asarray(np.array(better) | np.array(better).T)
 
 
+def contradicted(models: Sequence[Judged]) -> Bools:
+    """(m, m) whether held-out presses speak for one of two faultless models and the fit to all for the other."""
+    scores, badness = np.array([_score(one) for one in models]), criteria(models)
+    faultless = np.array([not _doubtful(one) for one in models])
+    against = np.subtract.outer(scores, scores) * np.subtract.outer(badness, badness) > 0.0
+    return np.asarray(against & np.logical_and.outer(faultless, faultless))
+
+
+def criteria(models: Sequence[Judged]) -> Floats:
+    """Schwarz's criterion (m,) of each fit to all presses: less is better."""
+    return np.array([bic(one.fit.evidence, len(one.fit.values), int(one.fit.system.live.sum())) for one in models])
+
+
 def _same(judge: Judge, one: Judged, other: Judged) -> bool:
     """Whether two models are alike: both together are no more than one."""
     return alike(separations(judge.model.samples, [one.fit, other.fit])) > 1
@@ -189,7 +206,17 @@ def _same(judge: Judge, one: Judged, other: Judged) -> bool:
 
 def _simplest(models: Sequence[Judged]) -> Judged:
     """The fewest coordinates, of equals the one that predicts best."""
-    return min(models, key=lambda one: (_count(one.fit), -one.forecast.log_scores.sum()))
+    return min(models, key=lambda one: (len(one.fit.values), -_score(one)))
+
+
+def _others(models: Sequence[Judged], best: Judged) -> list[Judged]:
+    """All but the best, those that predict best first."""
+    return sorted((one for one in models if one is not best), key=lambda one: -_score(one))
+
+
+def _score(one: Judged) -> float:
+    """Logarithm of the predictive density of all held-out presses."""
+    return float(one.forecast.log_scores.sum())
 
 
 def _doubtful(one: Judged) -> bool:
@@ -205,7 +232,3 @@ def _implausible(fit: Fitted) -> tuple[str, ...]:
             if end != 0.0 and abs(value - end) <= close and not coordinate.levels_off:
                 found.append(f"{coordinate.name} = {value:.3g}")
     return tuple(found)
-
-
-def _count(fit: Fitted) -> int:
-    return len(fit.values)

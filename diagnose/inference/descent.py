@@ -105,6 +105,12 @@ def descended(problem: Descent, start: Floats, least: float = LEAST_GAIN) -> tup
     return here, slopes
 
 
+def lowest(problem: Descent, starts: Sequence[Floats], least: float = LEAST_GAIN) -> Place | None:
+    """The best place from several starts (q,); none where the model has no answer."""
+    tries = [descended(problem, start, least)[0] for start in starts]
+    return min((place for place in tries if np.isfinite(place.cost)), key=lambda place: place.cost, default=None)
+
+
 def settings(candidates: Sequence[Candidate], values: Floats) -> tuple[Setting, ...]:
     """Values (q,) dealt out to the candidates."""
     edges = np.cumsum([0, *(len(c.coordinates) for c in candidates)])

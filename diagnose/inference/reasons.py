@@ -2,11 +2,10 @@
 
 import numpy as np
 
-from diagnose.inference.choice import Choice, Judged
+from diagnose.inference.choice import Choice, Judged, criteria
 from diagnose.inference.observed_model import ObservedModel
 from diagnose.inference.refit import Fitted
 from diagnose.inference.system import System
-from diagnose.statistics.information import bic
 
 FAR = 3.0  # deviations of a prior
 
@@ -72,9 +71,8 @@ def _strained(model: ObservedModel, baseline: System) -> list[str]:
 
 def _second_opinion(choice: Choice) -> list[str]:
     """Schwarz's criterion, where it prefers another model by more than ten to one."""
-    samples = [int(one.fit.system.live.sum()) for one in choice.models]
-    criteria = [bic(one.fit.evidence, len(one.fit.values), n) for one, n in zip(choice.models, samples, strict=True)]
-    least = int(np.argmin(criteria))
-    if least == 0 or criteria[0] - criteria[least] < 2.0 * np.log(10.0):
+    badness = criteria(choice.models)
+    least = int(np.argmin(badness))
+    if least == 0 or badness[0] - badness[least] < 2.0 * np.log(10.0):
         return []
     return [f"The fit to all presses alone (BIC) would prefer {named(choice.models[least].fit)}."]

@@ -7,7 +7,7 @@ import numpy as np
 
 from diagnose.forward import Candidate, Report
 from diagnose.inference.baseline import believed
-from diagnose.inference.descent import LEAST_GAIN, descended, descent
+from diagnose.inference.descent import LEAST_GAIN, descent, lowest
 from diagnose.inference.excess import excess
 from diagnose.inference.live import live_rows
 from diagnose.inference.observed_model import ObservedModel
@@ -71,11 +71,8 @@ def singles(model: ObservedModel, found: Screening, report: Report) -> list[Fitt
     for count, number in enumerate(found.survivors):
         report("first fits", count, len(found.survivors))
         only = (found.candidates[number],)
-        problem = descent(model, common, only, ())
-        tries = [descended(problem, start, rough)[0] for start in found.tests.estimates[number][:STARTS]]
-        possible = [place for place in tries if np.isfinite(place.cost)]
-        if possible:
-            best = min(possible, key=lambda place: place.cost)
+        best = lowest(descent(model, common, only, ()), found.tests.estimates[number][:STARTS], rough)
+        if best is not None:
             firsts.append((best.cost, number, best.values))
     firsts = sorted(firsts, key=lambda one: one[0])[:FINALISTS]
     fits = []
@@ -112,9 +109,5 @@ def paired(
     """Both together from starts (q,) of the second; none where the model has no answer."""
     both = (*first.candidates, second)
     problem = descent(model, first.system, both, first.settings)
-    tries = [descended(problem, np.concatenate([first.values, start]))[0] for start in starts]
-    possible = [place for place in tries if np.isfinite(place.cost)]
-    if not possible:
-        return []
-    best = min(possible, key=lambda place: place.cost)
-    return [fitted(model, first.system, both, best.values, found.excess)]
+    best = lowest(problem, [np.concatenate([first.values, start]) for start in starts])
+    return [] if best is None else [fitted(model, first.system, both, best.values, found.excess)]

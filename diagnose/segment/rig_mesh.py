@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from diagnose.segment.held_sides import crowded
 from geometry.dot_shape import DotShape, resolve_dot
 from mesh.build import build
 from mesh.morph import morphed
@@ -32,8 +33,9 @@ def rig_mesh(model: Model, options: MeshOptions, largest: int = LARGEST) -> tupl
 
 
 def finer_mesh(model: Model, options: MeshOptions, factor: float, largest: int) -> tuple[TetMesh, MeshOptions]:
-    """A mesh with elements smaller by a factor all over, if it has few enough nodes, and its sizes."""
-    return rig_mesh(model, scaled(options, factor), largest)
+    """A mesh with elements smaller by a factor, more so at held sides, if it has few enough nodes, and its sizes."""
+    made, options = rig_mesh(model, scaled(options, factor), largest)
+    return (crowded(made, model.segment) if options.mesher == "layered" else made), options
 
 
 def mesh_of(model: Model, known: Model, tet_mesh: TetMesh, options: MeshOptions) -> TetMesh:
