@@ -37,6 +37,7 @@ DIRECT = frozenset({
 ROUNDS = 40
 SETTLED = 1e-6  # of the largest force
 Hum = tuple[tuple[float, float], ...]
+Asked = tuple[tuple[float, float], list[Setting], float]
 
 
 def segment_engine(model: Model, mesh_settings: MeshOptions, recording: Recording, report: Report) -> "SegmentEngine":
@@ -57,6 +58,7 @@ class SegmentEngine:
         self.prepared: Prepared = Prepared(model, mesh_settings, recording, report)
         self.prepared.add((), [run.dot_offset_mm for run in recording.runs], report)
         self.accuracy = self.prepared.accuracy
+        self._last: tuple[Asked, Fit] | None = None
         self.candidates: tuple[Candidate, ...] = tuple(with_derived(c, self.prepared) for c in candidates(self.scene))
 
     @cached_property
@@ -82,6 +84,7 @@ class SegmentEngine:
     def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
         """Press what these candidates need. NoEquilibriumError."""
         self.prepared.add(candidates, (), report)
+        self._last = None
 
     def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
         """Every answer of a run. ValueError for what was not prepared."""
@@ -149,13 +152,16 @@ class SegmentEngine:
         return whole
 
     def _fit(self, run: Run, on: Model, settings: Sequence[Setting]) -> Fit:
-        """The table with all that changes it."""
+        """The table with all that changes it; kept, as runs share it."""
         base = self.prepared
-        change = base.change(run.dot_offset_mm, settings)
         factor = _d31(on) / _d31(self.model)
-        if change is None and factor == 1.0:
-            return base.fit
-        return changed(base.fit, base.depths, base.nothing if change is None else change, factor)
+        asked = run.dot_offset_mm, list(settings), factor
+        if self._last is None or self._last[0] != asked:
+            change = base.change(run.dot_offset_mm, settings)
+            same = change is None and factor == 1.0
+            nothing = base.nothing if change is None else change
+            self._last = asked, base.fit if same else changed(base.fit, base.depths, nothing, factor)
+        return self._last[1]
 
     def _film(self, on: Model) -> FilmPlate:
         """A thinner film has more capacitance."""

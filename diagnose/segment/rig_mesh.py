@@ -8,12 +8,14 @@ from diagnose.segment.held_sides import crowded
 from geometry.dot_shape import DotShape, resolve_dot
 from mesh.build import build
 from mesh.morph import morphed
+from mesh.outline import outline
 from mesh.parameters import MeshOptions
 from mesh.types import TetMesh
 from solve.model import Model
 
 LARGEST = 3000  # nodes: some 8,000 unknowns, and 2 s a press on one core
 COARSER = 1.06
+NODES_PER_CUBE = 8  # of an element's size: one corner and seven mid-sides
 
 
 def rig_mesh(model: Model, options: MeshOptions, largest: int = LARGEST) -> tuple[TetMesh, MeshOptions]:
@@ -40,8 +42,10 @@ def finer_mesh(model: Model, options: MeshOptions, factor: float, largest: int) 
 
 def mesh_of(model: Model, known: Model, tet_mesh: TetMesh, options: MeshOptions) -> TetMesh:
     """The mesh of a changed model: the known one's, moved with its layers, unless it is of another dimension."""
-    if model.segment.section != known.segment.section:
-        return rig_mesh(model, options)[0]
+    if model.segment.section != known.segment.section:  # the sizes of a slice would make half a million nodes
+        volume_mm3 = sum(outline(model.segment).volumes().values())
+        even_mm = (NODES_PER_CUBE * volume_mm3 / LARGEST) ** (1.0 / 3.0)
+        return rig_mesh(model, scaled(options, max(1.0, even_mm / options.element_size_mm)))[0]
     return morphed(tet_mesh, known.segment, model.segment)
 
 
