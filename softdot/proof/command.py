@@ -13,12 +13,13 @@ def command(chosen: Namespace) -> int:
     """Prove chosen.cases cases into chosen.output; 0, or 3 when not one was scored, or 130. InputError."""
     if find_spec("skfem") is None:
         raise InputError("prove needs scikit-fem, the other finite-element code: pip install 'softdot[prove]'")
-    from softdot.proof.run import RIGS, Request, run_proof
+    from softdot.proof.run import KINDS, RIGS, Request, run_proof
     from softdot.proof.store import CASES
     from softdot.sweep.progress import points_on_terminal
 
     rigs = tuple(chosen.rigs.split(",")) if chosen.rigs else RIGS
-    request = Request(chosen.cases, chosen.seed, rigs, chosen.staged, chosen.workers)
+    kinds = tuple(chosen.kinds.split(",")) if chosen.kinds else KINDS
+    request = Request(chosen.cases, chosen.seed, rigs, chosen.staged, chosen.workers, kinds)
     try:
         with only_the_summary_on_stdout(), points_on_terminal() as progress:
             summary = run_proof(request, Path(chosen.output), progress)

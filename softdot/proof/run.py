@@ -9,7 +9,7 @@ from typing import Any
 
 from diagnose.prove.score import Score
 from diagnose.prove.trial import Terms
-from diagnose.prove.world.cases import Case, plan
+from diagnose.prove.world.cases import KINDS, Case, plan
 from geometry.errors import InputError
 from mesh.fingerprint import data_hash, files_hash
 from softdot.numbers import plain, write_json
@@ -23,13 +23,17 @@ RIGS = (*RIDGES, "dot-clamped")
 
 @dataclass(frozen=True)
 class Request:
-    """What is asked for. staged : the first eight mechanisms only. workers : processes, None for one per core."""
+    """What is asked for. staged : the first eight mechanisms only. workers : processes, None for one per core.
+
+    kinds : of cases; each case is the same as among all kinds.
+    """
 
     cases: int
     seed: int = 0
     rigs: tuple[str, ...] = RIGS
     staged: bool = False
     workers: int | None = None
+    kinds: tuple[str, ...] = KINDS
     limit_s: float = 3600.0
 
 
@@ -40,7 +44,7 @@ def run_proof(request: Request, out: Path, progress: Progress | None = None) -> 
     """
     _check(request)
     place, program = store.begin(out), program_hash()
-    cases = plan(request.cases, request.seed, request.rigs, request.staged)
+    cases = plan(request.cases, request.seed, request.rigs, request.staged, request.kinds)
     found = {case.name: record for case in cases if (record := store.kept(place, case, program)) is not None}
     missing = [case for case in cases if case.name not in found]
     progress = progress or Silent()
@@ -64,6 +68,9 @@ def _check(request: Request) -> None:
     for rig in request.rigs:
         if rig not in RIGS:
             raise InputError(f"--rigs '{rig}': must be of {', '.join(RIGS)}")
+    for kind in request.kinds:
+        if kind not in KINDS:
+            raise InputError(f"--kinds '{kind}': must be of {', '.join(KINDS)}")
 
 
 def _tried(
@@ -109,6 +116,7 @@ def _finished(request: Request, place: Path, records: Sequence[Mapping[str, Any]
     summary: dict[str, Any] = plain({
         "format": store.FORMAT, "complete": True, "softdot_version": installed_version(),
         "cases": request.cases, "seed": request.seed, "rigs": list(request.rigs), "staged": request.staged,
+        "kinds": list(request.kinds),
         "ended": dict(Counter(record["status"] for record in records)), "reused": reused,
         "reasons": sorted({record["reason"] for record in records if record["reason"]}),
         "rates": tally(scores), "rivals": rival_rates(records), "hardware": hardware(),

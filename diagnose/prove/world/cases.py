@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from itertools import cycle
 from typing import Any
 
 import numpy as np
@@ -74,14 +75,18 @@ class Truth:
         }
 
 
-def plan(count: int, seed: int, rigs: tuple[str, ...], staged: bool = True) -> list[Case]:
-    """The first count cases; kinds follow a fixed pattern, mechanisms, sizes and rigs take turns."""
+def plan(
+    count: int, seed: int, rigs: tuple[str, ...], staged: bool = True, kinds: tuple[str, ...] = KINDS
+) -> list[Case]:
+    """The first count cases of some kinds; all follow a fixed pattern, mechanisms, sizes and rigs take turns."""
     known = KNOWN[:STAGED] if staged else KNOWN
     turns = dict.fromkeys(KINDS, 0)
-    cases = []
-    for number in range(count):
-        kind = PATTERN[number % len(PATTERN)]
-        cases.append(_case(number + 1, seed, kind, turns[kind], rigs, known))
+    cases: list[Case] = []
+    for number, kind in enumerate(cycle(PATTERN), start=1):
+        if len(cases) == count:
+            break
+        if kind in kinds:
+            cases.append(_case(number, seed, kind, turns[kind], rigs, known))
         turns[kind] += 1
     return cases
 

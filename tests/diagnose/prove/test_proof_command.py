@@ -70,6 +70,7 @@ def test_a_proof_that_was_stopped_goes_on(tried, tmp_path):
         (["--cases", "0"], "--cases 0: must be at least 1"),
         (["--cases", "1", "--seed", "-1"], "--seed -1: must not be negative"),
         (["--cases", "1", "--rigs", "table"], "--rigs 'table': must be of ridge-clamped"),
+        (["--cases", "1", "--kinds", "triple"], "--kinds 'triple': must be of none"),
         (["--cases", "1", "--workers", "0"], "--workers 0: must be at least 1"),
     ],
 )

@@ -118,6 +118,7 @@ def test_a_tally_counts():
 def test_a_plan_is_the_same_for_the_same_seed_and_longer_plans_begin_alike():
     rigs = ("ridge-clamped", "ridge-free")
     assert plan(100, 3, rigs)[:40] == plan(40, 3, rigs)
+    assert plan(10, 3, rigs, kinds=(SINGLE,)) == [c for c in plan(60, 3, rigs) if c.kind == SINGLE][:10]
     cases = plan(1000, 3, rigs)
     assert {case.kind for case in cases} == set(KINDS)
     assert sum(case.kind == NONE for case in cases) >= 400
