@@ -134,7 +134,8 @@ def _add_prove(commands: Any) -> None:
     prove.add_argument("--cases", type=int, required=True, metavar="N", help="how many recordings")
     prove.add_argument("--seed", type=int, default=0, metavar="S", help="of the cases")
     prove.add_argument("--rigs", metavar="NAME,NAME", help="of ridge-clamped, ridge-free, dot-clamped; all without it")
-    prove.add_argument("--kinds", metavar="KIND,KIND", help="of none, single, pair, left-out, outside, ambiguous; all without it")
+    kinds = "of none, single, pair, left-out, outside, ambiguous; all without it"
+    prove.add_argument("--kinds", metavar="KIND,KIND", help=kinds)
     prove.add_argument("--staged", action="store_true", help="the first eight mechanisms only")
     prove.add_argument("--workers", type=int, metavar="N", help="processes, without it one per core")
     _add_output(prove)

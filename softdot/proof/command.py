@@ -13,7 +13,8 @@ def command(chosen: Namespace) -> int:
     """Prove chosen.cases cases into chosen.output; 0, or 3 when not one was scored, or 130. InputError."""
     if find_spec("skfem") is None:
         raise InputError("prove needs scikit-fem, the other finite-element code: pip install 'softdot[prove]'")
-    from softdot.proof.run import KINDS, RIGS, Request, run_proof
+    from diagnose.prove.world.cases import KINDS
+    from softdot.proof.run import RIGS, Request, run_proof
     from softdot.proof.store import CASES
     from softdot.sweep.progress import points_on_terminal
 
