@@ -17,8 +17,7 @@ from diagnose.segment.presses import Job
 from diagnose.segment.reach import deepest, rung
 from diagnose.segment.reduction import Reduction
 from diagnose.segment.rig_mesh import finer_mesh, mesh_of, rig_mesh
-from diagnose.segment.smooth import SHARES as PRESSED
-from diagnose.segment.smooth import smooth
+from diagnose.segment.smooth import PRESSED, smooth
 from diagnose.segment.tables import TRUSTED, Depths, change, replaced
 from diagnose.segment.workers import run_all
 from mesh.parameters import MeshOptions
@@ -64,10 +63,11 @@ class Prepared:
         meshes = finest, self._contact_mesh
         jobs = [replace(self.job(model, mesh), shares=PRESSED) for mesh in meshes]
         reduction = self._reduction(model.physics.viscosity)
-        self._fine, middle = (smooth(PRESSED, found) for found in _all_there(run_all(jobs, report, [reduction])))
+        fine, middle = (smooth(PRESSED, found) for found in _all_there(run_all(jobs, report, [reduction])))
+        self._smooth = fine.at(np.linspace(TOUCH, 1.0, CELLS + 1))
         self._take(reduction)
         fine_mm, middle_mm = (options.element_size_mm for _, options in meshes)
-        self.accuracy = accuracy(middle, self._fine, fine_mm / middle_mm)
+        self.accuracy = accuracy(middle, fine, fine_mm / middle_mm)
 
     @property
     def nothing(self) -> Floats:
@@ -102,7 +102,7 @@ class Prepared:
     def _change(self, job: Job, base: Floats, found: Floats) -> Floats:
         """Against the baseline on the same mesh; charges scaled to those of the finest mesh."""
         values = path.changes(found, base, SHARES, self.raw) if job.back else change(base, found)
-        force, _, *charges = self._fine.at(np.ones(1))[0]
+        force, _, *charges = self._smooth[-1]
         per_force = (np.array(charges) / force) / (base[-1, 2:] / base[-1, 0])
         values[:, 2:] *= np.clip(np.nan_to_num(per_force, nan=1.0), *TRUSTED)
         return values
@@ -130,7 +130,7 @@ class Prepared:
         made = reduction.made()
         self.relaxing, self.raw = reduction.relaxing, made.fit
         self.film = FilmPlate(made.film, made.pyroelectric_uC_per_m2_K)
-        self.fit: Fit = replaced(self.raw, self._fine.at(np.linspace(TOUCH, 1.0, CELLS + 1)))
+        self.fit: Fit = replaced(self.raw, self._smooth)
 
     def moved(self, place: Place) -> Model:
         """The model with the dot at a place, from where it stands."""

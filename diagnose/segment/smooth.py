@@ -14,7 +14,7 @@ from numpy.polynomial import Polynomial, chebyshev
 
 from mesh.types import Floats
 
-SHARES = tuple(float(k / 16) ** 1.5 for k in range(2, 17))
+PRESSED = tuple(float(k / 16) ** 1.5 for k in range(2, 17))
 """Of the depth, at which a press is seen that is to be smoothed: closer where the contact is small."""
 DEGREES = range(3, 7)
 LITTLE = 0.1  # of the largest charge per force: a charge that changes sign is not relative to itself

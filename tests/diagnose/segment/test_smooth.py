@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from diagnose.segment.smooth import SHARES, smooth
+from diagnose.segment.smooth import PRESSED, smooth
 
 BETWEEN = np.linspace(0.1, 1.0, 50)
 
@@ -21,14 +21,14 @@ def waves(shares, size, rng):
 
 
 def test_a_smooth_press_stays_as_it_is():
-    found = smooth(SHARES, press(SHARES))
+    found = smooth(PRESSED, press(PRESSED))
     np.testing.assert_allclose(found.at(BETWEEN), press(BETWEEN), rtol=2e-3)
     assert found.error.max() < 1e-3
 
 
 def test_below_the_first_share_a_ball_follows_its_power_law():
     shares = np.array([0.01, 0.02])
-    light = smooth(SHARES, press(SHARES)).at(shares)
+    light = smooth(PRESSED, press(PRESSED)).at(shares)
     assert light[1, 0] / light[0, 0] == pytest.approx(2.0**1.5, rel=0.03)
 
 
@@ -36,7 +36,7 @@ def test_waves_are_smoothed_to_within_the_stated_error():
     off, stated = [], []
     for seed in range(40):
         rng = np.random.default_rng(seed)
-        found = smooth(SHARES, press(SHARES) * waves(SHARES, 0.01, rng))
+        found = smooth(PRESSED, press(PRESSED) * waves(PRESSED, 0.01, rng))
         off.append(np.sqrt(np.mean((found.at(BETWEEN)[:, 0] / press(BETWEEN)[:, 0] - 1.0) ** 2)))
         stated.append(found.error[0])
     assert np.mean(stated) == pytest.approx(np.sqrt(np.mean(np.square(off))), rel=0.4)
@@ -44,14 +44,14 @@ def test_waves_are_smoothed_to_within_the_stated_error():
 
 
 def test_a_share_without_contact_says_nothing():
-    outputs = press(SHARES)
+    outputs = press(PRESSED)
     outputs[0] = 0.0
-    np.testing.assert_allclose(smooth(SHARES, outputs).at(BETWEEN), press(BETWEEN), rtol=2e-3)
+    np.testing.assert_allclose(smooth(PRESSED, outputs).at(BETWEEN), press(BETWEEN), rtol=2e-3)
 
 
 def test_an_electrode_without_charge_has_none():
-    outputs = press(SHARES)
+    outputs = press(PRESSED)
     outputs[:, 2] = 0.0
-    found = smooth(SHARES, outputs)
+    found = smooth(PRESSED, outputs)
     assert np.abs(found.at(BETWEEN)[:, 2]).max() == 0.0
     assert found.error[2] == 0.0
