@@ -74,6 +74,7 @@ class Engine(Protocol):
     free_nuisances : what nobody states and every fit finds anew, without prior and never a mismatch, one coordinate
     each: the sensitivity of a sensor of unknown geometry. 0 is only a start; linearise about what was fitted, since
     gain and lag act on the fitted signal. () where everything is stated. They are no Mechanisms.
+    shortfalls : sentences on what prepare could not do.
     """
 
     @property
@@ -91,6 +92,10 @@ class Engine(Protocol):
     @property
     def free_nuisances(self) -> tuple[Candidate, ...]:
         """None where everything is stated."""
+
+    @property
+    def shortfalls(self) -> tuple[str, ...]:
+        """So far."""
 
     def nuisance(self, name: str) -> Candidate | None:
         """The candidate whose single coordinate is the relative error of "modulus.medium1", "thickness.film", "d31".

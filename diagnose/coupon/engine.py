@@ -40,6 +40,7 @@ class CouponEngine:
     name: str = "material point"
     accuracy: Mapping[str, float] = field(default_factory=lambda: {"force_N": ACCURACY, "displacement_mm": ACCURACY})
     free_nuisances: tuple[Candidate, ...] = ()
+    shortfalls: tuple[str, ...] = ()
 
     def nuisance(self, name: str) -> Candidate | None:
         """Relative error of modulus.specimen or thickness.specimen, or an error of the column that drives."""

@@ -67,6 +67,11 @@ class HumEngine:
         others = tuple(c for c in engine.candidates if c.mechanism != "mains-hum")
         self.candidates = others if self._hum is None else (*others, self._hum)
 
+    @property
+    def shortfalls(self) -> tuple[str, ...]:
+        """Of the engine."""
+        return self._engine.shortfalls
+
     def nuisance(self, name: str) -> Candidate | None:
         """As the engine."""
         return self._engine.nuisance(name)

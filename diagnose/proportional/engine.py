@@ -48,6 +48,7 @@ class ProportionalEngine:
     free_nuisances: tuple[Candidate, ...]
     name: str = "charge proportional to force"
     accuracy: Mapping[str, float] = field(default_factory=dict)
+    shortfalls: tuple[str, ...] = ()
 
     def nuisance(self, name: str) -> Candidate | None:
         """None: moduli and thicknesses of a sensor that nobody knows hide in its sensitivity."""

@@ -77,6 +77,11 @@ class SegmentEngine:
             channels=max(1, len(self.model.segment.film.electrodes)),
         )
 
+    @property
+    def shortfalls(self) -> tuple[str, ...]:
+        """Candidates that the 3D model could not press as it should."""
+        return tuple(self.prepared.shortfalls.values())
+
     def nuisance(self, name: str) -> Candidate | None:
         """See diagnose.forward.Engine; also "offset_mm", the error of the first touch where a displacement drives."""
         return nuisance(self.scene, self.recording, name)

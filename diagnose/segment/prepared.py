@@ -49,7 +49,7 @@ class Prepared:
     relaxing : the layers whose memory is known.
 
     raw : the baseline's table on the diagnosis mesh; fit : the same with the smoothed answer of a finer mesh.
-    accuracy : see diagnose.forward.Engine.
+    accuracy, shortfalls : see diagnose.forward.Engine; shortfalls by name of the press.
     """
 
     def __init__(self, model: Model, options: MeshOptions, recording: Recording, report: Report) -> None:
@@ -59,6 +59,7 @@ class Prepared:
         self.depth_mm = MARGIN * self.pressed_mm + offset_reach_mm(recording)
         self.depths = Depths(SHARES)
         self._changes: dict[Name, Floats] = {}
+        self.shortfalls: dict[Name, str] = {}
         finest = finer_mesh(model, self.options, FINEST, MOST_NODES)
         meshes = finest, self._contact_mesh
         jobs = [replace(self.job(model, mesh), shares=PRESSED) for mesh in meshes]
@@ -113,11 +114,17 @@ class Prepared:
         Without any the candidate stays unprepared.
         """
         points = effect_of(candidate).points
-        known = [point for point in points if _name(candidate, point) in self._changes]
+        known = [point for point in points if press_name(candidate, point) in self._changes]
         for point in points:
-            if known and point not in known:
-                far = [float(np.linalg.norm(np.subtract(other, point))) for other in known]
-                self._changes[_name(candidate, point)] = self._changes[_name(candidate, known[int(np.argmin(far))])]
+            if point in known:
+                continue
+            name, instead = press_name(candidate, point), "it is no candidate"
+            if known:
+                nearest = min(known, key=lambda other: float(np.linalg.norm(np.subtract(other, point))))
+                self._changes[name] = self._changes[press_name(candidate, nearest)]
+                instead = f"its press at {_values(candidate, nearest)} stands in"
+            what = f"{candidate.mechanism} of the {candidate.component}"
+            self.shortfalls[name] = f"No equilibrium with {what} at {_values(candidate, point)}: {instead}."
 
     def _reduction(self, layers: Container[str]) -> Reduction:
         """The baseline with these layers relaxing, in a fixed order."""
@@ -146,7 +153,7 @@ class Prepared:
             changed = with_mechanisms(self.model, [candidate.switched_on(point)])
             job = self.job(changed, self._contact_mesh if moves else None)
             parts = SLIPS if job.model.physics.friction > 0.0 else 1
-            yield _name(candidate, point), (replace(job, back=back, parts=parts), int(moves))
+            yield press_name(candidate, point), (replace(job, back=back, parts=parts), int(moves))
 
     def job(self, model: Model, mesh: Sizes | None = None) -> Job:
         """The press of a changed model on a mesh, moved with its layers, at once: nothing relaxes."""
@@ -178,7 +185,7 @@ class Prepared:
             return None
         what = f"{setting.candidate.mechanism} of {setting.candidate.component}"
         weighed = zip(effect.weights(setting.values), effect.points, strict=True)
-        parts = [w * self._known(_name(setting.candidate, p), what) for w, p in weighed if abs(w) > ROUND_OFF]
+        parts = [w * self._known(press_name(setting.candidate, p), what) for w, p in weighed if abs(w) > ROUND_OFF]
         return np.sum(parts, axis=0) if parts else None
 
     def _known(self, name: Name, what: str) -> Floats:
@@ -194,10 +201,16 @@ def _all_there(outputs: list[Floats]) -> list[Floats]:
     return outputs
 
 
-def _name(candidate: Candidate, point: Sequence[float]) -> Name:
+def press_name(candidate: Candidate, point: Sequence[float]) -> Name:
     """The same for a nuisance and for the candidate that has it among others."""
     on = tuple((c.name, value) for c, value in zip(candidate.coordinates, point, strict=True) if value != 0.0)
     return (*candidate.name, on)
+
+
+def _values(candidate: Candidate, point: Sequence[float]) -> str:
+    """Parameters at a press, for a reader."""
+    parameters = candidate.parameters(point)
+    return ", ".join(f"{k} = {v:.3g}" if isinstance(v, float) else f"{k} = {v}" for k, v in parameters.items())
 
 
 def _at(place: Place) -> Name:

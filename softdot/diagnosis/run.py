@@ -104,7 +104,7 @@ def _fill(rig: Rig, options: Options, progress: Progress, folder: Path) -> dict[
     following = next_press(rig.recording, engine, findings)
     progress.stage("write")
     told = sentences(rig.recording, findings, following, proof.runs)
-    warnings = [*rig.recording.warnings, *proof.warnings]
+    warnings = [*rig.recording.warnings, *engine.shortfalls, *proof.warnings]
     summary = verdict(findings, [str(sentence) for sentence in told], following, proof.runs, warnings)
     summary["fit"]["failure"] = proof.failure
     summary |= {"softdot_version": installed_version(), "seed": seed}

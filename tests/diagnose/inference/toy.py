@@ -143,6 +143,7 @@ class ToyEngine:
     recording: Recording
     candidates: tuple = CANDIDATES
     accuracy: dict = field(default_factory=lambda: {"force_N": 0.01, "voltage_V": 0.01})
+    shortfalls: tuple[str, ...] = ()
     name: str = "toy"
     free_nuisances: tuple = ()
 

@@ -47,6 +47,7 @@ class ToyEngine:
     def __init__(self, recording, full_error=0.0):
         self.recording, self.full_error = recording, full_error
         self.accuracy = {"voltage_V": 0.002, "force_N": 0.002}
+        self.shortfalls = ()
 
     def nuisance(self, name):
         return None
