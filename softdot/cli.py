@@ -138,6 +138,7 @@ def _add_prove(commands: Any) -> None:
     prove.add_argument("--kinds", metavar="KIND,KIND", help=kinds)
     prove.add_argument("--staged", action="store_true", help="the first eight mechanisms only")
     prove.add_argument("--workers", type=int, metavar="N", help="processes, without it one per core")
+    prove.add_argument("--scheduler", metavar="ADDRESS", help="an existing Dask scheduler, tcp://host:8786")
     _add_output(prove)
 
 

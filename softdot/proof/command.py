@@ -20,7 +20,7 @@ def command(chosen: Namespace) -> int:
 
     rigs = tuple(chosen.rigs.split(",")) if chosen.rigs else RIGS
     kinds = tuple(chosen.kinds.split(",")) if chosen.kinds else KINDS
-    request = Request(chosen.cases, chosen.seed, rigs, chosen.staged, chosen.workers, kinds)
+    request = Request(chosen.cases, chosen.seed, rigs, chosen.staged, chosen.workers, kinds, chosen.scheduler)
     try:
         with only_the_summary_on_stdout(), points_on_terminal() as progress:
             summary = run_proof(request, Path(chosen.output), progress)

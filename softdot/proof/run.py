@@ -19,13 +19,15 @@ from softdot.proof.work import prove_case
 
 RIDGES = ("ridge-clamped", "ridge-free")
 RIGS = (*RIDGES, "dot-clamped")
+AWAY = "the Dask scheduler went away; finished cases are kept, start the proof again"
 
 
 @dataclass(frozen=True)
 class Request:
     """What is asked for. staged : the first eight mechanisms only. workers : processes, None for one per core.
 
-    kinds : of cases; each case is the same as among all kinds.
+    kinds : of cases; each case is the same as among all kinds. scheduler : address of a Dask cluster that sees the same
+    folders; None for processes of this computer.
     """
 
     cases: int
@@ -34,6 +36,7 @@ class Request:
     staged: bool = False
     workers: int | None = None
     kinds: tuple[str, ...] = KINDS
+    scheduler: str | None = None
     limit_s: float = 3600.0
 
 
@@ -43,7 +46,7 @@ def run_proof(request: Request, out: Path, progress: Progress | None = None) -> 
     Cases that an earlier proof left in out are not tried again. After Ctrl-C those that were finished stay.
     """
     _check(request)
-    place, program = store.begin(out), program_hash()
+    place, program = store.check(out), program_hash()
     cases = plan(request.cases, request.seed, request.rigs, request.staged, request.kinds)
     found = {case.name: record for case in cases if (record := store.kept(place, case, program)) is not None}
     missing = [case for case in cases if case.name not in found]
@@ -76,32 +79,21 @@ def _check(request: Request) -> None:
 def _tried(
     missing: Sequence[Case], request: Request, place: Path, program: str
 ) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Names and records as they come, from one process per core."""
+    """Names and records as they come, from one process per core or from a cluster that runs already."""
     if not missing:
         return
-    from distributed import as_completed
-
     from mesh.cache import folder
     from softdot.sweep.cluster import local_cluster
+    from softdot.sweep.scheduler import existing_cluster
+    from softdot.sweep.stream import all_ended
 
     terms = Terms(folder().resolve(), request.limit_s)
-    with local_cluster(request.workers) as client:
-        waiting = iter(missing)
-        names: dict[Any, str] = {}
-        running = as_completed(loop=client.loop)  # type: ignore[no-untyped-call]
-
-        def fill() -> None:
-            while len(names) < len(client.nthreads()) and (case := next(waiting, None)) is not None:
-                future = client.submit(prove_case, case, terms, place, program, pure=False)
-                names[future] = case.name
-                running.add(future)  # type: ignore[no-untyped-call]
-
-        fill()
-        for future in running:
-            error = future.exception()
-            lost = {"status": "lost", "reason": f"{type(error).__name__}: {error}", "score": None}
-            yield names.pop(future), lost if error is not None else dict(future.result())
-            fill()
+    arguments = {case.name: (case, terms, place.resolve(), program) for case in missing}
+    address = request.scheduler
+    with local_cluster(request.workers) if address is None else existing_cluster(address) as client:
+        store.begin(place)  # once somebody can work
+        for name, record in all_ended(client, prove_case, arguments, AWAY):
+            yield name, {"score": None, **record}
 
 
 def _finished(request: Request, place: Path, records: Sequence[Mapping[str, Any]], reused: int) -> dict[str, Any]:

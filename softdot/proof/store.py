@@ -16,14 +16,17 @@ COMMITMENTS, CASES, TABLE, CURVE = "commitments", "cases", "proof.md", "detectio
 PROOF = Product(FORMAT, "proof.json", frozenset({"proof.json", COMMITMENTS, CASES, TABLE, CURVE}))
 
 
-def begin(out: Path) -> Path:
-    """The folder, made where it is missing; an earlier proof in it stays. InputError."""
-    place = check_output(out, PROOF)
+def check(out: Path) -> Path:
+    """The folder, which may be missing yet or hold an earlier proof. InputError."""
+    return check_output(out, PROOF)
+
+
+def begin(place: Path) -> None:
+    """Make the folder where it is missing; an earlier proof in it stays."""
     for name in (COMMITMENTS, CASES):
         (place / name).mkdir(parents=True, exist_ok=True)
     if not (place / PROOF.summary).exists():
         write_json(place / PROOF.summary, {"format": FORMAT, "complete": False})
-    return place
 
 
 def commit(place: Path, name: str, digest: str) -> None:

@@ -1,6 +1,6 @@
-"""Points through a Dask cluster, each handed back as soon as it is solved."""
+"""Tasks through a Dask cluster, each handed back as soon as it has ended."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from geometry.errors import InputError
@@ -8,44 +8,52 @@ from softdot.config import Config
 from softdot.sweep.point import CRASHED, LOST, Record, failed, solve_point
 
 AWAY = "the Dask scheduler went away; finished points are kept, start the sweep again"
+Task = Callable[..., Record]
 
 
 def solve_all(client: Any, configs: Mapping[str, Config]) -> Iterator[tuple[str, Record]]:
-    """Name and record of every configuration, in the order in which they end.
+    """Name and record of every configuration, in the order in which they end."""
+    return all_ended(client, solve_point, {name: (config,) for name, config in configs.items()}, AWAY)
 
-    No more points are under way than there are threads: when a worker dies, only what it solved is suspected.
+
+def all_ended(
+    client: Any, task: Task, arguments: Mapping[str, tuple[Any, ...]], away: str
+) -> Iterator[tuple[str, Record]]:
+    """Name and record of the task with each arguments, in the order in which they end.
+
+    No more are under way than there are threads: when a worker dies, only what it worked on is suspected.
+    InputError with the sentence away where the scheduler disappears.
     """
     from distributed import as_completed
     from distributed.client import ClosedClientError
 
-    waiting = iter(configs.items())
+    waiting = iter(arguments.items())
     names: dict[Any, str] = {}
     running = as_completed(loop=client.loop)  # type: ignore[no-untyped-call]
+
+    def fill() -> None:
+        """Keep every thread busy, and one task at least under way while the workers are being replaced."""
+        threads = max(1, sum(client.nthreads().values()))
+        while len(names) < threads and (following := next(waiting, None)) is not None:
+            future = client.submit(task, *following[1], pure=False)
+            names[future] = following[0]
+            running.add(future)  # type: ignore[no-untyped-call]
+
     try:
-        _fill(client, waiting, names, running)
+        fill()
         for future in running:
+            if future.status == "cancelled":
+                raise InputError(away)
             yield names.pop(future), _record(future)
-            _fill(client, waiting, names, running)
+            fill()
     except (OSError, ClosedClientError):
-        raise InputError(AWAY) from None
-
-
-def _fill(client: Any, waiting: Iterator[tuple[str, Config]], names: dict[Any, str], running: Any) -> None:
-    """Keep every thread busy, and one point at least under way while the workers are being replaced."""
-    threads = max(1, sum(client.nthreads().values()))
-    while len(names) < threads and (following := next(waiting, None)) is not None:
-        name, config = following
-        future = client.submit(solve_point, config, pure=False)
-        names[future] = name
-        running.add(future)
+        raise InputError(away) from None
 
 
 def _record(future: Any) -> Record:
     """What the worker returned, or why it could not."""
     from distributed import KilledWorker
 
-    if future.status == "cancelled":
-        raise InputError(AWAY)
     error = future.exception()
     if error is None:
         return dict(future.result())

@@ -19,6 +19,7 @@ def tried(monkeypatch):
     numbers = []
 
     def fake(missing, _request, place, program):
+        store.begin(place)
         for case in missing:
             numbers.append(case.number)
             truth = {"kind": case.kind, "whitened_rms": case.size, "mechanisms": []}
@@ -72,6 +73,7 @@ def test_a_proof_that_was_stopped_goes_on(tried, tmp_path):
         (["--cases", "1", "--rigs", "table"], "--rigs 'table': must be of ridge-clamped"),
         (["--cases", "1", "--kinds", "triple"], "--kinds 'triple': must be of none"),
         (["--cases", "1", "--workers", "0"], "--workers 0: must be at least 1"),
+        (["--cases", "1", "--scheduler", "here"], "--scheduler 'here': must be tcp://HOST:PORT"),
     ],
 )
 def test_bad_input_is_one_sentence(arguments, sentence, tmp_path, capsys):
@@ -93,7 +95,8 @@ def test_a_foreign_folder_is_left_alone(tmp_path, capsys):
 
 
 def test_no_verdict_at_all_exits_3(monkeypatch, tmp_path, capsys):
-    def fail(missing, *_):
+    def fail(missing, _request, place, _program):
+        store.begin(place)
         yield from ((case.name, {"status": "crashed", "reason": "no", "score": None}) for case in missing)
 
     monkeypatch.setattr(run, "_tried", fail)
