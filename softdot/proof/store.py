@@ -13,7 +13,8 @@ from softdot.output_folder import Product, check_output
 
 FORMAT = "softdot-proof/1"
 COMMITMENTS, CASES, TABLE, CURVE = "commitments", "cases", "proof.md", "detection.png"
-PROOF = Product(FORMAT, "proof.json", frozenset({"proof.json", COMMITMENTS, CASES, TABLE, CURVE}))
+PROOF = Product(FORMAT, "proof.json", frozenset({"proof.json", ".proof.json.part", COMMITMENTS, CASES, TABLE, CURVE}))
+"""With what a proof leaves that was killed while it wrote."""
 
 
 def check(out: Path) -> Path:
@@ -23,10 +24,11 @@ def check(out: Path) -> Path:
 
 def begin(place: Path) -> None:
     """Make the folder where it is missing; an earlier proof in it stays."""
-    for name in (COMMITMENTS, CASES):
-        (place / name).mkdir(parents=True, exist_ok=True)
-    if not (place / PROOF.summary).exists():
+    place.mkdir(parents=True, exist_ok=True)
+    if not (place / PROOF.summary).exists():  # first of all: it tells whose folder this is
         write_json(place / PROOF.summary, {"format": FORMAT, "complete": False})
+    for name in (COMMITMENTS, CASES):
+        (place / name).mkdir(exist_ok=True)
 
 
 def commit(place: Path, name: str, digest: str) -> None:

@@ -94,6 +94,14 @@ def test_a_foreign_folder_is_left_alone(tmp_path, capsys):
     assert "diary.txt" in capsys.readouterr().err
 
 
+@pytest.mark.usefixtures("tried")
+def test_a_proof_that_was_killed_while_it_wrote_goes_on(tmp_path):
+    command = ["prove", "--staged", "--rigs", RIDGES, "-o", str(tmp_path / "proof"), "--cases", "4"]
+    assert main(command) == 0
+    (tmp_path / "proof" / ".proof.json.part").write_text("{")
+    assert main(command) == 0
+
+
 def test_no_verdict_at_all_exits_3(monkeypatch, tmp_path, capsys):
     def fail(missing, _request, place, _program):
         store.begin(place)
