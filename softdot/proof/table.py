@@ -57,8 +57,8 @@ def percent(rate: Mapping[str, Any]) -> str:
     """3 of 40, 7.5 % (2.6 to 20)."""
     if not rate["of"]:
         return "no case"
-    low, high = (f"{100.0 * rate[end]:.2g}" for end in ("low", "high"))
-    return f"{rate['count']} of {rate['of']}, {100.0 * rate['rate']:.3g} % ({low} to {high})"
+    share, low, high = (f"{round(100.0 * rate[end], 1):g}" for end in ("rate", "low", "high"))
+    return f"{rate['count']} of {rate['of']}, {share} % ({low} to {high})"
 
 
 def text(summary: Mapping[str, Any]) -> str:

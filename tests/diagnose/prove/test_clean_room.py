@@ -97,7 +97,8 @@ def test_the_truth_is_not_on_disk_while_a_case_is_diagnosed(monkeypatch, tmp_pat
     from diagnose.prove.world.cases import Case, Truth
     from softdot.proof import store, work
 
-    place = store.begin(tmp_path / "out")
+    place = store.check(tmp_path / "out")
+    store.begin(place)
     truth = Truth(Case(1, 0, "single", "ridge-clamped", ("leakage",), 5.0), {"leakage": 0.123456789},
                   {"leakage": {}}, {}, 5.0, 600.0)
     monkeypatch.setattr(trial, "concealed", lambda _case: (truth, []))
@@ -137,7 +138,8 @@ def test_a_record_whose_truth_was_changed_is_not_kept(tmp_path):
     from diagnose.prove.world.cases import Case
     from softdot.proof import store
 
-    place, case = store.begin(tmp_path / "out"), Case(1, 0, "none", "ridge-free")
+    place, case = store.check(tmp_path / "out"), Case(1, 0, "none", "ridge-free")
+    store.begin(place)
     sealed = seal({"kind": "none"})
     store.commit(place, case.name, sealed.digest)
     record = {"case": asdict(case), "program": "p", "status": "scored", "truth": sealed.truth, "salt": sealed.salt}
