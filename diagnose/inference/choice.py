@@ -95,7 +95,7 @@ class Judge:
 def choose(
     model: ObservedModel, found: Screening, p_mismatch: float, rng: np.random.Generator, report: Report
 ) -> Choice:
-    """Single mechanisms first; pairs only where the best single one leaves too much."""
+    """Single mechanisms first; pairs only where the best single one leaves too much or has a value no part can have."""
     fits = singles(model, found, report)
     if not fits:
         decision = decide(Evidence(p_mismatch, 0.0, 0.0, 0.0, (), 0), RATES)
@@ -106,7 +106,7 @@ def choose(
         report("held-out presses", count, len(fits))
         models.append(judge.judged(fit))
     best = judge.best(models)
-    if best.p_left <= RATES.level:
+    if _doubtful(best):
         models, best = _with_pairs(judge, models, best, report)
     rest = _others(models, best)
     best = judge.judged(best.fit, DRAWS)
@@ -128,7 +128,7 @@ def _with_pairs(
         better = [one for one in second if judge.gained(one.forecast, best.forecast).lower > 0.0]
         models += better
         best = judge.best([best, *better])
-        if best.p_left > RATES.level:
+        if not _doubtful(best):
             break
         tried += first.fit.candidates
     if best is single:
