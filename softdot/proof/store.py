@@ -8,7 +8,8 @@ from typing import Any
 
 from diagnose.prove.seal import verified
 from diagnose.prove.world.cases import Case
-from softdot.numbers import write_json
+from geometry.whole_file import whole_file
+from softdot.numbers import plain, write_json
 from softdot.output_folder import Product, check_output
 
 FORMAT = "softdot-proof/1"
@@ -38,8 +39,10 @@ def commit(place: Path, name: str, digest: str) -> None:
 
 
 def keep(place: Path, name: str, record: dict[str, Any]) -> None:
-    """Write a record, whole or not at all."""
-    write_json(place / CASES / f"{name}.json", record)
+    """Write a record, whole or not at all; its truth to the last digit, since the digest is of that."""
+    text = json.dumps({**plain(record), "truth": record["truth"]}, indent=2, allow_nan=False)
+    with whole_file(place / CASES / f"{name}.json") as beside:
+        beside.write_text(text, "utf-8")
 
 
 def kept(place: Path, case: Case, program: str) -> dict[str, Any] | None:

@@ -140,7 +140,7 @@ def test_a_record_whose_truth_was_changed_is_not_kept(tmp_path):
 
     place, case = store.check(tmp_path / "out"), Case(1, 0, "none", "ridge-free")
     store.begin(place)
-    sealed = seal({"kind": "none"})
+    sealed = seal({"kind": "none", "whitened_rms": 1.0 / 3.0})
     store.commit(place, case.name, sealed.digest)
     record = {"case": asdict(case), "program": "p", "status": "scored", "truth": sealed.truth, "salt": sealed.salt}
     store.keep(place, case.name, record)
