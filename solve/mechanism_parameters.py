@@ -36,10 +36,19 @@ class ParasiticCapacitance(Parameters):
 
 
 class LowPass(Parameters):
-    """A Butterworth low-pass behind the read-out."""
+    """A low-pass behind the read-out, Butterworth's where no quality is given."""
 
-    cutoff_Hz: Positive = Field(description="corner frequency")
+    cutoff_Hz: Positive = Field(description="where half the power is left")
     order: Annotated[int, Field(ge=1, le=8)] = Field(1, description="order")
+    quality: Annotated[float, Field(gt=0, le=10, allow_inf_nan=False)] | None = Field(
+        None, description="of order 2: 0.5 two equal RC stages, 0.577 Bessel, 0.707 and none Butterworth"
+    )
+
+    @model_validator(mode="after")
+    def _second_order(self) -> Self:
+        if self.quality is not None and self.order != 2:
+            raise ValueError(f"quality is for order = 2 only, order is {self.order}")
+        return self
 
 
 class Saturation(Parameters):

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from solve.filters import Filter
 from solve.materials.prony import Prony
 from solve.materials.softening import Softening
 
@@ -48,8 +49,8 @@ class Physics:
     bonds : bond -> stiffness. friction : Coulomb coefficient between dot and surface.
     rig_compliance_mm_per_N lies between the displacement sensor and the dot, moving_mass_g between the force sensor
     and the dot. prestretch : nominal strain of the film in x and y. contact_charge_pC : charge that the dot leaves on
-    the electrodes, in proportion to the contact area, all of it at the largest area. low_pass : corner (Hz) and order,
-    hum : frequency (Hz) and amplitude (V), crosstalk : channel (from 1) -> share of the other channels' voltage.
+    the electrodes, in proportion to the contact area, all of it at the largest area. hum : frequency (Hz) and amplitude
+    (V). crosstalk : channel (from 1) -> share of the other channels' voltage.
     """
 
     viscosity: Mapping[str, Prony] = field(default_factory=dict)
@@ -63,7 +64,7 @@ class Physics:
     prestretch: tuple[float, float] = (0.0, 0.0)
     pyroelectric: Pyroelectric = Pyroelectric()
     contact_charge_pC: float = 0.0
-    low_pass: tuple[tuple[float, int], ...] = ()
+    low_pass: tuple[Filter, ...] = ()
     hum: tuple[tuple[float, float], ...] = ()
     crosstalk: Mapping[int, float] = field(default_factory=dict)
 

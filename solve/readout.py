@@ -10,7 +10,8 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from mesh.types import Floats
-from solve.amplifier import SAMPLES, amplify
+from solve.amplifier import amplify
+from solve.filters import SAMPLES
 from solve.parameters import Press, Readout, Waveform
 from solve.physics import Physics
 from solve.result import PressResult

@@ -7,6 +7,7 @@ from typing import Any
 
 from geometry.dot_shape import resolve_dot
 from solve.bond import layer_stiffness
+from solve.filters import Filter
 from solve.materials.parameters import (
     Hyperfoam,
     Linear,
@@ -48,7 +49,8 @@ def _parasitic(model: Model, component: str, values: Any) -> Model:
 
 
 def _low_pass(model: Model, component: str, values: Any) -> Model:
-    return _physics(model, low_pass=(*model.physics.low_pass, (values.cutoff_Hz, values.order)))
+    own = Filter(values.cutoff_Hz, values.order, quality=values.quality)
+    return _physics(model, low_pass=(*model.physics.low_pass, own))
 
 
 def _saturation(model: Model, component: str, values: Any) -> Model:

@@ -18,11 +18,15 @@ ON_FLOOR = 1.2
 
 def rate(scores: Iterable[Score], holds: Callable[[Score], bool]) -> dict[str, Any]:
     """How many of how many, with the 95 % interval."""
-    found = [bool(holds(score)) for score in scores]
-    if not found:
+    return share([bool(holds(score)) for score in scores])
+
+
+def share(holds: Sequence[bool]) -> dict[str, Any]:
+    """How many hold, with the 95 % interval."""
+    if not holds:
         return {"count": 0, "of": 0, "rate": None, "low": None, "high": None}
-    low, high = wilson_interval(sum(found), len(found))
-    return {"count": sum(found), "of": len(found), "rate": sum(found) / len(found), "low": low, "high": high}
+    low, high = wilson_interval(sum(holds), len(holds))
+    return {"count": sum(holds), "of": len(holds), "rate": sum(holds) / len(holds), "low": low, "high": high}
 
 
 def tally(scores: Sequence[Score]) -> dict[str, Any]:
@@ -44,8 +48,8 @@ def tally(scores: Sequence[Score]) -> dict[str, Any]:
         "pairs_exact": rate(of[PAIR], lambda s: s.exact),
         "ambiguous_told": rate(of[AMBIGUOUS], lambda s: s.group > 1 or not s.named),
         "held_out_on_floor": rate(told, lambda s: (s.held_out or 0.0) <= ON_FLOOR),
-        "covered": _plain_rate([holds for _, holds in covered]),
-        "covered_by_value": {name: _plain_rate([h for n, h in covered if n == name]) for name in
+        "covered": share([holds for _, holds in covered]),
+        "covered_by_value": {name: share([h for n, h in covered if n == name]) for name in
                              sorted({n for n, _ in covered})},
         "mean_group": float(np.mean([s.group for s in clear if s.grouped])) if any(s.grouped for s in clear) else None,
         "mean_overlap": _mean([s.overlap for s in of[SINGLE] if s.overlap is not None]),
@@ -80,13 +84,6 @@ def _by_mechanism(scores: Sequence[Score]) -> dict[str, Any]:
         }
         for name in names
     }
-
-
-def _plain_rate(holds: Sequence[bool]) -> dict[str, Any]:
-    if not holds:
-        return {"count": 0, "of": 0, "rate": None, "low": None, "high": None}
-    low, high = wilson_interval(sum(holds), len(holds))
-    return {"count": sum(holds), "of": len(holds), "rate": sum(holds) / len(holds), "low": low, "high": high}
 
 
 def _mean(values: Sequence[float | None]) -> float | None:

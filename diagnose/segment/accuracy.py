@@ -7,7 +7,7 @@ from mesh.types import Floats
 
 LEAST = 0.003
 """What the table and its interpolation add: see tests/diagnose/segment."""
-LITTLE = 0.02
+SMALL_CHARGE = 0.02
 """Of the largest charge: one that changes sign is not relative to itself there."""
 SEEN: Floats = np.linspace(0.2, 1.0, 9)
 """Shares of the depth at which both meshes are compared."""
@@ -22,7 +22,7 @@ def accuracy(middle: Smooth, fine: Smooth, ratio: float) -> dict[str, float]:
     """
     left = ratio**2 / (1.0 - ratio**2)
     at_middle, at_fine = middle.at(SEEN), fine.at(SEEN)
-    size = np.maximum(np.abs(at_fine), LITTLE * np.abs(at_fine).max(axis=0))
+    size = np.maximum(np.abs(at_fine), SMALL_CHARGE * np.abs(at_fine).max(axis=0))
     off = np.hypot(left * (np.abs(at_fine - at_middle) / np.maximum(size, 1e-300)).max(axis=0), fine.error)
     steepness = np.log(at_fine[-1, 0] / at_fine[0, 0])  # over the depths seen: a force error is a smaller one of depth
     errors = {"force_N": off[0], "voltage_V": off[2:].max(), "displacement_mm": off[0] / max(steepness, 1.0)}

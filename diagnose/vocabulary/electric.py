@@ -7,7 +7,8 @@ from typing import Any
 from diagnose.forward import Candidate, Coordinate
 from diagnose.vocabulary.scene import Scene, growing
 
-HIGHEST_ORDER = 8
+SHARPEST = 2.0  # Q^2 of a filter whose resonance is 3 dB
+ONE_STAGE = 1e-3  # Q^2 below which the second stage is too fast to be seen
 CLIPPED = 20.0  # an amplifier that stops at less than this part of what was recorded gives no signal
 HUM = 10.0  # of the largest voltage
 
@@ -49,19 +50,29 @@ def _parasitic(scene: Scene) -> Candidate:
 
 
 def _low_pass(scene: Scene) -> Candidate:
-    """Time constant 1 / (2 pi corner), from what one sample shows to the length of a run; order 1 plus a whole number.
+    """H(s) = 1 / (1 + s T + k s^2 T^2): T from what one sample shows to the length of a run, k = Q^2 of order two.
 
-    The delay of a Butterworth filter hardly depends on its order, so that fits may begin at several.
+    T is the delay of what changes slowly, whatever k; k = 0 is one RC stage, 1/3 Bessel's filter, 1/2 Butterworth's.
     """
     scale = 2.0 * scene.step_s
     time = growing("time_constant", scale, scene.duration_s, (scale, 10.0 * scale, 100.0 * scale))
-    order = Coordinate("more_order", 0.0, HIGHEST_ORDER - 1.0, (1.0, 3.0))
+    second = Coordinate("second_order", 0.0, SHARPEST, (0.25, 0.5))
 
     def parameters(values: Sequence[float]) -> dict[str, Any]:
         time_constant = scale * sinh(max(values[0], 1e-9))
-        return {"cutoff_Hz": 1.0 / (2.0 * pi * time_constant), "order": 1 + round(values[1])}
+        corner_Hz = half_power(values[1]) / (2.0 * pi * time_constant)
+        if values[1] < ONE_STAGE:
+            return {"cutoff_Hz": corner_Hz, "order": 1}
+        return {"cutoff_Hz": corner_Hz, "order": 2, "quality": sqrt(values[1])}
 
-    return Candidate("low-pass", "readout", (time, order), parameters, units={"cutoff_Hz": "Hz", "order": ""})
+    units = {"cutoff_Hz": "Hz", "order": "", "quality": ""}
+    return Candidate("low-pass", "readout", (time, second), parameters, units=units)
+
+
+def half_power(k: float) -> float:
+    """w T at which |1 + i w T - k (w T)^2|^2 = 2; 1 for k = 0."""
+    half = k - 0.5
+    return 1.0 / sqrt(hypot(half, k) - half)
 
 
 def _saturation(scene: Scene) -> Candidate:

@@ -11,19 +11,16 @@ CURVES = (("detected", "detected", "#7a7a7a"), ("named", "named, or in a fair gr
 
 
 def draw(by_size: Sequence[Mapping[str, Any]], path: Path) -> None:
-    """Rates with Wilson's intervals; nothing but axes without cases."""
+    """Rates with Wilson's intervals, one point for each bin of sizes."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(6.4, 3.8), layout="constrained")
     axes = figure.subplots()
     for shift, (key, words, colour) in enumerate(CURVES):
-        known = [one for one in by_size if one[key]["of"]]
-        if not known:
-            continue
-        place = [one["median"] * (1.0 + 0.03 * (shift - 1)) for one in known]
-        rates = [100.0 * one[key]["rate"] for one in known]
-        reach = [[max(0.0, 100.0 * (one[key]["rate"] - one[key]["low"])) for one in known],
-                 [max(0.0, 100.0 * (one[key]["high"] - one[key]["rate"])) for one in known]]
+        place = [one["median"] * (1.0 + 0.03 * (shift - 1)) for one in by_size]
+        rates = [100.0 * one[key]["rate"] for one in by_size]
+        reach = [[max(0.0, 100.0 * (one[key]["rate"] - one[key]["low"])) for one in by_size],
+                 [max(0.0, 100.0 * (one[key]["high"] - one[key]["rate"])) for one in by_size]]
         axes.errorbar(
             place, rates, reach, color=colour, marker="o", markersize=4, capsize=2, linewidth=1.2, label=words
         )
@@ -32,8 +29,7 @@ def draw(by_size: Sequence[Mapping[str, Any]], path: Path) -> None:
     axes.set_xticks(SIZES, labels=[f"{size:g}" for size in SIZES])
     axes.minorticks_off()
     axes.grid(alpha=0.3)
-    if by_size:
-        axes.legend(frameon=False)
+    axes.legend(frameon=False)
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)
     figure.savefig(path, dpi=150)

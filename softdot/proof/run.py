@@ -114,7 +114,9 @@ def _finished(request: Request, place: Path, records: Sequence[Mapping[str, Any]
         "rates": tally(scores), "rivals": rival_rates(records), "hardware": hardware(),
     })  # fmt: skip
     (place / store.TABLE).write_text(text(summary), "utf-8")
-    draw(summary["rates"]["by_size"], place / store.CURVE)
+    (place / store.CURVE).unlink(missing_ok=True)  # an earlier one may be of other kinds of cases
+    if summary["rates"]["by_size"]:
+        draw(summary["rates"]["by_size"], place / store.CURVE)
     write_json(place / store.PROOF.summary, summary)
     return summary
 

@@ -4,9 +4,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from diagnose.prove.score import ALIKE
-from diagnose.prove.tally import CLEAR
+from diagnose.prove.tally import CLEAR, share
 from diagnose.prove.world.cases import LEFT_OUT, NONE, OUTSIDE, SINGLE
-from diagnose.statistics.wilson import wilson_interval
 
 HEAD = {
     "false_names_without_effect": "something named without any effect",
@@ -33,10 +32,7 @@ def rival_rates(records: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
 def _of_rival(name: str, records: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     def rate(kinds: tuple[str, ...], least: float, holds: Any) -> dict[str, Any]:
         inside = [r for r in records if r["truth"]["kind"] in kinds and r["truth"]["whitened_rms"] >= least]
-        count = sum(bool(holds(r["rivals"][name], r)) for r in inside)
-        low, high = wilson_interval(count, len(inside)) if inside else (None, None)
-        return {"count": count, "of": len(inside), "rate": count / len(inside) if inside else None, "low": low,
-                "high": high}
+        return share([bool(holds(r["rivals"][name], r)) for r in inside])
 
     clear = [r["rivals"][name]["after"] for r in records
              if r["truth"]["kind"] == SINGLE and r["truth"]["whitened_rms"] >= CLEAR]
@@ -70,9 +66,10 @@ def text(summary: Mapping[str, Any]) -> str:
     lines = ["# Concealed proof", "", f"{what} In brackets: Wilson's 95 % intervals.", "", "| | |", "|---|---|"]
     lines += [f"| {words} | {percent(rates[name])} |" for name, words in HEAD.items()]
     lines += [f"| mean size of a fair group | {_figure(rates['mean_group'])} |",
-              f"| mean overlap of the places of the excess | {_figure(rates['mean_overlap'])} |", "", *_sizes(rates),
-              "", *_mechanisms(rates), "", *_others(summary), "", "![detection and naming](detection.png)", ""]
-    return "\n".join(lines)
+              f"| mean overlap of the places of the excess | {_figure(rates['mean_overlap'])} |", ""]
+    if rates["by_size"]:
+        lines += [*_sizes(rates), "", *_mechanisms(rates), "", "![detection and naming](detection.png)", ""]
+    return "\n".join([*lines, *_others(summary), ""])
 
 
 def _sizes(rates: Mapping[str, Any]) -> list[str]:
@@ -93,8 +90,7 @@ def _others(summary: Mapping[str, Any]) -> list[str]:
     rates = summary["rates"]
     unknown = [rates["abstention_left_out"], rates["abstention_outside"]]
     count, of = (sum(one[key] for one in unknown) for key in ("count", "of"))
-    low, high = wilson_interval(count, of) if of else (None, None)
-    ours = {"count": count, "of": of, "rate": count / of if of else None, "low": low, "high": high}
+    ours = share([number < count for number in range(of)])
     head = ("", "named without effect", "clear effects exactly named", "unknown effects not named")
     lines = [f"| {' | '.join(head)} |", "|---|---|---|---|"]
     lines.append(f"| {OURS} | {percent(rates['false_names_without_effect'])} | {percent(rates['clear_exact'])} | "

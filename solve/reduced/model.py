@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mesh.types import Floats
-from solve.amplifier import amplify, filters, input_of, largest_gain
+from solve.amplifier import amplify, filters, input_of
 from solve.parameters import Readout
 from solve.physics import Physics
 from solve.reduced.answer import Accuracy, ErrorBound, Raw, Response
@@ -111,8 +111,8 @@ class ReducedModel:
         voltage = (1.0 if np.isinf(resistance) else 2.0) * charge / abs(capacitance)
         if np.isfinite(resistance):
             voltage = min(voltage, abs(resistance) * MARGIN * self.accuracy.charge_rate * rate)
-        for _, order, kind in filters(readout, physics):
-            voltage *= largest_gain(order, kind)
+        for one in filters(readout, physics):
+            voltage *= one.largest_gain()
         return ErrorBound(MARGIN * self.accuracy.force * force, charge, voltage)
 
     def _largest(self, answer: Raw, wired: Floats) -> tuple[float, float, float]:

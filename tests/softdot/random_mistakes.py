@@ -131,6 +131,7 @@ def impossible_rest(size, reach):
         ("crosstalk", "channel-99", {"coupling": 0.1}),
         ("low-pass", "readout", {"cutoff_Hz": size, "order": 2.5}),
         ("low-pass", "readout", {"cutoff_Hz": size, "order": 9}),
+        ("low-pass", "readout", {"cutoff_Hz": size, "order": 3, "quality": 0.5}),
         ("property-error", "medium2", {"modulus_factor": 0.0}),
         ("property-error", "medium2", {"thickness_factor": float("nan")}),
         ("property-error", "film", {"d31_factor": -1.0}),

@@ -5,6 +5,7 @@ import pytest
 from scipy.signal import butter, lsim
 
 from solve.amplifier import amplify
+from solve.filters import Filter
 from solve.parameters import Readout
 from solve.physics import Physics
 
@@ -15,7 +16,7 @@ def by_scipy(time, charge, resistance, capacitance, readout, low_pass):
     """V(s) = s R / (1 + s R C) Q(s), then the filters, each exact for what is linear between the samples."""
     voltage = lsim(([resistance, 0.0], [resistance * capacitance, 1.0]), charge, time)[1]
     own = [(readout.low_pass_Hz, readout.filter_order, "low"), (readout.high_pass_Hz, readout.filter_order, "high")]
-    for corner, order, kind in [*own, *((corner, order, "low") for corner, order in low_pass)]:
+    for corner, order, kind in [*own, low_pass]:
         if corner is not None:
             voltage = lsim(butter(order, 2.0 * np.pi * corner, kind, analog=True), voltage, time)[1]
     return readout.polarity * voltage
@@ -36,9 +37,8 @@ def by_scipy(time, charge, resistance, capacitance, readout, low_pass):
 def test_amplifier_is_its_transfer_function(readout, resistance, capacitance):
     time = np.linspace(0.0, 2.0, 6001)
     charge = 1e-10 * np.sin(9.0 * time) ** 2
-    low_pass = ((40.0, 2),)
-    expected = by_scipy(time, charge, resistance, capacitance, readout, low_pass)
-    found = amplify(time, charge, FILM_F, readout, Physics(low_pass=low_pass))
+    expected = by_scipy(time, charge, resistance, capacitance, readout, (40.0, 2, "low"))
+    found = amplify(time, charge, FILM_F, readout, Physics(low_pass=(Filter(40.0, 2),)))
     np.testing.assert_allclose(found, expected, atol=1e-9 * np.abs(expected).max())
 
 

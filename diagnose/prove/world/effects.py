@@ -67,7 +67,7 @@ def _extra_pF(bench: Bench, s: float) -> float:
 
 def _slow(reality: Reality, bench: Bench, s: float) -> Reality:
     have = reality.amplifier
-    return replace(reality, amplifier=replace(have, filters=(*have.filters, Filter(_corner_Hz(s), 2))))
+    return replace(reality, amplifier=replace(have, filters=(*have.filters, Filter(_corner_Hz(s), 4))))
 
 
 def _corner_Hz(s: float) -> float:
@@ -185,7 +185,7 @@ def _is(name: str, scale: float, start: float = 0.0) -> Callable[[Bench, float],
 
 
 def _all() -> tuple[Effect, ...]:
-    bessel, fractional = "Bessel where Butterworth is fitted", "fractional Zener where Prony is fitted"
+    bessel, fractional = "Bessel of order four where order two is fitted", "fractional Zener where Prony is fitted"
     gent, tanh = "Gent where Yeoh is fitted", "Dorfmann-Ogden where Ogden-Roxburgh is fitted"
     film_bond, upper_bond = "bond-film-medium2", "bond-medium1-film"
     known = [

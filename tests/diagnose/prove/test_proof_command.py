@@ -57,6 +57,14 @@ def test_a_proof_counts_and_writes_all_that_it_promises(tmp_path, capsys):
     assert "not run: pysindy" in (out / "proof.md").read_text() or "sparse regression" in summary["rivals"]
 
 
+@pytest.mark.usefixtures("tried")
+def test_without_effects_there_is_no_curve_to_draw(tmp_path):
+    out = tmp_path / "proof"
+    assert main(["prove", "--cases", "2", "--kinds", "none", "-o", str(out)]) == 0
+    assert not (out / "detection.png").exists()
+    assert "detection.png" not in (out / "proof.md").read_text()
+
+
 def test_a_proof_that_was_stopped_goes_on(tried, tmp_path):
     command = ["prove", "--staged", "--rigs", RIDGES, "-o", str(tmp_path / "proof"), "--cases"]
     assert main([*command, "10"]) == 0
