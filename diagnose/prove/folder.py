@@ -5,15 +5,15 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from diagnose.prove.world.bench import BENCHES, Bench
+from diagnose.prove.world.bench import Bench
 from diagnose.prove.world.made import Film, Layer
 from diagnose.prove.world.reality import Signals
 
 
-def files(bench_name: str, runs: Sequence[Signals]) -> Mapping[str, str]:
+def files(bench: Bench, runs: Sequence[Signals]) -> Mapping[str, str]:
     """Name -> text of every file; nothing in them tells one case from another but the samples."""
     texts = {f"press-{number:02d}.csv": _csv(run) for number, run in enumerate(runs, start=1)}
-    return {"rig.toml": rig_text(BENCHES[bench_name]), **texts}
+    return {"rig.toml": rig_text(bench), **texts}
 
 
 def rig_text(bench: Bench) -> str:
@@ -21,8 +21,11 @@ def rig_text(bench: Bench) -> str:
     lines = ['format = "softdot-recording/1"', "", *_segment(bench), *_dot(bench), *_amplifier(bench)]
     for number, run in enumerate(bench.runs, start=1):
         lines += ["[[runs]]", f'file = "press-{number:02d}.csv"', f'label = "{run.label}"', 'drive = "displacement_mm"']
-        if run.resistance_MOhm is not None:
-            lines.append(f"readout = {{ input_resistance_MOhm = {run.resistance_MOhm:g} }}")
+        own = [] if run.resistance_MOhm is None else [f"input_resistance_MOhm = {run.resistance_MOhm:g}"]
+        if run.added_pF:
+            own.append(f"input_capacitance_pF = {bench.amplifier.capacitance_pF + run.added_pF:g}")
+        if own:
+            lines.append(f"readout = {{ {', '.join(own)} }}")
         lines += ["[runs.nuisance]", *(f"{name} = {width:g}" for name, width in bench.nuisance), ""]
     return "\n".join(lines)
 

@@ -23,6 +23,7 @@ class Score:
     component, mechanism : as far as something is named. group : members of the group that holds the truth, else 1.
     overlap : of the localised excess with that of the generator, 0 to 1. held_out : error over noise floor.
     covered : value -> whether its interval holds it. next_sigma : what the next press is said to separate.
+    resolved : whether that press, once made, leaves the truth alone; None where it was not made.
     """
 
     case: int
@@ -43,6 +44,7 @@ class Score:
     gain: float | None = None
     covered: Mapping[str, bool] = field(default_factory=dict)
     next_sigma: float | None = None
+    resolved: bool | None = None
     seconds: float = 0.0
 
     @property
@@ -76,7 +78,7 @@ def scored(
         held_out["nrmse_after"] / floor if named and floor and held_out.get("nrmse_after") is not None else None,
         held_out.get("log_score_gain_per_press"),
         _covered(truth["mechanisms"], verdict["missing_physics"]) if exact else {},
-        (verdict.get("next_experiment") or {}).get("expected_separation_sigma"), seconds,
+        (verdict.get("next_experiment") or {}).get("expected_separation_sigma"), seconds=seconds,
     )
 
 

@@ -47,6 +47,7 @@ def tally(scores: Sequence[Score]) -> dict[str, Any]:
         "clear_component": rate(clear, lambda s: s.component),
         "pairs_exact": rate(of[PAIR], lambda s: s.exact),
         "ambiguous_told": rate(of[AMBIGUOUS], lambda s: s.group > 1 or not s.named),
+        "next_press_resolves": share([s.resolved for s in scores if s.resolved is not None]),
         "held_out_on_floor": rate(told, lambda s: (s.held_out or 0.0) <= ON_FLOOR),
         "covered": share([holds for _, holds in covered]),
         "covered_by_value": {name: share([h for n, h in covered if n == name]) for name in

@@ -1,7 +1,7 @@
 """One case from its seed to its score: conceal, commit, diagnose in the clean room, reveal, verify, compare."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -10,8 +10,9 @@ import numpy as np
 from diagnose.prove import rivals
 from diagnose.prove.folder import files
 from diagnose.prove.room import Heard, diagnosed
-from diagnose.prove.score import Name, scored
+from diagnose.prove.score import Name, Score, scored
 from diagnose.prove.seal import seal, verified
+from diagnose.prove.settle import with_asked
 from diagnose.prove.world.bench import BENCHES
 from diagnose.prove.world.cases import Case, concealed, rival_family
 from diagnose.prove.world.effects import EFFECTS, fits
@@ -37,24 +38,43 @@ def tried(case: Case, terms: Terms, commit: Commit) -> dict[str, Any]:
     sealed = seal(truth.plain())
     digest = sealed.digest
     commit(case.name, digest)
-    options = (FAST, "--without", case.without) if case.without else (FAST,)
-    heard = diagnosed(files(case.bench, runs), terms.cache, terms.limit_s, options)
+    heard = _heard(case, terms, files(BENCHES[case.bench], runs))
     if not verified(sealed.truth, sealed.salt, digest):
         raise RuntimeError(f"{case.name}: the truth is not what was committed")
     found = {name: asdict(opinion) for name, opinion in rivals.opinions(case.bench, runs).items()}
     record = {"case": asdict(case), "truth": sealed.truth, "salt": sealed.salt, "digest": digest, "rivals": found}
-    return {**record, **_judged(case, sealed.truth, heard)}
-
-
-def _judged(case: Case, truth: Mapping[str, Any], heard: Heard) -> dict[str, Any]:
-    """Score and verdict; without a verdict the reason."""
     if heard.verdict is None:
         nothing = {"verdict": None, "score": None}
-        return {"status": "no verdict", "reason": heard.reason, "seconds": heard.seconds, **nothing}
-    score = scored(truth, heard.verdict, lambda name: separation(case, name), heard.seconds)
-    return {
-        "status": "scored", "reason": None, "seconds": heard.seconds, "verdict": heard.verdict, "score": score.plain()
-    }
+        return {**record, "status": "no verdict", "reason": heard.reason, "seconds": heard.seconds, **nothing}
+    score = _scored(case, sealed.truth, heard.verdict, heard.seconds)
+    if score.group > 1 and heard.next_press is not None:
+        longer = with_asked(case, runs, heard.verdict["next_experiment"], heard.next_press)
+        if longer is not None:
+            record["asked"], resolved = _settled(case, terms, sealed.truth, files(*longer))
+            score = replace(score, resolved=resolved)
+    own = {"seconds": heard.seconds, "verdict": heard.verdict, "score": score.plain()}
+    return {**record, "status": "scored", "reason": None, **own}
+
+
+def _heard(case: Case, terms: Terms, recording: Mapping[str, str]) -> Heard:
+    options = (FAST, "--without", case.without) if case.without else (FAST,)
+    return diagnosed(recording, terms.cache, terms.limit_s, options)
+
+
+def _scored(case: Case, truth: Mapping[str, Any], verdict: Mapping[str, Any], seconds: float) -> Score:
+    return scored(truth, verdict, lambda name: separation(case, name), seconds)
+
+
+def _settled(
+    case: Case, terms: Terms, truth: Mapping[str, Any], recording: Mapping[str, str]
+) -> tuple[dict[str, Any], bool | None]:
+    """What a recording with the press that was asked for tells, and whether it names just the truth."""
+    heard = _heard(case, terms, recording)
+    if heard.verdict is None:
+        return {"reason": heard.reason}, None
+    score = _scored(case, truth, heard.verdict, heard.seconds)
+    told = {"named": [list(name) for name in score.named], "group": score.group, "seconds": heard.seconds}
+    return told, score.exact and score.group == 1
 
 
 def separation(case: Case, rival: Name) -> float | None:

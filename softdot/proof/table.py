@@ -16,6 +16,7 @@ HEAD = {
     "abstention_outside": "effect outside the vocabulary: nothing named",
     "pairs_exact": "two effects at once: both named",
     "ambiguous_told": "designed ambiguity: told, or nothing named",
+    "next_press_resolves": "several left, the press made that was asked for: just the truth is named",
     "held_out_on_floor": "held-out error within 1.2 times the noise floor, where named exactly",
     "covered": "90 % intervals that hold the true value",
 }

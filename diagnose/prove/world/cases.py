@@ -11,6 +11,7 @@ from diagnose.prove.world.bench import BENCHES, VOLTAGE_ONLY, Bench
 from diagnose.prove.world.effects import EFFECTS, KNOWN, STAGED, UNKNOWN, applied, fits
 from diagnose.prove.world.made import Floats
 from diagnose.prove.world.noise import noises
+from diagnose.prove.world.programme import Run
 from diagnose.prove.world.reality import Reality, Signals, baseline, record
 from diagnose.prove.world.size import PER_RUN, Judge, channels, judge_of, noise_of, shares
 
@@ -27,6 +28,7 @@ PAIRS: list[tuple[str, ...]] = [
 SPECIMENS = 4
 DISPLACEMENT_NOISE_MM = 2e-4
 SIZING_STEPS = 4
+AGAIN = 1  # tells the draws of one more press from those of the case
 
 
 @dataclass(frozen=True)
@@ -114,10 +116,9 @@ BENCHES_FIRST = next(iter(BENCHES))
 def concealed(case: Case) -> tuple[Truth, list[Signals]]:
     """What is true and what is recorded of it, noise included."""
     bench, rng = BENCHES[case.bench], np.random.default_rng([case.seed, case.number])
-    judge = judge_of(case.bench)
+    judge, strengths = judge_of(case.bench), _strengths(case)
     nuisance = _nuisance(bench, rng)
     plainly = replace(baseline(bench), nuisance=nuisance)
-    strengths = {name: _strength(judge, name, case.size) for name in case.effects}
     reality = applied(plainly, bench, strengths)
     left = judge.left(reality, plainly)
     values = {name: EFFECTS[name].truth(bench, s) for name, s in strengths.items()}
@@ -126,6 +127,25 @@ def concealed(case: Case) -> tuple[Truth, list[Signals]]:
     named = {key if isinstance(key, str) else f"{key[0]} of run {key[1]}": value for key, value in nuisance.items()}
     truth = Truth(case, strengths, values, named, judge.rms(left), float(np.linalg.norm(left)), per_run)
     return truth, [_noisy(run, bench, rng) for run in record(reality, bench)]
+
+
+def pressed_again(case: Case, run: Run) -> Signals:
+    """What one more run records of the same specimen, with nuisances and noise of its own.
+
+    RuntimeError or FloatingPointError without equilibrium.
+    """
+    bench, first = BENCHES[case.bench], np.random.default_rng([case.seed, case.number])
+    rng = np.random.default_rng([case.seed, case.number, AGAIN])
+    known = {key: value for key, value in _nuisance(bench, first).items() if isinstance(key, str)}
+    own = {(name, 0): width * float(rng.standard_normal()) for name, width in bench.nuisance if name in PER_RUN}
+    reality = applied(replace(baseline(bench), nuisance=known | own), bench, _strengths(case))
+    (signals,) = record(reality, replace(bench, runs=(run,), reach_mm=bench.deepest_mm))
+    return _noisy(signals, bench, rng)
+
+
+def _strengths(case: Case) -> dict[str, float]:
+    judge = judge_of(case.bench)
+    return {name: _strength(judge, name, case.size) for name in case.effects}
 
 
 def _nuisance(bench: Bench, rng: np.random.Generator) -> dict[Any, float]:

@@ -102,7 +102,7 @@ def _run(reality: Reality, bench: Bench, run: Run, number: int, mechanics: Mecha
     stage = run.depth(time) - reality.of("offset_mm", number)
     course = mechanics.course(time, _path(reality, stage, mechanics.known))
     force = course.force_N + 1e-6 * reality.mass_g * run.acceleration_mm_per_s2(time)
-    charge = reality.sensitivity * course.charge_pC * (1.0 - reality.fatigue) ** _presses_before(run, time)
+    charge = reality.sensitivity * course.charge_pC * (1.0 - reality.fatigue) ** run.presses_before(time)
     charge += _warmth(reality, run, time) + reality.touch_pC * _touched(course)
     voltage = _amplifier(reality, run).voltage(time, charge, reality.made.capacitance_pF, 1.7 * number)
     voltage += reality.pickup * run.speed_mm_per_s(time)
@@ -128,12 +128,6 @@ def _path(reality: Reality, stage: Floats, known: Table) -> Floats:
     return np.where(path > 0.0, np.interp(path, reached, dense), path)
 
 
-def _presses_before(run: Run, time: Floats) -> Floats:
-    """Number of presses that have been made in this run."""
-    each = 2.0 * run.rise_s + run.hold_s + run.pause_s
-    return np.asarray(np.clip(np.floor((time - run.lead_s) / each), 0, run.count - 1))
-
-
 def _warmth(reality: Reality, run: Run, time: Floats) -> Floats:
     """Pyroelectric charge of a half-space that warms from the first touch on: erfc of the root of time."""
     step, constant = reality.heat
@@ -148,7 +142,9 @@ def _touched(course: Course) -> Floats:
 
 
 def _amplifier(reality: Reality, run: Run) -> Amplifier:
-    """With the resistor of this run and the leak beside it."""
+    """With the resistor and the capacitor of this run and the leak beside them."""
     have = run.resistance_MOhm if run.resistance_MOhm is not None else reality.amplifier.resistance_MOhm
     conductance = sum(1.0 / r for r in (have, reality.leak_MOhm) if r is not None)
-    return replace(reality.amplifier, resistance_MOhm=1.0 / conductance if conductance else None)
+    capacitance = reality.amplifier.capacitance_pF + run.added_pF
+    resistance = 1.0 / conductance if conductance else None
+    return replace(reality.amplifier, resistance_MOhm=resistance, capacitance_pF=capacitance)

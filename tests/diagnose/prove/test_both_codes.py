@@ -28,7 +28,7 @@ def hidden(bench, depths_mm):
 @pytest.mark.parametrize("name", ["ridge-clamped", "ridge-free", "dot-clamped"])
 def test_force_and_charge_of_a_press_agree(name, tmp_path):
     bench = BENCHES[name]
-    for file, text in files(name, record(baseline(bench), bench)).items():
+    for file, text in files(bench, record(baseline(bench), bench)).items():
         (tmp_path / file).write_text(text, "utf-8")
     told = engine_for(load_rig(tmp_path), lambda *_: None)
     depths = SHARES * bench.deepest_mm

@@ -20,7 +20,7 @@ def silent(bench):
 @pytest.mark.parametrize("name", BENCHES)
 def test_a_recording_is_read_as_it_was_meant(name, tmp_path):
     bench = BENCHES[name]
-    for file, text in files(name, list(silent(bench))).items():
+    for file, text in files(bench, list(silent(bench))).items():
         (tmp_path / file).write_text(text)
     rig = load_rig(tmp_path)
     assert [len(one.presses) for one in rig.recording.phases] == [run.count for run in bench.runs]
@@ -35,13 +35,13 @@ def test_a_recording_is_read_as_it_was_meant(name, tmp_path):
 def test_a_folder_has_the_same_names_whatever_is_hidden():
     runs = list(silent(CLAMPED))
     louder = [{**run, "voltage_V": 2.0 * run["voltage_V"]} for run in runs]
-    one, other = files(CLAMPED.name, runs), files(CLAMPED.name, louder)
+    one, other = files(CLAMPED, runs), files(CLAMPED, louder)
     assert list(one) == list(other) == ["rig.toml", *(f"press-{n:02d}.csv" for n in range(1, 7))]
     assert one["rig.toml"] == other["rig.toml"] == rig_text(CLAMPED)
 
 
 def test_samples_keep_seven_digits():
     runs = list(silent(CLAMPED))
-    text = files(CLAMPED.name, runs)["press-01.csv"]
+    text = files(CLAMPED, runs)["press-01.csv"]
     read = np.loadtxt(text.splitlines(), delimiter=",", skiprows=1)
     np.testing.assert_allclose(read[:, 1], runs[0]["displacement_mm"], rtol=1e-6, atol=1e-9)

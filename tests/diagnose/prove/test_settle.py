@@ -1,0 +1,75 @@
+"""The press that a verdict asks for, as the hidden world makes it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from diagnose.prove import trial
+from diagnose.prove.folder import rig_text
+from diagnose.prove.room import Heard
+from diagnose.prove.score import scored
+from diagnose.prove.settle import asked_run, with_asked
+from diagnose.prove.trial import Terms
+from diagnose.prove.world.bench import CLAMPED, VOLTAGE_ONLY
+from diagnose.prove.world.cases import AMBIGUOUS, Case
+
+TIME = np.arange(0.0, 4.0, 0.004)
+TWICE = 0.25 * np.clip(np.minimum(np.abs(TIME - 2.0) - 0.2, 1.8 - np.abs(TIME - 2.0)) / 0.4, -0.1, 1.0)
+WAVE = "time_s,displacement_mm\n" + "\n".join(f"{t:.9g},{u:.9g}" for t, u in zip(TIME, TWICE, strict=True))
+CASE = Case(20, 7, AMBIGUOUS, VOLTAGE_ONLY.name, ("cable",), 5.0)
+CABLE = {"mechanism": "parasitic-capacitance", "component": "readout"}
+WEAK = {"mechanism": "property-error", "component": "film"}
+
+
+def experiment(**changes):
+    return {"text": "Press as in “slow and deep”, but so.", "changes": changes}
+
+
+def test_the_stage_follows_the_path_with_round_corners():
+    run = asked_run(VOLTAGE_ONLY, experiment(cycles=2), WAVE)
+    path = run.depth(run.times(250.0))
+    assert path.max() == pytest.approx(0.25, rel=1e-6)
+    assert np.abs(path - TWICE).max() < 0.02 * 0.25
+    assert np.abs(np.diff(path, 2)).max() < 0.5 * np.abs(np.diff(TWICE, 2)).max()
+    assert TWICE[run.lead_s < TIME][0] > 0.0 >= TWICE[run.lead_s > TIME][-1]
+    first, second = np.flatnonzero(np.diff((TWICE > 0.0).astype(int)) > 0)
+    np.testing.assert_array_equal(run.presses_before(TIME[[0, first + 5, second - 5, second + 5]]), [0, 0, 0, 1])
+
+
+def test_resistor_and_capacitor_are_those_that_were_asked_for():
+    run = asked_run(CLAMPED, experiment(input_resistance_MOhm=100.0, input_capacitance_pF=1100.0), WAVE)
+    assert (run.resistance_MOhm, run.added_pF) == (100.0, 1000.0)
+    longer = replace(CLAMPED, runs=(*CLAMPED.runs, run))
+    assert "readout = { input_resistance_MOhm = 100, input_capacitance_pF = 1100 }" in rig_text(longer)
+
+
+def test_a_dot_that_has_to_be_as_warm_as_the_film_cannot_be_had_here():
+    assert asked_run(CLAMPED, experiment(dot_temperature="of the film"), WAVE) is None
+
+
+def test_the_longer_recording_begins_with_what_there_was(monkeypatch):
+    more = {"time_s": TIME, "of": "the same specimen"}
+    monkeypatch.setattr("diagnose.prove.settle.pressed_again", lambda *_: more)
+    before = [{"time_s": TIME}] * 4
+    bench, runs = with_asked(CASE, before, experiment(), WAVE)
+    assert runs[:4] == before
+    assert (len(bench.runs), runs[4]) == (5, more)
+
+
+@pytest.mark.parametrize(
+    ("named", "groups", "resolved"),
+    [([CABLE], [], True), ([CABLE], [[CABLE, WEAK]], False), ([WEAK], [], False), ([], [], False)],
+)
+def test_only_the_truth_alone_is_a_resolved_group(named, groups, resolved, monkeypatch):
+    truth = {
+        "number": 20, "kind": AMBIGUOUS, "bench": VOLTAGE_ONLY.name, "whitened_rms": 5.0, "per_run": {},
+        "mechanisms": [{**CABLE, "values": {}}],
+    }  # fmt: skip
+    verdict = {
+        "mismatch": True, "unexplained": not named, "ambiguous_with": groups,
+        "missing_physics": [{**one, "parameters": {}} for one in named],
+    }  # fmt: skip
+    monkeypatch.setattr(trial, "diagnosed", lambda *_: Heard(verdict, "", 1.0))
+    monkeypatch.setattr(trial, "_scored", lambda _, t, v, s: scored(t, v, lambda _: 0.5, s))
+    assert trial._settled(CASE, Terms("."), truth, {})[1] is resolved
