@@ -102,12 +102,13 @@ def _case(number: int, seed: int, kind: str, turn: int, rigs: tuple[str, ...], k
     alone: list[tuple[str, ...]] = [(name,) for name in known]
     others: list[tuple[str, ...]] = [(name,) for name in UNKNOWN]
     choice = {SINGLE: alone, LEFT_OUT: alone, OUTSIDE: others, PAIR: PAIRS}[kind]
-    effects = choice[turn % len(choice)]
-    lap = turn // len(choice)
-    size = (SIZES if kind == SINGLE else SIZES[:2])[lap % (len(SIZES) if kind == SINGLE else 2)]
+    lap, place = divmod(turn, len(choice))
+    effects, sizes = choice[place], SIZES if kind == SINGLE else SIZES[:2]
     fitting = [rig for rig in rigs if all(fits(name, BENCHES[rig]) for name in effects)] or [BENCHES_FIRST]
     without = EFFECTS[effects[0]].mechanism if kind == LEFT_OUT else ""
-    return Case(number, seed, kind, fitting[(lap + turn) % len(fitting)], effects, size, without)
+    again, step = divmod(lap, len(sizes))
+    rig = fitting[(place + step + again) % len(fitting)]  # every effect meets every rig at every size
+    return Case(number, seed, kind, rig, effects, sizes[step], without)
 
 
 BENCHES_FIRST = next(iter(BENCHES))

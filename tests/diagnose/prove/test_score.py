@@ -4,7 +4,9 @@ import pytest
 
 from diagnose.prove.score import scored
 from diagnose.prove.tally import rate, tally
-from diagnose.prove.world.cases import KINDS, NONE, SINGLE, plan
+from diagnose.prove.world.bench import BENCHES
+from diagnose.prove.world.cases import KINDS, NONE, OUTSIDE, PAIR, SINGLE, plan
+from diagnose.prove.world.effects import fits
 from diagnose.statistics.wilson import wilson_interval
 
 LEAK = {"mechanism": "charge-leakage", "component": "readout"}
@@ -113,6 +115,15 @@ def test_a_tally_counts():
     low, high = wilson_interval(1, 2)
     assert (rates["clear_exact"]["low"], rates["clear_exact"]["high"]) == (low, high)
     assert rate([], bool)["rate"] is None
+
+
+@pytest.mark.parametrize(("kind", "sizes"), [(SINGLE, 7), (PAIR, 2), (OUTSIDE, 2)])
+def test_every_effect_meets_every_rig_that_can_have_it_at_every_size(kind, sizes):
+    rigs = ("ridge-clamped", "ridge-free", "dot-clamped")
+    met = {(c.effects, c.bench, c.size) for c in plan(400, 3, rigs, kinds=(kind,))}
+    for effects in {effects for effects, _, _ in met}:
+        able = [rig for rig in rigs if all(fits(name, BENCHES[rig]) for name in effects)]
+        assert len([one for one in met if one[0] == effects]) == sizes * len(able)
 
 
 def test_a_plan_is_the_same_for_the_same_seed_and_longer_plans_begin_alike():
