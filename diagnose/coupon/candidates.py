@@ -24,6 +24,7 @@ COMPRESSIBLE = 0.45  # Poisson's ratio below which a material may be a foam
 FACTOR = log(10.0)  # a modulus that is wrong by more is another material
 LARGEST_LOSS = 0.9
 STEEPEST = 60.0  # exponent of a foam
+GRIP_G, HEAVIEST_GRIP_G = 50.0, 20_000.0
 MOST_OF_TRAVEL = 0.25  # a tester that takes more than a quarter of the travel is seen to bend
 
 
@@ -40,6 +41,8 @@ def coupon_candidates(recording: Recording, material: Material, point: MaterialP
     yield stress_softening(PartOfLayer, SPECIMEN)
     yield _property()
     yield _compliance(travel / force)
+    if all(run.drive == "displacement_mm" for run in recording.runs):
+        yield _grip()
 
 
 def _stiffening(material: Material, point: MaterialPoint, travel_mm: float, by_force: bool) -> Candidate:
@@ -113,6 +116,16 @@ def _compliance(scale: float) -> Candidate:
         return {"compliance_mm_per_N": scale * sinh(values[0])}
 
     return Candidate("rig-compliance", "rig", (coordinate,), parameters, units={"compliance_mm_per_N": "mm/N"})
+
+
+def _grip() -> Candidate:
+    """Mass between load cell and specimen, where the cell moves: from a clip to the grips of a large tester."""
+    coordinate = growing("mass", GRIP_G, HEAVIEST_GRIP_G, (GRIP_G, 10.0 * GRIP_G))
+
+    def parameters(values: Sequence[float]) -> dict[str, Any]:
+        return {"moving_mass_g": GRIP_G * sinh(values[0])}
+
+    return Candidate("inertia", "rig", (coordinate,), parameters, units={"moving_mass_g": "g"})
 
 
 def relative_error(name: str, parameter: str) -> Candidate:

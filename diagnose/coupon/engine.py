@@ -20,6 +20,7 @@ from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.mechanisms import Mechanism
 from solve.model import Model
 from solve.newton import NoEquilibriumError
+from solve.reduced.recording import acceleration
 
 ACCURACY = 1e-3  # of a drive that is taken as straight between its samples
 FACTORS = {f"modulus.{SPECIMEN}": "modulus_factor", f"thickness.{SPECIMEN}": "thickness_factor"}
@@ -77,8 +78,11 @@ class CouponEngine:
         shift = sum(of_drive.get(name, 0.0) for name, of in DRIVE_ERRORS.items() if of == kind and name != "force_gain")
         gain = of_drive.get("force_gain", 0.0) if kind == "force_N" else 0.0
         drive = (run.drive_values - shift) / (1.0 + gain)
-        values = point_of(self.specimen, self.model(mechanisms)).answer(run.time_s, drive, kind)
-        return {"force_N" if kind == "displacement_mm" else "displacement_mm": values}
+        model = self.model(mechanisms)
+        values = point_of(self.specimen, model).answer(run.time_s, drive, kind)
+        if kind == "force_N":
+            return {"displacement_mm": values}
+        return {"force_N": values + 1e-6 * model.physics.moving_mass_g * acceleration(run.time_s, drive)}
 
 
 def point_of(specimen: Specimen, model: Model) -> MaterialPoint:

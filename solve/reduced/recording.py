@@ -46,11 +46,11 @@ def sensed(time: Floats, drive: Floats, kind: int, path: Floats, contact: Floats
     if physics.rig_compliance_mm_per_N > 0.0:
         return np.asarray((drive - path) / physics.rig_compliance_mm_per_N)
     if physics.moving_mass_g > 0.0:
-        return np.asarray(contact + 1e-6 * physics.moving_mass_g * _acceleration(time, drive))
+        return np.asarray(contact + 1e-6 * physics.moving_mass_g * acceleration(time, drive))
     return contact.copy()
 
 
-def _acceleration(time: Floats, depth: Floats) -> Floats:
+def acceleration(time: Floats, depth: Floats) -> Floats:
     """Second derivative (t,) by differences, at rest before and after."""
     step = np.diff(time)
     rate = np.concatenate([[0.0], np.diff(depth) / step, [0.0]])

@@ -28,6 +28,24 @@ def force(of, *settings):
     return of.predict(0, settings)["force_N"]
 
 
+def test_a_grip_adds_its_mass_times_the_acceleration_of_the_crosshead():
+    """A crosshead that is set going at a m/s2: m a while it gathers speed, nothing at constant speed."""
+    gathers, mass_g, acceleration_mm_per_s2 = 2.0, 700.0, 3.0
+    early, speed = gathers > TIME, gathers * acceleration_mm_per_s2
+    travel = np.where(early, 0.5 * acceleration_mm_per_s2 * TIME**2, speed * (TIME - 0.5 * gathers))
+    of = coupon_engine(Recording((run(travel),), specimen()), {"mine": RUBBER}, silent)
+    grip = candidate(of, "inertia")
+    value = np.arcsinh(mass_g / 50.0)
+    assert grip.parameters((value,)) == {"moving_mass_g": pytest.approx(mass_g)}
+    added = force(of, Setting(grip, (value,))) - force(of)
+    np.testing.assert_allclose(added[early][1:-1], 1e-6 * mass_g * acceleration_mm_per_s2, rtol=1e-6)
+    np.testing.assert_allclose(added[gathers + 0.1 < TIME][:-1], 0.0, atol=1e-9)
+
+
+def test_a_grip_of_a_test_by_force_is_not_sought():
+    assert not [one for one in engine(drive="force_N").candidates if one.mechanism == "inertia"]
+
+
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("material", MATERIALS)
 def test_every_candidate_is_off_at_zero_and_answers_within_its_bounds(kind, material):
