@@ -130,8 +130,7 @@ def _labelled(model: ObservedModel, values: Floats, settings: Sequence[Setting])
 
 
 def _improved(model: ObservedModel, chosen: Judged) -> Mapping[str, Signals]:
-    system = chosen.fit.system
-    return _labelled(model, system.nuisances(system.residual), chosen.fit.settings)
+    return _labelled(model, chosen.fit.system.closest(), chosen.fit.settings)
 
 
 def _information(choice: Choice) -> Floats:

@@ -71,6 +71,14 @@ class System:
         """Best values (p,) for another residual (n,) of the same system."""
         return self.quadratic.mean(self.weighted(residual))[: len(self.values)]
 
+    def closest(self) -> Floats:
+        """Nuisances (p,) that come closest to the recording under their priors, were the model exact.
+
+        What a prediction is made with: beside its stated errors, which predict nothing, gains would be shrunk.
+        """
+        own = slice(len(self.values))
+        return Quadratic(self.weighted(self.excused[:, own]), self.sigma[own]).mean(self.weighted(self.residual))
+
 
 def relative(model: ObservedModel) -> list[float]:
     """The engine's own error of each channel."""

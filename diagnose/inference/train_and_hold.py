@@ -39,7 +39,7 @@ def trained_and_held(
     if fit is not None:
         own = fitted(model, fit.system.reached(seen), fit.candidates, fit.values, found.excess)
         settings = own.settings
-        after = own.system.nuisances(own.system.residual)
+        after = own.system.closest()
     runs = {samples.presses[n][0] for n in training}
     frozen = np.array([nuisance.run is None or nuisance.run in runs for nuisance in model.nuisances], dtype=bool)
     unseen = live & np.isin(samples.press, held)
@@ -55,10 +55,10 @@ def _relaxed(model: ObservedModel, values: Floats, settings: Sequence[Setting], 
     for _ in range(ROUNDS if len(values) else 0):
         system = linearised(model, values, settings, live=rows)
         fixed = system.excused[:, : len(values)][:, frozen] @ values[frozen]
-        kept = np.concatenate([~frozen, np.ones(system.excused.shape[1] - len(values), dtype=bool)])
-        quadratic = Quadratic(system.weighted(system.excused[:, kept]), system.sigma[kept])
+        free = np.flatnonzero(~frozen)
+        quadratic = Quadratic(system.weighted(system.excused[:, free]), system.sigma[free])
         values = values.copy()
-        values[~frozen] = quadratic.mean(system.weighted(system.residual[rows] - fixed))[: int((~frozen).sum())]
+        values[free] = quadratic.mean(system.weighted(system.residual[rows] - fixed))
         values = plausible(values, model.sigma)
     return values
 

@@ -14,6 +14,7 @@ from diagnose.inference.intervals import intervals
 from diagnose.inference.observed_model import ObservedModel
 from diagnose.inference.refit import common_metric, fitted, largest_form
 from diagnose.inference.samples import Samples
+from diagnose.inference.system import linearised
 from diagnose.noise.estimate import noise_models
 from tests.diagnose.inference.toy import CANDIDATES, Sensor, ToyEngine, small
 
@@ -38,6 +39,18 @@ def test_the_baseline_finds_the_nuisances_that_were_put_in():
     run.channels["voltage_V"][:] = 1.2 * np.interp(run.time_s - 0.1, run.time_s, run.channels["voltage_V"]) + 0.1
     system = fitted_baseline(seen(recording))
     assert system.values == pytest.approx([0.2, 0.1, 0.1], abs=0.01)
+
+
+def test_a_prediction_takes_the_whole_gain_though_the_model_states_an_error_of_its_own():
+    """An error of 4 % and a gain of 4 % look alike; only the gain predicts, so that it is not shared out."""
+    recording = small(8, runs=1, nuisance={"gain": 0.04}, noise=0.002, distort=0.0, scatter=0.0)
+    recording.runs[0].channels["voltage_V"][:] *= 1.08
+    model = seen(recording)
+    model.engine.accuracy = {"force_N": 0.04, "voltage_V": 0.04}
+    system = linearised(model, np.zeros(1))
+    (believed_gain,), (gain,) = system.nuisances(system.residual), system.closest()
+    assert gain == pytest.approx(0.08, abs=0.012)  # its prior and the stated error of each sample keep the rest
+    assert believed_gain < 0.06
 
 
 @pytest.mark.parametrize("start", [0.05, 6.0])
