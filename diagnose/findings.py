@@ -88,6 +88,7 @@ class Findings:
     groups : indices into models that these recordings cannot tell apart, the best model's group first.
     nuisances : name or "name of run" -> (value, one sigma of the prior) at the baseline.
     baseline, improved : label -> fitted signals with nuisances; improved is None where nothing is named.
+    unnamed : held-out errors of the first model where it is not named.
     screened : (mechanism, component) -> p-value of the score test. shares : component -> share of all excess.
     information : (p, p) of the best models' coordinates, in the order of models, see diagnose.next_press.
     """
@@ -110,4 +111,5 @@ class Findings:
     improved: Mapping[str, Signals] | None
     black_box_gain: float
     warnings: tuple[str, ...] = ()
+    unnamed: Fit | None = None
     information: Floats | None = field(default=None, compare=False)

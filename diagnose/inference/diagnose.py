@@ -76,9 +76,11 @@ def _findings(model: ObservedModel, screening: Screening, found: Checked, choice
     models = tuple(
         _model(model, choice, number, detailed=named and number in choice.groups[0]) for number in range(len(fits))
     )
-    chosen = choice.models[0] if named else None
-    gains = chosen.forecast.log_scores - choice.base.log_scores if chosen and choice.base else np.zeros(0)
+    best = choice.models[0] if choice.models else None
+    chosen = best if named else None
+    gains = best.forecast.log_scores - choice.base.log_scores if best and choice.base else np.zeros(0)
     train, held_out = trained_and_held(model, screening, chosen.fit if chosen else None, gains)
+    unnamed = trained_and_held(model, screening, best.fit, gains)[1] if best and not named else None
     return Findings(
         engine=model.engine.name,
         detection=_detection(model, found),
@@ -93,6 +95,7 @@ def _findings(model: ObservedModel, screening: Screening, found: Checked, choice
         groups=choice.groups,
         train=train,
         held_out=held_out,
+        unnamed=unnamed,
         nuisances=_nuisances(model, screening.baseline.values),
         baseline=_labelled(model, screening.start.values, ()),
         improved=_improved(model, chosen) if chosen else None,

@@ -39,6 +39,7 @@ def verdict(
         "fit": {
             "train": _fit(findings.train),
             "held_out": _fit(findings.held_out),
+            "held_out_best_unnamed": _fit(findings.unnamed),
             "engine": findings.engine,
             "resimulated": [_resimulated(each) for each in resimulated],
         },

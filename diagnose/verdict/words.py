@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from diagnose.findings import Findings, Model
+from diagnose.findings import Findings, Fit, Model
 from diagnose.next_press.choose import NextPress, surviving
 from diagnose.recording import Recording
 from diagnose.verdict.content import without_press
@@ -53,15 +53,16 @@ def _named(findings: Findings, best: Model) -> Iterator[Sentence]:
     yield Sentence("Left out", f"{model_words(best)}{_numbers(best)}.")
     fit = findings.held_out
     if fit is not None:
-        yield Sentence(
-            "With it",
-            f"the error on presses that it was not fitted to falls from {percent(fit.nrmse_before)} to "
-            f"{percent(fit.nrmse_after)} (noise alone makes {percent(fit.noise_floor_nrmse)}).",
-        )
+        yield Sentence("With it", f"the error on presses that it was not fitted to falls {_errors(fit)}.")
     rivals = [findings.models[n] for group in findings.groups[:1] for n in group if findings.models[n] is not best]
     if rivals:
         words = listed([f"that {model_words(rival)}" for rival in rivals], "or")
         yield Sentence("Not excluded", f"{words}; these recordings cannot tell.")
+
+
+def _errors(fit: Fit) -> str:
+    noise = percent(fit.noise_floor_nrmse)
+    return f"from {percent(fit.nrmse_before)} to {percent(fit.nrmse_after)} (noise alone makes {noise})"
 
 
 def _numbers(model: Model) -> str:
@@ -77,6 +78,9 @@ def _unexplained(findings: Findings) -> Iterator[Sentence]:
     yield Sentence("Left out", "something that none of the known mechanisms explains. Nothing is named.")
     if findings.reasons:
         yield Sentence("Why nothing is named", " ".join(findings.reasons))
+    if findings.unnamed is not None:
+        text = f"With the best, the error on presses that it was not fitted to would go {_errors(findings.unnamed)}."
+        yield Sentence("How far off", text)
 
 
 def _proof(resimulated: Sequence[Resimulated]) -> Iterator[Sentence]:

@@ -91,6 +91,8 @@ def test_an_unknown_effect_is_left_unexplained():
     assert findings.unexplained
     assert findings.best is None
     assert findings.improved is None
+    assert findings.held_out.nrmse_after == findings.held_out.nrmse_before
+    assert findings.unnamed.nrmse_after < findings.unnamed.nrmse_before
     assert not found(small(7, Sensor(step_charge=0.3), runs=4)).best
 
 

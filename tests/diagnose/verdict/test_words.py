@@ -6,9 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnose.findings import Interval, Place
+from diagnose.findings import Fit, Interval, Place
 from diagnose.forward import Candidate, Coordinate, Setting
 from diagnose.next_press.choose import next_press
+from diagnose.verdict.content import verdict
 from diagnose.verdict.names import WHAT, WHERE, figure, interval_words, listed, mechanism_words
 from diagnose.verdict.where import where_words
 from diagnose.verdict.words import sentences
@@ -62,6 +63,16 @@ def test_the_unexplained_is_said_with_its_reasons(recording):
     lines = told(recording, findings)
     assert lines[1] == "Left out: something that none of the known mechanisms explains. Nothing is named."
     assert lines[2] == f"Why nothing is named: {reason}"
+
+
+def test_how_far_the_best_unnamed_model_would_come_is_said_and_written(recording):
+    tried = Fit(("slow, press 2",), 0.99, 0.51, 0.2, 40.0)
+    findings = found(recording, (LEAKS,), None, ((0,),), unexplained=True, reasons=("Why.",), unnamed=tried)
+    expected = "How far off: With the best, the error on presses that it was not fitted to would go from 99 % to 51 %"
+    assert told(recording, findings)[3].startswith(expected)
+    written = verdict(findings, (), None, (), ())["fit"]
+    assert written["held_out_best_unnamed"]["nrmse_after"] == 0.51
+    assert verdict(found(recording, (LEAKS,), LEAKS, ((0,),)), (), None, (), ())["fit"]["held_out_best_unnamed"] is None
 
 
 @pytest.mark.parametrize(
