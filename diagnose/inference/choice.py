@@ -15,7 +15,7 @@ from diagnose.inference.forecasts import Forecasted, forecasted, separation
 from diagnose.inference.observed_model import ObservedModel
 from diagnose.inference.rates import FIRSTS, LEFT, RATES
 from diagnose.inference.refit import Fitted
-from diagnose.inference.residual_test import DRAWS, checked
+from diagnose.inference.residual_test import DRAWS, checked, strain_of
 from diagnose.inference.search import Screening, paired, pairs, singles
 from diagnose.statistics.abstain import Decision, Evidence, decide
 from diagnose.statistics.held_out import Gain, gain_over_noise
@@ -27,13 +27,17 @@ FEWER_DRAWS = 499  # for models that are not the best
 
 @dataclass(frozen=True)
 class Judged:
-    """A fitted model and what is said of it; p_left is 1 where it leaves less than LEFT of the excess."""
+    """A fitted model and what is said of it; p_left is 1 where it leaves less than LEFT of the excess.
+
+    p_strained : of what floats beside it, 1 where it leaves less than LEFT of the baseline's strain.
+    """
 
     fit: Fitted
     forecast: Forecasted
     gain: Gain
     left: float
     p_left: float
+    p_strained: float
 
 
 @dataclass(frozen=True)
@@ -58,17 +62,19 @@ class Judge:
         self.model, self.found, self.rng = model, found, rng
         self.declared = within_priors(found.start, found.baseline)
         self.base = forecasted(model.samples, self.declared)
+        self.strain = strain_of(found.baseline)
 
     def judged(self, fit: Fitted, draws: int = FEWER_DRAWS) -> Judged:
         """Forecast, gain and what is left."""
         samples = self.model.samples
         forecast = forecasted(samples, fit.system, fit)
         left = share_left(fit, self.found.excess)
-        p_left = 1.0
+        system, p_left = replace(fit.system, form=fit.largest_form), 1.0
         if left > LEFT or self.found.excess == 0.0:
-            system = replace(fit.system, form=fit.largest_form)
             p_left = checked(samples, system, self.rng, fit.slopes, draws).p_value
-        return Judged(fit, forecast, self.gained(forecast, self.base), left, p_left)
+        strain = strain_of(system, fit.slopes)
+        p_strained = strain.p_value if strain.excess > LEFT * self.strain.excess else 1.0
+        return Judged(fit, forecast, self.gained(forecast, self.base), left, p_left, p_strained)
 
     def gained(self, one: Forecasted, rival: Forecasted) -> Gain:
         """Nats per press, with a lower bound that is corrected for all candidates."""
@@ -98,7 +104,7 @@ def choose(
     """Single mechanisms first; pairs only where the best single one leaves too much or has a value no part can have."""
     fits = singles(model, found, report)
     if not fits:
-        decision = decide(Evidence(p_mismatch, 0.0, 0.0, 0.0, (), 0), RATES)
+        decision = decide(Evidence(p_mismatch, 0.0, 1.0, 0.0, 0.0, (), 0), RATES)
         return Choice((), np.zeros(0), (), 0.0, replace(decision, reasons=(NOTHING,)), None)
     judge = Judge(model, found, rng)
     models = []
@@ -164,7 +170,7 @@ def _decided(judge: Judge, models: tuple[Judged, ...], p_mismatch: float) -> Cho
     apart[contradicted(models)] = 0.0
     apart[_told_apart(judge, models)] = np.inf
     evidence = Evidence(
-        p_mismatch, best.p_left, best.gain.lower, box.lower, _implausible(best.fit), alike(apart)
+        p_mismatch, best.p_left, best.p_strained, best.gain.lower, box.lower, _implausible(best.fit), alike(apart)
     )
     decision = decide(evidence, replace(RATES, margin=worth_of_form(samples, metric)))
     probabilities = _probabilities(models, scores, judge.rng)
@@ -220,7 +226,7 @@ def _score(one: Judged) -> float:
 
 
 def _doubtful(one: Judged) -> bool:
-    return one.p_left <= RATES.level or bool(_implausible(one.fit))
+    return min(one.p_left, one.p_strained) <= RATES.level or bool(_implausible(one.fit))
 
 
 def _implausible(fit: Fitted) -> tuple[str, ...]:

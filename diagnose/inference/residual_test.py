@@ -38,14 +38,10 @@ def checked(
     samples: Samples, system: System, rng: np.random.Generator, fitted: Floats | None = None, draws: int = DRAWS
 ) -> Checked:
     """fitted : (n, q) sensitivities of parameters that were fitted without a prior."""
-    columns, sigma = system.excused, system.sigma
-    if fitted is not None:
-        columns = np.column_stack([columns, fitted[system.live]])
-        sigma = np.concatenate([sigma, np.full(fitted.shape[1], np.inf)])
-    weighted = system.weighted(columns)
+    weighted, sigma = _floating(system, fitted)
     marginal = Marginal(weighted, sigma)
     white = system.residual * system.weight
-    strained = p_of_strain(Quadratic(weighted, sigma), sigma, white[system.live])
+    strained = strain_of(system, fitted).p_value
     white[system.live] = marginal(white[system.live])
     free = np.zeros((len(white), marginal.free.shape[1]))
     free[system.live] = marginal.free
@@ -56,14 +52,32 @@ def checked(
     return Checked(scores, step_down(scores, null), energies, strained)
 
 
-def p_of_strain(quadratic: Quadratic, sigma: Floats, residual: Floats) -> float:
-    """p-value of the parameter that lies farthest from its prior, Bonferroni over all that have one.
+@dataclass(frozen=True)
+class Strain:
+    """Of what floats against its priors. excess : sum of squared distances above what chance makes.
 
-    Before the data, a posterior mean is normal with the prior's variance less the posterior's.
+    p_value : of the parameter that lies farthest off, Bonferroni over all that have a prior.
     """
+
+    excess: float
+    p_value: float
+
+
+def strain_of(system: System, fitted: Floats | None = None) -> Strain:
+    """fitted : as in checked. Before the data, a posterior mean has the prior's variance less the posterior's."""
+    columns, sigma = _floating(system, fitted)
+    quadratic = Quadratic(columns, sigma)
     learnt = sigma**2 - quadratic.variances()
     judged = np.isfinite(sigma) & (sigma > 0.0) & (learnt > UNTOUCHED * sigma**2)
-    if not judged.any():
-        return 1.0
-    farthest = float(np.max(np.abs(quadratic.mean(residual)[judged]) / np.sqrt(learnt[judged])))
-    return min(1.0, 2.0 * float(norm.sf(farthest)) * int(judged.sum()))
+    distances = quadratic.mean(system.weighted(system.residual))[judged] / np.sqrt(learnt[judged])
+    farthest = float(np.max(np.abs(distances), initial=0.0))
+    p_value = min(1.0, 2.0 * float(norm.sf(farthest)) * max(len(distances), 1))
+    return Strain(max(float(distances @ distances) - len(distances), 0.0), p_value)
+
+
+def _floating(system: System, fitted: Floats | None) -> tuple[Floats, Floats]:
+    """Columns (n, k) of all that floats, whitened, and its prior deviations (k,)."""
+    if fitted is None:
+        return system.weighted(system.excused), system.sigma
+    columns = np.column_stack([system.excused, fitted[system.live]])
+    return system.weighted(columns), np.concatenate([system.sigma, np.full(fitted.shape[1], np.inf)])

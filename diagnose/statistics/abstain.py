@@ -19,13 +19,15 @@ class Rates:
 class Evidence:
     """p_mismatch, p_left : family-wise p-values of the whitened residual before and after the best named model.
 
-    gain_lower : lower bound of that model's held-out gain, corrected for all candidates. black_box_lower : the same of
-    the black box over the named model; both in nats per press, at the level of Rates. implausible : parameters on a
-    bound that no real part has. group : models that cannot be told from the named one, itself included.
+    p_strained : of the parameter that lies farthest from its prior beside that model. gain_lower : lower bound of its
+    held-out gain, corrected for all candidates. black_box_lower : the same of the black box over the named model; both
+    in nats per press, at the level of Rates. implausible : parameters on a bound that no real part has. group : models
+    that cannot be told from the named one, itself included.
     """
 
     p_mismatch: float
     p_left: float
+    p_strained: float
     gain_lower: float
     black_box_lower: float
     implausible: tuple[str, ...]
@@ -57,6 +59,9 @@ def _against(evidence: Evidence, rates: Rates) -> list[str]:
         found.append(f"It may predict held-out presses no better (gain at least {evidence.gain_lower:.3g} nats).")
     if evidence.p_left <= rates.level:
         found.append(f"Its residual is still larger than noise makes it (p = {evidence.p_left:.3g}).")
+    if evidence.p_strained <= rates.level:
+        far = f"(p = {evidence.p_strained:.3g})"
+        found.append(f"Beside it, what floats still lies farther off than rig.toml says {far}.")
     if evidence.implausible:
         found.append(f"Parameters sit on implausible bounds: {', '.join(evidence.implausible)}.")
     if evidence.black_box_lower > rates.margin:

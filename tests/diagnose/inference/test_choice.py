@@ -10,7 +10,8 @@ from diagnose.inference.choice import contradicted
 def model(score, evidence, p_left=1.0):
     system = SimpleNamespace(live=np.ones(100, dtype=bool))
     fit = SimpleNamespace(candidates=(), values=np.zeros(0), system=system, evidence=evidence)
-    return SimpleNamespace(fit=fit, forecast=SimpleNamespace(log_scores=np.array([score, score])), p_left=p_left)
+    forecast = SimpleNamespace(log_scores=np.array([score, score]))
+    return SimpleNamespace(fit=fit, forecast=forecast, p_left=p_left, p_strained=1.0)
 
 
 def test_opinions_that_agree_contradict_nowhere():

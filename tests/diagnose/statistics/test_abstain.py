@@ -7,7 +7,9 @@ import pytest
 from diagnose.statistics.abstain import Evidence, Rates, decide
 
 RATES = Rates(level=0.003, margin=0.5, largest_group=3)
-CLEAR = Evidence(p_mismatch=0.001, p_left=0.4, gain_lower=12.0, black_box_lower=-3.0, implausible=(), group=1)
+CLEAR = Evidence(
+    p_mismatch=0.001, p_left=0.4, p_strained=0.5, gain_lower=12.0, black_box_lower=-3.0, implausible=(), group=1
+)
 
 
 def test_a_clear_case_is_named():
@@ -25,6 +27,7 @@ def test_noise_is_neither_named_nor_unexplained():
     ("change", "word"),
     [
         ({"p_left": 0.002}, "still larger"),
+        ({"p_strained": 0.002}, "farther off"),
         ({"gain_lower": 0.0}, "no better"),
         ({"black_box_lower": 0.6}, "black box"),
         ({"implausible": ("thickness_factor",)}, "thickness_factor"),
@@ -44,5 +47,5 @@ def test_doubts_that_stay_within_the_rates_do_not_count():
 
 
 def test_all_doubts_are_named():
-    bad = Evidence(p_mismatch=0.0, p_left=0.0, gain_lower=-1.0, black_box_lower=9.0, implausible=("gap_mm",), group=9)
-    assert len(decide(bad, RATES).reasons) == 5
+    bad = Evidence(0.0, 0.0, 0.0, gain_lower=-1.0, black_box_lower=9.0, implausible=("gap_mm",), group=9)
+    assert len(decide(bad, RATES).reasons) == 6

@@ -67,19 +67,19 @@ def diagnosed(residual):
     """(decision, candidate)"""
     p_mismatch = p_of_residual(residual, None)
     if p_mismatch > RATES.level:
-        return decide(Evidence(p_mismatch, 1.0, 0.0, 0.0, (), 1), RATES), None
+        return decide(Evidence(p_mismatch, 1.0, 1.0, 0.0, 0.0, (), 1), RATES), None
     white = MARGINAL(residual)
     p_values = [score_test(white, MARGINAL(s[:, None]), np.array([True])).p_value for s in SENSITIVITIES]
     survivors = np.flatnonzero(holm(np.array(p_values)) <= RATES.level)
     if len(survivors) == 0:
-        return decide(Evidence(p_mismatch, 0.0, -1.0, 0.0, (), 1), RATES), None
+        return decide(Evidence(p_mismatch, 0.0, 1.0, -1.0, 0.0, (), 1), RATES), None
     forecasts = {int(c): linear_forecast(residual, *columns_of(c), PRESS) for c in survivors}
     best = max(forecasts, key=lambda c: forecasts[c].log_scores.sum())
     baseline = linear_forecast(residual, *columns_of(None), PRESS)
     box = black_box_forecast(residual, NUISANCES, PRIOR, MEMORY, PRESS)
     gain, box_gain = gained(forecasts[best], baseline), gained(box, forecasts[best])
     left = p_of_residual(residual, best)
-    return decide(Evidence(p_mismatch, left, gain.lower, box_gain.lower, (), 1), RATES), best
+    return decide(Evidence(p_mismatch, left, 1.0, gain.lower, box_gain.lower, (), 1), RATES), best
 
 
 def gained(model, rival):
