@@ -61,7 +61,7 @@ def _against(evidence: Evidence, rates: Rates) -> list[str]:
         found.append(f"Its residual is still larger than noise makes it (p = {evidence.p_left:.3g}).")
     if evidence.p_strained <= rates.level:
         far = f"(p = {evidence.p_strained:.3g})"
-        found.append(f"Beside it, what floats still lies farther off than rig.toml says {far}.")
+        found.append(f"Beside it, gains, moduli or the error of its law still lie farther off than stated {far}.")
     if evidence.implausible:
         found.append(f"Parameters sit on implausible bounds: {', '.join(evidence.implausible)}.")
     if evidence.black_box_lower > rates.margin:
