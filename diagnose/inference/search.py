@@ -79,7 +79,7 @@ def singles(model: ObservedModel, found: Screening, report: Report) -> list[Fitt
     for count, (_, number, values) in enumerate(firsts):
         report("fits", count, len(firsts))
         fits.append(fitted(model, found.start, (found.candidates[number],), values, found.excess))
-    return fits
+    return [fit for fit in fits if _acts(fit)]
 
 
 def pairs(
@@ -110,4 +110,12 @@ def paired(
     both = (*first.candidates, second)
     problem = descent(model, first.system, both, first.settings)
     best = lowest(problem, [np.concatenate([first.values, start]) for start in starts])
-    return [] if best is None else [fitted(model, first.system, both, best.values, found.excess)]
+    if best is None:
+        return []
+    fit = fitted(model, first.system, both, best.values, found.excess)
+    return [fit] if _acts(fit) else []
+
+
+def _acts(fit: Fitted) -> bool:
+    """Whether all its mechanisms are on: with one that is off it is a model of fewer."""
+    return all(any(setting.values) for setting in fit.settings)

@@ -5,7 +5,7 @@ from math import hypot, pi, sinh, sqrt
 from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
-from diagnose.vocabulary.scene import Scene, growing
+from diagnose.vocabulary.scene import OFF, Scene, growing, shrinking
 
 SHARPEST = 2.0  # Q^2 of a filter whose resonance is 3 dB
 ONE_STAGE = 1e-3  # Q^2 below which the second stage is too fast to be seen
@@ -33,7 +33,7 @@ def _leakage(scene: Scene, component: str) -> Candidate:
     coordinate = growing("conductance", scale, top, (0.3 * scale, 3.0 * scale, sqrt(scale * top)))
 
     def parameters(values: Sequence[float]) -> dict[str, Any]:
-        return {"resistance_MOhm": 1.0 / (scale * sinh(values[0]))}
+        return {"resistance_MOhm": shrinking(1.0 / scale, sinh(values[0]))}
 
     return Candidate("charge-leakage", component, (coordinate,), parameters, units={"resistance_MOhm": "MOhm"})
 
@@ -59,7 +59,7 @@ def _low_pass(scene: Scene) -> Candidate:
     second = Coordinate("second_order", 0.0, SHARPEST, (0.25, 0.5))
 
     def parameters(values: Sequence[float]) -> dict[str, Any]:
-        time_constant = scale * sinh(max(values[0], 1e-9))
+        time_constant = scale * sinh(max(values[0], OFF))
         corner_Hz = half_power(values[1]) / (2.0 * pi * time_constant)
         if values[1] < ONE_STAGE:
             return {"cutoff_Hz": corner_Hz, "order": 1}
@@ -81,7 +81,7 @@ def _saturation(scene: Scene) -> Candidate:
     coordinate = Coordinate("inverse_limit", 0.0, CLIPPED, (1.1, 1.5, 3.0))
 
     def parameters(values: Sequence[float]) -> dict[str, Any]:
-        return {"limit_V": largest / values[0]}
+        return {"limit_V": shrinking(largest, values[0])}
 
     return Candidate("saturation", "readout", (coordinate,), parameters, units={"limit_V": "V"})
 

@@ -5,7 +5,7 @@ from math import sinh
 from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
-from diagnose.vocabulary.scene import Scene, growing
+from diagnose.vocabulary.scene import Scene, growing, shrinking
 from solve.materials.parameters import PiezoelectricFilm
 
 STRETCH = 0.015  # the yield strain is 2 to 3 %
@@ -43,7 +43,7 @@ def _yield_stress(scene: Scene) -> Candidate:
     coordinate = growing("inverse_stress", 1.0, most, (1.5, 0.5 * most), nodes)
 
     def parameters(values: Sequence[float]) -> dict[str, Any]:
-        return {"yield_stress_MPa": usual / sinh(values[0])}
+        return {"yield_stress_MPa": shrinking(usual, sinh(values[0]))}
 
     units = {"yield_stress_MPa": "MPa"}
     return Candidate("film-yield", "film", (coordinate,), parameters, units=units)

@@ -5,7 +5,7 @@ from math import asinh, exp, log, sinh
 from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
-from diagnose.vocabulary.scene import Scene, growing
+from diagnose.vocabulary.scene import Scene, growing, shrinking
 
 ASIDE = 0.16  # of the segment's size: 0.4 mm of 2.5, by hand 0.1 to 0.3
 SLIPPERY, ROUGHEST = 0.1, 1.5  # dry rubber on plastic has 0.3 to 1
@@ -59,7 +59,7 @@ def _soft_sides() -> Candidate:
     coordinate = Coordinate("compliance", 0.0, most, (0.15 * most, 0.5 * most), nodes)
 
     def parameters(values: Sequence[float]) -> dict[str, Any]:
-        return {"stiffness_N_per_mm3": STIFF_SIDE_N_PER_MM3 / sinh(values[0])}
+        return {"stiffness_N_per_mm3": shrinking(STIFF_SIDE_N_PER_MM3, sinh(values[0]))}
 
     return Candidate("elastic-sides", "sides", (coordinate,), parameters, units={"stiffness_N_per_mm3": "N/mm3"})
 

@@ -9,6 +9,7 @@ from solve.model import Model
 from solve.parameters import Readout
 
 VACUUM_PF_PER_MM = 8.8541878128e-3
+OFF = 1e-9  # of a coordinate
 
 
 @dataclass(frozen=True)
@@ -59,6 +60,11 @@ def film_capacitance_pF(model: Model) -> float:
     sizes = [electrode.size_mm for electrode in segment.film.electrodes] or [(segment.length_mm, segment.width_mm)]
     area = sum(min(x, segment.length_mm) * min(y, segment.width_mm) for x, y in sizes)
     return VACUUM_PF_PER_MM * film.relative_permittivity * area / (1e-3 * segment.film.thickness_um)
+
+
+def shrinking(scale: float, value: float) -> float:
+    """scale / value of what comes from infinity: finite, and beyond all that could be seen, where it is off."""
+    return scale / max(value, OFF)
 
 
 def growing(

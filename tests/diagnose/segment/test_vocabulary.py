@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from diagnose.vocabulary.candidates import candidates
@@ -91,6 +92,13 @@ def test_small_coordinates_are_small_physics():
     foam = almost["foam-densification", "effector"]
     assert foam["poisson_ratio"][0] == pytest.approx(0.495, abs=1e-5)
     assert foam["alpha"][0] == pytest.approx(2.0, abs=1e-5)
+
+
+def test_what_is_off_has_finite_parameters():
+    """An interval may reach down to it."""
+    for candidate in candidates(FULL):
+        for value in candidate.parameters((0.0,) * len(candidate.coordinates)).values():
+            assert np.isfinite(np.asarray(value, dtype=float)).all(), candidate.name
 
 
 def test_what_is_declared_stays():
