@@ -133,7 +133,7 @@ def _labelled(model: ObservedModel, values: Floats, settings: Sequence[Setting])
 
 
 def _improved(model: ObservedModel, chosen: Judged) -> Mapping[str, Signals]:
-    return _labelled(model, chosen.fit.system.closest(), chosen.fit.settings)
+    return _labelled(model, model.possible(chosen.fit.system.closest()), chosen.fit.settings)
 
 
 def _information(choice: Choice) -> Floats:

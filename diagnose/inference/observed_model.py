@@ -39,6 +39,15 @@ class ObservedModel:
         """What the instruments of every run show, for nuisances (p,) and mechanisms."""
         return [self._shown(run, values, settings) for run in range(len(self.runs))]
 
+    def possible(self, values: Floats) -> Floats:
+        """Nuisances (p,) held within what the engine has an answer to."""
+        held = values.copy()
+        for number, nuisance in enumerate(self.nuisances):
+            if nuisance.candidate is not None:
+                coordinate = nuisance.candidate.coordinates[nuisance.coordinate]
+                held[number] = np.clip(values[number], coordinate.low, coordinate.high)
+        return held
+
     def vector(self, values: Floats, settings: Sequence[Setting] = ()) -> Floats:
         """The same whitened, (n,)."""
         return self.samples.coefficients(self.signals(values, settings))

@@ -39,7 +39,7 @@ def trained_and_held(
     if fit is not None:
         own = fitted(model, fit.system.reached(seen), fit.candidates, fit.values, found.excess)
         settings = own.settings
-        after = own.system.closest()
+        after = model.possible(own.system.closest())
     runs = {samples.presses[n][0] for n in training}
     frozen = np.array([nuisance.run is None or nuisance.run in runs for nuisance in model.nuisances], dtype=bool)
     unseen = live & np.isin(samples.press, held)
@@ -59,7 +59,7 @@ def _relaxed(model: ObservedModel, values: Floats, settings: Sequence[Setting], 
         quadratic = Quadratic(system.weighted(system.excused[:, free]), system.sigma[free])
         values = values.copy()
         values[free] = quadratic.mean(system.weighted(system.residual[rows] - fixed))
-        values = plausible(values, model.sigma)
+        values = model.possible(plausible(values, model.sigma))
     return values
 
 

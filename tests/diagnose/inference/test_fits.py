@@ -53,6 +53,13 @@ def test_a_prediction_takes_the_whole_gain_though_the_model_states_an_error_of_i
     assert believed_gain < 0.06
 
 
+def test_nuisances_are_held_within_what_the_engine_can_answer():
+    model = seen(small(8, runs=1, nuisance={"gain": 0.04, "modulus.medium1": 0.05}))
+    names = [nuisance.name for nuisance in model.nuisances]
+    held = dict(zip(names, model.possible(np.full(len(names), -7.0)), strict=True))
+    assert held == {"gain": -7.0, "modulus.medium1": -0.9}
+
+
 @pytest.mark.parametrize("start", [0.05, 6.0])
 def test_a_fit_reaches_the_truth_from_far_away(start):
     model, baseline, _ = leaking()
