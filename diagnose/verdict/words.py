@@ -78,7 +78,7 @@ def _unexplained(findings: Findings) -> Iterator[Sentence]:
     yield Sentence("Left out", "something that none of the known mechanisms explains. Nothing is named.")
     if findings.reasons:
         yield Sentence("Why nothing is named", " ".join(findings.reasons))
-    if findings.unnamed is not None:
+    if findings.unnamed is not None and findings.unnamed.nrmse_after < findings.unnamed.nrmse_before:
         text = f"With the best, the error on presses that it was not fitted to would go {_errors(findings.unnamed)}."
         yield Sentence("How far off", text)
 

@@ -70,6 +70,8 @@ def test_how_far_the_best_unnamed_model_would_come_is_said_and_written(recording
     findings = found(recording, (LEAKS,), None, ((0,),), unexplained=True, reasons=("Why.",), unnamed=tried)
     expected = "How far off: With the best, the error on presses that it was not fitted to would go from 99 % to 51 %"
     assert told(recording, findings)[3].startswith(expected)
+    worse = replace(findings, unnamed=replace(tried, nrmse_after=1.4))
+    assert not any(line.startswith("How far off") for line in told(recording, worse))
     written = verdict(findings, (), None, (), ())["fit"]
     assert written["held_out_best_unnamed"]["nrmse_after"] == 0.51
     assert verdict(found(recording, (LEAKS,), LEAKS, ((0,),)), (), None, (), ())["fit"]["held_out_best_unnamed"] is None
