@@ -97,27 +97,17 @@ def _descended(model: ObservedModel, values: Floats) -> System:
         target = system.nuisances(system.residual)
         step, now = target - system.values, _misfit(model, system.values, system)
         for _ in range(HALVINGS):
-            if _misfit(model, _within(model, system.values + step), system) <= now:
+            if _misfit(model, model.possible(system.values + step), system) <= now:
                 break
             step = 0.5 * step
         else:
             return system
-        moved = _within(model, system.values + step)
+        moved = model.possible(system.values + step)
         done = _length(system, moved - system.values) < CLOSE
         system = linearised(model, moved)
         if done:
             break
     return system
-
-
-def _within(model: ObservedModel, values: Floats) -> Floats:
-    """Clipped to what the engine can have."""
-    values = values.copy()
-    for number, nuisance in enumerate(model.nuisances):
-        if nuisance.candidate is not None:
-            coordinate = nuisance.candidate.coordinates[nuisance.coordinate]
-            values[number] = np.clip(values[number], coordinate.low, coordinate.high)
-    return values
 
 
 def _misfit(model: ObservedModel, values: Floats, system: System) -> float:
