@@ -10,6 +10,7 @@ Control of Dynamic Systems, 1998, section 6.3).
 
 from dataclasses import dataclass
 from functools import lru_cache
+from math import hypot, sqrt
 from typing import Literal
 
 import numba as nb
@@ -37,8 +38,7 @@ class Filter:
         if self.quality is None:
             numerator, denominator = butter(self.order, corner, self.kind, analog=True)
             return numerator, denominator
-        half = 1.0 - 0.5 / self.quality**2
-        natural = corner / np.sqrt(half + np.hypot(half, 1.0))
+        natural = corner / corner_over_natural(self.quality)
         return np.array([natural**2]), np.array([1.0, natural / self.quality, natural**2])
 
     def applied(self, time: Floats, voltage: Floats) -> Floats:
@@ -53,6 +53,12 @@ class Filter:
     def largest_gain(self) -> float:
         """Integral of |impulse response|: by how much it can enlarge the largest value, at any corner."""
         return _largest_gain(Filter(0.5 / np.pi, self.order, self.kind, self.quality))
+
+
+def corner_over_natural(quality: float) -> float:
+    """w / w0 where half the power of a low-pass of order two is left."""
+    half = 1.0 - 0.5 / quality**2
+    return 1.0 / sqrt(hypot(half, 1.0) - half)
 
 
 @lru_cache(maxsize=64)

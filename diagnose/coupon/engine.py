@@ -20,7 +20,7 @@ from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.mechanisms import Mechanism
 from solve.model import Model
 from solve.newton import NoEquilibriumError
-from solve.reduced.recording import acceleration
+from solve.reduced.recording import felt
 
 ACCURACY = 1e-3  # of a drive that is taken as straight between its samples
 FACTORS = {f"modulus.{SPECIMEN}": "modulus_factor", f"thickness.{SPECIMEN}": "thickness_factor"}
@@ -82,7 +82,7 @@ class CouponEngine:
         values = point_of(self.specimen, model).answer(run.time_s, drive, kind)
         if kind == "force_N":
             return {"displacement_mm": values}
-        return {"force_N": values + 1e-6 * model.physics.moving_mass_g * acceleration(run.time_s, drive)}
+        return {"force_N": felt(run.time_s, drive, values, model.physics.moving_mass_g)}
 
 
 def point_of(specimen: Specimen, model: Model) -> MaterialPoint:

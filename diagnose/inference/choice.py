@@ -71,8 +71,10 @@ class Judge:
         left = share_left(fit, self.found.excess)
         system, p_left = replace(fit.system, form=fit.largest_form), 1.0
         if left > LEFT or self.found.excess == 0.0:
-            p_left = checked(samples, system, self.rng, fit.slopes, draws).p_value
-        strain = strain_of(system, fit.slopes)
+            found = checked(samples, system, self.rng, fit.slopes, draws)
+            p_left, strain = found.p_value, found.strain
+        else:
+            strain = strain_of(system, fit.slopes)
         p_strained = strain.p_value if strain.excess > LEFT * self.strain.excess else 1.0
         return Judged(fit, forecast, self.gained(forecast, self.base), left, p_left, p_strained)
 
@@ -101,7 +103,7 @@ class Judge:
 def choose(
     model: ObservedModel, found: Screening, p_mismatch: float, rng: np.random.Generator, report: Report
 ) -> Choice:
-    """Single mechanisms first; pairs only where the best single one leaves too much or has a value no part can have."""
+    """Single mechanisms first; pairs only where something speaks against the best single one."""
     fits = singles(model, found, report)
     if not fits:
         decision = decide(Evidence(p_mismatch, 0.0, 1.0, 0.0, 0.0, (), 0), RATES)

@@ -18,7 +18,7 @@ from diagnose.inference.residual_test import Checked, checked
 from diagnose.inference.samples import Samples
 from diagnose.inference.search import Screening, screen
 from diagnose.inference.system import System
-from diagnose.inference.train_and_hold import trained_and_held
+from diagnose.inference.train_and_hold import trained_and_held, unimproved
 from diagnose.noise.estimate import noise_models
 from diagnose.recording import Recording
 from mesh.types import Floats
@@ -79,8 +79,10 @@ def _findings(model: ObservedModel, screening: Screening, found: Checked, choice
     best = choice.models[0] if choice.models else None
     chosen = best if named else None
     gains = best.forecast.log_scores - choice.base.log_scores if best and choice.base else np.zeros(0)
-    train, held_out = trained_and_held(model, screening, chosen.fit if chosen else None, gains)
-    unnamed = trained_and_held(model, screening, best.fit, gains)[1] if best and not named else None
+    train, held_out = trained_and_held(model, screening, best.fit if best else None, gains)
+    unnamed = held_out if best and not named else None
+    if not named:
+        train, held_out = unimproved(train), unimproved(held_out) if held_out else None
     return Findings(
         engine=model.engine.name,
         detection=_detection(model, found),

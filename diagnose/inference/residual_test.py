@@ -20,18 +20,18 @@ UNTOUCHED = 1e-6  # of its prior variance: what a parameter must at least have l
 class Checked:
     """scores, p_values : (h,) of all hypotheses; the first are the cells. energies : (c,).
 
-    p_strained : family-wise, that what floats lies where its priors have it.
+    strain : of what floats.
     """
 
     scores: Floats
     p_values: Floats
     energies: Floats
-    p_strained: float
+    strain: "Strain"
 
     @property
     def p_value(self) -> float:
         """Family-wise: of the largest score, and of the most strained parameter (Bonferroni over these two)."""
-        return min(1.0, 2.0 * min(float(self.p_values.min()), self.p_strained))
+        return min(1.0, 2.0 * min(float(self.p_values.min()), self.strain.p_value))
 
 
 def checked(
@@ -41,7 +41,6 @@ def checked(
     weighted, sigma = _floating(system, fitted)
     marginal = Marginal(weighted, sigma)
     white = system.residual * system.weight
-    strained = strain_of(system, fitted).p_value
     white[system.live] = marginal(white[system.live])
     free = np.zeros((len(white), marginal.free.shape[1]))
     free[system.live] = marginal.free
@@ -49,7 +48,7 @@ def checked(
     null = family.scores(null_energies(family, cell, free, draws, rng))
     energies = np.asarray(np.bincount(cell, white**2, len(samples.bank.cells)), dtype=np.float64)
     scores = family.scores(energies)
-    return Checked(scores, step_down(scores, null), energies, strained)
+    return Checked(scores, step_down(scores, null), energies, strain_of(system, fitted))
 
 
 @dataclass(frozen=True)

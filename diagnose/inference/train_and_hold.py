@@ -1,6 +1,7 @@
 """True refits: the named model fitted to some presses and shown on others that it has not seen."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -48,6 +49,11 @@ def trained_and_held(
         after = _relaxed(model, after, settings, unseen, frozen) if fit is not None else before
     train = _errors(model, training, before, after, settings, gains)
     return train, _errors(model, held, before, after, settings, gains) if held else None
+
+
+def unimproved(fit: Fit) -> Fit:
+    """The same where nothing is named: after is as before."""
+    return replace(fit, nrmse_after=fit.nrmse_before, log_score_gain_per_press=0.0)
 
 
 def _relaxed(model: ObservedModel, values: Floats, settings: Sequence[Setting], rows: Bools, frozen: Bools) -> Floats:

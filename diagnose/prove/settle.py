@@ -21,7 +21,7 @@ def asked_run(bench: Bench, experiment: Mapping[str, Any], wave: str) -> Run | N
     changes = experiment["changes"]
     if not changes.keys() <= SHAPE | {RESISTOR, CAPACITANCE}:
         return None
-    like = next((run for run in bench.runs if f"“{run.label}”" in experiment["text"]), bench.runs[0])
+    like = next(run for run in bench.runs if run.label == experiment["as_in"])
     time_s, path_mm = np.loadtxt(wave.splitlines(), delimiter=",", skiprows=1, unpack=True)
     added_pF = changes.get(CAPACITANCE, bench.amplifier.capacitance_pF) - bench.amplifier.capacitance_pF
     return traced("as asked for", time_s, path_mm, changes.get(RESISTOR, like.resistance_MOhm), added_pF)

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from itertools import pairwise
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -14,19 +14,21 @@ CLEAR = 5.0
 """Size from which an effect has to be named."""
 EDGES = (0.0, 0.35, 0.75, 1.5, 3.5, 7.5, 15.0, np.inf)
 ON_FLOOR = 1.2
+Item = TypeVar("Item")
 
 
-def rate(scores: Iterable[Score], holds: Callable[[Score], bool]) -> dict[str, Any]:
-    """How many of how many, with the 95 % interval."""
-    return share([bool(holds(score)) for score in scores])
+def rate(items: Iterable[Item], holds: Callable[[Item], bool]) -> dict[str, Any]:
+    """Of how many it holds, with the 95 % interval."""
+    found = [bool(holds(item)) for item in items]
+    return share(sum(found), len(found))
 
 
-def share(holds: Sequence[bool]) -> dict[str, Any]:
-    """How many hold, with the 95 % interval."""
-    if not holds:
+def share(count: int, of: int) -> dict[str, Any]:
+    """The same of numbers."""
+    if of == 0:
         return {"count": 0, "of": 0, "rate": None, "low": None, "high": None}
-    low, high = wilson_interval(sum(holds), len(holds))
-    return {"count": sum(holds), "of": len(holds), "rate": sum(holds) / len(holds), "low": low, "high": high}
+    low, high = wilson_interval(count, of)
+    return {"count": count, "of": of, "rate": count / of, "low": low, "high": high}
 
 
 def tally(scores: Sequence[Score]) -> dict[str, Any]:
@@ -47,10 +49,10 @@ def tally(scores: Sequence[Score]) -> dict[str, Any]:
         "clear_component": rate(clear, lambda s: s.component),
         "pairs_exact": rate(of[PAIR], lambda s: s.exact),
         "ambiguous_told": rate(of[AMBIGUOUS], lambda s: s.group > 1 or not s.named),
-        "next_press_resolves": share([s.resolved for s in scores if s.resolved is not None]),
+        "next_press_resolves": rate([s for s in scores if s.resolved is not None], lambda s: bool(s.resolved)),
         "held_out_on_floor": rate(told, lambda s: (s.held_out or 0.0) <= ON_FLOOR),
-        "covered": share([holds for _, holds in covered]),
-        "covered_by_value": {name: share([h for n, h in covered if n == name]) for name in
+        "covered": rate(covered, lambda one: one[1]),
+        "covered_by_value": {name: rate([h for n, h in covered if n == name], bool) for name in
                              sorted({n for n, _ in covered})},
         "mean_group": float(np.mean([s.group for s in clear if s.grouped])) if any(s.grouped for s in clear) else None,
         "mean_overlap": _mean([s.overlap for s in of[SINGLE] if s.overlap is not None]),

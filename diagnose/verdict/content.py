@@ -165,6 +165,7 @@ def next_experiment(findings: Findings, following: NextPress | None) -> dict[str
         return {"text": without_press(findings), "changes": {}, "separates": [], "expected_separation_sigma": None}
     return {
         "text": following.text,
+        "as_in": following.run.label,
         "changes": dict(following.changes),
         "separates": [_member(model) for model in following.rivals],
         "expected_separation_sigma": following.separation,

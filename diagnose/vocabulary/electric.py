@@ -5,7 +5,8 @@ from math import hypot, pi, sinh, sqrt
 from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
-from diagnose.vocabulary.scene import OFF, Scene, growing, shrinking
+from diagnose.vocabulary.scene import Scene, growing, shrinking
+from solve.filters import corner_over_natural
 
 SHARPEST = 2.0  # Q^2 of a filter whose resonance is 3 dB
 ONE_STAGE = 1e-3  # Q^2 below which the second stage is too fast to be seen
@@ -59,20 +60,15 @@ def _low_pass(scene: Scene) -> Candidate:
     second = Coordinate("second_order", 0.0, SHARPEST, (0.25, 0.5))
 
     def parameters(values: Sequence[float]) -> dict[str, Any]:
-        time_constant = scale * sinh(max(values[0], OFF))
-        corner_Hz = half_power(values[1]) / (2.0 * pi * time_constant)
+        reciprocal_s = shrinking(1.0 / scale, sinh(values[0]))  # 1 / T
         if values[1] < ONE_STAGE:
-            return {"cutoff_Hz": corner_Hz, "order": 1}
-        return {"cutoff_Hz": corner_Hz, "order": 2, "quality": sqrt(values[1])}
+            return {"cutoff_Hz": reciprocal_s / (2.0 * pi), "order": 1}
+        quality = sqrt(values[1])
+        corner_Hz = corner_over_natural(quality) / quality * reciprocal_s / (2.0 * pi)
+        return {"cutoff_Hz": corner_Hz, "order": 2, "quality": quality}
 
     units = {"cutoff_Hz": "Hz", "order": "", "quality": ""}
     return Candidate("low-pass", "readout", (time, second), parameters, units=units)
-
-
-def half_power(k: float) -> float:
-    """w T at which |1 + i w T - k (w T)^2|^2 = 2; 1 for k = 0."""
-    half = k - 0.5
-    return 1.0 / sqrt(hypot(half, k) - half)
 
 
 def _saturation(scene: Scene) -> Candidate:

@@ -5,6 +5,7 @@ from typing import Any
 
 from diagnose.prove.score import ALIKE
 from diagnose.prove.tally import CLEAR, share
+from diagnose.prove.tally import rate as counted
 from diagnose.prove.world.cases import LEFT_OUT, NONE, OUTSIDE, SINGLE
 
 HEAD = {
@@ -33,7 +34,7 @@ def rival_rates(records: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
 def _of_rival(name: str, records: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     def rate(kinds: tuple[str, ...], least: float, holds: Any) -> dict[str, Any]:
         inside = [r for r in records if r["truth"]["kind"] in kinds and r["truth"]["whitened_rms"] >= least]
-        return share([bool(holds(r["rivals"][name], r)) for r in inside])
+        return counted(inside, lambda r: holds(r["rivals"][name], r))
 
     clear = [r["rivals"][name]["after"] for r in records
              if r["truth"]["kind"] == SINGLE and r["truth"]["whitened_rms"] >= CLEAR]
@@ -91,7 +92,7 @@ def _others(summary: Mapping[str, Any]) -> list[str]:
     rates = summary["rates"]
     unknown = [rates["abstention_left_out"], rates["abstention_outside"]]
     count, of = (sum(one[key] for one in unknown) for key in ("count", "of"))
-    ours = share([number < count for number in range(of)])
+    ours = share(count, of)
     head = ("", "named without effect", "clear effects exactly named", "unknown effects not named")
     lines = [f"| {' | '.join(head)} |", "|---|---|---|---|"]
     lines.append(f"| {OURS} | {percent(rates['false_names_without_effect'])} | {percent(rates['clear_exact'])} | "

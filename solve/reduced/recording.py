@@ -45,12 +45,17 @@ def sensed(time: Floats, drive: Floats, kind: int, path: Floats, contact: Floats
         return drive.copy()
     if physics.rig_compliance_mm_per_N > 0.0:
         return np.asarray((drive - path) / physics.rig_compliance_mm_per_N)
-    if physics.moving_mass_g > 0.0:
-        return np.asarray(contact + 1e-6 * physics.moving_mass_g * acceleration(time, drive))
-    return contact.copy()
+    return felt(time, drive, contact, physics.moving_mass_g)
 
 
-def acceleration(time: Floats, depth: Floats) -> Floats:
+def felt(time: Floats, depth: Floats, force: Floats, moving_mass_g: float) -> Floats:
+    """Force (t,) with that of a mass which moves along a path (t,) in mm: F + m a''."""
+    if moving_mass_g == 0.0:
+        return force.copy()
+    return np.asarray(force + 1e-6 * moving_mass_g * _acceleration(time, depth))
+
+
+def _acceleration(time: Floats, depth: Floats) -> Floats:
     """Second derivative (t,) by differences, at rest before and after."""
     step = np.diff(time)
     rate = np.concatenate([[0.0], np.diff(depth) / step, [0.0]])

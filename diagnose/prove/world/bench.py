@@ -12,7 +12,6 @@ class Bench:
     """nuisance : name -> one sigma, as in rig.toml. noise : one sigma as a share of the largest signal of a channel.
 
     peak_V, peak_N : about the largest signals, to scale noise and effects. force : whether a load cell is there.
-    reach_mm : to which depth its presses are solved at least, whatever its runs are.
     """
 
     name: str
@@ -25,12 +24,11 @@ class Bench:
     noise: float = 0.004
     rate_Hz: float = 250.0
     force: bool = True
-    reach_mm: float = 0.0
 
     @property
     def deepest_mm(self) -> float:
         """Of all runs."""
-        return max(self.reach_mm, *(run.depth_mm for run in self.runs))
+        return max(run.depth_mm for run in self.runs)
 
     @property
     def film_pF(self) -> float:

@@ -138,10 +138,10 @@ def pressed_again(case: Case, run: Run) -> Signals:
     bench, first = BENCHES[case.bench], np.random.default_rng([case.seed, case.number])
     rng = np.random.default_rng([case.seed, case.number, AGAIN])
     known = {key: value for key, value in _nuisance(bench, first).items() if isinstance(key, str)}
-    own = {(name, 0): width * float(rng.standard_normal()) for name, width in bench.nuisance if name in PER_RUN}
+    here = [(name, width) for name, width in bench.nuisance if name in PER_RUN]
+    own = {(name, len(bench.runs)): width * float(rng.standard_normal()) for name, width in here}
     reality = applied(replace(baseline(bench), nuisance=known | own), bench, _strengths(case))
-    (signals,) = record(reality, replace(bench, runs=(run,), reach_mm=bench.deepest_mm))
-    return _noisy(signals, bench, rng)
+    return _noisy(record(reality, replace(bench, runs=(*bench.runs, run)))[-1], bench, rng)
 
 
 def _strengths(case: Case) -> dict[str, float]:

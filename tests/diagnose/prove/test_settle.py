@@ -23,7 +23,7 @@ WEAK = {"mechanism": "property-error", "component": "film"}
 
 
 def experiment(**changes):
-    return {"text": "Press as in “slow and deep”, but so.", "changes": changes}
+    return {"as_in": "slow and deep", "changes": changes}
 
 
 def test_the_stage_follows_the_path_with_round_corners():
