@@ -31,10 +31,11 @@ from solve.switch_on import with_mechanisms
 SHARES = 0.1, 0.25, 0.45, 0.7, 1.0
 """Of the depth, at which changes are seen: they are smooth over it."""
 MARGIN = 1.02  # of the depth of the table over the deepest press
-FINEST, CONTACT = 0.4, 0.7
-"""Element sizes of the finest mesh, and of that for what moves the contact, in terms of the diagnosis mesh."""
+FINEST, MIDDLE = 0.4, 0.7
+"""Element sizes of the finer meshes, in terms of the diagnosis mesh."""
 MOST_NODES = 20_000  # 2 s of one core for each Newton step
-MOVE_THE_CONTACT = frozenset({"dot-offset", "property-error", "dimension-reduction"})
+ON_THE_MIDDLE_MESH = frozenset({"dot-offset", "property-error", "dimension-reduction"})
+"""What moves the contact, which a coarse mesh feels node by node, and numbers that are asked for to some percent."""
 ROUND_OFF = 1e-12  # of a weight
 TOUCH = 1e-6  # of the depth: there is no logarithm of 0
 SLIPS = 3  # steps between two of them under friction
@@ -61,7 +62,7 @@ class Prepared:
         self._changes: dict[Name, Floats] = {}
         self.shortfalls: dict[Name, str] = {}
         finest = finer_mesh(model, self.options, FINEST, MOST_NODES)
-        meshes = finest, self._contact_mesh
+        meshes = finest, self._middle_mesh
         jobs = [replace(self.job(model, mesh), shares=PRESSED) for mesh in meshes]
         reduction = self._reduction(model.physics.viscosity)
         fine, middle = (smooth(PRESSED, found) for found in _all_there(run_all(jobs, report, [reduction])))
@@ -76,20 +77,20 @@ class Prepared:
         return np.zeros((len(SHARES), 2 + len(self.film.electrodes)))
 
     @cached_property
-    def _contact_mesh(self) -> Sizes:
-        """For what moves the contact over the mesh, which a coarse one feels node by node."""
-        return finer_mesh(self.model, self.options, CONTACT, MOST_NODES)
+    def _middle_mesh(self) -> Sizes:
+        """See ON_THE_MIDDLE_MESH; a dot elsewhere is pressed on it too."""
+        return finer_mesh(self.model, self.options, MIDDLE, MOST_NODES)
 
     def add(self, candidates: Sequence[Candidate], places: Sequence[Place], report: Report) -> None:
         """Press what these candidates, and dots at these places, need beyond what was pressed. NoEquilibriumError."""
         wanted = {name: job for c in candidates for name, job in self._jobs(c) if name not in self._changes}
         moved = {_at(place): self.moved(place) for place in places if any(place) and _at(place) not in self._changes}
-        wanted |= {name: (self.job(model, self._contact_mesh), 1) for name, model in moved.items()}
+        wanted |= {name: (self.job(model, self._middle_mesh), 1) for name, model in moved.items()}
         layers = {*self.relaxing, *(c.component for c in candidates if c.mechanism == "viscoelasticity")}
         first = [self._reduction(layers)] if layers != set(self.relaxing) else []
         if not wanted and not first:
             return
-        bases = [self.job(self.model), self.job(self.model, self._contact_mesh)]
+        bases = [self.job(self.model), self.job(self.model, self._middle_mesh)]
         outputs = run_all([*bases, *(job for job, _ in wanted.values())], report, first)
         if first:
             self._take(first[0])
@@ -146,14 +147,14 @@ class Prepared:
         return replace(self.model, dot=dot)
 
     def _jobs(self, candidate: Candidate) -> Iterator[tuple[Name, tuple[Job, int]]]:
-        """Presses by name, each with the number of its mesh: 0 for the diagnosis mesh, 1 for that of the contact."""
+        """Presses by name, each with the number of its mesh: 0 for the diagnosis mesh, 1 for the middle one."""
         back = path.BACK if candidate.mechanism in path.MECHANISMS else ()
-        moves = candidate.component == "dot" and candidate.mechanism in MOVE_THE_CONTACT
+        finer = candidate.mechanism in ON_THE_MIDDLE_MESH
         for point in effect_of(candidate).points:
             changed = with_mechanisms(self.model, [candidate.switched_on(point)])
-            job = self.job(changed, self._contact_mesh if moves else None)
+            job = self.job(changed, self._middle_mesh if finer else None)
             parts = SLIPS if job.model.physics.friction > 0.0 else 1
-            yield press_name(candidate, point), (replace(job, back=back, parts=parts), int(moves))
+            yield press_name(candidate, point), (replace(job, back=back, parts=parts), int(finer))
 
     def job(self, model: Model, mesh: Sizes | None = None) -> Job:
         """The press of a changed model on a mesh, moved with its layers, at once: nothing relaxes."""
