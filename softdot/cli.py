@@ -119,6 +119,10 @@ def _add_diagnose(commands: Any) -> None:
     diagnose.add_argument(
         "--without", action="append", default=[], metavar="MECHANISM", help="leave a mechanism out of the candidates"
     )
+    diagnose.add_argument(
+        "--hold-out", action="append", default=[], metavar="TEXT",
+        help="runs with this in their label only score what the others named",
+    )
     diagnose.add_argument("--seed", type=int, metavar="N", help="of everything random, instead of rig.toml's")
     _add_output(diagnose)
 

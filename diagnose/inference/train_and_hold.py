@@ -36,7 +36,7 @@ def trained_and_held(
     live = found.baseline.live
     seen = live & np.isin(samples.press, training)
     settings: tuple[Setting, ...] = ()
-    after = before = _relaxed(model, found.start.values, (), seen, np.zeros(len(model.nuisances), dtype=bool))
+    after = before = relaxed(model, found.start.values, (), seen, np.zeros(len(model.nuisances), dtype=bool))
     if fit is not None:
         own = fitted(model, fit.system.reached(seen), fit.candidates, fit.values, found.excess)
         settings = own.settings
@@ -45,10 +45,10 @@ def trained_and_held(
     frozen = np.array([nuisance.run is None or nuisance.run in runs for nuisance in model.nuisances], dtype=bool)
     unseen = live & np.isin(samples.press, held)
     if held and not frozen.all():
-        before = _relaxed(model, before, (), unseen, frozen)
-        after = _relaxed(model, after, settings, unseen, frozen) if fit is not None else before
-    train = _errors(model, training, before, after, settings, gains)
-    return train, _errors(model, held, before, after, settings, gains) if held else None
+        before = relaxed(model, before, (), unseen, frozen)
+        after = relaxed(model, after, settings, unseen, frozen) if fit is not None else before
+    train = errors(model, training, before, after, settings, gains)
+    return train, errors(model, held, before, after, settings, gains) if held else None
 
 
 def unimproved(fit: Fit) -> Fit:
@@ -56,7 +56,7 @@ def unimproved(fit: Fit) -> Fit:
     return replace(fit, nrmse_after=fit.nrmse_before, log_score_gain_per_press=0.0)
 
 
-def _relaxed(model: ObservedModel, values: Floats, settings: Sequence[Setting], rows: Bools, frozen: Bools) -> Floats:
+def relaxed(model: ObservedModel, values: Floats, settings: Sequence[Setting], rows: Bools, frozen: Bools) -> Floats:
     """Nuisances fitted to some rows within what is plausible, but for those that are frozen."""
     for _ in range(ROUNDS if len(values) else 0):
         system = linearised(model, values, settings, live=rows)
@@ -69,7 +69,7 @@ def _relaxed(model: ObservedModel, values: Floats, settings: Sequence[Setting], 
     return values
 
 
-def _errors(
+def errors(
     model: ObservedModel,
     presses: Sequence[int],
     before: Floats,
@@ -77,6 +77,7 @@ def _errors(
     settings: Sequence[Setting],
     gains: Floats,
 ) -> Fit:
+    """Of some presses (numbers); gains : (presses,) log-scores over the baseline."""
     samples = model.samples
     names = tuple(f"{model.runs[run].label}, press {press + 1}" for run, press in (samples.presses[n] for n in presses))
     own = [n for n in presses if n < len(gains)]

@@ -2,7 +2,7 @@
 
     from controls import replicates, shuffled
 
-Both take a recording of force and voltage as load_rig reads it and give another one.
+Both take a recording as load_rig reads it and give another one; replicates needs force and voltage.
 """
 
 from dataclasses import replace
@@ -15,18 +15,18 @@ from mesh.types import Floats
 
 
 def shuffled(recording: Recording) -> Recording:
-    """Every run with the voltages of another one, that of the half of the recording away.
+    """Every run with the answers of another one, that of the half of the recording away.
 
-    The voltages run backwards too, so that no press answers to the force at its own time. Nothing predicts them.
+    They run backwards too, so that no press answers to the drive at its own time. Nothing predicts them.
     """
     runs, half = recording.runs, max(1, len(recording.runs) // 2)
-    return replace(recording, runs=tuple(_with_voltages(run, runs[n - half]) for n, run in enumerate(runs)))
+    return replace(recording, runs=tuple(_with_answers(run, runs[n - half]) for n, run in enumerate(runs)))
 
 
-def _with_voltages(run: Run, other: Run) -> Run:
-    """A run as long as the shorter of both, with the voltages of the other one backwards."""
+def _with_answers(run: Run, other: Run) -> Run:
+    """A run as long as the shorter of both, with the answers of the other one backwards."""
     count = min(len(run.time_s), len(other.time_s))
-    strange = {name: other.channels[name][:count][::-1] for name in run.voltages}
+    strange = {name: other.channels[name][:count][::-1] for name in run.answers}
     return _cut(run, count, {**{name: values[:count] for name, values in run.channels.items()}, **strange})
 
 

@@ -18,7 +18,7 @@ def command(chosen: Namespace) -> int:
     if chosen.seed is not None and chosen.seed < 0:
         raise InputError(f"--seed = {chosen.seed}: must be at least 0")
     limit_s = None if chosen.all_presses else 0.0 if chosen.fast_model_only else FULL_MODEL_S
-    options = Options(limit_s, chosen.seed, tuple(chosen.without))
+    options = Options(limit_s, chosen.seed, tuple(chosen.without), tuple(chosen.hold_out))
     try:
         with only_the_summary_on_stdout(), progress_on_terminal() as progress:
             summary = run_diagnosis(Path(chosen.recording), Path(chosen.output), options, progress)

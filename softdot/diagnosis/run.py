@@ -14,6 +14,7 @@ from diagnose.findings import Findings
 from diagnose.forward import Engine, Report
 from diagnose.next_press.choose import NextPress, next_press
 from diagnose.noise.estimate import noise_models
+from diagnose.recording import Recording
 from diagnose.thinning import thinned
 from diagnose.verdict.content import FORMAT, verdict
 from diagnose.verdict.resimulation import OutOfTimeError, Resimulated, resimulate
@@ -40,11 +41,13 @@ class Options:
     """full_model_s : for runs by the full model; None: for every run, however long. 0 : for none.
 
     seed : of everything random; None: that of rig.toml. without : mechanisms that are no candidates.
+    hold_out : parts of labels; runs whose label has one of them only score what the others named.
     """
 
     full_model_s: float | None = FULL_MODEL_S
     seed: int | None = None
     without: tuple[str, ...] = ()
+    hold_out: tuple[str, ...] = ()
 
 
 @dataclass
@@ -69,6 +72,7 @@ def run_diagnosis(
     rig = load_rig(folder)
     _refuse_what_sampling_misses(rig)
     rig = replace(rig, recording=thinned(rig.recording))
+    held_out(rig.recording, options.hold_out)
     noise_models(rig.recording)  # refuses a channel without known noise before any press
     with staged_folder(out, DIAGNOSIS) as staged:
         summary: dict[str, Any] = plain(_fill(rig, options, progress, staged))
@@ -88,6 +92,7 @@ def _refuse_what_sampling_misses(rig: Rig) -> None:
 def _fill(rig: Rig, options: Options, progress: Progress, folder: Path) -> dict[str, Any]:
     """Everything but verdict.json; returns the verdict."""
     from diagnose.inference.diagnose import diagnose
+    from diagnose.inference.held_runs import diagnose_and_score
     from softdot.diagnosis.engines import engine_for
     from softdot.diagnosis.page import write_evidence
     from softdot.version import installed_version
@@ -97,7 +102,11 @@ def _fill(rig: Rig, options: Options, progress: Progress, folder: Path) -> dict[
     progress.stage("model")
     engine = narrowed(engine_for(rig, report), options.without)
     progress.stage("compare")
-    findings = diagnose(rig.recording, engine, seed, report)
+    held = held_out(rig.recording, options.hold_out)
+    if held:
+        findings = diagnose_and_score(rig.recording, engine, held, seed, report)
+    else:
+        findings = diagnose(rig.recording, engine, seed, report)
     progress.stage("press again")
     proof = _proof(rig, engine, findings, report, options.full_model_s)
     progress.stage("plan")
@@ -122,6 +131,18 @@ def narrowed(engine: Engine, without: Sequence[str]) -> Engine:
     kept = tuple(one for one in engine.candidates if one.mechanism not in without)
     object.__setattr__(fewer, "candidates", kept)  # engines may be frozen
     return fewer
+
+
+def held_out(recording: Recording, parts: Sequence[str]) -> list[int]:
+    """Numbers of the runs whose label has one of these parts. InputError for a part that none has, or all."""
+    labels = [run.label for run in recording.runs]
+    for part in parts:
+        if not any(part in label for label in labels):
+            raise InputError(f"--hold-out '{part}': no run has it in its label; they are {', '.join(labels)}")
+    held = [number for number, label in enumerate(labels) if any(part in label for part in parts)]
+    if len(held) == len(labels):
+        raise InputError(f"--hold-out '{parts[-1]}': holds out every run; at least one has to stay")
+    return held
 
 
 def _proof(rig: Rig, engine: Engine, findings: Findings, report: Report, limit_s: float | None) -> Proof:

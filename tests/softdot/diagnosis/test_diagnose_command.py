@@ -58,6 +58,34 @@ def test_a_leak_is_found_named_and_switched_on(tmp_path, diagnosed):
     assert improved.mechanisms[0].parameters == {"resistance_MOhm": pytest.approx(2000.0, rel=0.05)}
 
 
+@pytest.mark.usefixtures("pictures")
+def test_runs_that_are_held_out_only_score(tmp_path, diagnosed):
+    folder = write_toy(tmp_path / "rig", [Setting(LEAK, (0.5,))])
+    first, *others = [run.label for run in load_rig(folder).recording.runs]
+    status, verdict, said = diagnosed(folder, "--hold-out", first)
+    assert (status, said) == (0, "")
+    assert {press.partition(", press")[0] for press in verdict["fit"]["held_out"]["presses"]} == {first}
+    assert {press.partition(", press")[0] for press in verdict["fit"]["train"]["presses"]} <= set(others)
+    assert {place["run"] for place in verdict["where"]} <= set(others)
+    assert verdict["fit"]["held_out"]["nrmse_after"] < 1.2 * verdict["fit"]["held_out"]["noise_floor_nrmse"]
+    roles = {one["run"]: one["role"] for one in verdict["fit"]["resimulated"]}
+    assert roles[first] == "held-out"
+
+
+@pytest.mark.parametrize(
+    ("part", "sentence"),
+    [
+        ("no such", "--hold-out 'no such': no run has it in its label; they are "),
+        ("", "--hold-out '': holds out every run; at least one has to stay"),
+    ],
+)
+def test_runs_that_cannot_be_held_out(part, sentence, tmp_path, diagnosed):
+    status, _, said = diagnosed(write_toy(tmp_path / "rig"), "--hold-out", part)
+    assert status == 2
+    assert sentence in said
+    assert not (tmp_path / "out").exists()
+
+
 def test_agreement_is_a_good_result(tmp_path, diagnosed):
     status, verdict, _ = diagnosed(write_toy(tmp_path / "rig"))
     assert status == 0

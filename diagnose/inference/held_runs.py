@@ -1,0 +1,95 @@
+"""Named on some runs, scored on others that took no part: another speed, another depth, another day."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from diagnose.findings import Findings, Model
+from diagnose.forward import Engine, Report, Setting
+from diagnose.inference.baseline import believed, fitted_baseline
+from diagnose.inference.diagnose import diagnose
+from diagnose.inference.observed_model import ObservedModel
+from diagnose.inference.samples import Samples
+from diagnose.inference.system import linearised
+from diagnose.inference.train_and_hold import errors, relaxed, unimproved
+from diagnose.noise.estimate import noise_models
+from diagnose.recording import Recording
+from diagnose.some_runs import SomeRuns, some_runs
+from diagnose.statistics.linear_gaussian import Sums
+from mesh.types import Bools, Floats
+
+HUM = "mains-hum"
+
+
+def diagnose_and_score(
+    recording: Recording, engine: Engine, held: Sequence[int], seed: int, report: Report
+) -> Findings:
+    """Findings of all runs but some, with held-out errors of those: numbers of runs of the recording.
+
+    Mechanisms and what all runs share are those of the training runs. What floats in a held-out run is fitted to it,
+    without mechanisms and with them alike. InputError for a channel without noise.
+    """
+    trained = [number for number in range(len(recording.runs)) if number not in held]
+    own = some_runs(recording, trained)
+    findings = diagnose(own, SomeRuns(engine, trained), seed, report)
+    report("held-out runs", 0, 1)
+    return _scored(findings, _model(own, engine, trained), _model(some_runs(recording, held), engine, held))
+
+
+def _model(recording: Recording, engine: Engine, numbers: Sequence[int]) -> ObservedModel:
+    return ObservedModel(Samples(recording, noise_models(recording)), SomeRuns(engine, numbers))
+
+
+def _scored(findings: Findings, train: ObservedModel, held: ObservedModel) -> Findings:
+    """Findings whose errors, signals and noise speak of the held-out runs too."""
+    best: Model | None = findings.models[0] if findings.models else None
+    settings = tuple(one for one in best.settings if one.candidate.mechanism != HUM) if best else ()
+    before, after = (_transferred(train, held, chosen) for chosen in ((), settings))
+    gains = _log_scores(held, after, settings) - _log_scores(held, before, ())
+    fit = errors(held, range(len(held.samples.presses)), before, after, settings, gains)
+    named = findings.best is not None
+    noise = {key: law.summary() for key, law in held.samples.noise.items()}
+    shown = findings.improved
+    return replace(
+        findings,
+        detection=replace(findings.detection, noise={**findings.detection.noise, **noise}),
+        held_out=fit if named else unimproved(fit),
+        unnamed=fit if best and not named else None,
+        baseline={**findings.baseline, **_labelled(held, before, ())},
+        improved=None if shown is None else {**shown, **_labelled(held, after, settings)},
+    )
+
+
+def _transferred(train: ObservedModel, held: ObservedModel, settings: Sequence[Setting]) -> Floats:
+    """Nuisances (p,) of held-out runs: what is shared as in the training runs, the rest fitted."""
+    known = _fitted(train, settings, {})
+    shared = {one.name: value for one, value in zip(train.nuisances, known, strict=True) if one.run is None}
+    return _fitted(held, settings, shared)
+
+
+def _fitted(model: ObservedModel, settings: Sequence[Setting], shared: dict[str, float]) -> Floats:
+    """Nuisances (p,) with these mechanisms on, within what is plausible; shared ones by name are not touched."""
+    values = believed(model, fitted_baseline(model)).values.copy()
+    frozen: Bools = np.array([one.run is None and one.name in shared for one in model.nuisances], dtype=bool)
+    values[frozen] = [shared[one.name] for one in model.nuisances if one.run is None and one.name in shared]
+    return relaxed(model, values, settings, np.ones(len(model.samples), dtype=bool), frozen)
+
+
+def _log_scores(model: ObservedModel, values: Floats, settings: Sequence[Setting]) -> Floats:
+    """Log-density (presses,) of each press alone, its own nuisances integrated out under their priors."""
+    system, samples = linearised(model, values, settings), model.samples
+    shared = np.flatnonzero([one.run is None for one in model.nuisances])
+    kept = np.setdiff1d(np.arange(len(system.sigma)), shared)
+    columns = system.weighted(system.excused)
+    white = system.weighted(system.residual) - columns[:, shared] @ values[shared]
+    scale = np.log(system.weight)
+    rows = [samples.press == number for number in range(len(samples.presses))]
+    return np.array([
+        Sums.of(columns[own][:, kept], white[own]).log_evidence(system.sigma[kept]) + float(scale[own].sum())
+        for own in rows
+    ])  # fmt: skip
+
+
+def _labelled(model: ObservedModel, values: Floats, settings: Sequence[Setting]) -> dict[str, dict[str, Floats]]:
+    return {run.label: shown for run, shown in zip(model.runs, model.signals(values, settings), strict=True)}
