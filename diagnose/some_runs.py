@@ -3,8 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from diagnose.forward import Candidate, Engine, Report, Setting, Signals
-from diagnose.recording import Recording, Run
+from diagnose.forward import Engine, Report, Setting, Signals
+from diagnose.passing_on import PassingOn
+from diagnose.recording import Recording
 from solve.mechanisms import Mechanism
 
 
@@ -13,35 +14,17 @@ def some_runs(recording: Recording, numbers: Sequence[int]) -> Recording:
     return replace(recording, runs=tuple(recording.runs[number] for number in numbers))
 
 
-class SomeRuns:
-    """Implements diagnose.forward.Engine for some_runs of the recording that an engine was made for."""
+class SomeRuns(PassingOn):
+    """The engine of a recording for some_runs of it: a run has the number that it has among them."""
 
     def __init__(self, engine: Engine, numbers: Sequence[int]) -> None:
-        self._engine, self._numbers = engine, tuple(numbers)
-        self.name, self.accuracy = engine.name, engine.accuracy
-        self.candidates, self.free_nuisances = engine.candidates, engine.free_nuisances
-
-    @property
-    def shortfalls(self) -> tuple[str, ...]:
-        """Of the engine."""
-        return self._engine.shortfalls
-
-    def nuisance(self, name: str) -> Candidate | None:
-        """As the engine."""
-        return self._engine.nuisance(name)
-
-    def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
-        """As the engine."""
-        self._engine.prepare(candidates, report)
+        super().__init__(engine)
+        self._numbers = tuple(numbers)
 
     def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
-        """As the engine, by the number among these runs."""
-        return self._engine.predict(self._numbers[run], settings)
-
-    def imagine(self, run: Run, settings: Sequence[Setting]) -> Signals:
         """As the engine."""
-        return self._engine.imagine(run, settings)
+        return super().predict(self._numbers[run], settings)
 
     def solve(self, run: int, mechanisms: Sequence[Mechanism], report: Report) -> Signals:
-        """As the engine, by the number among these runs."""
-        return self._engine.solve(self._numbers[run], mechanisms, report)
+        """As the engine."""
+        return super().solve(self._numbers[run], mechanisms, report)

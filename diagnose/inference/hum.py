@@ -13,9 +13,9 @@ import numpy as np
 from diagnose.forward import Candidate, Coordinate, Engine, Report, Setting, Signals
 from diagnose.noise.lines import Line, basis
 from diagnose.noise.model import NoiseModel
+from diagnose.passing_on import PassingOn
 from diagnose.recording import Recording, Run
 from mesh.types import Floats
-from solve.mechanisms import Mechanism
 
 LOUD = 1.0  # power over that of all other noise, per whitened sample
 WIDEST = 10.0  # times the amplitude at rest: what a fit may reach
@@ -53,36 +53,26 @@ def without(noise: NoiseModels, loud: Mapping[tuple[str, str], Line]) -> NoiseMo
     return result
 
 
-class HumEngine:
+class HumEngine(PassingOn):
     """An engine whose mains-hum has a free sine and cosine in each channel with a loud line, at the output."""
 
     def __init__(self, engine: Engine, recording: Recording, loud: Mapping[tuple[str, str], Line]) -> None:
-        self._engine, self._recording = engine, recording
+        super().__init__(engine)
+        self._recording = recording
         self._places = [(n, c) for n, run in enumerate(recording.runs) for c in run.voltages if (run.label, c) in loud]
         self._lines = [loud[recording.runs[n].label, c] for n, c in self._places]
-        self.name, self.accuracy = engine.name, engine.accuracy
-        self.free_nuisances = engine.free_nuisances
         given = next((c for c in engine.candidates if c.mechanism == "mains-hum"), None)
         self._hum = self._candidate(given) if given is not None and loud else None
         others = tuple(c for c in engine.candidates if c.mechanism != "mains-hum")
         self.candidates = others if self._hum is None else (*others, self._hum)
 
-    @property
-    def shortfalls(self) -> tuple[str, ...]:
-        """Of the engine."""
-        return self._engine.shortfalls
-
-    def nuisance(self, name: str) -> Candidate | None:
-        """As the engine."""
-        return self._engine.nuisance(name)
-
     def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
         """As the engine, for all but the hum."""
-        self._engine.prepare([c for c in candidates if c is not self._hum], report)
+        super().prepare([c for c in candidates if c is not self._hum], report)
 
     def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
         """As the engine, with the hum added at the output."""
-        signals = dict(self._engine.predict(run, [s for s in settings if s.candidate is not self._hum]))
+        signals = dict(super().predict(run, [s for s in settings if s.candidate is not self._hum]))
         for setting in settings:
             if setting.candidate is self._hum:
                 for place, (number, channel) in enumerate(self._places):
@@ -93,11 +83,7 @@ class HumEngine:
 
     def imagine(self, run: Run, settings: Sequence[Setting]) -> Signals:
         """As the engine, without hum."""
-        return self._engine.imagine(run, [s for s in settings if s.candidate is not self._hum])
-
-    def solve(self, run: int, mechanisms: Sequence[Mechanism], report: Report) -> Signals:
-        """As the engine."""
-        return self._engine.solve(run, mechanisms, report)
+        return super().imagine(run, [s for s in settings if s.candidate is not self._hum])
 
     def _wave(self, place: int, run: int, pair: Sequence[float]) -> Floats:
         turn = 2.0 * np.pi * self._lines[place].frequency_Hz * self._recording.runs[run].time_s
@@ -124,8 +110,8 @@ class HumEngine:
         """Amplitude at the output over that at the input."""
         run, channel = self._places[0]
         values = tuple(coordinate.starts[0] for coordinate in given.coordinates)
-        self._engine.prepare([given], lambda *_: None)
-        change = self._engine.predict(run, [Setting(given, values)])[channel] - self._engine.predict(run, [])[channel]
+        super().prepare([given], lambda *_: None)
+        change = super().predict(run, [Setting(given, values)])[channel] - super().predict(run, [])[channel]
         amplitude = float(given.parameters(values).get("amplitude_V", 0.0))
         shown = float(np.sqrt(2.0 * np.mean(change**2)))
         return shown / amplitude if amplitude > 0.0 and shown > 0.0 else 1.0

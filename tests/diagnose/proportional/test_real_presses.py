@@ -1,33 +1,22 @@
 """Real presses of a P(VDF-TrFE) fingertip: what shows, and what must not once nothing is left to find."""
 
-import os
-import runpy
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
 from diagnose.inference.diagnose import diagnose
 from diagnose.proportional import proportional_engine
 from softdot.rig_file import load_rig
+from tests.diagnose.real import NEEDED, control, converted, silent
 
-RECORDINGS = os.environ.get("SOFTDOT_RECORDINGS", "")
-EXAMPLES = Path(__file__).parents[3] / "examples" / "recordings"
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.skipif(not RECORDINGS, reason="licences forbid copies here; SOFTDOT_RECORDINGS names their folder"),
-]
-
-
-def silent(*_):
-    """A report that nobody reads."""
+pytestmark = NEEDED
 
 
 @pytest.fixture(scope="module")
 def recording(tmp_path_factory):
     """Ten presses at two speeds."""
     out = tmp_path_factory.mktemp("presses") / "out"
-    runpy.run_path(str(EXAMPLES / "pvdf_presses.py"))["convert"](Path(RECORDINGS) / "pvdf-presses", out)
+    converted("pvdf-presses", out)
     return load_rig(out).recording
 
 
@@ -47,13 +36,11 @@ def test_a_leak_predicts_the_presses_of_one_speed_best(recording):
 
 
 def test_voltages_of_other_presses_name_nothing(recording):
-    shuffled = runpy.run_path(str(EXAMPLES / "controls.py"))["shuffled"](recording)
-    found = found_in(shuffled)
+    found = found_in(control("shuffled")(recording))
     assert found.best is None
     assert min(found.screened.values()) > found.detection.level
 
 
 def test_the_difference_of_two_presses_names_nothing(recording):
-    replicates = runpy.run_path(str(EXAMPLES / "controls.py"))["replicates"]
     fast = replace(recording, runs=tuple(run for run in recording.runs if "speed 300" in run.label))
-    assert found_in(replicates(fast)).best is None
+    assert found_in(control("replicates")(fast)).best is None

@@ -1,0 +1,41 @@
+"""An engine around another one, which changes what a part of it answers."""
+
+from collections.abc import Sequence
+
+from diagnose.forward import Candidate, Engine, Report, Setting, Signals
+from diagnose.recording import Run
+from solve.mechanisms import Mechanism
+
+
+class PassingOn:
+    """Implements diagnose.forward.Engine by another engine."""
+
+    def __init__(self, engine: Engine) -> None:
+        self._engine = engine
+        self.name, self.accuracy = engine.name, engine.accuracy
+        self.candidates, self.free_nuisances = engine.candidates, engine.free_nuisances
+
+    @property
+    def shortfalls(self) -> tuple[str, ...]:
+        """Of the engine."""
+        return self._engine.shortfalls
+
+    def nuisance(self, name: str) -> Candidate | None:
+        """As the engine."""
+        return self._engine.nuisance(name)
+
+    def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
+        """As the engine."""
+        self._engine.prepare(candidates, report)
+
+    def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
+        """As the engine."""
+        return self._engine.predict(run, settings)
+
+    def imagine(self, run: Run, settings: Sequence[Setting]) -> Signals:
+        """As the engine."""
+        return self._engine.imagine(run, settings)
+
+    def solve(self, run: int, mechanisms: Sequence[Mechanism], report: Report) -> Signals:
+        """As the engine."""
+        return self._engine.solve(run, mechanisms, report)
