@@ -4,6 +4,7 @@ Butterworth of any order, and a low-pass of order two of any quality Q:
     H(s) = w0^2 / (s^2 + s w0 / Q + w0^2)
 Half the power is left at the corner w: (w / w0)^2 = x with x^2 + (1 / Q^2 - 2) x - 1 = 0 (Zverev, Handbook of Filter
 Synthesis, 1967, section 2). Q is 1/2 for two equal RC stages, 1/sqrt(3) for Bessel's and 1/sqrt(2) for Butterworth's.
+Dead time delays what leaves the filter: that of a converter, or what a filter of higher order adds to one of order two.
 Integrated exactly for what is linear between the samples: a first-order hold (Franklin, Powell and Workman, Digital
 Control of Dynamic Systems, 1998, section 6.3).
 """
@@ -25,15 +26,19 @@ SAMPLES = 4001  # of the even grid of a filter, at least
 
 @dataclass(frozen=True)
 class Filter:
-    """corner_Hz : half the power is left there. quality : of a low-pass of order 2 only, None for Butterworth's."""
+    """corner_Hz : half the power is left there. quality : of a low-pass of order 2 only, None for Butterworth's.
+
+    delay_s : dead time.
+    """
 
     corner_Hz: float
     order: int
     kind: Literal["low", "high"] = "low"
     quality: float | None = None
+    delay_s: float = 0.0
 
     def transfer(self) -> tuple[Floats, Floats]:
-        """Numerator and denominator of H(s), highest power first."""
+        """Numerator and denominator of H(s) but for the dead time, highest power first."""
         corner = 2.0 * np.pi * self.corner_Hz
         if self.quality is None:
             numerator, denominator = butter(self.order, corner, self.kind, analog=True)
@@ -46,9 +51,9 @@ class Filter:
         even = np.linspace(time[0], time[-1], max(len(time), SAMPLES))
         step = float(even[1] - even[0])
         recurrence = _discrete(self, step)
-        if len(even) == len(time) and np.abs(even - time).max() < 1e-9 * step:
+        if self.delay_s == 0.0 and len(even) == len(time) and np.abs(even - time).max() < 1e-9 * step:
             return np.asarray(_march(*recurrence, voltage))
-        return np.asarray(np.interp(time, even, _march(*recurrence, np.interp(even, time, voltage))))
+        return np.asarray(np.interp(time - self.delay_s, even, _march(*recurrence, np.interp(even, time, voltage))))
 
     def largest_gain(self) -> float:
         """Integral of |impulse response|: by how much it can enlarge the largest value, at any corner."""

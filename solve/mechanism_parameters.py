@@ -43,6 +43,7 @@ class LowPass(Parameters):
     quality: Annotated[float, Field(gt=0, le=10, allow_inf_nan=False)] | None = Field(
         None, description="of order 2: 0.5 two equal RC stages, 0.577 Bessel, 0.707 and none Butterworth"
     )
+    delay_s: NonNegative = Field(0.0, description="dead time behind it: of a converter, or of a filter of higher order")
 
     @model_validator(mode="after")
     def _second_order(self) -> Self:

@@ -49,7 +49,7 @@ def _parasitic(model: Model, component: str, values: Any) -> Model:
 
 
 def _low_pass(model: Model, component: str, values: Any) -> Model:
-    own = Filter(values.cutoff_Hz, values.order, quality=values.quality)
+    own = Filter(values.cutoff_Hz, values.order, quality=values.quality, delay_s=values.delay_s)
     return _physics(model, low_pass=(*model.physics.low_pass, own))
 
 

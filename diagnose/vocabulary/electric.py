@@ -9,6 +9,7 @@ from diagnose.vocabulary.scene import Scene, growing, shrinking
 from solve.filters import corner_over_natural
 
 SHARPEST = 2.0  # Q^2 of a filter whose resonance is 3 dB
+DEAD = 0.8  # of a filter's whole delay
 ONE_STAGE = 1e-3  # Q^2 below which the second stage is too fast to be seen
 CLIPPED = 20.0  # an amplifier that stops at less than this part of what was recorded gives no signal
 HUM = 10.0  # of the largest voltage
@@ -51,24 +52,27 @@ def _parasitic(scene: Scene) -> Candidate:
 
 
 def _low_pass(scene: Scene) -> Candidate:
-    """H(s) = 1 / (1 + s T + k s^2 T^2): T from what one sample shows to the length of a run, k = Q^2 of order two.
+    """H(s) = exp(-s d D) / (1 + s T + k s^2 T^2) with T = (1 - d) D; k = Q^2 of order two.
 
-    T is the delay of what changes slowly, whatever k; k = 0 is one RC stage, 1/3 Bessel's filter, 1/2 Butterworth's.
+    D is the delay of what changes slowly, whatever k and d: from what one sample shows to the length of a run. k = 0
+    is one RC stage, 1/3 Bessel's filter, 1/2 Butterworth's; a share d of the delay is dead time in higher orders.
     """
     scale = 2.0 * scene.step_s
     time = growing("time_constant", scale, scene.duration_s, (scale, 10.0 * scale, 100.0 * scale))
     second = Coordinate("second_order", 0.0, SHARPEST, (0.25, 0.5))
+    dead = Coordinate("dead_time", 0.0, DEAD, (0.2,))
 
     def parameters(values: Sequence[float]) -> dict[str, Any]:
-        reciprocal_s = shrinking(1.0 / scale, sinh(values[0]))  # 1 / T
+        delay_s = values[2] * scale * sinh(values[0])
+        reciprocal_s = shrinking(1.0 / scale, sinh(values[0])) / (1.0 - values[2])  # 1 / T
         if values[1] < ONE_STAGE:
-            return {"cutoff_Hz": reciprocal_s / (2.0 * pi), "order": 1}
+            return {"cutoff_Hz": reciprocal_s / (2.0 * pi), "order": 1, "delay_s": delay_s}
         quality = sqrt(values[1])
         corner_Hz = corner_over_natural(quality) / quality * reciprocal_s / (2.0 * pi)
-        return {"cutoff_Hz": corner_Hz, "order": 2, "quality": quality}
+        return {"cutoff_Hz": corner_Hz, "order": 2, "quality": quality, "delay_s": delay_s}
 
-    units = {"cutoff_Hz": "Hz", "order": "", "quality": ""}
-    return Candidate("low-pass", "readout", (time, second), parameters, units=units)
+    units = {"cutoff_Hz": "Hz", "order": "", "quality": "", "delay_s": "s"}
+    return Candidate("low-pass", "readout", (time, second, dead), parameters, units=units)
 
 
 def _saturation(scene: Scene) -> Candidate:
