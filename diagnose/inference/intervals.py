@@ -49,8 +49,8 @@ def _law_may_differ(fit: Fitted) -> Fitted:
 
 
 def _of_mechanism(model: ObservedModel, fit: Fitted, number: int) -> Mapping[str, Interval]:
-    def function(name: str) -> Function:
-        return lambda values: _numbers(settings(fit.candidates, values)[number])[name]
+    def function(name: str) -> Function:  # what a simpler law has no number for is 0: the quality of one RC stage
+        return lambda values: _numbers(settings(fit.candidates, values)[number]).get(name, 0.0)
 
     names = _numbers(fit.settings[number])
     candidate = fit.candidates[number]

@@ -1,5 +1,6 @@
 """Fits and intervals on recordings whose truth the engine can reproduce."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -106,6 +107,19 @@ def test_an_interval_that_a_bound_ends_says_so():
     assert found["relative_moduli[1]"].low == 0.0
     assert found["relative_moduli[1]"].bounded
     assert found["relative_moduli[0]"].low > 0.05
+
+
+def test_an_interval_may_end_where_a_law_is_a_simpler_one():
+    """As the second of two RC stages, the third branch is not told where it is next to nothing."""
+    def parameters(values):
+        return dict(zip(("first", "second", "third"), values if values[2] > 5e-3 else values[:2], strict=False))
+
+    law = replace(BRANCHES, parameters=parameters, derived=lambda _: {})
+    model = seen(small(6, Sensor(branches2=(0.1, 0.0, 0.0)), runs=3), candidates=(law,))
+    baseline = fitted_baseline(model)
+    fit = fitted(model, baseline, (law,), np.full(3, 0.05), excess(baseline))
+    (found,) = intervals(model, replace(fit, values=np.array([*fit.values[:2], 0.01])))
+    assert found["third"].low == 0.0
 
 
 @pytest.mark.slow
