@@ -67,6 +67,7 @@ def test_runs_that_are_held_out_only_score(tmp_path, diagnosed):
     assert {press.partition(", press")[0] for press in verdict["fit"]["held_out"]["presses"]} == {first}
     assert {press.partition(", press")[0] for press in verdict["fit"]["train"]["presses"]} <= set(others)
     assert {place["run"] for place in verdict["where"]} <= set(others)
+    assert " runs" not in verdict["summary"][0]  # those that are held out are not counted
     assert verdict["fit"]["held_out"]["nrmse_after"] < 1.2 * verdict["fit"]["held_out"]["noise_floor_nrmse"]
     roles = {one["run"]: one["role"] for one in verdict["fit"]["resimulated"]}
     assert roles[first] == "held-out"
