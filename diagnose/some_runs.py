@@ -14,6 +14,11 @@ def some_runs(recording: Recording, numbers: Sequence[int]) -> Recording:
     return replace(recording, runs=tuple(recording.runs[number] for number in numbers))
 
 
+def all_but(recording: Recording, numbers: Sequence[int]) -> list[int]:
+    """Numbers of all other runs."""
+    return [number for number in range(len(recording.runs)) if number not in numbers]
+
+
 class SomeRuns(PassingOn):
     """The engine of a recording for some_runs of it: a run has the number that it has among them."""
 

@@ -62,7 +62,7 @@ def _quiet(model: ObservedModel, baseline: System, found: Checked) -> Findings:
         train=None,
         held_out=None,
         nuisances=_nuisances(model, baseline.values),
-        baseline=_labelled(model, baseline.values, ()),
+        baseline=labelled(model, baseline.values, ()),
         improved=None,
         black_box_gain=0.0,
         warnings=warnings_of(model, baseline, None),
@@ -99,7 +99,7 @@ def _findings(model: ObservedModel, screening: Screening, found: Checked, choice
         held_out=held_out,
         unnamed=unnamed,
         nuisances=_nuisances(model, screening.baseline.values),
-        baseline=_labelled(model, screening.start.values, ()),
+        baseline=labelled(model, screening.start.values, ()),
         improved=_improved(model, chosen) if chosen else None,
         black_box_gain=choice.box_gain,
         warnings=warnings_of(model, screening.baseline, choice),
@@ -120,8 +120,7 @@ def _model(model: ObservedModel, choice: Choice, number: int, detailed: bool) ->
 
 
 def _detection(model: ObservedModel, found: Checked) -> Detection:
-    noise = {key: law.summary() for key, law in model.samples.noise.items()}
-    return Detection(float(found.scores.max()), found.p_value, RATES.level, noise)
+    return Detection(float(found.scores.max()), found.p_value, RATES.level, model.samples.noise_summaries())
 
 
 def _nuisances(model: ObservedModel, values: Floats) -> dict[str, tuple[float, float]]:
@@ -130,12 +129,13 @@ def _nuisances(model: ObservedModel, values: Floats) -> dict[str, tuple[float, f
     return {label: (float(v), float(s)) for label, v, s in zip(labels, values, model.sigma, strict=True)}
 
 
-def _labelled(model: ObservedModel, values: Floats, settings: Sequence[Setting]) -> Mapping[str, Signals]:
+def labelled(model: ObservedModel, values: Floats, settings: Sequence[Setting]) -> Mapping[str, Signals]:
+    """Label -> what the instruments of that run show."""
     return {run.label: shown for run, shown in zip(model.runs, model.signals(values, settings), strict=True)}
 
 
 def _improved(model: ObservedModel, chosen: Judged) -> Mapping[str, Signals]:
-    return _labelled(model, model.possible(chosen.fit.system.closest()), chosen.fit.settings)
+    return labelled(model, model.possible(chosen.fit.system.closest()), chosen.fit.settings)
 
 
 def _information(choice: Choice) -> Floats:

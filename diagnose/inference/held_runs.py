@@ -8,14 +8,14 @@ import numpy as np
 from diagnose.findings import Findings, Model
 from diagnose.forward import Engine, Report, Setting
 from diagnose.inference.baseline import believed, fitted_baseline
-from diagnose.inference.diagnose import diagnose
+from diagnose.inference.diagnose import diagnose, labelled
 from diagnose.inference.observed_model import ObservedModel
 from diagnose.inference.samples import Samples
 from diagnose.inference.system import linearised
 from diagnose.inference.train_and_hold import errors, relaxed, unimproved
 from diagnose.noise.estimate import noise_models
 from diagnose.recording import Recording
-from diagnose.some_runs import SomeRuns, some_runs
+from diagnose.some_runs import SomeRuns, all_but, some_runs
 from diagnose.statistics.linear_gaussian import Sums
 from mesh.types import Bools, Floats
 
@@ -30,7 +30,7 @@ def diagnose_and_score(
     Mechanisms and what all runs share are those of the training runs. What floats in a held-out run is fitted to it,
     without mechanisms and with them alike. InputError for a channel without noise.
     """
-    trained = [number for number in range(len(recording.runs)) if number not in held]
+    trained = all_but(recording, held)
     own = some_runs(recording, trained)
     findings = diagnose(own, SomeRuns(engine, trained), seed, report)
     report("held-out runs", 0, 1)
@@ -45,32 +45,35 @@ def _scored(findings: Findings, train: ObservedModel, held: ObservedModel) -> Fi
     """Findings whose errors, signals and noise speak of the held-out runs too."""
     best: Model | None = findings.models[0] if findings.models else None
     settings = tuple(one for one in best.settings if one.candidate.mechanism != HUM) if best else ()
-    before, after = (_transferred(train, held, chosen) for chosen in ((), settings))
+    starts = [believed(model, fitted_baseline(model)).values for model in (train, held)]
+    before, after = (_transferred((train, held), starts, chosen) for chosen in ((), settings))
     gains = _log_scores(held, after, settings) - _log_scores(held, before, ())
     fit = errors(held, range(len(held.samples.presses)), before, after, settings, gains)
     named = findings.best is not None
-    noise = {key: law.summary() for key, law in held.samples.noise.items()}
     shown = findings.improved
     return replace(
         findings,
-        detection=replace(findings.detection, noise={**findings.detection.noise, **noise}),
+        detection=replace(findings.detection, noise={**findings.detection.noise, **held.samples.noise_summaries()}),
         held_out=fit if named else unimproved(fit),
         unnamed=fit if best and not named else None,
-        baseline={**findings.baseline, **_labelled(held, before, ())},
-        improved=None if shown is None else {**shown, **_labelled(held, after, settings)},
+        baseline={**findings.baseline, **labelled(held, before, ())},
+        improved=None if shown is None else {**shown, **labelled(held, after, settings)},
     )
 
 
-def _transferred(train: ObservedModel, held: ObservedModel, settings: Sequence[Setting]) -> Floats:
-    """Nuisances (p,) of held-out runs: what is shared as in the training runs, the rest fitted."""
-    known = _fitted(train, settings, {})
+def _transferred(
+    models: tuple[ObservedModel, ObservedModel], starts: Sequence[Floats], settings: Sequence[Setting]
+) -> Floats:
+    """Nuisances (p,) of held-out runs: what is shared as in the training runs, the rest fitted from starts of both."""
+    train, held = models
+    known = _fitted(train, starts[0], settings, {})
     shared = {one.name: value for one, value in zip(train.nuisances, known, strict=True) if one.run is None}
-    return _fitted(held, settings, shared)
+    return _fitted(held, starts[1], settings, shared)
 
 
-def _fitted(model: ObservedModel, settings: Sequence[Setting], shared: dict[str, float]) -> Floats:
+def _fitted(model: ObservedModel, start: Floats, settings: Sequence[Setting], shared: dict[str, float]) -> Floats:
     """Nuisances (p,) with these mechanisms on, within what is plausible; shared ones by name are not touched."""
-    values = believed(model, fitted_baseline(model)).values.copy()
+    values = start.copy()
     frozen: Bools = np.array([one.run is None and one.name in shared for one in model.nuisances], dtype=bool)
     values[frozen] = [shared[one.name] for one in model.nuisances if one.run is None and one.name in shared]
     return relaxed(model, values, settings, np.ones(len(model.samples), dtype=bool), frozen)
@@ -89,7 +92,3 @@ def _log_scores(model: ObservedModel, values: Floats, settings: Sequence[Setting
         Sums.of(columns[own][:, kept], white[own]).log_evidence(system.sigma[kept]) + float(scale[own].sum())
         for own in rows
     ])  # fmt: skip
-
-
-def _labelled(model: ObservedModel, values: Floats, settings: Sequence[Setting]) -> dict[str, dict[str, Floats]]:
-    return {run.label: shown for run, shown in zip(model.runs, model.signals(values, settings), strict=True)}

@@ -7,6 +7,7 @@ by an orthonormal cosine transform (statistics/cells.py). Noise stays white, and
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from scipy.fft import dct
@@ -62,6 +63,10 @@ class Samples:
 
     def __len__(self) -> int:
         return len(self.press)
+
+    def noise_summaries(self) -> dict[tuple[str, str], Mapping[str, Any]]:
+        """(label, channel) -> summary of its noise model."""
+        return {key: law.summary() for key, law in self.noise.items()}
 
     def coefficients(self, signals: Sequence[Signals]) -> Floats:
         """The vector (n,), or (n, k), of signals of all runs: channel -> (t,) or (t, k)."""

@@ -15,7 +15,7 @@ from diagnose.forward import Engine, Report
 from diagnose.next_press.choose import NextPress, next_press
 from diagnose.noise.estimate import noise_models
 from diagnose.recording import Recording
-from diagnose.some_runs import some_runs
+from diagnose.some_runs import all_but, some_runs
 from diagnose.thinning import thinned
 from diagnose.verdict.content import FORMAT, verdict
 from diagnose.verdict.resimulation import OutOfTimeError, Resimulated, resimulate
@@ -108,7 +108,7 @@ def _fill(rig: Rig, options: Options, progress: Progress, folder: Path) -> dict[
         findings = diagnose_and_score(rig.recording, engine, held, seed, report)
     else:
         findings = diagnose(rig.recording, engine, seed, report)
-    named_on = some_runs(rig.recording, [n for n in range(len(rig.recording.runs)) if n not in held])
+    named_on = some_runs(rig.recording, all_but(rig.recording, held))
     progress.stage("press again")
     proof = _proof(rig, engine, findings, report, options.full_model_s)
     progress.stage("plan")
