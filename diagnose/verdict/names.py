@@ -81,11 +81,13 @@ def unit_words(unit: str) -> str:
 
 
 def interval_words(name: str, interval: Interval) -> str:
-    """resistance 0.9 MΩ (0.7 to 1.2), with as many digits as the ends need to differ."""
+    """resistance 0.9 MΩ (0.7 to 1.2), with as many digits as the ends need to differ; what cannot vary has no ends."""
     digits = _digits(interval)
     value = " ".join(part for part in (figure(interval.value, digits), unit_words(interval.unit)) if part)
-    ends = f"{figure(interval.low, digits)} to {figure(interval.high, digits)}"
-    return f"{quantity_words(name, interval.unit)} {value} ({ends})"
+    words = f"{quantity_words(name, interval.unit)} {value}"
+    if interval.low == interval.high:
+        return words
+    return f"{words} ({figure(interval.low, digits)} to {figure(interval.high, digits)})"
 
 
 def _digits(interval: Interval) -> int:

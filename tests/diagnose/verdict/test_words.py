@@ -129,6 +129,7 @@ def test_intervals_and_lists():
     narrow = Interval(1993.3, 1963.5, 2023.4, "MOhm")
     assert interval_words("resistance_MOhm", narrow) == "resistance 1990 MΩ (1960 to 2020)"
     assert interval_words("relaxed_fraction", Interval(0.3, 0.2, 0.4, "1")) == "relaxed fraction 0.3 (0.2 to 0.4)"
+    assert interval_words("order", Interval(2.0, 2.0, 2.0, "")) == "order 2"
     assert listed(["a", "b", "c"], "or") == "a, b or c"
     assert listed(["a"]) == "a"
 
