@@ -9,13 +9,19 @@ from mesh.outline import Outline
 from mesh.types import Floats, Ints
 
 DEFLECTION_MM = 2e-3  # nodes are put on the exact surface afterwards
+DEFLECTION = 0.02  # of an element, where that is more
+TURN_RAD = 0.5  # of neighbouring facets
 
 
-def merged_surface(segment: Segment, stack: Outline) -> tuple[Floats, Ints]:
-    """Vertices (n, 3) and faces (m, 3) of the parts; vertices merged, double and flat faces dropped."""
+def merged_surface(segment: Segment, stack: Outline, element_mm: float) -> tuple[Floats, Ints]:
+    """Vertices (n, 3) and faces (m, 3) of the parts; vertices merged, double and flat faces dropped.
+
+    element_mm : size of the smallest elements; round surfaces get facets that suit it.
+    """
+    deflection = max(DEFLECTION_MM, DEFLECTION * element_mm)
     vertices, faces, count = [], [], 0
     for solid in _solids(segment, stack):
-        points, triangles = solid.tessellate(DEFLECTION_MM, 0.2)
+        points, triangles = solid.tessellate(deflection, TURN_RAD)
         vertices.append(np.array([tuple(p) for p in points]))
         faces.append(np.array(triangles, dtype=np.int64) + count)
         count += len(points)

@@ -20,6 +20,8 @@ STOP_ENERGY = 7.0
 WEDGE_ENERGY = 60.0
 SHALLOW = 0.7  # twice the height over the radius of a dome: it then meets medium 1 at less than 40 degrees
 FLAT = 2e-3  # a tetrahedron of this shape or less counts as flat
+ENVELOPE = 1e-3  # of the diagonal: how far pytetwild may leave the surface
+LOOSER = 0.04  # the same of an element under the dot, where that is more: a round surface needs no finer facets
 ATTEMPTS = 3  # pytetwild is not repeatable: another attempt gives another mesh
 
 
@@ -32,7 +34,8 @@ def tetwild(segment: Segment, dot: DotShape, options: MeshOptions) -> LinearMesh
 
 def bare_stack(segment: Segment, stack: Outline, dot: DotShape, options: MeshOptions) -> LinearMesh:
     """The stack without its film: regions 0 medium2, 1 medium1, 2 effector."""
-    vertices, faces = merged_surface(segment, stack)
+    vertices, faces = merged_surface(segment, stack, options.contact_element_size_mm)
+    diagonal_mm = float(np.linalg.norm(np.ptp(vertices, axis=0)))
     bg_vertices, bg_tets, bg_values = background(stack, sizing(stack, dot, options))
     for attempt in range(ATTEMPTS):
         points, tets = tetrahedralize(
@@ -43,6 +46,7 @@ def bare_stack(segment: Segment, stack: Outline, dot: DotShape, options: MeshOpt
             bg_tets=bg_tets,
             bg_values=bg_values,
             edge_length=options.element_size_mm,
+            epsilon=max(ENVELOPE, LOOSER * options.contact_element_size_mm / diagonal_mm),
             stop_energy=stop_energy(stack, options) * 1.5**attempt,
         )
         bare = _labelled(points, oriented(points, tets), stack)

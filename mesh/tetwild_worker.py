@@ -23,7 +23,7 @@ def main(folder: Path) -> None:
         given["vertices"],
         given["faces"].astype(np.int32),
         edge_length_abs=float(given["edge_length"]),
-        epsilon=1e-3,
+        epsilon=float(given["epsilon"]),
         stop_energy=float(given["stop_energy"]),
         disable_filtering=True,
         quiet=True,

@@ -80,6 +80,7 @@ def test_a_cube_is_filled() -> None:
         bg_tets=np.array([[0, 1, 2, 3]]),
         bg_values=np.full(4, 0.5),
         edge_length=0.5,
+        epsilon=1e-3,
         stop_energy=10.0,
     )
     middle = points[tets].mean(axis=1)
