@@ -9,16 +9,16 @@ from mesh.outline import Outline
 from mesh.types import Floats, Ints
 
 DEFLECTION_MM = 2e-3  # nodes are put on the exact surface afterwards
-DEFLECTION = 0.02  # of an element, where that is more
+DEFLECTION = 0.02  # of the smallest detail, where that is more
 TURN_RAD = 0.5  # of neighbouring facets
 
 
-def merged_surface(segment: Segment, stack: Outline, element_mm: float) -> tuple[Floats, Ints]:
+def merged_surface(segment: Segment, stack: Outline, detail_mm: float) -> tuple[Floats, Ints]:
     """Vertices (n, 3) and faces (m, 3) of the parts; vertices merged, double and flat faces dropped.
 
-    element_mm : size of the smallest elements; round surfaces get facets that suit it.
+    detail_mm : size of the smallest elements or parts; round surfaces get facets that suit it.
     """
-    deflection = max(DEFLECTION_MM, DEFLECTION * element_mm)
+    deflection = max(DEFLECTION_MM, DEFLECTION * detail_mm)
     vertices, faces, count = [], [], 0
     for solid in _solids(segment, stack):
         points, triangles = solid.tessellate(deflection, TURN_RAD)

@@ -21,7 +21,7 @@ WEDGE_ENERGY = 60.0
 SHALLOW = 0.7  # twice the height over the radius of a dome: it then meets medium 1 at less than 40 degrees
 FLAT = 2e-3  # a tetrahedron of this shape or less counts as flat
 ENVELOPE = 1e-3  # of the diagonal: how far pytetwild may leave the surface
-LOOSER = 0.04  # the same of an element under the dot, where that is more: a round surface needs no finer facets
+LOOSER = 0.04  # the same of an element under the dot or the thinnest part, where that is more
 ATTEMPTS = 3  # pytetwild is not repeatable: another attempt gives another mesh
 
 
@@ -34,7 +34,8 @@ def tetwild(segment: Segment, dot: DotShape, options: MeshOptions) -> LinearMesh
 
 def bare_stack(segment: Segment, stack: Outline, dot: DotShape, options: MeshOptions) -> LinearMesh:
     """The stack without its film: regions 0 medium2, 1 medium1, 2 effector."""
-    vertices, faces = merged_surface(segment, stack, options.contact_element_size_mm)
+    detail_mm = min(options.contact_element_size_mm, *_heights_mm(stack))
+    vertices, faces = merged_surface(segment, stack, detail_mm)
     diagonal_mm = float(np.linalg.norm(np.ptp(vertices, axis=0)))
     bg_vertices, bg_tets, bg_values = background(stack, sizing(stack, dot, options))
     for attempt in range(ATTEMPTS):
@@ -46,7 +47,7 @@ def bare_stack(segment: Segment, stack: Outline, dot: DotShape, options: MeshOpt
             bg_tets=bg_tets,
             bg_values=bg_values,
             edge_length=options.element_size_mm,
-            epsilon=max(ENVELOPE, LOOSER * options.contact_element_size_mm / diagonal_mm),
+            epsilon=max(ENVELOPE, LOOSER * detail_mm / diagonal_mm),
             stop_energy=stop_energy(stack, options) * 1.5**attempt,
         )
         bare = _labelled(points, oriented(points, tets), stack)
@@ -57,6 +58,12 @@ def bare_stack(segment: Segment, stack: Outline, dot: DotShape, options: MeshOpt
         f"pytetwild left {flat} flat elements in each of {ATTEMPTS} attempts: change mesh.element_size_mm or "
         "mesh.contact_element_size_mm a little"
     )
+
+
+def _heights_mm(stack: Outline) -> list[float]:
+    """Of the parts that are there, film left out."""
+    heights = [stack.film_bottom, stack.medium1_top - stack.film_top, stack.top - stack.medium1_top]
+    return heights[: 2 if stack.shape == "none" else 3]
 
 
 def stop_energy(stack: Outline, options: MeshOptions) -> float:
