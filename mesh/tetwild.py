@@ -4,6 +4,7 @@ import numpy as np
 
 from geometry.dot_shape import DotShape
 from geometry.parameters import Segment
+from geometry.stack import layers
 from mesh.background import background
 from mesh.child import tetrahedralize
 from mesh.errors import MeshingError
@@ -34,7 +35,8 @@ def tetwild(segment: Segment, dot: DotShape, options: MeshOptions) -> LinearMesh
 
 def bare_stack(segment: Segment, stack: Outline, dot: DotShape, options: MeshOptions) -> LinearMesh:
     """The stack without its film: regions 0 medium2, 1 medium1, 2 effector."""
-    detail_mm = min(options.contact_element_size_mm, *_heights_mm(stack))
+    thicknesses_mm = (layer.thickness_mm for layer in layers(segment) if layer.name != "film")
+    detail_mm = min(options.contact_element_size_mm, *thicknesses_mm)
     vertices, faces = merged_surface(segment, stack, detail_mm)
     diagonal_mm = float(np.linalg.norm(np.ptp(vertices, axis=0)))
     bg_vertices, bg_tets, bg_values = background(stack, sizing(stack, dot, options))
@@ -58,12 +60,6 @@ def bare_stack(segment: Segment, stack: Outline, dot: DotShape, options: MeshOpt
         f"pytetwild left {flat} flat elements in each of {ATTEMPTS} attempts: change mesh.element_size_mm or "
         "mesh.contact_element_size_mm a little"
     )
-
-
-def _heights_mm(stack: Outline) -> list[float]:
-    """Of the parts that are there, film left out."""
-    heights = [stack.film_bottom, stack.medium1_top - stack.film_top, stack.top - stack.medium1_top]
-    return heights[: 2 if stack.shape == "none" else 3]
 
 
 def stop_energy(stack: Outline, options: MeshOptions) -> float:
