@@ -13,12 +13,14 @@ from softdot.outcome import solved
 from softdot.paper.reading import segment_config
 
 MESHERS = [pytest.param("layered"), pytest.param("pytetwild", marks=pytest.mark.slow)]
+FINE = {"contact_element_size_mm": 0.05, "element_size_mm": 0.15}  # half the default, a fourth of the error
 SOFT, MIDDLE, HARD = 0.05, 1.0, 5.0  # modulus of medium 2, MPa
 
 
 @functools.cache
-def force_and_millivolts(mesher, boundary, h1_mm, e2_MPa):
-    config = segment_config(boundary, h1_mm, e2_MPa, load_steps=3, mesh={"mesher": mesher})
+def force_and_millivolts(mesher, boundary, h1_mm, e2_MPa, fine=False):
+    mesh = {"mesher": mesher, **(FINE if fine else {})}
+    config = segment_config(boundary, h1_mm, e2_MPa, load_steps=3, mesh=mesh)
     found = solved(config, lambda *_: None)
     assert found["solver"]["converged"], found["solver"]
     return found["reaction_force_N"][-1], 1e3 * found["open_circuit_voltage_V"][-1] / 337
@@ -62,6 +64,9 @@ def test_voltages(mesher, cases, millivolts):
     [("free", 0.8, SOFT), ("clamped", 0.8, SOFT), ("free", 0.5, MIDDLE), ("clamped", 0.5, MIDDLE)],
 )
 def test_both_meshers_agree(case):
-    layered, pytetwild = force_and_millivolts("layered", *case), force_and_millivolts("pytetwild", *case)
+    """On meshes of half the default size: pytetwild makes another mesh each time, and on the default ones the
+    voltages scatter by 1 % about a mean that is 2.6 % high.
+    """
+    layered, pytetwild = (force_and_millivolts(mesher, *case, fine=True) for mesher in ("layered", "pytetwild"))
     assert pytetwild[0] == pytest.approx(layered[0], rel=0.01)
     assert pytetwild[1] == pytest.approx(layered[1], rel=0.02)
