@@ -73,7 +73,7 @@ FREE = Bench(
     "ridge-free",
     Made(
         (Layer("medium2", 1.5, 0.5), Film(), Layer("medium1", 0.8, 2.0), Layer("effector", 0.8, 1.0)),
-        3.0, 10.0, "ridge", 1.15, fine=1.5,
+        3.0, 10.0, "ridge", 1.15,
     ),
     Amplifier(5_000.0, 220.0, (Filter(100.0, 1, "butterworth"),)),
     _runs(0.3, 500.0),

@@ -10,7 +10,7 @@ from tempfile import NamedTemporaryFile
 from zipfile import BadZipFile
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
+from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from diagnose.prove.world.made import Floats, Made
 from diagnose.prove.world.stack import Answer, Stack, State
@@ -41,13 +41,20 @@ class Table:
     course: Course
 
     def at(self, depth_mm: Floats) -> Course:
-        """Interpolated at depths (t,), monotonic between the points; nothing before the touch."""
-        return _at(self.depth_mm, self.course, np.clip(depth_mm, 0.0, None))
+        """Interpolated at depths (t,); nothing before the touch. Force and charge are smooth, the area grows."""
+        inside = np.clip(depth_mm, 0.0, self.depth_mm[-1])
+        charge = _spline(self.depth_mm, self.course.charge_pC)
+        area = PchipInterpolator(self.depth_mm, self.course.area_mm2)
+        return Course(self._force(inside), charge(inside), area(inside))
 
     def slope_N_per_mm(self, depth_mm: Floats) -> Floats:
         """dF / d(depth)."""
-        spline = PchipInterpolator(self.depth_mm, self.course.force_N).derivative()
-        return np.where(depth_mm > 0.0, spline(np.clip(depth_mm, 0.0, self.depth_mm[-1])), 0.0)
+        slope = self._force.derivative()
+        return np.where(depth_mm > 0.0, slope(np.clip(depth_mm, 0.0, self.depth_mm[-1])), 0.0)
+
+    @property
+    def _force(self) -> CubicSpline:
+        return _spline(self.depth_mm, self.course.force_N)
 
 
 def table(made: Made, depth_mm: float) -> Table:
@@ -115,9 +122,9 @@ def _course(answers: Sequence[Answer], zero: Answer) -> Course:
     )
 
 
-def _at(known: Floats, course: Course, wanted: Floats) -> Course:
-    values = np.stack([course.force_N, course.charge_pC, course.area_mm2])
-    return Course(*PchipInterpolator(known, values, axis=1)(np.clip(wanted, known[0], known[-1])))
+def _spline(depth_mm: Floats, values: Floats) -> CubicSpline:
+    """From rest at the touch. A monotonic interpolant would be 1.3 % off a cap's charge between ten depths."""
+    return CubicSpline(depth_mm, values, bc_type=((1, 0.0), "not-a-knot"))
 
 
 @cache
