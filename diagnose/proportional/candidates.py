@@ -19,13 +19,13 @@ from diagnose.forward import Candidate, Coordinate
 from diagnose.proportional.sensor import LARGEST_STRAIN, MEDIUM
 from diagnose.recording import Recording
 from diagnose.vocabulary.electric import electric
-from diagnose.vocabulary.memory import MOST
 from diagnose.vocabulary.rig import around
 from diagnose.vocabulary.scene import Scene, growing
 
 ELECTRIC = ("charge-leakage", "low-pass", "saturation", "mains-hum")
 AROUND = ("pyroelectric-drift", "contact-electrification")
 SENSITIVITY, CAPACITANCE = "sensitivity", "film-capacitance"
+MOST = 1.0  # modulus of one branch, in terms of what never relaxes
 MOST_CAPACITANCE = 1e4  # of the assumed film
 ANY_FACTOR = 1e6
 

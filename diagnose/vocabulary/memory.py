@@ -10,10 +10,10 @@ from diagnose.forward import Candidate, Coordinate
 from diagnose.vocabulary.scene import Scene
 from solve.materials.prony import Prony
 
-BRANCHES = 3
-MOST = 1.0  # modulus of one branch, in terms of what never relaxes
-LARGEST_SHARE = BRANCHES * MOST / (1.0 + BRANCHES * MOST)
+BRANCHES = 4
+LARGEST_SHARE = 0.75
 """Of the stress that may relax; the reduced model is made for it."""
+MOST = LARGEST_SHARE / (1.0 - LARGEST_SHARE) / BRANCHES  # modulus of one branch, in terms of what never relaxes
 EARLY_S, LATE_S = 0.1, 10.0
 FEWEST_SAMPLES = 5.0  # within the shortest time of relaxation that is looked for
 
@@ -56,8 +56,12 @@ def _candidate(scene: Scene, component: str, declared: Prony) -> Candidate:
 
 
 def relaxation_times(step_s: float, duration_s: float) -> tuple[list[float], float]:
-    """Times of the branches, evenly in the logarithm, and half their spacing; together they span what a run shows."""
-    low, high = log10(FEWEST_SAMPLES * step_s), log10(duration_s)
+    """Times of the branches, evenly in the logarithm, and half their spacing.
+
+    Together they span what a run shows, and LATE_S: without a branch that slow, the relaxed fraction of a material that
+    goes on relaxing after the last hold would be too low, and too sure.
+    """
+    low, high = log10(FEWEST_SAMPLES * step_s), log10(max(duration_s, LATE_S))
     spacing = max((high - low) / BRANCHES, 0.1)
     middle = 0.5 * (low + high)
     times = [10.0 ** (middle + spacing * (n - 0.5 * (BRANCHES - 1))) for n in range(BRANCHES)]

@@ -106,8 +106,8 @@ def test_what_is_declared_stays():
     declared = {"name": "viscoelasticity", "component": "medium2",
                 "parameters": {"relative_moduli": [0.2], "relaxation_times_s": [0.5]}}  # fmt: skip
     found = next(c for c in candidates(scene(mechanisms=[declared])) if c.name == ("viscoelasticity", "medium2"))
-    moduli = found.parameters((0.5, 0.0, 0.0, 0.0))["relative_moduli"]
-    assert moduli == pytest.approx([0.2, 0.8 / 3.0, 0.0, 0.0])
+    moduli = found.parameters((0.5, 0.0, 0.0, 0.0, 0.0))["relative_moduli"]
+    assert moduli == pytest.approx([0.2, 0.8 / 3.0, 0.0, 0.0, 0.0])
 
 
 def test_relaxed_fraction_of_one_branch():
