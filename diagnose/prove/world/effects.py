@@ -152,6 +152,17 @@ def _factor(name: str, quantity: str, per_s: float) -> Callable[[Reality, Bench,
     return change
 
 
+def _foamed(name: str) -> Callable[[Reality, Bench, float], Reality]:
+    def change(reality: Reality, bench: Bench, s: float) -> Reality:
+        return replace(reality, made=_layer(reality.made, name, poisson_ratio=_poisson_ratio(s)))
+
+    return change
+
+
+def _poisson_ratio(s: float) -> float:
+    return 0.495 - 0.03 * s
+
+
 def _weak_film(reality: Reality, bench: Bench, s: float) -> Reality:
     return replace(reality, sensitivity=1.0 - 0.02 * s)
 
@@ -186,6 +197,7 @@ def _is(name: str, scale: float, start: float = 0.0) -> Callable[[Bench, float],
 
 def _all() -> tuple[Effect, ...]:
     bessel, fractional = "Bessel of order four where order two is fitted", "fractional Zener where Prony is fitted"
+    foam = "compressible neo-Hooke where a hyperfoam is fitted"
     gent, tanh = "Gent where Yeoh is fitted", "Dorfmann-Ogden where Ogden-Roxburgh is fitted"
     film_bond, upper_bond = "bond-film-medium2", "bond-medium1-film"
     known = [
@@ -217,6 +229,8 @@ def _all() -> tuple[Effect, ...]:
         Effect("glue-above", "adhesive-compliance", upper_bond, _glued("medium1"), form="resolved glue", most=50.0),
         Effect("modulus-effector", "property-error", "effector", _factor("effector", "modulus_MPa", -0.04),
                _is("modulus_factor", -0.04, 1.0), 15.0),
+        Effect("foam-medium2", "foam-densification", "medium2", _foamed("medium2"),
+               lambda _b, s: {"poisson_ratio": _poisson_ratio(s)}, 15.0, foam),
         Effect("mass", "inertia", "rig", _field("mass_g", 200.0), _is("moving_mass_g", 200.0), 20.0),
     ]
     unknown = [
