@@ -39,6 +39,29 @@ def columns(samples: Samples, signals: Sequence[Signals], relative: Relative) ->
     return (np.column_stack(found) if found else np.zeros((len(samples), 0))), np.array(sigma)
 
 
+def repeated(samples: Samples, signals: Sequence[Signals], relative: Relative) -> tuple[Floats, Floats]:
+    """Columns (n, k) and their prior sigmas (k,) of an error over depth, which is the same in all runs.
+
+    Low cosines of each channel over its range, which stands for the depth as it grows with it; the constant one is
+    among columns().
+    """
+    orders = np.arange(1, COSINES)
+    found = {name: np.zeros((len(samples), len(orders))) for name in samples.channels}
+    largest = {
+        name: max(float(np.abs(of_run[name]).max(initial=0.0)) for of_run in signals if name in of_run)
+        for name in samples.channels
+    }
+    for block in samples.blocks:
+        signal = signals[block.run][block.channel]
+        share = np.abs(signal) / max(largest[block.channel], np.finfo(float).tiny)
+        waves = np.cos(np.pi * share[:, None] * orders) * signal[:, None]
+        found[block.channel] += samples.of_block(block, block.whitening(waves))
+    known = [name for name, size in zip(samples.channels, relative, strict=True) if size > 0.0]
+    sigma = [size for size in relative if size > 0.0]
+    columns = np.column_stack([found[name] for name in known]) if known else np.zeros((len(samples), 0))
+    return columns, np.repeat(sigma, len(orders))
+
+
 def allowance(samples: Samples, vector: Floats, relative: Relative) -> Floats:
     """Variance (n,) that is added to the coefficients of a signal (n,).
 

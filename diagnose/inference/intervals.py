@@ -14,9 +14,11 @@ from scipy.stats import chi2
 
 from diagnose.findings import Interval
 from diagnose.forward import Candidate, Setting
+from diagnose.inference import discrepancy
 from diagnose.inference.descent import bounds, descent, scales, settings
 from diagnose.inference.observed_model import ObservedModel
 from diagnose.inference.refit import Fitted
+from diagnose.inference.system import relative
 from mesh.types import Bools, Floats
 
 LEVEL = 0.9
@@ -29,7 +31,7 @@ Function = Callable[[Floats], float]
 
 def intervals(model: ObservedModel, fit: Fitted) -> tuple[Mapping[str, Interval], ...]:
     """For each mechanism of a fit, its parameters and derived quantities by name."""
-    fit = _law_may_differ(fit)
+    fit = _model_may_err(model, _law_may_differ(fit))
     return tuple(_of_mechanism(model, fit, number) for number in range(len(fit.candidates)))
 
 
@@ -46,6 +48,13 @@ def _law_may_differ(fit: Fitted) -> Fitted:
     if not any(one.candidate.derived(one.values) for one in fit.settings):
         return fit
     return replace(fit, system=replace(fit.system, form=fit.largest_form))
+
+
+def _model_may_err(model: ObservedModel, fit: Fitted) -> Fitted:
+    """With an error over depth that no further run averages out, as all have it. A name needs no such allowance."""
+    shown = model.signals(fit.system.values, fit.settings)
+    columns, sigma = discrepancy.repeated(model.samples, shown, relative(model))
+    return replace(fit, system=fit.system.excusing(columns, sigma))
 
 
 def _of_mechanism(model: ObservedModel, fit: Fitted, number: int) -> Mapping[str, Interval]:

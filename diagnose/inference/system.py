@@ -62,6 +62,12 @@ class System:
         """The same where only some of its live rows are looked at."""
         return replace(self, excused=self.excused[live[self.live]], live=live)
 
+    def excusing(self, columns: Floats, sigma: Floats) -> "System":
+        """The same with more columns (n, k) excused, of prior deviations (k,)."""
+        place = len(self.sigma_of_one) - self.laws
+        excused = np.hstack([self.excused[:, :place], columns[self.live], self.excused[:, place:]])
+        return replace(self, excused=excused, sigma_of_one=np.insert(self.sigma_of_one, place, sigma))
+
     @cached_property
     def quadratic(self) -> Quadratic:
         """Inner products with all that is excused integrated out."""

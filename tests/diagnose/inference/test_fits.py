@@ -132,3 +132,21 @@ def test_intervals_cover_the_truth():
         (found,) = intervals(model, fitted(model, baseline, (LEAK,), np.array([0.8]), excess(baseline)))
         covered += found["leak"].low <= 1.0 <= found["leak"].high
     assert covered >= 31  # 36 expected; fewer than 31 has a chance of 1 % at 90 %
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "coordinate", "true"),
+    [(("rig-compliance", "rig"), "compliance", 0.08), (("hyperelastic-stiffening", "medium1"), "stiffening", 0.5)],
+)
+def test_intervals_cover_the_truth_where_the_model_errs_over_depth_in_all_runs_alike(name, coordinate, true):
+    """A table that is 1 % off, as it says, by a smooth function of depth: more runs do not average that out."""
+    candidate = next(one for one in CANDIDATES if one.name == name)
+    covered = 0
+    for seed in range(25):
+        model = seen(small(200 + seed, Sensor(**{coordinate: true}), runs=4, noise=0.001, distort=0.01))
+        baseline = fitted_baseline(model)
+        fit = fitted(model, baseline, (candidate,), np.array([0.8 * true]), excess(baseline))
+        (found,) = intervals(model, fit)
+        covered += found[coordinate].low <= true <= found[coordinate].high
+    assert covered >= 19  # 22.5 expected; without the allowance 16 and 16
