@@ -21,7 +21,7 @@ class Coordinate:
     low, high : what a real part can have; 0 lies between them or on one of them. At an end the value is implausible.
     starts : from where nonlinear fits begin besides the linear estimate; not 0.
     nodes : values at which the 3D model itself is pressed, without 0; () where no press of its own is needed.
-    levels_off : beyond the ends the answer is that at the end; then an end is plausible.
+    levels_off : beyond the low, the high end the answer is about that at the end; then that end is plausible.
     """
 
     name: str
@@ -29,7 +29,7 @@ class Coordinate:
     high: float
     starts: tuple[float, ...]
     nodes: tuple[float, ...] = ()
-    levels_off: bool = False
+    levels_off: tuple[bool, bool] = (False, False)
 
 
 @dataclass(frozen=True)

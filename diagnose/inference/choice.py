@@ -172,7 +172,7 @@ def _decided(judge: Judge, models: tuple[Judged, ...], p_mismatch: float) -> Cho
     apart[contradicted(models)] = 0.0
     apart[_told_apart(judge, models)] = np.inf
     evidence = Evidence(
-        p_mismatch, best.p_left, best.p_strained, best.gain.lower, box.lower, _implausible(best.fit), alike(apart)
+        p_mismatch, best.p_left, best.p_strained, best.gain.lower, box.lower, implausible(best.fit), alike(apart)
     )
     decision = decide(evidence, replace(RATES, margin=worth_of_form(samples, metric)))
     probabilities = _probabilities(models, scores, judge.rng)
@@ -228,15 +228,15 @@ def _score(one: Judged) -> float:
 
 
 def _doubtful(one: Judged) -> bool:
-    return min(one.p_left, one.p_strained) <= RATES.level or bool(_implausible(one.fit))
+    return min(one.p_left, one.p_strained) <= RATES.level or bool(implausible(one.fit))
 
 
-def _implausible(fit: Fitted) -> tuple[str, ...]:
+def implausible(fit: Fitted) -> tuple[str, ...]:
     """Coordinates at an end of what a real part can have; 0 is always plausible."""
     found = []
     for coordinate, value in zip(coordinates(fit.candidates), fit.values, strict=True):
         close = 1e-6 * (coordinate.high - coordinate.low)
-        for end in (coordinate.low, coordinate.high):
-            if end != 0.0 and abs(value - end) <= close and not coordinate.levels_off:
+        for end, plausible in zip((coordinate.low, coordinate.high), coordinate.levels_off, strict=True):
+            if end != 0.0 and abs(value - end) <= close and not plausible:
                 found.append(f"{coordinate.name} = {value:.3g}")
     return tuple(found)

@@ -52,7 +52,7 @@ def _with_time_constant(scene: Scene, one: Candidate) -> Candidate:
         resistance_MOhm = float(one.parameters(values)["resistance_MOhm"])
         return {"time_constant_s": 1e-6 * scene.capacitance_pF * resistance_MOhm}
 
-    coordinates = tuple(replace(coordinate, levels_off=True) for coordinate in one.coordinates)
+    coordinates = tuple(replace(coordinate, levels_off=(True, True)) for coordinate in one.coordinates)
     return replace(one, coordinates=coordinates, derived=derived, units={**one.units, "time_constant_s": "s"})
 
 

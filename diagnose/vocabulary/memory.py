@@ -31,12 +31,13 @@ def _candidate(scene: Scene, component: str, declared: Prony) -> Candidate:
     """BRANCHES branches by their moduli over what never relaxes, and one shift of all their times.
 
     At fixed times the answer is linear in small moduli. The shift, half the spacing to either side, lets one branch
-    alone have any time; several together take the form of any spectrum. What rig.toml declares stays beside them.
+    alone have any time; several together take the form of any spectrum. What relaxes faster than all of them shows
+    about as the fastest does. What rig.toml declares stays beside them.
     """
     times, reach = relaxation_times(scene.step_s, scene.duration_s)
     free = 1.0 - sum(declared.relative_moduli)
     moduli = tuple(Coordinate(f"modulus_{n + 1}", 0.0, MOST, (0.1, 0.5)) for n in range(BRANCHES))
-    shift = Coordinate("log_time", -reach, reach, (-0.5 * reach, 0.5 * reach))
+    shift = Coordinate("log_time", -reach, reach, (-0.5 * reach, 0.5 * reach), levels_off=(True, False))
 
     def series(values: Sequence[float]) -> tuple[list[float], list[float]]:
         ratios = np.asarray(values[:BRANCHES])

@@ -4,7 +4,8 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from diagnose.inference.choice import contradicted
+from diagnose.forward import Candidate, Coordinate
+from diagnose.inference.choice import contradicted, implausible
 
 
 def model(score, evidence, p_left=1.0):
@@ -25,3 +26,21 @@ def test_a_model_that_fits_all_presses_better_than_the_one_that_predicts_best_co
 
 def test_a_model_that_leaves_too_much_has_no_say():
     assert not contradicted([model(5.0, 20.0), model(4.0, 30.0, p_left=0.0)]).any()
+
+
+def at(value, levels_off=(False, False)):
+    coordinate = Coordinate("log_time", -0.8, 0.8, (0.4,), levels_off=levels_off)
+    law = Candidate("viscoelasticity", "medium2", (coordinate,), lambda _: {})
+    return implausible(SimpleNamespace(candidates=(law,), values=np.array([value])))
+
+
+def test_an_end_of_what_a_part_can_have_is_implausible():
+    assert at(0.8) == ("log_time = 0.8",)
+    assert at(-0.8) == ("log_time = -0.8",)
+    assert at(0.79) == ()
+
+
+def test_an_end_beyond_which_the_answer_stays_is_plausible():
+    """Relaxation may be faster than what is looked for; slower than every run it is a guess."""
+    assert at(-0.8, levels_off=(True, False)) == ()
+    assert at(0.8, levels_off=(True, False)) == ("log_time = 0.8",)
