@@ -62,7 +62,7 @@ CASES = [
     ("rig-compliance", "rig", (0.3,), 0.02, 0.1),
     ("property-error", "medium1", (0.3, 0.0), 0.05, 0.03),
     ("property-error", "film", (0.2, 0.1, 0.3), 0.05, 0.3),
-    ("viscoelasticity", "medium2", (0.1, 0.1, 0.05, 0.3), 0.1, 0.05),
+    ("viscoelasticity", "medium2", (0.1, 0.1, 0.05, 0.05, 0.3), 0.1, 0.05),
     ("hyperelastic-stiffening", "effector", (0.3, 0.2), 0.08, 0.05),
     ("adhesive-compliance", "bond-film-medium2", (1.2, 2.5), 0.08, 0.05),
     ("elastic-sides", "sides", (2.0,), 0.08, 0.1),
