@@ -1,4 +1,4 @@
-"""Why a press that converged should still be doubted: contact that overlaps, time that is cut too coarsely."""
+"""Why a press that converged should still be doubted: contact that overlaps, a snap, time that is cut too coarsely."""
 
 from collections.abc import Sequence
 
@@ -12,7 +12,7 @@ PENETRATION_LIMIT = 0.05  # of the depth; contact holds in weighted means, so a 
 
 def doubts(steps: Sequence[Step], records: Sequence[Record]) -> tuple[str, ...]:
     """Warnings, one sentence each."""
-    return (*_penetration(max(steps, key=lambda step: step.indentation_m)), *_unresolved(records))
+    return (*_penetration(max(steps, key=lambda step: step.indentation_m)), *_snaps(records), *_unresolved(records))
 
 
 def _penetration(step: Step) -> tuple[str, ...]:
@@ -23,6 +23,19 @@ def _penetration(step: Step) -> tuple[str, ...]:
     return (
         f"the dot overlaps the surface by up to {1e3 * overlap:.2g} mm at single points: "
         "a smaller mesh.contact_element_size_mm is needed",
+    )
+
+
+def _snaps(records: Sequence[Record]) -> tuple[str, ...]:
+    """A warning where the segment lost one equilibrium and found another."""
+    depths_mm = [1e3 * record.indentation_m for record in records if record.snapped]
+    if not depths_mm:
+        return ()
+    often = f", and {len(depths_mm) - 1} times more" if len(depths_mm) > 1 else ""
+    return (
+        f"at {depths_mm[0]:.3f} mm something snapped{often}: Newton found no equilibrium near the one before. The free "
+        "side of a soft layer may crease, and elements of a poor shape may give way: the picture of the deformed "
+        "segment or another mesh will tell",
     )
 
 

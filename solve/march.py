@@ -11,6 +11,7 @@ from solve.linear import LinearSolver
 from solve.newton import NoEquilibriumError, equilibrate
 from solve.opening import opens_too_coarsely, with_work
 from solve.schedule import Target, load_between
+from solve.snap import snapped
 from solve.system import Load, State, System
 
 MAX_APPROACHES = 20
@@ -40,7 +41,8 @@ def march(
 ) -> str | None:
     """Walk to the target, halving the step where Newton fails, time is cut too coarsely, or contact opens in midst.
 
-    Where time is cut too coarsely in the smallest step too, that step is damped, and the state keeps its error.
+    Where time is cut too coarsely in the smallest step too, that step is damped, and the state keeps its error. Where
+    Newton fails in the smallest step too, the segment may have snapped (see solve.snap).
     past : the last converged states, extended in place. kink : the rate of loading jumped at the last of them.
     Returns why it stopped short, or None.
     """
@@ -64,11 +66,15 @@ def march(
                 state = replace(damped, iterations=state.iterations + damped.iterations, time_error=error)
         except NoEquilibriumError as failure:
             smallest = SMALLEST_SUBSTEP if size >= SMALLEST_SUBSTEP else SMALLEST_SUBSTEP**2
-            size *= 0.5
-            if size < smallest:
+            if 0.5 * size >= smallest:
+                size *= 0.5
+                continue
+            try:
+                state = snapped(system, linear, load, time, past[-1])
+            except NoEquilibriumError:
                 return f"sub-steps fell below 1/{1 / smallest:.0f} of it: {explained(system, failure, past[-1])}"
-            continue
-        done, first = done + size, False
+            error = system.time_error(past[-1], state, after_kink=True)
+        done, first = done + size, state.snapped
         size *= 2.0 if error < 0.2 * TIME_TOLERANCE else 1.0
         state = with_work(system, past[-1], state)
         on_state(state, past[-1])

@@ -78,6 +78,7 @@ class Recorder:
                 newton_iterations=state.iterations,
                 relative_residual=state.relative_residual,
                 time_error=state.time_error,
+                snapped=state.snapped,
             )
         )
 

@@ -57,7 +57,7 @@ class Step:
 
 @dataclass(frozen=True)
 class Record:
-    """One converged state without its fields; names as in Trace, time_error as in State."""
+    """One converged state without its fields; names as in Trace, time_error and snapped as in State."""
 
     time_s: float
     indentation_m: float
@@ -69,6 +69,7 @@ class Record:
     newton_iterations: int
     relative_residual: float
     time_error: float
+    snapped: bool
 
 
 @dataclass(frozen=True)

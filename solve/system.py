@@ -61,6 +61,7 @@ class State:
     """A converged state: time in s, load, unknowns, memory of each term, largest norm of contact forces so far.
 
     time_error : of the step to it, where it exceeds the tolerance (see System.time_error), else zero.
+    snapped : Newton found no equilibrium near the one before it (see solve.snap).
     work, most_work : what the dot has put into the segment, now and at most so far (see solve.opening).
     """
 
@@ -72,6 +73,7 @@ class State:
     iterations: int = 0
     relative_residual: float = 0.0
     time_error: float = 0.0
+    snapped: bool = False
     work: float = 0.0
     most_work: float = 0.0
 

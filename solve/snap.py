@@ -1,0 +1,77 @@
+"""Past a limit point: where no equilibrium lies near the last one, move on through damped states to the next.
+
+Pseudo-transient continuation (Kelley and Keyes, SIAM J. Numer. Anal. 35 (1998) 508, doi:10.1137/S0036142996304796):
+implicit Euler steps of c dx/ds = -R(x) at a fixed load, one Newton iteration each, longer as the residual falls. It
+runs downhill in energy, so it ends where an equilibrium is stable. Nothing is damped in the answer: Newton finishes it.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import scipy.sparse as sp
+
+from mesh.types import Floats
+from solve.linear import LinearSolveError, LinearSolver
+from solve.newton import NoEquilibriumError, equilibrate
+from solve.solid import InvertedElementError
+from solve.system import Evaluation, Load, State, System
+from solve.unsymmetric import Tangent
+
+MAX_STEPS = 150
+FIRST_DAMPING = 0.1  # of the median stiffness of a displacement
+FASTER, SLOWER = 0.3, 3.0  # how far the damping may fall or grow from step to step
+NEAR = 1e-5  # relative residual from which Newton goes on alone
+LINEAR_TOLERANCE = 1e-6
+TINY = 1e-300
+
+
+def snapped(system: System, linear: LinearSolver, load: Load, time: float, previous: State) -> State:
+    """The equilibrium that the segment falls into from its last one. NoEquilibriumError where it finds none."""
+    try:
+        x, steps = _fall(system, linear, load, time, previous)
+    except (InvertedElementError, LinearSolveError) as error:
+        raise NoEquilibriumError(str(error), previous.x, None) from error
+    state = equilibrate(system, linear, x, load, time, previous)
+    return replace(state, iterations=state.iterations + steps, snapped=True)
+
+
+def _fall(system: System, linear: LinearSolver, load: Load, time: float, previous: State) -> tuple[Floats, int]:
+    """Unknowns (count,) near the next equilibrium, and the steps to there."""
+
+    def evaluate(x: Floats) -> Evaluation:
+        return system.evaluate(system.trial(x, load, time, previous), previous.histories)
+
+    x, now = previous.x, evaluate(previous.x)
+    damping = FIRST_DAMPING * float(np.median(_diagonal(now.tangent)[system.mechanical]))
+    for step in range(MAX_STEPS):
+        unbalanced = _unbalanced(system, now)
+        if step > 0 and np.linalg.norm(now.residual) <= NEAR * max(now.load_norm, previous.force_scale):
+            return x, step
+        change = linear.solve(_damped(now.tangent, damping, system), -now.residual, LINEAR_TOLERANCE)
+        try:
+            then = evaluate(x + change)
+        except InvertedElementError:
+            damping *= SLOWER
+            continue
+        x, now = x + change, then
+        damping *= np.clip(_unbalanced(system, now) / max(unbalanced, TINY), FASTER, SLOWER)
+    raise NoEquilibriumError(f"no equilibrium in {MAX_STEPS} damped steps either", x, None)
+
+
+def _unbalanced(system: System, now: Evaluation) -> float:
+    """Norm of the nodal forces; gaps that open and close jump too much to steer by."""
+    return float(np.linalg.norm(now.residual[system.mechanical]))
+
+
+def _diagonal(tangent: Tangent) -> Floats:
+    """(count,), which leads each row of an upper triangle."""
+    diagonal: Floats = tangent.upper.data[tangent.upper.indptr[:-1]]
+    return diagonal
+
+
+def _damped(tangent: Tangent, damping: float, system: System) -> Tangent:
+    """The tangent with the same damper on every displacement."""
+    upper = tangent.upper
+    data = upper.data.copy()
+    data[upper.indptr[system.mechanical]] += damping
+    return Tangent(sp.csr_matrix((data, upper.indices, upper.indptr), upper.shape), tangent.excess)
