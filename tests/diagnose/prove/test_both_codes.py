@@ -14,7 +14,7 @@ from softdot.diagnosis.engines import engine_for
 from softdot.rig_file import load_rig
 
 SHARES = np.array([0.1, 0.25, 0.5, 0.75, 1.0])
-TOO_SURE = pytest.mark.xfail(strict=True, reason="the table's charge is 1.1 % off there, stated as 0.3 %")
+TOO_SURE = pytest.mark.xfail(strict=True, reason="the charge is 1.1 % off there, stated as 0.3 %")
 
 
 def hidden(made, depths_mm):
