@@ -28,12 +28,11 @@ def _penetration(step: Step) -> tuple[str, ...]:
 
 def _snaps(records: Sequence[Record]) -> tuple[str, ...]:
     """A warning where the segment lost one equilibrium and found another."""
-    depths_mm = [1e3 * record.indentation_m for record in records if record.snapped]
+    depths_mm = [f"{1e3 * record.indentation_m:.3f}" for record in records if record.snapped]
     if not depths_mm:
         return ()
-    often = f", and {len(depths_mm) - 1} times more" if len(depths_mm) > 1 else ""
     return (
-        f"at {depths_mm[0]:.3f} mm something snapped{often}: Newton found no equilibrium near the one before. The free "
+        f"at {', '.join(depths_mm)} mm something snapped: Newton found no equilibrium near the one before. The free "
         "side of a soft layer may crease, and elements of a poor shape may give way: the picture of the deformed "
         "segment or another mesh will tell",
     )

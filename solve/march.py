@@ -37,14 +37,20 @@ def rest_state(system: System, linear: LinearSolver, start: Target) -> State:
 
 
 def march(
-    system: System, linear: LinearSolver, past: list[State], target: Target, kink: bool, on_state: OnState
+    system: System,
+    linear: LinearSolver,
+    past: list[State],
+    target: Target,
+    kink: bool,
+    on_state: OnState,
+    may_snap: bool = False,
 ) -> str | None:
     """Walk to the target, halving the step where Newton fails, time is cut too coarsely, or contact opens in midst.
 
-    Where time is cut too coarsely in the smallest step too, that step is damped, and the state keeps its error. Where
-    Newton fails in the smallest step too, the segment may have snapped (see solve.snap).
+    Where time is cut too coarsely in the smallest step too, that step is damped, and the state keeps its error.
     past : the last converged states, extended in place. kink : the rate of loading jumped at the last of them.
-    Returns why it stopped short, or None.
+    may_snap : whether to look for a far equilibrium where Newton fails in the smallest step too (see solve.snap); not
+    where answers must be smooth over the path. Returns why it stopped short, or None.
     """
     start, done, size, first = Target(past[-1].time, past[-1].load, kink), 0.0, 1.0, kink
     while done < 1.0:
@@ -69,11 +75,10 @@ def march(
             if 0.5 * size >= smallest:
                 size *= 0.5
                 continue
-            try:
-                state = snapped(system, linear, load, time, past[-1])
-            except NoEquilibriumError:
+            found = _after_snap(system, linear, past[-1], load, time) if may_snap else None
+            if found is None:
                 return f"sub-steps fell below 1/{1 / smallest:.0f} of it: {explained(system, failure, past[-1])}"
-            error = system.time_error(past[-1], state, after_kink=True)
+            state, error = found, system.time_error(past[-1], found, after_kink=True)
         done, first = done + size, state.snapped
         size *= 2.0 if error < 0.2 * TIME_TOLERANCE else 1.0
         state = with_work(system, past[-1], state)
@@ -81,6 +86,13 @@ def march(
         past.append(state)
         del past[:-3]
     return None
+
+
+def _after_snap(system: System, linear: LinearSolver, last: State, load: Load, time: float) -> State | None:
+    try:
+        return snapped(system, linear, load, time, last)
+    except NoEquilibriumError:
+        return None
 
 
 def _equilibrate(system: System, linear: LinearSolver, past: list[State], load: Load, time: float) -> State:

@@ -70,7 +70,7 @@ def _follow(
         recorder.start(past[0])
     count, done = len(targets) - 1, len(recorder.steps)
     for number, (before, target) in list(enumerate(pairwise(targets), start=1))[done - 1 :]:
-        failure = march(system, linear, past, target, before.kink, recorder.record)
+        failure = march(system, linear, past, target, before.kink, recorder.record, may_snap=True)
         if past[-1].time > before.time:
             recorder.report()
             if on_step is not None:

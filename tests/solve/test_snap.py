@@ -5,15 +5,18 @@ of unit stiffness do (von Mises' truss, shallow: Crisfield, Non-linear Finite El
 Its limit point is at u = h (1 - 1 / sqrt 3).
 """
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import scipy.sparse as sp
 
+import solve.march as marching
 from solve.doubts import doubts
 from solve.linear import LinearSolver
 from solve.newton import NoEquilibriumError
+from solve.schedule import Target
 from solve.snap import snapped
 from solve.solid import InvertedElementError
 from solve.system import Evaluation, Load, State, System
@@ -41,6 +44,9 @@ class Truss(System):
 
     def trial(self, x, load, time, previous, damped=False):
         return x[0], load.drive
+
+    def time_error(self, state, new, after_kink):
+        return 0.0
 
     def evaluate(self, trial, histories):
         u, force = trial
@@ -95,5 +101,30 @@ def test_a_press_that_snapped_says_at_which_depths():
         for depth, snap in ((1e-4, False), (2e-4, True), (3e-4, True))
     ]
     (said,) = doubts([step], records)
-    assert said.startswith("at 0.200 mm something snapped, and 1 times more: ")
+    assert said.startswith("at 0.200, 0.300 mm something snapped: ")
     assert doubts([step], records[:1]) == ()
+
+
+def test_a_press_may_snap_and_a_table_over_depth_may_not(monkeypatch):
+    """Newton fails at every step; what it would fall into is the state it comes from."""
+
+    def fails(*_):
+        raise NoEquilibriumError("it does not want to", np.zeros(1), None)
+
+    def falls(_system, _linear, load, time, last):
+        return replace(last, time=time, load=load, snapped=True)
+
+    monkeypatch.setattr(marching, "_equilibrate", fails)
+    monkeypatch.setattr(marching, "snapped", falls)
+    monkeypatch.setattr(marching, "explained", lambda *_: "no")
+    monkeypatch.setattr(marching, "with_work", lambda *given: given[-1])
+    target, arrived = Target(1.0, Load((0.0, 0.0), 1.0), True), list[State]()
+
+    def on_state(*states):
+        arrived.append(states[0])
+
+    assert marching.march(Truss(), None, [at(0.0)], target, True, on_state).startswith("sub-steps fell below 1/64")
+    assert arrived == []
+    assert marching.march(Truss(), None, [at(0.0)], target, True, on_state, may_snap=True) is None
+    assert arrived[-1].time == 1.0
+    assert all(state.snapped for state in arrived)
