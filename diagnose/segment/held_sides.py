@@ -16,15 +16,16 @@ POWER = 3.0
 
 
 def crowded(tet_mesh: TetMesh, segment: Segment) -> TetMesh:
-    """The mesh of an extruded solid with its nodes moved towards x and y sides; as it was where no side is held.
+    """The mesh of an extruded solid with its nodes moved towards x and y sides, of a slice towards x sides.
 
-    A block, cylinder or dome keeps its foot, and nothing moves where it leaves no room.
+    It stays as it was where no side is held. A block, cylinder or dome keeps its foot, and nothing moves where it
+    leaves no room.
     """
-    if segment.section != "solid" or segment.boundary == "free":
+    if segment.boundary == "free":
         return tet_mesh
     stack, shift = outline(segment), np.zeros_like(tet_mesh.points_mm)
     ends = (stack.half_x, stack.effector_half_x), (stack.half_y, stack.effector_half_y)
-    for axis, (side, foot) in enumerate(ends):
+    for axis, (side, foot) in enumerate(ends[:1] if segment.section == "plane-strain" else ends):
         first = FROM if stack.shape in ("none", "layer") else max(FROM, foot / side)
         place = tet_mesh.points_mm[:, axis]
         if first < 1.0 - ROOM:

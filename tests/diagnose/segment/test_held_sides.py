@@ -17,14 +17,15 @@ SHAPES = [
 ]
 
 
-def meshed(boundary, effector):
+def meshed(boundary, effector, section="solid"):
     layer = {"thickness_mm": 0.5, "material": "rubber"}
     segment = Segment.model_validate(
         {"length_mm": 2.5, "width_mm": 2.5, "medium1": layer, "medium2": layer, "boundary": boundary}
-        | {"film": {"thickness_um": 28.0}, "effector": {"height_mm": 0.5, **effector}}
+        | {"section": section, "film": {"thickness_um": 28.0}, "effector": {"height_mm": 0.5, **effector}}
     )
     options = MeshOptions(mesher="layered", element_size_mm=0.5, contact_element_size_mm=0.2)
-    return segment, build(segment, resolve_dot(Dot(), segment), options)
+    dot = Dot() if section == "solid" else Dot(shape="ridge")
+    return segment, build(segment, resolve_dot(dot, segment), options)
 
 
 @pytest.mark.parametrize("effector", SHAPES)
@@ -48,3 +49,12 @@ def test_elements_at_a_held_side_become_smaller_than_the_film_is_thick_and_those
 def test_free_sides_keep_the_mesh():
     segment, even = meshed("free", SHAPES[0])
     assert crowded(even, segment) is even
+
+
+def test_a_slice_crowds_towards_its_held_sides_alone():
+    segment, even = meshed("clamped", SHAPES[0], "plane-strain")
+    moved = crowded(even, segment)
+    x = np.unique(moved.points_mm[:, 0].round(6))
+    assert x[-1] - x[-2] < 0.028
+    assert np.array_equal(moved.points_mm[:, 1:], even.points_mm[:, 1:])
+    assert measure(moved, segment).inverted == 0
