@@ -191,9 +191,7 @@ class LinearSolver:
     def _factorise(self, tangent: Tangent) -> None:
         self._current = self._current or self._registry[0]()
         if tangent.excess is None:
-            shifted = tangent.upper.copy()
-            shifted.data[shifted.indptr[:-1]] += self._shift  # the diagonal leads each row of an upper triangle
-            tangent = Tangent(shifted)
+            tangent = tangent.shifted(self._shift)
         self._current.factorise(tangent)
 
     def _krylov(self, tangent: Tangent, rhs: Floats, tolerance: float, iterations: int) -> tuple[Floats, float]:

@@ -8,14 +8,12 @@ runs downhill in energy, so it ends where an equilibrium is stable. Nothing is d
 from dataclasses import replace
 
 import numpy as np
-import scipy.sparse as sp
 
 from mesh.types import Floats
 from solve.linear import LinearSolveError, LinearSolver
 from solve.newton import NoEquilibriumError, equilibrate
 from solve.solid import InvertedElementError
 from solve.system import Evaluation, Load, State, System
-from solve.unsymmetric import Tangent
 
 MAX_STEPS = 150
 FIRST_DAMPING = 0.1  # of the median stiffness of a displacement
@@ -42,36 +40,23 @@ def _fall(system: System, linear: LinearSolver, load: Load, time: float, previou
         return system.evaluate(system.trial(x, load, time, previous), previous.histories)
 
     x, now = previous.x, evaluate(previous.x)
-    damping = FIRST_DAMPING * float(np.median(_diagonal(now.tangent)[system.mechanical]))
+    dampers = np.zeros(len(x))
+    dampers[system.mechanical] = FIRST_DAMPING * np.median(now.tangent.upper.diagonal()[system.mechanical])
     for step in range(MAX_STEPS):
         unbalanced = _unbalanced(system, now)
         if step > 0 and np.linalg.norm(now.residual) <= NEAR * max(now.load_norm, previous.force_scale):
             return x, step
-        change = linear.solve(_damped(now.tangent, damping, system), -now.residual, LINEAR_TOLERANCE)
+        change = linear.solve(now.tangent.shifted(dampers), -now.residual, LINEAR_TOLERANCE)
         try:
             then = evaluate(x + change)
         except InvertedElementError:
-            damping *= SLOWER
+            dampers *= SLOWER
             continue
         x, now = x + change, then
-        damping *= np.clip(_unbalanced(system, now) / max(unbalanced, TINY), FASTER, SLOWER)
+        dampers *= np.clip(_unbalanced(system, now) / max(unbalanced, TINY), FASTER, SLOWER)
     raise NoEquilibriumError(f"no equilibrium in {MAX_STEPS} damped steps either", x, None)
 
 
 def _unbalanced(system: System, now: Evaluation) -> float:
     """Norm of the nodal forces; gaps that open and close jump too much to steer by."""
     return float(np.linalg.norm(now.residual[system.mechanical]))
-
-
-def _diagonal(tangent: Tangent) -> Floats:
-    """(count,), which leads each row of an upper triangle."""
-    diagonal: Floats = tangent.upper.data[tangent.upper.indptr[:-1]]
-    return diagonal
-
-
-def _damped(tangent: Tangent, damping: float, system: System) -> Tangent:
-    """The tangent with the same damper on every displacement."""
-    upper = tangent.upper
-    data = upper.data.copy()
-    data[upper.indptr[system.mechanical]] += damping
-    return Tangent(sp.csr_matrix((data, upper.indices, upper.indptr), upper.shape), tangent.excess)

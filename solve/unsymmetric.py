@@ -26,6 +26,12 @@ class Tangent:
             product += self.excess.T @ vector
         return product
 
+    def shifted(self, by: Floats) -> "Tangent":
+        """With (n,) added to the diagonal, which leads each row of an upper triangle."""
+        upper = self.upper.copy()
+        upper.data[upper.indptr[:-1]] += by
+        return Tangent(upper, self.excess)
+
     def full(self) -> sp.csr_matrix:
         """Both triangles, explicit zeros kept so that the pattern never changes."""
         upper = self.upper
