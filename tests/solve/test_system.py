@@ -4,11 +4,16 @@ import numpy as np
 import pytest
 
 import solve.newton
-from geometry.parameters import Film
+from geometry.parameters import Dot, Film
 from mesh.parameters import MeshOptions
+from solve.linear import LinearSolver
+from solve.march import march
+from solve.model import Model
 from solve.parameters import Press
+from solve.physics import Physics
 from solve.press import press_segment
 from solve.problem import build_system
+from solve.setup import set_up
 from solve.system import Load
 from tests.solve.segments import cap, coarse_mesh, materials, ridge, segment
 
@@ -103,6 +108,25 @@ def test_a_surface_too_coarse_for_the_dot_is_told():
 
     assert warnings(0.1) == ()
     assert "overlaps the surface" in warnings(1.2)[0]
+
+
+def test_the_contact_area_is_where_the_surface_lies_on_the_dot():
+    """Nodes count where the gap around them is nil; open ones have a pressure too, of round-off."""
+    stack = segment()
+    dot, mesh = ridge(stack), coarse_mesh(stack, ridge(stack))
+    model = Model(stack, materials(), Dot(), SHALLOW, None, Physics())
+    setup = set_up(model, dot, mesh, ())
+    linear, rest = LinearSolver(setup.system.factorisation_shift), setup.system.at_rest(Load((0.0, 0.0), 0.0))
+    setup.recorder.start(rest)
+    past = [rest]
+    for target in setup.targets(follows_time=False):
+        assert march(setup.system, linear, past, target, True, setup.recorder.record) is None
+    contact, state, record = setup.system.contact, past[-1], setup.recorder.records[-1]
+    gap = contact.mean_gap(setup.system.displacement(state.x), setup.system.move(state.x, state.load))
+    touching = np.abs(gap) < 1e-9 * setup.full_drive
+    assert 0 < touching.sum() < len(gap)
+    area = contact.nodal_area[touching].sum() * setup.system.units.length**2
+    assert record.contact_area_m2 == pytest.approx(area, rel=1e-12)
 
 
 def test_rubber_of_poisson_ratio_0_4995_converges():
