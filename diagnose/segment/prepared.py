@@ -1,6 +1,6 @@
 """All that was pressed for one rig: the baseline's table, what layers remember, and changes by candidates."""
 
-from collections.abc import Container, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from diagnose.forward import Candidate, Report, Setting
 from diagnose.recording import Recording
-from diagnose.segment import path
+from diagnose.segment import path, store
 from diagnose.segment.accuracy import accuracy
 from diagnose.segment.answer import FilmPlate
 from diagnose.segment.interpolation import effect_of
@@ -20,6 +20,7 @@ from diagnose.segment.rig_mesh import finer_mesh, mesh_of, rig_mesh
 from diagnose.segment.smooth import PRESSED, smooth
 from diagnose.segment.tables import TRUSTED, Depths, change, replaced
 from diagnose.segment.workers import run_all
+from diagnose.vocabulary.memory import relaxable
 from mesh.parameters import MeshOptions
 from mesh.types import Floats, TetMesh
 from solve.model import Model
@@ -64,10 +65,14 @@ class Prepared:
         finest = finer_mesh(model, self.options, FINEST, MOST_NODES)
         meshes = finest, self._middle_mesh
         jobs = [replace(self.job(model, mesh), shares=PRESSED) for mesh in meshes]
-        reduction = self._reduction(model.physics.viscosity)
-        fine, middle = (smooth(PRESSED, found) for found in _all_there(run_all(jobs, report, [reduction])))
+        reduction = Reduction(self._bases[0].model, self.tet_mesh, self.depth_mm, relaxable(model))
+        outputs = _all_there(run_all([*jobs, *self._bases], report, [reduction]))
+        fine, middle = (smooth(PRESSED, found) for found in outputs[: len(jobs)])
         self._smooth = fine.at(np.linspace(TOUCH, 1.0, CELLS + 1))
-        self._take(reduction)
+        made = reduction.made()
+        self.relaxing, self.raw = reduction.relaxing, made.fit
+        self.film = FilmPlate(made.film, made.pyroelectric_uC_per_m2_K)
+        self.fit: Fit = replaced(self.raw, self._smooth)
         fine_mm, middle_mm = (options.element_size_mm for _, options in meshes)
         self.accuracy = accuracy(middle, fine, fine_mm / middle_mm)
 
@@ -75,6 +80,12 @@ class Prepared:
     def nothing(self) -> Floats:
         """No change, (n, 2 + e)."""
         return np.zeros((len(SHARES), 2 + len(self.film.electrodes)))
+
+    @cached_property
+    def _bases(self) -> tuple[Job, Job]:
+        """The baseline on the diagnosis mesh and on the middle one: what changes are compared with and start from."""
+        coarse, middle = self.job(self.model), self.job(self.model, self._middle_mesh)
+        return replace(coarse, guides=True), replace(middle, guides=True)
 
     @cached_property
     def _middle_mesh(self) -> Sizes:
@@ -86,18 +97,14 @@ class Prepared:
         wanted = {name: job for c in candidates for name, job in self._jobs(c) if name not in self._changes}
         moved = {_at(place): self.moved(place) for place in places if any(place) and _at(place) not in self._changes}
         wanted |= {name: (self.job(model, self._middle_mesh), 1) for name, model in moved.items()}
-        layers = {*self.relaxing, *(c.component for c in candidates if c.mechanism == "viscoelasticity")}
-        first = [self._reduction(layers)] if layers != set(self.relaxing) else []
-        if not wanted and not first:
+        if not wanted:
             return
-        bases = [self.job(self.model), self.job(self.model, self._middle_mesh)]
-        outputs = run_all([*bases, *(job for job, _ in wanted.values())], report, first)
-        if first:
-            self._take(first[0])
-        _all_there(outputs[: len(bases)])
-        for (name, (job, base)), found in zip(wanted.items(), outputs[len(bases) :], strict=True):
+        bases = _all_there(run_all(self._bases, report))
+        guides = [store.key(job) for job in self._bases]
+        outputs = run_all([replace(job, guided_by=guides[base]) for job, base in wanted.values()], report)
+        for (name, (job, base)), found in zip(wanted.items(), outputs, strict=True):
             if len(found):
-                self._changes[name] = self._change(job, outputs[base], found)
+                self._changes[name] = self._change(job, bases[base], found)
         for candidate in candidates:
             self._bridge(candidate)
 
@@ -126,19 +133,6 @@ class Prepared:
                 instead = f"its press at {_values(candidate, nearest)} stands in"
             what = f"{candidate.mechanism} of the {candidate.component}"
             self.shortfalls[name] = f"No equilibrium with {what} at {_values(candidate, point)}: {instead}."
-
-    def _reduction(self, layers: Container[str]) -> Reduction:
-        """The baseline with these layers relaxing, in a fixed order."""
-        order = (*self.model.materials, *self.model.physics.bonds)
-        pressed = self.job(self.model).model
-        return Reduction(pressed, self.tet_mesh, self.depth_mm, tuple(name for name in order if name in layers))
-
-    def _take(self, reduction: Reduction) -> None:
-        """Use this table from now on, corrected by the finer mesh."""
-        made = reduction.made()
-        self.relaxing, self.raw = reduction.relaxing, made.fit
-        self.film = FilmPlate(made.film, made.pyroelectric_uC_per_m2_K)
-        self.fit: Fit = replaced(self.raw, self._smooth)
 
     def moved(self, place: Place) -> Model:
         """The model with the dot at a place, from where it stands."""

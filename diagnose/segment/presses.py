@@ -10,8 +10,9 @@ from geometry.dot_shape import resolve_dot
 from mesh.types import Floats, TetMesh
 from solve.interfaces import open_interfaces
 from solve.linear import LinearSolver
-from solve.march import march, rest_state
+from solve.march import rest_state
 from solve.model import Model
+from solve.near import Equilibria, guess, reach
 from solve.newton import NoEquilibriumError
 from solve.parameters import Press
 from solve.schedule import Target
@@ -27,7 +28,8 @@ class Job:
     """One press of a model on a mesh to depth_mm, seen at shares (n,) of it, growing from above 0 to 1.
 
     back : numbers of the shares from which the dot also returns; seen on the way at RETURN of that depth.
-    parts : steps to each share, where slip takes several.
+    parts : steps to each share, where slip takes several. guides : whether its equilibria are kept for others.
+    guided_by : name in diagnose.segment.store of such a press, to start from; "" for none.
     """
 
     model: Model
@@ -36,18 +38,21 @@ class Job:
     shares: tuple[float, ...]
     back: tuple[int, ...] = ()
     parts: int = 1
+    guides: bool = False
+    guided_by: str = ""
 
-    def run(self) -> Floats:
+    def run(self, near: Equilibria | None = None) -> tuple[Floats, Equilibria]:
         """Outputs (n + b r, 2 + e): force in N, contact area in m2, charges in C; down, then way back by way back.
 
-        NoEquilibriumError.
+        Also the equilibria at rest and on the way down. near : those of a similar press. NoEquilibriumError.
         """
         setup = _set_up(self)
         linear = LinearSolver(setup.system.factorisation_shift)
         try:
-            return _walk(self, setup, linear)
+            outputs, found = _walk(self, setup, linear, near)
         finally:
             linear.close()
+        return outputs, Equilibria.of(setup.system, setup.recorder.tet_mesh, found)
 
 
 def _set_up(job: Job) -> Setup:
@@ -60,27 +65,42 @@ def _set_up(job: Job) -> Setup:
     return set_up(model, dot, opened_mesh, opened)
 
 
-def _walk(job: Job, setup: Setup, linear: LinearSolver) -> Floats:
+def _walk(
+    job: Job, setup: Setup, linear: LinearSolver, near: Equilibria | None
+) -> tuple[Floats, list[Floats]]:
     start = Target(0.0, Load((0.0, 0.0), 0.0), True)
     rest = rest_state(setup.system, linear, start)
     setup.recorder.start(rest)
-    past, down, back = [rest], list[Floats](), list[Floats]()
-    for number, (before, share) in enumerate(pairwise([0.0, *job.shares])):
+    places = 0.0, *job.shares
+    beside = _beside(job, setup, near)
+    past, found, down, back = [rest], [rest.x], list[Floats](), list[Floats]()
+    for number, (before, share) in enumerate(pairwise(places)):
         for place in np.linspace(before, share, job.parts + 1)[1:]:
-            _go(setup, linear, past, float(place))
+            _go(setup, linear, past, float(place), guess(beside, places, found) if beside else None)
+        found.append(past[-1].x)
         down.append(_outputs(setup, past))
         if number in job.back:
             returning = past[-1:]
             for part in RETURN:
                 _go(setup, linear, returning, part * share)
                 back.append(_outputs(setup, returning))
-    return np.array([*down, *back])
+    return np.array([*down, *back]), found
 
 
-def _go(setup: Setup, linear: LinearSolver, past: list[State], share: float) -> None:
-    """March to a share of the depth; past is extended. NoEquilibriumError."""
+def _beside(job: Job, setup: Setup, near: Equilibria | None) -> list[Floats]:
+    """Unknowns (count,) of a similar press at rest and at each share; none for slip, which goes its own way."""
+    if near is None or job.parts > 1:
+        return []
+    try:
+        return near.unknowns(setup.system, setup.recorder.tet_mesh)
+    except ValueError:  # a slice in the place of a solid
+        return []
+
+
+def _go(setup: Setup, linear: LinearSolver, past: list[State], share: float, beside: Floats | None = None) -> None:
+    """To a share of the depth; past is extended. NoEquilibriumError."""
     target = Target(past[-1].time + 1.0, Load((0.0, 0.0), share * setup.full_drive), True)
-    failure = march(setup.system, linear, past, target, True, lambda *_: None)
+    failure = reach(setup.system, linear, past, target, True, beside)
     if failure is not None:
         raise NoEquilibriumError(f"a press at {share:.2f} of the depth: {failure}", past[-1].x, None)
 

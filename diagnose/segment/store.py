@@ -1,7 +1,7 @@
 """Tables kept on disk beside the meshes, under a hash of all that they depend on."""
 
 from contextlib import suppress
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +13,7 @@ from mesh.cache import folder
 from mesh.fingerprint import data_hash, files_hash, mesh_hash
 from mesh.types import Floats
 from solve.model import Model
+from solve.near import Equilibria
 
 ROOT = Path(__file__).parents[2]
 SOURCES = "solve/**/*.py", "mesh/*.py", "geometry/*.py", "diagnose/segment/presses.py"
@@ -51,5 +52,17 @@ def keep(name: str, table: Floats) -> None:
         write_arrays(_path(name), {"table": table})
 
 
-def _path(name: str) -> Path:
-    return folder() / f"press-table-{name}.npz"
+@lru_cache(maxsize=2)
+def equilibria(name: str) -> Equilibria | None:
+    """Those kept under the name of a press, None where there are none."""
+    return read_arrays(_path(name, "equilibria"), lambda data: Equilibria(**{key: data[key] for key in data}))
+
+
+def keep_equilibria(name: str, found: Equilibria) -> None:
+    """As keep."""
+    with suppress(OSError):
+        write_arrays(_path(name, "equilibria"), vars(found))
+
+
+def _path(name: str, what: str = "table") -> Path:
+    return folder() / f"press-{what}-{name}.npz"

@@ -4,6 +4,7 @@ import os
 import pickle
 import sys
 
+from diagnose.segment import store
 from diagnose.segment.presses import Job
 from diagnose.segment.reduction import Reduction
 from mesh.types import Floats
@@ -13,9 +14,17 @@ from solve.newton import NoEquilibriumError
 def answer(job: Job | Reduction) -> Floats | Exception:
     """Outputs, or the error that can be sent."""
     try:
-        return job.run()
+        return job.run() if isinstance(job, Reduction) else _pressed(job)
     except (NoEquilibriumError, ValueError) as error:
         return RuntimeError(str(error))
+
+
+def _pressed(job: Job) -> Floats:
+    """Outputs; equilibria are left where other presses find them."""
+    outputs, found = job.run(store.equilibria(job.guided_by) if job.guided_by else None)
+    if job.guides:
+        store.keep_equilibria(store.key(job), found)
+    return outputs
 
 
 def work() -> None:

@@ -9,6 +9,7 @@ import numpy as np
 from diagnose.forward import Candidate, Coordinate
 from diagnose.vocabulary.scene import Scene
 from solve.materials.prony import Prony
+from solve.model import Model
 
 BRANCHES = 4
 LARGEST_SHARE = 0.75
@@ -18,13 +19,18 @@ EARLY_S, LATE_S = 0.1, 10.0
 FEWEST_SAMPLES = 5.0  # within the shortest time of relaxation that is looked for
 
 
+def relaxable(model: Model) -> tuple[str, ...]:
+    """Every layer, and every bond that is compliant: a perfect one has no jump that could relax.
+
+    None beside a prestretched film, of which the reduced model has no memory.
+    """
+    return (*model.materials, *model.physics.bonds) if model.physics.prestretch == (0.0, 0.0) else ()
+
+
 def viscoelastic(scene: Scene) -> Iterator[Candidate]:
-    """Every layer, and every bond that is compliant: a perfect one has no jump that could relax."""
-    physics = scene.model.physics
-    if physics.prestretch != (0.0, 0.0):
-        return  # the reduced model has no memory of a prestretched film
-    for component in (*scene.model.materials, *physics.bonds):
-        yield _candidate(scene, component, physics.viscosity.get(component, Prony((), ())))
+    """All that can relax."""
+    for component in relaxable(scene.model):
+        yield _candidate(scene, component, scene.model.physics.viscosity.get(component, Prony((), ())))
 
 
 def _candidate(scene: Scene, component: str, declared: Prony) -> Candidate:

@@ -26,7 +26,7 @@ from solve.reduced.answer import Accuracy
 from solve.reduced.fit import FINER, fit
 from solve.reduced.frozen import Frozen
 from solve.reduced.model import ReducedModel, structure
-from solve.reduced.sampling import Sample, Sampler
+from solve.reduced.sampling import Pressed, Sample, Sampler
 from solve.setup import set_up
 
 DEPTH_NODES = 16
@@ -128,15 +128,20 @@ def _samples(sampler: Sampler, relaxing: Mapping[str, float]) -> Iterator[Sample
     The memory of a long hold is the share times the elastic stress that goes with that memory: one step of the fixed
     point is taken.
     """
-    elastic, fields = sampler.press({}, FINER)
-    yield elastic
+    elastic = sampler.press({}, FINER)
+    yield elastic.sample
+    fields, plain = elastic.fields, elastic.unknowns[::FINER]
     middle = round(len(fields) * 0.6)
-    held: dict[str, Floats] = {}
+    held: dict[str, Pressed] = {}
+    memories: dict[str, Floats] = {}
     for layer, share in relaxing.items():
-        first, after = sampler.press({layer: share * fields[-1][layer]})
-        yield first
-        held[layer] = share * after[-1][layer]
-        for memory in (held[layer], 0.5 * held[layer], share * fields[middle][layer]):
-            yield sampler.press({layer: memory})[0]
-    for one, other in combinations(relaxing, 2):
-        yield sampler.press({one: held[one], other: held[other]})[0]
+        first = sampler.press({layer: share * fields[-1][layer]}, near=plain)
+        memories[layer] = share * first.fields[-1][layer]
+        held[layer] = sampler.press({layer: memories[layer]}, near=first.unknowns)
+        halfway = [0.5 * (a + b) for a, b in zip(plain, held[layer].unknowns, strict=True)]
+        yield from (first.sample, held[layer].sample)
+        for memory in (0.5 * memories[layer], share * fields[middle][layer]):
+            yield sampler.press({layer: memory}, near=halfway).sample
+    for one, other in combinations(relaxing, 2):  # to first order their answers add up
+        near = [a + b - c for a, b, c in zip(held[one].unknowns, held[other].unknowns, plain, strict=True)]
+        yield sampler.press({one: memories[one], other: memories[other]}, near=near).sample

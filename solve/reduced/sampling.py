@@ -1,6 +1,6 @@
 """Presses of the 3D model with memories that do not fade: the samples of which the reduced model is made."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,7 +10,8 @@ from mesh.types import Floats
 from solve.bond import Bond
 from solve.film import FilmRegion
 from solve.linear import LinearSolver
-from solve.march import march, rest_state
+from solve.march import rest_state
+from solve.near import guess, reach
 from solve.newton import NoEquilibriumError, equilibrate
 from solve.reduced.frozen import Frozen
 from solve.reduced.yardstick import Yardstick, held
@@ -45,6 +46,15 @@ class Sample:
 Fields = dict[str, Floats]  # layer -> stress at its quadrature points (n, 6), of a bond its jump (n, 4)
 
 
+@dataclass(frozen=True)
+class Pressed:
+    """A sample; at every depth node the elastic stress, and the unknowns (count,)."""
+
+    sample: Sample
+    fields: list[Fields]
+    unknowns: list[Floats]
+
+
 class Sampler:
     """Presses one segment over and over; the elastic press comes first."""
 
@@ -65,29 +75,32 @@ class Sampler:
         if self.yardstick is not None:
             self.yardstick.close()
 
-    def press(self, memory: Fields, finer: int = 1) -> tuple[Sample, list[Fields]]:
-        """Press with overstress fields; the sample, and the elastic stress at every node. NoEquilibriumError.
+    def press(self, memory: Fields, finer: int = 1, near: Sequence[Floats] = ()) -> Pressed:
+        """Press with overstress fields. NoEquilibriumError.
 
-        finer : so many depth nodes to one.
+        finer : so many depth nodes to one. near : unknowns of a similar press at each node, to start from.
         """
         state, touch = self._free(memory)
-        full = self.setup.full_drive
-        past, outputs, fields = [state], [self._outputs(state)], [self._elastic(state)]
-        for share in depth_shares(finer * self.nodes)[1:]:
+        full, shares = self.setup.full_drive, depth_shares(finer * self.nodes)
+        past, outputs, fields, found = [state], [self._outputs(state)], [self._elastic(state)], [state.x]
+        for share in shares[1:]:
             drive = float(touch + share * (full - touch))
             target = Target(past[-1].time + 1.0, Load((0.0, 0.0), drive), False)
-            failure = march(self.system, self.linear, past, target, False, lambda *_: None)
+            beside = guess(near, shares, found) if near else None
+            failure = reach(self.system, self.linear, past, target, False, beside)
             if failure is not None:
                 raise NoEquilibriumError(f"a press for the reduced model stopped: {failure}", past[-1].x, None)
             outputs.append(self._outputs(past[-1]))
             fields.append(self._elastic(past[-1]))
+            found.append(past[-1].x)
         if self.yardstick is None:
             self.yardstick = Yardstick(self.system, past[-1], self.terms)
         self.force_scale = max(self.force_scale, past[-1].force_scale)
         measure = self.yardstick.coordinates
         stress = {name: [measure(name, now[name]) for now in fields] for name in self.terms}
         remembered = {name: measure(name, field) for name, field in memory.items()}
-        return Sample(1e3 * self.system.units.length * touch, np.array(outputs), stress, remembered), fields
+        sample = Sample(1e3 * self.system.units.length * touch, np.array(outputs), stress, remembered)
+        return Pressed(sample, fields, found)
 
     def _free(self, memory: Fields) -> tuple[State, float]:
         """The segment clear of the dot, and the approach at which they touch."""
