@@ -103,7 +103,7 @@ def press_key(config: Config, physics: Physics, tet_mesh: TetMesh) -> str:
 
 def readout_voltage(config: Config, physics: Physics, result: PressResult) -> tuple[Floats, Floats] | None:
     """Voltage behind the amplifier at each step: electrodes in parallel (s,), each alone (e, s); None without one."""
-    if config.readout is None and not (physics.low_pass or physics.hum or physics.crosstalk):
+    if config.readout is None and not (physics.low_pass or physics.hum or physics.saturation or physics.crosstalk):
         return None
     from solve.parameters import Readout
     from solve.readout import channel_voltages

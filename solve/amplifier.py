@@ -13,6 +13,7 @@ from mesh.types import Floats
 from solve.filters import Filter
 from solve.parameters import Readout
 from solve.physics import Physics
+from solve.saturation import Saturation
 
 
 def amplify(time_s: Floats, charge_C: Floats, capacitance_F: float, readout: Readout, physics: Physics) -> Floats:
@@ -22,7 +23,9 @@ def amplify(time_s: Floats, charge_C: Floats, capacitance_F: float, readout: Rea
     for frequency_Hz, amplitude_V in physics.hum:
         voltage += amplitude_V * np.sin(2.0 * np.pi * frequency_Hz * time_s)
     if readout.limit_V is not None:
-        voltage = np.clip(voltage, -readout.limit_V, readout.limit_V)
+        voltage = Saturation(readout.limit_V).applied(voltage)
+    for limit in physics.saturation:
+        voltage = limit.applied(voltage)
     for one in filters(readout, physics):
         voltage = one.applied(time_s, voltage)
     return np.asarray(readout.polarity * voltage)

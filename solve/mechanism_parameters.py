@@ -56,6 +56,9 @@ class Saturation(Parameters):
     """The amplifier's limit."""
 
     limit_V: Positive = Field(description="the voltage stays between plus and minus this")
+    sharpness: Annotated[float, Field(ge=1, le=1000, allow_inf_nan=False)] | None = Field(
+        None, description="of the knee: 2.5 is about tanh; hard when left out"
+    )
 
 
 class MainsHum(Parameters):

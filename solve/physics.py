@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from solve.filters import Filter
 from solve.materials.prony import Prony
 from solve.materials.softening import Softening
+from solve.saturation import Saturation
 
 
 @dataclass(frozen=True)
@@ -50,7 +51,7 @@ class Physics:
     rig_compliance_mm_per_N lies between the displacement sensor and the dot, moving_mass_g between the force sensor
     and the dot. prestretch : nominal strain of the film in x and y. contact_charge_pC : charge that the dot leaves on
     the electrodes, in proportion to the contact area, all of it at the largest area. hum : frequency (Hz) and amplitude
-    (V). crosstalk : channel (from 1) -> share of the other channels' voltage.
+    (V). saturation : limits in a row. crosstalk : channel (from 1) -> share of the other channels' voltage.
     """
 
     viscosity: Mapping[str, Prony] = field(default_factory=dict)
@@ -66,6 +67,7 @@ class Physics:
     contact_charge_pC: float = 0.0
     low_pass: tuple[Filter, ...] = ()
     hum: tuple[tuple[float, float], ...] = ()
+    saturation: tuple[Saturation, ...] = ()
     crosstalk: Mapping[int, float] = field(default_factory=dict)
 
     @property

@@ -5,6 +5,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from geometry.dot_shape import resolve_dot
 from solve.bond import layer_stiffness
 from solve.filters import Filter
@@ -24,6 +26,7 @@ from solve.mechanisms import Mechanism
 from solve.model import Model
 from solve.parameters import Readout
 from solve.physics import BondLine, Delamination, Pyroelectric, Yield
+from solve.saturation import Saturation
 
 
 def with_mechanisms(model: Model, mechanisms: Iterable[Mechanism]) -> Model:
@@ -54,8 +57,8 @@ def _low_pass(model: Model, component: str, values: Any) -> Model:
 
 
 def _saturation(model: Model, component: str, values: Any) -> Model:
-    have = (model.readout or Readout()).limit_V
-    return _readout(model, limit_V=values.limit_V if have is None else min(have, values.limit_V))
+    sharpness = np.inf if values.sharpness is None else values.sharpness
+    return _physics(model, saturation=(*model.physics.saturation, Saturation(values.limit_V, sharpness)))
 
 
 def _hum(model: Model, component: str, values: Any) -> Model:

@@ -21,7 +21,7 @@ from mesh.types import Floats
 from solve.newton import NoEquilibriumError
 
 WORTH_A_PROCESS = 4  # presses: a process takes seconds to start
-LARGE = 5000  # nodes: one such press is worth a process
+LARGE = 3000  # nodes: one such press is worth a process, as are the many of a reduction
 WHAT = "pressing the 3D model"
 
 
@@ -48,7 +48,7 @@ def run_all(jobs: Sequence[Job], report: Report, first: Sequence[Reduction] = ()
 
 def _pressed(jobs: dict[str, Job | Reduction]) -> Iterator[tuple[str, Any]]:
     """Name and outputs, or the error, of each job as it is done."""
-    large = sum(len(job.tet_mesh.points_mm) > LARGE for job in jobs.values())
+    large = sum(isinstance(job, Reduction) or len(job.tet_mesh.points_mm) > LARGE for job in jobs.values())
     count = min(os.cpu_count() or 1, max(large, len(jobs) // WORTH_A_PROCESS))
     if count < 2:
         for name, job in jobs.items():

@@ -12,6 +12,8 @@ SHARPEST = 2.0  # Q^2 of a filter whose resonance is 3 dB
 DEAD = 0.8  # of a filter's whole delay
 ONE_STAGE = 1e-3  # Q^2 below which the second stage is too fast to be seen
 CLIPPED = 20.0  # an amplifier that stops at less than this part of what was recorded gives no signal
+SOFTEST = 0.6  # one over the sharpness of its knee: a hyperbolic tangent has 0.4
+HARD = 0.01  # as good as no knee
 HUM = 10.0  # of the largest voltage
 
 
@@ -76,14 +78,16 @@ def _low_pass(scene: Scene) -> Candidate:
 
 
 def _saturation(scene: Scene) -> Candidate:
-    """One over the limit, in terms of the largest voltage recorded: below about 1 nothing is cut."""
+    """One over the limit, in terms of the largest voltage recorded: below about 1 nothing is cut; and its softness."""
     largest = scene.voltage_V or 1.0
-    coordinate = Coordinate("inverse_limit", 0.0, CLIPPED, (1.1, 1.5, 3.0))
+    limit = Coordinate("inverse_limit", 0.0, CLIPPED, (1.1, 1.5, 3.0))
+    knee = Coordinate("softness", 0.0, SOFTEST, (0.1, 0.3))
 
     def parameters(values: Sequence[float]) -> dict[str, Any]:
-        return {"limit_V": shrinking(largest, values[0])}
+        hard = {"limit_V": shrinking(largest, values[0])}
+        return hard if values[1] < HARD else {**hard, "sharpness": 1.0 / values[1]}
 
-    return Candidate("saturation", "readout", (coordinate,), parameters, units={"limit_V": "V"})
+    return Candidate("saturation", "readout", (limit, knee), parameters, units={"limit_V": "V", "sharpness": ""})
 
 
 def _hum(scene: Scene) -> Candidate:

@@ -15,7 +15,7 @@ ANYWHERE = {
     ("charge-leakage", "readout"): {"resistance_MOhm": log_between(0.1, 1e4)},
     ("parasitic-capacitance", "readout"): {"capacitance_pF": between(0.0, 500.0)},
     ("low-pass", "readout"): {"cutoff_Hz": log_between(1.0, 1e4), "order": st.integers(1, 4)},
-    ("saturation", "readout"): {"limit_V": log_between(0.01, 10.0)},
+    ("saturation", "readout"): {"limit_V": log_between(0.01, 10.0), "sharpness": log_between(1.0, 100.0)},
     ("mains-hum", "readout"): {"frequency_Hz": between(40.0, 70.0), "amplitude_V": between(0.0, 1.0)},
     ("pyroelectric-drift", "film"): {
         "temperature_step_K": between(-1.0, 1.0), "time_constant_s": log_between(0.1, 10.0),

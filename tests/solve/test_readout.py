@@ -9,7 +9,9 @@ from pydantic import ValidationError
 from geometry.errors import InputError
 from solve.amplifier import leaky_integral
 from solve.parameters import Press, Readout, Waveform
+from solve.physics import Physics
 from solve.readout import readout_voltage
+from solve.saturation import Saturation
 from solve.waveform import fraction
 
 FILM_F = 971e-12  # 16 x 16 mm, 28 um
@@ -53,6 +55,13 @@ def test_charge_amplifier_does_not_see_the_cable():
 def test_saturation_and_polarity():
     readout = Readout(mode="charge", feedback_pF=1000.0, limit_V=0.3, polarity=-1)
     assert readout_voltage(LINEAR, Press(), readout)[-1] == pytest.approx(0.3)
+
+
+@pytest.mark.parametrize(("limit_V", "shown_V"), [(0.5, 0.3), (0.2, 0.2)])
+def test_of_two_limits_in_a_row_the_lower_one_counts(limit_V, shown_V):
+    readout = Readout(mode="charge", feedback_pF=1000.0, limit_V=0.3)
+    physics = Physics(saturation=(Saturation(limit_V),))
+    assert readout_voltage(LINEAR, Press(), readout, physics)[-1] == pytest.approx(-shown_V)
 
 
 def test_low_pass_lags_a_ramp_by_its_time_constant():

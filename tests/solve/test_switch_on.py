@@ -54,11 +54,9 @@ def test_leakage_is_parallel_to_the_resistance_that_is_there(model):
     assert both.readout.input_resistance_MOhm == pytest.approx(2.0)
 
 
-def test_capacitances_add_and_the_lower_limit_counts(model):
-    start = Model(model.segment, model.materials, model.dot, readout=Readout(input_capacitance_pF=20.0, limit_V=2.0))
+def test_capacitances_add(model):
+    start = Model(model.segment, model.materials, model.dot, readout=Readout(input_capacitance_pF=20.0))
     assert switched(start, "parasitic-capacitance", "readout", capacitance_pF=5.0).readout.input_capacitance_pF == 25.0
-    assert switched(start, "saturation", "readout", limit_V=3.0).readout.limit_V == 2.0
-    assert switched(start, "saturation", "readout", limit_V=1.0).readout.limit_V == 1.0
 
 
 def test_offsets_and_gaps_add(model):

@@ -47,7 +47,7 @@ class Amplifier:
         angle = 2.0 * np.pi * HUM_HZ * fine
         voltage += self.hum_V * (np.sin(angle + hum_phase) + HARMONIC * np.sin(3.0 * (angle + hum_phase)))
         if self.limit_V is not None:
-            voltage = voltage / (1.0 + (np.abs(voltage) / self.limit_V) ** SOFTNESS) ** (1.0 / SOFTNESS)
+            voltage = _softly_clipped(voltage, self.limit_V)
         for one in self.filters:
             voltage = one.applied(voltage, rate)
         return np.asarray(voltage[::FINER])
@@ -60,4 +60,11 @@ class Amplifier:
         return np.asarray(lfilter([gain, -gain], [1.0, -(1.0 - half) / (1.0 + half)], charge_pC - charge_pC[0]))
 
 
-HUM_HZ, HARMONIC, SOFTNESS = 49.98, 0.15, 8.0
+def _softly_clipped(voltage: Floats, limit_V: float) -> Floats:
+    """A clip whose corners are those of log(1 + exp(x))."""
+    knee = limit_V / SHARPNESS
+    from_below, from_above = (np.logaddexp(0.0, (voltage + side) / knee) for side in (limit_V, -limit_V))
+    return np.asarray(knee * (from_below - from_above) - limit_V)
+
+
+HUM_HZ, HARMONIC, SHARPNESS = 49.98, 0.15, 8.0

@@ -219,7 +219,7 @@ def _all() -> tuple[Effect, ...]:
         Effect("beside", "dot-offset", "dot", _offset, most=16.0),
         Effect("hum", "mains-hum", "readout", _hum, form="off its frequency, with a harmonic", most=30.0),
         Effect("warm", "pyroelectric-drift", "film", _warm, form="diffusion where an exponential is fitted", most=50.0),
-        Effect("clipped", "saturation", "readout", _limit, form="a soft limit", most=10.0),
+        Effect("clipped", "saturation", "readout", _limit, form="another soft knee", most=10.0),
         Effect("stiffening-effector", "hyperelastic-stiffening", "effector", _stiffening("effector"), form=gent,
                most=4.0),
         Effect("softened-medium2", "stress-softening", "medium2", _softening("medium2"), form=tanh, most=5.0),
