@@ -21,4 +21,7 @@ class MeshOptions(Table):
     film_layers: Annotated[int, Field(ge=1, le=8)] = Field(
         1, description="quadratic elements through the film"
     )
+    coarsen: bool = Field(
+        False, description="pytetwild: merge elements smaller than asked for; half as many where sizes are large"
+    )
     timeout_s: Positive = Field(300.0, description="the mesher is stopped after this time")

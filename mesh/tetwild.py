@@ -51,6 +51,7 @@ def bare_stack(segment: Segment, stack: Outline, dot: DotShape, options: MeshOpt
             edge_length=options.element_size_mm,
             epsilon=max(ENVELOPE, LOOSER * detail_mm / diagonal_mm),
             stop_energy=stop_energy(stack, options) * 1.5**attempt,
+            coarsen=options.coarsen,
         )
         bare = _labelled(points, oriented(points, tets), stack)
         flat = int((shape(bare.points_mm, bare.tets) <= FLAT).sum())
@@ -66,9 +67,10 @@ def stop_energy(stack: Outline, options: MeshOptions) -> float:
     """The distortion at which pytetwild stops: low, but not where the shape itself has a narrow wedge.
 
     A flat dome meets medium 1 at a small angle, and a round foot may touch the side of the segment: there no
-    element can be good, and the mesher would refine without end.
+    element can be good, and the mesher would refine without end. Coarsening makes every element as distorted as
+    this allows, and undoes the refinement.
     """
-    if stack.shape not in ("cylinder", "dome") or (stack.shape == "cylinder" and stack.is_slice):
+    if options.coarsen or stack.shape not in ("cylinder", "dome") or (stack.shape == "cylinder" and stack.is_slice):
         return STOP_ENERGY
     narrow = min(stack.half_x, stack.half_y) - stack.effector_half_x < options.contact_element_size_mm
     shallow = stack.shape == "dome" and 2 * (stack.top - stack.medium1_top) < SHALLOW * stack.effector_half_x

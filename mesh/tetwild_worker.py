@@ -25,6 +25,7 @@ def main(folder: Path) -> None:
         edge_length_abs=float(given["edge_length"]),
         epsilon=float(given["epsilon"]),
         stop_energy=float(given["stop_energy"]),
+        coarsen=bool(given["coarsen"]),
         disable_filtering=True,
         quiet=True,
         bg_vertices=given["bg_vertices"],

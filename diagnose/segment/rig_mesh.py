@@ -7,6 +7,7 @@ import numpy as np
 from diagnose.segment.held_sides import crowded
 from geometry.dot_shape import DotShape, resolve_dot
 from mesh.build import build
+from mesh.errors import MeshingError
 from mesh.morph import morphed
 from mesh.outline import outline
 from mesh.parameters import MeshOptions
@@ -19,16 +20,18 @@ SAVES = 0.9  # of the nodes: what a coarser mesh has at most, or it is not worth
 NODES_PER_CUBE = 8  # of an element's size: one corner and seven mid-sides
 
 
-def rig_mesh(model: Model, options: MeshOptions, largest: int = LARGEST) -> tuple[TetMesh, MeshOptions]:
+def rig_mesh(
+    model: Model, options: MeshOptions, largest: int = LARGEST, coarsen: bool = True
+) -> tuple[TetMesh, MeshOptions]:
     """The mesh with as many nodes at most, and its sizes, which grow together until it is small enough.
 
     Layered wherever that mesher can, as it is repeatable and takes no time. Under a dome it cannot, and a round skin
-    needs some nodes whatever the sizes: there the search ends where coarser elements save no more. InputError,
+    may need more nodes whatever the sizes: there the search ends where coarser elements save no more. InputError,
     MeshingError.
     """
     options = options.model_copy(update={"film_layers": 1})
     if model.segment.effector is not None and model.segment.effector.shape == "dome":
-        return _under_a_dome(model, options, largest)
+        return _under_a_dome(model, options.model_copy(update={"coarsen": coarsen}), largest)
     options = options.model_copy(update={"mesher": "layered"})
     while True:
         made, count = _made(model, options)
@@ -41,7 +44,7 @@ def _under_a_dome(model: Model, options: MeshOptions, largest: int) -> tuple[Tet
     """The same by the user's mesher, in few attempts, as each takes seconds."""
     made, count = _made(model, options)
     while count > largest:
-        coarser = scaled(options, max(COARSER, (count / largest) ** 0.45))  # nodes grow with size to about -2.2
+        coarser = scaled(options, max(COARSER, (count / largest) ** 0.6))  # nodes grow with size to about -1.7
         other, fewer = _made(model, coarser)
         if fewer > SAVES * count:
             break
@@ -51,13 +54,21 @@ def _under_a_dome(model: Model, options: MeshOptions, largest: int) -> tuple[Tet
 
 def _made(model: Model, options: MeshOptions) -> tuple[TetMesh, int]:
     """The mesh and its nodes, those on both sides of an interface counted once."""
-    made = build(model.segment, _resting(model), options)
+    try:
+        made = build(model.segment, _resting(model), options)
+    except MeshingError:
+        if not options.coarsen:
+            raise
+        return _made(model, options.model_copy(update={"coarsen": False}))  # coarsening may leave flat elements
     return made, len(np.unique(made.twin))
 
 
 def finer_mesh(model: Model, options: MeshOptions, factor: float, largest: int) -> tuple[TetMesh, MeshOptions]:
-    """A mesh with elements smaller by a factor, more so at held sides, if it has few enough nodes, and its sizes."""
-    made, options = rig_mesh(model, scaled(options, factor), largest)
+    """A mesh with elements smaller by a factor, more so at held sides, if it has few enough nodes, and its sizes.
+
+    Not coarsened, which saves little there and costs shape.
+    """
+    made, options = rig_mesh(model, scaled(options, factor), largest, coarsen=False)
     return (crowded(made, model.segment) if options.mesher == "layered" else made), options
 
 

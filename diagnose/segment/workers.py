@@ -14,7 +14,7 @@ import numpy as np
 
 from diagnose.forward import Report
 from diagnose.segment import store, worker
-from diagnose.segment.presses import Job
+from diagnose.segment.presses import RETURN, Job
 from diagnose.segment.reduction import Reduction
 from geometry.one_thread import ONE_THREAD
 from mesh.types import Floats
@@ -32,8 +32,12 @@ def run_all(jobs: Sequence[Job], report: Report, first: Sequence[Reduction] = ()
     """
     names = [store.key(job) for job in jobs]
     found = {name: table for name in names if (table := store.recall(name)) is not None}
+    left = sorted(
+        ((name, job) for name, job in zip(names, jobs, strict=True) if name not in found),
+        key=lambda one: -_effort(one[1]),  # the longest last would keep one core only
+    )
     missing: dict[str, Job | Reduction] = {f"reduction {n}": job for n, job in enumerate(first)}
-    missing |= {name: job for name, job in zip(names, jobs, strict=True) if name not in found}
+    missing |= dict(left)
     if missing:
         report(WHAT, 0, len(missing))
     for number, (name, table) in enumerate(_pressed(missing), start=1):
@@ -44,6 +48,11 @@ def run_all(jobs: Sequence[Job], report: Report, first: Sequence[Reduction] = ()
             raise NoEquilibriumError(str(table), np.zeros(0), None) from table
         report(WHAT, number, len(missing))
     return [found[name] for name in names]
+
+
+def _effort(job: Job) -> float:
+    """What a press takes, roughly: steps down and back, of which slip takes as many more, by nodes."""
+    return len(job.tet_mesh.points_mm) * job.parts * (len(job.shares) + len(job.back) * len(RETURN))
 
 
 def _pressed(jobs: dict[str, Job | Reduction]) -> Iterator[tuple[str, Any]]:

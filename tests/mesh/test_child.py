@@ -82,6 +82,7 @@ def test_a_cube_is_filled() -> None:
         edge_length=0.5,
         epsilon=1e-3,
         stop_energy=10.0,
+        coarsen=False,
     )
     middle = points[tets].mean(axis=1)
     inside = ((middle > 0) & (middle < 1)).all(axis=1)
