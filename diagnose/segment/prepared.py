@@ -65,8 +65,7 @@ class Prepared:
         finest = finer_mesh(model, self.options, FINEST, MOST_NODES)
         meshes = finest, self._middle_mesh
         jobs = [replace(self.job(model, mesh), shares=PRESSED) for mesh in meshes]
-        reduction = Reduction(self._bases[0].model, self.tet_mesh, self.depth_mm, relaxable(model))
-        outputs = _all_there(run_all([*jobs, *self._bases], report, [reduction]))
+        reduction, outputs = self._reduced([*jobs, *self._bases], report)
         fine, middle = (smooth(PRESSED, found) for found in outputs[: len(jobs)])
         self._smooth = fine.at(np.linspace(TOUCH, 1.0, CELLS + 1))
         made = reduction.made()
@@ -75,6 +74,26 @@ class Prepared:
         self.fit: Fit = replaced(self.raw, self._smooth)
         fine_mm, middle_mm = (options.element_size_mm for _, options in meshes)
         self.accuracy = accuracy(middle, fine, fine_mm / middle_mm)
+
+    def _reduced(self, jobs: Sequence[Job], report: Report) -> tuple[Reduction, list[Floats]]:
+        """The reduction, with as many layers as have an equilibrium with all they may remember, and outputs of jobs.
+
+        NoEquilibriumError where the baseline has none, or a layer that relaxes by rig.toml.
+        """
+        declared = self.model.physics.viscosity
+        layers = sorted(relaxable(self.model), key=lambda layer: layer not in declared)
+        while True:
+            reduction = Reduction(self._bases[0].model, self.tet_mesh, self.depth_mm, tuple(layers))
+            try:
+                outputs = run_all(jobs, report, [reduction])
+            except NoEquilibriumError:
+                if len(layers) <= len(declared):
+                    raise
+            else:
+                return reduction, _all_there(outputs)
+            told = f"No equilibrium with all that {', '.join(layers)} may remember"
+            dropped = layers.pop()
+            self.shortfalls["viscoelasticity", dropped] = f"{told}: viscoelasticity of the {dropped} is no candidate."
 
     @property
     def nothing(self) -> Floats:

@@ -5,8 +5,11 @@ from types import SimpleNamespace
 import numpy as np
 
 from diagnose.forward import Candidate, Coordinate
+from diagnose.segment import prepared
 from diagnose.segment.interpolation import effect_of
 from diagnose.segment.prepared import Prepared, press_name
+from solve.newton import NoEquilibriumError
+from tests.diagnose.segment.rigs import model
 
 GLUE = Candidate(
     "property-error", "medium2", (Coordinate("error", -1.0, 1.0, (0.1,), (0.25, 0.5, 1.0)),),
@@ -17,9 +20,9 @@ GLUE = Candidate(
 def bridged(*known):
     """What is known after presses at some values have an equilibrium."""
     changes = {press_name(GLUE, (value,)): np.full((1, 3), value) for value in known}
-    prepared = SimpleNamespace(_changes=changes, shortfalls={})
-    Prepared._bridge(prepared, GLUE)
-    return prepared
+    known_of_it = SimpleNamespace(_changes=changes, shortfalls={})
+    Prepared._bridge(known_of_it, GLUE)
+    return known_of_it
 
 
 def test_nothing_is_told_where_every_press_has_an_equilibrium():
@@ -39,3 +42,26 @@ def test_without_any_press_it_is_no_candidate():
     told = list(bridged().shortfalls.values())
     assert len(told) == 3
     assert all(one.endswith("it is no candidate.") for one in told)
+
+
+def test_a_layer_whose_memory_has_no_equilibrium_is_left_out_and_told(monkeypatch):
+    """Tried with fewer and fewer layers, as far as those that relax by rig.toml."""
+    asked = []
+
+    def run_all(jobs, _report, first):
+        asked.append(first[0].relaxing)
+        if len(first[0].relaxing) > 2:
+            raise NoEquilibriumError("turned inside out", np.zeros(0), None)
+        return [np.ones((1, 3)) for _ in jobs]
+
+    monkeypatch.setattr(prepared, "run_all", run_all)
+    rig = model()
+    base = SimpleNamespace(model=rig)
+    before = SimpleNamespace(model=rig, tet_mesh=None, depth_mm=0.1, _bases=(base, base), shortfalls={})
+    reduction, outputs = Prepared._reduced(before, [base], lambda *_: None)
+    assert [len(layers) for layers in asked] == [4, 3, 2]
+    assert reduction.relaxing == asked[-1]
+    assert len(outputs) == 1
+    dropped = [layer for layer in asked[0] if layer not in asked[-1]]
+    assert set(before.shortfalls) == {("viscoelasticity", layer) for layer in dropped}
+    assert all(told.endswith(" is no candidate.") for told in before.shortfalls.values())
