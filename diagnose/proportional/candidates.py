@@ -18,11 +18,11 @@ from diagnose.coupon.stiffening import Stiffening
 from diagnose.forward import Candidate, Coordinate
 from diagnose.proportional.sensor import LARGEST_STRAIN, MEDIUM
 from diagnose.recording import Recording
-from diagnose.vocabulary.electric import electric
+from diagnose.vocabulary.electric import electric, hard_limit
 from diagnose.vocabulary.rig import around
 from diagnose.vocabulary.scene import Scene, growing
 
-ELECTRIC = ("charge-leakage", "low-pass", "saturation", "mains-hum")
+ELECTRIC = ("charge-leakage", "low-pass", "mains-hum")
 AROUND = ("pyroelectric-drift", "contact-electrification")
 SENSITIVITY, CAPACITANCE = "sensitivity", "film-capacitance"
 MOST = 1.0  # modulus of one branch, in terms of what never relaxes
@@ -33,6 +33,7 @@ ANY_FACTOR = 1e6
 def proportional_candidates(recording: Recording, scene: Scene) -> Iterator[Candidate]:
     """Every mechanism that shows whatever the geometry."""
     yield from (_with_time_constant(scene, one) for one in electric(scene) if one.mechanism in ELECTRIC)
+    yield hard_limit(scene)  # a soft knee looks like any sensor that is not quite linear
     yield from (one for one in around(scene) if one.mechanism in AROUND)
     times = relaxation_times(recording)
     yield from (viscoelasticity(Candidate, component, times, MOST) for component in (LAYER, "film"))

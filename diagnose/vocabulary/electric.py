@@ -1,6 +1,7 @@
 """Candidates behind the film: input, filters, limits, hum, neighbouring channels. All are exact without new presses."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from math import hypot, pi, sinh, sqrt
 from typing import Any
 
@@ -77,17 +78,28 @@ def _low_pass(scene: Scene) -> Candidate:
     return Candidate("low-pass", "readout", (time, second, dead), parameters, units=units)
 
 
-def _saturation(scene: Scene) -> Candidate:
-    """One over the limit, in terms of the largest voltage recorded: below about 1 nothing is cut; and its softness."""
+def hard_limit(scene: Scene) -> Candidate:
+    """One over the limit, in terms of the largest voltage recorded: below about 1 nothing is cut."""
     largest = scene.voltage_V or 1.0
     limit = Coordinate("inverse_limit", 0.0, CLIPPED, (1.1, 1.5, 3.0))
+
+    def parameters(values: Sequence[float]) -> dict[str, Any]:
+        return {"limit_V": shrinking(largest, values[0])}
+
+    return Candidate("saturation", "readout", (limit,), parameters, units={"limit_V": "V"})
+
+
+def _saturation(scene: Scene) -> Candidate:
+    """A limit with a knee of any softness."""
+    hard = hard_limit(scene)
     knee = Coordinate("softness", 0.0, SOFTEST, (0.1, 0.3))
 
     def parameters(values: Sequence[float]) -> dict[str, Any]:
-        hard = {"limit_V": shrinking(largest, values[0])}
-        return hard if values[1] < HARD else {**hard, "sharpness": 1.0 / values[1]}
+        limit = hard.parameters(values[:1])
+        return limit if values[1] < HARD else {**limit, "sharpness": 1.0 / values[1]}
 
-    return Candidate("saturation", "readout", (limit, knee), parameters, units={"limit_V": "V", "sharpness": ""})
+    coordinates, units = (*hard.coordinates, knee), {**hard.units, "sharpness": ""}
+    return replace(hard, coordinates=coordinates, parameters=parameters, units=units)
 
 
 def _hum(scene: Scene) -> Candidate:
