@@ -3,6 +3,7 @@
 import pytest
 
 from geometry.parameters import Dot
+from solve.amplifier import amplify
 from solve.materials.parameters import Hyperfoam, MooneyRivlin, Ogden, Yeoh
 from solve.mechanisms import MECHANISMS, Mechanism
 from solve.model import Model
@@ -54,9 +55,13 @@ def test_leakage_is_parallel_to_the_resistance_that_is_there(model):
     assert both.readout.input_resistance_MOhm == pytest.approx(2.0)
 
 
-def test_capacitances_add(model):
-    start = Model(model.segment, model.materials, model.dot, readout=Readout(input_capacitance_pF=20.0))
+def test_capacitances_add_and_the_lower_limit_counts(model):
+    start = Model(model.segment, model.materials, model.dot, readout=Readout(input_capacitance_pF=20.0, limit_V=2.0))
     assert switched(start, "parasitic-capacitance", "readout", capacitance_pF=5.0).readout.input_capacitance_pF == 25.0
+    for limit_V, shown_V in ((3.0, 2.0), (1.0, 1.0)):
+        on = switched(start, "saturation", "readout", limit_V=limit_V)
+        charge = np.array([0.0, 1e-6])  # some kV on 100 pF
+        assert amplify(np.array([0.0, 1e-3]), charge, 100e-12, on.readout, on.physics)[-1] == shown_V
 
 
 def test_offsets_and_gaps_add(model):
