@@ -41,10 +41,11 @@ class Job:
     guides: bool = False
     guided_by: str = ""
 
-    def run(self, near: Equilibria | None = None) -> tuple[Floats, Equilibria]:
+    def run(self, near: Equilibria | None = None) -> tuple[Floats, Equilibria | None]:
         """Outputs (n + b r, 2 + e): force in N, contact area in m2, charges in C; down, then way back by way back.
 
-        Also the equilibria at rest and on the way down. near : those of a similar press. NoEquilibriumError.
+        Also, where it guides, the equilibria at rest and on the way down. near : those of a similar press.
+        NoEquilibriumError.
         """
         setup = _set_up(self)
         linear = LinearSolver(setup.system.factorisation_shift)
@@ -52,7 +53,7 @@ class Job:
             outputs, found = _walk(self, setup, linear, near)
         finally:
             linear.close()
-        return outputs, Equilibria.of(setup.system, setup.recorder.tet_mesh, found)
+        return outputs, Equilibria.of(setup.system, setup.recorder.tet_mesh, found) if self.guides else None
 
 
 def _set_up(job: Job) -> Setup:

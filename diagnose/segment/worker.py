@@ -22,7 +22,7 @@ def answer(job: Job | Reduction) -> Floats | Exception:
 def _pressed(job: Job) -> Floats:
     """Outputs; equilibria are left where other presses find them."""
     outputs, found = job.run(store.equilibria(job.guided_by) if job.guided_by else None)
-    if job.guides:
+    if found is not None:
         store.keep_equilibria(store.key(job), found)
     return outputs
 

@@ -1,5 +1,6 @@
 """Mechanisms as changes of a model."""
 
+import numpy as np
 import pytest
 
 from geometry.parameters import Dot
