@@ -142,8 +142,8 @@ def test_both_codes_press_the_same_slice_alike():
         },
         "dot": {"shape": "ridge", "radius_mm": 0.8125},
         "press": {"indentation_mm": 0.3, "load_steps": 4},
-        "mesh": {"element_size_mm": 0.12, "contact_element_size_mm": 0.06},
-    }))  # fmt: skip
+        "mesh": {"mesher": "layered", "element_size_mm": 0.08, "contact_element_size_mm": 0.04},
+    }))  # fmt: skip; a mesh of pytetwild's differs from run to run by a tenth of a percent of the force
     other = pressed(PAPER, 0.3)
     assert other.force_N == pytest.approx(found["reaction_force_N"][-1], rel=2e-3)
     assert other.charge_pC == pytest.approx(found["film_charge_pC"][-1], rel=2e-3)
