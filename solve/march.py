@@ -132,7 +132,7 @@ def _touching(system: System, last: State, load: Load, time: float, nodes: int) 
     approach = system.unknowns.approach
     if approach < 0 or load.drive <= last.load.drive:
         return last.x
-    if (last.x[system.contact.pressure_dofs] > 0.0).any() or (_gap(system, last.x, load, time, last) < 0.0).any():
+    if system.contact.closed(system.trial(last.x, load, time, last)).any():
         return last.x
     x = last.x.copy()
     for _ in range(MAX_APPROACHES):  # on a slope the gap closes more slowly than the dot moves

@@ -15,67 +15,89 @@ from solve.newton import NoEquilibriumError, equilibrate
 from solve.schedule import Target
 from solve.system import State, System
 
+Found = Sequence[tuple[float, Floats]]
+"""Places and the unknowns (count,) there, one at least, in the order in which they were found."""
+
 
 @dataclass(frozen=True)
 class Equilibria:
     """Of one press at n places, element by element, so that any numbering of the unknowns can read them.
 
-    displacement_m : (n, m, 10, 3) of the nodes of the tetrahedra. pressure_Pa : (n, m, 4) of their corners.
-    contact_Pa : (n, k, 6) of the nodes of the contact's facets. What acts in one place only, a glue or an electrode,
-    is left out.
+    places : (n,), ascending. displacement_m : (n, m, 10, 3) of the nodes of the tetrahedra. pressure_Pa : (n, m, 4) of
+    their corners. contact_Pa : (n, k, 6) of the nodes of the contact's facets. What acts in one place only, a glue or
+    an electrode, is left out.
     """
 
+    places: Floats
     displacement_m: Floats
     pressure_Pa: Floats
     contact_Pa: Floats
 
     @classmethod
-    def of(cls, system: System, tet_mesh: TetMesh, found: Sequence[Floats]) -> "Equilibria":
-        """Of unknowns (count,) at each place."""
-        displacement, pressure, contact = _places(system, tet_mesh)
-        known = np.column_stack([np.array(found), np.zeros(len(found))])  # index -1, a prescribed value, reads zero
+    def of(cls, system: System, tet_mesh: TetMesh, found: Found) -> "Equilibria":
+        """Of places and unknowns."""
+        displacement, pressure, contact = _numbers(system, tet_mesh)
+        places, unknowns = zip(*found, strict=True)
+        known = np.column_stack([unknowns, np.zeros(len(places))])  # index -1, a prescribed value, reads zero
         units = system.units
-        return cls(known[:, displacement] * units.length, known[:, pressure] * units.stress,
+        return cls(np.array(places), known[:, displacement] * units.length, known[:, pressure] * units.stress,
                    known[:, contact] * units.stress)  # fmt: skip
 
-    def unknowns(self, system: System, tet_mesh: TetMesh) -> list[Floats]:
-        """(count,) at each place, for another system on these elements. ValueError on other elements."""
-        places, units = _places(system, tet_mesh), system.units
+    def course(self, system: System, tet_mesh: TetMesh) -> "Course | None":
+        """For another system on these elements; None on other ones, such as a slice in the place of a solid."""
+        numbers, units = _numbers(system, tet_mesh), system.units
         known = self.displacement_m / units.length, self.pressure_Pa / units.stress, self.contact_Pa / units.stress
-        if any(values.shape[1:] != place.shape for place, values in zip(places, known, strict=True)):
-            raise ValueError("the equilibria are those of other elements")
-        found = np.zeros((len(self.displacement_m), system.count + 1))
-        for place, values in zip(places, known, strict=True):
+        if any(values.shape[1:] != place.shape for place, values in zip(numbers, known, strict=True)):
+            return None
+        found = np.zeros((len(self.places), system.count + 1))
+        for place, values in zip(numbers, known, strict=True):
             found[:, place] = values
-        return list(found[:, :-1])
+        return Course(self.places, found[:, :-1])
 
 
-def _places(system: System, tet_mesh: TetMesh) -> tuple[Ints, Ints, Ints]:
-    """Numbers of the unknowns by element: (m, 10, 3), (m, 4) and (k, 6)."""
+def _numbers(system: System, tet_mesh: TetMesh) -> tuple[Ints, Ints, Ints]:
+    """Of the unknowns by element: (m, 10, 3), (m, 4) and (k, 6)."""
     numbers = system.unknowns
     return numbers.displacement[tet_mesh.tets], numbers.pressure, numbers.contact[tet_mesh.facets["contact"]]
 
 
-def guess(near: Sequence[Floats], places: Sequence[float] | Floats, found: Sequence[Floats]) -> Floats:
-    """The next of the unknowns (count,): those nearby, and the difference of those found so far, carried on linearly.
+@dataclass(frozen=True)
+class Course:
+    """Of a similar press: unknowns (n, count) at places (n,), which ascend."""
 
-    near : at each of the places, which ascend; found : at the first of them, one at least.
-    """
-    last = len(found) - 1
-    off = found[-1] - near[last]
-    if last > 0:
-        rate = (off - (found[-2] - near[last - 1])) / (places[last] - places[last - 1])
-        off = off + rate * (places[last + 1] - places[last])
-    return np.asarray(near[last + 1] + off)
+    places: Floats
+    unknowns: Floats
+
+    def at(self, place: float) -> Floats:
+        """Between two places on the straight line."""
+        above = min(int(np.searchsorted(self.places, place)), len(self.places) - 1)
+        below = max(above - 1, 0)
+        length = self.places[above] - self.places[below]
+        share = (place - self.places[below]) / length if length > 0.0 else 0.0
+        return np.asarray((1.0 - share) * self.unknowns[below] + share * self.unknowns[above])
+
+    def guess(self, found: Found, place: float) -> Floats:
+        """The unknowns (count,) there: those of this course, and the difference of the last two found, carried on."""
+        (last, x), *before = found[:-3:-1]
+        off = x - self.at(last)
+        for earlier, y in before:
+            off = off + (off - (y - self.at(earlier))) * (place - last) / (last - earlier)
+        return np.asarray(self.at(place) + off)
+
+
+def combined(*weighed: tuple[float, Course]) -> Course:
+    """The weighed sum, at the places of the first."""
+    places = weighed[0][1].places
+    return Course(places, np.array([sum(weight * course.at(place) for weight, course in weighed) for place in places]))
 
 
 def reach(
-    system: System, linear: LinearSolver, past: list[State], target: Target, kink: bool, beside: Floats | None
+    system: System, linear: LinearSolver, past: list[State], target: Target, kink: bool, guess: Floats | None
 ) -> str | None:
     """At once from a guess (count,) beside the equilibrium, else by marching; as solve.march.march."""
-    if beside is not None:
+    if guess is not None:
         try:
-            past.append(equilibrate(system, linear, beside, target.load, target.time, past[-1]))
+            past.append(equilibrate(system, linear, guess, target.load, target.time, past[-1]))
         except NoEquilibriumError:
             pass
         else:

@@ -104,7 +104,7 @@ class Prepared:
     def _bases(self) -> tuple[Job, Job]:
         """The baseline on the diagnosis mesh and on the middle one: what changes are compared with and start from."""
         coarse, middle = self.job(self.model), self.job(self.model, self._middle_mesh)
-        return replace(coarse, guides=True), replace(middle, guides=True)
+        return replace(coarse, guides=True, parts=SLIPS), replace(middle, guides=True)
 
     @cached_property
     def _middle_mesh(self) -> Sizes:

@@ -12,7 +12,7 @@ from solve.interfaces import open_interfaces
 from solve.linear import LinearSolver
 from solve.march import rest_state
 from solve.model import Model
-from solve.near import Equilibria, guess, reach
+from solve.near import Equilibria, reach
 from solve.newton import NoEquilibriumError
 from solve.parameters import Press
 from solve.schedule import Target
@@ -28,7 +28,8 @@ class Job:
     """One press of a model on a mesh to depth_mm, seen at shares (n,) of it, growing from above 0 to 1.
 
     back : numbers of the shares from which the dot also returns; seen on the way at RETURN of that depth.
-    parts : steps to each share, where slip takes several. guides : whether its equilibria are kept for others.
+    parts : steps to each share: slip takes several, and what guides it. guides : whether its equilibria are kept for
+    others.
     guided_by : name in diagnose.segment.store of such a press, to start from; "" for none.
     """
 
@@ -68,17 +69,17 @@ def _set_up(job: Job) -> Setup:
 
 def _walk(
     job: Job, setup: Setup, linear: LinearSolver, near: Equilibria | None
-) -> tuple[Floats, list[Floats]]:
+) -> tuple[Floats, list[tuple[float, Floats]]]:
     start = Target(0.0, Load((0.0, 0.0), 0.0), True)
     rest = rest_state(setup.system, linear, start)
     setup.recorder.start(rest)
     places = 0.0, *job.shares
-    beside = _beside(job, setup, near)
-    past, found, down, back = [rest], [rest.x], list[Floats](), list[Floats]()
+    beside = near.course(setup.system, setup.recorder.tet_mesh) if near is not None else None
+    past, found, down, back = [rest], [(0.0, rest.x)], list[Floats](), list[Floats]()
     for number, (before, share) in enumerate(pairwise(places)):
         for place in np.linspace(before, share, job.parts + 1)[1:]:
-            _go(setup, linear, past, float(place), guess(beside, places, found) if beside else None)
-        found.append(past[-1].x)
+            _go(setup, linear, past, place, beside.guess(found, place) if beside else None)
+            found.append((place, past[-1].x))
         down.append(_outputs(setup, past))
         if number in job.back:
             returning = past[-1:]
@@ -88,20 +89,10 @@ def _walk(
     return np.array([*down, *back]), found
 
 
-def _beside(job: Job, setup: Setup, near: Equilibria | None) -> list[Floats]:
-    """Unknowns (count,) of a similar press at rest and at each share; none for slip, which goes its own way."""
-    if near is None or job.parts > 1:
-        return []
-    try:
-        return near.unknowns(setup.system, setup.recorder.tet_mesh)
-    except ValueError:  # a slice in the place of a solid
-        return []
-
-
-def _go(setup: Setup, linear: LinearSolver, past: list[State], share: float, beside: Floats | None = None) -> None:
+def _go(setup: Setup, linear: LinearSolver, past: list[State], share: float, guess: Floats | None = None) -> None:
     """To a share of the depth; past is extended. NoEquilibriumError."""
     target = Target(past[-1].time + 1.0, Load((0.0, 0.0), share * setup.full_drive), True)
-    failure = reach(setup.system, linear, past, target, True, beside)
+    failure = reach(setup.system, linear, past, target, True, guess)
     if failure is not None:
         raise NoEquilibriumError(f"a press at {share:.2f} of the depth: {failure}", past[-1].x, None)
 

@@ -18,6 +18,7 @@ from mesh.types import Floats, TetMesh
 from solve.interfaces import open_interfaces
 from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.model import Model
+from solve.near import combined
 from solve.parameters import Press
 from solve.physics import Physics
 from solve.reduced import store
@@ -130,18 +131,18 @@ def _samples(sampler: Sampler, relaxing: Mapping[str, float]) -> Iterator[Sample
     """
     elastic = sampler.press({}, FINER)
     yield elastic.sample
-    fields, plain = elastic.fields, elastic.unknowns[::FINER]
+    fields, plain = elastic.fields, elastic.course
     middle = round(len(fields) * 0.6)
     held: dict[str, Pressed] = {}
     memories: dict[str, Floats] = {}
     for layer, share in relaxing.items():
         first = sampler.press({layer: share * fields[-1][layer]}, near=plain)
         memories[layer] = share * first.fields[-1][layer]
-        held[layer] = sampler.press({layer: memories[layer]}, near=first.unknowns)
-        halfway = [0.5 * (a + b) for a, b in zip(plain, held[layer].unknowns, strict=True)]
+        held[layer] = sampler.press({layer: memories[layer]}, near=first.course)
+        halfway = combined((0.5, held[layer].course), (0.5, plain))
         yield from (first.sample, held[layer].sample)
         for memory in (0.5 * memories[layer], share * fields[middle][layer]):
             yield sampler.press({layer: memory}, near=halfway).sample
     for one, other in combinations(relaxing, 2):  # to first order their answers add up
-        near = [a + b - c for a, b, c in zip(held[one].unknowns, held[other].unknowns, plain, strict=True)]
+        near = combined((1.0, held[one].course), (1.0, held[other].course), (-1.0, plain))
         yield sampler.press({one: memories[one], other: memories[other]}, near=near).sample

@@ -1,6 +1,6 @@
 """Presses of the 3D model with memories that do not fade: the samples of which the reduced model is made."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,7 +11,7 @@ from solve.bond import Bond
 from solve.film import FilmRegion
 from solve.linear import LinearSolver
 from solve.march import rest_state
-from solve.near import guess, reach
+from solve.near import Course, reach
 from solve.newton import NoEquilibriumError, equilibrate
 from solve.reduced.frozen import Frozen
 from solve.reduced.yardstick import Yardstick, held
@@ -48,11 +48,11 @@ Fields = dict[str, Floats]  # layer -> stress at its quadrature points (n, 6), o
 
 @dataclass(frozen=True)
 class Pressed:
-    """A sample; at every depth node the elastic stress, and the unknowns (count,)."""
+    """A sample; at every depth node the elastic stress, and the unknowns."""
 
     sample: Sample
     fields: list[Fields]
-    unknowns: list[Floats]
+    course: Course
 
 
 class Sampler:
@@ -75,24 +75,24 @@ class Sampler:
         if self.yardstick is not None:
             self.yardstick.close()
 
-    def press(self, memory: Fields, finer: int = 1, near: Sequence[Floats] = ()) -> Pressed:
+    def press(self, memory: Fields, finer: int = 1, near: Course | None = None) -> Pressed:
         """Press with overstress fields. NoEquilibriumError.
 
-        finer : so many depth nodes to one. near : unknowns of a similar press at each node, to start from.
+        finer : so many depth nodes to one. near : a similar press, to start from.
         """
         state, touch = self._free(memory)
         full, shares = self.setup.full_drive, depth_shares(finer * self.nodes)
-        past, outputs, fields, found = [state], [self._outputs(state)], [self._elastic(state)], [state.x]
+        past, outputs, fields, found = [state], [self._outputs(state)], [self._elastic(state)], [(0.0, state.x)]
         for share in shares[1:]:
             drive = float(touch + share * (full - touch))
             target = Target(past[-1].time + 1.0, Load((0.0, 0.0), drive), False)
-            beside = guess(near, shares, found) if near else None
-            failure = reach(self.system, self.linear, past, target, False, beside)
+            guess = near.guess(found, share) if near is not None else None
+            failure = reach(self.system, self.linear, past, target, False, guess)
             if failure is not None:
                 raise NoEquilibriumError(f"a press for the reduced model stopped: {failure}", past[-1].x, None)
             outputs.append(self._outputs(past[-1]))
             fields.append(self._elastic(past[-1]))
-            found.append(past[-1].x)
+            found.append((share, past[-1].x))
         if self.yardstick is None:
             self.yardstick = Yardstick(self.system, past[-1], self.terms)
         self.force_scale = max(self.force_scale, past[-1].force_scale)
@@ -100,7 +100,8 @@ class Sampler:
         stress = {name: [measure(name, now[name]) for now in fields] for name in self.terms}
         remembered = {name: measure(name, field) for name, field in memory.items()}
         sample = Sample(1e3 * self.system.units.length * touch, np.array(outputs), stress, remembered)
-        return Pressed(sample, fields, found)
+        places, unknowns = zip(*found, strict=True)
+        return Pressed(sample, fields, Course(np.array(places), np.array(unknowns)))
 
     def _free(self, memory: Fields) -> tuple[State, float]:
         """The segment clear of the dot, and the approach at which they touch."""

@@ -12,7 +12,7 @@ from solve.interfaces import open_interfaces
 from solve.linear import LinearSolver
 from solve.march import rest_state
 from solve.model import Model
-from solve.near import Equilibria, guess, reach
+from solve.near import Course, Equilibria, Found, combined, reach
 from solve.parameters import Press
 from solve.physics import BondLine, Physics
 from solve.schedule import Target
@@ -24,7 +24,7 @@ PLACES = 0.0, 0.2, 0.5, 1.0  # of the depth
 GLUE = Physics(bonds={"bond-film-medium2": BondLine(5.0, 5.0)})
 
 
-def press(dot=cap, near: Equilibria | None = None, physics=None, **moduli) -> tuple[Setup, list[np.ndarray]]:
+def press(dot=cap, near: Equilibria | None = None, physics=None, **moduli) -> tuple[Setup, Found]:
     """A segment pressed by 0.2 mm, and its unknowns at rest and at the other places."""
     stack, physics = segment(), physics or Physics()
     model = Model(stack, materials(**moduli), Dot(), Press(indentation_mm=0.2), None, physics)
@@ -32,18 +32,18 @@ def press(dot=cap, near: Equilibria | None = None, physics=None, **moduli) -> tu
     setup = set_up(model, dot(stack), tet_mesh, opened)
     linear = LinearSolver(setup.system.factorisation_shift)
     past = [rest_state(setup.system, linear, Target(0.0, Load((0.0, 0.0), 0.0), True))]
-    known = near.unknowns(setup.system, tet_mesh) if near else []
-    found = [past[-1].x]
+    beside = near.course(setup.system, tet_mesh) if near else None
+    found = [(0.0, past[-1].x)]
     for place in PLACES[1:]:
         target = Target(past[-1].time + 1.0, Load((0.0, 0.0), place * setup.full_drive), True)
-        beside = guess(known, PLACES, found) if known else None
-        assert reach(setup.system, linear, past, target, True, beside) is None
-        found.append(past[-1].x)
+        guess = beside.guess(found, place) if beside else None
+        assert reach(setup.system, linear, past, target, True, guess) is None
+        found.append((place, past[-1].x))
     linear.close()
     return setup, found
 
 
-def equilibria(pressed: tuple[Setup, list[np.ndarray]]) -> Equilibria:
+def equilibria(pressed: tuple[Setup, Found]) -> Equilibria:
     setup, found = pressed
     return Equilibria.of(setup.system, setup.recorder.tet_mesh, found)
 
@@ -79,19 +79,33 @@ def test_from_far_away_it_marches(plain):
 
 def test_every_unknown_of_a_plain_press_is_read_back():
     setup, found = press()
-    back = equilibria((setup, found)).unknowns(setup.system, setup.recorder.tet_mesh)
-    np.testing.assert_allclose(back, found, rtol=1e-12)
+    back = equilibria((setup, found)).course(setup.system, setup.recorder.tet_mesh)
+    assert back is not None
+    assert tuple(back.places) == PLACES
+    np.testing.assert_allclose(back.unknowns, [x for _, x in found], rtol=1e-12)
 
 
-def test_equilibria_of_other_elements_are_refused(plain):
+def test_equilibria_of_other_elements_are_no_guide(plain):
     setup, _ = press(ridge)
     other: TetMesh = setup.recorder.tet_mesh
-    with pytest.raises(ValueError, match="other elements"):
-        plain.unknowns(setup.system, replace(other, tets=other.tets[:-1]))
+    assert plain.course(setup.system, replace(other, tets=other.tets[:-1])) is None
+
+
+def line(of) -> Course:
+    return Course(np.array(PLACES), np.array([[of(place)] for place in PLACES]))
 
 
 def test_a_difference_that_grows_linearly_is_guessed_exactly():
-    near = [np.array([place**2]) for place in PLACES]
-    wanted = [x + 0.3 * place for x, place in zip(near, PLACES, strict=True)]
-    assert guess(near, PLACES, wanted[:2]) == pytest.approx(wanted[2])
-    assert guess(near, PLACES, wanted[:3]) == pytest.approx(wanted[3])
+    near, wanted = line(lambda place: place**2), line(lambda place: place**2 + 0.3 * place)
+    found = [(place, wanted.at(place)) for place in PLACES[:3]]
+    assert near.guess(found[:2], PLACES[2]) == pytest.approx(wanted.at(PLACES[2]))
+    assert near.guess(found, 0.75) == pytest.approx(wanted.at(0.75))  # between two places of the other press
+
+
+def test_of_a_difference_that_is_known_once_no_more_is_asked():
+    assert line(lambda place: place**2).guess([(0.0, np.array([0.1]))], 0.5) == pytest.approx(0.35)
+
+
+def test_two_presses_add_up():
+    both = combined((2.0, line(lambda place: place)), (-1.0, line(lambda place: place**2)))
+    np.testing.assert_allclose(both.unknowns[:, 0], [2.0 * place - place**2 for place in PLACES])

@@ -16,7 +16,7 @@ from diagnose.prove.world.made import Damage, Film, Glue, Layer, Made, Spectrum
 from diagnose.prove.world.memory import relaxation
 from diagnose.prove.world.reality import Reality, baseline
 
-GLUE_MM = 0.01
+GLUE_MM = 0.02
 RELAXES_S = 0.4
 
 
@@ -126,7 +126,7 @@ GENT = 4.0
 
 
 def _glued(above: str) -> Callable[[Reality, Bench, float], Reality]:
-    """Glue of 10 um between a layer and the one below it, which is so much thinner."""
+    """Glue between a layer and the one below it, which is so much thinner."""
 
     def change(reality: Reality, bench: Bench, s: float) -> Reality:
         nu = 0.45
