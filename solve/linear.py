@@ -84,9 +84,9 @@ def _pardiso(kind: int) -> Any:
     iparm(10), the size of perturbed pivots: with 1e-13, the default of unsymmetric matrices, one perturbed pivot of
     a sticking contact left residuals of 1e-3 that GMRES could not remove; with 1e-8, that of symmetric ones, 1e-7.
     """
+    _tell_where_mkl_is()  # before the import, which looks for it
     from pypardiso import PyPardisoSolver
 
-    _tell_where_mkl_is()
     solver = PyPardisoSolver(mtype=kind)
     symmetric = ((1, 1), (2, 3), (10, 13), (11, 0), (13, 0), (21, 1))
     unsymmetric = ((1, 1), (2, 3), (10, 8), (11, 1), (13, 1))
