@@ -107,6 +107,11 @@ class Prepared:
         return replace(coarse, guides=True, parts=SLIPS), replace(middle, guides=True)
 
     @cached_property
+    def _guides(self) -> list[str]:
+        """Names of the bases in diagnose.segment.store."""
+        return [store.key(job) for job in self._bases]
+
+    @cached_property
     def _middle_mesh(self) -> Sizes:
         """See ON_THE_MIDDLE_MESH; a dot elsewhere is pressed on it too."""
         return finer_mesh(self.model, self.options, MIDDLE, MOST_NODES)
@@ -119,13 +124,17 @@ class Prepared:
         if not wanted:
             return
         bases = _all_there(run_all(self._bases, report))
-        guides = [store.key(job) for job in self._bases]
-        outputs = run_all([replace(job, guided_by=guides[base]) for job, base in wanted.values()], report)
+        outputs = run_all([self._guided(*one) for one in wanted.values()], report)
         for (name, (job, base)), found in zip(wanted.items(), outputs, strict=True):
             if len(found):
                 self._changes[name] = self._change(job, bases[base], found)
         for candidate in candidates:
             self._bridge(candidate)
+
+    def _guided(self, job: Job, base: int) -> Job:
+        """Starting from the baseline's equilibria, except where a moved dot touches other nodes."""
+        moved = job.model.dot != self._bases[base].model.dot
+        return job if moved else replace(job, guided_by=self._guides[base])
 
     def _change(self, job: Job, base: Floats, found: Floats) -> Floats:
         """Against the baseline on the same mesh; charges scaled to those of the finest mesh."""
