@@ -60,6 +60,16 @@ def press(rows: list[dict]) -> str:
     return _table((*head, "ours/theirs at this error"), body)
 
 
+def diagnosis(rows: list[dict]) -> str:
+    """Seconds and memory of the first and a further diagnosis."""
+    body = [
+        [row["rig"], f"{row['first_seconds']:.0f}", f"{row['further_seconds']:.0f}", f"{row['first/further']:.1f}",
+         f"{row['first_GB']:.1f}", f"{row['further_GB']:.1f}"]
+        for row in rows
+    ]  # fmt: skip
+    return _table(("rig", "first s", "further s", "first/further", "first GB", "further GB"), body)
+
+
 def machine(section: dict) -> str:
     """One line on what it ran."""
     on = section["measured_on"]
@@ -68,7 +78,7 @@ def machine(section: dict) -> str:
     return f"Measured on {where}; Python {on['python']}, {versions}."
 
 
-TABLES = {"newton_step": newton_step, "growth": growth, "press": press}
+TABLES = {"newton_step": newton_step, "growth": growth, "press": press, "diagnosis": diagnosis}
 
 
 def main(table: Path, page: Path) -> None:

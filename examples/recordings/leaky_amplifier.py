@@ -8,6 +8,8 @@ noise, 50 Hz hum and a step of the converter, and gains that are a few per cent 
 """
 
 import sys
+from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -64,19 +66,23 @@ RUNS = {
 }
 LEAK_MOHM = 1000.0
 RATE_HZ, LASTS_S, TOUCH_S = 200.0, 6.0, 1.5
+SIZES_MM = 0.2, 0.05  # of elements, and of those in contact
 NUISANCE = {"gain": 0.03, "force_gain": 0.02}
 NOISE_V, HUM_V, STEP_V, NOISE_N = 0.2, 0.1, 0.01, 0.02
 
 
-def make(out: Path, seed: int = 1) -> None:
-    """Write the recording folder."""
+def make(
+    out: Path, seed: int = 1, rig: str = RIG, runs: Mapping[str, tuple[float, float, float]] = RUNS,
+    rate_Hz: float = RATE_HZ, lasts_s: float = LASTS_S, sizes_mm: tuple[float, float] = SIZES_MM,
+) -> None:  # fmt: skip
+    """Write the recording folder. rig : rig.toml without its runs, with this amplifier. sizes_mm : of the mesh."""
     rng = np.random.default_rng(seed)
-    depth, force, charge, capacitance = pressed(max(run[0] for run in RUNS.values()))
+    depth, force, charge, capacitance = pressed(rig, max(run[0] for run in runs.values()), sizes_mm)
     stated = Readout(input_resistance_MOhm=10000.0, input_capacitance_pF=100.0)
     leaking = stated.model_copy(update={"input_resistance_MOhm": 1.0 / (1.0 / 10000.0 + 1.0 / LEAK_MOHM)})
-    time = np.arange(0.0, LASTS_S, 1.0 / RATE_HZ)
-    files, texts = {}, [RIG]
-    for number, (label, run) in enumerate(RUNS.items(), start=1):
+    time = np.arange(0.0, lasts_s, 1.0 / rate_Hz)
+    files, texts = {}, [rig]
+    for number, (label, run) in enumerate(runs.items(), start=1):
         drive = motion(time, *run)
         at = np.clip(drive, 0.0, None)
         voltage = amplify(time, np.interp(at, depth, charge), capacitance, leaking, Physics())
@@ -93,11 +99,12 @@ def make(out: Path, seed: int = 1) -> None:
     write_recording(out, "\n".join(texts), files)
 
 
-def pressed(depth_mm: float) -> tuple[Floats, Floats, Floats, float]:
+@cache
+def pressed(rig: str, depth_mm: float, sizes_mm: tuple[float, float]) -> tuple[Floats, Floats, Floats, float]:
     """Depth (mm), force (N) and charge (C) of a press, (s,) each, and the film's capacitance (F)."""
-    tables = parse_toml(RIG, "rig.toml") | {
+    tables = parse_toml(rig, "rig.toml") | {
         "press": {"indentation_mm": depth_mm, "load_steps": 30},
-        "mesh": {"element_size_mm": 0.2, "contact_element_size_mm": 0.05},
+        "mesh": {"element_size_mm": sizes_mm[0], "contact_element_size_mm": sizes_mm[1]},
     }
     del tables["format"]
     config, physics = actual(config_from(tables))
