@@ -61,7 +61,7 @@ LOOK_S = 0.2  # between two looks at the memory
 
 def diagnosed(recording: Path, cache: Path) -> tuple[float, float]:
     """Seconds and the largest memory in GB of one diagnosis. SystemExit when it fails."""
-    command = [sys.executable, "-c", "from softdot.cli import main; main()", "diagnose", str(recording)]
+    command = [sys.executable, "-m", "softdot.cli", "diagnose", str(recording)]
     own = {**os.environ, "SOFTDOT_CACHE": str(cache)}
     start, most = time.perf_counter(), 0
     with subprocess.Popen([*command, "-o", str(recording.with_name("out"))], env=own) as running:
@@ -74,22 +74,12 @@ def diagnosed(recording: Path, cache: Path) -> tuple[float, float]:
 
 
 def _memory(pid: int) -> int:
-    """Bytes of a process and of all that it started."""
-    total = 0
-    for process in _family(pid):
-        try:
-            total += process.memory_info().rss
-        except psutil.NoSuchProcess:  # ended meanwhile
-            continue
-    return total
-
-
-def _family(pid: int) -> list[psutil.Process]:
+    """Bytes of a process and of all that it started; none where one of them just ended."""
     try:
         first = psutil.Process(pid)
-        return [first, *first.children(recursive=True)]
+        return sum(process.memory_info().rss for process in (first, *first.children(recursive=True)))
     except psutil.NoSuchProcess:
-        return []
+        return 0
 
 
 def measured(name: str) -> dict:

@@ -5,8 +5,10 @@ Moduli, glue or remembered stress change an equilibrium less than the way down t
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+from scipy.interpolate import BSpline, make_interp_spline
 
 from mesh.types import Floats, Ints, TetMesh
 from solve.linear import LinearSolver
@@ -35,12 +37,11 @@ class Equilibria:
 
     @classmethod
     def of(cls, system: System, tet_mesh: TetMesh, found: Found) -> "Equilibria":
-        """Of places and unknowns."""
+        """Of places, which ascend, and unknowns."""
         displacement, pressure, contact = _numbers(system, tet_mesh)
-        places, unknowns = zip(*found, strict=True)
-        known = np.column_stack([unknowns, np.zeros(len(places))])  # index -1, a prescribed value, reads zero
-        units = system.units
-        return cls(np.array(places), known[:, displacement] * units.length, known[:, pressure] * units.stress,
+        course, units = Course.of(found), system.units
+        known = np.column_stack([course.unknowns, np.zeros(len(found))])  # index -1, a prescribed value, reads zero
+        return cls(course.places, known[:, displacement] * units.length, known[:, pressure] * units.stress,
                    known[:, contact] * units.stress)  # fmt: skip
 
     def course(self, system: System, tet_mesh: TetMesh) -> "Course | None":
@@ -68,13 +69,19 @@ class Course:
     places: Floats
     unknowns: Floats
 
+    @classmethod
+    def of(cls, found: Found) -> "Course":
+        """That was found at ascending places."""
+        places, unknowns = zip(*found, strict=True)
+        return cls(np.array(places), np.array(unknowns))
+
     def at(self, place: float) -> Floats:
         """Between two places on the straight line."""
-        above = min(int(np.searchsorted(self.places, place)), len(self.places) - 1)
-        below = max(above - 1, 0)
-        length = self.places[above] - self.places[below]
-        share = (place - self.places[below]) / length if length > 0.0 else 0.0
-        return np.asarray((1.0 - share) * self.unknowns[below] + share * self.unknowns[above])
+        return np.asarray(self._line(place))
+
+    @cached_property
+    def _line(self) -> BSpline:
+        return make_interp_spline(self.places, self.unknowns, k=1)
 
     def guess(self, found: Found, place: float) -> Floats:
         """The unknowns (count,) there: those of this course, and the difference of the last two found, carried on."""

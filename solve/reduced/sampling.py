@@ -100,8 +100,7 @@ class Sampler:
         stress = {name: [measure(name, now[name]) for now in fields] for name in self.terms}
         remembered = {name: measure(name, field) for name, field in memory.items()}
         sample = Sample(1e3 * self.system.units.length * touch, np.array(outputs), stress, remembered)
-        places, unknowns = zip(*found, strict=True)
-        return Pressed(sample, fields, Course(np.array(places), np.array(unknowns)))
+        return Pressed(sample, fields, Course.of(found))
 
     def _free(self, memory: Fields) -> tuple[State, float]:
         """The segment clear of the dot, and the approach at which they touch."""
