@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.optimize import least_squares
 
 from diagnose.vocabulary.candidates import candidates
 from diagnose.vocabulary.memory import relaxed_fraction
@@ -11,6 +12,7 @@ from diagnose.vocabulary.scene import Scene
 from diagnose.vocabulary.wrong_numbers import nuisance
 from solve.mechanisms import BONDS, MECHANISMS, MEDIA
 from solve.parameters import Readout
+from solve.saturation import Saturation
 from solve.switch_on import with_mechanisms
 from tests.diagnose.segment.rigs import LEAKY, model
 
@@ -92,6 +94,27 @@ def test_small_coordinates_are_small_physics():
     foam = almost["foam-densification", "effector"]
     assert foam["poisson_ratio"][0] == pytest.approx(0.495, abs=1e-5)
     assert foam["alpha"][0] == pytest.approx(2.0, abs=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("limited", "largest_error"),
+    [
+        pytest.param(lambda V: np.clip(V, -0.7, 0.7), 1e-3, id="no knee"),
+        pytest.param(lambda V: 0.7 * np.tanh(V / 0.7), 0.01, id="hyperbolic tangent"),
+    ],
+)
+def test_a_fit_finds_a_limit_from_every_start_of_it(limited, largest_error):
+    """From where nothing is cut off yet as from far beyond: nowhere is the voltage deaf to the coordinates."""
+    candidate = next(c for c in candidates(FULL) if c.mechanism == "saturation")
+    voltage = np.linspace(-0.2, 1.0, 400)
+
+    def left(values):
+        return Saturation(**candidate.parameters(values)).applied(voltage) - limited(voltage)
+
+    bounds = np.array([(c.low, c.high) for c in candidate.coordinates]).T
+    for start in (0.1, *candidate.coordinates[0].starts):
+        found = least_squares(left, (start, 0.0), bounds=bounds, diff_step=1e-3)
+        assert np.abs(found.fun).max() < largest_error
 
 
 def test_what_is_off_has_finite_parameters():
