@@ -1,6 +1,7 @@
 """Candidates behind the film: input, filters, limits, hum, neighbouring channels. All are exact without new presses."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from math import hypot, pi, sinh, sqrt
 from typing import Any
 
@@ -77,24 +78,34 @@ def _low_pass(scene: Scene) -> Candidate:
     return Candidate("low-pass", "readout", (time, second, dead), parameters, units=units)
 
 
+def hard_limit(scene: Scene) -> Candidate:
+    """One over the limit, in terms of the largest voltage recorded: below about 1 nothing is cut."""
+    largest = scene.voltage_V or 1.0
+    limit = Coordinate("inverse_limit", 0.0, CLIPPED, (1.1, 1.5, 3.0))
+
+    def parameters(values: Sequence[float]) -> dict[str, Any]:
+        return {"limit_V": shrinking(largest, values[0])}
+
+    return Candidate("saturation", "readout", (limit,), parameters, units={"limit_V": "V"})
+
+
 def _saturation(scene: Scene) -> Candidate:
-    """A limit with a knee of any sharpness p, from softest to none.
+    """A limit with a knee of any sharpness p, from the softest to none.
 
     The overdrive is (V_largest / V_max)^p of the softest: what that one takes away is linear in it. A hard limit takes
     nothing away before it is reached: a fit that starts there does not see where to go.
     """
-    largest = scene.voltage_V or 1.0
+    hard = hard_limit(scene)
     starts = tuple(inverse**SOFTEST for inverse in (0.5, 1.1, 3.0))
     overdrive = Coordinate("overdrive", 0.0, CLIPPED**SOFTEST, starts)
     hardness = Coordinate("hardness", 0.0, 1.0, (0.5, 0.9), levels_off=(False, True))
 
     def parameters(values: Sequence[float]) -> dict[str, Any]:
-        limit_V = shrinking(largest, values[0] ** (1.0 / SOFTEST))
-        softness = (1.0 - values[1]) / SOFTEST
-        return {"limit_V": limit_V} if softness < HARD else {"limit_V": limit_V, "sharpness": 1.0 / softness}
+        limit, softness = hard.parameters([values[0] ** (1.0 / SOFTEST)]), (1.0 - values[1]) / SOFTEST
+        return limit if softness < HARD else {**limit, "sharpness": 1.0 / softness}
 
-    units = {"limit_V": "V", "sharpness": ""}
-    return Candidate("saturation", "readout", (overdrive, hardness), parameters, units=units)
+    units = {**hard.units, "sharpness": ""}
+    return replace(hard, coordinates=(overdrive, hardness), parameters=parameters, units=units)
 
 
 def _hum(scene: Scene) -> Candidate:
