@@ -80,7 +80,10 @@ class ContactFacets(Term):
 
     def weighted_gap(self, displacement: Floats, move: Floats) -> Floats:
         """g_i, shape (c,), at nodal displacements (n, 3) and the dot displaced by move (3,)."""
-        gap = self._at_quadrature(displacement, move)[0]
+        return self._weighted(self._at_quadrature(displacement, move)[0])
+
+    def _weighted(self, gap: Floats) -> Floats:
+        """g_i (c,) from the gap (k, q) at the quadrature points."""
         return self._sum(np.einsum("kq,qi,kq->ki", self.area, HATS, gap))
 
     def mean_gap(self, displacement: Floats, move: Floats) -> Floats:
@@ -97,20 +100,27 @@ class ContactFacets(Term):
 
     def closed(self, trial: Trial) -> Bools:
         """Nodes in contact: lambda_i - c g_i > 0, shape (c,) bool."""
-        gap = self.mean_gap(trial.displacement, trial.move)
-        return np.asarray(trial.x[self.pressure_dofs] - ACTIVE_SET_STIFFNESS * gap > 0.0)
+        return self._pressed(trial, self._at_quadrature(trial.displacement, trial.move)[0])
+
+    def _pressed(self, trial: Trial, gap: Floats) -> Bools:
+        """The same with the gap (k, q) at the quadrature points."""
+        mean_gap = self._weighted(gap) / self.nodal_area
+        return np.asarray(trial.x[self.pressure_dofs] - ACTIVE_SET_STIFFNESS * mean_gap > 0.0)
 
     def elements(self, trial: Trial, history: History) -> Iterator[Block]:
         """-sum lambda_i g_i over the active nodes; -lambda_i = 0 in the rows of the others."""
-        active, pressure = self.closed(trial), trial.x[self.pressure_dofs]
-        yield Block(0, slice(0, len(self.facets)), *self._facets(trial, pressure, active))
+        distance = self._at_quadrature(trial.displacement, trial.move)
+        active, pressure = self._pressed(trial, distance[0]), trial.x[self.pressure_dofs]
+        yield Block(0, slice(0, len(self.facets)), *self._facets(distance, pressure, active))
         closed = np.where(active, 0.0, -1.0)
         yield Block(1, slice(0, len(closed)), closed[:, None, None], (closed * pressure)[:, None])
 
-    def _facets(self, trial: Trial, pressure: Floats, active: Bools) -> tuple[Floats, Floats]:
+    def _facets(
+        self, distance: tuple[Floats, Floats, Floats], pressure: Floats, active: Bools
+    ) -> tuple[Floats, Floats]:
         """Matrices (k, 25, 25) and residuals (k, 25); rows of inactive nodes carry no coupling."""
         phi = HATS
-        gap, normal, hessian = self._at_quadrature(trial.displacement, trial.move)
+        gap, normal, hessian = distance
         on = active[self.index].astype(float)
         lam = np.einsum("qi,ki->kq", phi, np.where(active, pressure, 0.0)[self.index])
         # generalised direction of each unknown: displacement of node n along i, then the approach along -z

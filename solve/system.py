@@ -198,7 +198,7 @@ class System:
             status.append(term.status(trial, history))
             if isinstance(term, ContactFacets | FrictionalContact):
                 load_norm = max(load_norm, float(np.linalg.norm((residual - before)[self.mechanical])))
-                touching = bool(self.contact.closed(trial).any())
+                touching = bool(status[-1][: len(self.contact.pressure_dofs)].any())  # nodes in contact come first
             elif isinstance(term, Rig):
                 load_norm = max(load_norm, abs(term.drive_force(trial)))
         upper = self.pattern.matrix(data)

@@ -10,7 +10,7 @@ import numba as nb
 import numpy as np
 import scipy.sparse as sp
 
-from mesh.types import Floats
+from mesh.types import Floats, Ints
 
 
 @dataclass(frozen=True)
@@ -21,15 +21,21 @@ class Tangent:
     excess: sp.csr_matrix | None = None
 
     def __matmul__(self, vector: Floats) -> Floats:
-        product: Floats = self.upper @ vector + self.upper.T @ vector - self.upper.diagonal() * vector
+        diagonal = self.upper.data[self._leading]
+        product: Floats = self.upper @ vector + self.upper.T @ vector - diagonal * vector
         if self.excess is not None:
             product += self.excess.T @ vector
         return product
 
+    @property
+    def _leading(self) -> Ints:
+        """Where the diagonal is: it leads each row of an upper triangle."""
+        return np.asarray(self.upper.indptr[:-1])
+
     def shifted(self, by: Floats) -> "Tangent":
-        """With (n,) added to the diagonal, which leads each row of an upper triangle."""
+        """With (n,) added to the diagonal."""
         upper = self.upper.copy()
-        upper.data[upper.indptr[:-1]] += by
+        upper.data[self._leading] += by
         return Tangent(upper, self.excess)
 
     def full(self) -> sp.csr_matrix:
