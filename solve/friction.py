@@ -158,7 +158,7 @@ class FrictionalContact(Term):
         step = step - (trial.move - trial.previous_move)
         moved = self._free * self._nodal_sum(np.einsum("kq,qi,qn,knj->kij", area, HATS, SHAPES, step, optimize=True))
         n = self._nodal_sum(np.einsum("kq,qi,kqj->kij", area, HATS, gradient, optimize=True))
-        weighted_gap = contact._sum(np.einsum("kq,qi,kq->ki", area, HATS, gap))
+        weighted_gap = contact._weighted(gap)
         nodal_area = contact.nodal_area
         length = np.maximum(np.linalg.norm(n, axis=1), 1e-12 * nodal_area)  # opposite flanks may cancel, far away
         augmented = trial.x[contact.pressure_dofs] - ACTIVE_SET_STIFFNESS * weighted_gap / nodal_area

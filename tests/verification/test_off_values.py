@@ -52,6 +52,7 @@ OFF = [
     ("charge-leakage", "readout", {"resistance_MOhm": 1e14}),
     ("parasitic-capacitance", "readout", {"capacitance_pF": 0.0}),
     ("saturation", "readout", {"limit_V": 1e6}),
+    ("saturation", "readout", {"limit_V": 1e6, "sharpness": 4.0}),
     ("saturation", "readout", {"limit_V": 1e9, "sharpness": 2.0}),
     ("mains-hum", "readout", {"amplitude_V": 0.0}),
     ("pyroelectric-drift", "film", {"temperature_step_K": 0.0}),
