@@ -11,6 +11,7 @@ from typing import TextIO
 import numpy as np
 
 from geometry.errors import InputError
+from geometry.text_file import regular_file
 from mesh.types import Floats
 from solve.nearest import nearest
 
@@ -24,10 +25,7 @@ def refuse_by_size(files: Iterable[Path]) -> None:
     """InputError, before anything is read, for a missing file and for files that are too large together."""
     total = 0.0
     for file in files:
-        with _said(file):
-            size = file.stat().st_size / 1e6
-        if not file.is_file():
-            raise InputError(f"recording '{file}': is no file, a CSV file is needed")
+        size = regular_file(file, f"recording '{file}'") / 1e6
         total += size
         if total > LARGEST_MB:
             raise InputError(
@@ -59,8 +57,6 @@ def _said(file: Path) -> Iterator[None]:
     """Turn what the file system and the decoder raise into one sentence."""
     try:
         yield
-    except FileNotFoundError:
-        raise InputError(f"recording '{file}': there is no such file") from None
     except UnicodeDecodeError as error:
         raise InputError(f"recording '{file}': not UTF-8 text (byte {error.start}), save it as UTF-8") from None
     except csv.Error as error:
@@ -74,12 +70,12 @@ def _header(stream: TextIO, file: Path) -> list[str]:
     if not any(names):
         raise InputError(f"recording '{file}': empty, needs a header row such as 'time_s,force_N,voltage_V'")
     if len(names) == 1:
-        raise InputError(f"recording '{file}' row 1: {names[0][:40]!r} is one column, separate columns by commas")
+        raise InputError(f"recording '{file}' row 1: is one column, separate columns by commas")
     for number, name in enumerate(names):
         if name not in NAMES and not NUMBERED.fullmatch(name):
-            raise InputError(f"recording '{file}' row 1: column '{name}' is not known; {_meant(name)}")
+            raise InputError(f"recording '{file}' row 1: column '{name[:40]}' is not known; {_meant(name)}")
         if name in names[:number]:
-            raise InputError(f"recording '{file}' row 1: column '{name}' stands there twice")
+            raise InputError(f"recording '{file}' row 1: column '{name[:40]}' stands there twice")
     if "time_s" not in names:
         raise InputError(f"recording '{file}': column time_s is missing")
     return names
@@ -95,8 +91,9 @@ def _meant(name: str) -> str:
 def _table(stream: TextIO, header: Sequence[str], file: Path) -> Floats:
     """All samples (t, c): fast where every cell is a number, else row by row."""
     start = stream.tell()
-    if not stream.readline().strip():
-        raise InputError(f"recording '{file}': there is no sample below the header")
+    while not (line := stream.readline()).strip():  # blank lines count for nothing
+        if not line:
+            raise InputError(f"recording '{file}': there is no sample below the header")
     stream.seek(start)
     try:
         table = np.loadtxt(stream, delimiter=",", comments=None, ndmin=2, quotechar='"')

@@ -1,6 +1,7 @@
 """What rig.toml says beside the configuration: the runs and, for a coupon test, the specimen."""
 
 from collections.abc import Mapping
+from pathlib import PurePath
 from typing import Any, Literal
 
 from pydantic import Field, field_validator
@@ -32,6 +33,15 @@ class RunTable(Table):
     noise: dict[str, Positive] = Field(
         {}, description="column and one sigma of its white noise, where neither rest nor repeated runs show it"
     )
+
+    @field_validator("file")
+    @classmethod
+    def _inside(cls, value: str) -> str:
+        """A recording is whole in its folder, and names no other file of the machine."""
+        parts = PurePath(value.replace("\\", "/")).parts
+        if not parts or PurePath(value).is_absolute() or ".." in parts or ":" in parts[0]:
+            raise ValueError("must be the name of a file in the folder of rig.toml or in a folder below it")
+        return value
 
     @field_validator("nuisance", mode="before")
     @classmethod

@@ -209,6 +209,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     with suppress(ValueError):  # outside the main thread
         signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
+        _refuse_unprintable(chosen)
         status = _command(chosen)
         sys.stdout.flush()
     except InputError as error:
@@ -223,6 +224,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
             raise
         return _say(f"'{error.filename or 'output'}' cannot be written ({error.strerror})", BAD_INPUT)
     return status
+
+
+def _refuse_unprintable(chosen: argparse.Namespace) -> None:
+    """InputError for text that no file name and no report can hold: a NUL, or a byte that is not UTF-8."""
+    for name, value in vars(chosen).items():
+        if isinstance(value, str) and ("\0" in value or value.encode(errors="ignore").decode() != value):
+            raise InputError(f"{name} = {value[:60]!a}: must be text in UTF-8 without NUL characters")
 
 
 def _command(chosen: argparse.Namespace) -> int:

@@ -9,6 +9,7 @@ from typing import Any
 
 from softdot.numbers import json_text
 
+LONGEST = 2000  # characters of a sentence; a path may have some
 GOOD, BAD_INPUT, NOT_CONVERGED, INTERRUPTED = 0, 2, 3, 130
 
 
@@ -21,8 +22,9 @@ def show(summary: dict[str, Any], chosen: Namespace, short_text: Callable[[dict[
 
 
 def complain(text: str) -> None:
-    """One sentence on standard error."""
-    print("softdot:", " ".join(text.split()), file=sys.stderr)
+    """One sentence on standard error, of a bounded length whatever the text that it quotes."""
+    line = " ".join(text.split())
+    print("softdot:", line if len(line) <= LONGEST else f"{line[: LONGEST - 3]}...", file=sys.stderr)
 
 
 @contextmanager

@@ -15,11 +15,11 @@ from geometry.parameters import Dot, Segment, Table
 from geometry.stack import layers
 from mesh.parameters import MeshOptions
 from softdot.config_errors import sentence
-from softdot.number_size import refuse_absurd_numbers
+from softdot.number_size import refuse_absurd_numbers, without_round_off
 from softdot.toml_file import parse_toml, read_toml
 from solve.materials.library import find_material, library_tables
 from solve.materials.parameters import AnyMaterial, Material, PiezoelectricFilm
-from solve.mechanisms import Mechanism
+from solve.mechanisms import Mechanism, refuse_repeated
 from solve.parameters import DEFAULT_INDENTATION_MM, Press, Readout
 
 
@@ -51,6 +51,7 @@ class Config(Table):
         waveform = self.press.waveform
         if waveform is not None and waveform.shape == "file" and waveform.file is None:
             raise ValueError("press.waveform.file is missing: shape = 'file' needs the name of a CSV file")
+        refuse_repeated(self.mechanisms)
         self.layer_materials()
         return self
 
@@ -84,7 +85,7 @@ def load_config(path: Path | str | None = None) -> Config:
 
 def config_from(tables: Mapping[str, Any]) -> Config:
     """A complete configuration from the tables of a TOML file. InputError with one sentence."""
-    tables = _with_parents(with_built_in_constants(tables))
+    tables = without_round_off(_with_parents(with_built_in_constants(tables)))
     try:
         # JSON, because only there pydantic is strict about numbers and yet takes a list for a tuple
         config = Config.model_validate_json(json.dumps(tables, default=str), strict=True)

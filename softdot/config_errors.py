@@ -117,7 +117,7 @@ def _either(choices: Sequence[str]) -> str:
 
 def dotted(path: Sequence[str | int]) -> str:
     """('dot', 'offset_mm', 1) -> 'dot.offset_mm[1]'."""
-    text = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in path)
+    text = "".join(f"[{part}]" if isinstance(part, int) else f".{cut(str(part))}" for part in path)
     return text.removeprefix(".")
 
 
@@ -175,4 +175,9 @@ def shown(value: Any) -> str:
         text = f"{value:g}"
     else:
         text = json.dumps(value, default=str)
+    return cut(text)
+
+
+def cut(text: str) -> str:
+    """At most 60 characters, for a message."""
     return text if len(text) <= 60 else f"{text[:57]}..."

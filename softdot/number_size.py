@@ -1,4 +1,4 @@
-"""Numbers that no laboratory has: refused, because their squares and ratios leave the range of a computer's."""
+"""Numbers that no laboratory has: their squares and ratios leave the range of a computer's numbers."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -10,12 +10,19 @@ LARGEST = 1e12
 
 
 def refuse_absurd_numbers(tables: Any) -> None:
-    """InputError for a finite number above 1e12 in size, or below 1e-12 but not zero."""
+    """InputError for a finite number above 1e12 in size."""
     for path, number in _numbers(tables, ()):
-        size = abs(number)
-        if LARGEST < size < float("inf") or 0.0 < size < 1.0 / LARGEST:
-            allowed = f"between {1 / LARGEST:.0e} and {LARGEST:.0e} in size, or zero"
-            raise InputError(f"{dotted(path)} = {shown(number)}: must be {allowed}")
+        if LARGEST < abs(number) < float("inf"):
+            raise InputError(f"{dotted(path)} = {shown(number)}: must be at most {LARGEST:.0e} in size")
+
+
+def without_round_off(value: Any) -> Any:
+    """The same tables with zero for every number below 1e-12 in size: a script that subtracts leaves -1.1e-16."""
+    if isinstance(value, dict):
+        return {key: without_round_off(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [without_round_off(item) for item in value]
+    return 0.0 if isinstance(value, float) and abs(value) < 1.0 / LARGEST else value
 
 
 def _numbers(value: Any, path: tuple[str | int, ...]) -> Iterator[tuple[tuple[str | int, ...], float]]:

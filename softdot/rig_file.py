@@ -15,7 +15,7 @@ from geometry.errors import InputError
 from geometry.parameters import Table
 from softdot.config import Config, config_from, with_built_in_constants
 from softdot.config_errors import sentence
-from softdot.number_size import refuse_absurd_numbers
+from softdot.number_size import refuse_absurd_numbers, without_round_off
 from softdot.toml_file import read_toml
 from solve.materials.library import find_material
 from solve.materials.parameters import AnyMaterial, Material
@@ -115,6 +115,7 @@ def _readout(run: RunTable, number: int, rest: Mapping[str, Any], bench: Bench) 
 
 def _checked(kind: type[Kind], tables: Mapping[str, Any]) -> Kind:
     """Tables as one kind of table. InputError with one sentence."""
+    tables = without_round_off(tables)
     try:
         checked = kind.model_validate_json(json.dumps(tables, default=str), strict=True)
     except ValidationError as error:

@@ -70,7 +70,7 @@ def press_part(
         part["time_s"] = np.array([step.time_s for step in result.steps])
     if readout_voltage_V is not None:
         part["readout_voltage_V"] = readout_voltage_V
-    return {
+    found = {
         **part,
         "film": {
             "capacitance_pF": PF * result.capacitance_F.sum(),
@@ -81,8 +81,27 @@ def press_part(
         "sensitivity": sensitivity(
             past.indentation_mm, past.reaction_force_N, past.film_charge_pC, voltage, config
         ),
-        "solver": solver(result),
     }
+    return {**found, "solver": _solver_of(found, result)}
+
+
+def _solver_of(found: Mapping[str, Any], result: PressResult) -> dict[str, Any]:
+    """How the solver fared; a result with a number that is none did not converge, whatever the residual."""
+    told, nonsense = solver(result), not_finite(found)
+    if told["converged"] and nonsense is not None:
+        return {**told, "converged": False, "failure": f"{nonsense} is not a finite number"}
+    return told
+
+
+def not_finite(value: Any, name: str = "") -> str | None:
+    """Where the first NaN or infinite number of a summary stands, such as 'readout_voltage_V[1]'; None without one."""
+    if isinstance(value, Mapping):
+        items = [(item, f"{name}.{key}" if name else str(key)) for key, item in value.items()]
+    elif isinstance(value, list | tuple | np.ndarray) and np.ndim(value) > 0:
+        items = [(item, f"{name}[{number}]") for number, item in enumerate(value)]
+    else:
+        return name if isinstance(value, float | np.floating) and not np.isfinite(value) else None
+    return next((where for item, inner in items if (where := not_finite(item, inner)) is not None), None)
 
 
 def electrodes(result: PressResult, channels_V: Floats | None = None) -> list[dict[str, Any]]:

@@ -1,5 +1,6 @@
 """The names of physics beyond the baseline: where each mechanism may sit and what it is given."""
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple, Self
 
 from pydantic import Field, ValidationError, model_validator
@@ -14,18 +15,22 @@ CHANNELS = tuple(f"channel-{n}" for n in range(1, 17))
 
 
 class Kind(NamedTuple):
-    """Where a mechanism may sit and the table of its parameters."""
+    """Where a mechanism may sit and the table of its parameters.
+
+    adds_up : several at one component have one meaning, as their effects add up, multiply or stand in series.
+    """
 
     components: tuple[str, ...]
     parameters: type[Table]
+    adds_up: bool = False
 
 
 MECHANISMS: dict[str, Kind] = {
-    "charge-leakage": Kind(("readout", "film"), given.ChargeLeakage),
-    "parasitic-capacitance": Kind(("readout",), given.ParasiticCapacitance),
-    "low-pass": Kind(("readout",), given.LowPass),
-    "saturation": Kind(("readout",), given.Saturation),
-    "mains-hum": Kind(("readout",), given.MainsHum),
+    "charge-leakage": Kind(("readout", "film"), given.ChargeLeakage, adds_up=True),
+    "parasitic-capacitance": Kind(("readout",), given.ParasiticCapacitance, adds_up=True),
+    "low-pass": Kind(("readout",), given.LowPass, adds_up=True),
+    "saturation": Kind(("readout",), given.Saturation, adds_up=True),
+    "mains-hum": Kind(("readout",), given.MainsHum, adds_up=True),
     "pyroelectric-drift": Kind(("film",), given.PyroelectricDrift),
     "contact-electrification": Kind(("film",), given.ContactElectrification),
     "viscoelasticity": Kind((*MEDIA, "film", *BONDS), given.Viscoelasticity),
@@ -34,18 +39,30 @@ MECHANISMS: dict[str, Kind] = {
     "stress-softening": Kind(MEDIA, given.StressSoftening),
     "film-yield": Kind(("film",), given.FilmYield),
     "adhesive-compliance": Kind(BONDS, given.AdhesiveCompliance),
-    "delamination": Kind(BONDS, given.DelaminationPatch),
+    "delamination": Kind(BONDS, given.DelaminationPatch, adds_up=True),
     "friction": Kind(("dot",), given.Friction),
     "elastic-sides": Kind(("sides",), given.ElasticSides),
-    "dot-offset": Kind(("dot",), given.DotOffset),
-    "contact-gap": Kind(("dot",), given.ContactGap),
+    "dot-offset": Kind(("dot",), given.DotOffset, adds_up=True),
+    "contact-gap": Kind(("dot",), given.ContactGap, adds_up=True),
     "rig-compliance": Kind(("rig",), given.RigCompliance),
     "film-prestretch": Kind(("film",), given.FilmPrestretch),
     "inertia": Kind(("rig",), given.Inertia),
     "crosstalk": Kind(CHANNELS, given.Crosstalk),
-    "property-error": Kind((*MEDIA, "film", "dot"), given.PropertyError),
+    "property-error": Kind((*MEDIA, "film", "dot"), given.PropertyError, adds_up=True),
     "dimension-reduction": Kind(("dot",), given.DimensionReduction),
 }
+
+
+def refuse_repeated(mechanisms: Sequence["Mechanism"]) -> None:
+    """ValueError for a mechanism twice at one component, where no definition says what two of it are."""
+    places: dict[tuple[str, str], int] = {}
+    for number, one in enumerate(mechanisms):
+        first = places.setdefault((one.name, one.component), number)
+        if first != number and not MECHANISMS[one.name].adds_up:
+            raise ValueError(
+                f"mechanisms[{number}].name = '{one.name}': mechanisms[{first}] is the same at '{one.component}', and "
+                "two of it do not add up; state it once"
+            )
 
 
 class Mechanism(Table):
@@ -63,7 +80,7 @@ class Mechanism(Table):
     def _known(self) -> Self:
         if self.name not in MECHANISMS:
             raise ValueError(f"name = '{self.name}': {nearest(self.name, MECHANISMS)}")
-        components, table = MECHANISMS[self.name]
+        components, table, _ = MECHANISMS[self.name]
         if self.component not in components:
             raise ValueError(f"component = '{self.component}': {self.name} acts on {', '.join(components)}")
         for name in self.parameters:

@@ -1,13 +1,17 @@
 """How far the press has come at a time: the fraction of its final depth or force."""
 
 import csv
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 
 from geometry.errors import InputError
+from geometry.text_file import read_text, regular_file
 from mesh.types import Floats
 from solve.parameters import Waveform
+
+LARGEST_S = 1e12
 
 
 def duration_s(waveform: Waveform) -> float:
@@ -51,17 +55,36 @@ def fraction(waveform: Waveform, time_s: Floats) -> Floats:
 
 def _table(waveform: Waveform) -> Floats:
     """The columns time_s, fraction of a file, (n, 2)."""
-    where = f"press.waveform.file = {waveform.file!r}"
     if waveform.file is None:
         raise InputError("press.waveform.file is missing: shape = 'file' needs a CSV file")
+    file = Path(waveform.file)
+    regular_file(file, _told(file))
+    stat = file.stat()
+    return _read(file, stat.st_mtime_ns, stat.st_size)
+
+
+def _told(file: Path) -> str:
+    return f"press.waveform.file = '{file}'"
+
+
+@lru_cache(maxsize=8)
+def _read(file: Path, _modified_ns: int, _size: int) -> Floats:
+    """Read and checked once for each state of the file, as a press asks for it at every step."""
+    where = _told(file)
+    text = read_text(file, where)
     try:
-        with Path(waveform.file).open(encoding="utf-8", newline="") as stream:
-            rows = [(float(row["time_s"]), float(row["fraction"])) for row in csv.DictReader(stream)]
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{where}: cannot be read ({error})") from error
-    except (KeyError, TypeError, ValueError) as error:
-        raise InputError(f"{where}: needs the columns time_s and fraction with numbers") from error
-    table = np.array(rows).reshape(-1, 2)
+        rows = list(csv.DictReader(text.splitlines()))
+        table = np.array([(float(row["time_s"]), float(row["fraction"])) for row in rows]).reshape(-1, 2)
+    except (KeyError, TypeError, ValueError, csv.Error):
+        raise InputError(f"{where}: needs the columns time_s and fraction with a number in each row") from None
+    bad = np.flatnonzero(~(np.abs(table) <= LARGEST_S).all(axis=1))  # NaN passes no comparison
+    if len(bad):
+        time, share = table[bad[0]]
+        raise InputError(
+            f"{where} sample {bad[0] + 1} = ({time:g}, {share:g}): time_s and fraction must be finite numbers "
+            f"of at most {LARGEST_S:g}"
+        )
     if len(table) < 2 or not (np.diff(table[:, 0]) > 0).all() or table[:, 1].min() < 0 or table[:, 1].max() > 1:
-        raise InputError(f"{where}: time_s must increase and fraction stay between 0 and 1")
+        raise InputError(f"{where}: time_s must increase and fraction stay between 0 and 1, in at least two rows")
+    table.flags.writeable = False
     return table

@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from geometry.errors import InputError
+from geometry.text_file import regular_file
 from mesh.types import Floats
 
 HEADER_ROWS = 60
@@ -56,6 +57,7 @@ def read_oscilloscope(file: Path | str) -> dict[str, Floats]:
 
 
 def _rows(file: Path) -> list[list[str]]:
+    regular_file(file, f"'{file}'")
     try:
         with file.open(encoding="utf-8-sig", errors="replace", newline="") as stream:
             return list(csv.reader(stream))

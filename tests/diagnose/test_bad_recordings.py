@@ -96,7 +96,7 @@ FILES = {
     # header
     "": ": empty, needs a header row such as 'time_s,force_N,voltage_V'",
     "time_s,displacement_mm,voltage_V\n": ": there is no sample below the header",
-    "time_s;voltage_V\n0;1\n": " row 1: 'time_s;voltage_V' is one column, separate columns by commas",
+    "time_s;voltage_V\n0;1\n": " row 1: is one column, separate columns by commas",
     edited(1, 2, "voltage_mV"): " row 1: column 'voltage_mV' is not known; did you mean 'voltage_V'? (mind the unit)",
     edited(1, 1, "displacement_um"): (
         " row 1: column 'displacement_um' is not known; did you mean 'displacement_mm'? (mind the unit)"
@@ -227,3 +227,10 @@ def test_a_force_that_is_only_noise_never_touches(tmp_path):
     force = 0.01 * np.random.default_rng(3).standard_normal(400)
     folder = write_rig(tmp_path / "rig", GOOD + "drive = 'force_N'", press=changed(force_N=force))
     assert re.search(r"press.csv', column force_N: never rises out of its noise .* never touches", refusal(folder))
+
+
+@pytest.mark.parametrize("name", ["/etc/hostname", "../press.csv", "a/../../press.csv", "C:\\\\secret.csv", ""])
+def test_a_run_lies_in_the_folder_of_its_recording(name, tmp_path):
+    rig = GOOD.replace("press.csv", name)
+    said = refusal(write_rig(tmp_path / "rig", rig))
+    assert "must be the name of a file in the folder of rig.toml" in said

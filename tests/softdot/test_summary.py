@@ -56,3 +56,11 @@ def test_json_has_no_nan():
         {"a": float("nan"), "b": [np.inf, np.float64(1.0)], "c": np.arange(2), "d": np.bool_(True)}
     )
     assert json.loads(text) == {"a": None, "b": [None, 1.0], "c": [0, 1], "d": True}
+
+
+@pytest.mark.parametrize("nonsense", [np.nan, np.inf, -np.inf])
+def test_a_number_that_is_none_is_no_converged_result(nonsense):
+    voltage = np.array([0.0, nonsense])
+    solver = press_part(config_from({"segment": LAYERS}), two_electrodes(), voltage)["solver"]
+    assert not solver["converged"]
+    assert solver["failure"] == "readout_voltage_V[1] is not a finite number"
