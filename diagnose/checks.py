@@ -13,8 +13,8 @@ from geometry.errors import InputError
 from mesh.types import Floats
 
 FEWEST = 8  # samples
+LARGEST_STRAIN = 30.0  # no specimen is stretched beyond it
 MOST_RATES = 4  # that are listed
-LARGEST = {"V": (100.0, "millivolts"), "N": (1000.0, "millinewtons")}
 UNITS = ("V", "N", "mm")
 UNEVEN = 0.05  # share of jumps above which sampling is called uneven
 SAMPLES_PER_PERIOD = 4.0  # two are the theorem's; an anti-aliasing filter and a fit need more
@@ -67,45 +67,47 @@ def refuse_slow_sampling(run: Run, frequency_Hz: float, mechanism: str) -> None:
         )
 
 
-def suspicions(run: Run, path: Path, travel_mm: float) -> list[str]:
-    """Sentences on gaps, changes of rate, missing and saturated samples, and units that are hardly meant.
+def suspicions(run: Run, path: Path, travel_mm: float = np.inf) -> list[str]:
+    """Sentences on gaps, changes of rate, missing and saturated samples.
 
-    travel_mm : beyond which a displacement is hardly one in millimetres.
+    travel_mm : beyond which the displacement of a coupon is hardly one in millimetres. For voltages and forces the
+    model of the rig says what is plausible: see other_units.
     """
-    largest = {**LARGEST, "mm": (travel_mm, "micrometres")}
     said = []
     jumps, rates = gaps(run.time_s), rates_Hz(run.time_s)
     if len(jumps) > UNEVEN * len(run.time_s):
-        return [f"recording '{path}', column time_s: sampling is uneven", *_of_channels(run, path, largest)]
+        return [f"recording '{path}', column time_s: sampling is uneven", *_of_channels(run, path, travel_mm)]
     if jumps:
-        said.append(f"{place(path, jumps[0], 'time_s')}: time jumps, {len(jumps)} times in all")
+        said.append(f"{place(path, jumps[0], 'time_s')}: time jumps (jumps in all: {len(jumps)})")
     if len(rates) > 1:
         shown = ", ".join(f"{rate:.4g}" for rate in rates[:MOST_RATES]) + (", ..." if len(rates) > MOST_RATES else "")
-        said.append(f"recording '{path}': the rate changes, {shown} Hz")
-    return said + _of_channels(run, path, largest)
+        said.append(f"recording '{path}': the sampling rate changes ({shown} Hz)")
+    return said + _of_channels(run, path, travel_mm)
 
 
-def _of_channels(run: Run, path: Path, largest: Mapping[str, tuple[float, str]]) -> list[str]:
+def _of_channels(run: Run, path: Path, travel_mm: float) -> list[str]:
     return [
         sentence
         for name, values in run.channels.items()
-        for sentence in _of_channel(run, name, values, path, *largest[name.rpartition("_")[2]])
+        for sentence in _of_channel(run, name, values, path, travel_mm if name == "displacement_mm" else np.inf)
     ]
 
 
-def _of_channel(run: Run, name: str, values: Floats, path: Path, largest: float, meant: str) -> list[str]:
+def _of_channel(run: Run, name: str, values: Floats, path: Path, largest: float) -> list[str]:
     missing, limited = int((~run.valid[name]).sum()), int(run.saturated[name].sum())
     peak = float(np.nanmax(np.abs(values)))
     said = []
     if missing:
         first = int(np.argmin(run.valid[name]))
-        said.append(f"{place(path, first, name)}: missing, {missing} of {len(values)} samples in all are not used")
+        said.append(f"{place(path, first, name)}: not measured; {missing} of {len(values)} samples are missing")
     if limited:
         first = int(np.argmax(run.saturated[name]))
-        said.append(f"{place(path, first, name)} = {values[first]:g}: at a limit, {limited} samples are not used")
+        where = f"{place(path, first, name)} = {values[first]:g}"
+        said.append(f"{where}: at the limit of the amplifier; {limited} such samples are not used")
     if peak > largest:
         row = int(np.nanargmax(np.abs(values)))
-        said.append(f"{place(path, row, name)} = {values[row]:g}: looks like {meant}")
+        where = f"{place(path, row, name)} = {values[row]:g}"
+        said.append(f"{where}: more than {LARGEST_STRAIN:g} times the length of the specimen; are these micrometres?")
     return said
 
 

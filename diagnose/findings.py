@@ -12,13 +12,14 @@ from mesh.types import Floats
 class Detection:
     """statistic : largest score over all cells and pools; p_value : family-wise; level : it is a mismatch below.
 
-    noise : (label, channel) -> summary of its noise model.
+    least_p_value : the smallest that the random draws can give. noise : (label, channel) -> summary of its noise model.
     """
 
     statistic: float
     p_value: float
     level: float
     noise: Mapping[tuple[str, str], Mapping[str, Any]]
+    least_p_value: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -41,13 +42,24 @@ class Place:
 
 @dataclass(frozen=True)
 class Interval:
-    """A parameter with its 90 % profile interval; bounded : an end is the bound of what is plausible."""
+    """A parameter with its 90 % profile interval.
+
+    low_searched, high_searched : this end is where the search ended, which the recordings do not exclude. fixed : the
+    parameter does not depend on what was fitted, so that it has no interval.
+    """
 
     value: float
     low: float
     high: float
     unit: str
-    bounded: bool = False
+    low_searched: bool = False
+    high_searched: bool = False
+    fixed: bool = False
+
+    @property
+    def bounded(self) -> bool:
+        """Whether an end is not set by the recordings."""
+        return self.low_searched or self.high_searched
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnose.checks import refuse_bad_columns, refuse_bad_time, refuse_untouched, suspicions
+from diagnose.checks import LARGEST_STRAIN, refuse_bad_columns, refuse_bad_time, refuse_untouched, suspicions
 from diagnose.columns import read_columns, refuse_by_size
 from diagnose.recording import Recording, Run
 from diagnose.saturation import saturated
@@ -14,7 +14,6 @@ from geometry.errors import InputError
 from mesh.types import Bools, Floats
 from solve.parameters import Readout
 
-TRAVEL_MM, LARGEST_STRAIN = 100.0, 30.0
 COVARIATES = ("dot_x_mm", "dot_y_mm", "temperature_C")
 
 
@@ -31,7 +30,7 @@ def read_recording(
         (read_run(folder, table, readout, touches=specimen is None), folder / table.file)
         for table, readout in zip(runs, readouts, strict=True)
     ]
-    travel_mm = TRAVEL_MM if specimen is None else LARGEST_STRAIN * specimen.gauge_mm
+    travel_mm = np.inf if specimen is None else LARGEST_STRAIN * specimen.gauge_mm
     warnings = [sentence for run, path in pairs for sentence in suspicions(run, path, travel_mm)]
     return Recording(tuple(run for run, _ in pairs), specimen, tuple(warnings))
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from diagnose.figures import figure
 from diagnose.forward import Candidate, Report
 from diagnose.inference.ambiguity import alike, grouped, separations
 from diagnose.inference.baseline import within_priors
@@ -121,9 +122,7 @@ def choose(
     return _decided(judge, (best, *rest), p_mismatch)
 
 
-def _with_pairs(
-    judge: Judge, singles: Sequence[Judged], best: Judged, report: Report
-) -> tuple[list[Judged], Judged]:
+def _with_pairs(judge: Judge, singles: Sequence[Judged], best: Judged, report: Report) -> tuple[list[Judged], Judged]:
     """Partners for the best single mechanism, then for the next ones, until nothing is left; the models and the best.
 
     Where two act together, a third may imitate their sum better than either does alone, or one of them beside the
@@ -157,7 +156,7 @@ def _rivals(judge: Judge, singles: Sequence[Judged], pair: Judged, report: Repor
     return found
 
 
-NOTHING = "None of the candidates shows in the residual more than chance allows."
+NOTHING = "The residual resembles none of the candidates more than chance allows."
 
 
 def _decided(judge: Judge, models: tuple[Judged, ...], p_mismatch: float) -> Choice:
@@ -238,5 +237,5 @@ def implausible(fit: Fitted) -> tuple[str, ...]:
         close = 1e-6 * (coordinate.high - coordinate.low)
         for end, plausible in zip((coordinate.low, coordinate.high), coordinate.levels_off, strict=True):
             if end != 0.0 and abs(value - end) <= close and not plausible:
-                found.append(f"{coordinate.name} = {value:.3g}")
+                found.append(f"{coordinate.name.replace('_', ' ')} = {figure(value)}")
     return tuple(found)

@@ -120,7 +120,8 @@ def _model(model: ObservedModel, choice: Choice, number: int, detailed: bool) ->
 
 
 def _detection(model: ObservedModel, found: Checked) -> Detection:
-    return Detection(float(found.scores.max()), found.p_value, RATES.level, model.samples.noise_summaries())
+    noise = model.samples.noise_summaries()
+    return Detection(float(found.scores.max()), found.p_value, RATES.level, noise, found.least_p_value)
 
 
 def _nuisances(model: ObservedModel, values: Floats) -> dict[str, tuple[float, float]]:

@@ -85,9 +85,11 @@ def _numbers(one: Setting) -> dict[str, float]:
 
 def _interval(model: ObservedModel, fit: Fitted, function: Function, unit: str) -> Interval:
     value = function(fit.values)
+    if not _gradient(function, fit.values, bounds(fit.candidates)).any():
+        return Interval(value, value, value, unit, fixed=True)
     ends = [_end(model, fit, function, side) for side in (-1.0, 1.0)]
     low, high = min(value, ends[0][0]), max(value, ends[1][0])
-    return Interval(value, low, high, unit, ends[0][1] or ends[1][1])
+    return Interval(value, low, high, unit, ends[0][1], ends[1][1])
 
 
 def _end(model: ObservedModel, fit: Fitted, function: Function, side: float) -> tuple[float, bool]:

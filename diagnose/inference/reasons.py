@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from diagnose.figures import figure, p_equals, part
 from diagnose.inference.choice import Choice, Judged, criteria
 from diagnose.inference.observed_model import ObservedModel
 from diagnose.inference.refit import Fitted
@@ -11,14 +12,14 @@ FAR = 3.0  # deviations of a prior
 
 
 def named(fit: Fitted) -> str:
-    """charge-leakage of the readout and friction of the dot."""
-    return " and ".join(f"{candidate.mechanism} of the {candidate.component}" for candidate in fit.candidates)
+    """charge-leakage (readout) and friction (dot)."""
+    return " and ".join(f"{candidate.mechanism} ({candidate.component})" for candidate in fit.candidates)
 
 
 def reasons_of(p_mismatch: float, choice: Choice | None) -> tuple[str, ...]:
     """Why something is named, or why not."""
     if choice is None:
-        return (f"The residual is as large as noise and the errors of the model make it (p = {p_mismatch:.3g}).",)
+        return (f"The residual is no larger than noise and the errors of the model make it ({p_equals(p_mismatch)}).",)
     if not choice.models:
         return choice.decision.reasons
     best = choice.models[0]
@@ -26,10 +27,11 @@ def reasons_of(p_mismatch: float, choice: Choice | None) -> tuple[str, ...]:
 
 
 def _for(best: Judged) -> str:
-    share = 100.0 * (1.0 - min(best.left, 1.0))
+    share = part(1.0 - min(best.left, 1.0))
     return (
-        f"Best is {named(best.fit)}: it explains {share:.0f} % of what the baseline leaves unexplained and predicts "
-        f"presses that it was not fitted to better by {best.gain.mean:,.0f} nats each, {best.gain.lower:,.0f} at least."
+        f"The best explanation is {named(best.fit)}. It accounts for {share} of what your simulation leaves "
+        f"unexplained and predicts held-out presses better by {figure(best.gain.mean)} nats per press (at least "
+        f"{figure(best.gain.lower)})."
     )
 
 
@@ -43,15 +45,16 @@ def warnings_of(model: ObservedModel, baseline: System, choice: Choice | None) -
     said = _strained(model, baseline)
     folds = len(np.unique(model.samples.fold))
     if len(model.samples.presses) < 2:
-        held = "its phases were held out instead" if folds > 1 else "nothing could be held out"
-        said.append(f"There is one press only: {held}. A second press of another speed or depth makes the name surer.")
+        held = "its phases were held out in turn instead" if folds > 1 else "nothing could be held out"
+        more = "A second press at another speed or depth would make the result surer."
+        said.append(f"There is only one press, so {held}. {more}")
     if choice is not None and len(choice.models) > 1:
         said += _second_opinion(choice)
     return tuple(said)
 
 
 def _strained(model: ObservedModel, baseline: System) -> list[str]:
-    """What floats farther than rig.toml says, a sentence for each name."""
+    """Nuisances that lie farther from 0 than rig.toml says, a sentence for each name."""
     far: dict[str, list[tuple[float, float, str]]] = {}
     for nuisance, value in zip(model.nuisances, baseline.values, strict=True):
         deviations = abs(value) / nuisance.sigma
@@ -61,10 +64,10 @@ def _strained(model: ObservedModel, baseline: System) -> list[str]:
     said = []
     for name, each in far.items():
         deviations, value, of = max(each)
-        others = f", and less far in {len(each) - 1} more" if len(each) > 1 else ""
+        others = f", and by less in {len(each) - 1} more" if len(each) > 1 else ""
         said.append(
-            f"The baseline fits best with {name} = {value:.3g} in {of}, {deviations:.1f} times the stated "
-            f"deviation{others}: it stands in for what is missing."
+            f"Your simulation fits best with {name} = {figure(value)} in {of}, {figure(deviations)} times the stated "
+            f"uncertainty{others}: this value may stand in for what is missing."
         )
     return said
 
@@ -75,4 +78,4 @@ def _second_opinion(choice: Choice) -> list[str]:
     least = int(np.argmin(badness))
     if least == 0 or badness[0] - badness[least] < 2.0 * np.log(10.0):
         return []
-    return [f"The fit to all presses alone (BIC) would prefer {named(choice.models[least].fit)}."]
+    return [f"By the fit to all presses alone (BIC), {named(choice.models[least].fit)} would be preferred."]

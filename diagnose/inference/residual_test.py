@@ -20,13 +20,19 @@ UNTOUCHED = 1e-6  # of its prior variance: what a parameter must at least have l
 class Checked:
     """scores, p_values : (h,) of all hypotheses; the first are the cells. energies : (c,).
 
-    strain : of what floats.
+    strain : of what floats. draws : random ones behind p_values.
     """
 
     scores: Floats
     p_values: Floats
     energies: Floats
     strain: "Strain"
+    draws: int
+
+    @property
+    def least_p_value(self) -> float:
+        """The smallest family-wise p-value that the draws can give."""
+        return 2.0 / (1 + self.draws)
 
     @property
     def p_value(self) -> float:
@@ -48,7 +54,7 @@ def checked(
     null = family.scores(null_energies(family, cell, free, draws, rng))
     energies = np.asarray(np.bincount(cell, white**2, len(samples.bank.cells)), dtype=np.float64)
     scores = family.scores(energies)
-    return Checked(scores, step_down(scores, null), energies, strain_of(system, fitted))
+    return Checked(scores, step_down(scores, null), energies, strain_of(system, fitted), draws)
 
 
 @dataclass(frozen=True)

@@ -2,9 +2,10 @@
 
 from pathlib import Path
 
+from diagnose.figures import figure
 from diagnose.findings import Findings, Model
 from diagnose.report.drawing import AFTER, BEFORE, RECORDED, SOFT, new_figure, save
-from diagnose.verdict.names import component_words, figure, short_name
+from diagnose.verdict.names import component_words, short_name
 
 MOST = 10
 

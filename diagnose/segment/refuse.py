@@ -23,4 +23,4 @@ def refuse(model: Model, recording: Recording) -> None:
             try:
                 check_press_depth(model.segment, float(run.drive_values.max()))
             except InputError as error:
-                raise InputError(f"run '{run.label}' goes too deep: {error}") from None
+                raise InputError(f"run '{run.label}' goes too deep (are these micrometres?): {error}") from None

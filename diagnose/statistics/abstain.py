@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from diagnose.figures import figure, p_equals
+
 
 @dataclass(frozen=True)
 class Rates:
@@ -47,7 +49,7 @@ class Decision:
 def decide(evidence: Evidence, rates: Rates) -> Decision:
     """Name only a model with no reason against it; reasons are whole sentences."""
     if evidence.p_mismatch > rates.level:
-        reason = f"The residual is as large as noise makes it (p = {evidence.p_mismatch:.3g})."
+        reason = f"The residual is no larger than noise makes it ({p_equals(evidence.p_mismatch)})."
         return Decision(False, False, False, (reason,))
     reasons = tuple(_against(evidence, rates))
     return Decision(True, not reasons, bool(reasons), reasons)
@@ -56,16 +58,28 @@ def decide(evidence: Evidence, rates: Rates) -> Decision:
 def _against(evidence: Evidence, rates: Rates) -> list[str]:
     found = []
     if evidence.gain_lower <= 0.0:
-        found.append(f"It may predict held-out presses no better (gain at least {evidence.gain_lower:.3g} nats).")
+        found.append(
+            f"It may predict held-out presses no better than your simulation does (its gain is at least "
+            f"{figure(evidence.gain_lower)} nats per press)."
+        )
     if evidence.p_left <= rates.level:
-        found.append(f"Its residual is still larger than noise makes it (p = {evidence.p_left:.3g}).")
+        found.append(f"Its residual is still larger than noise makes it ({p_equals(evidence.p_left)}).")
     if evidence.p_strained <= rates.level:
-        far = f"(p = {evidence.p_strained:.3g})"
-        found.append(f"Beside it, gains, moduli or the error of its law still lie farther off than stated {far}.")
+        found.append(
+            "Even with it, a gain, a modulus or the assumed law has to differ by more than its stated uncertainty "
+            f"({p_equals(evidence.p_strained)})."
+        )
     if evidence.implausible:
-        found.append(f"Parameters sit on implausible bounds: {', '.join(evidence.implausible)}.")
+        values = ", ".join(evidence.implausible)
+        found.append(f"It needs a value at the limit of what a real part can have, which is implausible: {values}.")
     if evidence.black_box_lower > rates.margin:
-        found.append(f"A black box predicts held-out presses better, by at least {evidence.black_box_lower:.3g} nats.")
+        found.append(
+            "A flexible model without mechanics, the black box, predicts held-out presses better by at least "
+            f"{figure(evidence.black_box_lower)} nats per press."
+        )
     if evidence.group > rates.largest_group:
-        found.append(f"{evidence.group} models cannot be told apart; at most {rates.largest_group} may be.")
+        found.append(
+            f"{evidence.group} explanations cannot be told apart; at most {rates.largest_group} may remain for a name "
+            "to be given."
+        )
     return found

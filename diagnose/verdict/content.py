@@ -61,6 +61,7 @@ def _detection(findings: Findings) -> dict[str, Any]:
     return {
         "statistic": findings.detection.statistic,
         "p_value_family_wise": findings.detection.p_value,
+        "least_p_value": findings.detection.least_p_value,
         "level": findings.detection.level,
         "noise_model": noise,
     }
@@ -104,6 +105,9 @@ def _interval(interval: Interval) -> dict[str, Any]:
         "high": interval.high,
         "unit": interval.unit,
         "bounded": interval.bounded,
+        "low_is_limit_of_search": interval.low_searched,
+        "high_is_limit_of_search": interval.high_searched,
+        "fixed": interval.fixed,
     }
 
 
@@ -155,6 +159,8 @@ def _resimulated(one: Resimulated) -> dict[str, Any]:
         "engine": one.engine,
         "nrmse_before": dict(one.before),
         "nrmse_after": dict(one.after),
+        "nrmse_before_all_channels": one.before_all,
+        "nrmse_after_all_channels": one.after_all,
         "reduced_against_full_nrmse": dict(one.reduced_error),
     }
 
@@ -179,12 +185,12 @@ def without_press(findings: Findings) -> str:
         return "No press is needed: simulation and recordings agree."
     if len(surviving(findings)) > 1:
         return (
-            "No press that was tried parts them: they act alike in this rig. Measure one by itself, such as the "
-            "amplifier without the sensor, or a coupon of the material."
+            "None of the presses that were tried tells them apart: they act alike in this rig. Measure one part by "
+            "itself, such as the amplifier without the sensor, or a coupon of the material."
         )
     if findings.best is not None:
-        return "No press is needed: one explanation is left."
+        return "No press is needed: only one explanation is left."
     return (
-        "No two explanations are left to tell apart. Change one thing at a time (speed, depth, load, place) and "
-        "diagnose again: what moves the misfit tells where to look."
+        "There are no two explanations to tell apart. Change one thing at a time (speed, depth, load resistor, "
+        "position) and diagnose again: whatever changes the misfit shows where to look."
     )

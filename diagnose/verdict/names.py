@@ -3,50 +3,52 @@
 from collections.abc import Sequence
 from math import ceil, isfinite, log10
 
+from diagnose.figures import figure
 from diagnose.findings import Interval, Model
 from diagnose.forward import Candidate
 
 WHAT = {
     "charge-leakage": "charge leaks through {}",
     "parasitic-capacitance": "a capacitance across {} takes its share of the charge",
-    "low-pass": "{} flattens fast changes",
-    "saturation": "{} stops at its limit",
-    "mains-hum": "mains hum on {}",
-    "pyroelectric-drift": "{} changes its temperature at the touch",
-    "contact-electrification": "the touch leaves charge on {}",
+    "low-pass": "{} filters out fast changes",
+    "saturation": "{} saturates",
+    "mains-hum": "there is mains hum on {}",
+    "pyroelectric-drift": "{} changes temperature on contact",
+    "contact-electrification": "contact leaves charge on {}",
     "viscoelasticity": "{} relaxes (viscoelasticity)",
     "hyperelastic-stiffening": "{} stiffens at large strain",
-    "foam-densification": "{} is a foam that gives way, then densifies",
-    "stress-softening": "{} is softer after it was strained",
+    "foam-densification": "{} is a foam, which collapses and then densifies",
+    "stress-softening": "{} is softer once it has been strained (stress softening)",
     "film-yield": "{} yields",
-    "adhesive-compliance": "{} gives way",
-    "delamination": "{} is open in part",
-    "friction": "{} rubs on the surface",
-    "elastic-sides": "{} give way",
-    "dot-offset": "{} stands beside its place",
-    "contact-gap": "the rig travels before {} touches",
-    "rig-compliance": "{} bends beyond the displacement sensor",
+    "adhesive-compliance": "{} is compliant",
+    "delamination": "{} has come apart in one place",
+    "friction": "{} rubs against the surface",
+    "elastic-sides": "{} are compliant",
+    "dot-offset": "{} is not where rig.toml places it",
+    "contact-gap": "there is a gap before {} touches",
+    "rig-compliance": "{} deflects, which the displacement sensor does not see",
     "film-prestretch": "{} was stretched before it was bonded",
-    "inertia": "a mass that moves ({}) adds to the force",
-    "crosstalk": "other channels leak into {}",
-    "property-error": "{} is not as rig.toml says",
-    "dimension-reduction": "{} was calculated as a ridge but is round, or the reverse",
+    "inertia": "the inertia of a moving mass in {} adds to the force",
+    "crosstalk": "other channels couple into {}",
+    "property-error": "a property of {} differs from rig.toml",
+    "dimension-reduction": "{} is round but was modelled as a ridge, or the reverse",
 }
 WHERE = {
     "effector": "the effector",
     "medium1": "medium 1",
     "medium2": "medium 2",
     "film": "the film",
-    "readout": "the input",
+    "readout": "the amplifier",
     "sides": "the held sides",
     "dot": "the dot",
     "rig": "the rig",
     "specimen": "the specimen",
-    "bond-effector-medium1": "the bond of effector and medium 1",
-    "bond-medium1-film": "the bond of medium 1 and film",
-    "bond-film-medium2": "the bond of film and medium 2",
+    "bond-effector-medium1": "the bond between effector and medium 1",
+    "bond-medium1-film": "the bond between medium 1 and film",
+    "bond-film-medium2": "the bond between film and medium 2",
     "bond-base": "the bond to the base",
 }
+MOST_DIGITS = 6
 SYMBOLS = {"MOhm": "MΩ", "um": "µm", "N_per_mm3": "N/mm³", "mm_per_N": "mm/N", "1": "", "-": ""}
 
 
@@ -81,36 +83,45 @@ def unit_words(unit: str) -> str:
 
 
 def interval_words(name: str, interval: Interval) -> str:
-    """resistance 0.9 MΩ (0.7 to 1.2), with as many digits as the ends need to differ; what cannot vary has no ends."""
-    digits = _digits(interval)
-    value = " ".join(part for part in (figure(interval.value, digits), unit_words(interval.unit)) if part)
-    words = f"{quantity_words(name, interval.unit)} {value}"
-    if interval.low == interval.high:
+    """resistance 0.9 MΩ (90 % interval 0.7 to 1.2); what was not fitted has no interval."""
+    value, low, high = interval_figures(interval)
+    words = " ".join(each for each in (quantity_words(name, interval.unit), value, unit_words(interval.unit)) if each)
+    if interval.fixed:
         return words
-    return f"{words} ({figure(interval.low, digits)} to {figure(interval.high, digits)})"
+    remark = interval_remark(interval)
+    return f"{words} (90 % interval {low} to {high}{f'; {remark}' if remark else ''})"
+
+
+def interval_figures(interval: Interval) -> tuple[str, str, str]:
+    """Value, low and high, with as many digits as show half the width of the interval."""
+    digits = _digits(interval)
+    return figure(interval.value, digits), figure(interval.low, digits), figure(interval.high, digits)
+
+
+def interval_remark(interval: Interval) -> str:
+    """What an end means that the recordings do not set; "" where both are theirs."""
+    if interval.fixed:
+        return "not fitted"
+    value, low, high = interval_figures(interval)
+    ends = {"lower": (low, interval.low_searched), "upper": (high, interval.high_searched)}
+    searched = [name for name, (_, limited) in ends.items() if limited]
+    same = [name for name, (end, limited) in ends.items() if end == value and not limited]
+    said = [_said(searched, "a limit of the search, not of the data", "limits of the search, not of the data")]
+    said.append(_said(same, *2 * ("the same as the value in the digits shown",)))
+    return "; ".join(each for each in said if each)
+
+
+def _said(which: list[str], one: str, two: str) -> str:
+    if not which:
+        return ""
+    return f"both ends are {two}" if len(which) == 2 else f"the {which[0]} end is {one}"
 
 
 def _digits(interval: Interval) -> int:
-    """Of the value, so that half the width of the interval shows."""
     width, size = interval.high - interval.low, max(abs(interval.low), abs(interval.high))
     if not (isfinite(width) and isfinite(size) and width > 0.0):
         return 3
-    return min(max(2, ceil(log10(2.0 * size / width)) + 1), 6)
-
-
-def figure(value: float, digits: int = 2) -> str:
-    """A number to be read: significant digits, no exponent between 1e-4 and 1e6, the sign of minus."""
-    if not isfinite(value):
-        return "∞" if value > 0.0 else "−∞" if value < 0.0 else "unknown"
-    if value and not 1e-4 <= abs(value) < 1e6:
-        return f"{value:.{digits - 1}e}".replace("-", "−")
-    rounded = float(f"{value:.{digits}g}")
-    return f"{rounded:.10f}".rstrip("0").rstrip(".").replace("-", "−")
-
-
-def percent(share: float) -> str:
-    """0.026 -> 2.6 %."""
-    return f"{figure(100.0 * share)} %"
+    return min(max(2, ceil(log10(2.0 * size / width)) + 1), MOST_DIGITS)
 
 
 def listed(words: Sequence[str], last: str = "and") -> str:

@@ -34,6 +34,20 @@ class Resimulated:
     after: Mapping[str, float]
     signals: Signals
 
+    @property
+    def before_all(self) -> float:
+        """Of all channels, each counting alike, as in a Fit."""
+        return _together(self.before)
+
+    @property
+    def after_all(self) -> float:
+        """The same with what was named."""
+        return _together(self.after)
+
+
+def _together(errors: Mapping[str, float]) -> float:
+    return float(np.sqrt(np.mean(np.square(list(errors.values()))))) if errors else 0.0
+
 
 class OutOfTimeError(Exception):
     """The limit of time is over."""
@@ -124,7 +138,7 @@ def _timed(report: Report, limit_s: float | None) -> Report:
 
     def told(what: str, done: int, count: int) -> None:
         if time.monotonic() > end:
-            raise OutOfTimeError(f"the {limit_s:g} s for presses by the full model were over")
+            raise OutOfTimeError(f"checking with the full 3D model was stopped after {limit_s:g} s")
         report(what, done, count)
 
     return told

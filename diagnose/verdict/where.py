@@ -4,10 +4,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from diagnose.figures import figure
 from diagnose.findings import Findings, Place
 from diagnose.phases import PHASES
 from diagnose.recording import Recording
-from diagnose.verdict.names import figure, listed
+from diagnose.verdict.names import listed
 from mesh.types import Bools
 
 MOST = 0.8  # of the excess: what a sentence has to cover

@@ -3,11 +3,12 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from diagnose.figures import figure, p_equals, percent
 from diagnose.findings import Findings, Fit, Model
 from diagnose.next_press.choose import NextPress, surviving
 from diagnose.recording import Recording
 from diagnose.verdict.content import without_press
-from diagnose.verdict.names import figure, interval_words, listed, model_words, percent
+from diagnose.verdict.names import interval_words, listed, model_words, short_name
 from diagnose.verdict.resimulation import Resimulated
 from diagnose.verdict.where import where_words
 
@@ -39,34 +40,42 @@ def _agreement(recording: Recording, findings: Findings) -> list[Sentence]:
     presses = sum(len(found.presses) for found in recording.phases)
     runs = len(recording.runs)
     return [
-        Sentence("", "Your simulation and the recordings agree: what is left is as large as noise makes it."),
+        Sentence("", "Your simulation and the recordings agree: the difference is no larger than noise makes it."),
         Sentence(
             "How sure",
-            f"in {_count(presses, 'press')} of {_count(runs, 'run')} nothing stands out (family-wise p = "
-            f"{figure(findings.detection.p_value)}; a mismatch would be below {figure(findings.detection.level)}).",
+            f"nothing stands out in {_count(presses, 'press')} of {_count(runs, 'run')} ({detected(findings)}, taking "
+            f"all cells together; a mismatch is reported below {figure(findings.detection.level)}).",
         ),
-        Sentence("Keep", "the model as it is; improved.toml is your own configuration."),
+        Sentence("Next", "keep the model as it is; improved.toml repeats your own configuration."),
     ]
+
+
+def detected(findings: Findings) -> str:
+    """The p-value of the detection, with the sign that it needs."""
+    return p_equals(findings.detection.p_value, findings.detection.least_p_value)
 
 
 def _named(findings: Findings, best: Model) -> Iterator[Sentence]:
     yield Sentence("Left out", f"{model_words(best)}{_numbers(best)}.")
     fit = findings.held_out
     if fit is not None:
-        yield Sentence("With it", f"the error on presses that it was not fitted to falls {_errors(fit)}.")
+        yield Sentence("With it", f"on presses that took no part in the fit, the error falls {_errors(fit)}.")
     rivals = [findings.models[n] for group in findings.groups[:1] for n in group if findings.models[n] is not best]
     if rivals:
-        words = listed([f"that {model_words(rival)}" for rival in rivals], "or")
-        yield Sentence("Not excluded", f"{words}; these recordings cannot tell.")
+        words = listed([model_words(rival) for rival in rivals], "or")
+        yield Sentence("Not excluded", f"{words}. These recordings cannot tell the explanations apart.")
 
 
 def _errors(fit: Fit) -> str:
-    noise = percent(fit.noise_floor_nrmse)
-    return f"from {percent(fit.nrmse_before)} to {percent(fit.nrmse_after)} (noise alone makes {noise})"
+    """Of the fast model, over all channels; the table of the report has the same numbers."""
+    before, after, noise = (percent(share) for share in (fit.nrmse_before, fit.nrmse_after, fit.noise_floor_nrmse))
+    inside = fit.nrmse_after <= fit.noise_floor_nrmse
+    floor = f"no more than the estimated noise, {noise}" if inside else f"the estimated noise makes {noise}"
+    return f"from {before} to {after} of the recorded signal ({floor})"
 
 
 def _numbers(model: Model) -> str:
-    """Of a law with many constants only what they come to."""
+    """Of a law with many constants, only the quantities derived from them."""
     words = []
     for setting, intervals in zip(model.settings, model.parameters, strict=True):
         derived = setting.candidate.derived(setting.values)
@@ -75,29 +84,34 @@ def _numbers(model: Model) -> str:
 
 
 def _unexplained(findings: Findings) -> Iterator[Sentence]:
-    yield Sentence("Left out", "something that none of the known mechanisms explains. Nothing is named.")
+    yield Sentence("Left out", "something that none of the known mechanisms explains, so nothing is named.")
     if findings.reasons:
         yield Sentence("Why nothing is named", " ".join(findings.reasons))
     if findings.unnamed is not None and findings.unnamed.nrmse_after < findings.unnamed.nrmse_before:
-        text = f"With the best, the error on presses that it was not fitted to would go {_errors(findings.unnamed)}."
-        yield Sentence("How far off", text)
+        closest = short_name([setting.candidate for setting in findings.models[0].settings])
+        text = f"with {closest}, the error on held-out presses would fall {_errors(findings.unnamed)}."
+        yield Sentence("The closest explanation", text)
 
 
 def _proof(resimulated: Sequence[Resimulated]) -> Iterator[Sentence]:
     for one in resimulated[:2]:
-        before, after = max(one.before.values(), default=0.0), max(one.after.values(), default=0.0)
         yield Sentence(
-            "Pressed again",
-            f"in “{one.run}” ({one.role}) the full model is {percent(after)} off with it, {percent(before)} without.",
+            "Checked with the full model",
+            f"in the run “{one.run}” ({one.role}) alone, the error of the full 3D model is {percent(one.after_all)} "
+            f"with it and {percent(one.before_all)} without it.",
         )
 
 
 def _next(findings: Findings, following: NextPress | None) -> Iterator[Sentence]:
     if following is not None:
-        apart = f"Expected to part them by {figure(following.separation)} sigma."
-        yield Sentence("To settle it", f"{following.text} {apart}")
+        yield Sentence("Next", f"{following.text} {separation_words(following.separation)}")
     elif findings.unexplained or len(surviving(findings)) > 1:
-        yield Sentence("To settle it", without_press(findings))
+        yield Sentence("Next", without_press(findings))
+
+
+def separation_words(sigma: float) -> str:
+    """How far a press is expected to part the rivals."""
+    return f"The explanations are expected to differ by {figure(sigma)} standard deviations in it."
 
 
 def _count(number: int, what: str) -> str:

@@ -6,17 +6,25 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from diagnose.findings import Findings
+from diagnose.figures import figure, p_alone, percent, probability
+from diagnose.findings import Findings, Model
 from diagnose.recording import Recording
 from diagnose.report.bars import draw_gains, draw_shares
 from diagnose.report.overview import draw_overview
 from diagnose.report.series import draw_run
-from diagnose.verdict.names import component_words, mechanism_words, quantity_words, unit_words
+from diagnose.verdict.names import (
+    component_words,
+    interval_figures,
+    interval_remark,
+    mechanism_words,
+    model_words,
+    quantity_words,
+    unit_words,
+)
 from diagnose.verdict.resimulation import Resimulated
-from diagnose.verdict.words import Sentence
+from diagnose.verdict.words import Sentence, detected, separation_words
 from export.files import write_whole_text
 from export.page.environment import page_environment
-from export.report import number
 from softdot.version import installed_version
 
 HERE = Path(__file__).parent
@@ -43,24 +51,52 @@ def write_evidence(
     folder: Path,
 ) -> None:
     """folder/plots/*.png and folder/report.html. summary : content of verdict.json in plain data."""
+    pictures = list(_pictures(recording, findings, resimulated, folder / "plots"))
+    write_whole_text(folder / "report.html", page_text(findings, told, summary, pictures))
+
+
+def page_text(
+    findings: Findings, told: Sequence[Sentence], summary: dict[str, Any], pictures: Sequence[Picture]
+) -> str:
+    """report.html. Every number is printed by diagnose.figures, as in the sentences that are told."""
     environment = page_environment(HERE)
     environment.filters |= {
-        "number": lambda value: number(value, 3), "where": component_words, "unit": unit_words,
-        "percent": lambda value: number(value if value is None else 100.0 * value, 2),
+        "figure": figure, "percent": percent, "p_value": p_alone, "probability": probability, "where": component_words
     }  # fmt: skip
-    environment.globals |= {"what": mechanism_words, "quantity": quantity_words}
-    pictures = list(_pictures(recording, findings, resimulated, folder / "plots"))
-    page = environment.get_template("report.html").render(
+    environment.globals |= {"what": mechanism_words, "separation": separation_words}
+    return environment.get_template("report.html").render(
         v=summary,
         version=installed_version(),
         verdict_class=_verdict_class(findings),
         title=_title(findings),
         told=told,
+        detected=detected(findings),
+        parameters=list(_parameter_rows(findings.best)) if summary["missing_physics"] and findings.best else [],
+        explanations=_explanation_rows(findings),
         pictures=[(picture, base64.b64encode(picture.path.read_bytes()).decode("ascii")) for picture in pictures],
         screened=summary["screened"][:MOST_SCREENED],
         noise=_noise_rows(summary),
     )
-    write_whole_text(folder / "report.html", page)
+
+
+def _parameter_rows(best: Model) -> Iterator[list[str]]:
+    """Mechanism, quantity, value, low, high, unit and remark."""
+    for setting, intervals in zip(best.settings, best.parameters, strict=True):
+        what = mechanism_words(*setting.candidate.name)
+        for name, interval in intervals.items():
+            value, low, high = interval_figures(interval)
+            ends = ["–", "–"] if interval.fixed else [low, high]
+            unit, remark = unit_words(interval.unit), interval_remark(interval)
+            yield [what, quantity_words(name, interval.unit), value, *ends, unit, remark]
+            what = ""
+        if not intervals:
+            yield [what, "–", "–", "–", "–", "", "has no parameter"]
+
+
+def _explanation_rows(findings: Findings) -> list[tuple[bool, str, Model]]:
+    """Whether it is the named one, its words, and the model."""
+    named = findings.best if findings.mismatch and not findings.unexplained else None
+    return [(model is named, model_words(model), model) for model in findings.models]
 
 
 def _verdict_class(findings: Findings) -> str:
@@ -72,7 +108,7 @@ def _verdict_class(findings: Findings) -> str:
 def _title(findings: Findings) -> str:
     titles = {
         "good": "Simulation and recordings agree",
-        "unknown": "A mismatch that no known mechanism explains",
+        "unknown": "Simulation and recordings differ, and no known mechanism explains it",
         "found": "What your simulation left out",
     }
     return titles[_verdict_class(findings)]
@@ -84,25 +120,25 @@ def _pictures(
     overview = draw_overview(recording, findings, folder / "where.png")
     if overview is not None:
         text = (
-            "Each cell is one phase of the presses in one range of frequencies; the redder, the more of the excess. "
-            "Grey cells are no more than noise."
+            "Each cell is one phase of the presses in one band of frequencies; the redder it is, the larger its share "
+            "of the excess over noise. Grey cells show no more than noise."
         )
         yield Picture("where", overview, "Where recording and simulation differ", text)
     shares = draw_shares(findings, folder / "components.png") if findings.mismatch else None
     if shares is not None:
-        text = "As far as the model's answer to each part looks like the excess."
-        yield Picture("where", shares, "Which part the excess looks like", text)
+        text = "How much of the excess over noise has the shape that a change of each part would give it."
+        yield Picture("where", shares, "Which part the excess resembles", text)
     for count, (label, full) in enumerate(runs_to_draw(recording, findings, resimulated), start=1):
         path = draw_run(recording.run(label), findings, full, folder / f"run-{count}.png")
-        text = "Above: signals. Below: what is left, with a grey band of two sigma of the noise."
+        text = "Top: signals. Bottom: residuals, with a grey band of two standard deviations of the noise."
         yield Picture("runs", path, f"Run “{label}”", text)
     gains = draw_gains(findings, folder / "gains.png") if findings.mismatch else None
     if gains is not None:
         text = (
-            "How much better each explanation predicts presses that it was not fitted to, than your simulation does; "
-            "black lines go to the lower bound. The black box knows no mechanics."
+            "How much better each explanation predicts held-out presses than your simulation does. Black lines reach "
+            "down to the lower bound. The black box is a flexible model without mechanics."
         )
-        yield Picture("gains", gains, "Which explanation predicts", text)
+        yield Picture("gains", gains, "Which explanation predicts best", text)
 
 
 def runs_to_draw(recording: Recording, findings: Findings, resimulated: Sequence[Resimulated]) -> list[tuple[str, Any]]:

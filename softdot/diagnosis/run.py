@@ -14,6 +14,7 @@ from diagnose.findings import Findings
 from diagnose.forward import Engine, Report
 from diagnose.next_press.choose import NextPress, next_press
 from diagnose.noise.estimate import noise_models
+from diagnose.other_units import other_units
 from diagnose.recording import Recording
 from diagnose.some_runs import all_but, some_runs
 from diagnose.thinning import thinned
@@ -34,6 +35,7 @@ DIAGNOSIS = Product(
     FORMAT, "verdict.json", frozenset({"verdict.json", "report.html", "plots", "improved.toml", NEXT_PRESS})
 )
 ACTS_UP_TO = {"mains-hum": "frequency_Hz", "low-pass": "cutoff_Hz"}
+UNCHECKED = "The result was not checked with the full 3D model, because --fast-model-only was given."
 FULL_MODEL_S = 240.0  # for presses by the full model, of the ten minutes that a first diagnosis may take
 
 
@@ -109,13 +111,14 @@ def _fill(rig: Rig, options: Options, progress: Progress, folder: Path) -> dict[
     else:
         findings = diagnose(rig.recording, engine, seed, report)
     named_on = some_runs(rig.recording, all_but(rig.recording, held))
-    progress.stage("press again")
+    progress.stage("check with the full model")
     proof = _proof(rig, engine, findings, report, options.full_model_s)
     progress.stage("plan")
     following = next_press(rig.recording, engine, findings)
     progress.stage("write")
     told = sentences(named_on, findings, following, proof.runs)
-    warnings = [*rig.recording.warnings, *engine.shortfalls, *proof.warnings]
+    units = other_units(rig.recording, engine)
+    warnings = [*rig.recording.warnings, *units, *engine.shortfalls, *proof.warnings]
     summary = verdict(findings, [str(sentence) for sentence in told], following, proof.runs, warnings)
     summary["fit"]["failure"] = proof.failure
     summary |= {"softdot_version": installed_version(), "seed": seed}
@@ -151,13 +154,13 @@ def _proof(rig: Rig, engine: Engine, findings: Findings, report: Report, limit_s
     """As many runs by the full model as the time allows."""
     proof = Proof()
     if limit_s == 0.0:
-        proof.warnings += ["The full model pressed nothing again, as asked."] if findings.best is not None else []
+        proof.warnings += [UNCHECKED] if findings.best is not None else []
         return proof
     try:
         for run in resimulate(rig.recording, engine, findings, report, limit_s):
             proof.runs.append(run)  # those before an error are kept
     except OutOfTimeError as error:
-        proof.warnings.append(f"{error}; --all-presses takes the time")
+        proof.warnings.append(f"{error}; --all-presses checks every run")
     except NoEquilibriumError as error:
         proof.failure = str(error)
     return proof

@@ -193,21 +193,21 @@ def warnings(tmp_path, text):
     return load_rig(write_rig(tmp_path / "rig", press=text)).recording.warnings
 
 
-def test_millivolts_under_the_name_of_volts_are_suspected(tmp_path):
-    (said,) = warnings(tmp_path, changed(voltage_V=1000.0 * samples()["voltage_V"]))
-    assert re.search(r"press.csv' row \d+, column voltage_V = 30\d.*: looks like millivolts", said)
+def test_no_voltage_is_suspicious_by_itself(tmp_path):
+    """A film between stiff layers gives hundreds of volts: only the model of the rig can say what is too much."""
+    assert warnings(tmp_path, changed(voltage_V=1000.0 * samples()["voltage_V"])) == ()
 
 
 def test_missing_samples_are_counted_and_not_used(tmp_path):
     (said,) = warnings(tmp_path, blocked("voltage_V", 100, 150))
-    assert said.endswith("row 102, column voltage_V: missing, 50 of 400 samples in all are not used")
+    assert said.endswith("row 102, column voltage_V: not measured; 50 of 400 samples are missing")
 
 
 def test_a_limit_is_seen_and_not_used(tmp_path):
     columns = samples()
     columns["voltage_V"] = np.minimum(columns["voltage_V"], 0.2)
     (said,) = warnings(tmp_path, csv_text(columns))
-    assert re.search(r"column voltage_V = 0.2: at a limit, \d\d samples are not used", said)
+    assert re.search(r"column voltage_V = 0.2: at the limit of the amplifier; \d\d such samples are not used", said)
 
 
 def test_a_coarse_converter_is_no_limit(tmp_path):
@@ -220,7 +220,7 @@ def test_gaps_and_other_rates_are_named(tmp_path):
     columns = samples()
     columns["time_s"][200:] += 0.5
     (said,) = warnings(tmp_path, csv_text(columns))
-    assert said.endswith("row 202, column time_s: time jumps, 1 times in all")
+    assert said.endswith("row 202, column time_s: time jumps (jumps in all: 1)")
 
 
 def test_a_force_that_is_only_noise_never_touches(tmp_path):

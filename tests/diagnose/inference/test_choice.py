@@ -35,12 +35,12 @@ def at(value, levels_off=(False, False)):
 
 
 def test_an_end_of_what_a_part_can_have_is_implausible():
-    assert at(0.8) == ("log_time = 0.8",)
-    assert at(-0.8) == ("log_time = -0.8",)
+    assert at(0.8) == ("log time = 0.8",)
+    assert at(-0.8) == ("log time = −0.8",)
     assert at(0.79) == ()
 
 
 def test_an_end_beyond_which_the_answer_stays_is_plausible():
     """Relaxation may be faster than what is looked for; slower than every run it is a guess."""
     assert at(-0.8, levels_off=(True, False)) == ()
-    assert at(0.8, levels_off=(True, False)) == ("log_time = 0.8",)
+    assert at(0.8, levels_off=(True, False)) == ("log time = 0.8",)

@@ -66,7 +66,7 @@ def test_leakage_is_found_located_and_shown():
     assert {place.channel for place in findings.places} == {"voltage_V"}
     assert max(findings.shares, key=findings.shares.get) == "readout"
     assert findings.places[0].component == "readout"
-    assert "charge-leakage of the readout" in findings.reasons[0]
+    assert "charge-leakage (readout)" in findings.reasons[0]
 
 
 def test_where_only_a_sum_of_cells_stands_out_the_strongest_cell_is_the_place():
@@ -115,7 +115,7 @@ def test_four_that_act_alike_are_not_named():
     twins = [one("friction", name, "leak", 0.0, 20.0, 0.5) for name in ("dot", "rig", "film")]
     findings = found(small(5, Sensor(leak=1.0), runs=3), (CANDIDATES[0], *twins))
     assert findings.unexplained
-    assert "4 models cannot be told apart" in " ".join(findings.reasons)
+    assert "4 explanations cannot be told apart" in " ".join(findings.reasons)
 
 
 def test_of_two_equals_the_one_that_a_real_part_can_have_is_named():
@@ -146,7 +146,7 @@ def test_one_press_is_judged_by_its_phases_and_says_so():
     findings = found(small(5, Sensor(leak=1.0), runs=1))
     assert names(findings) == (LEAK,)
     assert findings.held_out is None
-    assert "one press only" in " ".join(findings.warnings)
+    assert "only one press" in " ".join(findings.warnings)
 
 
 def test_a_value_no_part_can_have_is_not_named():

@@ -27,7 +27,7 @@ def test_noise_is_neither_named_nor_unexplained():
     ("change", "word"),
     [
         ({"p_left": 0.002}, "still larger"),
-        ({"p_strained": 0.002}, "farther off"),
+        ({"p_strained": 0.002}, "stated uncertainty"),
         ({"gain_lower": 0.0}, "no better"),
         ({"black_box_lower": 0.6}, "black box"),
         ({"implausible": ("thickness_factor",)}, "thickness_factor"),

@@ -67,5 +67,5 @@ def test_nothing_is_pressed_where_nothing_is_named(recording):
 
 def test_the_limit_ends_the_work(recording):
     findings = findings_of(recording, ("a, press 1",), ("b, press 1",))
-    with pytest.raises(OutOfTimeError, match=r"the 0.01 s for presses by the full model were over"):
+    with pytest.raises(OutOfTimeError, match=r"checking with the full 3D model was stopped after 0.01 s"):
         pressed(recording, findings, 0.01, report=lambda *_: time.sleep(0.02))

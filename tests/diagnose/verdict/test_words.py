@@ -6,11 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from diagnose.figures import figure
 from diagnose.findings import Fit, Interval, Place
 from diagnose.forward import Candidate, Coordinate, Setting
 from diagnose.next_press.choose import next_press
 from diagnose.verdict.content import verdict
-from diagnose.verdict.names import WHAT, WHERE, figure, interval_words, listed, mechanism_words
+from diagnose.verdict.names import WHAT, WHERE, interval_words, listed, mechanism_words
 from diagnose.verdict.where import where_words
 from diagnose.verdict.words import sentences
 from solve.mechanisms import MECHANISMS
@@ -36,24 +37,31 @@ def test_from_what_is_off_to_what_to_do(recording):
     findings = found(recording, (LEAKS, RELAXES), LEAKS, ((0, 1),))
     lines = told(recording, findings, next_press(recording, ToyEngine(recording), findings))
     assert lines[0] == "Your simulation of the voltage is too high in the hold, below 2 Hz, in “slow”."
-    assert lines[1] == "Left out: charge leaks through the input; resistance 2000 MΩ (1600 to 2400)."
-    assert lines[2].startswith("With it: the error on presses that it was not fitted to falls from 84 % to 3 %")
-    assert lines[2].endswith("(noise alone makes 2.6 %).")
-    assert lines[3] == "Not excluded: that medium 2 relaxes (viscoelasticity); these recordings cannot tell."
-    assert re.fullmatch(r"To settle it: Press as in “.*\. Expected to part them by [\d.]+ sigma\.", lines[4])
+    assert lines[1] == "Left out: charge leaks through the amplifier; resistance 2000 MΩ (90 % interval 1600 to 2400)."
+    assert lines[2] == (
+        "With it: on presses that took no part in the fit, the error falls from 84 % to 3 % of the recorded signal "
+        "(the estimated noise makes 2.6 %)."
+    )
+    assert lines[3] == (
+        "Not excluded: medium 2 relaxes (viscoelasticity). These recordings cannot tell the explanations apart."
+    )
+    assert re.fullmatch(
+        r"Next: Press as in “.*\. The explanations are expected to differ by [\d.]+ standard deviations in it\.",
+        lines[4],
+    )
 
 
 def test_agreement_is_good_news(recording):
     lines = told(recording, found(recording, mismatch=False))
-    assert lines[0] == "Your simulation and the recordings agree: what is left is as large as noise makes it."
-    assert "in 2 presses of 2 runs nothing stands out" in lines[1]
+    assert lines[0] == "Your simulation and the recordings agree: the difference is no larger than noise makes it."
+    assert "nothing stands out in 2 presses of 2 runs (p = 0.4, taking all cells together" in lines[1]
 
 
 def test_rivals_that_no_press_parts_are_to_be_measured_by_themselves(recording):
     lines = told(recording, found(recording, (LEAKS, RELAXES), LEAKS, ((0, 1),)))
-    assert lines[-1].startswith("To settle it: No press that was tried parts them: they act alike in this rig.")
+    assert lines[-1].startswith("Next: None of the presses that were tried tells them apart")
     assert not any(
-        line.startswith("To settle it") for line in told(recording, found(recording, (LEAKS,), LEAKS, ((0,),)))
+        line.startswith("Next") for line in told(recording, found(recording, (LEAKS,), LEAKS, ((0,),)))
     )
 
 
@@ -61,17 +69,20 @@ def test_the_unexplained_is_said_with_its_reasons(recording):
     reason = "Its residual is still larger than noise makes it (p = 0.0001)."
     findings = found(recording, (LEAKS,), None, ((0,),), unexplained=True, reasons=(reason,))
     lines = told(recording, findings)
-    assert lines[1] == "Left out: something that none of the known mechanisms explains. Nothing is named."
+    assert lines[1] == "Left out: something that none of the known mechanisms explains, so nothing is named."
     assert lines[2] == f"Why nothing is named: {reason}"
 
 
 def test_how_far_the_best_unnamed_model_would_come_is_said_and_written(recording):
     tried = Fit(("slow, press 2",), 0.99, 0.51, 0.2, 40.0)
     findings = found(recording, (LEAKS,), None, ((0,),), unexplained=True, reasons=("Why.",), unnamed=tried)
-    expected = "How far off: With the best, the error on presses that it was not fitted to would go from 99 % to 51 %"
+    expected = (
+        "The closest explanation: with charge-leakage (readout), the error on held-out presses would fall from 99 % "
+        "to 51 %"
+    )
     assert told(recording, findings)[3].startswith(expected)
     worse = replace(findings, unnamed=replace(tried, nrmse_after=1.4))
-    assert not any(line.startswith("How far off") for line in told(recording, worse))
+    assert not any(line.startswith("The closest") for line in told(recording, worse))
     written = verdict(findings, (), None, (), ())["fit"]
     assert written["held_out_best_unnamed"]["nrmse_after"] == 0.51
     assert verdict(found(recording, (LEAKS,), LEAKS, ((0,),)), (), None, (), ())["fit"]["held_out_best_unnamed"] is None
@@ -113,23 +124,30 @@ def test_every_mechanism_and_component_has_words():
     assert WHAT.keys() == MECHANISMS.keys()
     components = {part for kind in MECHANISMS.values() for part in kind.components if not part.startswith("channel")}
     assert components <= WHERE.keys()
-    assert mechanism_words("crosstalk", "channel-2") == "other channels leak into channel 2"
+    assert mechanism_words("crosstalk", "channel-2") == "other channels couple into channel 2"
 
 
 @pytest.mark.parametrize(
     ("value", "text"),
-    [(0.026, "0.026"), (84.3, "84"), (1234.0, "1200"), (-0.5, "−0.5"), (3e-7, "3.0e−07"), (0.0, "0"), (np.inf, "∞")],
+    [(0.026, "0.026"), (84.3, "84"), (1234.0, "1200"), (-0.5, "−0.5"),
+     (3e-7, "3 × 10⁻⁷"), (2.5e6, "2.5 × 10⁶"), (0.0, "0"), (np.inf, "∞")],
 )
 def test_figures(value, text):
     assert figure(value) == text
 
 
 def test_intervals_and_lists():
-    assert interval_words("resistance_MOhm", Interval(0.9, 0.7, 1.2, "MOhm")) == "resistance 0.9 MΩ (0.7 to 1.2)"
+    assert interval_words("resistance_MOhm", Interval(0.9, 0.7, 1.2, "MOhm")) == (
+        "resistance 0.9 MΩ (90 % interval 0.7 to 1.2)"
+    )
     narrow = Interval(1993.3, 1963.5, 2023.4, "MOhm")
-    assert interval_words("resistance_MOhm", narrow) == "resistance 1990 MΩ (1960 to 2020)"
-    assert interval_words("relaxed_fraction", Interval(0.3, 0.2, 0.4, "1")) == "relaxed fraction 0.3 (0.2 to 0.4)"
-    assert interval_words("order", Interval(2.0, 2.0, 2.0, "")) == "order 2"
+    assert interval_words("resistance_MOhm", narrow) == (
+        "resistance 1990 MΩ (90 % interval 1960 to 2020)"
+    )
+    assert interval_words("relaxed_fraction", Interval(0.3, 0.2, 0.4, "1")) == (
+        "relaxed fraction 0.3 (90 % interval 0.2 to 0.4)"
+    )
+    assert interval_words("order", Interval(2.0, 2.0, 2.0, "", fixed=True)) == "order 2"
     assert listed(["a", "b", "c"], "or") == "a, b or c"
     assert listed(["a"]) == "a"
 
@@ -144,4 +162,4 @@ def test_of_a_law_with_many_constants_only_what_they_come_to(recording):
     )
     model = fitted(law, 1.5)
     lines = told(recording, found(recording, (model,), model, ((0,),)))
-    assert lines[1] == "Left out: medium 1 stiffens at large strain; force ratio 2.5 (2 to 3)."
+    assert lines[1] == "Left out: medium 1 stiffens at large strain; force ratio 2.5 (90 % interval 2 to 3)."

@@ -117,7 +117,10 @@ def test_no_folder(tmp_path, refusal):
 
 
 def test_millivolts_under_the_name_of_volts_are_a_warning(tmp_path, diagnosed):
-    folder = write_rig(tmp_path / "rig", press=changed(voltage_V=1e3 * samples()["voltage_V"]))
-    status, verdict, _ = diagnosed(folder)
-    assert status == 0
-    assert any("looks like millivolts" in warning for warning in verdict["warnings"])
+    volts = 0.1 * samples()["voltage_V"]
+    told = []
+    for factor in (1.0, 1e3):
+        _, verdict, _ = diagnosed(write_rig(tmp_path / f"rig-{factor:g}", press=changed(voltage_V=factor * volts)))
+        told.append([warning for warning in verdict["warnings"] if "are these millivolts?" in warning])
+    assert told[0] == []
+    assert len(told[1]) == 1

@@ -166,8 +166,8 @@ def test_the_page_opens_with_the_verdict(tmp_path, diagnosed, finding):
     _, verdict, _ = diagnosed(write_toy(tmp_path / "rig"))
     html = (tmp_path / "out" / "report.html").read_text("utf-8")
     first = html.index('<section class="box found"')
-    assert html.index("charge leaks through the input; resistance 2000 MΩ") > first
-    assert html.index("</section>") > html.index("To settle it:")
+    assert html.index("charge leaks through the amplifier; resistance 2000 MΩ") > first
+    assert html.index("</section>") > html.index("Next:</strong>")
     assert verdict["summary"][0] in html
 
 
@@ -198,7 +198,7 @@ def test_a_limit_of_time_is_told_and_can_be_lifted(tmp_path, diagnosed, finding,
     monkeypatch.setattr(run, "FULL_MODEL_S", -1.0)
     status, verdict, _ = diagnosed(folder)
     assert status == 0
-    assert verdict["warnings"][-1].endswith("--all-presses takes the time")
+    assert verdict["warnings"][-1].endswith("--all-presses checks every run")
     assert len(diagnosed(folder, "--all-presses")[1]["fit"]["resimulated"]) == 2
 
 
@@ -206,7 +206,7 @@ def test_the_full_model_can_be_left_out_and_that_is_told(tmp_path, diagnosed, fi
     finding(**NAMED)
     _, verdict, _ = diagnosed(write_toy(tmp_path / "rig"), "--fast-model-only")
     assert verdict["fit"]["resimulated"] == []
-    assert verdict["warnings"][-1] == "The full model pressed nothing again, as asked."
+    assert verdict["warnings"][-1] == run.UNCHECKED
 
 
 @pytest.mark.parametrize(

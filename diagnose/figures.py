@@ -1,0 +1,58 @@
+"""Numbers as people read them: one way for each kind, so that a number looks the same wherever it is printed."""
+
+from math import floor, isfinite, log10
+
+LEAST_P = 1e-16
+"""Below it, tails of probability distributions are no longer told apart from round-off."""
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def figure(value: float | None, digits: int = 2) -> str:
+    """Significant digits; a power of ten only below 1e-4 and from 1e6 on; the sign of minus. None: not known."""
+    if value is None or value != value:
+        return "unknown"
+    if not isfinite(value):
+        return "∞" if value > 0.0 else "−∞"
+    rounded = float(f"{value:.{digits}g}")
+    if rounded and not 1e-4 <= abs(rounded) < 1e6:
+        power = floor(log10(abs(rounded)))
+        return f"{_plain(rounded / 10.0**power, digits)} × 10{str(power).translate(SUPERSCRIPTS)}"
+    return _plain(rounded, digits)
+
+
+def _plain(value: float, digits: int) -> str:
+    text = f"{float(f'{value:.{digits}g}'):.10f}".rstrip("0").rstrip(".")
+    return "0" if text in ("", "-0") else text.replace("-", "−")
+
+
+def percent(share: float | None) -> str:
+    """0.026 -> 2.6 %."""
+    return figure(share) if share is None else f"{figure(100.0 * share)} %"
+
+
+def part(share: float) -> str:
+    """A share of a whole as a percentage that says 0 or 100 only where nothing or everything is meant."""
+    if 0.0 < share < 0.001:
+        return "less than 0.1 %"
+    if 0.99 < share < 1.0:
+        return "more than 99.9 %" if share > 0.999 else f"{figure(100.0 * share, 3)} %"
+    return percent(share)
+
+
+def probability(value: float | None) -> str:
+    """A probability, which is never quite 0 or 1."""
+    if value is None:
+        return figure(value)
+    return "< 0.001" if value < 0.001 else "> 0.999" if value > 0.999 else figure(value)
+
+
+def p_equals(value: float, least: float = LEAST_P) -> str:
+    """p = 0.021; p < 10⁻¹⁶ where the tail is too thin to calculate; p ≤ least where no smaller value was possible."""
+    if value < LEAST_P:
+        return "p < 10⁻¹⁶"
+    return f"p ≤ {figure(value)}" if value == least else f"p = {figure(value)}"
+
+
+def p_alone(value: float | None) -> str:
+    """The same for a column of p-values."""
+    return figure(value) if value is None else p_equals(value).removeprefix("p ").removeprefix("= ")
