@@ -24,8 +24,6 @@ from solve.result import PressResult, Trace
 from solve.setup import Setup, set_up
 from solve.system import Load, State
 
-SOLVE_TOLERANCE = 1e-8  # like the difference quotient's own error
-
 
 @dataclass(frozen=True)
 class Variation:
@@ -151,7 +149,7 @@ def _tow(
     tangent = base.system.evaluate(trial, before.histories).tangent
     for number, (below, above) in enumerate(twins.values()):
         change = above.residual(state.x, state) - below.residual(state.x, state)
-        half = 0.5 * linear.solve(tangent, -change, SOLVE_TOLERANCE, similar=number > 0)
+        half = 0.5 * linear.solve_to_round_off(tangent, -change, similar=number > 0)
         below.follow(state.x - half, state)
         above.follow(state.x + half, state)
 

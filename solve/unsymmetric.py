@@ -38,6 +38,15 @@ class Tangent:
         upper.data[self._leading] += by
         return Tangent(upper, self.excess)
 
+    def absolute(self) -> "Tangent":
+        """|A|, entry by entry."""
+        upper = abs(self.upper)
+        if self.excess is None:
+            return Tangent(upper)
+        excess = self.excess.copy()
+        excess.data = np.abs(self.upper.data + self.excess.data) - upper.data
+        return Tangent(upper, excess)
+
     def full(self) -> sp.csr_matrix:
         """Both triangles, explicit zeros kept so that the pattern never changes."""
         upper = self.upper

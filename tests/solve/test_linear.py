@@ -115,3 +115,65 @@ def test_an_old_factorisation_serves_a_similar_matrix(saddle, monkeypatch):
     solution = solver.solve(Tangent(similar), rhs, 1e-6, similar=True)
     assert np.linalg.norm(rhs - Tangent(similar) @ (solution)) <= 1e-6 * np.linalg.norm(rhs)
     assert solve.linear.KRYLOV_ITERATIONS < 20
+
+
+@pytest.fixture
+def stiff_on_soft():
+    """A stiff chain glued to a soft one, 1e7 times softer, as a film on a foam: (upper triangle, right-hand side).
+
+    The load pulls on both so that the stiff chain moves as a rigid body, in which its forces cancel.
+    """
+    n = 60
+    springs = np.concatenate([np.full(n, 1e7), np.ones(n)])
+    diagonal = springs + np.append(springs[1:], 1.0)
+    upper = sp.diags_array([diagonal, -springs[1:]], offsets=[0, 1], format="csr")
+    upper = sp.csr_matrix(upper)
+    upper[0, 0] -= springs[0]  # free at the stiff end, held at the soft one
+    upper.sort_indices()
+    return upper, np.full(2 * n, 1.0)
+
+
+@pytest.mark.parametrize("registry", [[Pardiso], [SuperLU]], ids=["pardiso", "superlu"])
+def test_bad_scaling_is_no_failure(stiff_on_soft, registry):
+    """Rounding of the stiff chain's forces alone leaves more than 1e-8 of the load, in the right solution too."""
+    upper, rhs = stiff_on_soft
+    solver = LinearSolver(np.zeros(len(rhs)))
+    solver._registry = list(registry)
+    solution = solver.solve_to_round_off(Tangent(upper), rhs)
+    full = (upper + sp.triu(upper, 1).T).toarray()
+    size = np.abs(full) @ np.abs(solution) + np.abs(rhs)
+    assert np.max(np.abs(rhs - full @ solution) / size) < 1e-12
+    assert np.linalg.norm(rhs - full @ solution) > 1e-8 * np.linalg.norm(rhs)
+    through = np.arange(1, len(rhs) + 1) / np.append(np.full(59, 1e7), np.ones(61))  # stretch of each spring
+    np.testing.assert_allclose(solution, np.cumsum(through[::-1])[::-1], rtol=1e-5)
+
+
+def test_one_wrong_answer_does_not_dismiss_a_solver(saddle):
+    """A solver that failed on one matrix is asked first for the next one; after three in a row no longer."""
+    upper, rhs = saddle
+
+    class Moody(SuperLU):
+        name = "moody"
+        wrong = True
+
+        def back_substitute(self, rhs):
+            return 1e30 * rhs[::-1] if self.wrong else super().back_substitute(rhs)
+
+    solver = LinearSolver(shift(upper))
+    solver._registry = [Moody, SuperLU]
+    solver.solve(Tangent(upper), rhs, TOLERANCE)
+    assert solver.name == "superlu"
+    Moody.wrong = False
+    solver.solve(Tangent(upper), rhs, TOLERANCE)
+    assert solver.name == "moody"
+    Moody.wrong = True
+    for _ in range(3):
+        solver.solve(Tangent(upper), rhs, TOLERANCE)
+    assert solver._registry == [SuperLU]
+
+
+def test_size_of_an_unsymmetric_tangent(saddle):
+    upper, _ = saddle
+    excess = sp.triu(upper, 1, format="csr") * -1.7
+    tangent = Tangent(upper, sp.csr_matrix((padded(excess, upper), upper.indices, upper.indptr), upper.shape))
+    np.testing.assert_allclose(tangent.absolute().full().toarray(), np.abs(tangent.full().toarray()), atol=1e-12)
