@@ -13,7 +13,7 @@ from solve.model import Model
 from solve.result import PressResult
 
 if TYPE_CHECKING:
-    from solve.sensitivity import Slopes
+    from solve.sensitivity import Slopes, Variation
 
 RELATIVE_STEP = 1e-4
 
@@ -57,18 +57,25 @@ def press_with_derivatives(
 
     tet_mesh : of its segment. InputError for the keys.
     """
-    from solve.sensitivity import Variation, press_with_sensitivities
+    from solve.sensitivity import press_with_sensitivities
+
+    try:
+        result, slopes = press_with_sensitivities(model_of(config), variations_of(config, keys), tet_mesh)
+    except ValueError as error:
+        raise InputError(str(error)) from None
+    return result, [_derivative(config, key, slope) for key, slope in slopes.items()]
+
+
+def variations_of(config: Config, keys: Sequence[str]) -> dict[str, "Variation"]:
+    """The models a little below and above each key. InputError for the keys."""
+    from solve.sensitivity import Variation
 
     variations = {}
     for key in keys:
         step = RELATIVE_STEP * abs(value_of(config, key))
-        below, above = (_model(_varied(config, key, sign * step)) for sign in (-1.0, 1.0))
+        below, above = (model_of(_varied(config, key, sign * step)) for sign in (-1.0, 1.0))
         variations[key] = Variation(below, above, 2.0 * step)
-    try:
-        result, slopes = press_with_sensitivities(_model(config), variations, tet_mesh)
-    except ValueError as error:
-        raise InputError(str(error)) from None
-    return result, [_derivative(config, key, slope) for key, slope in slopes.items()]
+    return variations
 
 
 def _derivative(config: Config, key: str, slope: "Slopes") -> Derivative:
@@ -115,7 +122,7 @@ def _varied(config: Config, key: str, change: float) -> Config:
     return config_from(tables)
 
 
-def _model(config: Config) -> Model:
+def model_of(config: Config) -> Model:
     """What the solver is told by a configuration, mechanisms switched on."""
     changed, physics = actual(config)
     return Model(

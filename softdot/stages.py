@@ -101,9 +101,14 @@ def press_key(config: Config, physics: Physics, tet_mesh: TetMesh) -> str:
     return data_hash([installed_version(), input_hash(config), str(physics), mesh_hash(tet_mesh)])
 
 
+def is_amplified(config: Config, physics: Physics) -> bool:
+    """Whether something stands between the film and what is read."""
+    return bool(config.readout or physics.low_pass or physics.hum or physics.saturation or physics.crosstalk)
+
+
 def readout_voltage(config: Config, physics: Physics, result: PressResult) -> tuple[Floats, Floats] | None:
     """Voltage behind the amplifier at each step: electrodes in parallel (s,), each alone (e, s); None without one."""
-    if config.readout is None and not (physics.low_pass or physics.hum or physics.saturation or physics.crosstalk):
+    if not is_amplified(config, physics):
         return None
     from solve.parameters import Readout
     from solve.readout import channel_voltages

@@ -16,13 +16,14 @@ from geometry.dot_shape import resolve_dot
 from mesh.morph import morphed
 from mesh.types import Floats, TetMesh
 from solve.amplifier import amplify
-from solve.interfaces import open_interfaces
+from solve.interfaces import OpenInterface, open_interfaces
 from solve.linear import LinearSolver
 from solve.march import march, rest_state
 from solve.model import Model
 from solve.result import PressResult, Trace
 from solve.setup import Setup, set_up
 from solve.system import Load, State
+from solve.unsymmetric import Tangent
 
 
 @dataclass(frozen=True)
@@ -101,20 +102,26 @@ def press_with_sensitivities(
     base = set_up(model, resolve_dot(model.dot, model.segment), opened_mesh, opened)
     twins: dict[str, tuple[Twin, Twin]] = {}
     for name, variation in variations.items():
-        pair = []
-        for changed in (variation.below, variation.above):
-            moved = morphed(opened_mesh, model.segment, changed.segment)
-            dot = resolve_dot(changed.dot, changed.segment)
-            setup = set_up(changed, dot, moved, opened, base.system.units)
-            if setup.system.count != base.system.count:
-                raise ValueError(f"{name}: this parameter switches something on or off at its present value")
-            pair.append(Twin(setup, setup.full_drive / base.full_drive))
-        twins[name] = (pair[0], pair[1])
+        twins[name] = twins_of(name, variation, base, opened_mesh, opened)
     linear = LinearSolver(base.system.factorisation_shift)
     failure = _march(base, linear, twins)
     linear.close()
     result = base.recorder.result(failure, linear.name, model.press, follows_time=True)
     return result, {name: _difference(*pair, variations[name].span) for name, pair in twins.items()}
+
+
+def twins_of(
+    name: str, variation: Variation, base: Setup, opened_mesh: TetMesh, opened: tuple[OpenInterface, ...]
+) -> tuple[Twin, Twin]:
+    """Below and above, on the base's mesh moved to their sizes; ValueError as press_with_sensitivities."""
+    pair = []
+    for changed in (variation.below, variation.above):
+        moved = morphed(opened_mesh, base.model.segment, changed.segment)
+        setup = set_up(changed, resolve_dot(changed.dot, changed.segment), moved, opened, base.system.units)
+        if setup.system.count != base.system.count:
+            raise ValueError(f"{name}: this parameter switches something on or off at its present value")
+        pair.append(Twin(setup, setup.full_drive / base.full_drive))
+    return pair[0], pair[1]
 
 
 def _march(base: Setup, linear: LinearSolver, twins: Mapping[str, tuple[Twin, Twin]]) -> str | None:
@@ -147,11 +154,17 @@ def _tow(
     """Bring all twins to first order to a converged state of the base."""
     trial = base.system.trial(state.x, state.load, state.time, before, state.damped)
     tangent = base.system.evaluate(trial, before.histories).tangent
-    for number, (below, above) in enumerate(twins.values()):
-        change = above.residual(state.x, state) - below.residual(state.x, state)
-        half = 0.5 * linear.solve_to_round_off(tangent, -change, similar=number > 0)
-        below.follow(state.x - half, state)
-        above.follow(state.x + half, state)
+    for number, pair in enumerate(twins.values()):
+        tow(pair, linear, tangent, state, similar=number > 0)
+
+
+def tow(pair: tuple[Twin, Twin], linear: LinearSolver, tangent: Tangent, state: State, similar: bool) -> None:
+    """Bring two twins to first order to a converged state of the base; similar : its tangent is factorised already."""
+    below, above = pair
+    change = above.residual(state.x, state) - below.residual(state.x, state)
+    half = 0.5 * linear.solve_to_round_off(tangent, -change, similar=similar)
+    below.follow(state.x - half, state)
+    above.follow(state.x + half, state)
 
 
 def _difference(below: Twin, above: Twin, span: float) -> Slopes:

@@ -23,7 +23,7 @@ RESIN_G_CM3 = 1.15
 class Contents:
     """densities_g_cm3 : by layer. permittivity : relative, of the film. printability : one for each printed part.
 
-    budget : the tolerance budget as it stands in kit.json, None where it could not be computed;
+    budget : the tolerance budget as it stands in kit.json, None where there is none, and budget_note says why;
     press : what is pressed, in words.
     """
 
@@ -35,6 +35,7 @@ class Contents:
     permittivity: float
     printability: tuple[Printability, ...]
     budget: Mapping[str, Any] | None
+    budget_note: str
     press: str
     warnings: tuple[str, ...]
 

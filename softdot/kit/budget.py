@@ -2,15 +2,11 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
 from math import copysign, sqrt
 from typing import Any
 
-from mesh.morph import morphed
-from mesh.types import TetMesh
-from softdot.config import Config, config_hash
-from softdot.kit.factors import with_factors
-from softdot.kit.responses import Response, coarser, mesh_of, remembered, slopes, value
+from softdot.config import Config
+from softdot.kit.responses import KitPress, Response, coarser
 from softdot.kit.tolerances import Tolerance, shifts, tolerances
 
 MESH_FACTOR, CHECK_FACTOR = 2.0, 3.0
@@ -56,47 +52,29 @@ class Budget:
 
 
 def budget_of(config: Config, on_part: Callable[[int, int, str], None] = lambda *_: None) -> Budget:
-    """The tolerance budget of a configuration, largest effect on the voltage first. InputError, MeshingError,
-    StoppedShortError.
+    """The tolerance budget of a configuration, largest effect on the voltage first. InputError, LinearSolveError,
+    MeshingError, StoppedShortError.
 
     First-order effects by direct differentiation of the press; what vanishes there by symmetry by presses at both ends.
     on_part : told the number of the finished part, of how many, and its name.
     """
     rows, moved = tolerances(config), shifts(config)
-    count = 2 + len(moved)
-    fine, coarse = (coarser(config, factor) for factor in (MESH_FACTOR, CHECK_FACTOR))
+    count, keys = 2 + len(moved), sorted({key for row in rows for key in row.slopes})
+    fine, coarse = (KitPress(coarser(config, factor)) for factor in (MESH_FACTOR, CHECK_FACTOR))
     on_part(0, count, "derivatives")
-    fine_mesh = cache(lambda: mesh_of(fine))  # made once, and only if something is not remembered
-    nominal, by_key = _slopes(fine, rows, fine_mesh)
+    nominal, by_key = fine.slopes(keys)
     on_part(1, count, "derivatives, coarser mesh")
-    check, check_by_key = _slopes(coarse, rows, lambda: mesh_of(coarse))
+    check, check_by_key = coarse.slopes(keys)
     effects = [_first_order(row, by_key, check_by_key) for row in rows]
     for number, (row, *ends) in enumerate(moved):
         on_part(2 + number, count, row.label)
-        above, below = (_value(fine, coarser(end, MESH_FACTOR), fine_mesh) for end in ends)
+        above, below = (fine.value(coarser(end, MESH_FACTOR)) for end in ends)
         effects.append(_finite(row, nominal, above, below))
     effects.sort(key=lambda effect: -abs(effect.change.voltage))
     return Budget(
         nominal, _minus(check, nominal), _total(effects), tuple(effects),
-        (fine.mesh.element_size_mm, fine.mesh.contact_element_size_mm),
+        (fine.config.mesh.element_size_mm, fine.config.mesh.contact_element_size_mm),
     )  # fmt: skip
-
-
-def _slopes(
-    config: Config, rows: Sequence[Tolerance], tet_mesh: Callable[[], TetMesh]
-) -> tuple[Response, dict[str, Response]]:
-    keys, changed = sorted({key for row in rows for key in row.slopes}), with_factors(config)
-    found = remembered(changed, f"slopes {keys}", lambda: slopes(changed, keys, tet_mesh()))
-    return Response(*found[0]), {key: Response(*pair) for key, pair in found[1].items()}
-
-
-def _value(config: Config, moved: Config, tet_mesh: Callable[[], TetMesh]) -> Response:
-    """The response of a moved press on the mesh of the unmoved one, so that the mesh does not blur the difference."""
-
-    def pressed() -> Response:
-        return value(moved, morphed(tet_mesh(), config.segment, moved.segment))
-
-    return Response(*remembered(moved, f"on the mesh of {config_hash(config)}", pressed))
 
 
 def _first_order(row: Tolerance, fine: Mapping[str, Response], coarse: Mapping[str, Response]) -> Effect:

@@ -1,4 +1,4 @@
-"""The kit: refuse, build, check, differentiate, write; everything appears at once or not at all."""
+"""The kit: refuse, build, check and write it at once or not at all; then its tolerance budget, which takes longer."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -11,20 +11,22 @@ from export.cad import write_3mf, write_step, write_stl
 from export.cut_files.write import write_cut_files
 from export.headless import ensure_rendering
 from export.printability import check_part, printer_profile
+from geometry.errors import InputError
 from geometry.fabrication.kit import solid_kit
 from geometry.flat.patterns import flat_kit
 from mesh.errors import MeshingError
 from softdot import stages
 from softdot.config import Config
-from softdot.kit.budget import Budget, budget_of
+from softdot.kit.budget import budget_of
+from softdot.kit.budget_outcome import UNFINISHED, BudgetOutcome, failed
 from softdot.kit.layout import side_by_side
-from softdot.kit.responses import StoppedShortError
 from softdot.kit.summary import heading, pressed, summary_of
-from softdot.numbers import plain, write_json
+from softdot.numbers import json_text, plain, write_json
 from softdot.output_folder import Product, staged_folder
 from softdot.progress import Progress, Silent
 from softdot.run_warnings import design_warnings
 from softdot.system_libraries import named_when_missing
+from solve.full_load import StoppedShortError
 from solve.linear import LinearSolveError
 from solve.materials.parameters import PiezoelectricFilm
 
@@ -38,8 +40,9 @@ KIT = Product(
 def make_kit(config: Config, out: Path, progress: Progress | None = None) -> dict[str, Any]:
     """Write the kit of a configuration into the folder out and return what kit.json says.
 
-    InputError with one sentence, before any press, for what cannot be made. Where the press of the tolerance budget
-    does not converge nothing is raised: the kit is written without it, and failure says why.
+    InputError with one sentence, before anything is written, for what cannot be made. The kit appears without its
+    tolerance budget; kit.json and kit.html are replaced when that is known. Where it fails nothing is raised: the kit
+    stays without it, and failure says why. Where it is interrupted the kit stays too.
     """
     progress = progress or Silent()
     with named_when_missing():
@@ -49,9 +52,21 @@ def make_kit(config: Config, out: Path, progress: Progress | None = None) -> dic
         with staged_folder(out, KIT) as folder:
             progress.stage("geometry")
             contents = _contents(config, [*warnings, *design_warnings(config)])
-            budget, failure = _budget(config, progress)
             progress.stage("export")
-            return _write(config, contents, budget, failure, folder)
+            _write_parts(contents, folder)
+            first = _write_sheet(config, contents, UNFINISHED, folder)
+        progress.stage("tolerances")
+        outcome = _outcome(config, progress)
+        if json_text(first) != _kit_json(out):
+            raise InputError(f"output '{out}': another kit was written there meanwhile; this one's budget has no place")
+        return _write_sheet(config, contents, outcome, out)
+
+
+def _kit_json(out: Path) -> str | None:
+    try:
+        return (out / KIT.summary).read_text("utf-8")
+    except OSError:
+        return None
 
 
 def _contents(config: Config, warnings: list[str]) -> Contents:
@@ -72,27 +87,22 @@ def _contents(config: Config, warnings: list[str]) -> Contents:
         permittivity=film.relative_permittivity,
         printability=tuple(check_part(part.label, part.solid, profile) for part in solid.parts),
         budget=None,
+        budget_note="",
         press=pressed(config),
         warnings=(*warnings, *notes),
     )
 
 
-def _budget(config: Config, progress: Progress) -> tuple[Budget | None, str | None]:
-    """The tolerance budget, or why there is none. InputError."""
-    progress.stage("tolerances")
+def _outcome(config: Config, progress: Progress) -> BudgetOutcome:
+    """The tolerance budget, or why there is none."""
     try:
-        return budget_of(config, progress.step), None
-    except (LinearSolveError, MeshingError, StoppedShortError) as error:
-        return None, f"tolerance budget: {error}"
+        return BudgetOutcome("complete", budget=plain(budget_of(config, progress.step).as_dict()))
+    except (InputError, LinearSolveError, MeshingError, StoppedShortError) as error:
+        return failed(error)
 
 
-def _write(
-    config: Config, contents: Contents, budget: Budget | None, failure: str | None, folder: Path
-) -> dict[str, Any]:
-    """All files, kit.json last."""
-    told = plain(budget.as_dict()) if budget is not None else None
-    warnings = contents.warnings if failure is None else (*contents.warnings, failure)
-    contents = replace(contents, budget=told, warnings=warnings)
+def _write_parts(contents: Contents, folder: Path) -> None:
+    """Solids, cut files and pictures."""
     (folder / "parts").mkdir()
     for part in contents.solid.parts:
         write_stl(part, folder / "parts" / f"{part.label}.stl")
@@ -102,8 +112,13 @@ def _write(
     write_cut_files(contents.flat.patterns, folder / "cut")
     (folder / "pictures").mkdir()
     draw_all(contents, folder / "cut", folder / "pictures")
+
+
+def _write_sheet(config: Config, contents: Contents, outcome: BudgetOutcome, folder: Path) -> dict[str, Any]:
+    """The build sheet and kit.json, each replaced whole, kit.json last."""
+    contents = replace(contents, budget=outcome.budget, budget_note=outcome.note)
     named = heading(config, KIT)
     write_page(contents, named, folder / "pictures", folder / "kit.html")
-    summary: dict[str, Any] = plain(named | summary_of(contents, failure))
+    summary: dict[str, Any] = plain(named | summary_of(contents, outcome.state, outcome.failure))
     write_json(folder / KIT.summary, summary)
     return summary

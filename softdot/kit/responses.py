@@ -1,30 +1,34 @@
-"""Force and voltage at the deepest step, their derivatives, and their values at the ends of a shift."""
+"""Force and voltage at the deepest step, their derivatives, and their values at the ends of a shift.
+
+Where the path of a press does not matter and its voltage is open-circuit, its full load is all that is solved.
+"""
 
 from collections.abc import Callable, Sequence
+from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from geometry.errors import InputError
 from mesh.fingerprint import data_hash, files_hash
+from mesh.morph import morphed
 from mesh.types import TetMesh
 from softdot import stages
 from softdot.actual import actual
-from softdot.config import Config
-from softdot.differentiate import press_with_derivatives
+from softdot.config import Config, config_hash
+from softdot.differentiate import model_of, press_with_derivatives, variations_of
+from softdot.kit.factors import with_factors
 from softdot.outcome import outcome_key
 from softdot.remembered import recall, remember
 from softdot.summary import history
+from solve.full_load import FullLoad, StoppedShortError
 from solve.result import PressResult
 
 LOAD_STEPS = 3
 """Enough for the march; what is asked for is the deepest step alone."""
 SOURCES = "differentiate.py", "kit/responses.py", "kit/factors.py"
 """Any change of their code makes other responses, beside what an outcome depends on."""
-
-
-class StoppedShortError(RuntimeError):
-    """A press did not reach its full load."""
 
 
 class Response(NamedTuple):
@@ -52,8 +56,58 @@ def mesh_of(config: Config) -> TetMesh:
     return stages.build_mesh(changed, stages.check(changed)[0])
 
 
-def slopes(config: Config, keys: Sequence[str], tet_mesh: TetMesh) -> tuple[Response, dict[str, Response]]:
-    """The response and its derivative by each key. InputError, StoppedShortError."""
+class KitPress:
+    """A configuration, pressed on one mesh when first asked for; every answer is kept on disk."""
+
+    def __init__(self, config: Config) -> None:
+        self.config = config
+
+    def slopes(self, keys: Sequence[str]) -> tuple[Response, dict[str, Response]]:
+        """The response and its derivative by each key of the configuration with factors. InputError, MeshingError,
+        LinearSolveError, StoppedShortError.
+        """
+        found = remembered(with_factors(self.config), f"slopes {keys}", lambda: self._slopes(keys))
+        return Response(*found[0]), {key: Response(*pair) for key, pair in found[1].items()}
+
+    def value(self, moved: Config) -> Response:
+        """The response of a changed configuration, on the mesh of the unchanged one so that the mesh does not blur the
+        difference. Errors as for slopes.
+        """
+        asked = f"on the mesh of {config_hash(self.config)}"
+        return Response(*remembered(moved, asked, lambda: self._value(moved)))
+
+    @cached_property
+    def _mesh(self) -> TetMesh:
+        return mesh_of(self.config)
+
+    @cached_property
+    def _full_load(self) -> FullLoad:
+        return FullLoad(model_of(with_factors(self.config)), self._mesh)
+
+    def _slopes(self, keys: Sequence[str]) -> tuple[Response, dict[str, Response]]:
+        changed = with_factors(self.config)
+        if path_matters(changed):
+            return slopes_along(changed, keys, self._mesh)
+        try:
+            found = self._full_load.derivatives(variations_of(changed, keys))
+        except ValueError as error:
+            raise InputError(str(error)) from None
+        return Response(*self._full_load.answer), {key: Response(*answer) for key, answer in found.items()}
+
+    def _value(self, moved: Config) -> Response:
+        if path_matters(moved):
+            return value_along(moved, morphed(self._mesh, self.config.segment, moved.segment))
+        return Response(*self._full_load.beside(model_of(moved)))
+
+
+def path_matters(config: Config) -> bool:
+    """Whether the response at full load depends on how the load came to be there."""
+    model = model_of(config)
+    return model.follows_time or stages.is_amplified(config, model.physics)
+
+
+def slopes_along(config: Config, keys: Sequence[str], tet_mesh: TetMesh) -> tuple[Response, dict[str, Response]]:
+    """The response and its derivative by each key, along the whole press. InputError, StoppedShortError."""
     result, found = press_with_derivatives(config, keys, tet_mesh)
     response, step = _response(config, result), _deepest(result)
     at = int(np.argmin(np.abs(found[0].time_s - result.steps[step].time_s)))
@@ -64,8 +118,8 @@ def slopes(config: Config, keys: Sequence[str], tet_mesh: TetMesh) -> tuple[Resp
     return response, by_key
 
 
-def value(config: Config, tet_mesh: TetMesh) -> Response:
-    """The response of a press on a given mesh. InputError, StoppedShortError."""
+def value_along(config: Config, tet_mesh: TetMesh) -> Response:
+    """The response of a whole press on a given mesh. InputError, StoppedShortError."""
     changed, physics = actual(config)
     dot_shape, _ = stages.check(changed)
     result = stages.press(changed, physics, dot_shape, tet_mesh, lambda *_: None)

@@ -31,11 +31,15 @@ def pressed(config: Config) -> str:
     return f"the {dot.shape} pressed {how_far}"
 
 
-def summary_of(contents: Contents, failure: str | None) -> dict[str, Any]:
-    """Every number of the kit with its unit in its name, in plain data."""
+def summary_of(contents: Contents, state: str, failure: str | None) -> dict[str, Any]:
+    """Every number of the kit with its unit in its name, in plain data.
+
+    state : of the tolerance budget, "unfinished", "complete" or "failed"; failure : why it failed, else None.
+    """
     return {
         "failure": failure,
         "warnings": contents.warnings,
+        "tolerance_budget_state": state,
         "components": [asdict(one) for one in components(contents)],
         "bill_of_materials": [asdict(item) for item in bill(contents)],
         "parts": [

@@ -12,8 +12,10 @@ import trimesh
 from softdot.cli import main
 from softdot.kit import make
 from softdot.kit.budget import Budget, Effect
-from softdot.kit.responses import Response, StoppedShortError
+from softdot.kit.responses import Response
 from softdot.kit.tolerances import Tolerance
+from solve.full_load import StoppedShortError
+from solve.linear import LinearSolveError
 from tests.softdot.conftest import MINIMAL
 
 FREE = """
@@ -186,9 +188,18 @@ def prepared(monkeypatch):
     monkeypatch.setattr(make, "draw_all", white_pictures)
 
 
-def test_a_press_that_stops_short_leaves_a_kit_without_a_budget(tmp_path, monkeypatch, capsys):
+@pytest.mark.parametrize(
+    ("error", "plain"),
+    [
+        (StoppedShortError("sub-steps fell below 1/64"), "did not reach its full load"),
+        (LinearSolveError("pardiso: backward error 2.8e-08"), "could not be differentiated accurately enough"),
+    ],
+)
+def test_a_budget_that_fails_leaves_a_kit_without_it(tmp_path, monkeypatch, capsys, error, plain):
+    """The page says in plain words why; the solver's own sentence stands in kit.json and on the command line alone."""
+
     def stop(*_):
-        raise StoppedShortError("no equilibrium at 0.2 mm")
+        raise error
 
     prepared(monkeypatch)
     monkeypatch.setattr(make, "budget_of", stop)
@@ -196,11 +207,51 @@ def test_a_press_that_stops_short_leaves_a_kit_without_a_budget(tmp_path, monkey
     assert main(["kit", str(tmp_path / "free.toml"), "-o", str(tmp_path / "out")]) == 3
     said = capsys.readouterr()
     assert said.out == ""
-    assert said.err.startswith("softdot: not converged, tolerance budget: no equilibrium at 0.2 mm")
-    assert said.err.count("\n") == 1
+    assert f"softdot: not converged, tolerance budget: {error}" in said.err
+    summary = json.loads((tmp_path / "out" / "kit.json").read_text("utf-8"))
+    assert (summary["tolerance_budget"], summary["tolerance_budget_state"]) == (None, "failed")
+    assert summary["failure"] == f"tolerance budget: {error}"
     page = (tmp_path / "out" / "kit.html").read_text("utf-8")
-    assert "no equilibrium at 0.2 mm" in page
-    assert "<h2>Tolerance budget</h2>" not in page
+    assert plain in page
+    assert str(error) not in page
+
+
+def test_the_kit_is_there_before_its_budget(tmp_path, monkeypatch):
+    """Complete, and the page says that the budget is still to come."""
+    seen = {}
+
+    def look(*_):
+        seen["entries"] = {entry.name for entry in (tmp_path / "out").iterdir()}
+        seen["summary"] = json.loads((tmp_path / "out" / "kit.json").read_text("utf-8"))
+        seen["page"] = (tmp_path / "out" / "kit.html").read_text("utf-8")
+        return MADE_UP
+
+    prepared(monkeypatch)
+    monkeypatch.setattr(make, "budget_of", look)
+    (tmp_path / "free.toml").write_text(FREE)
+    assert main(["kit", str(tmp_path / "free.toml"), "-o", str(tmp_path / "out")]) == 0
+    assert seen["entries"] == make.KIT.entries
+    assert (seen["summary"]["tolerance_budget"], seen["summary"]["failure"]) == (None, None)
+    assert seen["summary"]["tolerance_budget_state"] == "unfinished"
+    assert "The tolerance budget comes later" in seen["page"]
+    summary = json.loads((tmp_path / "out" / "kit.json").read_text("utf-8"))
+    assert summary["tolerance_budget_state"] == "complete"
+    assert "The tolerance budget comes later" not in (tmp_path / "out" / "kit.html").read_text("utf-8")
+
+
+def test_a_budget_does_not_go_into_another_kit(tmp_path, monkeypatch, capsys):
+    """A second command that wrote its own kit into the folder meanwhile keeps it."""
+
+    def overtaken(*_):
+        (tmp_path / "out" / "kit.json").write_text("{}")
+        return MADE_UP
+
+    prepared(monkeypatch)
+    monkeypatch.setattr(make, "budget_of", overtaken)
+    (tmp_path / "free.toml").write_text(FREE)
+    assert main(["kit", str(tmp_path / "free.toml"), "-o", str(tmp_path / "out")]) == 2
+    assert "another kit was written there meanwhile" in capsys.readouterr().err
+    assert (tmp_path / "out" / "kit.json").read_text() == "{}"
 
 
 @pytest.mark.parametrize(
@@ -223,15 +274,17 @@ def test_an_impossible_kit_is_refused_in_one_sentence(tmp_path, monkeypatch, cap
     assert [path.name for path in tmp_path.iterdir()] == ["dome.toml"]
 
 
-def test_an_interrupt_leaves_nothing(tmp_path, monkeypatch):
+@pytest.mark.parametrize(("when", "left"), [("draw_all", ["free.toml"]), ("budget_of", ["free.toml", "out"])])
+def test_an_interrupt_leaves_a_whole_kit_or_nothing(tmp_path, monkeypatch, when, left):
     def interrupt(*_):
         raise KeyboardInterrupt
 
     prepared(monkeypatch)
-    monkeypatch.setattr(make, "budget_of", interrupt)
+    monkeypatch.setattr(make, when, interrupt)
     (tmp_path / "free.toml").write_text(FREE)
     assert main(["kit", str(tmp_path / "free.toml"), "-o", str(tmp_path / "out")]) == 130
-    assert [path.name for path in tmp_path.iterdir()] == ["free.toml"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == left
+    assert all({entry.name for entry in (tmp_path / name).iterdir()} == make.KIT.entries for name in left[1:])
 
 
 def test_another_folder_is_not_touched(tmp_path, monkeypatch, capsys):

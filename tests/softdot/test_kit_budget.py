@@ -6,7 +6,7 @@ from softdot.config import config_from
 from softdot.kit import budget as budget_module
 from softdot.kit.budget import budget_of
 from softdot.kit.factors import FACTORS, factor_key, with_factors
-from softdot.kit.responses import Response, coarser, mesh_of, slopes, value
+from softdot.kit.responses import KitPress, Response, coarser, mesh_of, path_matters, slopes_along, value_along
 from softdot.kit.tolerances import shifts, tolerances
 
 TABLES = {
@@ -27,15 +27,50 @@ def config():
 
 
 @pytest.fixture(scope="module")
-def solved(config):
-    """Response and its derivative by every key of the budget, on one coarse mesh."""
-    keys = sorted({key for row in tolerances(config) for key in row.slopes})
-    return slopes(with_factors(config), keys, mesh_of(config))
+def pressed(config, tmp_path_factory):
+    """One press on one coarse mesh, nothing remembered from earlier."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SOFTDOT_CACHE", str(tmp_path_factory.mktemp("cache")))
+        yield KitPress(config)
+
+
+@pytest.fixture(scope="module")
+def solved(config, pressed):
+    """Response and its derivative by every key of the budget."""
+    return pressed.slopes(sorted({key for row in tolerances(config) for key in row.slopes}))
 
 
 def total(found, terms):
     """Sum of weight times derivative."""
     return [sum(weight * found[key][k] for key, weight in terms.items()) for k in (0, 1)]
+
+
+def test_full_load_has_the_derivatives_of_the_whole_press(config, solved):
+    """Without memory the way there does not matter; differentiated along it, the press gives the same."""
+    nominal, found = solved
+    keys = [factor_key(config, "medium1", "modulus_factor"), "press.indentation_mm"]
+    along, by_key = slopes_along(with_factors(config), keys, mesh_of(config))
+    assert nominal == pytest.approx(along, rel=1e-6)
+    for key in keys:
+        assert found[key] == pytest.approx(by_key[key], rel=1e-5)
+
+
+def test_a_press_beside_is_the_whole_press(config, pressed):
+    """A dot that is 0.05 mm off, from the state of the one that is not, against a press of its own."""
+    moved = shifts(config)[0][1]
+    assert pressed.value(moved) == pytest.approx(value_along(moved, mesh_of(config)), rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("more", "matters"),
+    [
+        ({}, False),
+        ({"readout": {"input_resistance_MOhm": 10.0}}, True),
+        ({"mechanisms": [{"name": "friction", "component": "dot", "parameters": {"coefficient": 0.3}}]}, True),
+    ],
+)
+def test_path_matters_where_something_remembers_or_leaks(more, matters):
+    assert path_matters(config_from({**TABLES, **more})) == matters
 
 
 def test_moduli_all_scale_force_and_charge(config, solved):
@@ -62,7 +97,7 @@ def test_voltage_is_charge_over_permittivity(config, solved):
     assert 12.0 * by_permittivity.voltage == pytest.approx(-nominal.voltage, rel=1e-6)
 
 
-def test_a_higher_dot_is_flatter_less_and_deeper(config, solved):
+def test_a_higher_dot_is_flatter_less_and_deeper(config, pressed, solved):
     """The row of the dot's height against two presses with dots of 1.5 mm base that stop at the same plate."""
     _, found = solved
     row = next(row for row in tolerances(config) if row.label == "height of the dot")
@@ -71,7 +106,7 @@ def test_a_higher_dot_is_flatter_less_and_deeper(config, solved):
     for sign in (1.0, -1.0):
         tables = {**TABLES, "dot": {"base_diameter_mm": 1.5, "height_mm": 0.5 + sign * change}}
         moved = config_from({**tables, "press": {"indentation_mm": 0.1 + sign * change, "load_steps": 2}})
-        ends.append(value(moved, mesh_of(config)))
+        ends.append(pressed.value(moved))
     by_difference = [(up - down) / (2 * change) for up, down in zip(*ends, strict=True)]
     assert total(found, row.slopes) == pytest.approx(by_difference, rel=0.01)
 
@@ -153,11 +188,16 @@ def test_the_check_has_larger_elements(config):
 @pytest.fixture
 def budget(config, monkeypatch):
     """A budget of made-up responses: 1 N and 10 V; each key changes both by its place in the alphabet."""
-    keys = sorted({key for row in tolerances(config) for key in row.slopes})
-    slope = {key: Response(0.01 * number, 0.1 * number) for number, key in enumerate(keys)}
-    monkeypatch.setattr(budget_module, "_slopes", lambda *_: (Response(1.0, 10.0), slope))
     ends = iter([Response(1.0, 9.0), Response(1.0, 10.5)] * 3)
-    monkeypatch.setattr(budget_module, "_value", lambda *_: next(ends))
+
+    class MadeUp(KitPress):
+        def slopes(self, keys):
+            return Response(1.0, 10.0), {k: Response(0.01 * n, 0.1 * n) for n, k in enumerate(keys)}
+
+        def value(self, moved):
+            return next(ends)
+
+    monkeypatch.setattr(budget_module, "KitPress", MadeUp)
     return budget_of(config)
 
 
