@@ -1,31 +1,34 @@
-"""Named arrays in one .npz file, without pickle, that several processes may write and read at once."""
+"""Named arrays in one .npz file with a checksum, without pickle, that several processes may write and read at once."""
 
 from collections.abc import Callable, Mapping
+from io import BytesIO
 from pathlib import Path
 from typing import Any, TypeVar
-from zipfile import BadZipFile
 
 import numpy as np
 
-from geometry.whole_file import whole_file
+from mesh.kept_file import read_kept, write_kept
 
 Content = TypeVar("Content")
 
 
 def write_arrays(path: Path, arrays: Mapping[str, Any], compressed: bool = False) -> None:
     """Write the file whole, in a folder that is made where it is missing. OSError when it cannot be written."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with whole_file(path, shared=True) as beside, beside.open("xb") as file:
-        (np.savez_compressed if compressed else np.savez)(file, **arrays)
+    buffer = BytesIO()
+    (np.savez_compressed if compressed else np.savez)(buffer, **arrays)
+    write_kept(path, buffer.getvalue())
 
 
 def read_arrays(path: Path, decoded: Callable[[Mapping[str, Any]], Content]) -> Content | None:
     """What decoded makes of the arrays; None when there is no file, it is damaged or decoded finds it wrong.
 
-    decoded : says so by KeyError, TypeError or ValueError.
+    decoded : says so by KeyError, TypeError or ValueError; the checksum leaves only another program's file for that.
     """
+    content = read_kept(path)
+    if content is None:
+        return None
     try:
-        with np.load(path, allow_pickle=False) as data:
+        with np.load(BytesIO(content), allow_pickle=False) as data:
             return decoded(data)
-    except (OSError, ValueError, KeyError, TypeError, EOFError, BadZipFile):
+    except (ValueError, KeyError, TypeError):
         return None

@@ -4,18 +4,20 @@ import os
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
+from tempfile import TemporaryFile
 from typing import Any
 
 import numpy as np
 
 from geometry.dot_shape import DotShape
+from geometry.errors import InputError
 from geometry.parameters import Segment
 from mesh.arrays_file import read_arrays, write_arrays
 from mesh.fingerprint import data_hash
 from mesh.linear import LinearMesh
 from mesh.parameters import MeshOptions
 
-VERSION = 2  # raise it when the mesher changes what it makes
+VERSION = 3  # raise it when the mesher changes what it makes
 
 
 def folder() -> Path:
@@ -23,6 +25,26 @@ def folder() -> Path:
     from platformdirs import user_cache_dir
 
     return Path(os.environ.get("SOFTDOT_CACHE") or user_cache_dir("softdot", appauthor=False))
+
+
+def check_folder() -> None:
+    """InputError where SOFTDOT_CACHE names a folder that cannot be made or written.
+
+    The platform's own folder may be closed to this process; then nothing is kept.
+    """
+    stated = os.environ.get("SOFTDOT_CACHE")
+    if not stated:
+        return
+    try:
+        Path(stated).mkdir(parents=True, exist_ok=True)
+        with TemporaryFile(dir=stated):
+            pass
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise InputError(
+            f"SOFTDOT_CACHE = '{stated}': cannot be used as the folder of the cache ({reason}); name a folder that can "
+            "be written, or unset it"
+        ) from None
 
 
 def key(segment: Segment, dot: DotShape, options: MeshOptions) -> str:
@@ -47,7 +69,7 @@ def _places(dot: DotShape) -> tuple[Any, Any, Any]:
 
 
 def remembered(name: str, make: Callable[[], LinearMesh]) -> LinearMesh:
-    """The mesh kept under this name, or a new one that is then kept. An unreadable file is a miss."""
+    """The mesh kept under this name, or a new one that is then kept. A damaged file is a miss."""
     path = folder() / f"mesh-{name}.npz"
     found = read_arrays(path, _decoded)
     if found is not None:

@@ -1,26 +1,21 @@
 """JSON kept beside the meshes under a name that holds the hash of all that it depends on."""
 
 import json
+from contextlib import suppress
 from typing import Any
 
-from geometry.whole_file import whole_file
 from mesh.cache import folder
+from mesh.kept_file import read_kept, write_kept
 from softdot.numbers import json_text
 
 
 def recall(name: str) -> Any | None:
     """What was remembered under a name, None when nothing was or the file is damaged."""
-    try:
-        return json.loads((folder() / f"{name}.json").read_text("utf-8"))
-    except (OSError, ValueError):
-        return None
+    content = read_kept(folder() / f"{name}.json")
+    return None if content is None else json.loads(content)
 
 
 def remember(name: str, value: Any) -> None:
     """Keep a value; a cache that cannot be written is no cache."""
-    try:
-        folder().mkdir(parents=True, exist_ok=True)
-        with whole_file(folder() / f"{name}.json", shared=True) as beside:
-            beside.write_text(json_text(value), "utf-8")
-    except OSError:
-        return
+    with suppress(OSError):
+        write_kept(folder() / f"{name}.json", json_text(value).encode())

@@ -21,9 +21,11 @@ def check(config: Config) -> tuple[DotShape, list[str]]:
     Returns the dot at rest and what a user should know about this design.
     """
     from geometry.checks import check_press_depth, check_pushed_dot, check_segment, press_warnings
+    from mesh.cache import check_folder
     from softdot.held_rim import held_rim_warnings
     from softdot.mesh_limit import refuse_huge_mesh
 
+    check_folder()
     _check_waveform(config)
     warnings = check_segment(config.segment)
     depth = config.press.indentation_mm

@@ -1,6 +1,7 @@
 """Where a press stands, on disk, so that a run that was killed goes on where it was."""
 
 import time
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -45,5 +46,6 @@ class Checkpoint:
 
     def discard(self) -> None:
         """The press has ended."""
-        self.path.unlink(missing_ok=True)
+        with suppress(OSError):  # a file that stays is found to be of no use by its key
+            self.path.unlink(missing_ok=True)
 

@@ -22,6 +22,7 @@ from diagnose.verdict.content import FORMAT, verdict
 from diagnose.verdict.resimulation import OutOfTimeError, Resimulated, resimulate
 from diagnose.verdict.words import sentences
 from geometry.errors import InputError
+from mesh.cache import check_folder
 from softdot.numbers import plain, write_json
 from softdot.output_folder import Product, staged_folder
 from softdot.progress import Progress, Silent
@@ -71,6 +72,7 @@ def run_diagnosis(
     both cases nothing is written. A named mechanism that the full model cannot press is told in fit.failure.
     """
     options, progress = options or Options(), progress or Silent()
+    check_folder()
     progress.stage("read")
     rig = load_rig(folder)
     _refuse_what_sampling_misses(rig)

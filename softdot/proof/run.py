@@ -11,6 +11,7 @@ from diagnose.prove.score import Score
 from diagnose.prove.trial import Terms
 from diagnose.prove.world.cases import KINDS, Case, plan
 from geometry.errors import InputError
+from mesh.cache import check_folder
 from mesh.fingerprint import data_hash, files_hash
 from softdot.numbers import plain, write_json
 from softdot.progress import Progress, Silent
@@ -46,6 +47,7 @@ def run_proof(request: Request, out: Path, progress: Progress | None = None) -> 
     Cases that an earlier proof left in out are not tried again. After Ctrl-C those that were finished stay.
     """
     _check(request)
+    check_folder()
     place, program = store.check(out), program_hash()
     cases = plan(request.cases, request.seed, request.rigs, request.staged, request.kinds)
     found = {case.name: record for case in cases if (record := store.kept(place, case, program)) is not None}

@@ -47,7 +47,7 @@ def keep(place: Path, name: str, record: dict[str, Any]) -> None:
 
 def kept(place: Path, case: Case, program: str) -> dict[str, Any] | None:
     """The record of an earlier proof of the same case by the same program, whose commitment it fulfils; else None."""
-    with suppress(OSError, ValueError, KeyError, TypeError):
+    with suppress(OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
         record = json.loads((place / CASES / f"{case.name}.json").read_text("utf-8"))
         committed = json.loads((place / COMMITMENTS / f"{case.name}.json").read_text("utf-8"))["sha256"]
         same = Case(**{**record["case"], "effects": tuple(record["case"]["effects"])}) == case

@@ -7,6 +7,7 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
 
+from mesh.cache import check_folder
 from softdot.config import Config, config_hash
 from softdot.progress import Progress, Silent
 from softdot.sweep import store
@@ -29,6 +30,7 @@ def run_sweep(
     left in out are not solved again. InputError before any work for a folder that cannot be written and for a
     scheduler that does not answer. After Ctrl-C, or when killed, the points that were finished stay.
     """
+    check_folder()
     place = store.check_folder(Path(out))
     configs = {config_hash(point.config): point.config for point in space.points if point.config is not None}
     records = {name: found for name, config in configs.items() if (found := store.kept(place, config)) is not None}

@@ -6,6 +6,7 @@ of the sweep before, with its own summary.
 """
 
 import json
+import logging
 import os
 from collections.abc import Mapping
 from contextlib import suppress
@@ -14,8 +15,9 @@ from typing import Any
 
 from geometry.errors import InputError
 from geometry.whole_file import whole_file
+from mesh.fingerprint import data_hash
 from softdot.config import Config, config_hash
-from softdot.numbers import write_json
+from softdot.numbers import plain, write_json
 from softdot.outcome import outcome_key
 from softdot.output_folder import Product, check_output
 from softdot.sweep.point import ACCIDENTS, Record
@@ -26,6 +28,8 @@ SWEEP = Product(
     "softdot-sweep/1", "sweep.json", frozenset({*_WHOLE, *(f".{name}.part" for name in _WHOLE), POINTS})
 )
 POINT_FORMAT = "softdot-point/1"
+CHECKSUM = "sha256"
+"""Key of the SHA-256 of all the others, as canonical JSON."""
 
 
 def check_folder(out: Path) -> Path:
@@ -54,27 +58,39 @@ def sweep_up(place: Path) -> None:
 
 
 def kept(place: Path, config: Config) -> Record | None:
-    """The record of a point from an earlier sweep, None without one, after an accident and of another program."""
-    with suppress(OSError, ValueError):
-        found = json.loads(_path(place, config).read_text("utf-8"))
-        if found["key"] == outcome_key(config) and found["status"] not in ACCIDENTS:
-            return dict(found)
-    return None
+    """The record of a point from an earlier sweep, None without one, after an accident and of another program.
+
+    One whose checksum does not fit is told in a warning, deleted and None.
+    """
+    path = _path(place, config)
+    try:
+        found = json.loads(path.read_bytes())
+        damaged = found.pop(CHECKSUM, None) != data_hash(found)
+    except FileNotFoundError:
+        return None
+    except (OSError, ValueError, AttributeError, TypeError, RecursionError):
+        damaged = True
+    if damaged:
+        logging.getLogger("softdot").warning("'%s' is damaged; it is deleted and the point solved anew", path)
+        with suppress(OSError):
+            path.unlink()
+        return None
+    return dict(found) if found["key"] == outcome_key(config) and found["status"] not in ACCIDENTS else None
 
 
 def keep(place: Path, config: Config, record: Record) -> Record:
     """Write the summary of a point, whole or not at all, and return it."""
     from softdot.version import installed_version
 
-    summary = {
+    summary: dict[str, Any] = plain({
         "format": POINT_FORMAT,
         "softdot_version": installed_version(),
         "key": outcome_key(config),
         "config_hash": config_hash(config),
         **record,
         "config": config.model_dump(mode="json"),
-    }
-    write_json(_path(place, config), summary)
+    })  # fmt: skip
+    write_json(_path(place, config), {**summary, CHECKSUM: data_hash(summary)})
     return summary
 
 

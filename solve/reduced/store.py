@@ -38,7 +38,7 @@ def key(case: "Case", check: bool) -> str:
 
 
 def remembered(name: str, make: Callable[[], ReducedModel]) -> ReducedModel:
-    """The model kept under this name, or a new one that is then kept. An unreadable file is a miss."""
+    """The model kept under this name, or a new one that is then kept. A damaged file is a miss."""
     path = folder() / f"reduced-{name}.npz"
     found = read(path)
     if found is None:
