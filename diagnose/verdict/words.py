@@ -97,8 +97,8 @@ def _proof(resimulated: Sequence[Resimulated]) -> Iterator[Sentence]:
     for one in resimulated[:2]:
         yield Sentence(
             "Checked with the full model",
-            f"in the run “{one.run}” ({one.role}) alone, the error of the full 3D model is {percent(one.after_all)} "
-            f"with it and {percent(one.before_all)} without it.",
+            f"in the run “{one.run}” ({one.role}) alone, the error of the full model ({one.engine}) is "
+            f"{percent(one.after_all)} with it and {percent(one.before_all)} without it.",
         )
 
 

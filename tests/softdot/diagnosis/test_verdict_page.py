@@ -168,7 +168,7 @@ def test_the_error_of_the_full_model_is_told_as_its_own(recording, of_the_toy):
     told, summary, body = page(recording, of_the_toy, [one])
     together = summary["fit"]["resimulated"][0]["nrmse_after_all_channels"]
     assert together == pytest.approx(np.sqrt((0.047**2 + 0.013**2) / 2.0))
-    assert "in the run “slow” (held-out) alone, the error of the full 3D model is 3.4 % with it and 85 %" in told
+    assert "in the run “slow” (held-out) alone, the error of the full model (3D FEM) is 3.4 % with it" in told
     assert ["slow", "held-out", "all channels", "85 %", "3.4 %", ""] in rows(body)
     assert "It therefore differs from the error of the fast model on all presses" in body
 
