@@ -1,5 +1,7 @@
 """The default mesher: pytetwild (fTetWild) on the merged surfaces of the parts."""
 
+import logging
+
 import numpy as np
 
 from geometry.dot_shape import DotShape
@@ -23,6 +25,7 @@ SHALLOW = 0.7  # twice the height over the radius of a dome: it then meets mediu
 FLAT = 2e-3  # a tetrahedron of this shape or less counts as flat
 ENVELOPE = 1e-3  # of the diagonal: how far pytetwild may leave the surface
 LOOSER = 0.04  # the same of an element under the dot or the thinnest part, where that is more
+LOG = logging.getLogger(__name__)
 ATTEMPTS = 3  # pytetwild is not repeatable: another attempt gives another mesh
 
 
@@ -55,6 +58,7 @@ def bare_stack(segment: Segment, stack: Outline, dot: DotShape, options: MeshOpt
         )
         bare = _labelled(points, oriented(points, tets), stack)
         flat = int((shape(bare.points_mm, bare.tets) <= FLAT).sum())
+        LOG.debug("pytetwild, attempt %d: %d tetrahedra, %d of them flat", attempt + 1, len(tets), flat)
         if not flat:
             return bare
     raise MeshingError(

@@ -12,6 +12,7 @@ from typing import Any, NoReturn
 
 from geometry.errors import InputError
 from softdot.command_output import BAD_INPUT, GOOD, INTERRUPTED, complain
+from softdot.log import lines_on_stderr
 
 COMMANDS = {
     "run": "softdot.run_command",
@@ -201,6 +202,11 @@ def _add_output(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--json", action="store_true", help="print the summary, and nothing else, to standard output"
     )
+    told = command.add_mutually_exclusive_group()
+    told.add_argument("-q", "--quiet", action="store_true", help="tell nothing but warnings and errors")
+    told.add_argument(
+        "-v", "--verbose", action="store_true", help="tell details too, such as every iteration of the solver"
+    )
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -241,7 +247,8 @@ def _command(chosen: argparse.Namespace) -> int:
         sys.stdout.write(json_text(config_schema()))
         return GOOD
     body = import_module(COMMANDS[chosen.command])
-    status: int = body.command(chosen)
+    with lines_on_stderr(chosen.quiet, chosen.verbose):
+        status: int = body.command(chosen)
     return status
 
 

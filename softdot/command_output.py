@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from softdot.log import warn
 from softdot.numbers import json_text
 
 LONGEST = 2000  # characters of a sentence; a path may have some
@@ -14,10 +15,11 @@ GOOD, BAD_INPUT, NOT_CONVERGED, INTERRUPTED = 0, 2, 3, 130
 
 
 def show(summary: dict[str, Any], chosen: Namespace, short_text: Callable[[dict[str, Any], str], str]) -> None:
-    """The summary as JSON when asked for, else in short on a terminal."""
+    """The summary as JSON when asked for, else in short on a terminal; its warnings always on standard error."""
+    warn(summary.get("warnings", []))
     if chosen.json:
         sys.stdout.write(json_text(summary))
-    elif sys.stdout.isatty():
+    elif sys.stdout.isatty() and not chosen.quiet:
         print(short_text(summary, chosen.output))
 
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from geometry.errors import InputError
+from softdot.log import LOG_FILE, log_file
 
 
 @dataclass(frozen=True)
@@ -18,6 +19,11 @@ class Product:
     format: str
     summary: str
     entries: frozenset[str]
+
+    @property
+    def files(self) -> frozenset[str]:
+        """The entries and the log."""
+        return self.entries | {LOG_FILE}
 
 
 RUN = Product("softdot-run/1", "summary.json", frozenset({"summary.json", "report.html", "cad", "results", "pictures"}))
@@ -34,7 +40,8 @@ def staged_folder(out: Path, product: Product) -> Iterator[Path]:
     made = _make_parents(place)
     staging = _make_staging(place, made)
     try:
-        yield staging
+        with log_file(staging / LOG_FILE):
+            yield staging
         _publish(staging, place, product)
         made = []
     finally:
@@ -51,7 +58,7 @@ def check_output(out: Path, product: Product) -> Path:
     except (OSError, RuntimeError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
         raise InputError(f"output '{out}': cannot be read ({reason})") from None
-    foreign = sorted(entries - product.entries)
+    foreign = sorted(entries - product.files)
     if foreign or (entries and not _is_earlier(place, product)):
         found = foreign[0] if foreign else sorted(entries)[0]
         raise InputError(
@@ -128,7 +135,7 @@ def _publish(staging: Path, out: Path, product: Product) -> None:
 
 def _replace_entries(staging: Path, out: Path, product: Product) -> None:
     """A mount point and the working folder keep their place: exchange what is in them, the summary last."""
-    for name in product.entries:
+    for name in product.files:
         with suppress(FileNotFoundError):
             path = out / name
             shutil.rmtree(path) if path.is_dir() else path.unlink()

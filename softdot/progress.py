@@ -1,6 +1,8 @@
-"""Progress on a terminal; nothing in a pipe."""
+"""What a long command tells while it works: bars on a terminal, elsewhere one line per stage and step."""
 
+import logging
 import sys
+from argparse import Namespace
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Protocol
@@ -8,6 +10,10 @@ from typing import TYPE_CHECKING, Protocol
 if TYPE_CHECKING:
     from rich.progress import Progress as Bars
     from rich.progress import TaskID
+
+LOG = logging.getLogger(__name__)
+MANY = 100
+"""Of more steps than this one line is written for each hundredth."""
 
 
 class Progress(Protocol):
@@ -20,21 +26,29 @@ class Progress(Protocol):
         """A step of the running stage, a load step that has converged say."""
 
 
-class Silent:
-    """Nobody watches."""
+class Logged:
+    """Every stage and step is a record of the log; softdot.log says who sees it."""
+
+    def __init__(self) -> None:
+        self._name = ""
 
     def stage(self, name: str) -> None:
-        """Say nothing."""
+        """Tell that a stage begins."""
+        self._name = name
+        LOG.info("%s", name)
 
     def step(self, number: int, count: int, text: str) -> None:
-        """Say nothing."""
+        """Tell how far the running stage is."""
+        told = count <= MANY or number == count or MANY * number // count != MANY * (number - 1) // count
+        if told:
+            LOG.info("%s %d of %d%s", self._name, number, count, f": {text}" if text else "")
 
 
 @contextmanager
-def progress_on_terminal() -> Iterator[Progress]:
-    """Bars on standard error when it is a terminal, else nothing."""
-    if not sys.stderr.isatty():
-        yield Silent()
+def progress_of(chosen: Namespace) -> Iterator[Progress]:
+    """Bars where standard error is a terminal and --quiet was not given, else lines alone."""
+    if chosen.quiet or not sys.stderr.isatty():
+        yield Logged()
         return
     from rich.console import Console
     from rich.progress import BarColumn, SpinnerColumn, TextColumn, TimeElapsedColumn
@@ -47,22 +61,23 @@ def progress_on_terminal() -> Iterator[Progress]:
         watcher.finish()
 
 
-class _OnTerminal:
+class _OnTerminal(Logged):
     """One bar per stage."""
 
     def __init__(self, bars: "Bars") -> None:
+        super().__init__()
         self._bars = bars
         self._task: TaskID | None = None
-        self._name = ""
 
     def stage(self, name: str) -> None:
         """Finish the bar of the stage before and begin the next, of unknown length."""
+        super().stage(name)
         self.finish()
-        self._name = name
         self._task = self._bars.add_task(f"{name:<10}", total=None)
 
     def step(self, number: int, count: int, text: str) -> None:
         """Fill the bar of the running stage and write the state beside it."""
+        super().step(number, count, text)
         if self._task is not None:
             self._bars.update(self._task, total=count, completed=number, description=f"{self._name:<10} {text}")
 

@@ -13,9 +13,10 @@ from mesh.types import Floats, TetMesh
 from softdot import stages
 from softdot.actual import actual
 from softdot.config import Config
+from softdot.log import lines_when_interactive, warn
 from softdot.numbers import plain, write_json
 from softdot.output_folder import RUN, staged_folder
-from softdot.progress import Progress, Silent
+from softdot.progress import Logged, Progress
 from softdot.run_warnings import design_warnings, result_warnings
 from softdot.summary import heading, mesh_part, press_part, stopped_solver
 from softdot.system_libraries import named_when_missing
@@ -45,9 +46,8 @@ def run_config(config: Config, out: Path, progress: Progress | None = None) -> d
     InputError before any work for what cannot be built or written. Where a computation does not converge
     nothing is raised: solver.converged is False, solver.failure says why and what converged is written.
     """
-    progress = progress or Silent()
-    with named_when_missing():
-        progress.stage("check")
+    progress = progress or Logged()
+    with named_when_missing(), lines_when_interactive():
         changed, physics = actual(config)
         dot_shape, warnings = stages.check(changed)
         ensure_rendering()
@@ -70,6 +70,7 @@ def _fill(
     """Everything but summary.json; returns the summary. config : with its mechanisms switched on."""
     clock = Clock()
     summary = {**heading(config), "warnings": [*warnings, *design_warnings(config)]}
+    warn(summary["warnings"])
     progress.stage("geometry")
     with clock("geometry"):
         parts = stages.build_parts(config, dot_shape)
@@ -89,7 +90,9 @@ def _fill(
         readout, channels = amplified if amplified is not None else (None, None)
     tet_mesh = result.tet_mesh
     summary |= {"mesh": mesh_part(quality, result.unknowns), **press_part(config, result, readout, channels)}
-    summary["warnings"] += result_warnings(config, dot_shape, tet_mesh, result, physics.film_yield is not None)
+    late = result_warnings(config, dot_shape, tet_mesh, result, physics.film_yield is not None)
+    warn(late)
+    summary["warnings"] += late
     progress.stage("export")
     with clock("export"):
         so_far = {"timing_s": dict(clock.seconds)}

@@ -10,11 +10,11 @@ from softdot.command_output import GOOD, NOT_CONVERGED, complain, only_the_summa
 def command(chosen: Namespace) -> int:
     """Run chosen.config into chosen.output; 0, or 3 when a computation did not converge. InputError."""
     from softdot.config import load_config
-    from softdot.progress import progress_on_terminal
+    from softdot.progress import progress_of
     from softdot.run import run_config
 
     config = load_config(chosen.config)
-    with only_the_summary_on_stdout(), progress_on_terminal() as progress:
+    with only_the_summary_on_stdout(), progress_of(chosen) as progress:
         summary = run_config(config, Path(chosen.output), progress)
     show(summary, chosen, short_text)
     if summary["solver"]["converged"]:
@@ -32,5 +32,4 @@ def short_text(summary: dict[str, Any], output: str) -> str:
             f"charge {summary['film_charge_pC'][-1]:.4g} pC, "
             f"open-circuit voltage {summary['open_circuit_voltage_V'][-1]:.4g} V"
         )
-    lines += [f"warning: {warning}" for warning in summary["warnings"]]
     return "\n".join([*lines, f"{output}/report.html"])

@@ -1,5 +1,6 @@
 """Semismooth Newton iteration at fixed load."""
 
+import logging
 from dataclasses import replace
 
 import numpy as np
@@ -9,6 +10,7 @@ from solve.linear import LinearSolveError, LinearSolver
 from solve.solid import InvertedElementError
 from solve.system import Evaluation, Load, State, System
 
+LOG = logging.getLogger(__name__)
 TOLERANCE = 1e-9
 ROUND_OFF = 1e-12  # of the largest displacement: a smaller correction changes nothing
 ROUNDED_TOLERANCE = 1e-6  # a stiff film on a soft foam: its own round-off may exceed TOLERANCE of a small load
@@ -46,6 +48,7 @@ def equilibrate(
             norm = float(np.linalg.norm(now.residual))
             scale = max(now.load_norm, previous.force_scale)
             relative = norm / max(scale, LEAST_LOAD)
+            LOG.debug("Newton iteration %d at time %.4g: relative residual %.2g", iteration, time, relative)
             settled = status is None or np.array_equal(status, now.status)
             exact = correction <= ROUND_OFF and relative <= ROUNDED_TOLERANCE
             if (relative <= TOLERANCE or exact) and settled:

@@ -12,7 +12,7 @@ def command(chosen: Namespace) -> int:
     """Diagnose chosen.recording into chosen.output; 0, or 3 when a press did not converge. InputError."""
     from mesh.errors import MeshingError
     from softdot.diagnosis.run import FULL_MODEL_S, Options, run_diagnosis
-    from softdot.progress import progress_on_terminal
+    from softdot.progress import progress_of
     from solve.newton import NoEquilibriumError
 
     if chosen.seed is not None and chosen.seed < 0:
@@ -20,7 +20,7 @@ def command(chosen: Namespace) -> int:
     limit_s = None if chosen.all_presses else 0.0 if chosen.fast_model_only else FULL_MODEL_S
     options = Options(limit_s, chosen.seed, tuple(chosen.without), tuple(chosen.hold_out))
     try:
-        with only_the_summary_on_stdout(), progress_on_terminal() as progress:
+        with only_the_summary_on_stdout(), progress_of(chosen) as progress:
             summary = run_diagnosis(Path(chosen.recording), Path(chosen.output), options, progress)
     except (NoEquilibriumError, MeshingError) as error:
         complain(f"diagnose, {error}; nothing was written")
@@ -34,5 +34,4 @@ def command(chosen: Namespace) -> int:
 
 def short_text(summary: dict[str, Any], output: str) -> str:
     """The sentences of the verdict and where to look."""
-    lines = [*summary["summary"], *(f"warning: {warning}" for warning in summary["warnings"])]
-    return "\n".join([*lines, f"{output}/report.html"])
+    return "\n".join([*summary["summary"], f"{output}/report.html"])

@@ -25,7 +25,7 @@ from geometry.errors import InputError
 from mesh.cache import check_folder
 from softdot.numbers import plain, write_json
 from softdot.output_folder import Product, staged_folder
-from softdot.progress import Progress, Silent
+from softdot.progress import Logged, Progress
 from softdot.rig_file import Rig, load_rig
 from solve.mechanisms import MECHANISMS
 from solve.nearest import nearest
@@ -71,9 +71,8 @@ def run_diagnosis(
     InputError before any work for what cannot be read or written; NoEquilibriumError when the baseline has none. In
     both cases nothing is written. A named mechanism that the full model cannot press is told in fit.failure.
     """
-    options, progress = options or Options(), progress or Silent()
+    options, progress = options or Options(), progress or Logged()
     check_folder()
-    progress.stage("read")
     rig = load_rig(folder)
     _refuse_what_sampling_misses(rig)
     rig = replace(rig, recording=thinned(rig.recording))

@@ -13,10 +13,10 @@ def command(chosen: Namespace) -> int:
     """Write the kit of chosen.config into chosen.output; 0, or 3 when its press did not converge. InputError."""
     from softdot.config import load_config
     from softdot.kit.make import make_kit
-    from softdot.progress import progress_on_terminal
+    from softdot.progress import progress_of
 
     config = load_config(chosen.config)
-    with only_the_summary_on_stdout(), progress_on_terminal() as progress:
+    with only_the_summary_on_stdout(), progress_of(chosen) as progress:
         summary = make_kit(config, Path(chosen.output), progress)
     show(summary, chosen, short_text)
     if summary["failure"] is None:
@@ -32,5 +32,4 @@ def short_text(summary: dict[str, Any], output: str) -> str:
     for row in budget["rows"][:ROWS] if budget else []:
         change = f"{row['voltage_percent']:+.0f} % voltage, {row['force_percent']:+.0f} % force"
         lines.append(f"{row['label']} ±{row['plus_minus']:.3g} {row['unit']}: {change}")
-    lines += [f"warning: {warning}" for warning in summary["warnings"]]
     return "\n".join([*lines, f"{output}/kit.html"])

@@ -21,9 +21,10 @@ from softdot.kit.budget import budget_of
 from softdot.kit.budget_outcome import UNFINISHED, BudgetOutcome, failed
 from softdot.kit.layout import side_by_side
 from softdot.kit.summary import heading, pressed, summary_of
+from softdot.log import LOG_FILE, log_file, warn
 from softdot.numbers import json_text, plain, write_json
 from softdot.output_folder import Product, staged_folder
-from softdot.progress import Progress, Silent
+from softdot.progress import Logged, Progress
 from softdot.run_warnings import design_warnings
 from softdot.system_libraries import named_when_missing
 from solve.full_load import StoppedShortError
@@ -44,19 +45,19 @@ def make_kit(config: Config, out: Path, progress: Progress | None = None) -> dic
     tolerance budget; kit.json and kit.html are replaced when that is known. Where it fails nothing is raised: the kit
     stays without it, and failure says why. Where it is interrupted the kit stays too.
     """
-    progress = progress or Silent()
+    progress = progress or Logged()
     with named_when_missing():
-        progress.stage("check")
         _, warnings = stages.check(config)
         ensure_rendering()
         with staged_folder(out, KIT) as folder:
-            progress.stage("geometry")
             contents = _contents(config, [*warnings, *design_warnings(config)])
+            warn(list(contents.warnings))
             progress.stage("export")
             _write_parts(contents, folder)
             first = _write_sheet(config, contents, UNFINISHED, folder)
-        progress.stage("tolerances")
-        outcome = _outcome(config, progress)
+        with log_file(out / LOG_FILE):
+            progress.stage("tolerances")
+            outcome = _outcome(config, progress)
         if json_text(first) != _kit_json(out):
             raise InputError(f"output '{out}': another kit was written there meanwhile; this one's budget has no place")
         return _write_sheet(config, contents, outcome, out)

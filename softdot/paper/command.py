@@ -11,10 +11,10 @@ def command(chosen: Namespace) -> int:
     """Make the whole study in chosen.output; 0, or 3 when a press gave no result. InputError."""
     from softdot.paper.presses import NotSolvedError
     from softdot.paper.study import run_paper
-    from softdot.progress import progress_on_terminal
+    from softdot.progress import progress_of
 
     try:
-        with only_the_summary_on_stdout(), progress_on_terminal() as progress:
+        with only_the_summary_on_stdout(), progress_of(chosen) as progress:
             summary = run_paper(Path(chosen.output), progress)
     except NotSolvedError as error:
         complain(f"paper, {error}; nothing was written, solved presses are remembered")

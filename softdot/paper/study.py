@@ -12,7 +12,7 @@ from softdot.paper import collected
 from softdot.paper.published import inconsistencies
 from softdot.paper.report import write_report
 from softdot.paper.section import Section, Table
-from softdot.progress import Progress, Silent
+from softdot.progress import Logged, Progress
 from softdot.version import installed_version
 
 PAPER = Product("softdot-paper/1", "paper.json", frozenset({"paper.json", "paper.html", "figures", "tables"}))
@@ -28,7 +28,7 @@ def run_paper(out: Path, progress: Progress | None = None) -> dict[str, Any]:
     """
     with staged_folder(out, PAPER) as folder:
         (folder / "figures").mkdir()
-        sections = [_part(name)(progress or Silent(), folder) for name in PARTS]
+        sections = [_part(name)(progress or Logged(), folder) for name in PARTS]
         summary: dict[str, Any] = plain(content(sections))
         _write_tables(all_tables(sections), folder / "tables")
         write_report(sections, folder / "paper.html")

@@ -13,10 +13,10 @@ from softdot.plate.request import PlateRequest
 def command(chosen: Namespace) -> int:
     """Write the plate that is asked for into chosen.output. InputError."""
     from softdot.plate.make import make_plate
-    from softdot.progress import progress_on_terminal
+    from softdot.progress import progress_of
 
     request = request_of(chosen)
-    with only_the_summary_on_stdout(), progress_on_terminal() as progress:
+    with only_the_summary_on_stdout(), progress_of(chosen) as progress:
         summary = make_plate(request, Path(chosen.output), progress)
     show(summary, chosen, short_text)
     return GOOD
@@ -43,8 +43,7 @@ def short_text(summary: dict[str, Any], output: str) -> str:
     """Cells, size, advice and where to look, in a few lines."""
     size = " x ".join(f"{value:.4g}" for value in summary["size_mm"])
     advice = [f"{answer['profile']}: {answer['advice']}" for answer in summary["printability"]]
-    warnings = [f"warning: {warning}" for warning in summary["warnings"]]
-    return "\n".join([*summary.get("cells", []), f"{size} mm", *advice, *warnings, f"{output}/plate.stl"])
+    return "\n".join([*summary.get("cells", []), f"{size} mm", *advice, f"{output}/plate.stl"])
 
 
 def _heights(text: str) -> tuple[float, ...]:

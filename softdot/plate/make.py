@@ -14,7 +14,7 @@ from softdot.plate.build import BuiltPlate, build_plate
 from softdot.plate.picture import draw_plate
 from softdot.plate.request import PlateRequest
 from softdot.plate.summary import summary_of
-from softdot.progress import Progress, Silent
+from softdot.progress import Logged, Progress
 from softdot.system_libraries import named_when_missing
 
 DEFLECTION_MM, ANGULAR_DEFLECTION = 0.003, 0.2
@@ -27,13 +27,12 @@ TOLERATED: dict[QuantityName, str] = {"base_diameter_mm": "dot diameter", "heigh
 
 def make_plate(request: PlateRequest, out: Path, progress: Progress | None = None) -> dict[str, Any]:
     """Build, check and write one plate into the folder out; return what plate.json says. InputError."""
-    progress = progress or Silent()
+    progress = progress or Logged()
     with named_when_missing():
-        progress.stage("geometry")
         built = build_plate(request)
         ensure_rendering()
         with staged_folder(out, PLATE) as folder:
-            progress.stage("check")
+            progress.stage("printability")
             answers = check_plate(built)
             progress.stage("export")
             _write_files(built, answers, folder)

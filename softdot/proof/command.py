@@ -16,13 +16,13 @@ def command(chosen: Namespace) -> int:
     from diagnose.prove.world.cases import KINDS
     from softdot.proof.run import RIGS, Request, run_proof
     from softdot.proof.store import CASES
-    from softdot.sweep.progress import points_on_terminal
+    from softdot.sweep.progress import progress_of_points
 
     rigs = tuple(chosen.rigs.split(",")) if chosen.rigs else RIGS
     kinds = tuple(chosen.kinds.split(",")) if chosen.kinds else KINDS
     request = Request(chosen.cases, chosen.seed, rigs, chosen.staged, chosen.workers, kinds, chosen.scheduler)
     try:
-        with only_the_summary_on_stdout(), points_on_terminal() as progress:
+        with only_the_summary_on_stdout(), progress_of_points(chosen) as progress:
             summary = run_proof(request, Path(chosen.output), progress)
     except KeyboardInterrupt:
         if not (Path(chosen.output) / CASES).exists():

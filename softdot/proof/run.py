@@ -13,8 +13,9 @@ from diagnose.prove.world.cases import KINDS, Case, plan
 from geometry.errors import InputError
 from mesh.cache import check_folder
 from mesh.fingerprint import data_hash, files_hash
+from softdot.log import LOG_FILE, log_file
 from softdot.numbers import plain, write_json
-from softdot.progress import Progress, Silent
+from softdot.progress import Logged, Progress
 from softdot.proof import store
 from softdot.proof.work import prove_case
 
@@ -52,8 +53,7 @@ def run_proof(request: Request, out: Path, progress: Progress | None = None) -> 
     cases = plan(request.cases, request.seed, request.rigs, request.staged, request.kinds)
     found = {case.name: record for case in cases if (record := store.kept(place, case, program)) is not None}
     missing = [case for case in cases if case.name not in found]
-    progress = progress or Silent()
-    progress.stage("start")
+    progress = progress or Logged()
     reused = len(found)
     for name, record in _tried(missing, request, place, program):
         if not found:
@@ -94,8 +94,9 @@ def _tried(
     address = request.scheduler
     with local_cluster(request.workers) if address is None else existing_cluster(address) as client:
         store.begin(place)  # once somebody can work
-        for name, record in all_ended(client, prove_case, arguments, AWAY):
-            yield name, {"score": None, **record}
+        with log_file(place / LOG_FILE):
+            for name, record in all_ended(client, prove_case, arguments, AWAY):
+                yield name, {"score": None, **record}
 
 
 def _finished(request: Request, place: Path, records: Sequence[Mapping[str, Any]], reused: int) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from typing import Any
 
 from softdot.config import Config
 from softdot.outcome import outcome_key, remembered
-from softdot.progress import Progress, Silent
+from softdot.progress import Logged, Progress
 from softdot.sweep.cluster import local_cluster
 from softdot.sweep.point import Record, solve_point
 from softdot.sweep.stream import solve_all
@@ -22,7 +22,7 @@ def solve_points(
     worker. progress.step(done, count, reason or "") is called after each point.
     A script needs `if __name__ == "__main__":` around the call.
     """
-    progress = progress or Silent()
+    progress = progress or Logged()
     keys = [outcome_key(config) for config in configs]
     distinct = dict(zip(keys, configs, strict=True))
     records = {key: solve_point(config) for key, config in distinct.items() if remembered(config) is not None}

@@ -9,14 +9,14 @@ from softdot.command_output import GOOD, INTERRUPTED, NOT_CONVERGED, complain, o
 
 def command(chosen: Namespace) -> int:
     """Sweep chosen.space into chosen.output; 0, or 3 when not one point could be solved, or 130. InputError."""
-    from softdot.sweep.progress import points_on_terminal
+    from softdot.sweep.progress import progress_of_points
     from softdot.sweep.run import run_sweep
     from softdot.sweep.space import load_space
     from softdot.sweep.store import POINTS
 
     space = load_space(chosen.space)
     try:
-        with only_the_summary_on_stdout(), points_on_terminal() as progress:
+        with only_the_summary_on_stdout(), progress_of_points(chosen) as progress:
             summary = run_sweep(space, Path(chosen.output), chosen.scheduler, progress)
     except KeyboardInterrupt:
         if not (Path(chosen.output) / POINTS).exists():
@@ -38,5 +38,4 @@ def short_text(summary: dict[str, Any], output: str) -> str:
     if summary["solved_now"]:
         rate = f"{summary['points_per_minute']:.3g} points per minute on {summary['workers']} workers"
         lines.append(f"{summary['solved_now']} solved now, {rate}; {summary['reused']} were there")
-    lines += [f"warning: {warning}" for warning in summary["warnings"]]
     return "\n".join([*lines, f"{output}/sweep.parquet"])

@@ -9,7 +9,8 @@ from typing import Any
 
 from mesh.cache import check_folder
 from softdot.config import Config, config_hash
-from softdot.progress import Progress, Silent
+from softdot.log import LOG_FILE, log_file
+from softdot.progress import Logged, Progress
 from softdot.sweep import store
 from softdot.sweep.cluster import local_cluster
 from softdot.sweep.hardware import hardware
@@ -39,7 +40,7 @@ def run_sweep(
     try:
         measured = _measured(0, len(records))
         if missing:
-            measured = _solve(missing, records, cluster, place, progress or Silent())
+            measured = _solve(missing, records, cluster, place, progress or Logged())
         ends = [_record(point, records) for point in space.points]
         summary = {**_heading(space, ends), "scheduler": scheduler, **measured, "hardware": hardware()}
         rows = [row(number, space.points[number].values, record) for number, record in enumerate(ends)]
@@ -59,16 +60,16 @@ def _solve(
     """Add what is missing to the records and to the folder, which is made once somebody can work."""
     reused, count = len(records), len(records) + len(missing)
     begun = time.perf_counter()
-    progress.stage("start")
     with cluster as client:
         store.begin(place)
         workers = len(client.nthreads())
-        progress.stage("solve")
-        progress.step(reused, count, "")
         ready = time.perf_counter()
-        for name, record in solve_all(client, missing):
-            records[name] = store.keep(place, missing[name], record)
-            progress.step(len(records), count, record["reason"] or "")
+        with log_file(place / LOG_FILE):
+            progress.stage("solve")
+            progress.step(reused, count, "")
+            for name, record in solve_all(client, missing):
+                records[name] = store.keep(place, missing[name], record)
+                progress.step(len(records), count, record["reason"] or "")
         end = time.perf_counter()
     return _measured(len(missing), reused, workers, ready - begun, end - ready)
 

@@ -91,7 +91,7 @@ def summary(kit):
 
 
 def test_everything_is_there(kit, summary):
-    assert {entry.name for entry in kit.iterdir()} == make.KIT.entries
+    assert {entry.name for entry in kit.iterdir()} == make.KIT.files
     assert summary["format"] == "softdot-kit/1"
     assert {f"parts/{path.name}" for path in (kit / "parts").iterdir()} == {part["file"] for part in summary["parts"]}
     files = {file for pattern in summary["flat_patterns"] for file in pattern["files"]}
@@ -230,7 +230,7 @@ def test_the_kit_is_there_before_its_budget(tmp_path, monkeypatch):
     monkeypatch.setattr(make, "budget_of", look)
     (tmp_path / "free.toml").write_text(FREE)
     assert main(["kit", str(tmp_path / "free.toml"), "-o", str(tmp_path / "out")]) == 0
-    assert seen["entries"] == make.KIT.entries
+    assert seen["entries"] == make.KIT.files
     assert (seen["summary"]["tolerance_budget"], seen["summary"]["failure"]) == (None, None)
     assert seen["summary"]["tolerance_budget_state"] == "unfinished"
     assert "The tolerance budget comes later" in seen["page"]
@@ -284,7 +284,7 @@ def test_an_interrupt_leaves_a_whole_kit_or_nothing(tmp_path, monkeypatch, when,
     (tmp_path / "free.toml").write_text(FREE)
     assert main(["kit", str(tmp_path / "free.toml"), "-o", str(tmp_path / "out")]) == 130
     assert sorted(path.name for path in tmp_path.iterdir()) == left
-    assert all({entry.name for entry in (tmp_path / name).iterdir()} == make.KIT.entries for name in left[1:])
+    assert all({entry.name for entry in (tmp_path / name).iterdir()} == make.KIT.files for name in left[1:])
 
 
 def test_another_folder_is_not_touched(tmp_path, monkeypatch, capsys):

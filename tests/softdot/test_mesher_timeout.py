@@ -11,5 +11,5 @@ def test_a_mesher_out_of_time_keeps_the_cad_files_and_exits_3(write_config, tmp_
     assert "timeout_s = 0.05" in capfd.readouterr().err
     summary = json.loads((tmp_path / "out/summary.json").read_text())
     assert summary["solver"]["converged"] is False
-    assert {path.name for path in (tmp_path / "out").iterdir()} == {"cad", "summary.json"}
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {"cad", "log.txt", "summary.json"}
     assert (tmp_path / "out/cad/segment.step").stat().st_size > 0

@@ -116,7 +116,7 @@ def test_step_stl_and_3mf_hold_the_same_closed_part(written):
 
 def test_summary_says_every_size_and_where_it_comes_from(written):
     (diameter, height, pitch, cell_pitch), folder = written
-    assert {path.name for path in folder.iterdir()} == FILES
+    assert {path.name for path in folder.iterdir()} == FILES | {"log.txt"}
     summary = json.loads((folder / "plate.json").read_text("utf-8"))
     assert summary["format"] == "softdot-plate/1"
     assert summary["cells"] == [BRAILLE]

@@ -18,12 +18,13 @@ from geometry.errors import InputError
 from softdot.cli import main
 from softdot.config import Config, config_from
 from softdot.outcome import outcome
-from softdot.progress import Silent
+from softdot.progress import Logged
 from softdot.sweep import read_table, run_sweep, solve_points, space_from
 from softdot.sweep import scheduler as scheduler_module
 from softdot.sweep.cluster import NO_DASHBOARD, local_cluster
 from softdot.sweep.point import TINY
 from softdot.sweep.stream import solve_all
+from tests.softdot.complaints import complaints
 from tests.softdot.interrupts import heard
 from tests.softdot.sweep_spaces import DEPTHS, depths, space_of
 from tests.softdot.toml_text import toml_text
@@ -143,7 +144,7 @@ def test_a_scheduler_without_workers_is_refused(space, tmp_path, capfd, monkeypa
     assert said.endswith("this scheduler has no workers; start some with 'dask worker ADDRESS'")
 
 
-class Closer(Silent):
+class Closer(Logged):
     """Ends the scheduler when the first point is there."""
 
     def __init__(self, cluster):
@@ -168,7 +169,7 @@ def test_a_scheduler_that_goes_away_is_one_sentence_and_the_points_stay(tmp_path
     assert run_sweep(given, tmp_path / "out")["reused"] == kept
 
 
-class Killer(Silent):
+class Killer(Logged):
     """Kills one worker, as hard as can be, when so many points are there."""
 
     def __init__(self, number):
@@ -225,6 +226,7 @@ def test_a_sweep_that_is_stopped_goes_on_with_what_is_missing(number, tmp_path):
         time.sleep(0.02)
     os.killpg(process.pid, number) if number == signal.SIGINT else process.send_signal(number)
     _, said = process.communicate(timeout=30)
+    said = complaints(said)
     if number == signal.SIGINT:  # to the whole group, as a terminal does it
         assert process.returncode == 130
         assert said.count("\n") == 1

@@ -13,6 +13,7 @@ from softdot.sweep import read_table, run_sweep, space_from, store
 from softdot.sweep import run as run_module
 from softdot.sweep.point import CRASHED, LOST, NOT_CONVERGED, REFUSED, failed, solve_point
 from softdot.sweep.table import write_table
+from tests.softdot.complaints import complaints
 from tests.softdot.stand_ins import result_of
 from tests.softdot.sweep_spaces import DEPTHS, depths, no_cluster, solved_here, space_of
 from tests.softdot.toml_text import toml_text
@@ -89,7 +90,9 @@ def test_the_summary_is_printed_and_kept(tmp_path, out, capfd):
     assert (printed["format"], printed["complete"], printed["points"]) == ("softdot-sweep/1", True, 2)
     assert printed["ended"] == {"solved": 2, "refused": 0, "not-converged": 0, "crashed": 0, "lost": 0}
     assert (out / "space.toml").read_text() == path.read_text()
-    assert sorted(entry.name for entry in out.iterdir()) == ["points", "space.toml", "sweep.json", "sweep.parquet"]
+    assert sorted(entry.name for entry in out.iterdir()) == [
+        "log.txt", "points", "space.toml", "sweep.json", "sweep.parquet",
+    ]  # fmt: skip
 
 
 def test_the_peak_is_the_largest_magnitude_with_its_sign(rooms, out):
@@ -130,17 +133,18 @@ def test_a_configuration_that_cannot_be_is_a_row_too(out):
 def test_a_sweep_without_any_solved_point_exits_3(presses, tmp_path, out, capfd):
     presses.failures = {0.1: "no", 0.2: "no"}
     assert sweep(tmp_path, out, depths(0.1, 0.2)) == 3
-    assert capfd.readouterr().err == f"softdot: not one of 2 points could be solved; the reasons are in '{out}'\n"
+    said = complaints(capfd.readouterr().err)
+    assert said == f"softdot: not one of 2 points could be solved; the reasons are in '{out}'\n"
     assert len(rows(out)) == 2
 
 
 def test_an_interrupted_sweep_keeps_what_was_finished_and_goes_on(presses, tmp_path, out, capfd):
     presses.failures = {0.3: KeyboardInterrupt()}
     assert sweep(tmp_path, out, depths(0.1, 0.2, 0.3, 0.4)) == 130
-    assert capfd.readouterr().err == (
+    assert complaints(capfd.readouterr().err) == (
         f"softdot: interrupted; finished points are kept in '{out}', the same command goes on with the others\n"
     )
-    assert sorted(entry.name for entry in out.iterdir()) == ["points", "sweep.json"]
+    assert sorted(entry.name for entry in out.iterdir()) == ["log.txt", "points", "sweep.json"]
     assert len(points(out)) == 2
     with pytest.raises(InputError, match="the sweep is not complete"):
         read_table(out)
@@ -156,7 +160,7 @@ def test_interrupted_before_anything_was_written(monkeypatch, tmp_path, out, cap
 
     monkeypatch.setattr(run_module, "local_cluster", stopped)
     assert sweep(tmp_path, out, depths(0.1)) == 130
-    assert capfd.readouterr().err == "softdot: interrupted, nothing was written\n"
+    assert complaints(capfd.readouterr().err) == "softdot: interrupted, nothing was written\n"
     assert not out.exists()
 
 
@@ -171,10 +175,11 @@ def test_another_space_takes_over_the_points_that_both_have(presses, tmp_path, o
 
 def test_the_table_of_the_last_complete_sweep_stays_until_the_next_is_complete(presses, tmp_path, out):
     sweep(tmp_path, out, depths(0.1, 0.2))
-    before = {path.name: path.read_bytes() for path in out.iterdir() if path.is_file()}
+    tables = ("sweep.json", "sweep.parquet")
+    before = {name: (out / name).read_bytes() for name in tables}
     presses.failures = {0.4: KeyboardInterrupt()}
     assert sweep(tmp_path, out, depths(0.3, 0.4)) == 130
-    assert {path.name: path.read_bytes() for path in out.iterdir() if path.is_file()} == before
+    assert {name: (out / name).read_bytes() for name in tables} == before
 
 
 ENDS = {CRASHED: [0.2], LOST: [0.2], REFUSED: [], NOT_CONVERGED: []}
@@ -243,7 +248,8 @@ def test_a_full_disk_is_one_sentence_and_the_points_stay(tmp_path, out, monkeypa
 
     monkeypatch.setattr(store, "finish", full)
     assert sweep(tmp_path, out, depths(0.1)) == 2
-    assert capfd.readouterr().err == f"softdot: '{out}/sweep.parquet' cannot be written (No space left on device)\n"
+    said = complaints(capfd.readouterr().err)
+    assert said == f"softdot: '{out}/sweep.parquet' cannot be written (No space left on device)\n"
     assert len(points(out)) == 1
 
 

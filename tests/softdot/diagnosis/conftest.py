@@ -7,6 +7,7 @@ import pytest
 from softdot.cli import main
 from softdot.diagnosis import engines, page
 from tests.diagnose.verdict.toy import ToyEngine
+from tests.softdot.complaints import complaints
 
 
 @pytest.fixture
@@ -24,6 +25,6 @@ def diagnosed(monkeypatch, tmp_path, capfd, request):
     def call(folder, *more):
         status = main(["diagnose", str(folder), "-o", str(tmp_path / "out"), "--json", *more])
         said = capfd.readouterr()
-        return status, json.loads(said.out) if said.out else None, said.err
+        return status, json.loads(said.out) if said.out else None, complaints(said.err)
 
     return call

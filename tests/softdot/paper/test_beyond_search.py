@@ -11,7 +11,7 @@ from softdot.paper.beyond.final import beats
 from softdot.paper.beyond.search import GOALS, capacitance_pF, limits_of, to_beat
 from softdot.paper.beyond.surrogate import Surrogate
 from softdot.paper.beyond.trials import Press, Trial
-from softdot.progress import Silent
+from softdot.progress import Logged
 from tests.softdot.paper import stand_in_beyond as stand_in
 
 
@@ -76,7 +76,7 @@ def found():
     """A search in which the corrected parameters play the solver."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(searching, "solve_trials", lambda designs, *_: stand_in.trials(designs))
-        return searching.search(Silent(), stand_in.CONSTANTS)
+        return searching.search(Logged(), stand_in.CONSTANTS)
 
 
 @pytest.mark.slow

@@ -39,7 +39,7 @@ def made(tmp_path_factory):
 
 
 def test_the_folder_holds_page_numbers_figures_and_tables(made):
-    assert sorted(path.name for path in made.iterdir()) == ["figures", "paper.html", "paper.json", "tables"]
+    assert sorted(path.name for path in made.iterdir()) == ["figures", "log.txt", "paper.html", "paper.json", "tables"]
     assert {"segment.png", "fig07-free.png", "fig08-clamped.png", "fig10-selected.png"} <= {
         path.name for path in (made / "figures").iterdir()
     }
