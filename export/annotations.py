@@ -83,4 +83,6 @@ def colour_bar(figure: Any, low: float, high: float, label: str, extend: str = "
 
 
 COLOUR_MAP = "viridis"
+DIVERGING = "RdBu_r"
+"""For signed quantities, white at zero."""
 """Even to the eye, readable in grey and by the colour-blind."""

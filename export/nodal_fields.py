@@ -49,3 +49,15 @@ def film_values(tet_mesh: TetMesh, film_tets: Ints, values: Floats) -> Floats:
     whole = np.zeros(len(tet_mesh.tets))
     whole[film_tets] = values
     return whole
+
+
+def film_at_nodes(tet_mesh: TetMesh, values: Floats) -> Floats:
+    """Film values (k,) or (k, c) at the mesh's nodes: the volume-weighted mean around each, zero off the film."""
+    tets = tet_mesh.tets[tet_mesh.region_tets("film")]
+    a, b, c, d = (tet_mesh.points_mm[tets[:, i]] for i in range(4))
+    weight = np.repeat(np.abs(np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a)), 10)
+    count, flat = len(tet_mesh.points_mm), tets.ravel()
+    total = np.bincount(flat, weight, count)
+    columns = np.repeat(values.reshape(len(values), -1), 10, axis=0).T
+    sums = np.column_stack([np.bincount(flat, weight * column, count) for column in columns])
+    return np.asarray((sums / np.where(total > 0.0, total, 1.0)[:, None]).reshape(count, *values.shape[1:]))

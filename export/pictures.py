@@ -39,7 +39,7 @@ def write_pictures(
         scene = open_scene(tet_mesh, last, dot_shape)
         draw_parts(scene, pressed, files["deformed"])
         draw_von_mises(scene, pressed, files["von_mises"])
-        draw_film(tet_mesh, last, f"Film at {depth:.3g} mm", files["film"], is_slice(tet_mesh))
+        draw_film(tet_mesh, last, result.film_peak, f"Film at {depth:.3g} mm", files["film"], is_slice(tet_mesh))
         draw_curves(abscissa(result), *_history(result), readout_voltage_V, files["force_voltage"])
     return {name: folder / f"{name}.png" for name in FILES}
 

@@ -26,8 +26,9 @@ CAPTIONS = {
     ),
     "film": (
         "What the film feels",
-        "Left: the largest stretch in the film, averaged through its thickness; right: the charge that this "
-        "stretch frees on each square millimetre; thin white lines join places of equal deflection.",
+        "Left: the largest principal strain of the film, averaged through its thickness; right: the charge that "
+        "this strain frees on each square millimetre, white where it is none; thin lines join places of equal "
+        "deflection. Colours end at the largest values away from held sides.",
     ),
     "force_voltage": (
         "Force and voltage while pressing",
@@ -46,8 +47,9 @@ SLICE_CAPTIONS = {
     ),
     "film": (
         "What the film feels",
-        "Along the length, left: the largest stretch in the film, averaged through its thickness; right: "
-        "the charge that this stretch frees on each square millimetre.",
+        "Along the length, left: the largest principal strain of the film, averaged through its thickness; "
+        "right: the charge that this strain frees on each square millimetre. The scales end at the largest values "
+        "away from held sides.",
     ),
 }
 """What differs for a plane-strain slice, where nothing varies across the width."""
@@ -103,6 +105,8 @@ def headline(summary: Mapping[str, Any]) -> list[dict[str, str]]:
     """The numbers at the top: label, value, unit and one plain sentence each; missing ones are left out."""
     film, sensitivity = summary.get("film", {}), summary.get("sensitivity", {})
     noise = sensitivity.get("noise_V")
+    away = film.get("rim_distance_mm")
+    where = "mean through the film" + (f", at least {number(away)} mm from held sides" if away else "")
     at_noise = f"for a noise of {number(1e3 * noise)} mV" if noise else "for the stated noise"
     rows = [
         ("Depth reached", _last(summary, "indentation_mm"), "mm", "how far the dot went in"),
@@ -114,14 +118,23 @@ def headline(summary: Mapping[str, Any]) -> list[dict[str, str]]:
         ("Voltage per depth", sensitivity.get("voltage_per_mm"), "V/mm", "at the deepest step"),
         ("Charge per force", sensitivity.get("charge_pC_per_N"), "pC/N", "at the deepest step"),
         ("Least detectable press", sensitivity.get("least_detectable_indentation_um"), "µm", at_noise),
-        ("Largest film strain", _percent(film.get("max_principal_strain")), "%", "principal, anywhere in the film"),
-        ("Largest film stress", film.get("max_principal_stress_MPa"), "MPa", "principal, anywhere in the film"),
+        ("Largest film strain", _percent(film.get("max_principal_strain")), "%", f"principal, {where}"),
+        ("Largest film stress", film.get("max_principal_stress_MPa"), "MPa", f"principal, {where}"),
+        *_at_the_rim(film),
     ]
     return [
         {"label": label, "value": number(value), "unit": unit, "note": note}
         for label, value, unit, note in rows
         if value is not None
     ]
+
+
+def _at_the_rim(film: Mapping[str, Any]) -> list[tuple[str, Any, str, str]]:
+    """The strain at a held side, where there is one."""
+    if not film.get("rim_distance_mm"):
+        return []
+    about = "singular: no material constant to compare with, it grows with every finer mesh"
+    return [("Film strain at the held side", _percent(film.get("rim_principal_strain")), "%", about)]
 
 
 def step_rows(summary: Mapping[str, Any]) -> tuple[list[str], list[list[str]]]:

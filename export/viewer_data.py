@@ -15,7 +15,7 @@ from export.units import MM_PER_M
 from geometry.colours import PART_COLOURS
 from geometry.dot_shape import DotShape
 from mesh.types import TetMesh
-from solve.result import PressResult, Step
+from solve.result import FilmPeak, PressResult, Step
 
 MOST_STEPS = 9
 """Steps shown; more would make the page heavy without showing more."""
@@ -43,7 +43,7 @@ def viewer_data(tet_mesh: TetMesh, result: PressResult, dot_shape: DotShape) -> 
         "plane": plane,
         "slice": is_slice(tet_mesh),
         **_geometry(skins),
-        **_fields(skins, tet_mesh),
+        **_fields(skins, tet_mesh, result.film_peak),
         **_dot(tet_mesh, chosen, dot_shape, plane),
     }
 
@@ -84,13 +84,13 @@ def _geometry(skins: list[Skin]) -> dict[str, Any]:
     }
 
 
-def _fields(skins: list[Skin], tet_mesh: TetMesh) -> dict[str, Any]:
-    """Stress up to the 99th percentile of the soft parts (the film is far stiffer), strain up to its top."""
+def _fields(skins: list[Skin], tet_mesh: TetMesh, peak: FilmPeak) -> dict[str, Any]:
+    """Stress up to the 99th percentile of the soft parts (the film is far stiffer), strain up to the stated largest."""
     stress = np.concatenate([skin.von_mises_MPa for skin in skins], axis=1)
     strain = np.concatenate([skin.film_strain for skin in skins], axis=1)
     soft = np.concatenate([skin.region for skin in skins]) != tet_mesh.region_names.index("film")
     stress_top = float(np.percentile(stress[-1, soft], 99)) or 1.0
-    strain_top = float(strain.max()) or 1.0
+    strain_top = peak.strain or 1.0
     return {
         "stress": _pack(_share(stress, stress_top), np.uint8),
         "strain": _pack(_share(strain, strain_top), np.uint8),

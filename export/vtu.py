@@ -9,6 +9,7 @@ import numpy as np
 
 from export.dot_surface import placed_dot
 from export.files import whole_folder
+from export.nodal_fields import film_at_nodes
 from export.units import MM_PER_M, MPA_PER_PA, PC_PER_MM2_PER_C_PER_M2
 from geometry.dot_shape import DotShape
 from mesh.types import Floats, Ints, TetMesh
@@ -80,6 +81,13 @@ def _film(tet_mesh: TetMesh, step: Step) -> Any:
     _add(grid.cell_data, "film_stress_MPa", fields.film_stress_Pa * MPA_PER_PA, FILM_AXES)
     charge = fields.charge_density_C_per_m2 * PC_PER_MM2_PER_C_PER_M2
     _add(grid.cell_data, "charge_density_pC_per_mm2", charge)
+    at_nodes = {
+        "nodal_film_strain": (fields.film_strain, FILM_AXES),
+        "nodal_film_stress_MPa": (fields.film_stress_Pa * MPA_PER_PA, FILM_AXES),
+        "nodal_charge_density_pC_per_mm2": (charge, ()),
+    }
+    for name, (values, axes) in at_nodes.items():
+        _add(grid.point_data, name, film_at_nodes(tet_mesh, values)[nodes], axes)
     return grid
 
 

@@ -42,7 +42,7 @@ def design_warnings(config: Config) -> list[str]:
 
 def _yield(config: Config, result: PressResult) -> list[str]:
     film = config.layer_materials()["film"]
-    stress = 1e-6 * result.max_principal_film_stress_Pa
+    stress = 1e-6 * result.film_peak.stress_Pa
     if (
         not isinstance(film, PiezoelectricFilm)
         or film.yield_stress_MPa is None

@@ -72,11 +72,7 @@ def press_part(
         part["readout_voltage_V"] = readout_voltage_V
     found = {
         **part,
-        "film": {
-            "capacitance_pF": PF * result.capacitance_F.sum(),
-            "max_principal_strain": result.max_principal_film_strain,
-            "max_principal_stress_MPa": MPA * result.max_principal_film_stress_Pa,
-        },
+        "film": film(result),
         "electrodes": electrodes(result, channels_V),
         "sensitivity": sensitivity(
             past.indentation_mm, past.reaction_force_N, past.film_charge_pC, voltage, config
@@ -102,6 +98,20 @@ def not_finite(value: Any, name: str = "") -> str | None:
     else:
         return name if isinstance(value, float | np.floating) and not np.isfinite(value) else None
     return next((where for item, inner in items if (where := not_finite(item, inner)) is not None), None)
+
+
+def film(result: PressResult) -> dict[str, Any]:
+    """The film's capacitance and largest strain, stress and charge density, away from held rims and at them."""
+    peak = result.film_peak
+    return {
+        "capacitance_pF": PF * result.capacitance_F.sum(),
+        "max_principal_strain": peak.strain,
+        "max_principal_stress_MPa": MPA * peak.stress_Pa,
+        "charge_density_pC_per_mm2": [1e6 * density for density in peak.charge_density_C_per_m2],
+        "rim_distance_mm": MM * peak.rim_distance_m,
+        "rim_principal_strain": peak.rim_strain,
+        "rim_principal_stress_MPa": MPA * peak.rim_stress_Pa,
+    }
 
 
 def electrodes(result: PressResult, channels_V: Floats | None = None) -> list[dict[str, Any]]:

@@ -1,8 +1,9 @@
-"""Fields of a converged state in SI units, element means where they vary inside an element."""
+"""Fields of a converged state in SI units: means over the element, and through the thickness of the film."""
 
 import numpy as np
 
 from mesh.types import Floats, Ints, TetMesh
+from solve.film_average import film_columns
 from solve.kinematics import deformation_gradient
 from solve.materials.voigt import from_voigt, to_voigt
 from solve.quadrature import tetrahedron
@@ -24,6 +25,8 @@ def fields(system: System, tet_mesh: TetMesh, state: State, before: State) -> Fi
         cauchy[index], stretch[index] = _medium(solid, trial, system.history_of(solid, before))
     film = tet_mesh.region_tets("film")
     strain, stress, cauchy[film], stretch[film] = _film(system, trial, system.history_of(system.film, before))
+    columns = film_columns(tet_mesh)
+    strain, stress = columns.mean(strain), columns.mean(stress)
     density = stress @ system.film.law.coupling
     turn = system.film.law.to_film_axes
     deviator = cauchy - np.einsum("mii->m", cauchy)[:, None, None] / 3.0 * np.eye(3)

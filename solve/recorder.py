@@ -11,9 +11,9 @@ from mesh.types import Floats, TetMesh
 from solve.doubts import doubts
 from solve.electrodes import scale_of_section
 from solve.fields import fields
+from solve.film_average import film_peak
 from solve.inertia import prescribed_acceleration
 from solve.materials.parameters import Material, PiezoelectricFilm
-from solve.materials.voigt import from_voigt
 from solve.parameters import Press
 from solve.physics import Physics
 from solve.result import PressResult, Record, Step, Trace
@@ -130,8 +130,7 @@ class Recorder:
             unknowns=self.system.count,
             linear_solver=linear_solver,
             max_relative_residual=max(step.relative_residual for step in steps),
-            max_principal_film_strain=max(_largest_principal(step.fields.film_strain) for step in steps),
-            max_principal_film_stress_Pa=max(_largest_principal(step.fields.film_stress_Pa) for step in steps),
+            film_peak=film_peak(steps, self.tet_mesh, self.segment),
             warnings=doubts(steps, self.records),
         )
 
@@ -197,7 +196,3 @@ class Recorder:
         deposited = 1e-12 * self.physics.contact_charge_pC * touched[:, None] * area / area.sum()
         return np.asarray(pyroelectric + deposited)
 
-
-def _largest_principal(voigt: Floats) -> float:
-    """Largest principal value of symmetric tensors (k, 6)."""
-    return float(np.linalg.eigvalsh(from_voigt(voigt))[:, -1].max())

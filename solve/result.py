@@ -14,6 +14,8 @@ class Fields:
     von_mises_Pa, pressure_Pa (positive in compression), max_stretch : (m,)
     film_tets : (k,) indices of the film's tetrahedra; the film arrays follow it, in the film's own axes (1 along
         the draw direction, 2 across, 3 normal):
+    The film arrays are means through the film's thickness (solve.film_average), the same for all tetrahedra that
+    stand over one another:
     film_strain : (k, 6) Green-Lagrange strain 11, 22, 33, 12, 23, 13
     film_stress_Pa : (k, 6) second Piola-Kirchhoff stress, same order
     charge_density_C_per_m2 : (k,) short-circuit charge per undeformed area
@@ -91,6 +93,22 @@ class Trace:
 
 
 @dataclass(frozen=True)
+class FilmPeak:
+    """The largest film quantities of a press, each a mean through the thickness; principal values.
+
+    strain, stress_Pa, charge_density_C_per_m2 (least and largest) : at least rim_distance_m away from held sides.
+    rim_strain, rim_stress_Pa : anywhere. At a held side they are singular: they grow with every finer mesh.
+    """
+
+    strain: float
+    stress_Pa: float
+    charge_density_C_per_m2: tuple[float, float]
+    rim_distance_m: float
+    rim_strain: float
+    rim_stress_Pa: float
+
+
+@dataclass(frozen=True)
 class PressResult:
     """The history of a press. steps[0] is the unloaded state, trace has every sub-step too.
 
@@ -112,6 +130,5 @@ class PressResult:
     unknowns: int
     linear_solver: str
     max_relative_residual: float
-    max_principal_film_strain: float
-    max_principal_film_stress_Pa: float
+    film_peak: FilmPeak
     warnings: tuple[str, ...] = field(default=())

@@ -147,8 +147,8 @@ def test_the_whole_configuration_is_shown_as_text(tmp_path: Path, view: dict[str
 
 def test_slice_is_described_as_a_slice(tmp_path: Path) -> None:
     flat = summary(config={"segment": {"section": "plane-strain"}})
-    assert "white lines" in page(tmp_path, summary())
-    assert "white lines" not in page(tmp_path, flat)
+    assert "thin lines" in page(tmp_path, summary())
+    assert "thin lines" not in page(tmp_path, flat)
 
 
 def test_failed_write_leaves_nothing_behind(tmp_path: Path) -> None:
@@ -200,3 +200,12 @@ def test_viewer_is_short_and_by_itself() -> None:
     code = Path("export/viewer.js").read_text(encoding="utf-8")
     assert code.count("\n") <= 250
     assert "import " not in code
+
+
+def test_the_headline_strain_says_where_it_is_and_the_rim_is_named_singular(tmp_path: Path) -> None:
+    film = {"max_principal_strain": 0.002, "rim_distance_mm": 0.14, "rim_principal_strain": 0.017}
+    html = page(tmp_path, summary(film=film))
+    assert "at least 0.14 mm from held sides" in html
+    assert "Film strain at the held side" in html
+    free = page(tmp_path, summary(film={**film, "rim_distance_mm": 0.0}))
+    assert "Film strain at the held side" not in free

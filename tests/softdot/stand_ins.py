@@ -4,7 +4,7 @@ import numpy as np
 
 from geometry.dot_shape import DotShape
 from mesh.types import TetMesh
-from solve.result import Fields, PressResult, Step, Trace
+from solve.result import Fields, FilmPeak, PressResult, Step, Trace
 
 
 def one_tetrahedron() -> TetMesh:
@@ -61,6 +61,5 @@ def result_of(depths_mm: list[float], failure: str | None = None, stress_MPa: fl
         unknowns=30,
         linear_solver="stand-in",
         max_relative_residual=1e-12,
-        max_principal_film_strain=0.01,
-        max_principal_film_stress_Pa=1e6 * stress_MPa,
+        film_peak=FilmPeak(0.01, 1e6 * stress_MPa, (0.0, 1e-5), 1.4e-4, 0.03, 3e6 * stress_MPa),
     )

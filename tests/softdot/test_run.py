@@ -35,9 +35,10 @@ def test_summary_holds_what_was_solved(tmp_path):
     assert summary["reaction_force_N"] == pytest.approx([0.0, 1.5, 3.0])
     assert summary["film_charge_pC"] == pytest.approx([0.0, 3.0, 6.0])
     assert summary["open_circuit_voltage_V"] == pytest.approx([0.0, 0.3, 0.6])
-    assert summary["film"] == pytest.approx(
-        {"capacitance_pF": 10.0, "max_principal_strain": 0.01, "max_principal_stress_MPa": 10.0}
-    )
+    film = summary["film"]
+    assert (film["capacitance_pF"], film["max_principal_strain"]) == pytest.approx((10.0, 0.01))
+    assert (film["max_principal_stress_MPa"], film["rim_principal_stress_MPa"]) == pytest.approx((10.0, 30.0))
+    assert (film["charge_density_pC_per_mm2"], film["rim_distance_mm"]) == (pytest.approx([0.0, 10.0]), 0.14)
     assert summary["sensitivity"]["voltage_per_mm"] == pytest.approx(2.0)
     assert summary["sensitivity"]["charge_pC_per_N"] == pytest.approx(2.0)
     assert summary["sensitivity"]["least_detectable_indentation_um"] == pytest.approx(0.5)  # 1 mV at 2 V/mm
