@@ -42,7 +42,7 @@ def refuse_bad_columns(columns: Mapping[str, Floats], drive: str, file: Path) ->
     if channels == [drive]:
         raise InputError(f"recording '{file}': only {drive} was recorded; a column of voltage or force is needed too")
     if "voltage_V" in columns and len([name for name in channels if name.startswith("voltage")]) > 1:
-        raise InputError(f"recording '{file}': column voltage_V stands beside voltage_1_V; number all or none")
+        raise InputError(f"recording '{file}': has both voltage_V and voltage_1_V; number all of them or none")
     for name in [drive, *(name for name in channels if name != drive)]:
         _refuse_dead(name, columns[name], file, drive)
 

@@ -75,7 +75,7 @@ def _header(stream: TextIO, file: Path) -> list[str]:
         if name not in NAMES and not NUMBERED.fullmatch(name):
             raise InputError(f"recording '{file}' row 1: column '{name[:40]}' is not known; {_meant(name)}")
         if name in names[:number]:
-            raise InputError(f"recording '{file}' row 1: column '{name[:40]}' stands there twice")
+            raise InputError(f"recording '{file}' row 1: column '{name[:40]}' appears twice")
     if "time_s" not in names:
         raise InputError(f"recording '{file}': column time_s is missing")
     return names

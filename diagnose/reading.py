@@ -24,7 +24,7 @@ def read_recording(
     names = [run.name for run in runs]
     for number, name in enumerate(names):
         if name in names[:number]:
-            raise InputError(f"recording '{folder / 'rig.toml'}': runs[{number}].label = '{name}' stands there twice")
+            raise InputError(f"recording '{folder / 'rig.toml'}': runs[{number}].label = '{name}' appears twice")
     refuse_by_size(folder / run.file for run in runs)
     pairs = [
         (read_run(folder, table, readout, touches=specimen is None), folder / table.file)

@@ -21,17 +21,17 @@ Drive = Literal["displacement_mm", "force_N"]
 class RunTable(Table):
     """One file of samples and what the experimenter believes of it."""
 
-    file: str = Field(description="CSV file, beside rig.toml")
+    file: str = Field(description="CSV file in the folder of rig.toml")
     label: str | None = Field(None, description="name in the report; none: the name of the file")
     drive: Drive = Field("displacement_mm", description="which measured column drives the simulation")
     dot_offset_mm: tuple[Finite, Finite] = Field((0.0, 0.0), description="position of the dot, x and y")
-    temperature_C: Finite | None = Field(None, description="of the room during this run")
+    temperature_C: Finite | None = Field(None, description="room temperature during this run")
     readout: dict[str, Any] = Field({}, description="keys of [readout] that differ in this run")
     nuisance: dict[str, Positive] = Field(
-        {}, description="what may float without counting as physics, with one-sigma widths"
+        {}, description="nuisance parameters, which are no missing physics, each with its standard deviation"
     )
     noise: dict[str, Positive] = Field(
-        {}, description="column and one sigma of its white noise, where neither rest nor repeated runs show it"
+        {}, description="column and standard deviation of its white noise, where neither rest nor repeated runs show it"
     )
 
     @field_validator("file")
@@ -50,7 +50,7 @@ class RunTable(Table):
         flat = _flattened(value) if isinstance(value, Mapping) else value
         for name in flat if isinstance(flat, Mapping) else ():
             if name not in NUISANCES:
-                raise ValueError(f"'{name}' is no nuisance; {nearest(name, NUISANCES)}")
+                raise ValueError(f"'{name}' is not a nuisance parameter; {nearest(name, NUISANCES)}")
         return flat
 
     @property
@@ -64,12 +64,12 @@ class Specimen(Table):
 
     kind: Literal["tension", "compression", "shear"] = Field(
         description="tension: a strip pulled along its length; compression: a block pressed through its thickness; "
-        "shear: a layer between plates that slide along its length"
+        "shear: a layer between plates that move along its length"
     )
     material: str = Field(description="name of a material")
-    length_mm: Positive = Field(description="tension: free length between the grips; else size along x")
+    length_mm: Positive = Field(description="tension: free length between the grips; otherwise the size along x")
     width_mm: Positive = Field(description="size along y")
-    thickness_mm: Positive = Field(description="of the strip, block or layer")
+    thickness_mm: Positive = Field(description="thickness of the strip, block or layer")
 
     @property
     def gauge_mm(self) -> float:
@@ -85,9 +85,9 @@ class Specimen(Table):
 class RigTables(Table):
     """rig.toml without the configuration."""
 
-    format: Literal["softdot-recording/1"] = Field(description="of this file")
+    format: Literal["softdot-recording/1"] = Field(description="format of this file")
     geometry: Literal["known", "unknown"] = Field(
-        "known", description="unknown: there is no [segment]; noise and localisation only, no 3D model"
+        "known", description="unknown: there is no [segment] and no 3D model; the charge is proportional to the force"
     )
     runs: tuple[RunTable, ...] = Field(description="one table per file")
     specimen: Specimen | None = Field(None, description="a coupon in place of [segment]")

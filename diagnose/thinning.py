@@ -28,8 +28,8 @@ def thinned(recording: Recording) -> Recording:
         return recording
     runs = tuple(averaged(run, factor) for run, factor in zip(recording.runs, factors, strict=True))
     said = (
-        f"{count:,} samples of a channel are more than are needed: up to {max(factors)} in a row were averaged, and "
-        f"nothing faster than {0.5 / max(run.step_s for run in runs):.3g} Hz was looked at."
+        f"{count:,} samples of a channel are more than needed: up to {max(factors)} in a row were averaged, and "
+        f"nothing faster than {0.5 / max(run.step_s for run in runs):.3g} Hz was analysed."
     )
     return replace(recording, runs=runs, warnings=(*recording.warnings, said))
 

@@ -32,7 +32,7 @@ def refuse_cell_of(dot: Dot) -> Floats:
     if dot.cell is not None:
         raise InputError(f"dot.cell = '{dot.cell}': a cell has dots of dot.shape = 'cap', not '{dot.shape}'")
     if dot.cell_dot != 1:
-        raise InputError(f"dot.cell_dot = {dot.cell_dot}: says something only together with dot.cell")
+        raise InputError(f"dot.cell_dot = {dot.cell_dot}: has a meaning only together with dot.cell")
     return np.zeros((1, 2))
 
 

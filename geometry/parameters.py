@@ -31,7 +31,7 @@ class Effector(Table):
     height_mm: Positive = Field(1.0, description="height above medium 1")
     length_mm: Positive | None = Field(None, description="block only: size in x")
     width_mm: Positive | None = Field(None, description="block only: size in y")
-    diameter_mm: Positive | None = Field(None, description="cylinder and dome: diameter of the foot")
+    diameter_mm: Positive | None = Field(None, description="cylinder and dome: diameter of the base")
     material: str = Field("rubber", description="name of a material")
 
 
@@ -74,7 +74,7 @@ class Segment(Table):
 
     length_mm: Positive = Field(2.5, description="size in x")
     width_mm: Positive = Field(
-        2.5, description="size in y; for plane-strain what force and charge are scaled to"
+        2.5, description="size in y; with plane-strain, the width to which force and charge are scaled"
     )
     section: Literal["solid", "plane-strain"] = Field(
         "solid", description="plane-strain: one thin slice without strain in y"
@@ -88,7 +88,7 @@ class Segment(Table):
     side_stiffness_N_per_mm3: NonNegative = Field(
         5.0, description="elastic only: normal and tangential traction per displacement of the held sides"
     )
-    effector: Effector | None = Field(None, description="leave the table out for none")
+    effector: Effector | None = Field(None, description="leave the table out for a segment without effector")
     medium1: Medium
     film: Film
     medium2: Medium

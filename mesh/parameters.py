@@ -22,6 +22,6 @@ class MeshOptions(Table):
         1, description="quadratic elements through the film"
     )
     coarsen: bool = Field(
-        False, description="pytetwild: merge elements smaller than asked for; half as many where sizes are large"
+        False, description="pytetwild: merge elements smaller than requested; half as many where sizes are large"
     )
     timeout_s: Positive = Field(300.0, description="the mesher is stopped after this time")

@@ -28,7 +28,7 @@ class Config(Table):
 
     segment: Segment = Field(description="the sensor segment")
     materials: dict[str, AnyMaterial] = Field(
-        {}, description="adds to the built-in materials or overrides them"
+        {}, description="materials beside or instead of the built-in ones"
     )
     dot: Dot = Field(Dot(), description="the rigid Braille dot")
     press: Press = Field(Press(), description="how the dot is pressed")
@@ -37,7 +37,7 @@ class Config(Table):
     mechanisms: tuple[Mechanism, ...] = Field((), description="physics beyond the baseline")
     fabrication: Fabrication = Field(Fabrication(), description="how the parts are made")
     seed: int = Field(
-        0, ge=0, description="of everything random; a run has nothing random but the mesher's order"
+        0, ge=0, description="seed of everything random; in a run only the mesher is"
     )
 
     @model_validator(mode="after")

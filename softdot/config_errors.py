@@ -18,8 +18,8 @@ BOUNDS = {
 }
 LENGTHS = {"too_short": ("min_length", "at least"), "too_long": ("max_length", "at most")}
 KINDS = {
-    "float_type": "must be a plain number, its unit stands in the key",
-    "float_parsing": "must be a plain number, its unit stands in the key",
+    "float_type": "must be a plain number; its unit is part of the key",
+    "float_parsing": "must be a plain number; its unit is part of the key",
     "int_type": "must be a whole number",
     "int_parsing": "must be a whole number",
     "int_from_float": "must be a whole number",

@@ -16,7 +16,7 @@ def held_rim_warnings(segment: Segment, dot_shape: DotShape, indentation_mm: flo
         return []
     return [
         f"a dot meets the held rim of the segment at an indentation of {max(free_mm, 0.0):.3g} mm, and neither "
-        "gives way: the computation will stop there; move the dot, enlarge the segment or hold fewer layers"
+        "can deform: the computation will stop there; move the dot, enlarge the segment or hold fewer layers"
     ]
 
 

@@ -30,9 +30,9 @@ Kind = TypeVar("Kind", bound=Table)
 class Bench(Table):
     """What is left of a configuration where there is no segment: a coupon test, or a geometry that is not known."""
 
-    materials: dict[str, AnyMaterial] = Field({}, description="adds to the built-in materials or overrides them")
+    materials: dict[str, AnyMaterial] = Field({}, description="materials beside or instead of the built-in ones")
     readout: Readout | None = Field(None, description="the amplifier; leave out for open circuit")
-    seed: int = Field(0, ge=0, description="of everything random")
+    seed: int = Field(0, ge=0, description="seed of everything random")
 
     @model_validator(mode="after")
     def _charge_mode(self) -> "Bench":
@@ -67,7 +67,7 @@ def load_rig(folder: Path | str) -> Rig:
         what = "this is a file, a folder is needed" if folder.exists() else "there is no such folder"
         raise InputError(f"recording '{folder}': {what}")
     if not (folder / RIG_FILE).exists():
-        raise InputError(f"recording '{folder}': has no {RIG_FILE}, which says what was built and run")
+        raise InputError(f"recording '{folder}': has no {RIG_FILE}, which states what was built and measured")
     tables = read_toml(folder / RIG_FILE)
     try:
         own, config, bench, readouts = _believed(tables)
@@ -95,7 +95,7 @@ def _believed(tables: Mapping[str, Any]) -> tuple[RigTables, Config | None, Benc
 def _bench(rest: Mapping[str, Any], own: RigTables) -> Bench:
     if "segment" in rest:
         key = "specimen" if own.specimen is not None else "geometry = 'unknown'"
-        raise InputError(f"segment stands beside {key}: leave one of them out")
+        raise InputError(f"segment and {key} exclude each other: leave one of them out")
     bench = _checked(Bench, with_built_in_constants(rest))
     if own.specimen is not None:
         find_material(own.specimen.material, bench.materials, "specimen.material")

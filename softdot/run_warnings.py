@@ -35,8 +35,8 @@ def design_warnings(config: Config) -> list[str]:
     if not held or isinstance(nu, tuple) or nu < NEARLY_INCOMPRESSIBLE:
         return []
     return [
-        f"the held sides of medium2 close a cavity around a nearly incompressible material (poisson_ratio "
-        f"= {nu:g}): it blocks the film, and small changes of poisson_ratio change the result much"
+        f"the held sides of medium2 enclose a nearly incompressible material (poisson_ratio "
+        f"= {nu:g}): it blocks the film, and small changes of poisson_ratio change the result a lot"
     ]
 
 
@@ -51,7 +51,7 @@ def _yield(config: Config, result: PressResult) -> list[str]:
         return []
     return [
         f"the film's largest principal stress of {stress:.3g} MPa exceeds its yield stress of "
-        f"{film.yield_stress_MPa:g} MPa: a real film would stay stretched"
+        f"{film.yield_stress_MPa:g} MPa: a real film would remain stretched"
     ]
 
 

@@ -29,7 +29,7 @@ def delaminated_facets(
     middle = (corners.min(axis=1) + corners.max(axis=1)) / 2 if plane_strain else corners.mean(axis=1)
     inside = np.linalg.norm((middle - center)[:, axes], axis=1) <= diameter_mm / 2 + ROUND_OFF_MM
     if not len(inner_nodes(tet_mesh, facets, ~inside)):
-        raise InputError(f"{given}: must span several facets of the mesh (element_size_mm), which are larger there")
+        raise InputError(f"{given}: must span several facets, which are too large there (mesh.element_size_mm)")
     return np.asarray(inside)
 
 

@@ -13,8 +13,8 @@ FINER = (
     "try more load steps (press.load_steps), a finer mesh (mesh.contact_element_size_mm), or a smaller depth or force"
 )
 HELD = (
-    "something moves freely, or the dot presses on what the case holds: change segment.held_layers, stiffen the bonds, "
-    "or move the dot"
+    "something can move freely, or the dot presses on a part that the case holds: change "
+    "segment.held_layers, stiffen the bonds, or move the dot"
 )
 TIE = 1e-6  # of det F: round-off must not choose between two elements
 OVER = "keep the dot over the segment (dot.offset_mm, press.path_xy_mm), or prescribe the depth (press.indentation_mm)"

@@ -19,31 +19,31 @@ class Parameters(Table):
     @classmethod
     def _plain(cls, value: Any) -> Any:
         if any(isinstance(one, str | bool) for one in (value if isinstance(value, list) else [value])):
-            raise PydanticCustomError("plain_number", "must be a plain number, its unit stands in the key")
+            raise PydanticCustomError("plain_number", "must be a plain number; its unit is part of the key")
         return value
 
 
 class ChargeLeakage(Parameters):
     """A resistance parallel to the read-out's."""
 
-    resistance_MOhm: Positive = Field(description="in parallel to the input resistance")
+    resistance_MOhm: Positive = Field(description="resistance parallel to the input resistance")
 
 
 class ParasiticCapacitance(Parameters):
     """A capacitance parallel to the read-out's."""
 
-    capacitance_pF: NonNegative = Field(description="added to the input capacitance")
+    capacitance_pF: NonNegative = Field(description="capacitance added to that of the input")
 
 
 class LowPass(Parameters):
     """A low-pass behind the read-out, Butterworth's where no quality is given."""
 
-    cutoff_Hz: Positive = Field(description="where half the power is left")
+    cutoff_Hz: Positive = Field(description="frequency at which half the power remains")
     order: Annotated[int, Field(ge=1, le=8)] = Field(1, description="order")
     quality: Annotated[float, Field(gt=0, le=10, allow_inf_nan=False)] | None = Field(
-        None, description="of order 2: 0.5 two equal RC stages, 0.577 Bessel, 0.707 and none Butterworth"
+        None, description="quality for order 2: 0.5 two equal RC stages, 0.577 Bessel, 0.707 and none Butterworth"
     )
-    delay_s: NonNegative = Field(0.0, description="dead time behind it: of a converter, or of a filter of higher order")
+    delay_s: NonNegative = Field(0.0, description="dead time after the filter, such as that of a converter")
 
     @model_validator(mode="after")
     def _second_order(self) -> Self:
@@ -57,28 +57,28 @@ class Saturation(Parameters):
 
     limit_V: Positive = Field(description="the voltage stays between plus and minus this")
     sharpness: Annotated[float, Field(ge=1, le=1000, allow_inf_nan=False)] | None = Field(
-        None, description="of the knee: 2.5 is about tanh; hard when left out"
+        None, description="sharpness of the knee: 2.5 is close to tanh; none: a hard limit"
     )
 
 
 class MainsHum(Parameters):
     """A sine added to the voltage."""
 
-    frequency_Hz: Positive = Field(50.0, description="of the mains")
-    amplitude_V: NonNegative = Field(description="of the sine")
+    frequency_Hz: Positive = Field(50.0, description="frequency of the mains")
+    amplitude_V: NonNegative = Field(description="amplitude of the sine")
 
 
 class PyroelectricDrift(Parameters):
     """A temperature step of the film."""
 
     temperature_step_K: Finite = Field(description="final change of temperature")
-    time_constant_s: Positive = Field(1.0, description="of the exponential approach, from the first touch")
+    time_constant_s: Positive = Field(1.0, description="time constant of the exponential approach after first touch")
 
 
 class ContactElectrification(Parameters):
     """Charge that the touch leaves on the electrodes."""
 
-    charge_pC: Finite = Field(description="at the largest contact area; in proportion to the area before")
+    charge_pC: Finite = Field(description="charge at the largest contact area; proportional to the area before that")
 
 
 class Viscoelasticity(Parameters):
@@ -141,7 +141,7 @@ class StressSoftening(Parameters):
 class FilmYield(Parameters):
     """Plasticity of the film."""
 
-    yield_stress_MPa: Positive = Field(description="von Mises stress at which it flows")
+    yield_stress_MPa: Positive = Field(description="von Mises stress at which the film yields")
     hardening_modulus_MPa: NonNegative = Field(0.0, description="0: perfectly plastic")
 
 
@@ -150,9 +150,9 @@ class AdhesiveCompliance(Parameters):
 
     normal_stiffness_N_per_mm3: BondStiffness | None = Field(None, description="traction per opening")
     shear_stiffness_N_per_mm3: BondStiffness | None = Field(None, description="traction per slip")
-    thickness_um: Positive | None = Field(None, description="of the glue, instead of the stiffnesses")
-    youngs_modulus_MPa: Positive | None = Field(None, description="of the glue")
-    poisson_ratio: Annotated[float, Field(ge=0, lt=0.5)] = Field(0.45, description="of the glue")
+    thickness_um: Positive | None = Field(None, description="thickness of the glue, instead of the stiffnesses")
+    youngs_modulus_MPa: Positive | None = Field(None, description="modulus of the glue")
+    poisson_ratio: Annotated[float, Field(ge=0, lt=0.5)] = Field(0.45, description="Poisson's ratio of the glue")
 
     @model_validator(mode="after")
     def _one_way(self) -> Self:
@@ -170,13 +170,13 @@ class DelaminationPatch(Parameters):
     """A region without bond."""
 
     center_mm: tuple[Finite, Finite] = Field((0.0, 0.0), description="centre, x and y")
-    diameter_mm: NonNegative = Field(description="of the disc; plane strain: width of the strip")
+    diameter_mm: NonNegative = Field(description="diameter of the disc; plane strain: width of the strip")
 
 
 class Friction(Parameters):
     """Coulomb friction of the dot."""
 
-    coefficient: Annotated[float, Field(ge=0, le=3, allow_inf_nan=False)] = Field(description="Coulomb's")
+    coefficient: Annotated[float, Field(ge=0, le=3, allow_inf_nan=False)] = Field(description="coefficient of friction")
 
 
 class ElasticSides(Parameters):
@@ -200,7 +200,7 @@ class ContactGap(Parameters):
 class RigCompliance(Parameters):
     """A spring between displacement sensor and dot."""
 
-    compliance_mm_per_N: NonNegative = Field(description="of the rig")
+    compliance_mm_per_N: NonNegative = Field(description="compliance of the rig")
 
 
 class FilmPrestretch(Parameters):
@@ -213,7 +213,7 @@ class FilmPrestretch(Parameters):
 class Inertia(Parameters):
     """Mass that moves with the dot."""
 
-    moving_mass_g: NonNegative = Field(description="between the force sensor and the dot")
+    moving_mass_g: NonNegative = Field(description="mass between the force sensor and the dot")
 
 
 class Crosstalk(Parameters):
@@ -227,11 +227,11 @@ class Crosstalk(Parameters):
 class PropertyError(Parameters):
     """A wrong number in the configuration."""
 
-    modulus_factor: Positive = Field(1.0, description="on every modulus of the layer")
-    thickness_factor: Positive = Field(1.0, description="on the layer's thickness")
-    d31_factor: Positive = Field(1.0, description="film: on d31, d32 and d33")
-    radius_factor: Positive = Field(1.0, description="dot: on its radius")
-    height_factor: Positive = Field(1.0, description="dot: on its height")
+    modulus_factor: Positive = Field(1.0, description="factor on every modulus of the layer")
+    thickness_factor: Positive = Field(1.0, description="factor on the thickness of the layer")
+    d31_factor: Positive = Field(1.0, description="film: factor on d31, d32 and d33")
+    radius_factor: Positive = Field(1.0, description="dot: factor on its radius")
+    height_factor: Positive = Field(1.0, description="dot: factor on its height")
 
 
 class DimensionReduction(Parameters):

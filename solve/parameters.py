@@ -11,7 +11,7 @@ class Waveform(Table):
     """How the indentation (or the force) follows time."""
 
     shape: Literal["ramp", "half-sine", "raised-cosine", "trapezoid", "file"] = Field(
-        "ramp", description="ramp: up and stay; trapezoid: up, hold, down; file: two CSV columns time_s, fraction"
+        "ramp", description="ramp: up, then hold; trapezoid: up, hold, down; file: two CSV columns time_s, fraction"
     )
     rise_s: Positive = Field(0.5, description="time from touch to full depth")
     hold_s: NonNegative = Field(0.0, description="ramp and trapezoid: time at full depth")
@@ -29,7 +29,7 @@ class Press(Table):
     force_N: Positive | None = Field(None, description="final force instead of indentation_mm")
     load_steps: Annotated[int, Field(ge=1, le=1000)] = Field(6, description="equal steps that are reported")
     path_xy_mm: tuple[tuple[Finite, Finite], ...] = Field(
-        (), description="way points of a slide at full load; within the hold of a trapezoid, else after the waveform"
+        (), description="waypoints of a slide at full load; within the hold of a trapezoid, else after the waveform"
     )
     waveform: Waveform | None = Field(None, description="time course, for the read-out and time-dependent physics")
 
@@ -39,7 +39,7 @@ class Press(Table):
         if not self.path_xy_mm or shape in ("ramp", "raised-cosine"):
             return self
         if shape != "trapezoid":
-            raise ValueError(f"waveform.shape = '{shape}': a slide needs a load that stays, 'ramp' or 'trapezoid'")
+            raise ValueError(f"waveform.shape = '{shape}': a slide needs a load that is held, 'ramp' or 'trapezoid'")
         if self.waveform is not None and self.waveform.hold_s == 0.0:
             raise ValueError("waveform.hold_s = 0: a slide (path_xy_mm) takes place during the hold of a trapezoid")
         return self
@@ -67,5 +67,5 @@ class Readout(Table):
     high_pass_Hz: Positive | None = Field(None, description="Butterworth high-pass; none: no filter")
     filter_order: Annotated[int, Field(ge=1, le=8)] = Field(1, description="order of both filters")
     limit_V: Positive | None = Field(None, description="the amplifier saturates at plus and minus this voltage")
-    polarity: Literal[1, -1] = Field(1, description="sign of the voltage as wired")
+    polarity: Literal[1, -1] = Field(1, description="sign of the voltage, as wired")
     noise_V: Positive = Field(1e-3, description="noise (one sigma) for the least detectable indentation")

@@ -148,7 +148,7 @@ def _gap(model: Model, component: str, values: Any) -> Model:
 
 def _reduced(model: Model, component: str, values: Any) -> Model:
     if model.dot.shape == "plate":
-        raise ValueError("name = 'dimension-reduction': a plate has no other dimension")
+        raise ValueError("name = 'dimension-reduction': a plate is the same in both")
     shape, section = ("ridge", "plane-strain") if model.dot.shape == "cap" else ("cap", "solid")
     return _dot(replace(model, segment=model.segment.model_copy(update={"section": section})), shape=shape)
 

@@ -109,7 +109,7 @@ def coupon_engine(recording: Recording, materials: Mapping[str, Material], repor
     assert specimen is not None
     material = find_material(specimen.material, materials, "specimen.material")
     if isinstance(material, PiezoelectricFilm):
-        raise InputError(f"specimen.material = '{specimen.material}': a film is no coupon; name a medium")
+        raise InputError(f"specimen.material = '{specimen.material}': a film cannot be a coupon; name a medium")
     _refuse_unfit(recording, specimen)
     candidates = coupon_candidates(recording, material, point_of(specimen, one_layer(material, specimen.thickness_mm)))
     engine = CouponEngine(recording, specimen, material, tuple(candidates))

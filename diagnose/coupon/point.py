@@ -121,7 +121,7 @@ class _Test:
         return self.relaxation.newton_step(residual, by_stress, stress_by, by_unknown)
 
     def _nowhere(self) -> NoEquilibriumError:
-        reason = "the coupon finds no equilibrium: its law turns over within this travel or force"
+        reason = "the coupon has no equilibrium: the stress of its law falls within this travel or force"
         return NoEquilibriumError(reason, self.drive, None)
 
 

@@ -31,5 +31,5 @@ class ImaginedEngine:
         if self._proposal.number is not None:
             return self._engine.predict(self._proposal.number, kept)
         if not hasattr(self._engine, "imagine"):
-            raise ValueError(f"the model '{self.name}' knows only the presses of the recording")
+            raise ValueError(f"the model '{self.name}' can predict only the presses of the recording")
         return self._engine.imagine(self._proposal.run, kept)

@@ -138,7 +138,7 @@ def proportional_engine(recording: Recording, report: Report) -> ProportionalEng
 def _refuse_unfit(run: Run, first: Run) -> None:
     where = f"recording '{run.file}'"
     if run.drive != "force_N":
-        raise InputError(f"{where}: geometry = 'unknown' needs drive = 'force_N', for nothing tells how far it yields")
+        raise InputError(f"{where}: geometry = 'unknown' needs drive = 'force_N', because its stiffness is not known")
     others = [name for name in run.answers if name not in run.voltages]
     if others:
         raise InputError(f"{where}: geometry = 'unknown' cannot explain column {others[0]}; leave it out")

@@ -40,7 +40,7 @@ def watch(room: Path, cache: Path) -> None:
             return
         if event != "open" and path in open_to_list:
             return
-        raise PermissionError(13, "outside of the clean room", name)
+        raise PermissionError(13, "outside the isolated folder", name)
 
     sys.addaudithook(hook)
 

@@ -40,7 +40,7 @@ def tried(case: Case, terms: Terms, commit: Commit) -> dict[str, Any]:
     commit(case.name, digest)
     heard = _heard(case, terms, files(BENCHES[case.bench], runs))
     if not verified(sealed.truth, sealed.salt, digest):
-        raise RuntimeError(f"{case.name}: the truth is not what was committed")
+        raise RuntimeError(f"{case.name}: the truth does not match its hash")
     found = {name: asdict(opinion) for name, opinion in rivals.opinions(case.bench, runs).items()}
     record = {"case": asdict(case), "truth": sealed.truth, "salt": sealed.salt, "digest": digest, "rivals": found}
     if heard.verdict is None:

@@ -55,7 +55,7 @@ def _draw_signals(panel: Any, run: Run, channel: str, findings: Findings, full: 
         improved = findings.improved[run.label][channel]
         panel.plot(run.time_s, improved, color=AFTER, lw=1.2, label="with what was left out")
     if full is not None and channel in full:
-        panel.plot(run.time_s, full[channel], color=FULL, lw=2.0, ls=":", label="the same by the full model")
+        panel.plot(run.time_s, full[channel], color=FULL, lw=2.0, ls=":", label="the same with the full model")
     panel.set_ylabel(_axis(channel), fontsize=10)
     limits = [_shown(run, channel), *_models(run, channel, findings).values()]
     low, high = (f(np.concatenate(limits)) for f in (np.nanmin, np.nanmax))

@@ -91,9 +91,10 @@ class Prepared:
                     raise
             else:
                 return reduction, _all_there(outputs)
-            told = f"No equilibrium with all that {', '.join(layers)} may remember"
+            told = f"No equilibrium with the full memory of {', '.join(layers)}"
             dropped = layers.pop()
-            self.shortfalls["viscoelasticity", dropped] = f"{told}: viscoelasticity of the {dropped} is no candidate."
+            left_out = f"viscoelasticity of {dropped} is left out of the candidates"
+            self.shortfalls["viscoelasticity", dropped] = f"{told}: {left_out}."
 
     @property
     def nothing(self) -> Floats:
@@ -154,12 +155,12 @@ class Prepared:
         for point in points:
             if point in known:
                 continue
-            name, instead = press_name(candidate, point), "it is no candidate"
+            name, instead = press_name(candidate, point), "it is left out of the candidates"
             if known:
                 nearest = min(known, key=lambda other: float(np.linalg.norm(np.subtract(other, point))))
                 self._changes[name] = self._changes[press_name(candidate, nearest)]
-                instead = f"its press at {_values(candidate, nearest)} stands in"
-            what = f"{candidate.mechanism} of the {candidate.component}"
+                instead = f"its press at {_values(candidate, nearest)} is used instead"
+            what = f"{candidate.mechanism} ({candidate.component})"
             self.shortfalls[name] = f"No equilibrium with {what} at {_values(candidate, point)}: {instead}."
 
     def moved(self, place: Place) -> Model:

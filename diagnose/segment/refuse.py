@@ -15,9 +15,9 @@ def refuse(model: Model, recording: Recording) -> None:
     declared = {"friction": physics.friction, "stress-softening": physics.softening, "film-yield": physics.film_yield}
     for name, value in declared.items():
         if value:
-            raise InputError(f"mechanisms: '{name}' is looked for by a diagnosis, it cannot be declared; leave it out")
+            raise InputError(f"mechanisms: '{name}' is a candidate of a diagnosis and cannot be declared; leave it out")
     if physics.viscosity and physics.prestretch != (0.0, 0.0):
-        raise InputError("mechanisms: a diagnosis takes viscoelasticity or film-prestretch as declared, not both")
+        raise InputError("mechanisms: a diagnosis accepts declared viscoelasticity or film-prestretch, but not both")
     for run in recording.runs:
         if run.drive == "displacement_mm":
             try:

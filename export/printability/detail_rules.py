@@ -44,7 +44,7 @@ def feature(measured: Measured, profile: PrinterProfile) -> Iterator[Finding]:
         problem = f"a detail of {_mm(width)} cannot be printed by {name}"
         yield Finding("feature", width, limit, "mm", place, "error", problem, advice)
     elif width < limit - SLACK_MM:
-        problem = f"a detail of {_mm(width)} comes out rough by {name}"
+        problem = f"a detail of {_mm(width)} will be rough with {name}"
         yield Finding("feature", width, limit, "mm", place, "warning", problem, advice)
 
 

@@ -17,7 +17,7 @@ def command(chosen: Namespace) -> int:
         with only_the_summary_on_stdout(), progress_of(chosen) as progress:
             summary = run_paper(Path(chosen.output), progress)
     except NotSolvedError as error:
-        complain(f"paper, {error}; nothing was written, solved presses are remembered")
+        complain(f"paper, {error}; nothing was written, solved presses are cached")
         return NOT_CONVERGED
     show(summary, chosen, short_text)
     return GOOD

@@ -58,7 +58,7 @@ def check_request(request: PlateRequest) -> None:
     for name, value in own.items():
         if value is not None and request.kind not in ONLY_FOR.get(name, KINDS):
             allowed = ", ".join(ONLY_FOR[name])
-            raise InputError(f"{_option(name)}: says nothing for --kind {request.kind}, only for {allowed}")
+            raise InputError(f"{_option(name)}: has no meaning for --kind {request.kind}, only for {allowed}")
     for name in ("thickness_mm", "margin_mm"):
         if (length := getattr(request, name)) is not None:
             require_length(_option(name), length)

@@ -27,7 +27,7 @@ def command(chosen: Namespace) -> int:
     except KeyboardInterrupt:
         if not (Path(chosen.output) / CASES).exists():
             raise
-        complain(f"interrupted; finished cases are kept in '{chosen.output}', the same command goes on with the others")
+        complain(f"interrupted; finished cases are kept in '{chosen.output}', the same command continues")
         return INTERRUPTED
     show(summary, chosen, short_text)
     if summary["ended"].get("scored"):

@@ -21,7 +21,7 @@ from softdot.proof.work import prove_case
 
 RIDGES = ("ridge-clamped", "ridge-free")
 RIGS = (*RIDGES, "dot-clamped")
-AWAY = "the Dask scheduler went away; finished cases are kept, start the proof again"
+AWAY = "the Dask scheduler disappeared; finished cases are kept, start the proof again"
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ def command(chosen: Namespace) -> int:
     except KeyboardInterrupt:
         if not (Path(chosen.output) / POINTS).exists():
             raise
-        kept = f"finished points are kept in '{chosen.output}', the same command goes on with the others"
+        kept = f"finished points are kept in '{chosen.output}', the same command continues with the others"
         complain(f"interrupted; {kept}")
         return INTERRUPTED
     show(summary, chosen, short_text)

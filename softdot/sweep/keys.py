@@ -48,9 +48,9 @@ def with_value(tables: Mapping[str, Any], key: str, value: Any) -> dict[str, Any
 def _require(place: Any, part: str | int, key: str) -> None:
     """A name needs a table, a number a list that has so many elements."""
     if isinstance(part, str) and not isinstance(place, dict):
-        raise InputError(f"'{key}': what stands before '{part}' in this file is no table")
+        raise InputError(f"'{key}': the part before '{part}' is not a table in this file")
     if isinstance(part, int) and not isinstance(place, list):
-        raise InputError(f"'{key}': what stands before [{part}] in this file is no list")
+        raise InputError(f"'{key}': the part before [{part}] is not a list in this file")
     if isinstance(part, int) and part >= len(place):
         has = f"has {len(place)}" if place else "is empty or absent in this file"
         raise InputError(f"'{key}': there is no element [{part}], the list {has}; write it out first")

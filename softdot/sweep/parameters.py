@@ -15,12 +15,12 @@ class Axis(Table):
     """One direction of the space: a key, or several that always have the same value, and its values."""
 
     key: str | None = Field(None, description="dotted key, such as segment.medium1.thickness_mm")
-    keys: tuple[str, ...] = Field((), description="in place of key: several keys that get the same value")
-    values: tuple[Any, ...] | None = Field(None, description="the values: numbers, texts, lists or tables")
-    low: Finite | None = Field(None, description="in place of values: smallest value")
+    keys: tuple[str, ...] = Field((), description="instead of key: several keys that get the same value")
+    values: tuple[Any, ...] | None = Field(None, description="the values: numbers, strings, lists or tables")
+    low: Finite | None = Field(None, description="instead of values: smallest value")
     high: Finite | None = Field(None, description="largest value")
     n: Annotated[int, Field(ge=2, le=MOST_POINTS)] | None = Field(None, description="grid: values from low to high")
-    scale: Literal["linear", "log"] = Field("linear", description="how low to high is divided")
+    scale: Literal["linear", "log"] = Field("linear", description="how the values from low to high are spaced")
 
     @field_validator("key", "keys")
     @classmethod
@@ -65,7 +65,7 @@ class Sweep(Table):
     sampling: Literal["grid", "list", "latin-hypercube", "sobol"] = Field(
         "grid", description="grid: every combination; list: first values together, second values together, …"
     )
-    points: Count | None = Field(None, description="latin-hypercube and sobol: how many")
+    points: Count | None = Field(None, description="latin-hypercube and sobol: number of points")
     seed: int = Field(0, ge=0, description="of latin-hypercube and sobol")
     workers: Annotated[int, Field(ge=1, le=1024)] | None = Field(
         None, description="processes on this computer; none: one per core"
@@ -108,4 +108,4 @@ class Sweep(Table):
             for other, before in ways[:number]:
                 shorter = min(len(way), len(before))
                 if way[:shorter] == before[:shorter]:
-                    raise ValueError(f"axes: '{other}' and '{key}' set the same place; one of them must go")
+                    raise ValueError(f"axes: '{other}' and '{key}' set the same key; remove one of them")

@@ -66,5 +66,5 @@ def sampling_warnings(sweep: Sweep) -> list[str]:
     """What a user should know about this design."""
     count = sweep.points or 1
     if sweep.sampling == "sobol" and count & (count - 1):
-        return [f"sweep.points = {count}: Sobol points are balanced for powers of two only"]
+        return [f"sweep.points = {count}: Sobol points are balanced only for powers of two"]
     return []

@@ -42,7 +42,7 @@ def _require_scheduler(address: str, where: str) -> None:
         reason = "" if isinstance(error, OSError) else f" ({type(error).__name__})"
         raise InputError(f"{where}: no Dask scheduler answers there within {CONNECT_S} s{reason}") from None
     if kind != "Scheduler":
-        raise InputError(f"{where}: a Dask {str(kind).lower()} answers there, not a scheduler")
+        raise InputError(f"{where}: this is a Dask {str(kind).lower()}, not a scheduler")
 
 
 async def _kind(address: str) -> Any:

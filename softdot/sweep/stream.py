@@ -7,7 +7,7 @@ from geometry.errors import InputError
 from softdot.config import Config
 from softdot.sweep.point import CRASHED, LOST, Record, failed, solve_point
 
-AWAY = "the Dask scheduler went away; finished points are kept, start the sweep again"
+AWAY = "the Dask scheduler disappeared; finished points are kept, start the sweep again"
 Task = Callable[..., Record]
 
 
@@ -58,5 +58,5 @@ def _record(future: Any) -> Record:
     if error is None:
         return dict(future.result())
     if isinstance(error, KilledWorker):
-        return failed(LOST, "its worker died each time; the memory may have been too small")
+        return failed(LOST, "its worker died each time, perhaps for lack of memory")
     return failed(CRASHED, f"{type(error).__name__}: {error}")

@@ -120,4 +120,4 @@ class YieldLaw:
             multiplier = np.maximum(multiplier + residual / slope, 0.0)
             if (np.abs(residual) <= 1e-13).all():
                 return multiplier, q
-        raise ArithmeticError("the return to the yield surface of the film did not converge")
+        raise ArithmeticError("the projection onto the yield surface of the film did not converge")

@@ -30,9 +30,9 @@ class MaterialTable(Table):
     max_fitted_strain: Positive | None = Field(
         None, description="largest nominal strain of the data behind the constants; a run warns beyond it"
     )
-    source: str | None = Field(None, description="where the constants come from")
+    source: str | None = Field(None, description="source of the constants")
     confidence: Literal["high", "medium", "low"] | None = Field(
-        None, description="high: read in the source; medium: fitted or secondary; low: a starting value"
+        None, description="high: read in the source; medium: fitted, or a secondary source; low: only a starting value"
     )
 
 
@@ -125,7 +125,7 @@ class PiezoelectricFilm(MaterialTable):
     )
     youngs_modulus_MPa: Positive = Field(2000.0, description="Young's modulus along the draw direction")
     youngs_modulus_2_MPa: Positive | None = Field(
-        None, description="Young's modulus across the draw direction; none: as along it"
+        None, description="Young's modulus across the draw direction; none: the same as along it"
     )
     poisson_ratio: PoissonRatio = Field(0.29, description="Poisson's ratio")
     d31_pC_per_N: Finite = Field(23.0, description="charge per force along the draw direction")
@@ -134,7 +134,7 @@ class PiezoelectricFilm(MaterialTable):
     relative_permittivity: Positive = Field(12.0, description="at constant stress, along the normal")
     pyroelectric_uC_per_m2_K: Finite = Field(30.0, description="charge per area and temperature")
     yield_stress_MPa: Positive | None = Field(
-        50.0, description="a run warns when the film is stressed beyond it"
+        50.0, description="a run warns if the stress of the film exceeds it"
     )
     density_kg_m3: Positive = Field(1780.0, description="density in the undeformed state")
     coupling: Literal["one-way", "two-way"] = Field(

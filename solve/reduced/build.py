@@ -81,9 +81,9 @@ def _refuse(case: Case) -> None:
     if isinstance(film, PiezoelectricFilm) and film.coupling == "two-way":
         raise ValueError("coupling = 'two-way': the reduced model needs a film whose voltage does not act back")
     if case.physics.friction > 0.0 or case.physics.softening or case.physics.film_yield is not None:
-        raise ValueError("friction, softening and yield depend on the path: they stay with the full solve")
+        raise ValueError("friction, softening and yield depend on the path: they need the full solver")
     if case.relaxing and case.physics.prestretch != (0.0, 0.0):
-        raise ValueError("a prestretched film with relaxing layers stays with the full solve")
+        raise ValueError("a prestretched film with relaxing layers needs the full solver")
     for layer, share in case.relaxing.items():
         if not 0.0 < share < 1.0:
             raise ValueError(f"relaxing: {layer} = {share:g}, must lie between 0 and 1")

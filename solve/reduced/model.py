@@ -64,9 +64,9 @@ class ReducedModel:
 
     def _refuse(self, physics: Physics) -> None:
         if physics.friction > 0.0 or physics.softening or physics.film_yield is not None:
-            raise ValueError("the reduced model has no friction, softening or yield: these stay with the full solve")
+            raise ValueError("the reduced model has no friction, softening or yield: these need the full solver")
         if structure(physics) != self.structure:
-            raise ValueError("the reduced model was made with other bonds, delaminations or prestretch: build it anew")
+            raise ValueError("the reduced model was made with other bonds, delaminations or prestretch: build it again")
         for name, series in physics.viscosity.items():
             share, known = sum(series.relative_moduli), self.relaxing.get(name, 0.0)
             if share > known * (1.0 + 1e-9):
@@ -84,7 +84,7 @@ class ReducedModel:
             times, layer, outputs.shape[1], path, outputs,
         )  # fmt: skip
         if status == TOO_DEEP:
-            raise ValueError(f"the dot goes deeper than {self.depth_mm:g} mm, the most that the reduced model knows")
+            raise ValueError(f"the dot goes deeper than {self.depth_mm:g} mm, for which the reduced model was made")
         return path, outputs
 
     def _other_charge(self, time: Floats, contact_area: Floats, physics: Physics) -> Floats:

@@ -19,7 +19,7 @@ def given(
     given = depth_mm if depth_mm is not None else force_N
     time, drive = np.ascontiguousarray(time_s, dtype=np.float64), np.array(given, dtype=np.float64)
     if time.ndim != 1 or drive.shape != time.shape or len(time) < 2:
-        raise ValueError("time_s and the drive need one equal length of at least 2")
+        raise ValueError("time_s and the drive need the same length, at least 2")
     if not (np.isfinite(time).all() and np.isfinite(drive).all() and (np.diff(time) > 0.0).all()):
         raise ValueError("time_s must increase, and both it and the drive be finite")
     return time, drive - (gap_mm if depth_mm is not None else 0.0), BY_DEPTH if depth_mm is not None else BY_FORCE

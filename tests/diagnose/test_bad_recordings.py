@@ -13,10 +13,10 @@ from softdot.rig_file import load_rig
 from tests.diagnose.rigs import COUPON, HEAD, RUN, SEGMENT, csv_text, samples, write_rig
 
 GOOD = HEAD + SEGMENT + RUN
-NUMBER = "must be a plain number, its unit stands in the key"
+NUMBER = "must be a plain number; its unit is part of the key"
 RIGS = {
     # the table of the runs
-    SEGMENT + RUN: "format is missing: of this file",
+    SEGMENT + RUN: "format is missing: format of this file",
     GOOD.replace("recording/1", "recording/9"): "format = 'softdot-recording/9': must be 'softdot-recording/1'",
     HEAD + SEGMENT: "runs is missing: one table per file",
     "runs = []\n" + HEAD + SEGMENT: "runs = []: must hold at least one table",
@@ -24,10 +24,10 @@ RIGS = {
     GOOD + "lable = 'a'": "runs[0].lable is not a key; did you mean 'label'?",
     GOOD + "temperature_C = '23 C'": f"runs[0].temperature_C = '23 C': {NUMBER}",
     GOOD + "dot_offset_mm = [0.0]": "runs[0].dot_offset_mm[1] is missing",
-    GOOD + RUN: "runs[1].label = 'press' stands there twice",
-    GOOD + "[runs.nuisance]\ngian = 0.1": "runs[0].nuisance: 'gian' is no nuisance; did you mean 'gain'?",
+    GOOD + RUN: "runs[1].label = 'press' appears twice",
+    GOOD + "[runs.nuisance]\ngian = 0.1": "runs[0].nuisance: 'gian' is not a nuisance parameter; did you mean 'gain'?",
     GOOD + "[runs.nuisance]\nmodulus.medium3 = 0.1": (
-        "runs[0].nuisance: 'modulus.medium3' is no nuisance; did you mean 'modulus.medium2'?"
+        "runs[0].nuisance: 'modulus.medium3' is not a nuisance parameter; did you mean 'modulus.medium2'?"
     ),
     GOOD + "[runs.nuisance]\ngain = 0.0": "runs[0].nuisance.gain = 0: must be above 0",
     GOOD + "[runs.noise]\nvolts = 0.1": "noise.volts of the run 'press' names no column of 'press.csv'",
@@ -40,8 +40,8 @@ RIGS = {
     # the configuration
     HEAD + RUN: "segment.medium1.thickness_mm is missing: thickness in z",
     GOOD + "[dott]": "dott is not a key; did you mean 'dot'?",
-    GOOD + COUPON: "segment stands beside specimen: leave one of them out",
-    "geometry = 'unknown'\n" + GOOD: "segment stands beside geometry = 'unknown': leave one of them out",
+    GOOD + COUPON: "segment and specimen exclude each other: leave one of them out",
+    "geometry = 'unknown'\n" + GOOD: "segment and geometry = 'unknown' exclude each other: leave one of them out",
     HEAD + RUN + COUPON.replace("rubber", "ruber"): (
         "specimen.material = 'ruber': no such material; did you mean 'rubber'?"
     ),
@@ -101,11 +101,11 @@ FILES = {
     edited(1, 1, "displacement_um"): (
         " row 1: column 'displacement_um' is not known; did you mean 'displacement_mm'? (mind the unit)"
     ),
-    edited(1, 1, "voltage_V"): " row 1: column 'voltage_V' stands there twice",
+    edited(1, 1, "voltage_V"): " row 1: column 'voltage_V' appears twice",
     without("time_s"): ": column time_s is missing",
     without("displacement_mm"): None,
     without("voltage_V"): ": only displacement_mm was recorded; a column of voltage or force is needed too",
-    changed(voltage_1_V=samples()["voltage_V"]): ": column voltage_V stands beside voltage_1_V; number all or none",
+    changed(voltage_1_V=samples()["voltage_V"]): ": has both voltage_V and voltage_1_V; number all of them or none",
     # cells
     edited(12, 2, "abc"): " row 12, column voltage_V = 'abc': must be a number, or nan if missing",
     edited(12, 2, "inf"): " row 12, column voltage_V = inf: must be at most 1e+12 in size, or nan if missing",
@@ -163,7 +163,7 @@ def test_many_files_are_counted_together(tmp_path, monkeypatch):
     [
         (lambda _: None, ": there is no such folder"),
         (lambda folder: folder.write_text(""), ": this is a file, a folder is needed"),
-        (lambda folder: folder.mkdir(), ": has no rig.toml, which says what was built and run"),
+        (lambda folder: folder.mkdir(), ": has no rig.toml, which states what was built and measured"),
     ],
 )
 def test_folder(make, expected, tmp_path):

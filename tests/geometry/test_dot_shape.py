@@ -97,7 +97,7 @@ REFUSED = {
     "empty cell": (Dot(cell="\u2800"), "dot.cell_dot = 1: not raised in dot.cell = '\u2800', which has none"),
     "cell dot without cell": (
         Dot(cell_dot=2),
-        "dot.cell_dot = 2: says something only together with dot.cell",
+        "dot.cell_dot = 2: has a meaning only together with dot.cell",
     ),
     "unknown standard": (
         Dot(standard="marburg"),

@@ -25,7 +25,7 @@ PRONY = (
     "parameters = {{relative_moduli = {}, relaxation_times_s = {}}}"
 )
 
-NUMBER = "must be a plain number, its unit stands in the key"
+NUMBER = "must be a plain number; its unit is part of the key"
 BOND = "normal_stiffness_N_per_mm3 = 1.0\nshear_stiffness_N_per_mm3 = 1.0"
 CASES = {
     # unknown keys

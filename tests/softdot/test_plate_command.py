@@ -176,9 +176,9 @@ REFUSED = {
     "size that is not fixed": (["a", "--standard", "norway"], "--standard 'norway': has no height_mm; give it by"),
     "character": (["aπ", "--standard", "ada"], "'π' .* at place 2 .*liblouis"),
     "long line": (["a" * 41, "--standard", "ada"], "41 cells, at most 40 .*--width-cells"),
-    "option of another kind": (["a", "--standard", "ada", "--thread", "M6"], "--thread: says nothing for --kind text"),
+    "option of another kind": (["a", "--standard", "ada", "--thread", "M6"], "--thread: has no meaning for .*text"),
     "given pitch of another kind": (
-        ["--kind", "tip", "--standard", "ada", "--dot-pitch-mm", "2"], "--dot-pitch-mm: says nothing for --kind tip",
+        ["--kind", "tip", "--standard", "ada", "--dot-pitch-mm", "2"], "--dot-pitch-mm: has no meaning for --kind tip",
     ),
     "text of another kind": (["a", "--kind", "dot", "--standard", "ada"], "--kind dot has no text"),
     "thickness": (["a", "--standard", "ada", "--thickness-mm", "-1"], "--thickness-mm = -1: must be from 0.01 to 1000"),

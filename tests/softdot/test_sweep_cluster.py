@@ -211,7 +211,7 @@ def test_a_point_that_kills_its_worker_becomes_a_row_with_its_reason():
     assert {name: record["status"] for name, record in records.items()} == {
         "deadly": "lost", "0.03": "solved", "0.04": "solved", "0.05": "solved",
     }
-    assert records["deadly"]["reason"] == "its worker died each time; the memory may have been too small"
+    assert records["deadly"]["reason"] == "its worker died each time, perhaps for lack of memory"
 
 
 @pytest.mark.slow

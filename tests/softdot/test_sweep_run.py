@@ -142,7 +142,7 @@ def test_an_interrupted_sweep_keeps_what_was_finished_and_goes_on(presses, tmp_p
     presses.failures = {0.3: KeyboardInterrupt()}
     assert sweep(tmp_path, out, depths(0.1, 0.2, 0.3, 0.4)) == 130
     assert complaints(capfd.readouterr().err) == (
-        f"softdot: interrupted; finished points are kept in '{out}', the same command goes on with the others\n"
+        f"softdot: interrupted; finished points are kept in '{out}', the same command continues with the others\n"
     )
     assert sorted(entry.name for entry in out.iterdir()) == ["log.txt", "points", "sweep.json"]
     assert len(points(out)) == 2

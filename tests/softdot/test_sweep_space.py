@@ -51,7 +51,7 @@ BAD_SWEEPS = {
     "log of zero": ({"axes": [{"key": T1, "low": 0.0, "high": 1.0, "n": 2, "scale": "log"}]},
                     "sweep.axes[0].low = 0: must be above 0 with scale = 'log'"),
     "text as low": ({"axes": [{"key": T1, "low": "0.4 mm", "high": 1.0}]},
-                    "sweep.axes[0].low = '0.4 mm': must be a plain number, its unit stands in the key"),
+                    "sweep.axes[0].low = '0.4 mm': must be a plain number; its unit is part of the key"),
     "grid without n": ({"axes": [RANGE]},
                        "sweep.axes[0].n is missing: a grid needs the number of values from low to high"),
     "grid with points": ({"axes": [depths(0.1)], "points": 9},
@@ -66,10 +66,10 @@ BAD_SWEEPS = {
     "unequal list": ({"axes": [depths(0.1, 0.2), {"key": T1, "values": [0.5]}], "sampling": "list"},
                      "sweep.axes[1].values has 1 values but axes[0].values has 2: one of each per point"),
     "same key": ({"axes": [depths(0.1), depths(0.2)]},
-                 "sweep.axes: 'press.indentation_mm' and 'press.indentation_mm' set the same place; "
-                 "one of them must go"),
+                 "sweep.axes: 'press.indentation_mm' and 'press.indentation_mm' set the same key; "
+                 "remove one of them"),
     "key in key": ({"axes": [depths(0.1), {"key": "press", "values": [{}]}]},
-                   "sweep.axes: 'press.indentation_mm' and 'press' set the same place; one of them must go"),
+                   "sweep.axes: 'press.indentation_mm' and 'press' set the same key; remove one of them"),
     "huge": ({"axes": [{**RANGE, "n": 200}, {"key": T2, "low": 0.1, "high": 1.0, "n": 200}]},
              "sweep.axes: this grid has 200 × 200 = 40000 points, at most 20000 are allowed"),
     # axes with which no point can be built
@@ -89,9 +89,9 @@ BAD_SWEEPS = {
                         "sweep.axes[0]: 'mechanisms[0].parameters.coefficient': there is no element [0], the list is "
                         "empty or absent in this file; write it out first"),
     "through a number": ({"axes": [{"key": f"{T1}.deep", "values": [0.1]}]},
-                         f"sweep.axes[0]: '{T1}.deep': what stands before 'deep' in this file is no table"),
+                         f"sweep.axes[0]: '{T1}.deep': the part before 'deep' is not a table in this file"),
     "not a list": ({"axes": [{"key": "segment[0]", "values": [0.1]}]},
-                   "sweep.axes[0]: 'segment[0]': what stands before [0] in this file is no list"),
+                   "sweep.axes[0]: 'segment[0]': the part before [0] is not a list in this file"),
 }  # fmt: skip
 
 

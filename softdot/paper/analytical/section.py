@@ -77,7 +77,7 @@ def _blocks(folder: Path) -> list[Block]:
         Heading("What the formulas leave out"),
         "The film is thin but 400 times harder than medium 1. Its bending softness (356e-6 /Pa) is large, and the "
         "paper concludes that the film may be neglected. That holds for bending by itself. In its plane the film is "
-        "the stiffest part of the stack, and it pulls the neutral axis of the beam into its neighbourhood.",
+        "the stiffest part of the stack, and it draws the neutral axis of the beam towards it.",
         composite_table(),
         Figure(
             figures.draw_stiffness(folder),

@@ -82,9 +82,9 @@ def _finding_cable(study: Beyond) -> str:
 def _sides(study: Beyond, folder: Path) -> list[Block]:
     halves = ", ".join(f"{curve.half_way_N_per_mm3():.2g} ({name})" for name, curve in study.curves.items())
     return [
-        "The paper concludes that a real sensor lies between its two boundaries, and presses neither's neighbours. "
-        "Here it presses what lies between, takes its softness parameters to designs that it never tried, and looks "
-        "for a design by calculation.",
+        "The paper concludes that a real sensor lies between its two boundaries, but simulates "
+        "nothing between them. This section does, applies the softness parameters of the paper to designs that it "
+        "never tried, and searches for a better design.",
         Heading("From free to clamped"),
         "The sides of effector, medium 1 and film are held by springs, of a stiffness in newtons per square millimetre "
         "of side and millimetre of way. Zero is the paper's free boundary, infinity its clamped one.",

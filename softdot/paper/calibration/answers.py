@@ -56,7 +56,7 @@ def _transfer(rig: Mapping[str, Solved]) -> Claim:
     return Claim(
         "p of the 16 × 16 mm sensor serves for the segment of 2.5 mm too",
         False,
-        f"behind the same input and at the same speed {' and '.join(parts)} to leakage, since p goes with the area",
+        f"with the same input and speed {' and '.join(parts)} to leakage, as p is proportional to the area",
     )
 
 

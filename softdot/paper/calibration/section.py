@@ -142,12 +142,12 @@ def _rig_blocks(rig: Rig, folder: Path) -> list[Block]:
 
 def _piece_blocks(rig: Rig, spread: Ranges, found: Mapping[str, Factor], folder: Path) -> list[Block]:
     return [
-        Heading("p, piece by piece"),
+        Heading("p, factor by factor"),
         tables.pieces(rig, spread),
         Figure(
             figures.draw_pieces(rig, spread, folder),
             "p as a product",
-            "Logarithmic, so that factors are lengths; a bar that goes down makes p smaller. At the right: p with the "
+            "Logarithmic, so that factors are lengths; a bar that goes down makes p smaller. On the right: p with the "
             "assumed inputs (line), its range over all of them (bar, 5 to 95 %, median white) and the printed value "
             "(diamond).",
         ),
@@ -180,9 +180,9 @@ def _doubt_blocks(rig: Rig, spread: Ranges) -> list[Block]:
         Heading("What is not known"),
         tables.inputs(spread),
         _beam(),
-        "What would settle it. First, R: press once as before, then again with a known resistor (1 MΩ, say) in "
+        "What would decide. First, R: press once as before, then again with a known resistor (1 MΩ, say) in "
         "parallel to the film. If leakage is the cause, the voltage falls by 1 + R / 1 MΩ; if not, it stays. Second, "
-        "T: it can be read off the recorded strain gauge. With both, a single piece is left to test: a press with a "
+        "T: it can be read off the recorded strain gauge. With both, a single factor is left to test: a press with a "
         "charge amplifier takes R and T out altogether and compares film and mechanics directly.",
         Heading("What cannot be predicted"),
         _unpredicted(rig),
@@ -194,10 +194,10 @@ def _doubt_blocks(rig: Rig, spread: Ranges) -> list[Block]:
 def _beam() -> str:
     low, high = INPUTS["beam_length_mm"].low, INPUTS["beam_length_mm"].high
     return (
-        "The beam is a spring in parallel to the sensor, of "
+        "The beam is a spring in parallel with the sensor, of "
         f"{tables.span(tip_stiffness_N_per_mm(high), tip_stiffness_N_per_mm(low))} N/mm for {low:g} to {high:g} mm. "
         "Where the hand pushes exactly over the dot it takes force from the hand and nothing else: its factor is 1. "
-        "Where the hand pushes a little nearer to the clamp, the gauge reads more depth than the dot has, because the "
+        "Where the hand pushes a little nearer to the clamp, the gauge shows more depth than the dot has, because the "
         "sensor's own force bends the beam back."
     )
 
@@ -206,7 +206,7 @@ def _unpredicted(rig: Rig) -> str:
     glue = [tables.voltage_ratio(solved, "glued") for solved in rig.values()]
     soft = [1.0 / tables.voltage_ratio(solved, "soft") for solved in rig.values()]
     return (
-        "The film: its constants differ by about 20 % from lot to lot, which p takes over in full. The glue: 30 µm of "
+        "The film: its constants differ by about 20 % from lot to lot, to which p is proportional. The glue: 30 µm of "
         "0.3 MPa on both faces of the film would change the voltage of the cross-section by "
         f"{100 * (glue[0] - 1):+.0f} % (case I) and {100 * (glue[1] - 1):+.0f} % (case II). The sponge: the text says "
         "50 kPa, Table 1 prints 5; had the paper simulated the one and built the other, p of case I and II would be "

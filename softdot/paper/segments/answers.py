@@ -14,7 +14,7 @@ TWICE_TOO_HIGH = (
     "Not reached. A sharper ridge or held sides of medium 2 would lower it, but then the others miss; see what the "
     "paper leaves open."
 )
-FALLS = "The paper's force rises when medium 1 gets thinner; ours falls, as a thinner layer should."
+FALLS = "The force of the paper rises when medium 1 gets thinner; ours falls, as expected of a thinner layer."
 
 
 def answers(study: Study) -> dict[str, Answer]:

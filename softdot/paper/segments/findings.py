@@ -30,7 +30,7 @@ def findings(study: Study) -> list[str]:
         f"and {slab.voltage_V / solid.voltage_V:.0f} times less voltage in the final clamped design; "
         f"{_passing(study)}, and {_clamped_below_free(study)}.",
         f"With held sides the voltage grows with depth to the power {slab.exponent:.1f} (cross-section) or "
-        f"{solid.exponent:.1f} (true segment): volts per millimetre are no constant of such a sensor.",
+        f"{solid.exponent:.1f} (true segment): volts per millimetre are not a constant of such a sensor.",
     ]
 
 

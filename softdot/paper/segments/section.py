@@ -56,8 +56,8 @@ def _blocks(study: Study, folder: Path) -> list[Block]:
     return [
         "The paper pressed twelve segments 0.3 mm deep in simulation: six with free sides (F1 to F6), six with clamped "
         "sides (C1 to C6), medium 1 being 0.8, 2 or 4 mm thick and medium 2 hard (5 MPa) or very soft (0.05 MPa). It "
-        "then chose a medium 2 of 1 MPa and a medium 1 of 0.5 mm as its final design. All its voltages are the "
-        "simulated ones over the calibration factor 337; ours are divided by the same factor, to be compared.",
+        "then chose a medium 2 of 1 MPa and a medium 1 of 0.5 mm as its final design. All its voltages are "
+        "simulated ones divided by the calibration factor 337; ours are divided by the same factor.",
         *_two_readings(study, folder),
         *_both_boundaries(study, folder),
         *_selected(study, folder),
@@ -96,7 +96,7 @@ def _both_boundaries(study: Study, folder: Path) -> list[Block]:
         Figure(
             figures.draw_cases(study, FREE, folder, "fig07-free"),
             "Segments with free sides",
-            "Mind the two scales. The paper prints no single values of its Fig. 7, only sums with the clamped cases. "
+            "Note the two scales. The paper prints no single values of its Fig. 7, only sums with the clamped cases. "
             "Its order F1 > F2 > F3, and F4 to F6 far below, is tested in both readings below.",
         ),
         Heading("Clamped sides: the paper's Fig. 8"),

@@ -134,7 +134,7 @@ def errors(study: Study) -> Table:
         ]
     return Table(
         "discretisation",
-        "What the mesh is worth: the final design, clamped",
+        "Influence of the mesh: the final design, clamped",
         ["reading", "quantity", "mesh of this study", "a finer mesh", "difference"],
         rows,
     )

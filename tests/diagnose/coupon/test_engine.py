@@ -160,7 +160,7 @@ def test_the_improved_material_is_one_that_a_segment_can_be_made_of():
 
 def test_what_is_no_coupon_test():
     film = PiezoelectricFilm()
-    with pytest.raises(InputError, match="a film is no coupon"):
+    with pytest.raises(InputError, match="a film cannot be a coupon"):
         coupon_engine(Recording((run(),), specimen()), {"mine": film}, silent)
     with pytest.raises(InputError, match="reaches 25 mm, but the specimen is 20 mm thick"):
         coupon_engine(Recording((run(TRAVEL * 25.0 / 8.0),), specimen("compression")), {"mine": RUBBER}, silent)

@@ -55,7 +55,7 @@ def test_the_recording_can_be_read(house):
 def test_nothing_beside_the_room_can_be_read(house, code):
     ended = run_guarded(house, code)
     assert ended.returncode != 0
-    assert "outside of the clean room" in ended.stderr
+    assert "outside the isolated folder" in ended.stderr
 
 
 def test_the_room_is_not_within_reach_of_the_presses_of_the_generator(house, monkeypatch):

@@ -33,15 +33,15 @@ def test_the_nearest_press_stands_in_and_the_verdict_says_so():
     found = bridged(0.25, 0.5)
     assert found._changes[press_name(GLUE, effect_of(GLUE).points[-1])][0, 0] == 0.5
     assert list(found.shortfalls.values()) == [
-        "No equilibrium with property-error of the medium2 at modulus_factor = 2: "
-        "its press at modulus_factor = 1.5 stands in."
+        "No equilibrium with property-error (medium2) at modulus_factor = 2: "
+        "its press at modulus_factor = 1.5 is used instead."
     ]
 
 
 def test_without_any_press_it_is_no_candidate():
     told = list(bridged().shortfalls.values())
     assert len(told) == 3
-    assert all(one.endswith("it is no candidate.") for one in told)
+    assert all(one.endswith("it is left out of the candidates.") for one in told)
 
 
 def test_a_layer_whose_memory_has_no_equilibrium_is_left_out_and_told(monkeypatch):
@@ -64,4 +64,4 @@ def test_a_layer_whose_memory_has_no_equilibrium_is_left_out_and_told(monkeypatc
     assert len(outputs) == 1
     dropped = [layer for layer in asked[0] if layer not in asked[-1]]
     assert set(before.shortfalls) == {("viscoelasticity", layer) for layer in dropped}
-    assert all(told.endswith(" is no candidate.") for told in before.shortfalls.values())
+    assert all(told.endswith(" is left out of the candidates.") for told in before.shortfalls.values())
