@@ -12,7 +12,18 @@ PENETRATION_LIMIT = 0.05  # of the depth; contact holds in weighted means, so a 
 
 def doubts(steps: Sequence[Step], records: Sequence[Record]) -> tuple[str, ...]:
     """Warnings, one sentence each."""
-    return (*_penetration(max(steps, key=lambda step: step.indentation_m)), *_snaps(records), *_unresolved(records))
+    deepest = max(steps, key=lambda step: step.indentation_m)
+    return (*_untouched(records), *_penetration(deepest), *_snaps(records), *_unresolved(records))
+
+
+def _untouched(records: Sequence[Record]) -> tuple[str, ...]:
+    """A warning where the dot never reached the segment."""
+    if len(records) < 2 or any(record.contact_area_m2 > 0.0 for record in records):
+        return ()
+    return (
+        "the dot never touched the segment, so that force and charge of the press are zero: press deeper "
+        "(press.indentation_mm), or see dot.gap_mm, dot.offset_mm and the effector",
+    )
 
 
 def _penetration(step: Step) -> tuple[str, ...]:

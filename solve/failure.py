@@ -7,7 +7,7 @@ from solve.kinematics import deformation_gradient, smallest_jacobian
 from solve.linear import LinearSolveError
 from solve.newton import LostContactError, NoEquilibriumError
 from solve.solid import InvertedElementError
-from solve.system import State, System
+from solve.system import Load, State, System
 
 FINER = (
     "try more load steps (press.load_steps), a finer mesh (mesh.contact_element_size_mm), or a smaller depth or force"
@@ -16,25 +16,52 @@ HELD = (
     "something can move freely, or the dot presses on a part that the case holds: change "
     "segment.held_layers, stiffen the bonds, or move the dot"
 )
+RIM = (
+    "move the dot (dot.offset_mm, dot.tilt_deg), enlarge the segment, hold fewer layers (segment.held_layers) or press "
+    "less deep"
+)
+NEAR_RIM = 0.01  # of the segment's length: a force stops a dot just short of the rim
+CRUSHED = 0.3  # det F: below it the element is to blame, whatever ended the iteration
 TIE = 1e-6  # of det F: round-off must not choose between two elements
 OVER = "keep the dot over the segment (dot.offset_mm, press.path_xy_mm), or prescribe the depth (press.indentation_mm)"
 
 
-def explained(system: System, failure: NoEquilibriumError, last: State) -> str:
-    """The reason, the part and the place (undeformed, mm), and advice; last : the last converged state.
+def explained(system: System, failure: NoEquilibriumError, last: State, load: Load) -> str:
+    """The reason, the part and the place (undeformed, mm), and advice.
+
+    last : the last converged state; load : the one for which there is no equilibrium.
 
     Of an inversion the part and the place are those of the element that was nearest to it there: which one a diverging
     iteration inverts first is round-off.
     """
-    cause = failure.__cause__
+    rim = rim_met(system, last, load)
+    if rim is not None:
+        part = _part(system, rim)
+        at = _at(system, system.points[[rim]])
+        return f"the dot meets the rim of {part} that the case holds{at}, and neither gives way; {RIM}"
+    cause, (volume, crushed) = failure.__cause__, _nearest_to_inversion(system, last)
+    if crushed is not None and volume < CRUSHED:
+        said = f"an element of {crushed.region} is crushed to {volume:.0%} of its volume and turned inside out"
+        return f"{said}{_at(system, system.points[crushed.nodes])}; {_advice(system, failure)}"
     if isinstance(cause, InvertedElementError):
-        inverted = _nearest_to_inversion(system, last) or cause
+        inverted = crushed or cause
         return f"{inverted}{_at(system, system.points[inverted.nodes])}; {_advice(system, failure)}"
     return f"{failure}{_place(system, failure)}; {_advice(system, failure)}"
 
 
-def _nearest_to_inversion(system: System, state: State) -> InvertedElementError | None:
-    """The element of smallest det F, of equal ones the first; None in a state that squeezes none."""
+def rim_met(system: System, last: State, load: Load) -> int | None:
+    """The node of the held rim that the dot would overlap most under a load after a state; None where it is clear."""
+    nodes = np.unique(system.contact.facets)
+    held = nodes[(system.unknowns.displacement[nodes] < 0).all(axis=1)]
+    if len(held) == 0:
+        return None
+    gap = system.contact.dot.distance(system.points[held], system.move(last.x, load))[0]
+    deepest = int(np.argmin(gap))
+    return int(held[deepest]) if gap[deepest] < (NEAR_RIM if system.force_driven else 0.0) else None
+
+
+def _nearest_to_inversion(system: System, state: State) -> tuple[float, InvertedElementError | None]:
+    """The smallest det F and its element, of equal ones the first; None in a state that squeezes none."""
     displacement = system.displacement(state.x)
     least: list[tuple[float, str, Ints]] = []
     for name, region in ({solid.name: solid for solid in system.solids} | {"film": system.film}).items():
@@ -43,7 +70,7 @@ def _nearest_to_inversion(system: System, state: State) -> InvertedElementError 
         least.append((float(smallest[first]), name, region.tets[first]))
     bound = (1.0 + TIE) * min(volume for volume, _, _ in least)
     volume, name, nodes = next(one for one in least if one[0] <= bound)
-    return InvertedElementError(name, nodes) if volume < 1.0 - TIE else None
+    return volume, InvertedElementError(name, nodes) if volume < 1.0 - TIE else None
 
 
 def _advice(system: System, failure: NoEquilibriumError) -> str:

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from mesh.types import Floats
-from solve.failure import explained
+from solve.failure import explained, rim_met
 from solve.linear import LinearSolver
 from solve.newton import NoEquilibriumError, equilibrate
 from solve.opening import opens_too_coarsely, with_work
@@ -75,9 +75,11 @@ def march(
             if 0.5 * size >= smallest:
                 size *= 0.5
                 continue
-            found = _after_snap(system, linear, past[-1], load, time) if may_snap else None
+            elsewhere = may_snap and rim_met(system, past[-1], load) is None  # between two rigid bodies nothing falls
+            found = _after_snap(system, linear, past[-1], load, time) if elsewhere else None
             if found is None:
-                return f"sub-steps fell below 1/{1 / smallest:.0f} of it: {explained(system, failure, past[-1])}"
+                why = explained(system, failure, past[-1], load)
+                return f"sub-steps fell below 1/{1 / smallest:.0f} of it: {why}"
             state, error = found, system.time_error(past[-1], found, after_kink=True)
         done, first = done + size, state.snapped
         size *= 2.0 if error < 0.2 * TIME_TOLERANCE else 1.0

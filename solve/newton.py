@@ -17,6 +17,8 @@ ROUNDED_TOLERANCE = 1e-6  # a stiff film on a soft foam: its own round-off may e
 LEAST_LOAD = 1e-5  # solver units: what is less, the first touch of a moving mass, counts as this much
 MAX_ITERATIONS = 25
 MAX_HALVINGS = 6
+SAME = 1e-3  # relative: a residual that comes back with the same discrete states runs in a circle
+MAX_CIRCLES = 3
 LOOSEST = 1e-2  # relative residual of a linear solution, far from the end
 
 
@@ -44,6 +46,7 @@ def equilibrate(
         now = _evaluate(system, x, load, time, previous, damped)
         lost = system.force_driven and not now.touching
         status: Bools | None = None
+        circles = Circles()
         for iteration in range(MAX_ITERATIONS):
             norm = float(np.linalg.norm(now.residual))
             scale = max(now.load_norm, previous.force_scale)
@@ -60,7 +63,9 @@ def equilibrate(
             similar = status is not None and linear.may_reuse(int(np.sum(status != now.status)))
             # inexact Newton: the linear residual need fall neither faster than the nonlinear one nor below its goal
             tolerance = min(max(0.01 * relative, 0.01 * TOLERANCE / max(relative, 1e-300)), LOOSEST)
-            step = linear.solve(now.tangent, -now.residual, tolerance, similar)
+            step = circles.share(now.status, norm) * linear.solve(now.tangent, -now.residual, tolerance, similar)
+            if circles.count > MAX_CIRCLES:
+                break
             status, before = now.status, x
             x, now = _advance(system, x, step, load, time, previous, damped)
             correction = _relative_change(system, before, x)
@@ -74,6 +79,27 @@ def equilibrate(
     if lost:
         raise LostContactError("the dot that a force pushes loses contact", x, None)
     raise NoEquilibriumError(f"no convergence in {MAX_ITERATIONS} Newton iterations", x, _worst_node(system, now))
+
+
+class Circles:
+    """Finds iterations that run in a circle: the same nodes open and close again and again, and full steps repeat it.
+
+    A shorter step leaves the circle, each time half as long.
+    """
+
+    def __init__(self) -> None:
+        self.count = 0
+        self._visited: dict[bytes, list[float]] = {}
+
+    def share(self, status: Bools, norm: float) -> float:
+        """How much of the next step to take from an iterate with these discrete states and norm of the residual."""
+        norms = self._visited.setdefault(status.tobytes(), [])
+        if not any(abs(norm - other) <= SAME * norm for other in norms):
+            norms.append(norm)
+            return 1.0
+        self.count += 1
+        self._visited.clear()
+        return float(0.5**self.count)
 
 
 def _relative_change(system: System, before: Floats, x: Floats) -> float:

@@ -65,7 +65,7 @@ def _follow(
         except NoEquilibriumError as error:
             flat = system.at_rest(targets[0].load)
             recorder.start(flat)
-            reason = explained(system, error, flat)
+            reason = explained(system, error, flat, targets[0].load)
             return f"step 0 of {len(targets) - 1}, the prestretched film at rest, has no equilibrium: {reason}"
         recorder.start(past[0])
     count, done = len(targets) - 1, len(recorder.steps)

@@ -18,6 +18,8 @@ from solve.system import Evaluation, Load, State, System
 MAX_STEPS = 150
 FIRST_DAMPING = 0.1  # of the median stiffness of a displacement
 FASTER, SLOWER = 0.3, 3.0  # how far the damping may fall or grow from step to step
+PATIENCE = 60  # steps in which the unbalanced forces must fall once by a tenth below the least so far
+MAX_REFUSED = 20  # steps that turn an element inside out, one after the other: it holds whatever the damping
 NEAR = 1e-5  # relative residual from which Newton goes on alone
 LINEAR_TOLERANCE = 1e-6
 TINY = 1e-300
@@ -42,8 +44,13 @@ def _fall(system: System, linear: LinearSolver, load: Load, time: float, previou
     x, now = previous.x, evaluate(previous.x)
     dampers = np.zeros(len(x))
     dampers[system.mechanical] = FIRST_DAMPING * np.median(now.tangent.upper.diagonal()[system.mechanical])
+    refused, least, least_at = 0, np.inf, 0
     for step in range(MAX_STEPS):
         unbalanced = _unbalanced(system, now)
+        if unbalanced < 0.9 * least:
+            least, least_at = unbalanced, step
+        if step - least_at >= PATIENCE or refused >= MAX_REFUSED:
+            break
         if step > 0 and np.linalg.norm(now.residual) <= NEAR * max(now.load_norm, previous.force_scale):
             return x, step
         change = linear.solve(now.tangent.shifted(dampers), -now.residual, LINEAR_TOLERANCE)
@@ -51,10 +58,11 @@ def _fall(system: System, linear: LinearSolver, load: Load, time: float, previou
             then = evaluate(x + change)
         except InvertedElementError:
             dampers *= SLOWER
+            refused += 1
             continue
-        x, now = x + change, then
+        x, now, refused = x + change, then, 0
         dampers *= np.clip(_unbalanced(system, now) / max(unbalanced, TINY), FASTER, SLOWER)
-    raise NoEquilibriumError(f"no equilibrium in {MAX_STEPS} damped steps either", x, None)
+    raise NoEquilibriumError(f"no equilibrium in {step + 1} damped steps either", x, None)
 
 
 def _unbalanced(system: System, now: Evaluation) -> float:
