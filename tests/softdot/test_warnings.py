@@ -63,3 +63,21 @@ def test_neighbours_on_the_held_rim(length_mm, reaches):
     assert bool(warnings) == reaches
     assert not reaches or "at an indentation of 0.172 mm" in warnings[0]
     assert held_rim_warnings(config.segment, dot, 0.17) == []
+
+
+@pytest.mark.parametrize(
+    ("dot", "section", "met_mm"),
+    [
+        ({"shape": "plate", "tilt_deg": [0.0, 3.0]}, "solid", 0.0),
+        ({"shape": "ridge", "radius_mm": 1.0}, "solid", 0.0),
+        ({"shape": "ridge", "radius_mm": 1.0, "offset_mm": [0.65, 0.0]}, "plane-strain", 0.2),
+        ({"shape": "ridge", "radius_mm": 1.0, "offset_mm": [-0.65, 0.0]}, "plane-strain", 0.2),
+        ({"shape": "ridge", "radius_mm": 1.0}, "plane-strain", None),
+    ],
+)
+def test_a_dot_of_any_shape_on_the_held_rim(dot, section, met_mm):
+    """The rim is at x = 1.25 mm: 0.6 mm beside the axis, a cylinder of 1 mm is 0.2 mm higher."""
+    config = config_from({"segment": {**LAYERS, "section": section}, "dot": dot})
+    warnings = held_rim_warnings(config.segment, resolve_dot(config.dot, config.segment), 0.3)
+    assert len(warnings) == (met_mm is not None)
+    assert met_mm is None or f"at an indentation of {met_mm:g} mm" in warnings[0]

@@ -97,7 +97,9 @@ def test_what_falls_where_nothing_can_hold_it_has_no_equilibrium(linear):
 def test_a_press_that_snapped_says_at_which_depths():
     step = SimpleNamespace(indentation_m=3e-4, fields=SimpleNamespace(gap_m=np.zeros(1)))
     records = [
-        SimpleNamespace(contact_area_m2=1e-8, indentation_m=depth, dot_path_m=depth, time_error=0.0, snapped=snap, time_s=depth)
+        SimpleNamespace(
+            indentation_m=depth, dot_path_m=depth, time_error=0.0, snapped=snap, time_s=depth, contact_area_m2=1e-8
+        )
         for depth, snap in ((1e-4, False), (2e-4, True), (3e-4, True))
     ]
     (said,) = doubts([step], records)

@@ -1,0 +1,191 @@
+"""Random designs that a lab might write, over every key of the configuration, on meshes so coarse that they are quick.
+
+Design n carries mechanism n mod 24, a second one that goes round at another pace, and at times a third.
+"""
+
+from softdot.config import Config
+from solve.mechanisms import MECHANISMS
+from tests.attack.drawing import Draw
+from tests.attack.random_materials import film_material, medium_material, modulus_MPa
+from tests.attack.random_mechanisms import mechanism
+
+SEED = 20261123
+LAYERS = ("effector", "medium1", "film", "medium2")
+NAMES = tuple(MECHANISMS)
+SOLID, ROUND = 9, 40
+"""Every 9th design is a solid, every 40th has a round effector (pytetwild); the rest are plane-strain slices."""
+STANDARDS = ("marburg-medium", "ada", "nls", "japan", "en-15823")
+
+
+def design(number: int) -> dict:
+    """Tables of design `number`, the same each time."""
+    draw = Draw(SEED, number)
+    names = [NAMES[number % 24], NAMES[(7 * number + number // 24 + 5) % 24]]
+    names += [draw.among(NAMES)] if draw.perhaps(0.4) else []
+    reducible = "dimension-reduction" in names
+    round_one = number % ROUND == 1 and not reducible
+    solid = round_one or reducible or (number % SOLID == 0 and "inertia" not in names)
+    segment = _segment(draw, solid, round_one, reducible, "crosstalk" in names)
+    layers = [name for name in LAYERS if name in segment]
+    materials = {f"own-{name}": film_material(draw) if name == "film" else medium_material(draw) for name in layers}
+    for name in layers:
+        segment[name]["material"] = f"own-{name}"
+    dot = _dot(draw, segment, reducible)
+    softest = min(modulus_MPa(materials[f"own-{name}"]) for name in layers if name != "film")
+    tables = {
+        "seed": draw.whole(0, 9),
+        "segment": segment,
+        "materials": materials,
+        "dot": dot,
+        "press": _press(draw, segment, softest, dot["gap_mm"] + 0.1 * ("contact-gap" in names)),
+        "mesh": _mesh(draw, solid, round_one),
+        "mechanisms": _mechanisms(draw, names, segment, dot),
+        "fabrication": {},
+    }
+    if draw.perhaps(0.6):
+        tables["readout"] = _readout(draw)
+    return tables
+
+
+def _mechanisms(draw, names, segment, dot):
+    made = [one for one in (mechanism(draw, name, segment, dot) for name in dict.fromkeys(names)) if one is not None]
+    remade = [one for one in made if one["name"] in ("hyperelastic-stiffening", "foam-densification")]
+    if len({one["component"] for one in remade}) < len(remade):  # both would give one layer its law
+        made.remove(remade[-1])
+    return made
+
+
+def _segment(draw, solid, round_one, reducible, halves):
+    table = {
+        "length_mm": draw.between(1.5, 5.0),
+        "width_mm": draw.between(1.5, 4.0),
+        "section": "solid" if solid else "plane-strain",
+        "boundary": draw.among(("free", "clamped", "clamped", "elastic")),
+        "side_stiffness_N_per_mm3": draw.log(0.01, 100.0),
+        "medium1": {"thickness_mm": draw.between(0.3, 1.5)},
+        "film": {"thickness_um": draw.log(9.0, 110.0), "draw_angle_deg": draw.between(-90.0, 90.0)},
+        "medium2": {"thickness_mm": draw.between(0.5, 3.0)},
+    }
+    if round_one or draw.perhaps(0.5):
+        table["effector"] = _effector(draw, table, round_one, ("layer",) if reducible else ("layer", "block"))
+    present = [name for name in LAYERS if name in table]
+    if draw.perhaps(0.7):
+        table["held_layers"] = draw.some(present)
+    if halves or draw.perhaps(0.3):
+        length, width = table["length_mm"], table["width_mm"]
+        table["film"]["electrodes"] = [
+            {"name": name, "center_mm": [side * length / 4, 0.0], "size_mm": [length / 2, width]}
+            for side, name in ((-1, "left"), (1, "right"))
+        ]
+    if draw.perhaps(0.3):
+        table["bonds"] = [
+            {
+                "between": draw.among((["medium1", "film"], ["film", "medium2"], ["medium2", "base"])),
+                "normal_stiffness_N_per_mm3": draw.log(10.0, 1e6),
+                "shear_stiffness_N_per_mm3": draw.log(5.0, 1e6),
+            }
+        ]
+    return table
+
+
+def _effector(draw, segment, round_one, shapes):
+    shape = draw.among(("cylinder", "dome")) if round_one else draw.among(shapes)
+    table = {"shape": shape, "height_mm": draw.between(0.3, 1.2)}
+    if shape == "block":
+        table["length_mm"] = draw.between(0.4, 0.9) * segment["length_mm"]
+        if segment["section"] == "solid":
+            table["width_mm"] = draw.between(0.4, 0.9) * segment["width_mm"]
+    if round_one:
+        table["diameter_mm"] = draw.between(0.6, 0.9) * min(segment["length_mm"], segment["width_mm"])
+    return table
+
+
+def _dot(draw, segment, reducible):
+    sliced = segment["section"] == "plane-strain"
+    shapes = ("cap",) if reducible else ("ridge", "ridge", "plate") if sliced else ("cap", "cap", "ridge", "plate")
+    across = 0.0 if sliced or reducible else 1.0
+    reach = 0.15 * segment["length_mm"] * draw.among((0.0, 1.0, 1.0))
+    table = {
+        "shape": draw.among(shapes),
+        "offset_mm": [draw.between(-reach, reach), across * draw.between(-0.2, 0.2)],
+        "gap_mm": draw.among((0.0, draw.between(0.01, 0.1))),
+        "tilt_deg": [across * draw.between(-2.0, 2.0), draw.between(-3.0, 3.0)] if draw.perhaps(0.3) else [0.0, 0.0],
+    }
+    if table["shape"] == "plate":
+        return table
+    size = draw.whole(0, 2)
+    if size == 0:
+        table["radius_mm"] = draw.between(0.5, 3.0)
+        table |= {"height_mm": draw.between(0.3, 1.0)} if draw.perhaps(0.3) else {}
+    elif size == 1:
+        table |= {"base_diameter_mm": draw.between(1.0, 2.0), "height_mm": draw.between(0.4, 0.6)}
+    else:
+        table["standard"] = draw.among(STANDARDS)
+        if table["shape"] == "cap" and across and draw.perhaps(0.5):
+            table |= {"cell": "⠿", "cell_dot": draw.whole(1, 6)}
+    return table
+
+
+def _press(draw, segment, softest_MPa, clear_mm):
+    """A depth of up to a fifth of the soft height, or a force that makes about that; at times a slide."""
+    soft_mm = segment["medium1"]["thickness_mm"] + segment["medium2"]["thickness_mm"]
+    strain = draw.log(0.02, 0.2)
+    table = {"load_steps": draw.whole(1, 3)}
+    if draw.perhaps(0.65):
+        table["indentation_mm"] = clear_mm + strain * soft_mm
+    else:
+        table["force_N"] = 0.2 * strain * softest_MPa * segment["length_mm"] * segment["width_mm"]
+    slide = draw.perhaps(0.15)
+    if slide:
+        table["path_xy_mm"] = [[draw.between(-0.2, 0.2), 0.0] for _ in range(draw.whole(1, 2))]
+    shapes = ("ramp", "raised-cosine", "trapezoid") if slide else ("ramp", "half-sine", "raised-cosine", "trapezoid")
+    if draw.perhaps(0.6):
+        times = {key: draw.log(0.02, 1.0) for key in ("rise_s", "hold_s", "fall_s")}
+        table["waveform"] = {"shape": draw.among(shapes), **times}
+    return table
+
+
+def _mesh(draw, solid, round_one):
+    size = draw.between(0.9, 1.4) if solid else draw.between(0.6, 1.0)
+    table = {"element_size_mm": size, "contact_element_size_mm": 0.5 * size, "timeout_s": 120.0}
+    table["mesher"] = "pytetwild" if round_one else "layered"
+    if draw.perhaps(0.3):
+        table["film_element_size_mm"] = draw.between(0.6, 1.0) * size
+    if draw.perhaps(0.2):
+        table["film_layers"] = 2
+    if round_one:
+        table["coarsen"] = True
+    return table
+
+
+def _readout(draw):
+    table = {"polarity": draw.among((1, -1)), "noise_V": draw.log(1e-5, 1e-2)}
+    if draw.perhaps(0.7):
+        table |= {"input_resistance_MOhm": draw.log(0.1, 1e4), "input_capacitance_pF": draw.between(0.0, 500.0)}
+    else:
+        table |= {"mode": "charge", "feedback_pF": draw.log(10.0, 1e4), "feedback_MOhm": draw.log(1.0, 1e4)}
+    if draw.perhaps(0.5):
+        table |= {"low_pass_Hz": draw.log(10.0, 1e4), "high_pass_Hz": draw.log(0.01, 5.0)}
+        table["filter_order"] = draw.whole(1, 4)
+    if draw.perhaps(0.3):
+        table["limit_V"] = draw.log(0.01, 10.0)
+    return table
+
+
+def keys_set(table) -> set[str]:
+    """Keys that a design sets, as TABLE.KEY by the class of the table, so that lists and layers count as one."""
+    found = set()
+    for name in table.model_fields_set:
+        found.add(f"{type(table).__name__}.{name}")
+        value = getattr(table, name)
+        for one in value.values() if isinstance(value, dict) else value if isinstance(value, tuple) else [value]:
+            if hasattr(one, "model_fields_set"):
+                found |= keys_set(one)
+    return found
+
+
+def config_of(number: int) -> Config:
+    """The checked configuration of design `number`. InputError."""
+    from softdot.config import config_from
+
+    return config_from(design(number))
