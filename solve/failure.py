@@ -38,7 +38,7 @@ def explained(system: System, failure: NoEquilibriumError, last: State, load: Lo
     if rim is not None:
         part = _part(system, rim)
         at = _at(system, system.points[[rim]])
-        return f"the dot meets the rim of {part} that the case holds{at}, and neither gives way; {RIM}"
+        return f"the dot meets the rim of {part} that the case holds{at}, and neither can deform; {RIM}"
     cause, (volume, crushed) = failure.__cause__, _nearest_to_inversion(system, last)
     if crushed is not None and volume < CRUSHED:
         said = f"an element of {crushed.region} is crushed to {volume:.0%} of its volume and turned inside out"
