@@ -96,6 +96,7 @@ def _add_sweep(commands: Any) -> None:
         epilog="examples/ has a SPACE.toml to start from. " + EXIT_STATUS,
     )
     sweep.add_argument("space", metavar="SPACE.toml", help="a configuration and its axes")
+    _add_set(sweep)
     sweep.add_argument("--scheduler", metavar="ADDRESS", help="an existing Dask scheduler, tcp://host:8786")
     _add_output(sweep)
 
@@ -192,6 +193,14 @@ def _add_schema(commands: Any) -> None:
 def _add_config(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "config", nargs="?", metavar="CONFIG.toml", help="without it: the final design of the paper"
+    )
+    _add_set(command)
+
+
+def _add_set(command: argparse.ArgumentParser) -> None:
+    command.add_argument(
+        "--set", action="append", default=[], metavar="KEY=VALUE",
+        help="a value in place of the file's, such as press.indentation_mm=0.2; may be repeated",
     )
 
 

@@ -2,12 +2,11 @@
 
 import hashlib
 import json
-from collections.abc import Mapping
-from importlib.resources import files
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Self
 
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
 from geometry.errors import InputError
 from geometry.fabrication.parameters import Fabrication
@@ -15,8 +14,10 @@ from geometry.parameters import Dot, Segment, Table
 from geometry.stack import layers
 from mesh.parameters import MeshOptions
 from softdot.config_errors import sentence
+from softdot.default_design import completed, default_design, from_default
 from softdot.number_size import refuse_absurd_numbers, without_round_off
-from softdot.toml_file import parse_toml, read_toml
+from softdot.settings import naming_the_flag, with_settings
+from softdot.toml_file import read_toml
 from solve.materials.library import find_material, library_tables
 from solve.materials.parameters import AnyMaterial, Material, PiezoelectricFilm
 from solve.mechanisms import Mechanism, refuse_repeated
@@ -39,6 +40,13 @@ class Config(Table):
     seed: int = Field(
         0, ge=0, description="seed of everything random; in a run only the mesher is"
     )
+
+    _from_default: tuple[str, ...] = PrivateAttr(())
+
+    @property
+    def from_default(self) -> tuple[str, ...]:
+        """Dotted keys of the default design that the file did not state."""
+        return self._from_default
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
@@ -72,15 +80,18 @@ def _fitting(layer: str, name: str, own: Mapping[str, Material]) -> Material:
     return material
 
 
-def load_config(path: Path | str | None = None) -> Config:
+def load_config(path: Path | str | None = None, settings: Sequence[str] = ()) -> Config:
     """Read a configuration, or the default one, with every default and every used material filled in.
 
+    What the file leaves out of the default design comes from there. settings : 'dotted.key=value' after the file.
     InputError with one sentence for a file that cannot be read and for anything in it that is not allowed.
     """
-    if path is None:
-        default = files(__package__).joinpath("default.toml").read_text("utf-8")
-        return config_from(parse_toml(default, "default.toml"))
-    return config_from(read_toml(Path(path)))
+    tables = with_settings(default_design() if path is None else read_toml(Path(path)), settings)
+    with naming_the_flag(settings):
+        config = config_from(completed(tables))
+    stated = tables if path is not None else with_settings({}, settings)
+    config._from_default = from_default(stated, config.model_dump(mode="json"))
+    return config
 
 
 def config_from(tables: Mapping[str, Any]) -> Config:

@@ -1,5 +1,6 @@
 """The main job: check, geometry, mesh, solve, export; everything appears at once or not at all."""
 
+import logging
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -22,6 +23,8 @@ from softdot.summary import heading, mesh_part, press_part, stopped_solver
 from softdot.system_libraries import named_when_missing
 from solve.physics import Physics
 from solve.result import PressResult, Step
+
+LOG = logging.getLogger(__name__)
 
 
 class Clock:
@@ -71,6 +74,8 @@ def _fill(
     clock = Clock()
     summary = {**heading(config), "warnings": [*warnings, *design_warnings(config)]}
     warn(summary["warnings"])
+    if config.from_default:
+        LOG.info("from the default design: %s", ", ".join(config.from_default))
     progress.stage("geometry")
     with clock("geometry"):
         parts = stages.build_parts(config, dot_shape)

@@ -13,7 +13,7 @@ def command(chosen: Namespace) -> int:
     from softdot.progress import progress_of
     from softdot.run import run_config
 
-    config = load_config(chosen.config)
+    config = load_config(chosen.config, chosen.set)
     with only_the_summary_on_stdout(), progress_of(chosen) as progress:
         summary = run_config(config, Path(chosen.output), progress)
     show(summary, chosen, short_text)
@@ -32,4 +32,6 @@ def short_text(summary: dict[str, Any], output: str) -> str:
             f"charge {summary['film_charge_pC'][-1]:.4g} pC, "
             f"open-circuit voltage {summary['open_circuit_voltage_V'][-1]:.4g} V"
         )
+    if summary.get("from_default"):
+        lines.append(f"from the default design: {', '.join(summary['from_default'])}")
     return "\n".join([*lines, f"{output}/report.html"])

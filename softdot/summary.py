@@ -48,6 +48,7 @@ def heading(config: Config) -> dict[str, Any]:
         "config_hash": config_hash(config),
         "seed": config.seed,
         "config": config.model_dump(mode="json"),
+        "from_default": list(config.from_default),
     }
 
 

@@ -15,7 +15,7 @@ def command(chosen: Namespace) -> int:
     from softdot.kit.make import make_kit
     from softdot.progress import progress_of
 
-    config = load_config(chosen.config)
+    config = load_config(chosen.config, chosen.set)
     with only_the_summary_on_stdout(), progress_of(chosen) as progress:
         summary = make_kit(config, Path(chosen.output), progress)
     show(summary, chosen, short_text)

@@ -21,6 +21,7 @@ def heading(config: Config, product: Product) -> dict[str, Any]:
         "softdot_version": installed_version(),
         "config_hash": config_hash(config),
         "config": config.model_dump(mode="json"),
+        "from_default": list(config.from_default),
     }
 
 

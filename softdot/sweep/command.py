@@ -14,7 +14,7 @@ def command(chosen: Namespace) -> int:
     from softdot.sweep.space import load_space
     from softdot.sweep.store import POINTS
 
-    space = load_space(chosen.space)
+    space = load_space(chosen.space, chosen.set)
     try:
         with only_the_summary_on_stdout(), progress_of_points(chosen) as progress:
             summary = run_sweep(space, Path(chosen.output), chosen.scheduler, progress)

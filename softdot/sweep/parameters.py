@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, field_validator, model_validator
 
 from geometry.parameters import Finite, Table
-from softdot.sweep.keys import parsed
+from softdot.dotted_keys import parsed
 
 MOST_POINTS = 20_000
 Count = Annotated[int, Field(ge=1, le=MOST_POINTS)]

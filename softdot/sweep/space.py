@@ -1,7 +1,7 @@
 """SPACE.toml: a whole configuration and the axes along which it varies."""
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,7 +12,9 @@ from geometry.errors import InputError
 from geometry.parameters import Table
 from softdot.config import Config, config_from
 from softdot.config_errors import sentence, shown
-from softdot.sweep.keys import with_value
+from softdot.default_design import completed
+from softdot.dotted_keys import with_value
+from softdot.settings import naming_the_flag, with_settings
 from softdot.sweep.parameters import Axis, Sweep
 from softdot.sweep.sampling import sampled
 from softdot.toml_file import read_toml
@@ -43,10 +45,15 @@ class Space:
     text: str | None = None
 
 
-def load_space(path: Path | str) -> Space:
-    """Read and check SPACE.toml. InputError as space_from, and for a file that cannot be read."""
-    space = space_from(read_toml(Path(path)))
-    return Space(space.tables, space.sweep, space.points, Path(path).read_text("utf-8-sig"))
+def load_space(path: Path | str, settings: Sequence[str] = ()) -> Space:
+    """Read and check SPACE.toml. InputError as space_from, and for a file that cannot be read.
+
+    settings : 'dotted.key=value' after the file.
+    """
+    with naming_the_flag(settings):
+        space = space_from(with_settings(read_toml(Path(path)), settings))
+    added = "".join(f"# with --set {' '.join(setting.split())}\n" for setting in settings)
+    return Space(space.tables, space.sweep, space.points, added + Path(path).read_text("utf-8-sig"))
 
 
 def space_from(tables: Mapping[str, Any]) -> Space:
@@ -85,7 +92,7 @@ def _point(base: Mapping[str, Any], sweep: Sweep, row: tuple[Any, ...]) -> Point
             except InputError as error:
                 raise InputError(f"sweep.axes[{number}]: {error}") from None
     try:
-        return Point(values, config_from(tables))
+        return Point(values, config_from(completed(tables)))
     except InputError as error:
         return Point(values, None, str(error))
 

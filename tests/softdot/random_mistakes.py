@@ -41,11 +41,15 @@ def unknown_key(draw, tables):
 
 
 def missing_key(draw, tables):
-    """A key without a default left out."""
+    """A key that neither the schema nor the default design gives left out."""
     segment = tables["segment"]
-    key = draw(st.sampled_from(("medium1.thickness_mm", "film.thickness_um", "medium2.thickness_mm")))
-    layer, name = key.split(".")
-    del segment[layer][name]
+    stiffness = {"normal_stiffness_N_per_mm3": 100.0, "shear_stiffness_N_per_mm3": 10.0}
+    if draw(st.booleans()):
+        segment["film"]["electrodes"] = [{"name": "one"}]
+    else:
+        bond = {"between": ["film", "medium2"], **stiffness}
+        del bond[draw(st.sampled_from(sorted(bond)))]
+        segment["bonds"] = [bond]
     return tables
 
 

@@ -144,7 +144,6 @@ def test_a_mistake_is_one_sentence(mistake, sentence, write_config, tmp_path, ca
 
 
 WHOLE_FILES = {
-    "": "segment.medium1.thickness_mm is missing: thickness in z",
     MINIMAL.replace("2.0", "'2 mm'"): f"segment.medium2.thickness_mm = '2 mm': {NUMBER}",
     MINIMAL.replace("2.0", "-2.0"): "segment.medium2.thickness_mm = -2: must be above 0",
     MINIMAL.replace("0.5", "0"): "segment.medium1.thickness_mm = 0: must be above 0",

@@ -17,6 +17,7 @@ import solve.materials.parameters
 import solve.mechanisms
 import solve.parameters
 from softdot.config import Config, config_from
+from softdot.default_design import completed
 from softdot.schema import config_schema
 from softdot.summary import heading, mesh_part, press_part
 from tests.softdot.stand_ins import result_of
@@ -65,11 +66,11 @@ def toml_blocks():
 
 
 def test_every_whole_file_that_is_shown_is_accepted():
-    assert [config_from(tomllib.loads(block)) for block in toml_blocks()] != []
+    assert [config_from(completed(tomllib.loads(block))) for block in toml_blocks()] != []
 
 
 def test_every_key_of_the_summary_is_explained():
-    config = config_from(tomllib.loads(toml_blocks()[0]))
+    config = config_from(completed(tomllib.loads(toml_blocks()[0])))
     history = result_of([0.0, 0.15, 0.3])
     voltage = np.zeros(3)
     summary = {**heading(config), **press_part(config, history, voltage), "mesh": mesh_part({}, 1)}

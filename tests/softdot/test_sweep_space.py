@@ -11,7 +11,7 @@ import pytest
 
 from geometry.errors import InputError
 from softdot.cli import main
-from softdot.sweep.keys import parsed, with_value
+from softdot.dotted_keys import parsed, with_value
 from softdot.sweep.point import TINY
 from softdot.sweep.space import load_space, space_from
 from tests.softdot.sweep_spaces import depths, space_of
