@@ -13,14 +13,14 @@ HERE = Path(__file__).parent
 CAPTIONS = {
     "undeformed": (
         "The segment at rest",
-        "The front half is cut away along the dot, so that every layer shows; the dot just touches.",
+        "The front half is cut away through the dot to show every layer; the dot just touches.",
     ),
     "deformed": (
         "The segment pressed",
         "The same cut at the deepest step: how far each layer follows the dot, drawn to scale.",
     ),
     "von_mises": (
-        "Load in the soft layers",
+        "Stress in the soft layers",
         "Von Mises stress, one number for how hard the material is sheared; the film keeps its own colour "
         "because it is far stiffer.",
     ),
@@ -32,7 +32,7 @@ CAPTIONS = {
     ),
     "force_voltage": (
         "Force and voltage while pressing",
-        "Force that the dot feels, and voltage that the film gives (open circuit: nothing draws charge).",
+        "Force on the dot and open-circuit voltage of the film (no charge is drawn).",
     ),
 }
 """Title and one plain sentence for each picture, in the order in which the report shows them."""
@@ -109,10 +109,10 @@ def headline(summary: Mapping[str, Any]) -> list[dict[str, str]]:
     where = "mean through the film" + (f", at least {number(away)} mm from held sides" if away else "")
     at_noise = f"for a noise of {number(1e3 * noise)} mV" if noise else "for the stated noise"
     rows = [
-        ("Depth reached", _last(summary, "indentation_mm"), "mm", "how far the dot went in"),
-        ("Reaction force", _last(summary, "reaction_force_N"), "N", "what the dot feels at that depth"),
+        ("Depth reached", _last(summary, "indentation_mm"), "mm", "travel of the dot"),
+        ("Reaction force", _last(summary, "reaction_force_N"), "N", "on the dot at that depth"),
         ("Open-circuit voltage", _last(summary, "open_circuit_voltage_V"), "V", "charge over capacitance"),
-        ("Read-out voltage", _last(summary, "readout_voltage_V"), "V", "behind the given amplifier"),
+        ("Read-out voltage", _last(summary, "readout_voltage_V"), "V", "after the given amplifier"),
         ("Charge", _last(summary, "film_charge_pC"), "pC", "freed by the film at short circuit"),
         ("Capacitance", film.get("capacitance_pF"), "pF", "of the film at rest"),
         ("Voltage per depth", sensitivity.get("voltage_per_mm"), "V/mm", "at the deepest step"),
@@ -133,7 +133,7 @@ def _at_the_rim(film: Mapping[str, Any]) -> list[tuple[str, Any, str, str]]:
     """The strain at a held side, where there is one."""
     if not film.get("rim_distance_mm"):
         return []
-    about = "singular: no material constant to compare with, it grows with every finer mesh"
+    about = "singular: it grows with every finer mesh, so do not compare it with a material constant"
     return [("Film strain at the held side", _percent(film.get("rim_principal_strain")), "%", about)]
 
 

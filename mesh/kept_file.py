@@ -27,12 +27,12 @@ def read_kept(path: Path) -> bytes | None:
     except FileNotFoundError:
         return None
     except OSError as error:
-        logging.getLogger("softdot").warning("'%s' cannot be read (%s); it is made anew", path, error.strerror)
+        logging.getLogger("softdot").warning("'%s' cannot be read (%s); it is made again", path, error.strerror)
         return None
     content = whole[:-TRAILER]
     if whole[-TRAILER:] == _trailer(content):
         return content
-    logging.getLogger("softdot").warning("'%s' is damaged; it is deleted and made anew", path)
+    logging.getLogger("softdot").warning("'%s' is damaged; it is deleted and made again", path)
     _delete(path)
     return None
 

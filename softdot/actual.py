@@ -61,7 +61,7 @@ def _refuse_beyond_bounds(key: str, model: Model) -> None:
         if stiffest > STIFFEST_BOND_N_PER_MM3:
             raise InputError(
                 f"{key} makes the stiffness of '{name}' {stiffest:.3g} N/mm3: must be at most "
-                f"{STIFFEST_BOND_N_PER_MM3:.0e}; leave a bond as good as perfect out"
+                f"{STIFFEST_BOND_N_PER_MM3:.0e}; leave out a bond that is practically perfect"
             )
 
 

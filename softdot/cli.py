@@ -67,7 +67,7 @@ def parser() -> argparse.ArgumentParser:
 def _add_run(commands: Any) -> None:
     run = commands.add_parser(
         "run",
-        help="geometry, mesh, solve and export from one configuration",
+        help="build, mesh, press and export one segment",
         description="Build, mesh and press one segment; write CAD, ParaView results, pictures and a report.",
         epilog="'softdot schema' explains every key of CONFIG.toml; examples/ has files to start from. "
         + EXIT_STATUS,
@@ -79,7 +79,7 @@ def _add_run(commands: Any) -> None:
 def _add_paper(commands: Any) -> None:
     paper = commands.add_parser(
         "paper",
-        help="every table, figure and number of the paper, reproduced and questioned",
+        help="reproduce and examine every table, figure and number of the paper",
         description="Solve the whole study of the paper and carry it on: its tables, figures and published "
         "numbers beside ours, the calibration factor, and a design search. A second run uses the cache.",
         epilog=EXIT_STATUS,
@@ -90,7 +90,7 @@ def _add_paper(commands: Any) -> None:
 def _add_sweep(commands: Any) -> None:
     sweep = commands.add_parser(
         "sweep",
-        help="many presses over any keys of the configuration",
+        help="press many designs over any keys of the configuration",
         description="Solve every point of a design space on all cores, or on a Dask cluster, into one table. "
         "A sweep that was stopped goes on where it was.",
         epilog="examples/ has a SPACE.toml to start from. " + EXIT_STATUS,
@@ -104,46 +104,46 @@ def _add_sweep(commands: Any) -> None:
 def _add_diagnose(commands: Any) -> None:
     diagnose = commands.add_parser(
         "diagnose",
-        help="where simulation and recordings differ, and what physics was left out",
+        help="find where simulation and recordings differ, and which physics was left out",
         description="Compare recordings of a real rig with its model: where they differ, which physics was left out, "
         "how well the model does with it, and what to press next. A second diagnosis of a rig uses the cache.",
-        epilog="docs/recordings.md says how to hand over a recording, docs/diagnose.md how to read the verdict. "
+        epilog="docs/recordings.md describes the format of a recording, docs/diagnose.md how to read the verdict. "
         + EXIT_STATUS,
     )
     diagnose.add_argument("recording", metavar="RECORDING", help="a folder with rig.toml and CSV files")
     last_word = diagnose.add_mutually_exclusive_group()
     last_word.add_argument(
-        "--all-presses", action="store_true", help="press every run again by the full model, however long it takes"
+        "--all-presses", action="store_true", help="check every run with the full 3D model, however long it takes"
     )
     last_word.add_argument(
-        "--fast-model-only", action="store_true", help="press no run again by the full model: for many recordings"
+        "--fast-model-only", action="store_true", help="check no run with the full 3D model, to study many recordings"
     )
     diagnose.add_argument(
         "--without", action="append", default=[], metavar="MECHANISM", help="leave a mechanism out of the candidates"
     )
     diagnose.add_argument(
         "--hold-out", action="append", default=[], metavar="TEXT",
-        help="runs with this in their label only score what the others named",
+        help="runs with this in their label take no part in naming and only score the result",
     )
-    diagnose.add_argument("--seed", type=int, metavar="N", help="of everything random, instead of rig.toml's")
+    diagnose.add_argument("--seed", type=int, metavar="N", help="seed of everything random, instead of rig.toml's")
     _add_output(diagnose)
 
 
 def _add_prove(commands: Any) -> None:
     prove = commands.add_parser(
         "prove",
-        help="how often a diagnosis is right: hidden effects from another finite-element code",
+        help="count how often a diagnosis is right, with hidden effects from another code",
         description="Hide effects in recordings of another code, seal the truth, diagnose, reveal and count. "
         "A proof that was stopped goes on where it was.",
         epilog="docs/prove.md explains the cases and the table. " + EXIT_STATUS,
     )
     prove.add_argument("--cases", type=int, required=True, metavar="N", help="how many recordings")
     prove.add_argument("--seed", type=int, default=0, metavar="S", help="of the cases")
-    prove.add_argument("--rigs", metavar="NAME,NAME", help="of ridge-clamped, ridge-free, dot-clamped; all without it")
-    kinds = "of none, single, pair, left-out, outside, ambiguous; all without it"
+    prove.add_argument("--rigs", metavar="NAME,NAME", help="from ridge-clamped, ridge-free, dot-clamped; default: all")
+    kinds = "from none, single, pair, left-out, outside, ambiguous; default: all"
     prove.add_argument("--kinds", metavar="KIND,KIND", help=kinds)
     prove.add_argument("--staged", action="store_true", help="the first eight mechanisms only")
-    prove.add_argument("--workers", type=int, metavar="N", help="processes, without it one per core")
+    prove.add_argument("--workers", type=int, metavar="N", help="number of processes; one per core by default")
     prove.add_argument("--scheduler", metavar="ADDRESS", help="an existing Dask scheduler, tcp://host:8786")
     _add_output(prove)
 
@@ -151,8 +151,8 @@ def _add_prove(commands: Any) -> None:
 def _add_kit(commands: Any) -> None:
     kit = commands.add_parser(
         "kit",
-        help="fabrication kit: moulds, frame, cut files, build sheet",
-        description="Write all that a bench needs to make the segment that was simulated.",
+        help="write a fabrication kit: moulds, frame, cut files, build sheet",
+        description="Write everything that a workshop needs to make the simulated segment.",
         epilog=EXIT_STATUS,
     )
     _add_config(kit)
@@ -162,7 +162,7 @@ def _add_kit(commands: Any) -> None:
 def _add_plate(commands: Any) -> None:
     plate = commands.add_parser(
         "plate",
-        help="printable Braille test plate",
+        help="write a printable Braille test plate",
         description="Write a printable plate with a text in Braille, a single dot, a row of dots that grow, "
         "or an indenter tip for a force gauge, and say by which printer it can be made.",
         epilog="docs/plate.md explains each option. " + EXIT_STATUS,
@@ -170,14 +170,14 @@ def _add_plate(commands: Any) -> None:
     plate.add_argument("text", nargs="?", help="the text, or Unicode Braille cells")
     plate.add_argument("--standard", required=True, metavar="NAME", help="a Braille standard, such as ada")
     plate.add_argument("--kind", default="text", choices=("text", "dot", "height-series", "tip"), help="what to make")
-    plate.add_argument("--table", metavar="TABLE", help="translate by this table of liblouis, such as en-ueb-g2.ctb")
+    plate.add_argument("--table", metavar="TABLE", help="translate with this table of liblouis, such as en-ueb-g2.ctb")
     plate.add_argument("--width-cells", type=int, metavar="N", help="break lines that are longer")
     for size in ("base-diameter", "height", "dot-pitch", "cell-pitch", "line-pitch"):
-        plate.add_argument(f"--{size}-mm", type=float, metavar="MM", help="in place of the standard's")
+        plate.add_argument(f"--{size}-mm", type=float, metavar="MM", help="instead of that of the standard")
     plate.add_argument("--heights-mm", metavar="MM,MM", help="heights of a height series")
     plate.add_argument("--thickness-mm", type=float, metavar="MM", help="of the plate")
     plate.add_argument("--margin-mm", type=float, metavar="MM", help="around the text")
-    plate.add_argument("--thread", metavar="NAME", help="of the force gauge, M6 without it")
+    plate.add_argument("--thread", metavar="NAME", help="thread of the force gauge, M6 by default")
     _add_output(plate)
 
 
@@ -187,12 +187,12 @@ def _add_schema(commands: Any) -> None:
         help="JSON Schema of the configuration",
         description="Print the JSON Schema of the configuration: each key, its meaning, bounds and default.",
     )
-    schema.add_argument("--json", action="store_true", help="no difference: the schema is JSON")
+    schema.add_argument("--json", action="store_true", help="has no effect, as the schema is JSON")
 
 
 def _add_config(command: argparse.ArgumentParser) -> None:
     command.add_argument(
-        "config", nargs="?", metavar="CONFIG.toml", help="without it: the final design of the paper"
+        "config", nargs="?", metavar="CONFIG.toml", help="default: the final design of the paper"
     )
     _add_set(command)
 
@@ -212,9 +212,9 @@ def _add_output(command: argparse.ArgumentParser) -> None:
         "--json", action="store_true", help="print the summary, and nothing else, to standard output"
     )
     told = command.add_mutually_exclusive_group()
-    told.add_argument("-q", "--quiet", action="store_true", help="tell nothing but warnings and errors")
+    told.add_argument("-q", "--quiet", action="store_true", help="print only warnings and errors")
     told.add_argument(
-        "-v", "--verbose", action="store_true", help="tell details too, such as every iteration of the solver"
+        "-v", "--verbose", action="store_true", help="print details too, such as every iteration of the solver"
     )
 
 

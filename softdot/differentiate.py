@@ -46,7 +46,7 @@ def derivatives(config: Config, keys: Sequence[str]) -> list[Derivative]:
     dot_shape, _ = stages.check(changed)
     result, found = press_with_derivatives(config, keys, stages.build_mesh(changed, dot_shape))
     if not result.converged:
-        raise InputError(f"the press stopped short: {result.failure}")
+        raise InputError(f"the press stopped early: {result.failure}")
     return found
 
 

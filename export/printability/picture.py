@@ -92,7 +92,7 @@ def _write_list(figure: Any, printability: Printability, some_hidden: bool) -> N
     ]
     texts.append((f"Advice: {printability.advice if texts else 'no findings'}", INK))
     if some_hidden:
-        texts.append(("A broken ring: behind what is seen", INK))
+        texts.append(("Dashed ring: hidden behind the part", INK))
     paragraphs = [(wrap(text, LINE_CHARACTERS), colour) for text, colour in texts]
     scale = min(1.0, 0.82 / sum(LINE * len(lines) + BETWEEN for lines, _ in paragraphs))
     top = 0.87

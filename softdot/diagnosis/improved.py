@@ -17,9 +17,9 @@ from diagnose.verdict.resimulation import switched_on
 from softdot.rig_file import OWN, RIG_FILE, Rig
 
 WITH = "Your {} with what the recordings say was left out: {}."
-UNCHANGED = "Your {} as it was: the diagnosis named nothing that was left out."
+UNCHANGED = "Your {} unchanged: the diagnosis named nothing that was left out."
 EXAMPLE = (
-    "The material '{}' as its coupon says: {}. It stands in medium 2 of the default segment; copy it where you need it."
+    "The material '{}' as its coupon says: {}. It is in medium 2 of the default segment; copy it where you need it."
 )
 
 

@@ -13,13 +13,13 @@ HEAD = {
     "clear_named_or_grouped": f"effects of size {CLEAR:g} or more: named, or in a fair group",
     "clear_exact": f"effects of size {CLEAR:g} or more: exactly named",
     "clear_component": f"effects of size {CLEAR:g} or more: component right",
-    "abstention_left_out": "mechanism left out of the tool: nothing named",
-    "abstention_outside": "effect outside the vocabulary: nothing named",
+    "abstention_left_out": "mechanism left out of the candidates: nothing named",
+    "abstention_outside": "effect outside the list of mechanisms: nothing named",
     "pairs_exact": "two effects at once: both named",
-    "ambiguous_told": "designed ambiguity: told, or nothing named",
-    "next_press_resolves": "several left, the press made that was asked for: just the truth is named",
+    "ambiguous_told": "designed ambiguity: reported, or nothing named",
+    "next_press_resolves": "several explanations left, proposed press made: only the truth is named",
     "held_out_on_floor": "held-out error within 1.2 times the noise floor, where named exactly",
-    "covered": "90 % intervals that hold the true value",
+    "covered": "90 % intervals that contain the true value",
 }
 OURS, SPARSE = "softdot diagnose", "sparse regression"
 

@@ -71,7 +71,7 @@ def kept(place: Path, config: Config) -> Record | None:
     except (OSError, ValueError, AttributeError, TypeError, RecursionError):
         damaged = True
     if damaged:
-        logging.getLogger("softdot").warning("'%s' is damaged; it is deleted and the point solved anew", path)
+        logging.getLogger("softdot").warning("'%s' is damaged; it is deleted and the point is solved again", path)
         with suppress(OSError):
             path.unlink()
         return None

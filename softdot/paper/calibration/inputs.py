@@ -33,7 +33,7 @@ INPUTS = {
     for entry in (
         Input(
             "resistance_MOhm", "input resistance R", "MΩ", 0.5, 1.0, 10.0,
-            "1 MΩ is the rule for filters and oscilloscopes, half of it where both hang on the film, 10 MΩ for a probe",
+            "1 MΩ is usual for filters and oscilloscopes, half of it if both load the film, 10 MΩ for a probe",
             logarithmic=True,
         ),
         Input(

@@ -123,12 +123,12 @@ def _rig_blocks(rig: Rig, folder: Path) -> list[Block]:
         "The paper built one sensor twice: a film of 16 × 16 mm on a sponge of 5 mm, under an OHP sheet (case I) or "
         "under rubber (case II). A copper dot on an acrylic beam was pressed into it by hand, ten times in ten "
         "seconds, 0.831 and 1.57 mm deep on average. It divided the simulated voltage per depth by the recorded one "
-        "and got p = 288 and 385. Here p is not put in. The same rig is simulated twice: as an ideal cross-section "
+        "and got p = 288 and 385. Here p is not an input. The same rig is simulated twice: as an ideal cross-section "
         "at open circuit, as the paper's drawings suggest its simulation was, and as it was built.",
         Figure(
             figures.draw_signal(rig, folder),
             "One press a second, as in the paper's Fig. 2",
-            "Left: what is left of tens of volts behind the assumed input and the 60 Hz low-pass. The film gives a "
+            "Left: what remains of tens of volts after the assumed input and the 60 Hz low-pass. The film gives a "
             "voltage while it is pressed and one of the other sign while it is released, since the charge leaks off "
             "far faster than the hand moves. Right: the depth of the dot.",
         ),
@@ -221,7 +221,7 @@ def _accuracy(rig: Rig) -> str:
     stopped = [f"{name} at {depth:.3g} mm" for solved in rig.values() for name, depth in solved.stopped_mm.items()]
     ended = f" Stopped early and carried on along the tangent: {'; '.join(stopped)}." if stopped else ""
     return (
-        f"With all elements smaller by {FINENESS:g} the first piece (2D for 3D) changes by {errors} in case I and II. "
+        f"With all elements smaller by {FINENESS:g} the first factor (2D for 3D) changes by {errors} in case I and II. "
         "Each input changes a press by a factor of its own, found by pressing again with that input alone changed; "
         f"how two of them act together is taken as the product.{ended}"
     )

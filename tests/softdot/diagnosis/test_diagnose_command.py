@@ -145,7 +145,7 @@ def test_where_nothing_is_named_the_configuration_stays(tmp_path, diagnosed, fin
     finding(**parts)
     diagnosed(write_toy(tmp_path / "rig"))
     text = (tmp_path / "out" / "improved.toml").read_text("utf-8")
-    assert text.startswith("# Your rig.toml as it was: the diagnosis named nothing that was left out.")
+    assert text.startswith("# Your rig.toml unchanged: the diagnosis named nothing that was left out.")
     assert load_config(tmp_path / "out" / "improved.toml").mechanisms == ()
 
 
