@@ -8,9 +8,9 @@ import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
-from typing import Any, NoReturn
 
 from geometry.errors import InputError
+from softdot.arguments import parser
 from softdot.command_output import BAD_INPUT, GOOD, INTERRUPTED, complain
 from softdot.log import lines_on_stderr
 
@@ -22,200 +22,11 @@ COMMANDS = {
     "prove": "softdot.proof.command",
     "kit": "softdot.kit.command",
     "plate": "softdot.plate.command",
+    "check": "softdot.check_command",
+    "new": "softdot.new_command",
+    "list": "softdot.list_command",
 }
-EXIT_STATUS = "Exit status: 0 good, 2 bad input, 3 a computation did not converge, 130 interrupted."
 NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EACCES, errno.EPERM}
-
-
-class _Parser(argparse.ArgumentParser):
-    """Says one sentence instead of the usage and a sentence."""
-
-    def error(self, message: str) -> NoReturn:
-        """Exit 2."""
-        self.exit(BAD_INPUT, f"{self.prog}: {message}; see {self.prog} --help\n")
-
-
-class _Version(argparse.Action):
-    """Looks the version up only when asked."""
-
-    def __call__(self, parser: argparse.ArgumentParser, *_args: Any) -> None:
-        from softdot.version import installed_version
-
-        print(f"softdot {installed_version()}")
-        parser.exit(GOOD)
-
-
-def parser() -> argparse.ArgumentParser:
-    """The whole command line."""
-    top = _Parser(
-        prog="softdot",
-        description="Design, simulate and fabricate a soft piezoelectric segment over a Braille dot.",
-    )
-    top.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
-    commands = top.add_subparsers(dest="command", metavar="COMMAND", required=True)
-    _add_run(commands)
-    _add_paper(commands)
-    _add_sweep(commands)
-    _add_diagnose(commands)
-    _add_prove(commands)
-    _add_kit(commands)
-    _add_plate(commands)
-    _add_schema(commands)
-    return top
-
-
-def _add_run(commands: Any) -> None:
-    run = commands.add_parser(
-        "run",
-        help="build, mesh, press and export one segment",
-        description="Build, mesh and press one segment; write CAD, ParaView results, pictures and a report.",
-        epilog="'softdot schema' explains every key of CONFIG.toml; examples/ has files to start from. "
-        + EXIT_STATUS,
-    )
-    _add_config(run)
-    _add_output(run)
-
-
-def _add_paper(commands: Any) -> None:
-    paper = commands.add_parser(
-        "paper",
-        help="reproduce and examine every table, figure and number of the paper",
-        description="Solve the whole study of the paper and carry it on: its tables, figures and published "
-        "numbers beside ours, the calibration factor, and a design search. A second run uses the cache.",
-        epilog=EXIT_STATUS,
-    )
-    _add_output(paper)
-
-
-def _add_sweep(commands: Any) -> None:
-    sweep = commands.add_parser(
-        "sweep",
-        help="press many designs over any keys of the configuration",
-        description="Solve every point of a design space on all cores, or on a Dask cluster, into one table. "
-        "A sweep that was stopped goes on where it was.",
-        epilog="examples/ has a SPACE.toml to start from. " + EXIT_STATUS,
-    )
-    sweep.add_argument("space", metavar="SPACE.toml", help="a configuration and its axes")
-    _add_set(sweep)
-    sweep.add_argument("--scheduler", metavar="ADDRESS", help="an existing Dask scheduler, tcp://host:8786")
-    _add_output(sweep)
-
-
-def _add_diagnose(commands: Any) -> None:
-    diagnose = commands.add_parser(
-        "diagnose",
-        help="find where simulation and recordings differ, and which physics was left out",
-        description="Compare recordings of a real rig with its model: where they differ, which physics was left out, "
-        "how well the model does with it, and what to press next. A second diagnosis of a rig uses the cache.",
-        epilog="docs/recordings.md describes the format of a recording, docs/diagnose.md how to read the verdict. "
-        + EXIT_STATUS,
-    )
-    diagnose.add_argument("recording", metavar="RECORDING", help="a folder with rig.toml and CSV files")
-    last_word = diagnose.add_mutually_exclusive_group()
-    last_word.add_argument(
-        "--all-presses", action="store_true", help="check every run with the full 3D model, however long it takes"
-    )
-    last_word.add_argument(
-        "--fast-model-only", action="store_true", help="check no run with the full 3D model, to study many recordings"
-    )
-    diagnose.add_argument(
-        "--without", action="append", default=[], metavar="MECHANISM", help="leave a mechanism out of the candidates"
-    )
-    diagnose.add_argument(
-        "--hold-out", action="append", default=[], metavar="TEXT",
-        help="runs with this in their label take no part in naming and only score the result",
-    )
-    diagnose.add_argument("--seed", type=int, metavar="N", help="seed of everything random, instead of rig.toml's")
-    _add_output(diagnose)
-
-
-def _add_prove(commands: Any) -> None:
-    prove = commands.add_parser(
-        "prove",
-        help="count how often a diagnosis is right, with hidden effects from another code",
-        description="Hide effects in recordings of another code, seal the truth, diagnose, reveal and count. "
-        "A proof that was stopped goes on where it was.",
-        epilog="docs/prove.md explains the cases and the table. " + EXIT_STATUS,
-    )
-    prove.add_argument("--cases", type=int, required=True, metavar="N", help="how many recordings")
-    prove.add_argument("--seed", type=int, default=0, metavar="S", help="of the cases")
-    prove.add_argument("--rigs", metavar="NAME,NAME", help="from ridge-clamped, ridge-free, dot-clamped; default: all")
-    kinds = "from none, single, pair, left-out, outside, ambiguous; default: all"
-    prove.add_argument("--kinds", metavar="KIND,KIND", help=kinds)
-    prove.add_argument("--staged", action="store_true", help="the first eight mechanisms only")
-    prove.add_argument("--workers", type=int, metavar="N", help="number of processes; one per core by default")
-    prove.add_argument("--scheduler", metavar="ADDRESS", help="an existing Dask scheduler, tcp://host:8786")
-    _add_output(prove)
-
-
-def _add_kit(commands: Any) -> None:
-    kit = commands.add_parser(
-        "kit",
-        help="write a fabrication kit: moulds, frame, cut files, build sheet",
-        description="Write everything that a workshop needs to make the simulated segment.",
-        epilog=EXIT_STATUS,
-    )
-    _add_config(kit)
-    _add_output(kit)
-
-
-def _add_plate(commands: Any) -> None:
-    plate = commands.add_parser(
-        "plate",
-        help="write a printable Braille test plate",
-        description="Write a printable plate with a text in Braille, a single dot, a row of dots that grow, "
-        "or an indenter tip for a force gauge, and say by which printer it can be made.",
-        epilog="docs/plate.md explains each option. " + EXIT_STATUS,
-    )
-    plate.add_argument("text", nargs="?", help="the text, or Unicode Braille cells")
-    plate.add_argument("--standard", required=True, metavar="NAME", help="a Braille standard, such as ada")
-    plate.add_argument("--kind", default="text", choices=("text", "dot", "height-series", "tip"), help="what to make")
-    plate.add_argument("--table", metavar="TABLE", help="translate with this table of liblouis, such as en-ueb-g2.ctb")
-    plate.add_argument("--width-cells", type=int, metavar="N", help="break lines that are longer")
-    for size in ("base-diameter", "height", "dot-pitch", "cell-pitch", "line-pitch"):
-        plate.add_argument(f"--{size}-mm", type=float, metavar="MM", help="instead of that of the standard")
-    plate.add_argument("--heights-mm", metavar="MM,MM", help="heights of a height series")
-    plate.add_argument("--thickness-mm", type=float, metavar="MM", help="of the plate")
-    plate.add_argument("--margin-mm", type=float, metavar="MM", help="around the text")
-    plate.add_argument("--thread", metavar="NAME", help="thread of the force gauge, M6 by default")
-    _add_output(plate)
-
-
-def _add_schema(commands: Any) -> None:
-    schema = commands.add_parser(
-        "schema",
-        help="JSON Schema of the configuration",
-        description="Print the JSON Schema of the configuration: each key, its meaning, bounds and default.",
-    )
-    schema.add_argument("--json", action="store_true", help="has no effect, as the schema is JSON")
-
-
-def _add_config(command: argparse.ArgumentParser) -> None:
-    command.add_argument(
-        "config", nargs="?", metavar="CONFIG.toml", help="default: the final design of the paper"
-    )
-    _add_set(command)
-
-
-def _add_set(command: argparse.ArgumentParser) -> None:
-    command.add_argument(
-        "--set", action="append", default=[], metavar="KEY=VALUE",
-        help="a value in place of the file's, such as press.indentation_mm=0.2; may be repeated",
-    )
-
-
-def _add_output(command: argparse.ArgumentParser) -> None:
-    command.add_argument(
-        "-o", "--output", required=True, metavar="OUT", help="folder to write; an earlier result is replaced"
-    )
-    command.add_argument(
-        "--json", action="store_true", help="print the summary, and nothing else, to standard output"
-    )
-    told = command.add_mutually_exclusive_group()
-    told.add_argument("-q", "--quiet", action="store_true", help="print only warnings and errors")
-    told.add_argument(
-        "-v", "--verbose", action="store_true", help="print details too, such as every iteration of the solver"
-    )
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -256,7 +67,7 @@ def _command(chosen: argparse.Namespace) -> int:
         sys.stdout.write(json_text(config_schema()))
         return GOOD
     body = import_module(COMMANDS[chosen.command])
-    with lines_on_stderr(chosen.quiet, chosen.verbose):
+    with lines_on_stderr(getattr(chosen, "quiet", False), getattr(chosen, "verbose", False)):
         status: int = body.command(chosen)
     return status
 
