@@ -5,7 +5,6 @@ standard has changed. It writes docs/configuration.md and the marked blocks of d
 docs/kit_parts.md and docs/mechanisms.md; tests/softdot/test_docs.py fails while they are out of step.
 """
 
-import json
 import sys
 import tomllib
 from collections.abc import Callable
@@ -19,6 +18,7 @@ from geometry.braille import QUANTITIES, Quantity, standard, standard_names  # n
 from geometry.fabrication.parameters import Fabrication  # noqa: E402
 from geometry.fabrication.recipes import castable_materials, recipe_for  # noqa: E402
 from softdot.schema import config_schema  # noqa: E402
+from softdot.schema_words import allowed, toml, unit  # noqa: E402
 from solve.materials.library import library_tables  # noqa: E402
 from solve.mechanisms import MECHANISMS  # noqa: E402
 
@@ -69,29 +69,6 @@ HINTS = {
 }
 """What is allowed where the schema alone says too little or too much."""
 
-UNITS = {
-    "_N_per_mm3": "N/mm³",
-    "_pC_per_N": "pC/N",
-    "_kg_m3": "kg/m³",
-    "_g_cm3": "g/cm³",
-    "_percent": "%",
-    "_min": "min",
-    "_MPa": "MPa",
-    "_MOhm": "MΩ",
-    "_deg": "degree",
-    "_mm": "mm",
-    "_um": "µm",
-    "_pF": "pF",
-    "_Hz": "Hz",
-    "_N": "N",
-    "_V": "V",
-    "_g": "g",
-    "_h": "h",
-    "_s": "s",
-}
-"""Ending of a key -> its unit; the first that fits counts."""
-
-
 def configuration_page() -> str:
     """The whole text of docs/configuration.md."""
     schema = config_schema()
@@ -111,9 +88,9 @@ def _section(title: str, name: str, definitions: Json, examples: Json) -> str:
     for key in keys:
         value, required = table["properties"][key], key in table.get("required", [])
         meaning = value.get("description") or _description(value, definitions)
-        allowed = HINTS.get(f"{name}.{key}") or _allowed(value)
+        bounds = HINTS.get(f"{name}.{key}") or allowed(value)
         rows.append(
-            [f"`{key}`", meaning, _unit(key), _default(value, required), allowed, _example(title, key, value, examples)]
+            [f"`{key}`", meaning, unit(key), _default(value, required), bounds, _example(title, key, value, examples)]
         )
     about = "" if name == "Config" else f"{table['description'].strip()}\n\n"
     return f"## {title}\n\n{about}{_table(['key', 'meaning', 'unit', 'default', 'allowed', 'example'], rows)}"
@@ -122,10 +99,6 @@ def _section(title: str, name: str, definitions: Json, examples: Json) -> str:
 def _description(value: Json, definitions: Json) -> str:
     """What the definition says that a key refers to."""
     return str(definitions[value["$ref"].rpartition("/")[2]]["description"]).rstrip(".").lower()
-
-
-def _unit(key: str) -> str:
-    return next((unit for ending, unit in UNITS.items() if key.endswith(ending)), "–")
 
 
 def _default(value: Json, required: bool) -> str:
@@ -139,38 +112,6 @@ def _default(value: Json, required: bool) -> str:
     return f"`{toml(default)}`"
 
 
-def _allowed(value: Json) -> str:
-    """What the schema allows, in words."""
-    if "$ref" in value or isinstance(value.get("additionalProperties"), dict):
-        return "a table"
-    if "anyOf" in value:
-        return " or ".join(dict.fromkeys(_allowed(one) for one in value["anyOf"] if one.get("type") != "null"))
-    if "enum" in value or "const" in value:
-        return ", ".join(f"`{toml(one)}`" for one in value.get("enum", [value.get("const")]))
-    if value["type"] == "array":
-        return _allowed_list(value)
-    words = {
-        "number": "number",
-        "integer": "whole number",
-        "string": "text",
-        "object": "table",
-        "boolean": "true, false",
-    }
-    bounds = {"exclusiveMinimum": "above", "minimum": "at least", "exclusiveMaximum": "below", "maximum": "at most"}
-    limits = [f"{word} {value[name]:g}" for name, word in bounds.items() if name in value]
-    return " ".join([words[value["type"]], " and ".join(limits)]).strip()
-
-
-def _allowed_list(value: Json) -> str:
-    pieces = value.get("prefixItems")
-    if pieces:
-        return f"list of {len(pieces)}: " + "; ".join(dict.fromkeys(_allowed(piece) for piece in pieces))
-    if "$ref" in value["items"]:
-        return "tables"
-    least = ", at least one" if value.get("minItems") else ""
-    return f"list{least}, each: {_allowed(value['items'])}"
-
-
 def _example(title: str, key: str, value: Json, examples: Json) -> str:
     """A line of TOML: the key with a value, or the head of a table of its own."""
     if key in examples:
@@ -178,15 +119,6 @@ def _example(title: str, key: str, value: Json, examples: Json) -> str:
     parent = title.strip("[]`") + "." if title.startswith("`") else ""
     head = f"[{parent}{key}{'.my-rubber' if key in ('materials', 'casting') else ''}]"
     return f"`[{head}]`" if value.get("type") == "array" else f"`{head}`"
-
-
-def toml(value: Any) -> str:
-    """A value as TOML writes it on one line."""
-    if isinstance(value, dict):
-        return "{ " + ", ".join(f"{key} = {toml(item)}" for key, item in value.items()) + " }"
-    if isinstance(value, list | tuple):
-        return "[" + ", ".join(toml(item) for item in value) + "]"
-    return json.dumps(value, ensure_ascii=False)
 
 
 def _materials_note() -> str:

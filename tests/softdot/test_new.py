@@ -1,0 +1,64 @@
+"""softdot new: a file that loads as it is, names every key of the schema and stays true when keys change."""
+
+import re
+import tomllib
+
+import pytest
+
+from softdot import stages
+from softdot.actual import actual
+from softdot.arguments import TEMPLATES
+from softdot.cli import main
+from softdot.config import config_from, config_hash, load_config
+from softdot.new_command import TABLES, template_text
+from softdot.schema import config_schema
+
+
+@pytest.mark.parametrize("name", TEMPLATES)
+def test_what_is_printed_passes_the_checks_of_a_run(name, tmp_path, capfd):
+    assert main(["new", "--template", name]) == 0
+    path = tmp_path / "mine.toml"
+    path.write_text(capfd.readouterr().out, "utf-8")
+    changed, _ = actual(load_config(path))
+    stages.check(changed)
+    assert main(["check", str(path), "--quiet"]) == 0
+
+
+def test_the_default_template_is_the_default_design():
+    assert config_hash(config_from(tomllib.loads(template_text("default")))) == config_hash(load_config())
+
+
+def test_each_template_is_another_design():
+    assert len({config_hash(config_from(tomllib.loads(template_text(name)))) for name in TEMPLATES}) == len(TEMPLATES)
+
+
+@pytest.mark.parametrize("name", TEMPLATES)
+def test_every_key_stands_there_with_its_meaning(name):
+    text = template_text(name)
+    schema = config_schema()
+    definitions = {**schema["$defs"], "Config": schema}
+    for title, kind in TABLES.items():
+        if title:
+            assert re.search(rf"^(# )?\[{re.escape(title)}\]$", text, re.MULTILINE), title
+        for key, value in definitions[kind]["properties"].items():
+            table = f"[{title}.{key}".replace("[.", "[")
+            assert re.search(rf"^(# )?{key} = ", text, re.MULTILINE) or table in text or "materials" in key, key
+            if "description" in value and "$ref" not in str(value):
+                words = value["description"].split()[:3]
+                assert " ".join(words) in re.sub(r"\n#\s+", " ", text), key
+
+
+def test_what_is_commented_out_can_be_switched_on():
+    """Every key with a default, one at a time: the file without that # still loads."""
+    lines = template_text("default").splitlines()
+    inactive = [n for n, line in enumerate(lines) if re.match(r"# [a-zA-Z0-9_]+ = (?!\.\.\.)", line)]
+    headed = [n for n in inactive if not _head(lines, n).startswith("# [")]
+    assert len(headed) > 30
+    for number in headed:
+        text = "\n".join([*lines[:number], lines[number].removeprefix("# "), *lines[number + 1 :]])
+        config_from(tomllib.loads(text))
+
+
+def _head(lines, number):
+    """The table in which a line stands."""
+    return next((line for line in reversed(lines[:number]) if re.match(r"(# )?\[+[a-z]", line)), "")
