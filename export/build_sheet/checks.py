@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass
 
-from export.build_sheet.contents import Contents, spoken
+from export.build_sheet.contents import Contents, in_words
+from export.build_sheet.measuring import gauging
 from geometry.flat.electrodes import stray_area_mm2
 
 VACUUM_PF_PER_MM = 8.8541878128e-3
@@ -42,36 +43,35 @@ def _printed(contents: Contents) -> list[Check]:
     along, across = contents.segment.length_mm, contents.segment.width_mm
     found = []
     for pour in contents.solid.pours:
-        layer = next(one for one in contents.layers if one.name == pour.component)
-        depth = layer.thickness_mm / (1.0 - pour.shrinkage_percent / 100)
-        again = "sand the land, or print again with another height"
-        found.append(Check(f"depth of each cavity of the mould of {spoken(pour.component)}", f"{depth:.3f} mm", again))
+        gauge = gauging(contents, pour.component)
+        depth = gauge.size_mm / (1.0 - pour.shrinkage_percent / 100)
+        again = "print the mould again, its cavity deeper or shallower by the difference"
+        where = ", at its deepest point" if gauge.shape == "dome" else ""
+        what = f"depth of each cavity in the mould of {in_words(pour.component)}{where}"
+        found.append(Check(what, f"{depth:.3f} mm", again))
     frame = contents.frame
     for label, run in (("frame-body", frame.body), ("frame-ring", frame.ring[-1] if frame.ring else None)):
         if run is not None:
             size = f"{along + 2 * run.gap:.4g} × {across + 2 * run.gap:.4g} mm"
-            found.append(Check(f"opening of {label}, x × y at its top", size, "file it: a tight layer bulges"))
+            tight = "file it wider: a layer that is too tight bulges"
+            found.append(Check(f"opening of {label} at its top, x × y", size, tight))
     return found
 
 
 def _thicknesses(contents: Contents) -> list[Check]:
     rows = {row["label"]: row for row in contents.budget["rows"]} if contents.budget else {}
-    found = []
+    found, again = [], "write the measured value into the configuration and run it again"
     for layer in reversed(contents.layers):
-        if layer.name != "film":
-            row = rows.get(f"thickness of {_in_budget(layer.name)}")
-            within = f" ± {row['plus_minus']:.2g}" if row else ""
-            found.append(
-                Check(
-                    f"thickness of {spoken(layer.name)}, at its four corners", f"{layer.thickness_mm:.3g}{within} mm",
-                    "write the measured value into the configuration and run it again",
-                )
-            )  # fmt: skip
+        if layer.name == "film":
+            continue
+        name, gauge = in_words(layer.name), gauging(contents, layer.name)
+        row = rows.get(f"thickness of {name}")
+        within = f" ± {row['plus_minus']:.2g}" if row else ""
+        expect = f"{gauge.size_mm:.4g}{within} mm"
+        found.append(Check(f"{gauge.quantity} of {name}, {gauge.where}", expect, again))
+        if gauge.foot is not None:
+            found.append(Check(f"{name}: {gauge.foot[0]}", gauge.foot[1], again))
     return found
-
-
-def _in_budget(name: str) -> str:
-    return spoken(name) if name != "effector" else "the effector"
 
 
 def _electrical(contents: Contents) -> list[Check]:
@@ -82,27 +82,30 @@ def _electrical(contents: Contents) -> list[Check]:
         Check(
             f"capacitance of electrode '{name}' against the common one, 1 kHz, cable subtracted",
             f"{expected:.3g} pF{more}",
-            "too high: metal left beside the electrode; too low: a broken lead or thicker film",
+            "too high: metal is left beside the electrode; too low: a lead is broken or the film is thicker",
         )
         for name, expected in capacitance_pF(contents)
     ]
     squares = max(metal.squares for metal in contents.flat.metals)
     most = ", ".join(f"{squares * ohm:.2g} Ω for {metal}" for metal, ohm in SHEET_OHM.items())
     found += [
-        Check(f"resistance from pad to electrode, {squares:.0f} squares", f"at most {most}", "a scratched lead"),
-        Check("resistance between the pads", "no reading (above 100 MΩ)", "metal around the cut edge: trim it"),
+        Check(f"resistance from pad to electrode, {squares:.0f} squares", f"at most {most}", "a lead is scratched"),
+        Check("resistance between the pads", "no reading (above 100 MΩ)", "metal bridges the cut edge: trim it"),
     ]
     return found
 
 
 def _stack(contents: Contents) -> list[Check]:
     segment_top, floor = contents.layers[-1].top_mm, contents.fabrication.floor_mm
+    carrier = "base" if contents.part("base") is not None else "frame"
+    effector = contents.segment.effector
+    where = ", at the crown of the dome" if effector is not None and effector.shape == "dome" else ""
     lines = contents.fabrication.adhesive_thickness_mm * (3 if contents.segment.effector is None else 4)
     return [
         Check(
-            "height of the finished segment over the underside of its frame",
-            f"{segment_top + floor:.3g} mm, and up to {lines:.2g} mm more for the adhesive",
-            "dirt or a bubble between two layers",
+            f"height of the finished segment above the underside of its {carrier}{where}",
+            f"{segment_top + floor:.4g} mm, and up to {lines:.2g} mm more for the adhesive",
+            "there is dirt or a bubble between two layers",
         )
     ]
 
@@ -117,6 +120,6 @@ def _press(contents: Contents) -> list[Check]:
             f"first press: {contents.press}",
             f"{budget['nominal']['force_N']:.2g} ± {total['force_N']:.2g} N and {budget['nominal']['voltage_V']:.2g} ± "
             f"{total['voltage_V']:.2g} V",
-            "see the tolerance budget for what shifts it most; a voltage of the other sign: the film lies upside down",
+            "the tolerance budget tells what shifts it most; a voltage of the other sign: the film is upside down",
         )
     ]

@@ -66,5 +66,10 @@ class Contents:
 
 
 def spoken(name: str) -> str:
-    """A layer as people say it."""
+    """A layer as people say it, in a table."""
     return NAMES.get(name, name)
+
+
+def in_words(name: str) -> str:
+    """A layer as people say it, in a sentence."""
+    return NAMES.get(name, f"the {name}")

@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass
 
-from export.build_sheet.contents import Contents, spoken
+from export.build_sheet.contents import Contents, in_words
+from export.build_sheet.measuring import GAUGE, gauging
 from geometry.fabrication.frame_layout import held_names
 from geometry.fabrication.jig import stacked_tops
 from geometry.fabrication.pours import Pour
@@ -33,48 +34,63 @@ def steps(contents: Contents) -> list[Step]:
 
 
 def _print(contents: Contents) -> Step:
-    actions = [
-        "Print every part of the table above in the number given there. The unit of all files is the millimetre.",
-        "Lay moulds with their cavities up and the frame with its openings up. No support may touch a cavity.",
-        "Try the pins in their holes and the lids on their plates before anything is poured.",
-    ]
+    actions = ["Print each part of the table above as often as it says there. The unit of all files is the millimetre."]
+    if contents.solid.pours:
+        actions.append("Print the moulds with their cavities up; no support may touch a cavity.")
+    held = "the base with its groove up" if contents.part("base") else "the frame with its openings up"
+    actions.append(f"Print {held} and the jig with its floor down.")
     if contents.fabrication.printer == "sla":
-        actions.insert(2, "Wash the parts, dry them, cure them under UV light, then heat them for 2 h at 60 °C.")
+        actions.append("Wash the parts, dry them, cure them under UV light, then heat them for 2 h at 60 °C.")
+    if contents.solid.pours:
+        actions.append("Try the pins in their holes and the lids on their moulds before you pour anything.")
     return Step("Print the parts", tuple(actions))
 
 
 def _cast(pour: Pour, contents: Contents) -> Step:
-    layer = next(one for one in contents.layers if one.name == pour.component)
-    mix = " and ".join(f"{mass:.2f} g of component {name}" for name, mass in pour.mixed_masses_g)
+    gauge, name = gauging(contents, pour.component), in_words(pour.component)
+    mix = " and ".join(f"{mass:.2f} g of component {one}" for one, mass in pour.mixed_masses_g)
     used = "" if pour.mixed_mass_g <= pour.poured_mass_g * 1.001 else (
-        f" Only {1e3 * pour.poured_mass_g:.0f} mg of it are needed; less cannot be weighed and mixed well."
+        f" Only {_plain(1e3 * pour.poured_mass_g)} mg of it are needed, but less cannot be weighed and mixed well."
     )
-    pot = f" You have {pour.pot_life_min:g} minutes." if pour.pot_life_min else ""
-    cure = f"Cure for {pour.cure_time_h:g} h" if pour.cure_time_h else "Cure as the maker says"
-    name = spoken(pour.component)
+    pot = f" You have {pour.pot_life_min:g} minutes to pour." if pour.pot_life_min else ""
+    cure = f"Let it cure for {pour.cure_time_h:g} h" if pour.cure_time_h else "Let it cure as its maker says"
+    cavities = "the cavity" if pour.cavities == 1 else f"each of the {pour.cavities} cavities"
+    bars = [] if not _split(pour, contents) else ["Set the bars onto the pins of the floor and push them together."]
+    opened = "take off the lid" if not bars else "take off the lid, draw the bars off sideways"
     return Step(
         f"Cast {name}",
         (
             f"Prepare the mould. {pour.release}",
+            *bars,
             f"Weigh {mix}, stir, and draw the air out under vacuum for 5 minutes.{used}{pot}",
-            f"Fill each of the {pour.cavities} cavities until it stands a little proud, {pour.poured_volume_mm3:.0f} "
-            "mm³ in all; break bubbles with a needle.",
-            "Lay acetate film on the inner face of the lid, close the lid onto its pins from one side, add 200 g.",
-            f"{cure}. Open the lid, lift the parts at a corner, trim what stands in the vents.",
-            f"Keep those that are {layer.thickness_mm:.3g} mm thick at all four corners; note what you measure.",
+            f"Fill {cavities} a little above the rim, {_plain(pour.poured_volume_mm3)} mm³ in all, and break bubbles "
+            "with a needle.",
+            "Lay acetate film on the underside of the lid. Lower the lid onto its pins from one side, so that it traps "
+            "no air, and put 200 g on it.",
+            f"{cure}, then {opened}, lift each part out {gauge.grip} and trim off what has set in the vents.",
+            f"Keep the parts {gauge.keep}, and write down what you measure. {GAUGE}",
         ),
         (f"mould-{pour.component}",),
     )
+
+
+def _plain(value: float) -> str:
+    """Two digits or all before the point."""
+    return f"{value:.0f}" if value >= 10.0 else f"{value:.2g}"
+
+
+def _split(pour: Pour, contents: Contents) -> bool:
+    return any(one.component == pour.component and one.style == "split" for one in contents.solid.cavity_checks)
 
 
 def _sheets(contents: Contents) -> list[Step]:
     """Components that are cut from sheet."""
     return [
         Step(
-            f"Cut {spoken(name)} from sheet",
+            f"Cut {in_words(name)} from sheet",
             (
-                f"Measure the sheet: {pattern.thickness_mm:.3g} mm are wanted.",
-                f"{pattern.instruction} File: cut/{pattern.name}.",
+                f"Measure the sheet: it should be {pattern.thickness_mm:.4g} mm thick. {GAUGE}",
+                f"{pattern.instruction} The file is cut/{pattern.name}.",
             ),
         )
         for name in contents.solid.cut_from_sheet
@@ -91,16 +107,18 @@ def _film(contents: Contents) -> Step:
         "Make the film and the adhesive sheets",
         (
             "Find the draw direction of the film: it is marked on the roll, and the film tears easily along it. The "
-            f"double arrow of the drawing lies {angle:g}° from the x axis.",
+            f"double arrow in the drawing is turned by {angle:g}° from the x axis.",
             patterns["film"].instruction,
-            f"Leads are {width:.3g} mm wide, {GAP_MM:g} mm apart and {EDGE_MM:g} mm from the edge of the tab; pads "
-            f"{PAD_WIDTH_MM:g} × {PAD_LENGTH_MM:g} mm, {PAD_PITCH_MM:g} mm from middle to middle. Seen with the tab to "
-            "the right, the pad of the common electrode is the lowest.",
-            "To turn the panel over, turn it about the axis of the tab: its two registration holes then meet the same "
-            "pins, and mask-bottom fits.",
-            "Remove metal with resist and etchant, or with a laser that spares the film. No solvent, at most 70 °C.",
-            f"Cut the adhesive: {_list(contents, 'adhesive')}. Leave the liners on.",
-            "Hold the film only by its panel or head: a crease is a dead film. Measure capacitance and resistance now.",
+            f"The leads are {width:.3g} mm wide, {GAP_MM:g} mm apart and {EDGE_MM:g} mm from the edge of the tab; the "
+            f"pads are {PAD_WIDTH_MM:g} × {PAD_LENGTH_MM:g} mm, {PAD_PITCH_MM:g} mm from middle to middle. Seen with "
+            "the tab to the right, the pad of the common electrode is the lowest.",
+            "Turn the panel over about the axis of its tab: its two registration holes then meet the same pins, and "
+            "mask-bottom fits.",
+            "Remove the metal with resist and etchant, or with a laser that spares the film. Use no solvent and stay "
+            "below 70 °C.",
+            f"Cut the adhesive sheets {_list(contents, 'adhesive')}. Leave the liners on.",
+            "Hold the film only by its panel or its head, because a crease ruins it. Measure its capacitance and the "
+            "resistance of its leads now.",
         ),
     )
 
@@ -114,22 +132,38 @@ def _list(contents: Contents, start: str) -> str:
 
 
 def _jig(contents: Contents) -> Step:
-    """What is bonded in the corner of the jig."""
+    """What is bonded in the corner of the jig; a narrow effector goes on through the locator."""
     tops = stacked_tops(contents.segment, contents.fabrication)
-    order = ", then ".join(spoken(name) for name in tops)
-    heights = ", ".join(f"{top:.3g} mm after {spoken(name)}" for name, top in tops.items())
-    actions = [
-        "Clean the layers with isopropanol, let them dry.",
-        f"Push {order} into the corner of the jig, one on the other, each against both stops.",
-        "Between two layers lay the adhesive that has the names of both: rub it onto the lower one, peel the liner, "
-        "set the next one down in the corner first.",
-        f"Compare with the steps beside the stop: the heights are {heights}, without adhesive.",
-    ]
-    if contents.part("jig-locator") is not None:
-        actions.insert(3, "Lay jig-locator over its pins and set the effector through its hole, so that it is centred.")
+    locator = contents.part("jig-locator") is not None
+    pushed = [in_words(name) for name in tops if not (locator and name == "effector")]
+    heights = [f"{top:.4g} mm after {in_words(name)}" for name, top in tops.items() if name != "film"]
+    actions = ["Clean the layers with isopropanol and let them dry."]
+    actions.append(
+        f"Push {pushed[0]} into the corner of the jig, against both stops."
+        if len(pushed) == 1
+        else f"Push {', then '.join(pushed)} into the corner of the jig, one on the other, each against both stops."
+    )
     if "film" in tops:
-        actions.insert(2, "The tab of the film lies over the open side of the jig, its printed words upwards.")
-    return Step("Stack in the jig", tuple(actions), ("jig",))
+        actions.append("The tab of the film lies over the open side of the jig, its printed words upwards.")
+    if len(tops) > 1:
+        actions.append(
+            "Bond each layer to the one below with the adhesive that has the names of both: rub it onto the lower "
+            "layer, peel off its liner, set the next layer down in the corner first."
+            if not locator or len(pushed) > 1
+            else "Rub adhesive-medium1-effector onto the middle of medium 1 and peel off its liner."
+        )
+    if locator:
+        actions.append(
+            "Lay jig-locator over its pins and set the effector onto medium 1 through its hole, which centres it."
+        )
+    actions.append(
+        f"Lay a straight edge over {'the stack' if len(tops) > 1 else 'it'} and the steps beside the stop: without "
+        f"adhesive the height is {', '.join(heights)}."
+    )
+    if contents.copies > 1:
+        actions.append(f"Repeat this for each of the {contents.copies} segments.")
+    title = "Stack the layers in the jig" if len(tops) > 1 else "Check the layer in the jig"
+    return Step(title, tuple(actions), ("jig",))
 
 
 def _assembly(contents: Contents) -> list[Step]:
@@ -143,21 +177,23 @@ def _assembly(contents: Contents) -> list[Step]:
 
 def _onto_base() -> Step:
     actions = (
-        "Lay adhesive-base-medium2 inside the groove of the base and peel its liner.",
-        "Set the stack on it, tab towards the shelf, and press for a minute.",
+        "Lay adhesive-base-medium2 inside the groove of the base and peel off its liner.",
+        "Set the stack on it, its tab towards the shelf, and press it down for a minute.",
     )
     return Step("Glue the stack onto its base", actions, ("section",))
 
 
 def _whole_into_frame(contents: Contents) -> Step:
     actions = [
-        "Lay adhesive-base-medium2 into the middle of the opening of frame-body, peel its liner.",
-        "Lower the stack into the opening, its tab into the channel. Keep the same air on all sides.",
+        "Lay adhesive-base-medium2 into the middle of the opening of frame-body and peel off its liner.",
+        *_glue_medium2(contents),
+        "Lower the stack into the opening, its tab into the channel, with the same gap on all sides.",
     ]
     if contents.part("frame-ring") is not None:
         actions += [
-            "Draw a thin line of flexible adhesive around the layers that the ring holds, lower frame-ring over them.",
-            "Put in both screws and tighten them by turns until the ring lies flat; wipe off what is pressed out.",
+            f"Draw a thin line of flexible adhesive around {_held(contents)}, which the ring holds, and lower "
+            "frame-ring over it.",
+            "Put in both screws, tighten them in turn until the ring lies flat, and wipe off what is pressed out.",
         ]
     return Step("Set the stack into the frame", tuple(actions), ("section",))
 
@@ -168,60 +204,81 @@ def _one_by_one(contents: Contents) -> list[Step]:
     rings = {one.name.rpartition("-")[2] for one in _rings(contents)}
     lower, upper = "", ""
     if "lower" in rings:
-        lower = "Rub adhesive-flange-lower onto the underside of the film's flange, window over the electrode. "
+        lower = "Rub adhesive-flange-lower onto the underside of the film's flange, its window under the electrode. "
     if "upper" in rings:
         upper = "Rub adhesive-flange-upper onto the top of the flange. "
     rim = contents.frame.half_along - contents.frame.frame.along / 2 - contents.flat.layout.flange
-    found = [
+    edge = f"lies {rim:.3g} mm inside the edge of the frame" if rim > 0.05 else "is flush with the edge of the frame"
+    glue = contents.fabrication.adhesive_thickness_mm
+    paper = "" if "medium2" in held_names(contents.segment) else "; strips of paper of that thickness help"
+    return [
         Step(
-            "Medium 2 into the frame",
+            "Set medium 2 into the frame",
             (
-                "Lay adhesive-base-medium2 into the middle of the opening of frame-body, peel its liner.",
-                f"Set medium 2 on it with {gap:g} mm of air on every side; a strip of paper of that thickness helps.",
-                f"Its top is then {contents.fabrication.adhesive_thickness_mm:g} mm above the top of the frame; "
-                "more is dirt, or a part that is too thick.",
+                "Lay adhesive-base-medium2 into the middle of the opening of frame-body and peel off its liner.",
+                *_glue_medium2(contents),
+                f"Set medium 2 on it with a gap of {gap:g} mm on every side{paper}.",
+                f"Its top should now stand {glue:g} mm above the top of the frame. If it stands higher, look for dirt, "
+                "or for a part that is too thick.",
             ),
             ("assembly-1",),
         ),
         Step(
-            "Film onto medium 2",
+            "Lay the film onto medium 2",
             (
-                f"{lower}Lay adhesive-medium2-film on medium 2, peel all liners.",
-                "Hold the film by its head, top face up, the tab over its channel. Away from the cable its edge lies "
-                f"{rim:.3g} mm inside the edge of the frame.",
-                "Let it down from the side of the tab, rub it down from the middle outwards with a soft stick.",
+                f"{lower}Lay adhesive-medium2-film on medium 2 and peel off all liners.",
+                f"Hold the film by its head, top face up, the tab over its channel. The edge of the film that is away "
+                f"from the cable {edge}.",
+                "Lower the film from the side of the tab and rub it down from the middle outwards with a soft stick.",
             ),
             ("assembly-2",),
         ),
+        Step(
+            "Screw the ring onto the film",
+            (
+                f"{upper}Peel off its liner and lower frame-ring so that its holes meet those of the body."
+                if upper
+                else "Lower frame-ring so that its holes meet those of the body.",
+                "Put in both screws and tighten them in turn until the ring lies flat.",
+                "Measure the capacitance again: it must not have changed.",
+            ),
+            ("assembly-3",),
+        ),
+        _upper_layers(contents),
     ]
-    if contents.part("frame-ring") is None:
-        return found
-    ring = Step(
-        "Ring onto the film",
-        (
-            f"{upper}Peel its liner, lower frame-ring so that its holes meet those of the body.",
-            "Put in both screws and tighten them by turns until the ring lies flat.",
-            "Measure the capacitance again: it must not have changed.",
-        ),
-        ("assembly-3",),
-    )
-    block = Step(
-        "Upper layers into the ring",
-        (
-            "Lay adhesive-film-medium1 on the film within the window, peel its liner.",
-            f"Wet the walls of the window thinly with flexible adhesive, gap {contents.fabrication.glue_gap_mm:g} mm, "
-            f"only where they hold: {_held(contents)}.",
-            "Lower the stack from the jig into the window, medium 1 first; press it with 1 N until the adhesive holds.",
-            "Wipe off what rises between wall and layers; let it cure as its maker says.",
-        ),
-        ("assembly-4", "section"),
-    )
-    return [*found, ring, block]
+
+
+def _glue_medium2(contents: Contents) -> list[str]:
+    """Where the body of the frame holds it."""
+    if "medium2" not in held_names(contents.segment):
+        return []
+    fills = f"it fills the gap of {contents.fabrication.glue_gap_mm:g} mm to medium 2"
+    return [f"Wet the walls of the opening thinly with flexible adhesive: {fills}."]
+
+
+def _upper_layers(contents: Contents) -> Step:
+    """Into the ring, bonded to the film, and to the walls of the ring where these hold them."""
+    stacked, held = stacked_tops(contents.segment, contents.fabrication), _held(contents)
+    what = "the stack from the jig" if len(stacked) > 1 else in_words(next(iter(stacked)))
+    first = ", medium 1 first" if len(stacked) > 1 else ""
+    actions = [
+        "Lay adhesive-film-medium1 on the film within the window of the ring and peel off its liner.",
+        f"Lower {what} into the window{first}, and press it down with about 1 N until the adhesive holds.",
+    ]
+    if held:
+        actions.insert(
+            1,
+            f"Wet the walls of the window thinly with flexible adhesive beside {held}: it fills the gap of "
+            f"{contents.fabrication.glue_gap_mm:g} mm there.",
+        )
+        actions.append("Wipe off what rises between wall and layers and let it cure as its maker says.")
+    return Step("Set the upper layers into the ring", tuple(actions), ("assembly-4", "section"))
 
 
 def _held(contents: Contents) -> str:
-    names = held_names(contents.segment)
-    return ", ".join(spoken(layer.name) for layer in contents.layers if layer.name in names and layer.name != "film")
+    """Layers that are glued to the ring."""
+    names = held_names(contents.segment) - {"film", "medium2"}
+    return " and ".join(in_words(layer.name) for layer in contents.layers if layer.name in names)
 
 
 def _connect(contents: Contents) -> Step:
@@ -230,10 +287,10 @@ def _connect(contents: Contents) -> Step:
     return Step(
         "Connect and test",
         (
-            f"Pads at the end of the tab, {PAD_PITCH_MM:g} mm apart: {pads}; the common electrode is on the other "
-            "face. Crimp or glue one contact to each; do not solder.",
-            "Wire the common electrode to the shield and the top to the core of a short shielded cable. Tie the tab "
+            f"The pads lie at the end of the tab, {PAD_PITCH_MM:g} mm apart: {pads}, and the common electrode on the "
+            "other face. Crimp or glue one contact to each; do not solder.",
+            "Wire the common electrode to the shield of a short shielded cable and the top to its core. Tie the tab "
             "loosely down on the shelf.",
-            "Press by hand ten times to settle the rubber, then go through the checks below.",
+            "Press the segment by hand ten times to settle the rubber, then go through the checks below.",
         ),
     )

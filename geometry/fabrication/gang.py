@@ -8,6 +8,7 @@ from geometry.fabrication.cavity import Cavity
 from geometry.fabrication.mould_checks import Style
 from geometry.fabrication.parameters import Fabrication
 from geometry.fabrication.shapes import box
+from geometry.printers import printer_profile
 
 PIN_MARGIN_MM = 1.5
 """Of material around the hole of a pin."""
@@ -75,11 +76,12 @@ def overflow(gang: Gang, top: float, depth: float, width: float) -> list[Any]:
 def vents(gang: Gang, cavity: Cavity, fabrication: Fabrication) -> list[Any]:
     """Two shallow notches under the lid from each cavity to the overflow; they reach a little into the cavity.
 
-    A box has them beside two opposite corners, off the middle of its faces; round cavities at x.
+    A box has them beside two opposite corners, off the middle of its faces; round cavities at x. What is left of the
+    side up to the corner, where a split mould parts, is a wall that can be printed.
     """
     half, depth = fabrication.vent_width_mm / 2, fabrication.vent_depth_mm
-    aside = cavity.size_y / 2 - 2 * half if cavity.shape == "box" else 0.0
-    aside = max(aside, 0.0)
+    to_corner = max(half, printer_profile(fabrication.printer)["supported_wall_mm"])
+    aside = max(cavity.size_y / 2 - half - to_corner, 0.0) if cavity.shape == "box" else 0.0
     found = []
     for (x, y), side in product(gang.centers, (-1.0, 1.0)):
         near = x + side * (cavity.size_x / 2 - depth)

@@ -19,7 +19,7 @@ RELIEF_MM = 1.0
 STEP_MM = 3.0
 """Width of a step of the gauge."""
 REACH_MM = 4.0
-"""Floor beyond the footprint, for tweezers; also the thickness of what carries the locator's pins."""
+"""Floor beyond the footprint, at least, for tweezers."""
 LOCATOR_MM = 1.2
 
 
@@ -35,10 +35,10 @@ def jig_parts(segment: Segment, fabrication: Fabrication) -> tuple[FabricationPa
     if narrow:
         tall = (-fabrication.floor_mm / 2, stops + LOCATOR_MM)
         jig = joined(jig, [pin(x, y, tall, fabrication.pin_diameter_mm) for x, y in _pins(frame, fabrication)])
-    heights = ", ".join(f"{top:.3g} mm ({name})" for name, top in tops.items() if name != "film")
+    heights = ", ".join(f"{top:.3g} mm" for name, top in tops.items() if name != "film")
     purpose = (
-        f"{', '.join(tops)} are stacked in this order against its corner stop; the steps beside it have the height "
-        f"of the stack after each layer: {heights}."
+        "The layers are stacked against its two stops; the steps beside it show how high the stack is after each "
+        f"layer: {heights}."
     )
     fine = PROCESSES[fabrication.printer]
     parts = [fabrication_part("jig", frame.placed(jig), "jig", purpose, fine)]
@@ -62,8 +62,8 @@ def stacked_tops(segment: Segment, fabrication: Fabrication) -> dict[str, float]
 
 def _corner(frame: ExitFrame, stops: float, fabrication: Fabrication) -> Any:
     """Floor and two walls: one away from the cable, one beside it."""
-    half_x, half_y, thick = frame.along / 2, frame.across / 2, _thick(fabrication)
-    whole_x, whole_y = (-half_x - thick, half_x + REACH_MM), (-half_y - thick, half_y + REACH_MM)
+    half_x, half_y, thick, reach = frame.along / 2, frame.across / 2, _thick(fabrication), _reach(fabrication)
+    whole_x, whole_y = (-half_x - thick, half_x + reach), (-half_y - thick, half_y + reach)
     floor = box(whole_x, whole_y, (-fabrication.floor_mm, 0.0))
     low = -fabrication.floor_mm / 2
     behind = box((-half_x - thick, -half_x), whole_y, (low, stops))
@@ -91,16 +91,22 @@ def _thick(fabrication: Fabrication) -> float:
     return max(2 * fabrication.wall_mm, fabrication.pin_diameter_mm + 2 * beside)
 
 
+def _reach(fabrication: Fabrication) -> float:
+    """Floor beyond the footprint; the end of the stop that stands on it carries a pin too."""
+    return max(REACH_MM, _thick(fabrication))
+
+
 def _pins(frame: ExitFrame, fabrication: Fabrication) -> list[tuple[float, float]]:
-    """On the stop behind, at its ends; not symmetric, so that the locator fits one way only."""
-    x = -frame.along / 2 - _thick(fabrication) / 2
-    return [(x, -frame.across / 2 - _thick(fabrication) / 2), (x, frame.across / 2 + REACH_MM / 2)]
+    """On the stop behind, in the middle of its ends, so that each hole of the locator has a whole wall around it."""
+    thick, half = _thick(fabrication), frame.across / 2
+    x = -frame.along / 2 - thick / 2
+    return [(x, -half - thick / 2), (x, half + _reach(fabrication) / 2)]
 
 
 def _locator(segment: Segment, frame: ExitFrame, stops: float, fabrication: Fabrication) -> Any:
-    thick, tall = _thick(fabrication), (stops, stops + LOCATOR_MM)
+    thick, reach, tall = _thick(fabrication), _reach(fabrication), (stops, stops + LOCATOR_MM)
     low_x, low_y = -frame.along / 2 - thick, -frame.across / 2 - thick
-    plate = box((low_x, frame.along / 2 + REACH_MM), (low_y, frame.across / 2 + REACH_MM), tall)
+    plate = box((low_x, frame.along / 2 + reach), (low_y, frame.across / 2 + reach), tall)
     through = (tall[0] - 1.0, tall[1] + 1.0)
     hole = fabrication.pin_diameter_mm + 2 * fabrication.pin_clearance_mm
     holes = [post(x, y, through, hole) for x, y in _pins(frame, fabrication)]

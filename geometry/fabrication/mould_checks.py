@@ -61,7 +61,7 @@ def _refuse_shallow(name: str, cavity: Cavity, printer: PrinterProfile) -> None:
         min(cavity.size_x, cavity.size_y, cavity.height),
         printer["groove_mm"],
         f"the {printer.process.upper()} limit for the engraving",
-        f"cut it from sheet with fabrication.routes.{name} = 'sheet'",
+        "make it larger" if cavity.shape == "dome" else f"cut it from sheet with fabrication.routes.{name} = 'sheet'",
     )
 
 

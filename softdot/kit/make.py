@@ -50,7 +50,7 @@ def make_kit(config: Config, out: Path, progress: Progress | None = None) -> dic
         _, warnings = stages.check(config)
         ensure_rendering()
         with staged_folder(out, KIT) as folder:
-            contents = _contents(config, [*warnings, *design_warnings(config)])
+            contents = contents_of(config, [*warnings, *design_warnings(config)])
             warn(list(contents.warnings))
             progress.stage("export")
             _write_parts(contents, folder)
@@ -70,7 +70,7 @@ def _kit_json(out: Path) -> str | None:
         return None
 
 
-def _contents(config: Config, warnings: list[str]) -> Contents:
+def contents_of(config: Config, warnings: list[str]) -> Contents:
     """All but the budget. InputError."""
     segment, fabrication = config.segment, config.fabrication
     flat = flat_kit(segment, fabrication)  # the quicker one first: it refuses too
@@ -79,6 +79,8 @@ def _contents(config: Config, warnings: list[str]) -> Contents:
     film = materials["film"]
     assert isinstance(film, PiezoelectricFilm)
     notes = dict.fromkeys(pour.note for pour in solid.pours if pour.note)
+    printability = tuple(check_part(part.label, part.solid, profile) for part in solid.parts)
+    unprintable = [f"{answer.label}: {answer.advice}" for answer in printability if not answer.printable]
     return Contents(
         segment=segment,
         fabrication=fabrication,
@@ -86,11 +88,11 @@ def _contents(config: Config, warnings: list[str]) -> Contents:
         flat=flat,
         densities_g_cm3={layer: 1e-3 * material.density_kg_m3 for layer, material in materials.items()},
         permittivity=film.relative_permittivity,
-        printability=tuple(check_part(part.label, part.solid, profile) for part in solid.parts),
+        printability=printability,
         budget=None,
         budget_note="",
         press=pressed(config),
-        warnings=(*warnings, *notes),
+        warnings=(*warnings, *notes, *unprintable),
     )
 
 

@@ -67,3 +67,19 @@ def test_the_locator_of_a_block_turns_with_the_cable(make_kit_segment):
         hole = box((-1.05, 1.05), (-0.55, 0.55), (2.6, 3.6))
         assert volume(locator.intersect(hole)) < 1e-9
         assert locator.distance_to(box((-1.0, 1.0), (-0.5, 0.5), (2.6, 3.6))) == pytest.approx(0.05)
+
+
+@pytest.mark.parametrize("pin", [0.6, 1.5, 3.0, 5.0])
+def test_every_hole_of_the_locator_has_a_wall_around_it(make_kit_segment, pin):
+    """At least wall_mm, the thickness of outer walls, from each pin's hole to the edges and to the effector's hole."""
+    dome = Effector(shape="dome", diameter_mm=2.0, height_mm=0.8)
+    locator = parts_of(make_kit_segment(effector=dome), pin_diameter_mm=pin)["jig-locator"]
+    low, high = locator.bounding_box().min, locator.bounding_box().max
+    holes = [face for face in locator.faces() if face.geom_type.name == "CYLINDER"]
+    rims = [face.bounding_box() for face in holes]
+    assert len(rims) == 3
+    for rim in rims:
+        beside = (rim.min.X - low.X, high.X - rim.max.X, rim.min.Y - low.Y, high.Y - rim.max.Y)
+        assert min(beside) > 1.2 - 1e-6
+    for number, one in enumerate(holes):
+        assert all(one.distance_to(other) > 1.2 - 1e-6 for other in holes[:number])
