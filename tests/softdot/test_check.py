@@ -1,13 +1,21 @@
 """softdot check: every mistake in one answer, or what a run will cost; nothing is solved."""
 
 import json
+import tomllib
 
 import pytest
+from hypothesis import HealthCheck, given, settings
 
+from geometry.errors import InputError
 from softdot import stages
+from softdot.actual import actual
 from softdot.cli import main
-from softdot.config import load_config
+from softdot.config import config_from, load_config
 from softdot.cost import expected_cost
+from softdot.default_design import completed
+from softdot.mistakes import mistakes
+from tests.softdot.random_mistakes import invalid_configurations
+from tests.softdot.toml_text import toml_text
 
 WRONG = """
 [segment]
@@ -57,6 +65,24 @@ def test_each_mistake_alone_is_the_sentence_of_a_run(checked, tmp_path, capfd):
     _, _, err = checked('[press]\nindentation_mm = 9.0\n')
     assert main(["run", str(tmp_path / "mine.toml"), "-o", str(tmp_path / "out")]) == 2
     assert capfd.readouterr().err == err
+
+
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
+@given(invalid_configurations())
+def test_a_random_mistake_is_among_those_told(example):
+    """Whatever else is set aside to look on: the sentence of a run comes first, and looking on ends."""
+    _, _, tables = example
+    tables = tomllib.loads(toml_text(tables))
+    with pytest.raises(InputError) as alone:
+        _check(tables)
+    found, checked = mistakes(tables, _check)
+    assert (found[0], checked) == (str(alone.value), None)
+    assert len(found) == len(set(found)) < 10
+
+
+def _check(tables):
+    config, _ = actual(config_from(completed(tables)))
+    return stages.check(config)
 
 
 def test_a_good_file_is_told_its_mesh_time_and_memory(checked, monkeypatch):

@@ -23,7 +23,7 @@ HEAVY = (
 )
 
 
-@pytest.mark.parametrize("command", [[], ["run"], ["schema"]])
+@pytest.mark.parametrize("command", [[], ["run"], ["schema"], ["check"], ["new"], ["list"], ["kit"]])
 def test_help_loads_nothing_heavy(command):
     code = (
         "import sys\n"
