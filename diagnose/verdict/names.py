@@ -73,8 +73,10 @@ def short_name(candidates: Sequence[Candidate]) -> str:
 
 
 def quantity_words(name: str, unit: str) -> str:
-    """resistance_MOhm -> resistance."""
-    return name.removesuffix(f"_{unit}").replace("_", " ") if unit else name.replace("_", " ")
+    """resistance_MOhm -> resistance, mu_MPa[0] -> mu (term 1)."""
+    stem, _, index = name.removesuffix("]").partition("[")
+    words = (stem.removesuffix(f"_{unit}") if unit else stem).replace("_", " ")
+    return f"{words} (term {int(index) + 1})" if index else words
 
 
 def unit_words(unit: str) -> str:

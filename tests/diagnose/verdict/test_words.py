@@ -148,6 +148,7 @@ def test_intervals_and_lists():
         "relaxed fraction 0.3 (90 % interval 0.2 to 0.4)"
     )
     assert interval_words("order", Interval(2.0, 2.0, 2.0, "", fixed=True)) == "order 2"
+    assert interval_words("mu_MPa[1]", Interval(3.0, 3.0, 3.0, "MPa", fixed=True)) == "mu (term 2) 3 MPa"
     assert listed(["a", "b", "c"], "or") == "a, b or c"
     assert listed(["a"]) == "a"
 
