@@ -132,9 +132,8 @@ def test_the_improved_configuration_is_the_users_own_with_one_table_more(tmp_pat
     diagnosed(folder)
     improved = load_config(tmp_path / "out" / "improved.toml")
     assert [one.name for one in improved.mechanisms] == ["friction", "charge-leakage"]
-    assert improved.model_copy(update={"mechanisms": (), "press": None}) == load_rig(folder).config.model_copy(
-        update={"mechanisms": (), "press": None}
-    )
+    changed = {"mechanisms", "press"}
+    assert improved.model_dump(exclude=changed) == load_rig(folder).config.model_dump(exclude=changed)
     assert improved.press.waveform.hold_s == pytest.approx(0.5, abs=0.03)
     assert improved.press.indentation_mm == pytest.approx(0.3, rel=0.01)
     assert "# as its data sheet says" in (tmp_path / "out" / "improved.toml").read_text("utf-8")
