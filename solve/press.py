@@ -77,7 +77,7 @@ def _follow(
                 on_step(recorder.steps[-1], number, count)
         if failure is not None:
             reached = recorder.steps[-1]
-            depth = f"{1e3 * reached.indentation_m:.3f} mm and {reached.reaction_force_N:.3g} N"
+            depth = f"{1e3 * reached.indentation_m:.3f} mm and {reached.reaction_force_N + 0.0:.3g} N"
             return f"step {number} of {count} stopped at {depth}, {failure}"
         if checkpoint is not None:
             checkpoint.save(past, recorder)

@@ -3,7 +3,11 @@
 Design n carries mechanism n mod 24, a second one that goes round at another pace, and at times a third.
 """
 
-from softdot.config import Config
+from typing import get_args
+
+from pydantic import BaseModel
+
+from geometry.fabrication.parameters import Fabrication
 from solve.mechanisms import MECHANISMS
 from tests.attack.drawing import Draw
 from tests.attack.random_materials import film_material, medium_material, modulus_MPa
@@ -12,6 +16,7 @@ from tests.attack.random_mechanisms import mechanism
 SEED = 20261123
 LAYERS = ("effector", "medium1", "film", "medium2")
 NAMES = tuple(MECHANISMS)
+TOLD_ONLY = ("source", "confidence", "fabrication")
 SOLID, ROUND = 9, 40
 """Every 9th design is a solid, every 40th has a round effector (pytetwild); the rest are plane-strain slices."""
 STANDARDS = ("marburg-medium", "ada", "nls", "japan", "en-15823")
@@ -179,13 +184,24 @@ def keys_set(table) -> set[str]:
         found.add(f"{type(table).__name__}.{name}")
         value = getattr(table, name)
         for one in value.values() if isinstance(value, dict) else value if isinstance(value, tuple) else [value]:
-            if hasattr(one, "model_fields_set"):
+            if isinstance(one, BaseModel):
                 found |= keys_set(one)
     return found
 
 
-def config_of(number: int) -> Config:
-    """The checked configuration of design `number`. InputError."""
-    from softdot.config import config_from
+def keys_of_schema(table: type[BaseModel]) -> set[str]:
+    """All keys of a table and of the tables in it, named alike; how the parts are made is no part of a press."""
+    found = set()
+    for name, field in table.model_fields.items():
+        if name not in TOLD_ONLY:
+            found.add(f"{table.__name__}.{name}")
+            for inner in _tables(field.annotation):
+                found |= keys_of_schema(inner)
+    return found
 
-    return config_from(design(number))
+
+def _tables(annotation):
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        yield from () if annotation is Fabrication else (annotation,)
+    for part in get_args(annotation):
+        yield from _tables(part)

@@ -20,9 +20,8 @@ def medium_material(draw) -> dict:
         table["alpha"] = [draw.between(1.5, 12.0 if foam else 6.0) for _ in range(draw.whole(1, 3))]
         share = shear_MPa / len(table["alpha"])
         table["mu_MPa"] = [share if foam else 2 * share / alpha for alpha in table["alpha"]]
-        if foam:
-            return {**table, "poisson_ratio": [draw.between(0.0, 0.4) for _ in table["alpha"]]}
-    table["poisson_ratio"] = draw.between(0.2, 0.4995)
+    ratio = draw.between(0.2, 0.4995)
+    table["poisson_ratio"] = [draw.between(0.0, 0.4) for _ in table["alpha"]] if model == "hyperfoam" else ratio
     if draw.perhaps(0.3):
         table["max_fitted_strain"] = draw.between(0.1, 3.0)
     return table
@@ -53,7 +52,7 @@ def film_material(draw) -> dict:
         "coupling": draw.among(("one-way", "one-way", "two-way")),
     }
     if draw.perhaps(0.5):
-        table["yield_stress_MPa"] = draw.between(20.0, 60.0)
+        table |= {"yield_stress_MPa": draw.between(20.0, 60.0), "max_fitted_strain": draw.between(0.005, 0.05)}
     if draw.perhaps(0.4):
         table["youngs_modulus_2_MPa"] = draw.between(0.6, 1.4) * table["youngs_modulus_MPa"]
     return table

@@ -103,7 +103,7 @@ def contact(pressed):
 
 
 def distance_m(dot, points, position):
-    """Signed distance (n,) of points (n, 3) to one dot on its plate, the origin of its frame at position (3,)."""
+    """Signed distance (n,) of points (n, 3) to the dots on their plate, the origin of their frame at position (3,)."""
     local = (points - position) @ dot.rotation
     plate = 1e-3 * dot.height_mm - local[:, 2]
     if dot.kind == "plate":
@@ -112,8 +112,11 @@ def distance_m(dot, points, position):
     up = local[:, 2] - radius
     if dot.foot_mm > 0.0:
         up = np.minimum(up, 0.0)
-    across = local[:, 0] if dot.kind == "ridge" else np.hypot(local[:, 0], local[:, 1])
-    return np.minimum(plate, np.hypot(across, up) - radius)
+    nearest = plate
+    for x, y in 1e-3 * dot.centers_xy_mm:
+        across = local[:, 0] - x if dot.kind == "ridge" else np.hypot(local[:, 0] - x, local[:, 1] - y)
+        nearest = np.minimum(nearest, np.hypot(across, up) - radius)
+    return nearest
 
 
 def patches(pressed):
