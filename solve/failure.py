@@ -41,7 +41,8 @@ def explained(system: System, failure: NoEquilibriumError, last: State, load: Lo
         return f"the dot meets the rim of {part} that the case holds{at}, and neither can deform; {RIM}"
     cause, (volume, crushed) = failure.__cause__, _nearest_to_inversion(system, last)
     if crushed is not None and volume < CRUSHED:
-        said = f"an element of {crushed.region} is crushed to {100.0 * volume:.0f} % of its volume and turned inside out"
+        to = f"{100.0 * volume:.0f} % of its volume"
+        said = f"an element of {crushed.region} is crushed to {to} and turned inside out"
         return f"{said}{_at(system, system.points[crushed.nodes])}; {_advice(system, failure)}"
     if isinstance(cause, InvertedElementError):
         inverted = crushed or cause
