@@ -49,7 +49,10 @@ def components(contents: Contents) -> list[Component]:
             pour = cast[layer.name]
             made, density = f"cast from {pour.recipe}", 1e3 * pour.poured_mass_g / pour.poured_volume_mm3
         made = "cut from film" if layer.name == "film" else made
-        size_text = f"{size.X:.4g} × {size.Y:.4g} mm, {thick}"
+        effector = segment.effector
+        around = layer.name == "effector" and effector is not None and effector.shape in ("cylinder", "dome")
+        wide = f"{size.X:.4g} mm across" if around else f"{size.X:.4g} × {size.Y:.4g} mm"
+        size_text = f"{wide}, {thick}{' high' if around else ''}"
         found.append(Component(spoken(layer.name), layer.material, made, size_text, volume, density * volume))
     return found
 

@@ -19,6 +19,7 @@ PURPOSES = {
     "bar": "Forms the sides of {component}; is drawn off sideways before the parts are lifted.",
     "lid": "Presses the poured {component} flat; line it with acetate film, or use a glass slide in its place.",
 }
+IN_WORDS = {"effector": "the effector", "medium1": "medium 1", "medium2": "medium 2"}
 
 
 @dataclass(frozen=True)
@@ -61,7 +62,7 @@ def _mould_parts(mould: Mould, fabrication: Fabrication) -> list[FabricationPart
                 label=f"mould-{mould.component}-{name}",
                 solid=solid,
                 kind="lid" if lid else "mould",
-                purpose=PURPOSES[kind].format(component=mould.component),
+                purpose=PURPOSES[kind].format(component=IN_WORDS[mould.component]),
                 process="either" if lid else PROCESSES[fabrication.printer],
             )
         )
