@@ -80,7 +80,7 @@ def _add_paper(commands: Any) -> None:
     paper = commands.add_parser(
         "paper",
         help="reproduce and examine every table, figure and number of the paper",
-        description="Solve the whole study of the paper and carry it on: its tables, figures and published "
+        description="Solve the whole study of the paper and continue it: its tables, figures and published "
         "numbers beside ours, the calibration factor, and a design search. A second run uses the cache.",
         epilog=EXIT_STATUS,
     )
@@ -92,7 +92,7 @@ def _add_sweep(commands: Any) -> None:
         "sweep",
         help="press many designs over any keys of the configuration",
         description="Solve every point of a design space on all cores, or on a Dask cluster, into one table. "
-        "A sweep that was stopped goes on where it was.",
+        "A sweep that was stopped resumes where it was.",
         epilog="examples/ has a SPACE.toml to start from. " + EXIT_STATUS,
     )
     sweep.add_argument("space", metavar="SPACE.toml", help="a configuration and its axes")
@@ -134,7 +134,7 @@ def _add_prove(commands: Any) -> None:
         "prove",
         help="count how often a diagnosis is right, with hidden effects from another code",
         description="Hide effects in recordings of another code, seal the truth, diagnose, reveal and count. "
-        "A proof that was stopped goes on where it was.",
+        "A proof that was stopped resumes where it was.",
         epilog="docs/prove.md explains the cases and the table. " + EXIT_STATUS,
     )
     prove.add_argument("--cases", type=int, required=True, metavar="N", help="how many recordings")
@@ -164,7 +164,7 @@ def _add_plate(commands: Any) -> None:
         "plate",
         help="write a printable Braille test plate",
         description="Write a printable plate with a text in Braille, a single dot, a row of dots that grow, "
-        "or an indenter tip for a force gauge, and say by which printer it can be made.",
+        "or an indenter tip for a force gauge, and say which printer can make it.",
         epilog="docs/plate.md explains each option. " + EXIT_STATUS,
     )
     plate.add_argument("text", nargs="?", help="the text, or Unicode Braille cells")
@@ -184,22 +184,22 @@ def _add_plate(commands: Any) -> None:
 def _add_check(commands: Any) -> None:
     check = commands.add_parser(
         "check",
-        help="all mistakes of a configuration at once, or what its run will cost",
-        description="Check a configuration and solve nothing: all its mistakes in one answer, else the expected size "
+        help="find all mistakes of a configuration, or what its run will cost",
+        description="Check a configuration and solve nothing: all its mistakes in one answer, or the expected size "
         "of the mesh, time and memory of a run, and the warnings of the design.",
         epilog="Exit status: 0 no mistake, 2 at least one.",
     )
     check.add_argument("config", metavar="CONFIG.toml", help="the configuration to check")
     _add_set(check)
     check.add_argument("--json", action="store_true", help="print the answer as JSON to standard output")
-    check.add_argument("-q", "--quiet", action="store_true", help="tell nothing but mistakes")
+    check.add_argument("-q", "--quiet", action="store_true", help="print only mistakes")
 
 
 def _add_new(commands: Any) -> None:
     new = commands.add_parser(
         "new",
-        help="a configuration to start from, with every key explained",
-        description="Print a configuration in which each key stands with its meaning, unit, default and bounds. "
+        help="print a configuration to start from, with every key explained",
+        description="Print a configuration that lists each key with its meaning, unit, default and bounds. "
         "What the template does not need is commented out.",
         epilog="softdot new --template dome > mine.toml",
     )
@@ -209,8 +209,8 @@ def _add_new(commands: Any) -> None:
 def _add_list(commands: Any) -> None:
     listing = commands.add_parser(
         "list",
-        help="built-in materials, Braille standards or mechanisms",
-        description="Print what is built in, with its numbers, sources and how far they are to be trusted.",
+        help="list built-in materials, Braille standards or mechanisms",
+        description="Print what is built in, with its numbers, sources and how far to trust them.",
     )
     listing.add_argument("what", choices=LISTED, help="which list")
     listing.add_argument("--json", action="store_true", help="print the list as JSON")
@@ -219,7 +219,7 @@ def _add_list(commands: Any) -> None:
 def _add_schema(commands: Any) -> None:
     schema = commands.add_parser(
         "schema",
-        help="JSON Schema of the configuration",
+        help="print the JSON Schema of the configuration",
         description="Print the JSON Schema of the configuration: each key, its meaning, bounds and default.",
     )
     schema.add_argument("--json", action="store_true", help="has no effect, as the schema is JSON")
@@ -235,7 +235,7 @@ def _add_config(command: argparse.ArgumentParser) -> None:
 def _add_set(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--set", action="append", default=[], metavar="KEY=VALUE",
-        help="a value in place of the file's, such as press.indentation_mm=0.2; may be repeated",
+        help="a value instead of that in the file, such as press.indentation_mm=0.2; may be repeated",
     )
 
 
