@@ -48,6 +48,10 @@ class Config(Table):
         """Dotted keys of the default design that the file did not state."""
         return self._from_default
 
+    def __eq__(self, other: object) -> bool:
+        """Whether all values are equal, wherever they came from."""
+        return isinstance(other, Config) and self.__dict__ == other.__dict__
+
     @model_validator(mode="after")
     def _consistent(self) -> Self:
         if self.press.indentation_mm is not None and self.press.force_N is not None:

@@ -22,6 +22,7 @@ def loaded(tmp_path):
 
 def test_an_empty_file_is_the_default_design(loaded):
     assert config_hash(loaded("")) == config_hash(DEFAULT)
+    assert loaded("") == DEFAULT
     assert loaded("").from_default == DEFAULT.from_default
 
 

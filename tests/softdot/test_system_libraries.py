@@ -4,6 +4,7 @@ import pytest
 
 from softdot.cli import main
 from softdot.system_libraries import named_when_missing
+from tests.softdot.complaints import complaints
 
 
 def test_a_missing_library_names_its_package(tmp_path, rooms, capfd):
@@ -12,7 +13,7 @@ def test_a_missing_library_names_its_package(tmp_path, rooms, capfd):
 
     rooms.build_parts = import_of_a_wheel
     assert main(["run", "-o", str(tmp_path / "out")]) == 2
-    assert capfd.readouterr().err == (
+    assert complaints(capfd.readouterr().err) == (
         "softdot: system library libGL.so.1 is missing: install libgl1 "
         "(on Debian or Ubuntu 'apt-get install -y libgl1 libegl1')\n"
     )
