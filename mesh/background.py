@@ -7,16 +7,17 @@ from mesh.sizing import Sizing
 from mesh.types import Floats, Ints
 
 STEP_MM = 0.12
+MOST_POINTS = 300_000
 
 
 def background(stack: Outline, field: Sizing) -> tuple[Floats, Ints, Floats]:
     """Vertices (n, 3), tetrahedra (m, 4) and edge lengths (n,) over the bounding box and a little beyond."""
     low, high = (-stack.half_x, -stack.half_y, 0.0), (stack.half_x, stack.half_y, stack.top)
+    volume = float(np.prod(np.subtract(high, low)))
+    step = max(STEP_MM, (volume / MOST_POINTS) ** (1 / 3))  # a large segment has no more points than a small one
     lines = []
     for a, b in zip(low, high, strict=True):  # lines on the outer faces, where the sizes are smallest
-        lines.append(
-            np.concatenate([[a - STEP_MM], np.linspace(a, b, 2 + int((b - a) / STEP_MM)), [b + STEP_MM]])
-        )
+        lines.append(np.concatenate([[a - step], np.linspace(a, b, 2 + int((b - a) / step)), [b + step]]))
     lines[2] = np.unique(np.concatenate([lines[2], [stack.film_bottom]]))
     shape = tuple(len(line) for line in lines)
     points = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 3)

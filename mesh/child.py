@@ -1,16 +1,14 @@
 """Run pytetwild in a child process that can be stopped."""
 
+import os
 import subprocess
 import sys
-import tempfile
-from pathlib import Path
 
 import numpy as np
 
+from geometry.held_folder import scratch_folder
 from mesh.errors import MeshingError
 from mesh.types import Floats, Ints
-
-WORKER = Path(__file__).with_name("tetwild_worker.py")
 
 
 def tetrahedralize(timeout_s: float, **arrays: object) -> tuple[Floats, Ints]:
@@ -19,10 +17,9 @@ def tetrahedralize(timeout_s: float, **arrays: object) -> tuple[Floats, Ints]:
     arrays : what mesh.tetwild_worker reads. Raises MeshingError when the child fails or takes longer than
     timeout_s; the child never outlives the call, whatever interrupts it.
     """
-    with tempfile.TemporaryDirectory(prefix="softdot-") as name:
-        folder = Path(name)
+    with scratch_folder() as folder:
         np.savez(folder / "input.npz", timeout=timeout_s, **arrays)  # type: ignore[arg-type]
-        _run([sys.executable, "-P", str(WORKER), name], timeout_s)
+        _run([sys.executable, "-P", "-m", "mesh.tetwild_worker", str(folder)], timeout_s)
         with np.load(folder / "output.npz") as data:
             return data["points"].astype(np.float64), data["tets"].astype(np.int64)
 
@@ -35,6 +32,7 @@ def _run(command: list[str], timeout_s: float) -> None:
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)},
         start_new_session=True,
     )
     try:
@@ -49,5 +47,10 @@ def _run(command: list[str], timeout_s: float) -> None:
             child.kill()
             child.communicate()
     if child.returncode != 0:
+        if child.returncode < 0:
+            raise MeshingError(
+                f"the mesher pytetwild was ended by signal {-child.returncode}, as a system does that runs out of "
+                "memory; use larger mesh sizes"
+            )
         lines = said.decode(errors="replace").strip().splitlines() or ["no message"]
         raise MeshingError(f"the mesher pytetwild failed with exit code {child.returncode}: {lines[-1]}")

@@ -1,22 +1,20 @@
 """The child process around pytetwild, which holds the GIL, swallows Ctrl-C and prints from C++.
 
-Started by path, with one argument: a folder with input.npz; writes output.npz beside it.
+Started as a module, with one argument: a folder with input.npz; writes output.npz beside it.
 """
 
-import signal
 import sys
 from pathlib import Path
 
 import numpy as np
+
+from geometry.end_with_parent import end_with_parent
 
 
 def main(folder: Path) -> None:
     """Tetrahedralize the surface in folder/input.npz with its background sizes."""
     with np.load(folder / "input.npz") as data:
         given = {name: data[name] for name in data.files}
-    # The parent kills us at the timeout; this is for a parent that was killed itself.
-    if hasattr(signal, "alarm"):
-        signal.alarm(int(given["timeout"]) + 10)
     from pytetwild.pytetwild import tetrahedralize
 
     points, tets = tetrahedralize(
@@ -36,4 +34,5 @@ def main(folder: Path) -> None:
 
 
 if __name__ == "__main__":
+    end_with_parent()
     main(Path(sys.argv[1]))

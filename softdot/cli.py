@@ -1,7 +1,6 @@
 """The command line. Only light modules load before a command begins, so that help is instant."""
 
 import argparse
-import errno
 import os
 import signal
 import sys
@@ -13,6 +12,7 @@ from geometry.errors import InputError
 from softdot.arguments import parser
 from softdot.command_output import BAD_INPUT, GOOD, INTERRUPTED, complain
 from softdot.log import lines_on_stderr
+from softdot.no_room import without_room
 
 COMMANDS = {
     "run": "softdot.run_command",
@@ -26,14 +26,17 @@ COMMANDS = {
     "new": "softdot.new_command",
     "list": "softdot.list_command",
 }
-NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EACCES, errno.EPERM}
+STOPPED = "interrupted, nothing was written"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command and return its exit status."""
     chosen = parser().parse_args(arguments)
+    asked = _Interrupt()
     with suppress(ValueError):  # outside the main thread
-        signal.signal(signal.SIGTERM, signal.default_int_handler)
+        signal.signal(signal.SIGTERM, asked)
+        if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:  # a shell's background job does not hear Ctrl-C
+            signal.signal(signal.SIGINT, asked)
     try:
         _refuse_unprintable(chosen)
         status = _command(chosen)
@@ -41,15 +44,29 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except InputError as error:
         return _say(str(error), BAD_INPUT)
     except KeyboardInterrupt:
-        return _say("interrupted, nothing was written", INTERRUPTED)
+        return _say(STOPPED, INTERRUPTED)
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return GOOD
-    except OSError as error:
-        if error.errno not in NO_ROOM:
+    except Exception as error:
+        if asked.told:  # what was interrupted turned it into an error of its own, as an import of a library does
+            return _say(STOPPED, INTERRUPTED)
+        said = without_room(error)
+        if said is None:
             raise
-        return _say(f"'{error.filename or 'output'}' cannot be written ({error.strerror})", BAD_INPUT)
+        return _say(*said)
     return status
+
+
+class _Interrupt:
+    """What Ctrl-C and SIGTERM do: KeyboardInterrupt, which some compiled libraries turn into another error."""
+
+    def __init__(self) -> None:
+        self.told = False
+
+    def __call__(self, signum: int, frame: object) -> None:
+        self.told = True
+        raise KeyboardInterrupt
 
 
 def _refuse_unprintable(chosen: argparse.Namespace) -> None:

@@ -8,6 +8,7 @@ from geometry.parameters import Segment
 from mesh.outline import outline
 from mesh.parameters import MeshOptions
 from mesh.sizing import sizing
+from softdot.memory import refuse_too_little_memory
 
 TOO_MANY = 1_000_000
 POINTS = 100_000
@@ -17,15 +18,16 @@ PRISMS = 12.0 / np.sqrt(3.0)
 
 
 def refuse_huge_mesh(segment: Segment, dot_shape: DotShape, options: MeshOptions) -> None:
-    """InputError when the wished edge lengths mean more than a million elements."""
+    """InputError when the wished edge lengths mean more than a million elements, or more than fit into memory."""
     count = expected_tetrahedra(segment, dot_shape, options)
+    sizes = {name: value for name, value in options if name.endswith("size_mm") and value is not None}
+    name = min(sizes, key=lambda one: float(sizes[one]))
     if count > TOO_MANY:
-        sizes = {name: value for name, value in options if name.endswith("size_mm") and value is not None}
-        name = min(sizes, key=lambda one: float(sizes[one]))
         raise InputError(
             f"mesh.{name} = {sizes[name]:g}: means about {count:.1g} elements, "
             f"at most {TOO_MANY:.0g} are allowed; use a larger size"
         )
+    refuse_too_little_memory(count, segment.section == "plane-strain", name, float(sizes[name]))
 
 
 def expected_tetrahedra(segment: Segment, dot_shape: DotShape, options: MeshOptions) -> float:

@@ -9,7 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from geometry.errors import InputError
+from geometry.held_folder import hold, release, sweep
 from softdot.log import LOG_FILE, log_file
+from softdot.no_room import refuse_cut_files, refuse_full_disk
 
 
 @dataclass(frozen=True)
@@ -34,19 +36,33 @@ def staged_folder(out: Path, product: Product) -> Iterator[Path]:
     """Yield an empty folder beside out that takes its place when the block ends without an exception.
 
     A folder of an earlier product of the same kind is replaced. InputError, before the block starts, when out
-    is a file, cannot be written or holds anything else. After any exception, Ctrl-C too, nothing is left.
+    is a file, cannot be written, holds anything else or is written by another process at this moment. After any
+    exception, Ctrl-C too, nothing is left; what a process leaves that was killed is removed by the next one.
     """
     place = check_output(out, product)
     made = _make_parents(place)
-    staging = _make_staging(place, made)
+    staging, held = _make_staging(out, place, made)
     try:
         with log_file(staging / LOG_FILE):
             yield staging
+        refuse_cut_files(staging)
         _publish(staging, place, product)
         made = []
+    except Exception as error:
+        try:
+            refuse_full_disk(staging)
+        except OSError as full:  # what a library raised when it could not write says less
+            raise OSError(full.errno, full.strerror, str(place)) from error
+        raise
     finally:
         shutil.rmtree(staging, ignore_errors=True)
+        release(held)
         _remove_empty(made)
+
+
+def _staging_name(place: Path) -> str:
+    """One name for all processes: who holds that folder is the one that writes."""
+    return f".{place.name}.softdot"
 
 
 def check_output(out: Path, product: Product) -> Path:
@@ -58,7 +74,7 @@ def check_output(out: Path, product: Product) -> Path:
     except (OSError, RuntimeError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
         raise InputError(f"output '{out}': cannot be read ({reason})") from None
-    foreign = sorted(entries - product.files)
+    foreign = sorted(entries - product.files - {_staging_name(place)})
     if foreign or (entries and not _is_earlier(place, product)):
         found = foreign[0] if foreign else sorted(entries)[0]
         raise InputError(
@@ -98,27 +114,54 @@ def _make_parents(out: Path) -> list[Path]:
     return made
 
 
-def _make_staging(out: Path, made: list[Path]) -> Path:
-    """A new folder beside out, or inside it where only out itself can be written."""
-    name = f".{out.name}.softdot-{os.getpid()}"
+def _make_staging(out: Path, place: Path, made: list[Path]) -> tuple[Path, int | None]:
+    """A new folder beside the place, or inside it where only that can be written, and the lock on it."""
     reason = None
-    for parent in [out.parent, *([out] if out.is_dir() else [])]:
+    for parent in [place.parent, *([place] if place.is_dir() else [])]:
         if not os.access(parent, os.W_OK):
             reason = reason or "Permission denied"
             continue
+        staging = parent / _staging_name(place)
         try:
-            (parent / name).mkdir()
+            _recover(staging, place)
+            staging.mkdir()
+            held = hold(staging)
+        except FileExistsError:
+            raise _in_use(out, staging) from None
         except OSError as error:
             reason = error.strerror
-        else:
-            return parent / name
+            continue
+        if held is None:
+            raise _in_use(out, staging)
+        return staging, held
     _remove_empty(made)
     raise InputError(f"output '{out}': not writable ({reason})")
 
 
+def _in_use(out: Path, staging: Path) -> InputError:
+    return InputError(
+        f"output '{out}': another softdot process is writing it; wait for it, name another folder, or remove "
+        f"'{staging}' if there is none"
+    )
+
+
+def _recover(staging: Path, place: Path) -> None:
+    """Remove what a killed process left; one killed between two renamings left the earlier result beside its place."""
+    old = _put_aside(staging)
+    if staging.exists():
+        sweep(staging)
+    if old.exists() and not staging.exists():
+        shutil.rmtree(old, ignore_errors=True) if place.exists() else old.rename(place)
+
+
+def _put_aside(staging: Path) -> Path:
+    """Where the earlier result stays while the new one takes its place."""
+    return staging.with_name(f"{staging.name}-old")
+
+
 def _publish(staging: Path, out: Path, product: Product) -> None:
     """Put the staged folder in its place, by renaming where the file system allows it."""
-    old = staging.with_name(f"{staging.name}-old")
+    old = _put_aside(staging)
     if staging.parent == out or out.is_mount() or Path.cwd().is_relative_to(out):
         _replace_entries(staging, out, product)
         return

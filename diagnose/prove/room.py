@@ -8,9 +8,9 @@ import time
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
+from geometry.held_folder import scratch_folder
 from geometry.one_thread import ONE_THREAD
 
 KEPT = ("PATH", "LANG", "LC_ALL", "LD_LIBRARY_PATH")
@@ -29,8 +29,8 @@ class Heard:
 
 def diagnosed(files: Mapping[str, str], cache: Path, limit_s: float, options: tuple[str, ...] = ()) -> Heard:
     """Diagnose a recording, name -> text of its files, within a limit of time."""
-    with TemporaryDirectory(prefix="room-") as name:
-        room = Path(name).resolve()
+    with scratch_folder() as folder:
+        room = folder.resolve()
         recording = room / "recording"
         recording.mkdir()
         (room / "tmp").mkdir()

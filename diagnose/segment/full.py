@@ -3,8 +3,6 @@
 import csv
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
@@ -16,6 +14,7 @@ from diagnose.segment.drive import Drive
 from diagnose.segment.knots import knots
 from diagnose.segment.prepared import ungapped
 from geometry.dot_shape import resolve_dot
+from geometry.held_folder import scratch_folder
 from mesh.types import Floats, TetMesh
 from solve.model import Model
 from solve.newton import NoEquilibriumError
@@ -87,8 +86,8 @@ def _through_time(task: Task, report: Report) -> Mechanics:
     time = task.drive.time_s - task.drive.time_s[0]
     share = np.maximum(task.values, 0.0) / task.values.max()
     kept = knots(time, share, TOLERANCE, MOST_POINTS)
-    with TemporaryDirectory() as folder:
-        path = Path(folder) / WAVEFORM
+    with scratch_folder() as folder:
+        path = folder / WAVEFORM
         with path.open("w", encoding="utf-8", newline="") as stream:
             csv.writer(stream).writerows([("time_s", "fraction"), *zip(time[kept], share[kept], strict=True)])
         press = Press(**_largest(task), waveform=Waveform(shape="file", file=str(path)))

@@ -7,6 +7,7 @@ import sys
 from diagnose.segment import store
 from diagnose.segment.presses import Job
 from diagnose.segment.reduction import Reduction
+from geometry.end_with_parent import end_with_parent
 from mesh.types import Floats
 from solve.newton import NoEquilibriumError
 
@@ -29,6 +30,7 @@ def _pressed(job: Job) -> Floats:
 
 def work() -> None:
     """Answer jobs on standard input until it ends. What libraries print goes to standard error."""
+    end_with_parent()
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
     while True:

@@ -84,7 +84,9 @@ def _processes(count: int) -> Iterator[list["subprocess.Popen[bytes]"]]:
     command = [sys.executable, "-m", worker.__name__]
     own = {**os.environ, **ONE_THREAD, "PYTHONPATH": os.pathsep.join(sys.path)}
     pipe = subprocess.PIPE
-    started = [subprocess.Popen(command, env=own, stdin=pipe, stdout=pipe) for _ in range(count)]
+    started = [  # in sessions of their own: Ctrl-C in the terminal reaches this process alone, which ends them
+        subprocess.Popen(command, env=own, stdin=pipe, stdout=pipe, start_new_session=True) for _ in range(count)
+    ]
     try:
         yield started
     finally:
