@@ -137,7 +137,7 @@ TIME = np.linspace(0.0, 1.0, 11)
     [
         ({"depth_mm": 0.6 * TIME}, "depth 0.6 mm: the reduced model knows up to 0.5 mm"),
         ({"force_N": 1.2 * TIME}, "deeper than 0.5 mm"),
-        ({"depth_mm": TIME[:5]}, "equal length"),
+        ({"depth_mm": TIME[:5]}, "same length"),
         ({"depth_mm": np.full(11, np.nan)}, "finite"),
         ({}, "either depth_mm or force_N"),
         ({"depth_mm": 0 * TIME, "physics": Physics(friction=0.3)}, "friction"),
