@@ -107,11 +107,12 @@ def headline(summary: Mapping[str, Any]) -> list[dict[str, str]]:
     noise = sensitivity.get("noise_V")
     away = film.get("rim_distance_mm")
     where = "mean through the film" + (f", at least {number(away)} mm from held sides" if away else "")
+    of_force, of_voltage = (_plus_minus(summary, name) for name in ("force_percent", "voltage_percent"))
     at_noise = f"for a noise of {number(1e3 * noise)} mV" if noise else "for the stated noise"
     rows = [
         ("Depth reached", _last(summary, "indentation_mm"), "mm", "travel of the dot"),
-        ("Reaction force", _last(summary, "reaction_force_N"), "N", "on the dot at that depth"),
-        ("Open-circuit voltage", _last(summary, "open_circuit_voltage_V"), "V", "charge over capacitance"),
+        ("Reaction force", _last(summary, "reaction_force_N"), "N", "on the dot at that depth" + of_force),
+        ("Open-circuit voltage", _last(summary, "open_circuit_voltage_V"), "V", "charge over capacitance" + of_voltage),
         ("Read-out voltage", _last(summary, "readout_voltage_V"), "V", "after the given amplifier"),
         ("Charge", _last(summary, "film_charge_pC"), "pC", "freed by the film at short circuit"),
         ("Capacitance", film.get("capacitance_pF"), "pF", "of the film at rest"),
@@ -127,6 +128,12 @@ def headline(summary: Mapping[str, Any]) -> list[dict[str, str]]:
         for label, value, unit, note in rows
         if value is not None
     ]
+
+
+def _plus_minus(summary: Mapping[str, Any], name: str) -> str:
+    """', ± 12 %' where an uncertainty is stated; two digits, as more would claim too much."""
+    stated = summary.get("uncertainty", {}).get(name)
+    return "" if stated is None else f", ± {number(float(stated), 2)} %"
 
 
 def _at_the_rim(film: Mapping[str, Any]) -> list[tuple[str, Any, str, str]]:

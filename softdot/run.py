@@ -31,7 +31,7 @@ class Clock:
     """Wall-clock seconds by stage."""
 
     def __init__(self) -> None:
-        self.seconds = {"geometry": 0.0, "mesh": 0.0, "solve": 0.0, "export": 0.0}
+        self.seconds = dict.fromkeys(("geometry", "mesh", "solve", "uncertainty", "export"), 0.0)
 
     @contextmanager
     def __call__(self, stage: str) -> Iterator[None]:
@@ -56,13 +56,14 @@ def run_config(config: Config, out: Path, progress: Progress | None = None) -> d
         ensure_rendering()
         with staged_folder(out, RUN) as folder:
             summary: dict[str, Any] = heading(config) | plain(
-                _fill(changed, physics, dot_shape, warnings, folder, progress)
+                _fill(config, changed, physics, dot_shape, warnings, folder, progress)
             )
             write_json(folder / RUN.summary, summary)
     return summary
 
 
 def _fill(
+    stated: Config,
     config: Config,
     physics: Physics,
     dot_shape: DotShape,
@@ -70,7 +71,7 @@ def _fill(
     folder: Path,
     progress: Progress,
 ) -> dict[str, Any]:
-    """Everything but summary.json; returns the summary. config : with its mechanisms switched on."""
+    """Everything but summary.json; returns the summary. config : as stated, with its mechanisms switched on."""
     clock = Clock()
     summary = {**heading(config), "warnings": [*warnings, *design_warnings(config)]}
     warn(summary["warnings"])
@@ -98,6 +99,10 @@ def _fill(
     late = result_warnings(config, dot_shape, tet_mesh, result, physics.film_yield is not None)
     warn(late)
     summary["warnings"] += late
+    if result.converged:
+        progress.stage("uncertainty")
+        with clock("uncertainty"):
+            summary |= stages.uncertainty(stated, summary)
     progress.stage("export")
     with clock("export"):
         so_far = {"timing_s": dict(clock.seconds)}

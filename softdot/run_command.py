@@ -27,11 +27,18 @@ def short_text(summary: dict[str, Any], output: str) -> str:
     """The deepest step and where to look, in a few lines."""
     lines = []
     if summary.get("indentation_mm"):
+        force, voltage = (_plus_minus(summary, name) for name in ("force_percent", "voltage_percent"))
         lines.append(
-            f"{summary['indentation_mm'][-1]:.3g} mm: force {summary['reaction_force_N'][-1]:.4g} N, "
+            f"{summary['indentation_mm'][-1]:.3g} mm: force {summary['reaction_force_N'][-1]:.4g} N{force}, "
             f"charge {summary['film_charge_pC'][-1]:.4g} pC, "
-            f"open-circuit voltage {summary['open_circuit_voltage_V'][-1]:.4g} V"
+            f"open-circuit voltage {summary['open_circuit_voltage_V'][-1]:.4g} V{voltage}"
         )
     if summary.get("from_default"):
         lines.append(f"from the default design: {', '.join(summary['from_default'])}")
     return "\n".join([*lines, f"{output}/report.html"])
+
+
+def _plus_minus(summary: dict[str, Any], name: str) -> str:
+    """' ± 12 %' where an uncertainty is stated."""
+    stated = summary.get("uncertainty", {}).get(name)
+    return "" if stated is None else f" ± {stated:.2g} %"

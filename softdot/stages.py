@@ -120,6 +120,13 @@ def readout_voltage(config: Config, physics: Physics, result: PressResult) -> tu
     return behind_amplifier(*told, physics), channel_voltages(*told, physics)
 
 
+def uncertainty(config: Config, summary: dict[str, Any]) -> dict[str, Any]:
+    """How far the last force and voltage of a summary can be trusted."""
+    from softdot.uncertainty import uncertainty as estimate
+
+    return estimate(config, summary["reaction_force_N"][-1], summary["open_circuit_voltage_V"][-1])
+
+
 def write_results(tet_mesh: TetMesh, result: PressResult, dot_shape: DotShape, folder: Path) -> None:
     """ParaView files of every step that converged."""
     from export.vtu import write_results as write

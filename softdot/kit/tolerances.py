@@ -42,13 +42,18 @@ def tolerances(config: Config) -> list[Tolerance]:
     """All quantities that change the press to first order."""
     return [
         *_thicknesses(config),
-        *_moduli(config),
+        *_moduli(config, _poured(config)),
         *_film(config),
         *_dot(config),
         *([] if config.segment.film.electrodes else _footprint(config.segment)),
         _press(config),
         *_interfaces(config),
     ]
+
+
+def material_tolerances(config: Config) -> list[Tolerance]:
+    """What the constants of the stated materials are known to."""
+    return [*_moduli(config, {}), *_film(config)]
 
 
 def shifts(config: Config) -> list[tuple[Tolerance, Config, Config]]:
@@ -115,9 +120,12 @@ def _process(layer: str, config: Config) -> str:
     return "sheet" if cut else f"cast-{config.fabrication.printer}"
 
 
-def _moduli(config: Config) -> list[Tolerance]:
-    """Of what is poured, where it stands in for the material of the configuration."""
-    poured: dict[str, str] = {one.name: one.recipe.name for one in cast_components(config.segment, config.fabrication)}
+def _poured(config: Config) -> dict[str, str]:
+    return {one.name: one.recipe.name for one in cast_components(config.segment, config.fabrication)}
+
+
+def _moduli(config: Config, poured: Mapping[str, str]) -> list[Tolerance]:
+    """Of the materials of the layers. poured : layer -> what is cast in place of the material of the configuration."""
     found = []
     for layer in reversed(layers(config.segment)):
         material = poured.get(layer.name, layer.material)

@@ -52,6 +52,7 @@ def rooms(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
         mesh_quality=lambda *_: {"tetrahedra": 1},
         press=lambda *_: result_of([0.0, 0.15, 0.3]),
         readout_voltage=lambda *_: None,
+        uncertainty=lambda *_: {},
         write_results=file_writer("segment.pvd"),
         write_pictures=file_writer("force.png"),
         write_report=lambda *args: args[-1].write_text("stand-in"),

@@ -45,7 +45,7 @@ def test_summary_holds_what_was_solved(tmp_path):
     assert summary["solver"]["converged"] is True
     assert summary["solver"]["load_steps"] == 2
     assert summary["mesh"] == {"tetrahedra": 1, "unknowns": 30}
-    assert set(summary["timing_s"]) == {"geometry", "mesh", "solve", "export"}
+    assert set(summary["timing_s"]) == {"geometry", "mesh", "solve", "uncertainty", "export"}
     assert summary["config"]["press"]["indentation_mm"] == 0.3
     assert summary["config"]["materials"]["vnr-soft"]["youngs_modulus_MPa"] == 1.0
     assert "readout_voltage_V" not in summary
