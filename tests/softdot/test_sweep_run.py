@@ -249,7 +249,7 @@ def test_a_full_disk_is_one_sentence_and_the_points_stay(tmp_path, out, monkeypa
     monkeypatch.setattr(store, "finish", full)
     assert sweep(tmp_path, out, depths(0.1)) == 2
     said = complaints(capfd.readouterr().err)
-    assert said == f"softdot: '{out}/sweep.parquet' cannot be written (No space left on device)\n"
+    assert said == f"softdot: '{out}/sweep.parquet' cannot be written: the disk is full\n"
     assert len(points(out)) == 1
 
 

@@ -104,7 +104,7 @@ def test_waveform_file(tmp_path):
 
 
 def test_a_slide_needs_a_load_that_stays():
-    with pytest.raises(ValidationError, match=r"waveform\.shape = 'half-sine': a slide needs a load that stays"):
+    with pytest.raises(ValidationError, match=r"waveform\.shape = 'half-sine': a slide needs a load that is held"):
         Press(path_xy_mm=((1.0, 0.0),), waveform=Waveform(shape="half-sine"))
     with pytest.raises(ValidationError, match=r"waveform\.hold_s = 0: a slide"):
         Press(path_xy_mm=((1.0, 0.0),), waveform=Waveform(shape="trapezoid"))
