@@ -25,17 +25,12 @@ def split_nodes(tet_mesh: TetMesh) -> SplitNodes:
     """Give each part its own copy of the nodes it shares with others."""
     parts = len(tet_mesh.region_names)
     keys, inverse = np.unique(tet_mesh.tets * parts + tet_mesh.region[:, None], return_inverse=True)
-    a, b, c, d = (tet_mesh.points_mm[tet_mesh.tets[:, i]] for i in range(4))
-    volume = np.abs(np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a)) / 6
-    return SplitNodes(keys // parts, keys % parts, inverse.reshape(tet_mesh.tets.shape), volume)
+    return SplitNodes(keys // parts, keys % parts, inverse.reshape(tet_mesh.tets.shape), _volumes(tet_mesh))
 
 
 def spread(split: SplitNodes, values: Floats) -> Floats:
-    """Volume-weighted mean (s,) of the element values (m,) around each split node."""
-    count = len(split.node)
-    flat = split.tets.ravel()
-    total = np.bincount(flat, np.repeat(split.weight * values, 10), count)
-    return np.asarray(total / np.bincount(flat, np.repeat(split.weight, 10), count))
+    """Volume-weighted mean (s,) or (s, c) of the element values (m,) or (m, c) around each split node."""
+    return _at_nodes(split.tets, split.weight, values, len(split.node))
 
 
 def largest_principal(tensor: Floats) -> Floats:
@@ -53,11 +48,20 @@ def film_values(tet_mesh: TetMesh, film_tets: Ints, values: Floats) -> Floats:
 
 def film_at_nodes(tet_mesh: TetMesh, values: Floats) -> Floats:
     """Film values (k,) or (k, c) at the mesh's nodes: the volume-weighted mean around each, zero off the film."""
-    tets = tet_mesh.tets[tet_mesh.region_tets("film")]
-    a, b, c, d = (tet_mesh.points_mm[tets[:, i]] for i in range(4))
-    weight = np.repeat(np.abs(np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a)), 10)
-    count, flat = len(tet_mesh.points_mm), tets.ravel()
-    total = np.bincount(flat, weight, count)
-    columns = np.repeat(values.reshape(len(values), -1), 10, axis=0).T
-    sums = np.column_stack([np.bincount(flat, weight * column, count) for column in columns])
+    film = tet_mesh.region_tets("film")
+    return _at_nodes(tet_mesh.tets[film], _volumes(tet_mesh)[film], values, len(tet_mesh.points_mm))
+
+
+def _volumes(tet_mesh: TetMesh) -> Floats:
+    """Volumes (m,) of the straight tetrahedra, mm3."""
+    a, b, c, d = (tet_mesh.points_mm[tet_mesh.tets[:, i]] for i in range(4))
+    return np.asarray(np.abs(np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a)) / 6)
+
+
+def _at_nodes(tets: Ints, weight: Floats, values: Floats, count: int) -> Floats:
+    """Weighted mean at each of count nodes of values (m,) or (m, c) of the elements around it; zero without any."""
+    flat, around = tets.ravel(), np.repeat(weight, tets.shape[1])
+    total = np.bincount(flat, around, count)
+    columns = np.repeat(values.reshape(len(values), -1), tets.shape[1], axis=0).T
+    sums = np.column_stack([np.bincount(flat, around * column, count) for column in columns])
     return np.asarray((sums / np.where(total > 0.0, total, 1.0)[:, None]).reshape(count, *values.shape[1:]))

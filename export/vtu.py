@@ -9,7 +9,8 @@ import numpy as np
 
 from export.dot_surface import placed_dot
 from export.files import whole_folder
-from export.nodal_fields import film_at_nodes
+from export.nodal_fields import film_at_nodes, split_nodes, spread
+from export.paraview import paraview_script
 from export.units import MM_PER_M, MPA_PER_PA, PC_PER_MM2_PER_C_PER_M2
 from geometry.dot_shape import DotShape
 from mesh.types import Floats, Ints, TetMesh
@@ -22,13 +23,14 @@ FILM_AXES = ("11", "22", "33", "12", "23", "13")
 
 
 def write_results(tet_mesh: TetMesh, result: PressResult, dot_shape: DotShape, folder: Path) -> list[Path]:
-    """Write segment, film, contact and dot as PVD collections with one file per step; return the PVD paths.
+    """Write segment, parts, film, contact and dot as PVD collections with one file per step; return the PVD paths.
 
     The time of a collection is the indentation in mm; where that does not rise from step to step (a slide at
     constant depth), it is the number of the step. Points are undeformed (mm) and every file carries
     displacement_mm, so that "Warp By Vector" with factor 1 shows the deformed shape; the dot is written where
     it stands. Cell arrays of segment: cauchy_stress_MPa, von_mises_MPa, pressure_MPa, max_stretch, region;
-    the field data "region_<name>" holds each part's number. The folder appears whole or not at all.
+    the field data "region_<name>" holds each part's number. The collection parts has a named block for each part, with
+    stress and strain at nodes; show_in_paraview.py shows it all. The folder appears whole or not at all.
     """
     parts: dict[str, Callable[[Step], Any]] = {
         "segment": lambda step: _segment(tet_mesh, step),
@@ -43,7 +45,12 @@ def write_results(tet_mesh: TetMesh, result: PressResult, dot_shape: DotShape, f
             for file, step in zip(files, result.steps, strict=True):
                 _write_xml(build(step), scratch / file)
             (scratch / f"{name}.pvd").write_text(_collection(files, step_times(result)), encoding="utf-8")
-    return [folder / f"{name}.pvd" for name in parts]
+        blocks = [f"parts_{index:04d}.vtm" for index in range(len(result.steps))]
+        for file, step in zip(blocks, result.steps, strict=True):
+            _parts(tet_mesh, step).save(scratch / file)
+        (scratch / "parts.pvd").write_text(_collection(blocks, step_times(result)), encoding="utf-8")
+        (scratch / "show_in_paraview.py").write_text(paraview_script(tet_mesh, result), encoding="utf-8")
+    return [folder / f"{name}.pvd" for name in [*parts, "parts"]]
 
 
 def step_times(result: PressResult) -> list[float]:
@@ -62,6 +69,7 @@ def _segment(tet_mesh: TetMesh, step: Step) -> Any:
     grid = _grid(tet_mesh.points_mm, tet_mesh.tets, QUADRATIC_TETRA)
     _add(grid.point_data, "displacement_mm", fields.displacement_m * MM_PER_M)
     _add(grid.cell_data, "cauchy_stress_MPa", fields.cauchy_stress_Pa * MPA_PER_PA, GLOBAL_AXES)
+    _add(grid.cell_data, "green_lagrange_strain", fields.green_lagrange_strain, GLOBAL_AXES)
     _add(grid.cell_data, "von_mises_MPa", fields.von_mises_Pa * MPA_PER_PA)
     _add(grid.cell_data, "pressure_MPa", fields.pressure_Pa * MPA_PER_PA)
     _add(grid.cell_data, "max_stretch", fields.max_stretch)
@@ -69,6 +77,26 @@ def _segment(tet_mesh: TetMesh, step: Step) -> Any:
     for number, name in enumerate(tet_mesh.region_names):
         grid.field_data[f"region_{name}"] = np.array([number], np.int32)
     return grid
+
+
+def _parts(tet_mesh: TetMesh, step: Step) -> Any:
+    """Each part as a block of its name, with nodal fields that jump between parts."""
+    import pyvista
+
+    fields, split = step.fields, split_nodes(tet_mesh)
+    stress = spread(split, fields.cauchy_stress_Pa) * MPA_PER_PA
+    von_mises = spread(split, fields.von_mises_Pa) * MPA_PER_PA
+    strain = spread(split, fields.green_lagrange_strain)
+    blocks = pyvista.MultiBlock()
+    for number, name in enumerate(tet_mesh.region_names):
+        nodes, tets = _compact(split.tets[tet_mesh.region == number])
+        grid = _grid(tet_mesh.points_mm[split.node[nodes]], tets, QUADRATIC_TETRA)
+        _add(grid.point_data, "displacement_mm", fields.displacement_m[split.node[nodes]] * MM_PER_M)
+        _add(grid.point_data, "nodal_von_mises_MPa", von_mises[nodes])
+        _add(grid.point_data, "nodal_cauchy_stress_MPa", stress[nodes], GLOBAL_AXES)
+        _add(grid.point_data, "nodal_green_lagrange_strain", strain[nodes], GLOBAL_AXES)
+        blocks.append(grid, name)
+    return blocks
 
 
 def _film(tet_mesh: TetMesh, step: Step) -> Any:

@@ -19,12 +19,13 @@ def fields(system: System, tet_mesh: TetMesh, state: State, before: State) -> Fi
     x = state.x
     trial = system.trial(x, state.load, state.time, before)
     displacement = trial.displacement
-    cauchy, stretch = np.zeros((len(tet_mesh.tets), 3, 3)), np.zeros(len(tet_mesh.tets))
+    cauchy, right_cauchy_green = np.zeros((2, len(tet_mesh.tets), 3, 3))
     for solid in system.solids:
         index = tet_mesh.region_tets(solid.name)
-        cauchy[index], stretch[index] = _medium(solid, trial, system.history_of(solid, before))
+        cauchy[index], right_cauchy_green[index] = _medium(solid, trial, system.history_of(solid, before))
     film = tet_mesh.region_tets("film")
-    strain, stress, cauchy[film], stretch[film] = _film(system, trial, system.history_of(system.film, before))
+    history = system.history_of(system.film, before)
+    strain, stress, cauchy[film], right_cauchy_green[film] = _film(system, trial, history)
     columns = film_columns(tet_mesh)
     strain, stress = columns.mean(strain), columns.mean(stress)
     density = stress @ system.film.law.coupling
@@ -35,9 +36,10 @@ def fields(system: System, tet_mesh: TetMesh, state: State, before: State) -> Fi
     return Fields(
         displacement_m=displacement * system.units.length,
         cauchy_stress_Pa=to_voigt(cauchy) * system.units.stress,
+        green_lagrange_strain=to_voigt(0.5 * (right_cauchy_green - np.eye(3))),
         von_mises_Pa=np.sqrt(1.5 * np.einsum("mij,mij->m", deviator, deviator)) * system.units.stress,
         pressure_Pa=-np.einsum("mii->m", cauchy) / 3.0 * system.units.stress,
-        max_stretch=stretch,
+        max_stretch=_largest_stretch(right_cauchy_green),
         film_tets=film,
         film_strain=strain @ turn.T * [1, 1, 1, 0.5, 0.5, 0.5],
         film_stress_Pa=_in_film_axes(turn, stress) * system.units.stress,
@@ -49,7 +51,7 @@ def fields(system: System, tet_mesh: TetMesh, state: State, before: State) -> Fi
 
 
 def _medium(solid: SolidRegion, trial: Trial, history: History) -> tuple[Floats, Floats]:
-    """Mean Cauchy stress (m, 3, 3) and largest principal stretch (m,), J sigma = F S F^t."""
+    """Mean Cauchy stress and mean right Cauchy-Green tensor, (m, 3, 3) each, J sigma = F S F^t."""
     f = deformation_gradient(solid.gradient, trial.displacement[solid.tets])
     c = f.swapaxes(-1, -2) @ f
     stress = solid.respond(f, history, trial.time_step)[0].stress.reshape(*f.shape[:2], 6)
@@ -58,17 +60,17 @@ def _medium(solid: SolidRegion, trial: Trial, history: History) -> tuple[Floats,
     if not solid.law.compressible:
         pressure = np.einsum("qa,ma->mq", linear(tetrahedron()[0]), trial.x[solid.dofs[:, 30:]])
         sigma += pressure[..., None, None] * np.eye(3)
-    return _mean(sigma, solid.weight), _largest_stretch(_mean(c, solid.weight))
+    return _mean(sigma, solid.weight), _mean(c, solid.weight)
 
 
 def _film(system: System, trial: Trial, history: History) -> tuple[Floats, Floats, Floats, Floats]:
-    """Mean strain and stress (k, 6) in segment axes, mean Cauchy stress (k, 3, 3), largest stretch (k,)."""
+    """Mean strain and stress (k, 6) in segment axes, mean Cauchy stress and right Cauchy-Green tensor (k, 3, 3)."""
     film = system.film
     strain, stress = film.strain_and_stress(trial, history)
     f = deformation_gradient(film.gradient, trial.displacement[film.tets])
     sigma = f @ from_voigt(stress) @ f.swapaxes(-1, -2) / np.linalg.det(f)[..., None, None]
-    stretch = _largest_stretch(_mean(f.swapaxes(-1, -2) @ f, film.weight))
-    return _mean(strain, film.weight), _mean(stress, film.weight), _mean(sigma, film.weight), stretch
+    c = _mean(f.swapaxes(-1, -2) @ f, film.weight)
+    return _mean(strain, film.weight), _mean(stress, film.weight), _mean(sigma, film.weight), c
 
 
 def _mean(values: Floats, weight: Floats) -> Floats:

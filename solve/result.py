@@ -11,6 +11,7 @@ class Fields:
 
     displacement_m : (n, 3)
     cauchy_stress_Pa : (m, 6) xx, yy, zz, xy, yz, xz (VTK's order of a symmetric tensor), mean over the element
+    green_lagrange_strain : (m, 6) same order, mean over the element, shears are tensor components
     von_mises_Pa, pressure_Pa (positive in compression), max_stretch : (m,)
     film_tets : (k,) indices of the film's tetrahedra; the film arrays follow it, in the film's own axes (1 along
         the draw direction, 2 across, 3 normal):
@@ -25,6 +26,7 @@ class Fields:
 
     displacement_m: Floats
     cauchy_stress_Pa: Floats
+    green_lagrange_strain: Floats
     von_mises_Pa: Floats
     pressure_Pa: Floats
     max_stretch: Floats

@@ -170,6 +170,7 @@ def _step(tet_mesh: TetMesh, depth: float, ridge: bool) -> Step:
     fields = Fields(
         displacement_m=u * 1e-3,
         cauchy_stress_Pa=stress,
+        green_lagrange_strain=stress / 1e9,
         von_mises_Pa=0.6 * modulus * squash,
         pressure_Pa=-stress[:, :3].mean(axis=1),
         max_stretch=1 + 0.5 * squash,

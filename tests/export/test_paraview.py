@@ -49,3 +49,18 @@ def test_paraview_opens_times_fields_and_draws(
     assert run.returncode == 0, run.stderr
     assert "opened 4" in run.stdout
     assert np.asarray(Image.open(picture).convert("L")).std() > 10
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(bool(MISSING), reason=f"needs Debian's {' and '.join(MISSING)}")
+def test_the_script_beside_the_results_draws_them(
+    segment: TetMesh, press: PressResult, dot: DotShape, tmp_path: Path, display: str
+) -> None:
+    write_results(segment, press, dot, tmp_path / "results")
+    run = subprocess.run(
+        ["pvpython", "--force-offscreen-rendering", tmp_path / "results" / "show_in_paraview.py"],
+        capture_output=True, text=True, timeout=240, check=False, env={**os.environ, "DISPLAY": display},
+    )  # fmt: skip
+    assert run.returncode == 0, run.stderr
+    picture = np.asarray(Image.open(tmp_path / "results" / "paraview.png").convert("RGB")).astype(float)
+    assert (np.ptp(picture, axis=2) > 60).mean() > 0.03  # coloured, not blank
