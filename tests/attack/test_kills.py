@@ -15,7 +15,7 @@ import pytest
 from tests.softdot.interrupts import heard
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="needs /proc")]
-KILLS = 5  # of each signal for each of the commands: 60 in all
+KILLS = 10  # of each signal for each of the commands: 60 in all
 AFTER_S = 3.0
 SLICE = """
 [segment]
@@ -110,14 +110,13 @@ def whole(out: Path, summary: str) -> dict:
     [("run", Bench, "summary.json"), ("run", SolidBench, "summary.json"), ("kit", Bench, "kit.json")],
     ids=["slice", "solid", "kit"],
 )
-@pytest.mark.parametrize("half", [0, 1])
-def test_nothing_is_left_of_a_command_that_ends_at_any_instant(name, kind, summary, how, half, tmp_path):
+def test_nothing_is_left_of_a_command_that_ends_at_any_instant(name, kind, summary, how, tmp_path):
     bench = kind(tmp_path, name)
     begun = time.monotonic()
     first = bench.start()
     assert first.wait(300) in (0, 3), first.stderr.read().decode()
     took = time.monotonic() - begun
-    bench.random.seed(f"{name} {how} {half}")
+    bench.random.seed(f"{name} {how}")
     for _ in range(KILLS):
         before = whole(bench.out, summary)
         process = bench.start()
@@ -131,7 +130,8 @@ def test_nothing_is_left_of_a_command_that_ends_at_any_instant(name, kind, summa
         assert whole(bench.out, summary)["format"] == before["format"]
         if how == signal.SIGINT:
             assert "Traceback" not in said
-            assert process.returncode in (130, 0, 3)  # 0 and 3: it had ended by then
+            # 0 and 3: it had ended by then; -2: Python had not begun yet
+            assert process.returncode in (130, 0, 3) or (process.returncode, said) == (-2, "")
             assert bench.leftovers() == []
     last = bench.start()
     assert last.wait(300) in (0, 3), last.stderr.read().decode()
