@@ -38,4 +38,4 @@ def short_text(summary: dict[str, Any], output: str) -> str:
     if summary["solved_now"]:
         rate = f"{summary['points_per_minute']:.3g} points per minute on {summary['workers']} workers"
         lines.append(f"{summary['solved_now']} solved now, {rate}; {summary['reused']} were there")
-    return "\n".join([*lines, f"{output}/sweep.parquet"])
+    return "\n".join([*lines, f"{output}/report.html"])

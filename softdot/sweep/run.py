@@ -44,7 +44,7 @@ def run_sweep(
         ends = [_record(point, records) for point in space.points]
         summary = {**_heading(space, ends), "scheduler": scheduler, **measured, "hardware": hardware()}
         rows = [row(number, space.points[number].values, record) for number, record in enumerate(ends)]
-        store.finish(place, rows, space.text, summary)
+        store.finish(place, rows, list(space.points[0].values), space.text, summary)
     finally:
         store.sweep_up(place)
     return summary

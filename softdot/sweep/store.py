@@ -8,7 +8,7 @@ of the sweep before, with its own summary.
 import json
 import logging
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -23,7 +23,8 @@ from softdot.output_folder import Product, check_output
 from softdot.sweep.point import ACCIDENTS, Record
 
 POINTS, TABLE, SPACE_COPY = "points", "sweep.parquet", "space.toml"
-_WHOLE = ("sweep.json", TABLE, SPACE_COPY)
+CSV_TABLE, PICTURE, PAGE = "sweep.csv", "sweep.png", "report.html"
+_WHOLE = ("sweep.json", TABLE, SPACE_COPY, CSV_TABLE, PICTURE, PAGE)
 SWEEP = Product(
     "softdot-sweep/1", "sweep.json", frozenset({*_WHOLE, *(f".{name}.part" for name in _WHOLE), POINTS})
 )
@@ -98,11 +99,17 @@ def _path(place: Path, config: Config) -> Path:
     return place / POINTS / f"{config_hash(config)}.json"
 
 
-def finish(place: Path, rows: list[dict[str, Any]], text: str | None, summary: Mapping[str, Any]) -> None:
-    """Replace table, space and, last, the summary."""
+def finish(
+    place: Path, rows: list[dict[str, Any]], axes: Sequence[str], text: str | None, summary: Mapping[str, Any]
+) -> None:
+    """Replace tables, picture, page, space and, last, the summary. axes : the columns that the sweep has varied."""
+    from softdot.sweep.report import draw, write_csv, write_report
     from softdot.sweep.table import write_table
 
     write_table(place / TABLE, rows)
+    write_csv(place / CSV_TABLE, rows)
+    draw(place / PICTURE, rows, axes)
+    write_report(place / PAGE, rows, axes, summary, place / PICTURE)
     if text is None:
         (place / SPACE_COPY).unlink(missing_ok=True)
     else:

@@ -162,7 +162,7 @@ def test_a_scheduler_that_goes_away_is_one_sentence_and_the_points_stay(tmp_path
     given = space_from(space_of(depths(*DEPTHS_MM)))
     with LocalCluster(
         n_workers=1, processes=False, protocol="tcp", host="127.0.0.1", scheduler_kwargs=NO_DASHBOARD
-    ) as cluster, pytest.raises(InputError, match="the Dask scheduler went away; finished points are kept"):
+    ) as cluster, pytest.raises(InputError, match="the Dask scheduler disappeared; finished points are kept"):
         run_sweep(given, tmp_path / "out", cluster.scheduler_address, Closer(cluster))
     kept = len(list(tmp_path.glob("out/points/*.json")))
     assert 1 <= kept < len(DEPTHS_MM)

@@ -91,7 +91,7 @@ def test_the_summary_is_printed_and_kept(tmp_path, out, capfd):
     assert printed["ended"] == {"solved": 2, "refused": 0, "not-converged": 0, "crashed": 0, "lost": 0}
     assert (out / "space.toml").read_text() == path.read_text()
     assert sorted(entry.name for entry in out.iterdir()) == [
-        "log.txt", "points", "space.toml", "sweep.json", "sweep.parquet",
+        "log.txt", "points", "report.html", "space.toml", "sweep.csv", "sweep.json", "sweep.parquet", "sweep.png",
     ]  # fmt: skip
 
 
@@ -273,3 +273,16 @@ def test_a_column_without_a_common_type_is_json(out):
     out.mkdir()
     write_table(out / store.TABLE, [{"a": 1}, {"a": "one", "b": 2.0}, {"a": [1]}])
     assert rows(out) == [{"a": "1", "b": None}, {"a": '"one"', "b": 2.0}, {"a": "[1]", "b": None}]
+
+
+def test_a_sweep_is_a_csv_table_a_picture_and_a_page_too(presses, tmp_path, out):
+    presses.failures = {0.2: "Newton's method found no state"}
+    assert sweep(tmp_path, out, depths(0.1, 0.2, 0.3)) == 0
+    lines = (out / "sweep.csv").read_text().splitlines()
+    assert len(lines) == 1 + 3
+    assert lines[0].startswith("point,press.indentation_mm,status,reason")
+    assert (out / "sweep.png").read_bytes()[:4] == b"\x89PNG"
+    page = (out / "report.html").read_text()
+    assert "2 solved, 1 not-converged" in page
+    assert "found no state" in page
+    assert "http" not in page
