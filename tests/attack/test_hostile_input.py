@@ -1,0 +1,245 @@
+"""Two hundred inputs that nobody means well: each is refused in one sentence, or is valid after all; nothing hangs."""
+
+import os
+import random
+import signal
+from contextlib import contextmanager
+
+import pytest
+
+from softdot import stages
+from softdot.cli import main
+from tests.diagnose.rigs import HEAD, RUN, SEGMENT, csv_text, samples
+
+LIMIT_S, LONGEST = 30, 2_100
+pytestmark = pytest.mark.slow
+CONFIG = SEGMENT + """
+[segment.effector]
+shape = "dome"
+diameter_mm = 2.0
+height_mm = 0.8
+[dot]
+standard = "ada"
+offset_mm = [0.1, -0.1]
+[press]
+indentation_mm = 0.2
+load_steps = 4
+[readout]
+input_resistance_MOhm = 10.0
+[[mechanisms]]
+name = "friction"
+component = "dot"
+parameters = { coefficient = 0.2 }
+"""
+WAVE = "time_s,fraction\n0,0\n0.5,0.4\n1,1\n2,1\n3,0\n"
+WAVE_CONFIG = SEGMENT + "[press.waveform]\nshape = 'file'\nfile = '{}'\n"
+SWEEP = CONFIG + "[sweep]\n[[sweep.axes]]\nkey = 'press.indentation_mm'\nvalues = [0.1, 0.2]\n"
+PRESS = csv_text(samples())
+RIG = HEAD + SEGMENT + RUN
+NASTY = [
+    "nan", "-inf", "1e300", "1e-320", "-0.0", "1_000", "0x10", "1e", "true", "'1.0'", "[]", "{}", "1979-05-27", "''",
+    '"""' + "x" * 5_000 + '"""', "[" * 3_000, "9" * 400, "\u202e1", "\0", "1.0, 2.0", "[[1.0]]", "-1.1e-16", "\ufeff1",
+]  # fmt: skip
+
+
+class ReachedError(Exception):
+    """The input was valid: work would begin now."""
+
+
+@contextmanager
+def in_time():
+    """TimeoutError after LIMIT_S."""
+
+    def stop(*_):
+        raise TimeoutError(f"more than {LIMIT_S} s")
+
+    before = signal.signal(signal.SIGALRM, stop)
+    signal.alarm(LIMIT_S)
+    try:
+        yield
+    finally:
+        signal.alarm(0)
+        signal.signal(signal.SIGALRM, before)
+
+
+@pytest.fixture
+def attempt(monkeypatch, tmp_path, capfd):
+    """Runs a command up to the point where work would begin; checks what it says. Returns whether it was refused."""
+
+    def reached(*_args, **_kwargs):
+        raise ReachedError
+
+    import softdot.diagnosis.engines
+    import softdot.plate.make
+    import softdot.sweep.run
+
+    monkeypatch.setattr(stages, "build_parts", reached)
+    monkeypatch.setattr(softdot.diagnosis.engines, "engine_for", reached)
+    monkeypatch.setattr(softdot.sweep.run, "run_sweep", reached)
+    monkeypatch.setattr(softdot.plate.make, "staged_folder", reached)
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments):
+        before = sorted(tmp_path.rglob("*"))
+        capfd.readouterr()
+        try:
+            with in_time():
+                status = main([*arguments, "-o", "out"])
+        except ReachedError:
+            status = None
+        except SystemExit as error:
+            status = error.code
+        printed = capfd.readouterr()
+        assert status in (None, 2), (arguments, status, printed.err[-500:])
+        assert sorted(tmp_path.rglob("*")) == before
+        assert "Traceback" not in printed.err
+        assert printed.out == ""
+        if status == 2:
+            said = [line for line in printed.err.splitlines() if not line.startswith("softdot: warning: ")]
+            assert len(said) == 1, printed.err[-800:]
+            assert said[0].startswith("softdot")
+            assert len(said[0]) < LONGEST
+        return status == 2
+
+    return run
+
+
+def mutated(text: str, rng: random.Random) -> bytes:
+    """A valid file with one thing done to it that an editor, a script or an enemy does."""
+    lines, raw = text.splitlines(), text.encode()
+    at, line = rng.randrange(len(raw)), rng.randrange(len(lines))
+    match rng.randrange(10):
+        case 0:
+            return raw[:at] + bytes([rng.randrange(256)]) + raw[at + 1 :]
+        case 1:
+            return raw[:at]
+        case 2:
+            lines.insert(line, lines[line])
+        case 3:
+            del lines[line]
+        case 4:
+            return text.replace("\n", "\r").encode()
+        case 5:
+            return b"\xef\xbb\xbf" + text.replace("\n", "\r\n").encode()
+        case 6:
+            return raw[:at] + "é\u202e\u0000\U0001f600".encode()[: rng.randrange(1, 9)] + raw[at:]
+        case 7:
+            return raw[:at] + b"x" * 200_000 + raw[at:]
+        case _:
+            cells = lines[line].replace("=", ",").split(",")
+            old = rng.choice(cells)
+            lines[line] = lines[line].replace(old, " " + rng.choice(NASTY) if old.strip() else "nan", 1)
+    return "\n".join(lines).encode("utf-8", "surrogatepass")
+
+
+def refused_of(attempts) -> int:
+    """How many were refused; some mutations leave a valid input."""
+    return sum(attempts)
+
+
+def test_configurations(attempt, tmp_path):
+    rng, file = random.Random(1), tmp_path / "mine.toml"
+
+    def attempts():
+        for _ in range(80):
+            file.write_bytes(mutated(CONFIG, rng))
+            yield attempt("run", "mine.toml")
+
+    assert refused_of(attempts()) > 30
+
+
+def test_waveforms(attempt, tmp_path):
+    rng, file = random.Random(2), tmp_path / "wave.csv"
+    (tmp_path / "mine.toml").write_text(WAVE_CONFIG.format("wave.csv"))
+
+    def attempts():
+        for _ in range(40):
+            file.write_bytes(mutated(WAVE, rng))
+            yield attempt("run", "mine.toml")
+
+    assert refused_of(attempts()) > 15
+
+
+def test_recordings(attempt, tmp_path):
+    rng, folder = random.Random(3), tmp_path / "recording"
+    folder.mkdir()
+
+    def attempts():
+        for number in range(40):
+            (folder / "rig.toml").write_bytes(mutated(RIG, rng) if number % 2 else RIG.encode())
+            (folder / "press.csv").write_bytes(PRESS.encode() if number % 2 else mutated(PRESS, rng))
+            yield attempt("diagnose", "recording")
+
+    assert refused_of(attempts()) > 10
+
+
+def test_sweeps(attempt, tmp_path):
+    rng, file = random.Random(4), tmp_path / "space.toml"
+
+    def attempts():
+        for _ in range(25):
+            file.write_bytes(mutated(SWEEP, rng))
+            yield attempt("sweep", "space.toml")
+
+    assert refused_of(attempts()) > 8
+
+
+COMMANDS = [
+    ["plate", "a", "--standard", "ada", "--height-mm", value] for value in ("nan", "inf", "-1", "1e300", "0", "x")
+] + [
+    ["plate", "a", "--standard", "ada", "--thickness-mm", "nan"],
+    ["plate", "a", "--standard", "ada", "--margin-mm", "-inf"],
+    ["plate", "a", "--standard", "ada", "--width-cells", "0"],
+    ["plate", "a", "--standard", "nowhere"],
+    ["plate", "a\0b", "--standard", "ada"],
+    ["plate", "", "--standard", "ada"],
+    ["plate", "--standard", "ada", "--kind", "height-series", "--heights-mm", "nan,1"],
+    ["plate", "--standard", "ada", "--kind", "height-series", "--heights-mm", ",,"],
+    ["prove", "--cases", "0"],
+    ["prove", "--cases", "-5"],
+    ["prove", "--cases", "3", "--seed", "-1"],
+    ["prove", "--cases", "3", "--kinds", "x"],
+    ["run", "none.toml"],
+    ["run", "x" * 300],
+    ["run", "/".join(["x"] * 5_000)],
+    ["run", "a\0b"],
+    ["run", "\udcff"],
+    ["run", "."],
+    ["run", "pipe"],
+    ["run", "endless"],
+    ["run", "loop"],
+    ["run", "--set", "nonsense"],
+    ["run", "--set", "press.indentation_mm=nan"],
+    ["run", "--set", "=1"],
+    ["run", "--set", "a" * 10_000 + "=1"],
+    ["diagnose", "pipe"],
+    ["diagnose", "none"],
+    ["diagnose", "."],
+    ["sweep", "pipe"],
+    ["sweep", "endless"],
+    ["kit", "endless"],
+]
+
+
+def place_traps(folder):
+    """A pipe, a device without end and a link to itself."""
+    os.mkfifo(folder / "pipe")
+    (folder / "endless").symlink_to("/dev/zero")
+    (folder / "loop").symlink_to("loop")
+
+
+@pytest.mark.parametrize("arguments", COMMANDS, ids=range(len(COMMANDS)))
+def test_commands(arguments, attempt, tmp_path):
+    place_traps(tmp_path)
+    assert attempt(*arguments)
+
+
+@pytest.mark.parametrize("name", ["pipe", "endless", "loop", "x" * 300, "."])
+def test_traps_as_waveforms_and_runs(name, attempt, tmp_path):
+    place_traps(tmp_path)
+    (tmp_path / "mine.toml").write_text(WAVE_CONFIG.format(name))
+    assert attempt("run", "mine.toml")
+    (tmp_path / "recording").mkdir()
+    place_traps(tmp_path / "recording")
+    (tmp_path / "recording" / "rig.toml").write_text(RIG.replace("press.csv", name))
+    assert attempt("diagnose", "recording")
