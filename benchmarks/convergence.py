@@ -8,13 +8,13 @@ two finest meshes at second order, the order that the differences show.
 """
 
 import json
-import sys
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
 
 import mesh
+from benchmarks.timing import file_argument
 from geometry.dot_shape import resolve_dot
 from softdot.config import load_config
 from solve.press import press_segment
@@ -81,4 +81,4 @@ def main(table: Path, picture: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), Path(sys.argv[2]))
+    main(file_argument(), file_argument(2))

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import psutil
 
-from benchmarks.timing import Table
+from benchmarks.timing import Table, file_argument
 from examples.recordings.leaky_amplifier import RIG, SIZES_MM, make
 
 DOME = """format = "softdot-recording/1"
@@ -105,4 +105,4 @@ def main(path: Path, names: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), sys.argv[2:])
+    main(file_argument(), sys.argv[2:])

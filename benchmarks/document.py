@@ -5,11 +5,11 @@ Each table stands between <!-- name --> and <!-- /name -->, and only that is rew
 
 import json
 import re
-import sys
 from pathlib import Path
 
 from benchmarks.growth import efficiency, exponents
 from benchmarks.press import CODES, errors, of_code, seconds_at
+from benchmarks.timing import file_argument
 
 
 def _table(head: tuple[str, ...], body: list[list[str]]) -> str:
@@ -92,4 +92,4 @@ def main(table: Path, page: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), Path(sys.argv[2]))
+    main(file_argument(), file_argument(2))

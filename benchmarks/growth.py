@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.timing import Table, run_alone
+from benchmarks.timing import Table, file_argument, run_alone
 
 CELLS = {7: 6, 15: 8, 30: 10, 60: 13, 100: 15, 160: 18, 300: 22, 500: 27}  # thousands of unknowns: cells
 
@@ -56,4 +56,4 @@ def main(path: Path, largest: int) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else max(CELLS))
+    main(file_argument(), int(sys.argv[2]) if len(sys.argv) > 2 else max(CELLS))

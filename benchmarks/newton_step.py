@@ -8,7 +8,7 @@ measured again.
 import sys
 from pathlib import Path
 
-from benchmarks.timing import Table, run_alone
+from benchmarks.timing import Table, file_argument, run_alone
 
 CELLS = {30: 10, 100: 15, 300: 22}  # thousands of unknowns: cells along an edge
 PEERS = (
@@ -56,4 +56,4 @@ def main(path: Path, largest: int) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else max(CELLS))
+    main(file_argument(), int(sys.argv[2]) if len(sys.argv) > 2 else max(CELLS))

@@ -1,7 +1,6 @@
 """The picture of the speed measurements: python -m benchmarks.plot docs/speed.json docs/pictures/speed.png."""
 
 import json
-import sys
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -9,6 +8,7 @@ import numpy as np
 
 from benchmarks.growth import exponents
 from benchmarks.press import CODES, errors, of_code
+from benchmarks.timing import file_argument
 
 PHASES = ("assemble", "factorise", "back substitute", "gmres")
 
@@ -62,4 +62,4 @@ def main(table: Path, picture: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), Path(sys.argv[2]))
+    main(file_argument(), file_argument(2))

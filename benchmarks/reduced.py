@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.timing import Table
+from benchmarks.timing import Table, file_argument
 from geometry.dot_shape import resolve_dot
 from geometry.parameters import Dot, Effector, Film, Medium, Segment
 from mesh.build import build
@@ -85,4 +85,4 @@ def main(path: Path, size_mm: float) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), float(sys.argv[2]) if len(sys.argv) > 2 else 0.9)
+    main(file_argument(), float(sys.argv[2]) if len(sys.argv) > 2 else 0.9)

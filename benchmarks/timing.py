@@ -55,10 +55,21 @@ def _lines(path: str) -> list[str]:
     return Path(path).read_text().splitlines() if Path(path).exists() else []
 
 
+def file_argument(number: int = 1) -> Path:
+    """The file that a benchmark is called with. SystemExit with one sentence where it is missing."""
+    if len(sys.argv) <= number:
+        program = Path(sys.argv[0]).stem
+        raise SystemExit(f"benchmarks.{program}: name its file: python -m benchmarks.{program} docs/speed.json")
+    return Path(sys.argv[number])
+
+
 def run_alone(program: str, *arguments: object) -> dict:
     """The JSON that a program of this folder prints last, from a process of its own. SystemExit when it fails."""
     command = [sys.executable, "-m", f"benchmarks.{program}", *map(str, arguments)]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=Path(__file__).parents[1])
+    tools = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])  # NGSolve's compiler
+    done = subprocess.run(
+        command, capture_output=True, text=True, cwd=Path(__file__).parents[1], env={**os.environ, "PATH": tools}
+    )
     if done.returncode:
         raise SystemExit(f"{' '.join(command)}\n{done.stderr}")
     return json.loads(done.stdout.splitlines()[-1])

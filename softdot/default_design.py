@@ -6,7 +6,7 @@ other keys of the default design are the defaults of the schema. Recordings are 
 was built.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from importlib.resources import files
 from typing import Any
@@ -77,3 +77,8 @@ def _at(tables: Any, way: tuple[str, ...]) -> Any:
     for name in way:
         tables = tables.get(name) if isinstance(tables, Mapping) else None
     return tables
+
+
+def told(keys: Sequence[str], config: Mapping[str, Any]) -> str:
+    """What came from the default design, in a line: its keys, or that all of it did."""
+    return f"from the default design: {'everything' if tuple(keys) == from_default({}, config) else ', '.join(keys)}"

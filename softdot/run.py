@@ -14,6 +14,7 @@ from mesh.types import Floats, TetMesh
 from softdot import stages
 from softdot.actual import actual
 from softdot.config import Config
+from softdot.default_design import told
 from softdot.log import lines_when_interactive, warn
 from softdot.numbers import plain, write_json
 from softdot.output_folder import RUN, staged_folder
@@ -76,7 +77,7 @@ def _fill(
     summary = {**heading(config), "warnings": [*warnings, *design_warnings(config)]}
     warn(summary["warnings"])
     if config.from_default:
-        LOG.info("from the default design: %s", ", ".join(config.from_default))
+        LOG.info("%s", told(config.from_default, config.model_dump(mode="json")))
     progress.stage("geometry")
     with clock("geometry"):
         parts = stages.build_parts(config, dot_shape)

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from softdot.command_output import GOOD, NOT_CONVERGED, complain, only_the_summary_on_stdout, show
+from softdot.default_design import told
 
 
 def command(chosen: Namespace) -> int:
@@ -34,7 +35,7 @@ def short_text(summary: dict[str, Any], output: str) -> str:
             f"open-circuit voltage {summary['open_circuit_voltage_V'][-1]:.4g} V{voltage}"
         )
     if summary.get("from_default"):
-        lines.append(f"from the default design: {', '.join(summary['from_default'])}")
+        lines.append(told(summary["from_default"], summary["config"]))
     return "\n".join([*lines, f"{output}/report.html"])
 
 
