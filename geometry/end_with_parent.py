@@ -9,17 +9,19 @@ PR_SET_PDEATHSIG, SIGKILL = 1, 9  # linux/prctl.h
 EVERY_S = 1.0
 
 
-def end_with_parent() -> None:
+def end_with_parent(parent: int) -> None:
     """Called by a child: have it killed when its parent ends, however that ends.
+
+    parent : process number, told by the parent itself: it may have ended while the child was starting, and who asks
+    then is told of another process.
 
     On Linux by the kernel, since a mesher that holds Python's lock could not see to it; elsewhere by a thread.
     """
-    parent = os.getppid()
     if sys.platform == "linux":
         import ctypes
 
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, SIGKILL)
-        if os.getppid() != parent:  # it ended just before
+        if os.getppid() != parent:  # it ended before
             os._exit(1)
     else:
         threading.Thread(target=_watch, args=(parent,), daemon=True).start()

@@ -19,7 +19,7 @@ def tetrahedralize(timeout_s: float, **arrays: object) -> tuple[Floats, Ints]:
     """
     with scratch_folder() as folder:
         np.savez(folder / "input.npz", timeout=timeout_s, **arrays)  # type: ignore[arg-type]
-        _run([sys.executable, "-P", "-m", "mesh.tetwild_worker", str(folder)], timeout_s)
+        _run([sys.executable, "-P", "-m", "mesh.tetwild_worker", str(folder), str(os.getpid())], timeout_s)
         with np.load(folder / "output.npz") as data:
             return data["points"].astype(np.float64), data["tets"].astype(np.int64)
 

@@ -1,6 +1,7 @@
 """The child process around pytetwild, which holds the GIL, swallows Ctrl-C and prints from C++.
 
-Started as a module, with one argument: a folder with input.npz; writes output.npz beside it.
+Started as a module, with two arguments: a folder with input.npz, beside which output.npz is written, and the process
+number of its parent.
 """
 
 import sys
@@ -34,5 +35,5 @@ def main(folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    end_with_parent()
+    end_with_parent(int(sys.argv[2]))
     main(Path(sys.argv[1]))

@@ -1,4 +1,7 @@
-"""A process that presses the 3D model: jobs come in on standard input, answers go out on standard output."""
+"""A process that presses the 3D model: jobs come in on standard input, answers go out on standard output.
+
+Started with one argument: the process number of its parent.
+"""
 
 import os
 import pickle
@@ -30,7 +33,7 @@ def _pressed(job: Job) -> Floats:
 
 def work() -> None:
     """Answer jobs on standard input until it ends. What libraries print goes to standard error."""
-    end_with_parent()
+    end_with_parent(int(sys.argv[1]))
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
     while True:

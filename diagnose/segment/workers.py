@@ -81,7 +81,7 @@ def _pressed(jobs: dict[str, Job | Reduction]) -> Iterator[tuple[str, Any]]:
 @contextmanager
 def _processes(count: int) -> Iterator[list["subprocess.Popen[bytes]"]]:
     """Workers that end with the block, also when it is interrupted."""
-    command = [sys.executable, "-m", worker.__name__]
+    command = [sys.executable, "-m", worker.__name__, str(os.getpid())]
     own = {**os.environ, **ONE_THREAD, "PYTHONPATH": os.pathsep.join(sys.path)}
     pipe = subprocess.PIPE
     started = [  # in sessions of their own: Ctrl-C in the terminal reaches this process alone, which ends them

@@ -5,9 +5,9 @@ import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from io import BytesIO
 from pathlib import Path
 from tempfile import NamedTemporaryFile
-from zipfile import BadZipFile
 
 import numpy as np
 from scipy.interpolate import CubicSpline, PchipInterpolator
@@ -18,6 +18,7 @@ from diagnose.prove.world.stack import Answer, Stack, State
 POINTS = {"ridge": 24, "cap": 10}
 GRADING = 1.3
 STEPS_PER_DEPTH = 18
+DIGEST = hashlib.sha256().digest_size
 STILL = 1e-4  # of the deepest press
 LONGEST, GROWTH, SHORTEST_S = 0.5, 1.5, 0.006
 MECHANICS = ("made", "grid", "laws", "memory", "parts", "stack", "march")
@@ -140,23 +141,29 @@ def _digest(*arrays: Floats) -> str:
 
 @dataclass(frozen=True)
 class _Kept:
-    """A course in a file."""
+    """A course in a file that begins with the SHA-256 of the rest."""
 
     path: Path
 
     def read(self) -> Course | None:
         """None when there is none or it is damaged."""
         try:
-            with np.load(self.path, allow_pickle=False) as data:
-                return Course(data["force_N"], data["charge_pC"], data["area_mm2"])
-        except (OSError, ValueError, KeyError, EOFError, BadZipFile):
+            whole = self.path.read_bytes()
+        except OSError:
             return None
+        content = whole[DIGEST:]
+        if hashlib.sha256(content).digest() != whole[:DIGEST]:
+            return None
+        with np.load(BytesIO(content), allow_pickle=False) as data:
+            return Course(data["force_N"], data["charge_pC"], data["area_mm2"])
 
     def write(self, course: Course) -> Course:
         """Beside, then renamed."""
         self.path.parent.mkdir(parents=True, exist_ok=True)
+        buffer = BytesIO()
+        np.savez(buffer, force_N=course.force_N, charge_pC=course.charge_pC, area_mm2=course.area_mm2)
         with NamedTemporaryFile(dir=self.path.parent, suffix=".part", delete=False) as file:
-            np.savez(file, force_N=course.force_N, charge_pC=course.charge_pC, area_mm2=course.area_mm2)
+            file.write(hashlib.sha256(buffer.getvalue()).digest() + buffer.getvalue())
         Path(file.name).replace(self.path)
         return course
 
