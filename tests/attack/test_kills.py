@@ -120,7 +120,7 @@ def test_nothing_is_left_of_a_command_that_ends_at_any_instant(name, kind, summa
     for _ in range(KILLS):
         before = whole(bench.out, summary)
         process = bench.start()
-        time.sleep(bench.random.uniform(0.8, min(took, 12.0)))
+        time.sleep(bench.random.uniform(0.8, min(took, 8.0)))
         process.send_signal(how)
         said = process.communicate(timeout=60)[1].decode()
         deadline = time.monotonic() + AFTER_S
