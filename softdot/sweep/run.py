@@ -3,10 +3,11 @@
 import time
 from collections import Counter
 from collections.abc import Mapping
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, ExitStack
 from pathlib import Path
 from typing import Any
 
+from geometry.held_folder import release
 from mesh.cache import check_folder
 from softdot.config import Config, config_hash
 from softdot.log import LOG_FILE, log_file
@@ -37,16 +38,14 @@ def run_sweep(
     records = {name: found for name, config in configs.items() if (found := store.kept(place, config)) is not None}
     missing = {name: config for name, config in configs.items() if name not in records}
     cluster = local_cluster(space.sweep.workers) if scheduler is None else existing_cluster(scheduler)
-    try:
+    with ExitStack() as stack:
         measured = _measured(0, len(records))
         if missing:
-            measured = _solve(missing, records, cluster, place, progress or Logged())
+            measured = _solve(missing, records, cluster, place, progress or Logged(), stack)
         ends = [_record(point, records) for point in space.points]
         summary = {**_heading(space, ends), "scheduler": scheduler, **measured, "hardware": hardware()}
         rows = [row(number, space.points[number].values, record) for number, record in enumerate(ends)]
         store.finish(place, rows, list(space.points[0].values), space.text, summary)
-    finally:
-        store.sweep_up(place)
     return summary
 
 
@@ -56,12 +55,19 @@ def _solve(
     cluster: AbstractContextManager[Any],
     place: Path,
     progress: Progress,
+    stack: ExitStack,
 ) -> dict[str, Any]:
-    """Add what is missing to the records and to the folder, which is made once somebody can work."""
+    """Add what is missing to the records and to the folder, which is made once somebody can work.
+
+    stack : gives the folder up at its end, so that no other sweep writes it meanwhile.
+    """
     reused, count = len(records), len(records) + len(missing)
     begun = time.perf_counter()
     with cluster as client:
         store.begin(place)
+        stack.callback(release, store.take(place))
+        store.sweep_up(place)
+        stack.callback(store.sweep_up, place)
         workers = len(client.nthreads())
         ready = time.perf_counter()
         with log_file(place / LOG_FILE):

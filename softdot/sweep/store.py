@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from geometry.errors import InputError
+from geometry.held_folder import hold
 from geometry.whole_file import whole_file
 from mesh.fingerprint import data_hash
 from softdot.config import Config, config_hash
@@ -48,7 +49,14 @@ def begin(place: Path) -> None:
     if not (place / SWEEP.summary).exists():
         write_json(place / SWEEP.summary, {"format": SWEEP.format, "complete": False})
     (place / POINTS).mkdir(exist_ok=True)
-    sweep_up(place)
+
+
+def take(place: Path) -> int | None:
+    """Hold the folder for this process, to be released at the end. InputError while another sweep writes it."""
+    held = hold(place)
+    if held is None:
+        raise InputError(f"output '{place}': another sweep is writing it; wait for it or name another folder")
+    return held
 
 
 def sweep_up(place: Path) -> None:

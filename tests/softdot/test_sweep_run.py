@@ -286,3 +286,20 @@ def test_a_sweep_is_a_csv_table_a_picture_and_a_page_too(presses, tmp_path, out)
     assert "2 solved, 1 not-converged" in page
     assert "found no state" in page
     assert "http" not in page
+
+
+@pytest.mark.usefixtures("presses")
+def test_a_second_sweep_into_a_folder_is_refused_and_the_first_keeps_its_file(tmp_path, out):
+    from geometry.held_folder import hold, release
+
+    assert sweep(tmp_path, out, depths(0.1)) == 0
+    half = out / "points" / ".half.json.part"
+    half.write_text("half")
+    held = hold(out)
+    try:
+        assert sweep(tmp_path, out, depths(0.1, 0.2)) == 2
+        assert half.exists()
+    finally:
+        release(held)
+    assert sweep(tmp_path, out, depths(0.1, 0.2)) == 0
+    assert not half.exists()
