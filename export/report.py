@@ -131,9 +131,9 @@ def headline(summary: Mapping[str, Any]) -> list[dict[str, str]]:
 
 
 def _plus_minus(summary: Mapping[str, Any], name: str) -> str:
-    """', ± 12 %' where an uncertainty is stated; two digits, as more would claim too much."""
+    """', ± 12 %' where an uncertainty is stated, '' for a given force; two digits, as more would claim too much."""
     stated = summary.get("uncertainty", {}).get(name)
-    return "" if stated is None else f", ±\u00a0{number(float(stated), 2)}\u00a0%"
+    return "" if not stated else f", ±\u00a0{number(float(stated), 2)}\u00a0%"
 
 
 def _at_the_rim(film: Mapping[str, Any]) -> list[tuple[str, Any, str, str]]:

@@ -40,6 +40,6 @@ def short_text(summary: dict[str, Any], output: str) -> str:
 
 
 def _plus_minus(summary: dict[str, Any], name: str) -> str:
-    """' ± 12 %' where an uncertainty is stated."""
+    """' ± 12 %' where an uncertainty is stated; nothing for a force that was given."""
     stated = summary.get("uncertainty", {}).get(name)
-    return "" if stated is None else f" ± {stated:.2g} %"
+    return "" if not stated else f" ± {stated:.2g} %"

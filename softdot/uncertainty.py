@@ -2,7 +2,8 @@
 
 To first order: each constant of a material, off by what is stated of it, moves the response along its derivative
 (ISO/IEC Guide 98-3, 2008, clause 5.1.2). The derivatives come from the same press on elements twice as large, at its
-full load alone. All parts are taken as independent, and their squares added.
+full load alone. All parts are taken as independent, and their squares added. Where a part is missing there is no sum:
+mesh and mesher alone are far less than the materials do.
 """
 
 from collections.abc import Mapping, Sequence
@@ -12,7 +13,8 @@ from typing import Any
 from geometry.errors import InputError
 from mesh.errors import MeshingError
 from softdot.config import Config
-from softdot.kit.responses import KitPress, Response, coarser, path_matters
+from softdot.differentiate import model_of
+from softdot.kit.responses import KitPress, Response, coarser
 from softdot.kit.tolerances import Tolerance, material_tolerances
 from solve.full_load import StoppedShortError
 from solve.linear import LinearSolveError
@@ -27,49 +29,73 @@ docs/verification.md, once 1.9 %."""
 LOST = {
     "path": "what the tolerances of the materials do is not estimated here, since this press depends on its path; "
     "softdot kit calculates it",
+    "slide": "what the tolerances of the materials do is not estimated here, since the dot slides after it is pressed "
+    "in; softdot kit calculates it for the press before the slide",
     "failed": "what the tolerances of the materials do could not be estimated: the press on larger elements failed",
 }
 
 
 def uncertainty(config: Config, force_N: float, voltage_V: float) -> dict[str, Any]:
-    """The keys discretisation_error and uncertainty of summary.json for the final force and voltage of a run.
+    """The keys discretisation_error and uncertainty of summary.json: of the final force and open-circuit voltage.
 
     config : as the user states it. Each part has name, source, force_percent and voltage_percent; note says what is
-    missing. A run whose force or voltage is zero has no percentages.
+    missing, and then there is no sum. A run whose force or voltage is zero has no percentages.
     """
     if force_N == 0.0 or voltage_V == 0.0:
         return {}
-    mesh_error = STUDY[config.segment.section]
+    given = config.press.force_N is not None
+    mesh_error = _known_force(STUDY[config.segment.section], given)
     mesh_source = "convergence study of the default design"
-    parts, note = [], None
-    if path_matters(config):
-        note = LOST["path"]
-    else:
+    parts, note = [], _not_estimated(config)
+    if note is None:
+        rows = [row for row in material_tolerances(config) if row.counted]
         try:
-            nominal, slopes = KitPress(coarser(config, COARSER)).slopes(_keys(rows := material_tolerances(config)))
+            nominal, slopes = KitPress(_coarse(config)).full_load_slopes(_keys(rows))
         except (InputError, LinearSolveError, MeshingError, StoppedShortError):
             note = LOST["failed"]
         else:
-            parts = [_part(row, nominal, slopes) for row in rows if row.counted]
-            own = _third_of_difference(nominal, force_N, voltage_V)
+            parts = [_part(row, nominal, slopes, given) for row in rows]
+            own = _known_force(_third_of_difference(nominal, force_N, voltage_V), given)
             if hypot(*own) > hypot(*mesh_error):
                 mesh_error, mesh_source = own, "a third of the change from elements twice as large"
     parts.sort(key=lambda part: -part["voltage_percent"])
     parts += [_named("mesh", mesh_source, mesh_error)]
     if config.mesh.mesher == "pytetwild" and config.segment.section == "solid":
-        parts += [_named("repeatability of the mesher", "repeated meshes of the same segments", SCATTER)]
-    total = {name: hypot(*(part[name] for part in parts)) for name in ("force_percent", "voltage_percent")}
+        scatter = _known_force(SCATTER, given)
+        parts += [_named("repeatability of the mesher", "repeated meshes of the same segments", scatter)]
     return {
         "discretisation_error": {"force_percent": mesh_error[0], "voltage_percent": mesh_error[1]},
-        "uncertainty": {**total, "parts": parts, "note": note},
+        "uncertainty": {**(_together(parts) if note is None else {}), "parts": parts, "note": note},
     }
+
+
+def _not_estimated(config: Config) -> str | None:
+    """Why the full load alone does not tell about the last step; what an amplifier adds does not matter to it."""
+    if model_of(config).follows_time:
+        return LOST["path"]
+    return LOST["slide"] if config.press.path_xy_mm else None
+
+
+def _coarse(config: Config) -> Config:
+    """On larger elements, in one load step: where the path does not matter the steps do not either."""
+    coarse = coarser(config, COARSER)
+    return coarse.model_copy(update={"press": coarse.press.model_copy(update={"load_steps": 1})})
+
+
+def _known_force(percent: tuple[float, float], given: bool) -> tuple[float, float]:
+    """Of force and voltage; a force that is given is not in doubt."""
+    return (0.0 if given else percent[0], percent[1])
+
+
+def _together(parts: Sequence[Mapping[str, Any]]) -> dict[str, float]:
+    return {name: hypot(*(part[name] for part in parts)) for name in ("force_percent", "voltage_percent")}
 
 
 def _keys(rows: Sequence[Tolerance]) -> list[str]:
     return sorted({key for row in rows for key in row.slopes})
 
 
-def _part(row: Tolerance, nominal: Response, slopes: Mapping[str, Response]) -> dict[str, Any]:
+def _part(row: Tolerance, nominal: Response, slopes: Mapping[str, Response], given: bool) -> dict[str, Any]:
     """One constant of a material at the end of its tolerance."""
     force = sum(slope * slopes[key].force for key, slope in row.slopes.items())
     voltage = sum(slope * slopes[key].voltage for key, slope in row.slopes.items())
@@ -77,7 +103,7 @@ def _part(row: Tolerance, nominal: Response, slopes: Mapping[str, Response]) -> 
         100 * row.plus_minus * abs(force / nominal.force),
         100 * row.plus_minus * abs(voltage / nominal.voltage),
     )
-    return _named(f"{row.label} ±{row.plus_minus:.3g} {row.unit}", row.source, percent)
+    return _named(f"{row.label} ±{row.plus_minus:.3g} {row.unit}", row.source, _known_force(percent, given))
 
 
 def _third_of_difference(coarse: Response, force_N: float, voltage_V: float) -> tuple[float, float]:

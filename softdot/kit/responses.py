@@ -69,6 +69,15 @@ class KitPress:
         found = remembered(with_factors(self.config), f"slopes {keys}", lambda: self._slopes(keys))
         return Response(*found[0]), {key: Response(*pair) for key, pair in found[1].items()}
 
+    def full_load_slopes(self, keys: Sequence[str]) -> tuple[Response, dict[str, Response]]:
+        """The same of force and open-circuit voltage at full load, before any slide, whatever stands behind the film.
+
+        InputError also where the path of the press matters; else as for slopes.
+        """
+        changed = with_factors(self.config)
+        found = remembered(changed, f"full-load slopes {keys}", lambda: self._full_load_slopes(keys))
+        return Response(*found[0]), {key: Response(*pair) for key, pair in found[1].items()}
+
     def value(self, moved: Config) -> Response:
         """The response of a changed configuration, on the mesh of the unchanged one so that the mesh does not blur the
         difference. Errors as for slopes.
@@ -88,6 +97,10 @@ class KitPress:
         changed = with_factors(self.config)
         if path_matters(changed):
             return slopes_along(changed, keys, self._mesh)
+        return self._full_load_slopes(keys)
+
+    def _full_load_slopes(self, keys: Sequence[str]) -> tuple[Response, dict[str, Response]]:
+        changed = with_factors(self.config)
         try:
             found = self._full_load.derivatives(variations_of(changed, keys))
         except ValueError as error:

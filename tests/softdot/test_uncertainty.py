@@ -5,7 +5,9 @@ import pytest
 from softdot import stages
 from softdot.actual import actual
 from softdot.config import config_from
+from softdot.kit.responses import KitPress
 from softdot.uncertainty import uncertainty
+from solve.full_load import StoppedShortError
 
 SLICE = {
     "segment": {
@@ -65,11 +67,49 @@ def test_the_whole_is_the_root_of_the_sum_of_squares(stated):
     assert stated["discretisation_error"]["force_percent"] == part(stated, "mesh")["force_percent"] > 0.0
 
 
-def test_a_press_whose_path_matters_says_what_is_missing():
-    relaxing = {
-        "name": "viscoelasticity", "component": "medium2",
-        "parameters": {"relative_moduli": [0.3], "relaxation_times_s": [0.2]},
-    }  # fmt: skip
-    found = uncertainty(config_from({**SLICE, "mechanisms": [relaxing]}), 1.0, 1.0)["uncertainty"]
-    assert "depends on its path" in found["note"]
-    assert [one["name"] for one in found["parts"]] == ["mesh"]
+RELAXING = {
+    "name": "viscoelasticity", "component": "medium2",
+    "parameters": {"relative_moduli": [0.3], "relaxation_times_s": [0.2]},
+}  # fmt: skip
+SLIDING = {"indentation_mm": 0.05, "load_steps": 1, "path_xy_mm": [[0.4, 0.0]]}
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [({"mechanisms": [RELAXING]}, "depends on its path"), ({"press": SLIDING}, "slides after it is pressed in")],
+    ids=["memory", "slide"],
+)
+def test_what_is_not_estimated_is_said_and_nothing_is_summed(change, reason):
+    """Mesh and mesher alone would promise an accuracy that nobody has."""
+    found = uncertainty(config_from({**SLICE, **change}), 1.0, 1.0)
+    assert reason in found["uncertainty"]["note"]
+    assert [one["name"] for one in found["uncertainty"]["parts"]] == ["mesh"]
+    assert "voltage_percent" not in found["uncertainty"]
+    assert found["discretisation_error"]["voltage_percent"] == pytest.approx(0.6)
+
+
+def test_an_amplifier_changes_nothing_of_force_and_open_circuit_voltage(stated):
+    amplified = config_from({**SLICE, "readout": {"input_resistance_MOhm": 1.0}})
+    found = uncertainty(amplified, *pressed())
+    assert found["uncertainty"]["voltage_percent"] == pytest.approx(stated["uncertainty"]["voltage_percent"], rel=1e-6)
+    assert found["uncertainty"]["note"] is None
+
+
+@pytest.mark.parametrize("slide", [[], [[0.4, 0.0]]], ids=["press", "slide"])
+def test_a_force_that_is_given_is_not_in_doubt(slide):
+    config = config_from({**SLICE, "press": {"force_N": 0.1, "load_steps": 1, "path_xy_mm": slide}})
+    found = uncertainty(config, 0.1, 2.0)
+    assert {one["force_percent"] for one in found["uncertainty"]["parts"]} == {0.0}
+    assert found["discretisation_error"]["force_percent"] == 0.0 < found["discretisation_error"]["voltage_percent"]
+
+
+def test_no_derivative_is_taken_that_no_part_needs(monkeypatch):
+    asked = []
+    monkeypatch.setattr(KitPress, "full_load_slopes", lambda _, keys: asked.extend(keys) or stop())
+    uncertainty(config_from(SLICE), 1.0, 1.0)
+    assert len(asked) == 6  # four moduli, d31 and permittivity
+    assert not any("thickness" in key for key in asked)
+
+
+def stop():
+    raise StoppedShortError("as asked")
