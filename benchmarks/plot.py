@@ -14,13 +14,12 @@ PHASES = ("assemble", "factorise", "back substitute", "gmres")
 
 
 def newton_step(axes: plt.Axes, rows: list[dict]) -> None:
-    """Bars: assembly, then the rest, of each code on the mixed element."""
+    """Assembly and the whole step of each code on the mixed element."""
     rows = [row for row in rows if row["law"] == "mixed" and row["code"] != "scikit-fem"]
     names = [f"{row['unknowns'] // 1000} k  {row['code']}" for row in rows]
     assembly = np.array([row["seconds"]["assemble"] for row in rows])
-    rest = np.array([row["seconds"]["total"] for row in rows]) - assembly
-    axes.barh(names, assembly, label="assembly")
-    axes.barh(names, rest, left=assembly, label="factorisation and solution")
+    axes.plot(assembly, names, "o", ms=8, label="assembly")
+    axes.plot([row["seconds"]["total"] for row in rows], names, "s", ms=8, label="whole step")
     axes.set(xscale="log", xlabel="seconds of one Newton step", xlim=(0.5 * assembly.min(), None))
     axes.invert_yaxis()
     axes.legend(frameon=False)
@@ -35,7 +34,7 @@ def growth(axes: plt.Axes, rows: list[dict]) -> None:
     memory = [row["peak_GB"] for row in rows]
     axes.loglog(unknowns, memory, "k:", label=f"peak memory (GB), exponent {slope.get('peak_GB', np.nan):.2f}")
     axes.set(xlabel="unknowns")
-    axes.legend(frameon=False, fontsize=8)
+    axes.legend(frameon=False, fontsize=11)
 
 
 def press(axes: plt.Axes, rows: list[dict]) -> None:
@@ -54,8 +53,9 @@ def main(table: Path, picture: Path) -> None:
     """One panel for each section that the file has."""
     sections = json.loads(table.read_text())
     present = [name for name in PANELS if name in sections]
-    figure, axes = plt.subplots(1, len(present), figsize=(6.0 * len(present), 4.4), layout="constrained", squeeze=False)
-    for name, panel in zip(present, axes[0], strict=True):
+    plt.rcParams["font.size"] = 13
+    figure, axes = plt.subplots(len(present), 1, figsize=(9.0, 5.0 * len(present)), layout="constrained", squeeze=False)
+    for name, panel in zip(present, axes[:, 0], strict=True):
         PANELS[name](panel, sections[name]["rows"])
         panel.grid(alpha=0.3)
     figure.savefig(picture, dpi=130)

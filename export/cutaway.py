@@ -20,6 +20,9 @@ from solve.result import Step
 OPEN, FRONT = View(28.0, 18.0), View(0.0, 0.0)
 NAMES = {"medium1": "medium 1", "medium2": "medium 2"}
 
+FAR_APART = 30.0
+"""Largest stresses of two soft parts with a ratio above this would leave one of them without colour."""
+
 
 @dataclass(frozen=True)
 class Scene:
@@ -68,13 +71,25 @@ def draw_parts(scene: Scene, title: str, path: Path) -> None:
 
 
 def draw_von_mises(scene: Scene, title: str, path: Path) -> None:
-    """The soft parts by von Mises stress; the film, a thousand times stiffer, in its own colour."""
-    soft = np.concatenate([p["von_mises_MPa"] for name, p in scene.parts.items() if name != "film"])
-    top = float(np.percentile(soft, 99)) or 1.0
-    bodies = [_by_stress(part, top) if name != "film" else Body(_deformed(part), PART_COLOURS[name])
+    """The soft parts by von Mises stress; the film, a thousand times stiffer, in its own colour.
+
+    On one scale, or each part on its own where the stresses of the parts are far apart.
+    """
+    stresses = {name: part["von_mises_MPa"] for name, part in scene.parts.items() if name != "film"}
+    own = {name: float(np.percentile(stress, 99)) or 1e-9 for name, stress in stresses.items()}
+    apart = max(own.values()) > FAR_APART * min(own.values())
+    together = float(np.percentile(np.concatenate(list(stresses.values())), 99)) or 1.0
+    tops = own if apart else dict.fromkeys(own, together)
+    bodies = [_by_stress(part, tops[name]) if name in tops else Body(_deformed(part), PART_COLOURS[name])
               for name, part in scene.parts.items()]  # fmt: skip
     figure, _ = _draw(scene, bodies, title)
-    colour_bar(figure, 0.0, top, "von Mises stress (MPa)", "max" if soft.max() > top else "neither")
+    if apart:
+        parts = "\n".join(f"{name}: up to {top:.2g} MPa" for name, top in own.items())
+        colour_bar(figure, 0.0, 1.0, "von Mises stress as a share of the part's own scale", "max")
+        figure.text(0.98, 0.78, parts, fontsize=10, color=INK, ha="right", va="bottom")
+    else:
+        beyond = "max" if max(stress.max() for stress in stresses.values()) > together else "neither"
+        colour_bar(figure, 0.0, together, "von Mises stress (MPa)", beyond)
     save(figure, path)
 
 

@@ -10,6 +10,7 @@ from matplotlib.colors import to_rgb
 from PIL import Image
 from pressed_box import box_dot, box_mesh, made_up_press
 
+from export.cutaway import draw_von_mises, open_scene
 from export.film_map import film_map
 from export.headless import ADVICE
 from export.pictures import FILES, write_pictures
@@ -110,3 +111,16 @@ def test_missing_opengl_is_one_sentence_not_a_crash() -> None:
         [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False
     )
     assert run.stderr.strip().splitlines()[-1] == f"geometry.errors.InputError: {ADVICE}"
+
+
+def test_parts_whose_stresses_are_far_apart_have_scales_of_their_own(
+    segment: TetMesh, press: PressResult, dot: DotShape, tmp_path: Path
+) -> None:
+    """With one scale, a soft layer under a stiff one would be drawn without colour."""
+    scene = open_scene(segment, press.steps[3], dot)
+    scene.parts["medium2"]["von_mises_MPa"] = 1e-3 * np.asarray(scene.parts["medium2"]["von_mises_MPa"])
+    draw_von_mises(scene, "one", tmp_path / "apart.png")
+    shown = pixels(tmp_path / "apart.png")
+    height = len(shown)
+    yellow = (shown[..., 0] > 150) & (shown[..., 1] > 150) & (shown[..., 2] < 110)
+    assert yellow[height // 2 :, : 3 * shown.shape[1] // 4].any()  # medium2 reaches the top of its scale, too
