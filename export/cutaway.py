@@ -85,7 +85,7 @@ def draw_von_mises(scene: Scene, title: str, path: Path) -> None:
     figure, _ = _draw(scene, bodies, title)
     if apart:
         parts = "\n".join(f"{name}: up to {top:.2g} MPa" for name, top in own.items())
-        colour_bar(figure, 0.0, 1.0, "von Mises stress as a share of the part's own scale", "max")
+        colour_bar(figure, 0.0, 1.0, "von Mises, share of the part's scale", "max")
         figure.text(0.98, 0.78, parts, fontsize=10, color=INK, ha="right", va="bottom")
     else:
         beyond = "max" if max(stress.max() for stress in stresses.values()) > together else "neither"
