@@ -1,14 +1,14 @@
 """What a run will cost: elements, unknowns, time and memory, from measured runs. Rough, within a factor of two.
 
 Measured on two cores of an EPYC without other work (docs/speed.md): 0.29 s a Newton iteration at 14,800 unknowns,
-2.9 s at 68,400, about seven iterations a load step where the path does not ask for more; 0.9, 1.4, 2.5 and 4.8 GB at
-60,000, 91,000, 155,000 and 279,000 unknowns.
+2.9 s at 68,400, about seven iterations a load step where the path does not ask for more.
 """
 
 from dataclasses import dataclass
 
 from geometry.dot_shape import DotShape
 from softdot.config import Config
+from softdot.memory import needed_GB
 from softdot.mesh_limit import expected_tetrahedra
 
 UNKNOWNS_PER_TETRAHEDRON = {"solid": 4.4, "plane-strain": 1.6}
@@ -16,7 +16,6 @@ ITERATIONS = 7
 ITERATION_S, AT_UNKNOWNS, EXPONENT = 2.9, 68_400, 1.5
 SOLIDS_AND_PICTURES_S, MESH_S_PER_TETRAHEDRON = 15.0, 3e-4
 COMPILE_S = 60.0
-LIBRARIES_GB, GB_PER_UNKNOWN = 0.5, 1.5e-5
 
 
 @dataclass(frozen=True)
@@ -41,7 +40,7 @@ def expected_cost(config: Config, dot_shape: DotShape) -> Cost:
         unknowns=_rounded(unknowns),
         time_s=float(_rounded(time_s)),
         first_run_s=COMPILE_S,
-        memory_GB=round(LIBRARIES_GB + GB_PER_UNKNOWN * unknowns, 1),
+        memory_GB=round(needed_GB(count, config.segment.section == "plane-strain"), 1),
     )
 
 
