@@ -137,11 +137,11 @@ def _plus_minus(summary: Mapping[str, Any], name: str) -> str:
 
 
 def _at_the_rim(film: Mapping[str, Any]) -> list[tuple[str, Any, str, str]]:
-    """The strain at a held side, where there is one."""
+    """The strain where held sides count too, where there are such sides."""
     if not film.get("rim_distance_mm"):
         return []
-    about = "singular: it grows with every finer mesh, so do not compare it with a material constant"
-    return [("Film strain at the held side", _percent(film.get("rim_principal_strain")), "%", about)]
+    about = "the mesh does not resolve the film there, so do not compare it with a material constant"
+    return [("Film strain, held sides included", _percent(film.get("rim_principal_strain")), "%", about)]
 
 
 def step_rows(summary: Mapping[str, Any]) -> tuple[list[str], list[list[str]]]:

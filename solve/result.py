@@ -99,7 +99,7 @@ class FilmPeak:
     """The largest film quantities of a press, each a mean through the thickness; principal values.
 
     strain, stress_Pa, charge_density_C_per_m2 (least and largest) : at least rim_distance_m away from held sides.
-    rim_strain, rim_stress_Pa : anywhere. At a held side they are singular: they grow with every finer mesh.
+    rim_strain, rim_stress_Pa : anywhere, held sides included, where they depend on the mesh.
     """
 
     strain: float

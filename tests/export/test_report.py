@@ -202,10 +202,10 @@ def test_viewer_is_short_and_by_itself() -> None:
     assert "import " not in code
 
 
-def test_the_headline_strain_says_where_it_is_and_the_rim_is_named_singular(tmp_path: Path) -> None:
+def test_the_headline_strain_says_where_it_is_and_the_rim_is_told_apart(tmp_path: Path) -> None:
     film = {"max_principal_strain": 0.002, "rim_distance_mm": 0.14, "rim_principal_strain": 0.017}
     html = page(tmp_path, summary(film=film))
     assert "at least 0.14 mm from held sides" in html
-    assert "Film strain at the held side" in html
+    assert "Film strain, held sides included" in html
     free = page(tmp_path, summary(film={**film, "rim_distance_mm": 0.0}))
-    assert "Film strain at the held side" not in free
+    assert "held sides included" not in free

@@ -6,9 +6,13 @@ import numpy as np
 import pytest
 
 from geometry.parameters import Film, Medium, Segment
+from mesh.parameters import MeshOptions
 from mesh.types import TetMesh
 from solve.film_average import RIM_THICKNESSES, film_columns, film_peak
+from solve.parameters import Press
+from solve.press import press_segment
 from tests.export.pressed_box import box_mesh, made_up_press
+from tests.solve import segments
 
 THICKNESS_MM = 0.028
 
@@ -77,3 +81,18 @@ def test_a_film_whose_sides_are_not_held_has_no_rim(press_with_rim, sides):
     peak = film_peak(steps, tet_mesh, segment(**sides))
     assert peak.rim_distance_m == 0.0
     assert peak.strain == peak.rim_strain == pytest.approx(1.0)
+
+
+@pytest.mark.slow
+def test_the_headline_strain_does_not_depend_on_the_mesh():
+    """Of a clamped slice, on elements of the whole, half and a quarter of the size, crowded at the film."""
+    slice_ = segments.segment(section="plane-strain", boundary="clamped")
+    dot, found = segments.ridge(slice_), []
+    for size in (0.1, 0.05, 0.025):
+        options = MeshOptions(
+            mesher="layered", element_size_mm=3 * size, contact_element_size_mm=3 * size, film_element_size_mm=size
+        )
+        tet_mesh = segments.coarse_mesh(slice_, dot, options)
+        pressed = press_segment(slice_, segments.materials(), dot, Press(load_steps=2), tet_mesh)
+        found.append(pressed.film_peak.strain)
+    assert found == pytest.approx([found[-1]] * 3, rel=0.01)
