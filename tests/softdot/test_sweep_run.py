@@ -278,11 +278,11 @@ def test_a_column_without_a_common_type_is_json(out):
 def test_a_sweep_is_a_csv_table_a_picture_and_a_page_too(presses, tmp_path, out):
     presses.failures = {0.2: "Newton's method found no state"}
     assert sweep(tmp_path, out, depths(0.1, 0.2, 0.3)) == 0
-    lines = (out / "sweep.csv").read_text().splitlines()
+    lines = (out / "sweep.csv").read_text("utf-8").splitlines()
     assert len(lines) == 1 + 3
     assert lines[0].startswith("point,press.indentation_mm,status,reason")
     assert (out / "sweep.png").read_bytes()[:4] == b"\x89PNG"
-    page = (out / "report.html").read_text()
+    page = (out / "report.html").read_text("utf-8")
     assert "2 solved, 1 not-converged" in page
     assert "found no state" in page
     assert "http" not in page
