@@ -14,6 +14,8 @@ from scipy.special import erf
 from mesh.types import Floats
 from solve.materials.response import Memory, Response
 
+ROUNDING = 1e-14  # energies below this part of the stiffness are rounding: strains below 1e-7
+
 
 @dataclass(frozen=True)
 class Softening:
@@ -36,16 +38,16 @@ class Softening:
         """Softened response and the new largest energy."""
         assert elastic.energy is not None
         largest = np.maximum(memory[0], elastic.energy)
-        factor, slope = self._factor(elastic.energy, largest)
+        factor, slope = self._factor(elastic.energy, largest, ROUNDING * elastic.tangent[:, 0, 0])
         stress = factor[:, None] * elastic.stress
         rank_one = elastic.stress[:, :, None] * elastic.stress[:, None, :]
         tangent = factor[:, None, None] * elastic.tangent + slope[:, None, None] * rank_one
         return Response(stress, tangent, elastic.energy), (largest,)
 
-    def _factor(self, energy: Floats, largest: Floats) -> tuple[Floats, Floats]:
-        """eta and d eta/dW, (n,) each."""
+    def _factor(self, energy: Floats, largest: Floats, rounding: Floats) -> tuple[Floats, Floats]:
+        """eta and d eta/dW, (n,) each. rounding : the least energy that differs from that of the undeformed point."""
         below = energy < largest
-        width = np.where(below, self.energy + self.beta * largest, 1.0)
+        width = np.maximum(self.energy + self.beta * largest, rounding)
         z = np.where(below, (largest - energy) / width, 0.0)
         slope = np.where(below, 2.0 / np.sqrt(np.pi) * self.loss * np.exp(-(z**2)) / width, 0.0)
         return 1.0 - self.loss * erf(z), slope

@@ -60,6 +60,14 @@ def test_no_loss_is_elastic():
     assert np.array_equal(cycle(Softening(0.0), strains)[0], STIFFNESS * strains)
 
 
+@pytest.mark.parametrize("energy", [-5e-17, 0.0, 2e-16])
+@pytest.mark.parametrize("largest", [0.0, 1e-16])
+def test_rounding_of_the_energy_at_rest_softens_nothing(energy, largest):
+    elastic = Response(np.zeros((1, 6)), STIFFNESS * np.eye(6)[None], np.array([energy]))
+    softened, _ = Softening(0.4, 0.0, 0.2).update(elastic, (np.array([largest]),), 0.1)
+    np.testing.assert_allclose(softened.tangent, elastic.tangent, rtol=0.01)
+
+
 def test_the_tangent_below_the_largest_energy_is_consistent():
     law, stiffness = Softening(0.3, 0.02, 0.3), np.diag(np.arange(1.0, 7.0))
 
