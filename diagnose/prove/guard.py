@@ -1,6 +1,6 @@
 """Run softdot so that it can open nothing but its program, its cache and one room: python -m diagnose.prove.guard.
 
-    python -m diagnose.prove.guard ROOM CACHE ARGUMENT ...
+    python -m diagnose.prove.guard PARENT ROOM CACHE ARGUMENT ...
 
 Everything that Python opens or lists is checked by an audit hook (PEP 578) before it happens. Compiled libraries that
 open files by themselves are not seen; what they need lies beside them.
@@ -11,6 +11,8 @@ import sysconfig
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
+
+from geometry.end_with_parent import end_with_parent
 
 ROOMS = ("geometry", "mesh", "solve", "export", "diagnose", "softdot")
 SYSTEM = ("/dev", "/proc", "/sys", "/etc", "/usr", "/lib", "/lib64", "/opt")
@@ -46,8 +48,9 @@ def watch(room: Path, cache: Path) -> None:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Watch, then run the command line."""
-    room, cache, *command = arguments
+    """Watch, then run the command line, which ends with the process numbered PARENT."""
+    parent, room, cache, *command = arguments
+    end_with_parent(int(parent))
     watch(Path(room), Path(cache))
     from softdot.cli import main as softdot
 

@@ -36,12 +36,12 @@ def diagnosed(files: Mapping[str, str], cache: Path, limit_s: float, options: tu
         (room / "tmp").mkdir()
         for file, text in files.items():
             (recording / file).write_text(text, "utf-8")
-        command = [sys.executable, "-m", "diagnose.prove.guard", str(room), str(cache), "diagnose", "recording"]
+        guard = [sys.executable, "-m", "diagnose.prove.guard", str(os.getpid()), str(room), str(cache)]
         begun = time.perf_counter()
         try:
             ended = subprocess.run(
-                [*command, "-o", "verdict", "--json", *options], cwd=room, env=environment(room, cache),
-                capture_output=True, text=True, timeout=limit_s, check=False,
+                [*guard, "diagnose", "recording", "-o", "verdict", "--json", *options], cwd=room,
+                env=environment(room, cache), capture_output=True, text=True, timeout=limit_s, check=False,
             )
         except subprocess.TimeoutExpired:
             return Heard(None, f"no verdict within {limit_s:g} s", time.perf_counter() - begun)

@@ -1,8 +1,8 @@
 """Write a recording: rig.toml and its CSV files, whole or not at all."""
 
-import shutil
 from collections.abc import Mapping
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 
@@ -20,18 +20,18 @@ def write_recording(out: Path | str, rig: str, files: Mapping[str, Mapping[str, 
     out = Path(out)
     if out.exists() and (not out.is_dir() or any(out.iterdir())):
         raise InputError(f"output '{out}': exists already; name a new or empty folder")
-    staging = out.with_name(f".{out.name}.part")
     try:
-        staging.mkdir(parents=True)
-        (staging / RIG_FILE).write_text(rig, "utf-8")
-        for name, columns in files.items():
-            _write_columns(staging / name, columns)
-        load_rig(staging)
-        staging.replace(out)
+        out.parent.mkdir(parents=True, exist_ok=True)
+        with TemporaryDirectory(prefix=f".{out.name}.", dir=out.parent) as beside:  # of this process alone
+            staging = Path(beside) / out.name
+            staging.mkdir()
+            (staging / RIG_FILE).write_text(rig, "utf-8")
+            for name, columns in files.items():
+                _write_columns(staging / name, columns)
+            load_rig(staging)
+            staging.replace(out)
     except OSError as error:
         raise InputError(f"output '{out}': cannot be written ({error.strerror})") from None
-    finally:
-        shutil.rmtree(staging, ignore_errors=True)
 
 
 def _write_columns(file: Path, columns: Mapping[str, Floats]) -> None:

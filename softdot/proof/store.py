@@ -1,6 +1,8 @@
 """The folder of a proof: commitments before, records after, and at the end the table."""
 
+import hashlib
 import json
+import logging
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -39,25 +41,45 @@ def commit(place: Path, name: str, digest: str) -> None:
 
 
 def keep(place: Path, name: str, record: dict[str, Any]) -> None:
-    """Write a record, whole or not at all; its truth to the last digit, since the digest is of that."""
-    text = json.dumps({**plain(record), "truth": record["truth"]}, indent=2, allow_nan=False)
+    """Write a record with its checksum, whole or not at all; its truth to the last digit, the digest is of that."""
+    content = {**plain(record), "truth": record["truth"]}
+    text = json.dumps({**content, "checksum": _checksum(content)}, indent=2, allow_nan=False)
     with whole_file(place / CASES / f"{name}.json") as beside:
         beside.write_text(text, "utf-8")
 
 
 def kept(place: Path, case: Case, program: str) -> dict[str, Any] | None:
     """The record of an earlier proof of the same case by the same program, whose commitment it fulfils; else None."""
+    record = _intact(place / CASES / f"{case.name}.json")
+    if record is None:
+        return None
     with suppress(OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
-        record = json.loads((place / CASES / f"{case.name}.json").read_text("utf-8"))
         committed = json.loads((place / COMMITMENTS / f"{case.name}.json").read_text("utf-8"))["sha256"]
         same = Case(**{**record["case"], "effects": tuple(record["case"]["effects"])}) == case
         ended = record["program"] == program and record["status"] == "scored"
         if same and ended and verified(record["truth"], record["salt"], committed):
-            return dict(record)
+            return record
     return None
 
 
 def records(place: Path) -> Iterator[dict[str, Any]]:
-    """All that are there, in order."""
+    """All that are there, in order; a damaged one of an earlier proof is left out with a warning."""
     for path in sorted((place / CASES).glob("case-*.json")):
-        yield json.loads(path.read_text("utf-8"))
+        record = _intact(path)
+        if record is not None:
+            yield record
+
+
+def _intact(path: Path) -> dict[str, Any] | None:
+    """The content of a record; None when there is none, or, with a warning, when it is not what was written."""
+    with suppress(FileNotFoundError):
+        with suppress(OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
+            content = dict(json.loads(path.read_text("utf-8")))
+            if content.pop("checksum") == _checksum(content):
+                return content
+        logging.getLogger("softdot").warning("'%s' is damaged, and is not used", path)
+    return None
+
+
+def _checksum(content: dict[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()

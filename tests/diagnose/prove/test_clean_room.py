@@ -150,6 +150,27 @@ def test_a_record_whose_truth_was_changed_is_not_kept(tmp_path):
     assert store.kept(place, case, "p") is None
 
 
+def test_a_record_with_a_changed_digit_is_told_of_and_not_used(tmp_path, caplog):
+    from dataclasses import asdict
+
+    from diagnose.prove.world.cases import Case
+    from softdot.proof import store
+
+    place, case = store.check(tmp_path / "out"), Case(1, 0, "none", "ridge-free")
+    store.begin(place)
+    sealed = seal({"kind": "none"})
+    store.commit(place, case.name, sealed.digest)
+    record = {"case": asdict(case), "program": "p", "status": "scored", "truth": sealed.truth, "salt": sealed.salt,
+              "held_out": 1.25}  # fmt: skip
+    store.keep(place, case.name, record)
+    assert store.kept(place, case, "p") == json.loads(json.dumps(record)) == next(store.records(place))
+    path = place / "cases" / "case-0001.json"
+    path.write_text(path.read_text().replace("1.25", "7.25"))
+    assert store.kept(place, case, "p") is None
+    assert list(store.records(place)) == []
+    assert "damaged" in caplog.text
+
+
 def test_the_generator_shares_no_code_with_what_it_tests():
     text = (
         "import sys, diagnose.prove.world.cases, diagnose.prove.folder;"
