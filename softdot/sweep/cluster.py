@@ -8,6 +8,7 @@ from contextlib import ExitStack, contextmanager
 from multiprocessing import resource_tracker
 from typing import Any
 
+from geometry.held_folder import scratch_folder
 from geometry.one_thread import ONE_THREAD
 from softdot.outcome import outcome, remembered
 from softdot.sweep.point import warm_up_config
@@ -46,10 +47,12 @@ def local_cluster(workers: int | None = None) -> Iterator[Any]:
     with ExitStack() as stack:
         stack.enter_context(dask.config.set(SETTINGS))
         stack.enter_context(_one_thread_each())
+        folder = stack.enter_context(scratch_folder())  # else what a killed sweep leaves there stays for ever
         with _ctrl_c_for_us_alone():
             cluster = LocalCluster(  # type: ignore[no-untyped-call]
                 n_workers=workers or usable_cores(), threads_per_worker=1, processes=True,
                 silence_logs=SILENT, scheduler_kwargs=NO_DASHBOARD,
+                local_directory=str(folder),
             )
             stack.enter_context(cluster)
             stack.callback(cluster.sync, _end_workers, cluster)
