@@ -47,7 +47,7 @@ def write_results(tet_mesh: TetMesh, result: PressResult, dot_shape: DotShape, f
             (scratch / f"{name}.pvd").write_text(_collection(files, step_times(result)), encoding="utf-8")
         blocks = [f"parts_{index:04d}.vtm" for index in range(len(result.steps))]
         for file, step in zip(blocks, result.steps, strict=True):
-            _parts(tet_mesh, step).save(scratch / file)
+            _write_blocks(_parts(tet_mesh, step), scratch / file)
         (scratch / "parts.pvd").write_text(_collection(blocks, step_times(result)), encoding="utf-8")
         (scratch / "show_in_paraview.py").write_text(paraview_script(tet_mesh, result), encoding="utf-8")
     return [folder / f"{name}.pvd" for name in [*parts, "parts"]]
@@ -79,15 +79,13 @@ def _segment(tet_mesh: TetMesh, step: Step) -> Any:
     return grid
 
 
-def _parts(tet_mesh: TetMesh, step: Step) -> Any:
-    """Each part as a block of its name, with nodal fields that jump between parts."""
-    import pyvista
-
+def _parts(tet_mesh: TetMesh, step: Step) -> dict[str, Any]:
+    """Name of each part and its grid, with nodal fields that jump between parts."""
     fields, split = step.fields, split_nodes(tet_mesh)
     stress = spread(split, fields.cauchy_stress_Pa) * MPA_PER_PA
     von_mises = spread(split, fields.von_mises_Pa) * MPA_PER_PA
     strain = spread(split, fields.green_lagrange_strain)
-    blocks = pyvista.MultiBlock()
+    blocks = {}
     for number, name in enumerate(tet_mesh.region_names):
         nodes, tets = _compact(split.tets[tet_mesh.region == number])
         grid = _grid(tet_mesh.points_mm[split.node[nodes]], tets, QUADRATIC_TETRA)
@@ -95,7 +93,7 @@ def _parts(tet_mesh: TetMesh, step: Step) -> Any:
         _add(grid.point_data, "nodal_von_mises_MPa", von_mises[nodes])
         _add(grid.point_data, "nodal_cauchy_stress_MPa", stress[nodes], GLOBAL_AXES)
         _add(grid.point_data, "nodal_green_lagrange_strain", strain[nodes], GLOBAL_AXES)
-        blocks.append(grid, name)
+        blocks[name] = grid
     return blocks
 
 
@@ -161,16 +159,31 @@ def _add(arrays: Any, name: str, values: Any, components: tuple[str, ...] = ()) 
 
 
 def _write_xml(data: Any, path: Path) -> None:
-    """Write VTK XML, binary and zlib-compressed."""
+    """Write VTK XML, binary and zlib-compressed. VTK would crash where a disk is full, so Python writes the file."""
     from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter
 
     writer = vtkXMLPolyDataWriter() if path.suffix == ".vtp" else vtkXMLUnstructuredGridWriter()
-    writer.SetFileName(str(path))
     writer.SetInputData(data)
     writer.SetDataModeToBinary()
     writer.SetCompressorTypeToZLib()
+    writer.WriteToOutputStringOn()
     if not writer.Write():
         raise OSError(f"could not write {path}")
+    path.write_text(writer.GetOutputString(), encoding="utf-8")
+
+
+def _write_blocks(blocks: dict[str, Any], path: Path) -> None:
+    """Write named grids as a VTK multi-block file, each in a file of its own in the folder of its name."""
+    folder = path.with_suffix("")
+    folder.mkdir()
+    rows = []
+    for index, (name, grid) in enumerate(blocks.items()):
+        file = f"{folder.name}_{index}.vtu"
+        _write_xml(grid, folder / file)
+        rows.append(f'    <DataSet index="{index}" name={quoteattr(name)} file={quoteattr(f"{folder.name}/{file}")}/>')
+    head = '<?xml version="1.0"?>\n<VTKFile type="vtkMultiBlockDataSet" version="1.0" byte_order="LittleEndian">\n'
+    tail = ["  </vtkMultiBlockDataSet>", "</VTKFile>", ""]
+    path.write_text("\n".join([head + "  <vtkMultiBlockDataSet>", *rows, *tail]), encoding="utf-8")
 
 
 def _collection(files: list[str], times: list[float]) -> str:

@@ -7,6 +7,8 @@ import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
+from threading import Timer
+from types import FrameType
 
 from geometry.errors import InputError
 from softdot.arguments import parser
@@ -27,6 +29,7 @@ COMMANDS = {
     "list": "softdot.list_command",
 }
 STOPPED = "interrupted, nothing was written"
+ASKED_AGAIN_S = 0.05
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -59,14 +62,30 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 class _Interrupt:
-    """What Ctrl-C and SIGTERM do: KeyboardInterrupt, which some compiled libraries turn into another error."""
+    """What Ctrl-C and SIGTERM do: KeyboardInterrupt, which some compiled libraries turn into another error.
+
+    It waits for the end of an import: VTK, whose libraries import each other, crashes where one of them fails to.
+    """
 
     def __init__(self) -> None:
         self.told = False
 
-    def __call__(self, signum: int, frame: object) -> None:
+    def __call__(self, signum: int, frame: FrameType | None) -> None:
         self.told = True
-        raise KeyboardInterrupt
+        if not _importing(frame):
+            raise KeyboardInterrupt
+        later = Timer(ASKED_AGAIN_S, os.kill, (os.getpid(), signum))
+        later.daemon = True
+        later.start()
+
+
+def _importing(frame: FrameType | None) -> bool:
+    """Whether a frame was called by an import."""
+    while frame is not None:
+        if frame.f_code.co_filename.startswith("<frozen importlib"):
+            return True
+        frame = frame.f_back
+    return False
 
 
 def _refuse_unprintable(chosen: argparse.Namespace) -> None:

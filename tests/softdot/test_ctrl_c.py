@@ -42,6 +42,34 @@ def test_an_interrupted_process_exits_130_and_leaves_nothing(tmp_path, number):
     assert [path.name for path in tmp_path.iterdir()] == ["begun"]
 
 
+INTERRUPTED_IMPORT = """
+import os, signal
+from pathlib import Path
+os.kill(os.getpid(), signal.SIGINT)
+for _ in range(1000):
+    pass
+Path("imported").touch()
+def command(chosen):
+    import time
+    time.sleep(60)
+"""
+
+
+def test_an_import_is_finished_before_ctrl_c_is_answered(tmp_path):
+    """VTK crashes where one of its libraries cannot be imported by another."""
+    (tmp_path / "interrupted_import.py").write_text(INTERRUPTED_IMPORT)
+    program = (
+        "import sys; from softdot import cli; cli.COMMANDS['run'] = 'interrupted_import';"
+        "sys.exit(cli.main(['run', '-o', 'out']))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=tmp_path, env=_environment(), capture_output=True, text=True, timeout=20,
+        preexec_fn=heard, check=False,
+    )  # fmt: skip
+    assert (done.returncode, done.stderr) == (130, "softdot: interrupted, nothing was written\n")
+    assert (tmp_path / "imported").exists()
+
+
 def _environment():
     import os
 
