@@ -29,6 +29,7 @@ COMMANDS = {
     "list": "softdot.list_command",
 }
 STOPPED = "interrupted, nothing was written"
+UNINTERRUPTED = "<frozen importlib", "llvmlite"  # in the file names of their code
 ASKED_AGAIN_S = 0.05
 
 
@@ -64,7 +65,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 class _Interrupt:
     """What Ctrl-C and SIGTERM do: KeyboardInterrupt, which some compiled libraries turn into another error.
 
-    It waits for the end of an import: VTK, whose libraries import each other, crashes where one of them fails to.
+    It waits for the end of an import and of a compilation: VTK, whose libraries import each other, crashes where one of
+    them fails to, and LLVM prints and forgets what is raised in its callbacks.
     """
 
     def __init__(self) -> None:
@@ -72,17 +74,17 @@ class _Interrupt:
 
     def __call__(self, signum: int, frame: FrameType | None) -> None:
         self.told = True
-        if not _importing(frame):
+        if not _under_way(frame):
             raise KeyboardInterrupt
         later = Timer(ASKED_AGAIN_S, os.kill, (os.getpid(), signum))
         later.daemon = True
         later.start()
 
 
-def _importing(frame: FrameType | None) -> bool:
-    """Whether a frame was called by an import."""
+def _under_way(frame: FrameType | None) -> bool:
+    """Whether a frame was called by one of those that are not to be interrupted."""
     while frame is not None:
-        if frame.f_code.co_filename.startswith("<frozen importlib"):
+        if any(name in frame.f_code.co_filename for name in UNINTERRUPTED):
             return True
         frame = frame.f_back
     return False
