@@ -1,6 +1,11 @@
-"""The script that shows results in ParaView: paraview --script=show_in_paraview.py, or pvpython show_in_paraview.py."""
+"""What ParaView opens: collections over the load steps, files of named blocks, and a script that shows it all.
 
+In a shell: paraview --script=show_in_paraview.py, or pvpython show_in_paraview.py.
+"""
+
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
@@ -9,6 +14,29 @@ from mesh.types import TetMesh
 from solve.result import PressResult
 
 TEMPLATE = Path(__file__).with_name("paraview_script.txt")
+
+
+def collection(files: Sequence[str], times: Sequence[float]) -> str:
+    """The text of a PVD file: one data file for each time."""
+    rows = [
+        f'    <DataSet timestep="{time:.9g}" group="" part="0" file={quoteattr(file)}/>'
+        for time, file in zip(times, files, strict=True)
+    ]
+    return _index("Collection", "0.1", rows)
+
+
+def multi_block(files: Mapping[str, str]) -> str:
+    """The text of a VTM file: block name -> data file."""
+    rows = [
+        f'    <DataSet index="{index}" name={quoteattr(name)} file={quoteattr(file)}/>'
+        for index, (name, file) in enumerate(files.items())
+    ]
+    return _index("vtkMultiBlockDataSet", "1.0", rows)
+
+
+def _index(kind: str, version: str, rows: Sequence[str]) -> str:
+    head = f'<?xml version="1.0"?>\n<VTKFile type="{kind}" version="{version}" byte_order="LittleEndian">'
+    return "\n".join([head, f"  <{kind}>", *rows, f"  </{kind}>", "</VTKFile>", ""])
 
 
 def paraview_script(tet_mesh: TetMesh, result: PressResult) -> str:

@@ -107,7 +107,7 @@ def headline(summary: Mapping[str, Any]) -> list[dict[str, str]]:
     noise = sensitivity.get("noise_V")
     away = film.get("rim_distance_mm")
     where = "mean through the film" + (f", at least {number(away)} mm from held sides" if away else "")
-    of_force, of_voltage = (_plus_minus(summary, name) for name in ("force_percent", "voltage_percent"))
+    of_force, of_voltage = (plus_minus(summary, name, ", ") for name in ("force_percent", "voltage_percent"))
     at_noise = f"for a noise of {number(1e3 * noise)} mV" if noise else "for the stated noise"
     rows = [
         ("Depth reached", _last(summary, "indentation_mm"), "mm", "travel of the dot"),
@@ -130,10 +130,10 @@ def headline(summary: Mapping[str, Any]) -> list[dict[str, str]]:
     ]
 
 
-def _plus_minus(summary: Mapping[str, Any], name: str) -> str:
-    """', ± 12 %' where an uncertainty is stated, '' for a given force; two digits, as more would claim too much."""
+def plus_minus(summary: Mapping[str, Any], name: str, before: str = " ") -> str:
+    """' ± 12 %' where an uncertainty is stated, '' for a given force; two digits, as more would claim too much."""
     stated = summary.get("uncertainty", {}).get(name)
-    return "" if not stated else f", ±\u00a0{number(float(stated), 2)}\u00a0%"
+    return "" if not stated else f"{before}±\u00a0{number(float(stated), 2)}\u00a0%"
 
 
 def _at_the_rim(film: Mapping[str, Any]) -> list[tuple[str, Any, str, str]]:

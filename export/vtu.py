@@ -3,14 +3,13 @@
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
 from export.dot_surface import placed_dot
 from export.files import whole_folder
 from export.nodal_fields import film_at_nodes, split_nodes, spread
-from export.paraview import paraview_script
+from export.paraview import collection, multi_block, paraview_script
 from export.units import MM_PER_M, MPA_PER_PA, PC_PER_MM2_PER_C_PER_M2
 from geometry.dot_shape import DotShape
 from mesh.types import Floats, Ints, TetMesh
@@ -44,11 +43,11 @@ def write_results(tet_mesh: TetMesh, result: PressResult, dot_shape: DotShape, f
             files = [f"{name}_{index:04d}.{suffix}" for index in range(len(result.steps))]
             for file, step in zip(files, result.steps, strict=True):
                 _write_xml(build(step), scratch / file)
-            (scratch / f"{name}.pvd").write_text(_collection(files, step_times(result)), encoding="utf-8")
+            (scratch / f"{name}.pvd").write_text(collection(files, step_times(result)), encoding="utf-8")
         blocks = [f"parts_{index:04d}.vtm" for index in range(len(result.steps))]
         for file, step in zip(blocks, result.steps, strict=True):
             _write_blocks(_parts(tet_mesh, step), scratch / file)
-        (scratch / "parts.pvd").write_text(_collection(blocks, step_times(result)), encoding="utf-8")
+        (scratch / "parts.pvd").write_text(collection(blocks, step_times(result)), encoding="utf-8")
         (scratch / "show_in_paraview.py").write_text(paraview_script(tet_mesh, result), encoding="utf-8")
     return [folder / f"{name}.pvd" for name in [*parts, "parts"]]
 
@@ -176,21 +175,7 @@ def _write_blocks(blocks: dict[str, Any], path: Path) -> None:
     """Write named grids as a VTK multi-block file, each in a file of its own in the folder of its name."""
     folder = path.with_suffix("")
     folder.mkdir()
-    rows = []
-    for index, (name, grid) in enumerate(blocks.items()):
-        file = f"{folder.name}_{index}.vtu"
-        _write_xml(grid, folder / file)
-        rows.append(f'    <DataSet index="{index}" name={quoteattr(name)} file={quoteattr(f"{folder.name}/{file}")}/>')
-    head = '<?xml version="1.0"?>\n<VTKFile type="vtkMultiBlockDataSet" version="1.0" byte_order="LittleEndian">\n'
-    tail = ["  </vtkMultiBlockDataSet>", "</VTKFile>", ""]
-    path.write_text("\n".join([head + "  <vtkMultiBlockDataSet>", *rows, *tail]), encoding="utf-8")
-
-
-def _collection(files: list[str], times: list[float]) -> str:
-    """A ParaView data collection."""
-    rows = [
-        f'    <DataSet timestep="{time:.9g}" group="" part="0" file={quoteattr(file)}/>'
-        for time, file in zip(times, files, strict=True)
-    ]
-    head = '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n'
-    return "\n".join([head + "  <Collection>", *rows, "  </Collection>", "</VTKFile>", ""])
+    files = {name: f"{folder.name}/{folder.name}_{index}.vtu" for index, name in enumerate(blocks)}
+    for name, grid in blocks.items():
+        _write_xml(grid, path.parent / files[name])
+    path.write_text(multi_block(files), encoding="utf-8")

@@ -26,9 +26,11 @@ def command(chosen: Namespace) -> int:
 
 def short_text(summary: dict[str, Any], output: str) -> str:
     """The deepest step and where to look, in a few lines."""
+    from export.report import plus_minus
+
     lines = []
     if summary.get("indentation_mm"):
-        force, voltage = (_plus_minus(summary, name) for name in ("force_percent", "voltage_percent"))
+        force, voltage = (plus_minus(summary, name) for name in ("force_percent", "voltage_percent"))
         lines.append(
             f"{summary['indentation_mm'][-1]:.3g} mm: force {summary['reaction_force_N'][-1]:.4g} N{force}, "
             f"charge {summary['film_charge_pC'][-1]:.4g} pC, "
@@ -37,9 +39,3 @@ def short_text(summary: dict[str, Any], output: str) -> str:
     if summary.get("from_default"):
         lines.append(told(summary["from_default"], summary["config"]))
     return "\n".join([*lines, f"{output}/report.html"])
-
-
-def _plus_minus(summary: dict[str, Any], name: str) -> str:
-    """' ± 12 %' where an uncertainty is stated; nothing for a force that was given."""
-    stated = summary.get("uncertainty", {}).get(name)
-    return "" if not stated else f" ± {stated:.2g} %"

@@ -1,8 +1,6 @@
 """The folder of a proof: commitments before, records after, and at the end the table."""
 
-import hashlib
 import json
-import logging
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -10,8 +8,7 @@ from typing import Any
 
 from diagnose.prove.seal import verified
 from diagnose.prove.world.cases import Case
-from geometry.whole_file import whole_file
-from softdot.numbers import plain, write_json
+from softdot.numbers import plain, read_checked, write_checked, write_json
 from softdot.output_folder import Product, check_output
 
 FORMAT = "softdot-proof/1"
@@ -41,16 +38,13 @@ def commit(place: Path, name: str, digest: str) -> None:
 
 
 def keep(place: Path, name: str, record: dict[str, Any]) -> None:
-    """Write a record with its checksum, whole or not at all; its truth to the last digit, the digest is of that."""
-    content = {**plain(record), "truth": record["truth"]}
-    text = json.dumps({**content, "checksum": _checksum(content)}, indent=2, allow_nan=False)
-    with whole_file(place / CASES / f"{name}.json") as beside:
-        beside.write_text(text, "utf-8")
+    """Write a record, whole or not at all; its truth to the last digit, since the digest is of that."""
+    write_checked(place / CASES / f"{name}.json", {**plain(record), "truth": record["truth"]})
 
 
 def kept(place: Path, case: Case, program: str) -> dict[str, Any] | None:
     """The record of an earlier proof of the same case by the same program, whose commitment it fulfils; else None."""
-    record = _intact(place / CASES / f"{case.name}.json")
+    record = read_checked(place / CASES / f"{case.name}.json", "the case is made again")
     if record is None:
         return None
     with suppress(OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
@@ -65,21 +59,7 @@ def kept(place: Path, case: Case, program: str) -> dict[str, Any] | None:
 def records(place: Path) -> Iterator[dict[str, Any]]:
     """All that are there, in order; a damaged one of an earlier proof is left out with a warning."""
     for path in sorted((place / CASES).glob("case-*.json")):
-        record = _intact(path)
+        record = read_checked(path, "is left out of the table")
         if record is not None:
             yield record
 
-
-def _intact(path: Path) -> dict[str, Any] | None:
-    """The content of a record; None when there is none, or, with a warning, when it is not what was written."""
-    with suppress(FileNotFoundError):
-        with suppress(OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
-            content = dict(json.loads(path.read_text("utf-8")))
-            if content.pop("checksum") == _checksum(content):
-                return content
-        logging.getLogger("softdot").warning("'%s' is damaged, and is not used", path)
-    return None
-
-
-def _checksum(content: dict[str, Any]) -> str:
-    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()

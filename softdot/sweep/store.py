@@ -5,20 +5,16 @@ space and summary are replaced together when a sweep is complete: before that th
 of the sweep before, with its own summary.
 """
 
-import json
-import logging
 import os
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from geometry.errors import InputError
 from geometry.held_folder import hold
 from geometry.whole_file import whole_file
-from mesh.fingerprint import data_hash
 from softdot.config import Config, config_hash
-from softdot.numbers import plain, write_json
+from softdot.numbers import plain, read_checked, write_checked, write_json
 from softdot.outcome import outcome_key
 from softdot.output_folder import Product, check_output
 from softdot.sweep.point import ACCIDENTS, Record
@@ -30,8 +26,6 @@ SWEEP = Product(
     "softdot-sweep/1", "sweep.json", frozenset({*_WHOLE, *(f".{name}.part" for name in _WHOLE), POINTS})
 )
 POINT_FORMAT = "softdot-point/1"
-CHECKSUM = "sha256"
-"""Key of the SHA-256 of all the others, as canonical JSON."""
 
 
 def check_folder(out: Path) -> Path:
@@ -67,24 +61,14 @@ def sweep_up(place: Path) -> None:
 
 
 def kept(place: Path, config: Config) -> Record | None:
-    """The record of a point from an earlier sweep, None without one, after an accident and of another program.
+    """The record of a point from an earlier sweep; None without one, after an accident and of another program.
 
-    One whose checksum does not fit is told in a warning, deleted and None.
+    A damaged one is None too, with a warning; it is deleted.
     """
-    path = _path(place, config)
-    try:
-        found = json.loads(path.read_bytes())
-        damaged = found.pop(CHECKSUM, None) != data_hash(found)
-    except FileNotFoundError:
+    found = read_checked(_path(place, config), "the point is solved again")
+    if found is None:
         return None
-    except (OSError, ValueError, AttributeError, TypeError, RecursionError):
-        damaged = True
-    if damaged:
-        logging.getLogger("softdot").warning("'%s' is damaged; it is deleted and the point is solved again", path)
-        with suppress(OSError):
-            path.unlink()
-        return None
-    return dict(found) if found["key"] == outcome_key(config) and found["status"] not in ACCIDENTS else None
+    return found if found["key"] == outcome_key(config) and found["status"] not in ACCIDENTS else None
 
 
 def keep(place: Path, config: Config, record: Record) -> Record:
@@ -99,7 +83,7 @@ def keep(place: Path, config: Config, record: Record) -> Record:
         **record,
         "config": config.model_dump(mode="json"),
     })  # fmt: skip
-    write_json(_path(place, config), {**summary, CHECKSUM: data_hash(summary)})
+    write_checked(_path(place, config), summary)
     return summary
 
 

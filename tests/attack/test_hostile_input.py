@@ -132,56 +132,35 @@ def mutated(text: str, rng: random.Random) -> bytes:
     return "\n".join(lines).encode("utf-8", "surrogatepass")
 
 
-def refused_of(attempts) -> int:
-    """How many were refused; some mutations leave a valid input."""
-    return sum(attempts)
+def refused(attempt, file, text, count, seed, *command) -> int:
+    """How many mutations of a file are refused; some leave a valid input."""
+    rng, many = random.Random(seed), 0
+    for _ in range(count):
+        file.write_bytes(mutated(text, rng))
+        many += attempt(*command)
+    return many
 
 
 def test_configurations(attempt, tmp_path):
-    rng, file = random.Random(1), tmp_path / "mine.toml"
-
-    def attempts():
-        for _ in range(80):
-            file.write_bytes(mutated(CONFIG, rng))
-            yield attempt("run", "mine.toml")
-
-    assert refused_of(attempts()) > 30
+    assert refused(attempt, tmp_path / "mine.toml", CONFIG, 80, 1, "run", "mine.toml") > 30
 
 
 def test_waveforms(attempt, tmp_path):
-    rng, file = random.Random(2), tmp_path / "wave.csv"
     (tmp_path / "mine.toml").write_text(WAVE_CONFIG.format("wave.csv"))
-
-    def attempts():
-        for _ in range(40):
-            file.write_bytes(mutated(WAVE, rng))
-            yield attempt("run", "mine.toml")
-
-    assert refused_of(attempts()) > 15
+    assert refused(attempt, tmp_path / "wave.csv", WAVE, 40, 2, "run", "mine.toml") > 15
 
 
-def test_recordings(attempt, tmp_path):
-    rng, folder = random.Random(3), tmp_path / "recording"
+@pytest.mark.parametrize("name", ["rig.toml", "press.csv"])
+def test_recordings(attempt, tmp_path, name):
+    folder, texts = tmp_path / "recording", {"rig.toml": RIG, "press.csv": PRESS}
     folder.mkdir()
-
-    def attempts():
-        for number in range(40):
-            (folder / "rig.toml").write_bytes(mutated(RIG, rng) if number % 2 else RIG.encode())
-            (folder / "press.csv").write_bytes(PRESS.encode() if number % 2 else mutated(PRESS, rng))
-            yield attempt("diagnose", "recording")
-
-    assert refused_of(attempts()) > 10
+    for file, text in texts.items():
+        (folder / file).write_text(text)
+    assert refused(attempt, folder / name, texts[name], 20, 3, "diagnose", "recording") > 5
 
 
 def test_sweeps(attempt, tmp_path):
-    rng, file = random.Random(4), tmp_path / "space.toml"
-
-    def attempts():
-        for _ in range(25):
-            file.write_bytes(mutated(SWEEP, rng))
-            yield attempt("sweep", "space.toml")
-
-    assert refused_of(attempts()) > 8
+    assert refused(attempt, tmp_path / "space.toml", SWEEP, 25, 4, "sweep", "space.toml") > 8
 
 
 COMMANDS = [

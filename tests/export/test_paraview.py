@@ -35,6 +35,14 @@ def display() -> Iterator[str]:
     server.wait()
 
 
+def pvpython(display: str, script: Path, *arguments: Path) -> "subprocess.CompletedProcess[str]":
+    """A script run by ParaView's Python."""
+    return subprocess.run(
+        ["pvpython", "--force-offscreen-rendering", script, *arguments],
+        capture_output=True, text=True, timeout=240, check=False, env={**os.environ, "DISPLAY": display},
+    )  # fmt: skip
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(bool(MISSING), reason=f"not installed: {', '.join(MISSING)}")
 def test_paraview_opens_times_fields_and_draws(
@@ -42,10 +50,7 @@ def test_paraview_opens_times_fields_and_draws(
 ) -> None:
     write_results(segment, press, dot, tmp_path / "results")
     script, picture = Path(__file__).with_name("paraview_check.py"), tmp_path / "paraview.png"
-    run = subprocess.run(
-        ["pvpython", "--force-offscreen-rendering", script, tmp_path / "results", picture],
-        capture_output=True, text=True, timeout=240, check=False, env={**os.environ, "DISPLAY": display},
-    )  # fmt: skip
+    run = pvpython(display, script, tmp_path / "results", picture)
     assert run.returncode == 0, run.stderr
     assert "opened 4" in run.stdout
     assert np.asarray(Image.open(picture).convert("L")).std() > 10
@@ -57,10 +62,7 @@ def test_the_script_beside_the_results_draws_them(
     segment: TetMesh, press: PressResult, dot: DotShape, tmp_path: Path, display: str
 ) -> None:
     write_results(segment, press, dot, tmp_path / "results")
-    run = subprocess.run(
-        ["pvpython", "--force-offscreen-rendering", tmp_path / "results" / "show_in_paraview.py"],
-        capture_output=True, text=True, timeout=240, check=False, env={**os.environ, "DISPLAY": display},
-    )  # fmt: skip
+    run = pvpython(display, tmp_path / "results" / "show_in_paraview.py")
     assert run.returncode == 0, run.stderr
     picture = np.asarray(Image.open(tmp_path / "results" / "paraview.png").convert("RGB")).astype(float)
     assert (np.ptp(picture, axis=2) > 60).mean() > 0.03  # coloured, not blank
