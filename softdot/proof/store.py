@@ -8,7 +8,8 @@ from typing import Any
 
 from diagnose.prove.seal import verified
 from diagnose.prove.world.cases import Case
-from softdot.numbers import plain, read_checked, write_checked, write_json
+from softdot.checked_record import read_checked, write_checked
+from softdot.numbers import plain, write_json
 from softdot.output_folder import Product, check_output
 
 FORMAT = "softdot-proof/1"

@@ -13,8 +13,9 @@ from typing import Any
 from geometry.errors import InputError
 from geometry.held_folder import hold
 from geometry.whole_file import whole_file
+from softdot.checked_record import read_checked, write_checked
 from softdot.config import Config, config_hash
-from softdot.numbers import plain, read_checked, write_checked, write_json
+from softdot.numbers import plain, write_json
 from softdot.outcome import outcome_key
 from softdot.output_folder import Product, check_output
 from softdot.sweep.point import ACCIDENTS, Record
