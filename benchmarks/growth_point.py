@@ -83,8 +83,15 @@ def measure(cells: int) -> dict:
     linear.close()
     seconds = {**phases.medians(), "gmres": again.medians()["gmres"]}
     return {
-        "cells": cells, "unknowns": case.count, "elements": len(case.tets), "entries": tangent.upper.nnz,
-        "seconds": seconds, "once": once.medians(), "peak_GB": peak, **count, **capacity(),
+        "cells": cells,
+        "unknowns": case.count,
+        "elements": len(case.tets),
+        "entries": tangent.upper.nnz,
+        "seconds": seconds,
+        "once": once.medians(),
+        "peak_GB": peak,
+        **count,
+        **capacity(),
     }
 
 

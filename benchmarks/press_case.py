@@ -30,11 +30,19 @@ def save(path: Path, factor: float) -> None:
     held = [name for name in config.segment.held_layers if f"side-{name}" in tet_mesh.facets]
     names = ["base", "contact", *(f"side-{name}" for name in held)]
     np.savez(
-        path, points=tet_mesh.points_mm, tets=tet_mesh.tets[:, :4], region=tet_mesh.region,
-        region_names=tet_mesh.region_names, facet_names=names, held=np.array(held, str), depth=DEPTH_MM,
-        media=media, moduli=[materials[name].youngs_modulus_MPa for name in media],
+        path,
+        points=tet_mesh.points_mm,
+        tets=tet_mesh.tets[:, :4],
+        region=tet_mesh.region,
+        region_names=tet_mesh.region_names,
+        facet_names=names,
+        held=np.array(held, str),
+        depth=DEPTH_MM,
+        media=media,
+        moduli=[materials[name].youngs_modulus_MPa for name in media],
         poisson=[materials[name].poisson_ratio for name in media],
         film_thickness=1e-3 * config.segment.film.thickness_um,
-        radius=resolve_dot(config.dot, config.segment).radius_mm, augmentation=AUGMENTATION_MPA_PER_MM,
+        radius=resolve_dot(config.dot, config.segment).radius_mm,
+        augmentation=AUGMENTATION_MPA_PER_MM,
         **{f"facet:{name}": tet_mesh.facets[name][:, :3] for name in names},
     )

@@ -72,9 +72,12 @@ def measure(path: str, steps: int) -> dict:
         seconds = time.perf_counter() - start
     last = answer["history"][-1]
     return {
-        "unknowns": answer["unknowns"], "load_steps": steps, "seconds": seconds,
+        "unknowns": answer["unknowns"],
+        "load_steps": steps,
+        "seconds": seconds,
         "newton_iterations": len(answer["newton_steps"]),
-        "force_N": last["force_N"], "voltage_V": last["voltage_V"],
+        "force_N": last["force_N"],
+        "voltage_V": last["voltage_V"],
     }
 
 

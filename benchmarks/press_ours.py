@@ -37,8 +37,12 @@ def measure(factor: float) -> dict:
     seconds = time.perf_counter() - start
     last, iterations = result.steps[-1], sum(step.newton_iterations for step in result.steps)
     return {
-        "unknowns": result.unknowns, "load_steps": 1, "seconds": seconds, "newton_iterations": iterations,
-        "force_N": last.reaction_force_N, "voltage_V": float(last.open_circuit_voltage_V[0]),
+        "unknowns": result.unknowns,
+        "load_steps": 1,
+        "seconds": seconds,
+        "newton_iterations": iterations,
+        "force_N": last.reaction_force_N,
+        "voltage_V": float(last.open_circuit_voltage_V[0]),
     }
 
 

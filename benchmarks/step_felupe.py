@@ -63,7 +63,10 @@ def measure(cells: int, law: str, repeats: int) -> dict:
     residual = float(np.linalg.norm(vector.toarray()[free]))
     answer = {"corners": float(np.linalg.norm(dofs[: 3 * len(case.corners)])), "residual": residual}
     return {
-        "unknowns": len(free), "elements": len(case.tets), "seconds": phases.medians(), "once": once.medians(),
+        "unknowns": len(free),
+        "elements": len(case.tets),
+        "seconds": phases.medians(),
+        "once": once.medians(),
         "step": answer,
     }
 

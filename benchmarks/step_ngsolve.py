@@ -83,8 +83,12 @@ def measure(cells: int, settings: str, repeats: int) -> dict:
         "pressure": float(np.linalg.norm(values[corner[:, 3]])),
     }
     return {
-        "unknowns": int(free.sum()), "elements": domain.ne, "seconds": phases.medians(), "once": once.medians(),
-        "linear_residual": float(error), "step": answer,
+        "unknowns": int(free.sum()),
+        "elements": domain.ne,
+        "seconds": phases.medians(),
+        "once": once.medians(),
+        "linear_residual": float(error),
+        "step": answer,
     }
 
 

@@ -75,8 +75,12 @@ def measure(cells: int, law: str, repeats: int) -> dict:
     corner = step[case.displacement_dofs[case.corners][first]]
     answer = {"corners": float(np.linalg.norm(corner)), "pressure": float(np.linalg.norm(step[-len(case.corners) :]))}
     return {
-        "unknowns": len(step), "elements": len(case.tets), "seconds": phases.medians(), "once": once.medians(),
-        "linear_residual": float(error), "step": answer,
+        "unknowns": len(step),
+        "elements": len(case.tets),
+        "seconds": phases.medians(),
+        "once": once.medians(),
+        "linear_residual": float(error),
+        "step": answer,
     }
 
 

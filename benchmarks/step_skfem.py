@@ -88,7 +88,10 @@ def measure(cells: int, repeats: int) -> dict:
     whole[free] = step
     corners = np.linalg.norm(whole[basis.nodal_dofs.ravel()])
     return {
-        "unknowns": len(free), "elements": domain.nelements, "seconds": phases.medians(), "once": once.medians(),
+        "unknowns": len(free),
+        "elements": domain.nelements,
+        "seconds": phases.medians(),
+        "once": once.medians(),
         "step": {"corners": float(corners), "pressure": float(np.linalg.norm(whole[basis.N :]))},
     }
 

@@ -68,8 +68,12 @@ def measure(points: int, workers: int) -> dict:
     if summary["ended"]["solved"] != points:
         raise SystemExit(f"not every point was solved: {summary['ended']}")
     return {
-        "points": points, "workers": workers, "unknowns": sorted(sizes), "seconds": seconds,
-        "start_seconds": summary["timing_s"]["start"], "points_per_minute": summary["points_per_minute"],
+        "points": points,
+        "workers": workers,
+        "unknowns": sorted(sizes),
+        "seconds": seconds,
+        "start_seconds": summary["timing_s"]["start"],
+        "points_per_minute": summary["points_per_minute"],
     }
 
 

@@ -69,6 +69,7 @@ HINTS = {
 }
 """What is allowed where the schema alone says too little or too much."""
 
+
 def configuration_page() -> str:
     """The whole text of docs/configuration.md."""
     schema = config_schema()

@@ -24,9 +24,7 @@ def ruler(axes: Any, view: View, start_mm: Floats, end_mm: Floats, name: str, aw
         foot = view.flat(place[None])[0]
         tip, text = foot + 0.9 * mm * unit, foot + 3.0 * mm * unit
         axes.plot(*np.column_stack([foot, tip]), color=INK, lw=0.8, clip_on=False)
-        axes.text(
-            *text, f"{value:g}".replace("-", "\u2212"), fontsize=11, color=INK, ha="center", va="center"
-        )
+        axes.text(*text, f"{value:g}".replace("-", "\u2212"), fontsize=11, color=INK, ha="center", va="center")
     middle = view.flat((start_mm + end_mm)[None] / 2)[0] + 7.2 * mm * unit
     axes.text(*middle, f"{name} (mm)", fontsize=12, color=INK, ha="center", va="center")
 
@@ -41,9 +39,7 @@ def _round_values(low: float, high: float, most: float) -> list[float]:
     return [float(round(step * k, 9)) + 0.0 for k in np.arange(first, last + 1)]
 
 
-def name_parts(
-    axes: Any, names: Sequence[str], anchors: Floats, colours: Sequence[str], column_mm: float
-) -> None:
+def name_parts(axes: Any, names: Sequence[str], anchors: Floats, colours: Sequence[str], column_mm: float) -> None:
     """Names in a column at column_mm, joined by thin lines to their anchors (n, 2)."""
     order = np.argsort(anchors[:, 1])
     low, high = axes.get_ylim()

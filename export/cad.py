@@ -39,9 +39,7 @@ def write_3mf(parts: Sequence[Part], path: Path, angular_deflection: float = ANG
 
     mesher = Mesher()
     for part in parts:
-        mesher.add_shape(
-            _without_facets(part.solid), RELATIVE_DEFLECTION, angular_deflection, part_number=part.label
-        )
+        mesher.add_shape(_without_facets(part.solid), RELATIVE_DEFLECTION, angular_deflection, part_number=part.label)
     mesher.write(str(path))
 
 

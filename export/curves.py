@@ -33,15 +33,11 @@ def draw_curves(
     force.plot(x, reaction_force_N, "o-", color="#33658a", lw=1.8, ms=4)
     _label(force, below, "reaction force (N)")
     scale, unit = _voltage_unit(open_circuit_voltage_V)
-    lines = voltage.plot(
-        x, scale * open_circuit_voltage_V, "o-", color=RED, lw=1.8, ms=4, label="open circuit"
-    )
+    lines = voltage.plot(x, scale * open_circuit_voltage_V, "o-", color=RED, lw=1.8, ms=4, label="open circuit")
     _label(voltage, below, f"voltage ({unit})")
     if readout_voltage_V is not None:
         lines += _plot_readout(voltage, x, open_circuit_voltage_V, readout_voltage_V)
-    voltage.legend(
-        handles=lines, frameon=False, fontsize=11, loc="lower left", bbox_to_anchor=(0, 1), ncols=2
-    )
+    voltage.legend(handles=lines, frameon=False, fontsize=11, loc="lower left", bbox_to_anchor=(0, 1), ncols=2)
     save(figure, path)
 
 

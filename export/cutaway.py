@@ -149,9 +149,7 @@ def _anchors(scene: Scene) -> tuple[list[Floats], list[str]]:
     return [*anchors, corner.mean(axis=0)], [*names, "rigid dot"]
 
 
-def _by_part(
-    tet_mesh: TetMesh, skins: list[Skin], shape: Callable[[Any], Any] = lambda s: s
-) -> dict[str, Any]:
+def _by_part(tet_mesh: TetMesh, skins: list[Skin], shape: Callable[[Any], Any] = lambda s: s) -> dict[str, Any]:
     """One surface per part, named from the base upwards."""
     result = {}
     for number, name in enumerate(tet_mesh.region_names):

@@ -103,8 +103,7 @@ def _ridge(profile: Floats, center_x: float, front_y: float, back_y: float) -> D
     outline = np.vstack([profile[:0:-1] * [-1, 1], profile])
     count = len(outline)
     front, back = (
-        np.column_stack([center_x + outline[:, 0], np.full(count, y), outline[:, 1]])
-        for y in (front_y, back_y)
+        np.column_stack([center_x + outline[:, 0], np.full(count, y), outline[:, 1]]) for y in (front_y, back_y)
     )
     a = np.arange(count)
     b = np.roll(a, -1)

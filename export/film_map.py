@@ -98,8 +98,15 @@ def draw_film(tet_mesh: TetMesh, step: Step, peak: FilmPeak, title: str, path: P
 def _map(figure: Any, axes: Any, shown: FilmMap, values: Floats, scale: Scale) -> None:
     """Colours on the deformed film, with lines of equal deflection."""
     drawn = axes.tripcolor(
-        shown.x_mm, shown.y_mm, shown.triangles, values, shading="gouraud", cmap=scale.colours, vmin=scale.low,
-        vmax=scale.top, rasterized=True,
+        shown.x_mm,
+        shown.y_mm,
+        shown.triangles,
+        values,
+        shading="gouraud",
+        cmap=scale.colours,
+        vmin=scale.low,
+        vmax=scale.top,
+        rasterized=True,
     )
     bar = figure.colorbar(drawn, ax=axes, location="bottom", shrink=0.9, pad=0.03, extend=scale.beyond(values))
     bar.set_label(scale.label, fontsize=12, color=INK)

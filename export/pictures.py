@@ -33,9 +33,7 @@ def write_pictures(
     pressed = f"Pressed {depth:.3g} mm deep with {force:.3g} N"
     with whole_folder(folder) as scratch:
         files = {name: scratch / f"{name}.png" for name in FILES}
-        draw_parts(
-            open_scene(tet_mesh, first, dot_shape), "At rest, the dot just touching", files["undeformed"]
-        )
+        draw_parts(open_scene(tet_mesh, first, dot_shape), "At rest, the dot just touching", files["undeformed"])
         scene = open_scene(tet_mesh, last, dot_shape)
         draw_parts(scene, pressed, files["deformed"])
         draw_von_mises(scene, pressed, files["von_mises"])

@@ -49,10 +49,7 @@ class NodalSteps:
 def nodal_steps(tet_mesh: TetMesh, steps: Sequence[Step]) -> NodalSteps:
     """Gather what the skins show of the given steps, at nodes that belong to one part each."""
     split = split_nodes(tet_mesh)
-    strain = [
-        film_values(tet_mesh, f.film_tets, largest_principal(f.film_strain))
-        for f in (s.fields for s in steps)
-    ]
+    strain = [film_values(tet_mesh, f.film_tets, largest_principal(f.film_strain)) for f in (s.fields for s in steps)]
     return NodalSteps(
         split,
         tet_mesh.points_mm[split.node],
@@ -150,6 +147,4 @@ def _facing_front(skin: Skin) -> Skin:
     a, b, c = (skin.points_mm[skin.triangles[:, i]] for i in range(3))
     turned = np.cross(b - a, c - a)[:, 1] > 0
     triangles = np.where(turned[:, None], skin.triangles[:, ::-1], skin.triangles)
-    return Skin(
-        skin.points_mm, triangles, skin.region, skin.displacement_mm, skin.von_mises_MPa, skin.film_strain
-    )
+    return Skin(skin.points_mm, triangles, skin.region, skin.displacement_mm, skin.von_mises_MPa, skin.film_strain)

@@ -51,9 +51,7 @@ def frame(flat_mm: Floats, pad: float = 0.02) -> tuple[float, float, float, floa
     return low[0] - extra, high[0] + extra, low[1] - extra, high[1] + extra
 
 
-def render(
-    bodies: list[Body], view: View, box: tuple[float, float, float, float], pixels_per_mm: float
-) -> Any:
+def render(bodies: list[Body], view: View, box: tuple[float, float, float, float], pixels_per_mm: float) -> Any:
     """Image (h, w, 3) uint8 of what lies inside box (mm on the picture). InputError without OpenGL."""
     from export.headless import ensure_rendering
 

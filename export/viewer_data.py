@@ -117,9 +117,7 @@ def _dot(tet_mesh: TetMesh, steps: Sequence[Step], dot_shape: DotShape, plane: f
 
 def _corners(surfaces: Sequence[Any]) -> NDArray[np.float64]:
     """Corners (3 t, 3) of all triangles."""
-    return np.concatenate(
-        [s.triangulate().points[s.triangulate().regular_faces].reshape(-1, 3) for s in surfaces]
-    )
+    return np.concatenate([s.triangulate().points[s.triangulate().regular_faces].reshape(-1, 3) for s in surfaces])
 
 
 def _share(values: NDArray[np.float64], top: float) -> NDArray[np.float64]:

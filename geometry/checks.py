@@ -30,8 +30,7 @@ def check_press_depth(segment: Segment, indentation_mm: float) -> None:
     stack = layers(segment)[-1].top_mm
     if indentation_mm >= stack:
         raise InputError(
-            f"press.indentation_mm = {indentation_mm:g}: must be less than the height of the stack, "
-            f"{stack:g} mm"
+            f"press.indentation_mm = {indentation_mm:g}: must be less than the height of the stack, {stack:g} mm"
         )
 
 
@@ -108,9 +107,7 @@ def _check_held_layers(segment: Segment) -> list[str]:
     if segment.boundary == "free":
         return []
     if not held:
-        return [
-            f"segment.held_layers is empty: boundary = '{segment.boundary}' then holds nothing, as if free"
-        ]
+        return [f"segment.held_layers is empty: boundary = '{segment.boundary}' then holds nothing, as if free"]
     if segment.effector is not None and "effector" in held and not covers_footprint(segment):
         return [
             "segment.held_layers: the effector is narrower than the segment, so that sides of it do not "
@@ -134,7 +131,5 @@ def _check_bonds(segment: Segment) -> None:
                 f"order {', '.join(names)}"
             )
         if pair in seen:
-            raise InputError(
-                f"{field}: the bond of '{bond.between[0]}' and '{bond.between[1]}' is given twice"
-            )
+            raise InputError(f"{field}: the bond of '{bond.between[0]}' and '{bond.between[1]}' is given twice")
         seen.append(pair)

@@ -18,9 +18,7 @@ def cell_centers(dot: Dot) -> Floats:
     raised = raised_dots(dot.cell)
     if dot.cell_dot not in raised:
         known = ", ".join(map(str, raised)) or "none"
-        raise InputError(
-            f"dot.cell_dot = {dot.cell_dot}: not raised in dot.cell = '{dot.cell}', which has {known}"
-        )
+        raise InputError(f"dot.cell_dot = {dot.cell_dot}: not raised in dot.cell = '{dot.cell}', which has {known}")
     pitch = _pitch_mm(dot)
     pressed = dot_offset_mm(dot.cell_dot, pitch)
     others = [dot_offset_mm(number, pitch) - pressed for number in raised if number != dot.cell_dot]

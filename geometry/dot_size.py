@@ -41,8 +41,7 @@ def dot_size(dot: Dot) -> DotSize:
         return _from_radius(dot.radius_mm, dot)
     if dot.base_diameter_mm is None:
         raise InputError(
-            f"dot.height_mm = {dot.height_mm:g}: a height alone is not a dot; "
-            "add dot.base_diameter_mm or dot.radius_mm"
+            f"dot.height_mm = {dot.height_mm:g}: a height alone is not a dot; add dot.base_diameter_mm or dot.radius_mm"
         )
     if dot.height_mm is None:
         raise InputError(

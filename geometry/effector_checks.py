@@ -48,8 +48,7 @@ def _check_sizes(segment: Segment, effector: Effector) -> None:
             raise InputError(f"segment.effector.{name} is missing: shape = '{effector.shape}' needs it")
         if value is not None and name not in used:
             raise InputError(
-                f"segment.effector.{name} = {value:g}: shape = '{effector.shape}' has no such size, "
-                "leave it out"
+                f"segment.effector.{name} = {value:g}: shape = '{effector.shape}' has no such size, leave it out"
             )
     if sliced and effector.width_mm not in (None, segment.width_mm):
         raise InputError(

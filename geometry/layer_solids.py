@@ -59,7 +59,5 @@ def _effector(segment: Segment, bottom: float) -> Any:
         return upright_cylinder(body.radius, bottom, bottom + body.top - body.bottom)
     assert isinstance(body, Dome)
     reach = 2 * body.radius
-    dome = (Pos(0, 0, body.centre_z) * ball(body.radius)) & upright_box(
-        reach, reach, body.bottom, body.top + reach
-    )
+    dome = (Pos(0, 0, body.centre_z) * ball(body.radius)) & upright_box(reach, reach, body.bottom, body.top + reach)
     return Pos(0, 0, bottom - body.bottom) * dome.solid()

@@ -79,9 +79,7 @@ class Segment(Table):
     section: Literal["solid", "plane-strain"] = Field(
         "solid", description="plane-strain: one thin slice without strain in y"
     )
-    boundary: Literal["free", "clamped", "elastic"] = Field(
-        "clamped", description="what the case does to the sides"
-    )
+    boundary: Literal["free", "clamped", "elastic"] = Field("clamped", description="what the case does to the sides")
     held_layers: tuple[LayerName, ...] = Field(
         ("effector", "medium1", "film"), description="layers whose sides the case holds (clamped, elastic)"
     )
@@ -102,13 +100,9 @@ class Dot(Table):
         "cap", description="cap: spherical, on a plate; ridge: a cylinder along y; plate: flat"
     )
     standard: str | None = Field(None, description="Braille standard whose nominal sizes are used")
-    base_diameter_mm: Positive | None = Field(
-        None, description="with height_mm: explicit size of a cap or ridge"
-    )
+    base_diameter_mm: Positive | None = Field(None, description="with height_mm: explicit size of a cap or ridge")
     height_mm: Positive | None = Field(None, description="height of the dot over its plate")
-    radius_mm: Positive | None = Field(
-        None, description="radius of the sphere or cylinder instead of base_diameter_mm"
-    )
+    radius_mm: Positive | None = Field(None, description="radius of the sphere or cylinder instead of base_diameter_mm")
     offset_mm: tuple[Finite, Finite] = Field((0.0, 0.0), description="position of the pressed dot, x and y")
     tilt_deg: tuple[Finite, Finite] = Field((0.0, 0.0), description="rotation of the dot about x and y")
     gap_mm: NonNegative = Field(0.0, description="gap between the dot at rest and its first touch")

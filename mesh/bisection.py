@@ -20,9 +20,7 @@ class Triangulation:
     part: Ints
 
 
-def refine(
-    start: Triangulation, size: Callable[[Floats], Floats], circle_radius: float | None
-) -> Triangulation:
+def refine(start: Triangulation, size: Callable[[Floats], Floats], circle_radius: float | None) -> Triangulation:
     """Bisect until the longest edge of each triangle is at most the size at its centroid.
 
     circle_radius : the edges between different parts are arcs of this circle about the origin.

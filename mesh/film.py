@@ -17,9 +17,7 @@ def with_film(bare: LinearMesh, thickness_mm: float, film_layers: int) -> Linear
     lower = bare.region == 0
     owner, face = np.nonzero(lower[:, None] & (neighbour >= 0) & (bare.region[neighbour] == 1))
     facets = bare.tets[owner[:, None], TET_FACES[face, :3]]
-    points, levels, moved = _levels(
-        bare.points_mm, bare.tets, lower, np.unique(facets), thickness_mm, film_layers
-    )
+    points, levels, moved = _levels(bare.points_mm, bare.tets, lower, np.unique(facets), thickness_mm, film_layers)
     prisms = [split_prisms(levels[i][facets], levels[i + 1][facets]) for i in range(film_layers)]
     tets = np.concatenate([np.where(lower[:, None], bare.tets, moved[bare.tets]), *prisms])
     region = _regions(bare.region, 3 * len(facets) * film_layers)
@@ -30,9 +28,7 @@ def section_with_film(bare: Section, thickness_mm: float, film_layers: int) -> S
     """The same in the x-z section: interface edges become rectangles cut in two, mirrored about x = 0."""
     lower = bare.region == 0
     edges = _interface_edges(bare)
-    points, levels, moved = _levels(
-        bare.points_mm, bare.triangles, lower, np.unique(edges), thickness_mm, film_layers
-    )
+    points, levels, moved = _levels(bare.points_mm, bare.triangles, lower, np.unique(edges), thickness_mm, film_layers)
     cells = []
     for i in range(film_layers):
         (a, b), (d, c) = levels[i][edges].T, levels[i + 1][edges].T

@@ -49,9 +49,7 @@ def scaled_jacobians(nodes: Floats) -> Floats:
     tangent = np.moveaxis(jacobians(nodes), 3, 2)
     corners = np.concatenate([np.zeros_like(tangent[:, :, :1]), tangent], axis=2)
     length = np.linalg.norm(corners[:, :, :, None] - corners[:, :, None, :], axis=4)
-    products = np.stack(
-        [np.prod([length[:, :, i, j] for j in range(4) if j != i], axis=0) for i in range(4)], axis=2
-    )
+    products = np.stack([np.prod([length[:, :, i, j] for j in range(4) if j != i], axis=0) for i in range(4)], axis=2)
     return np.asarray((np.sqrt(2) * np.linalg.det(tangent) / products.max(axis=2)).min(axis=1))
 
 

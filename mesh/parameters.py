@@ -15,12 +15,8 @@ class MeshOptions(Table):
     film_element_size_mm: Positive | None = Field(
         None, description="edge length on the film; none: geometric mean of the two"
     )
-    mesher: Literal["pytetwild", "layered"] = Field(
-        "pytetwild", description="layered: extruded, deterministic"
-    )
-    film_layers: Annotated[int, Field(ge=1, le=8)] = Field(
-        1, description="quadratic elements through the film"
-    )
+    mesher: Literal["pytetwild", "layered"] = Field("pytetwild", description="layered: extruded, deterministic")
+    film_layers: Annotated[int, Field(ge=1, le=8)] = Field(1, description="quadratic elements through the film")
     coarsen: bool = Field(
         False, description="pytetwild: merge elements smaller than requested; half as many where sizes are large"
     )

@@ -20,9 +20,7 @@ class Section:
     region_names: tuple[str, ...]
 
 
-def structured(
-    stack: Outline, field: Sizing, heights: Floats, layer_region: Ints, names: tuple[str, ...]
-) -> Section:
+def structured(stack: Outline, field: Sizing, heights: Floats, layer_region: Ints, names: tuple[str, ...]) -> Section:
     """A graded grid of x columns and z layers, every rectangle cut by a diagonal that mirrors about x = 0."""
     x = _columns(stack, field)
     points = np.column_stack([np.tile(x, len(heights)), np.repeat(heights, len(x))])

@@ -85,6 +85,4 @@ def sizing(outline: Outline, dot: DotShape, options: MeshOptions) -> Sizing:
     overlap = sqrt(2 * DEPTH_MM / curvature) if curvature else widest
     reach = min(overlap, widest) + options.contact_element_size_mm
     kind = "plate" if curvature == 0.0 else ("cap" if dot.kind == "plate" else dot.kind)
-    return Sizing(
-        outline, options.element_size_mm, options.contact_element_size_mm, film_mm, centers, reach, kind
-    )
+    return Sizing(outline, options.element_size_mm, options.contact_element_size_mm, film_mm, centers, reach, kind)

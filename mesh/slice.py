@@ -59,7 +59,5 @@ def extruded(section: Section, thickness_mm: float) -> LinearMesh:
 
 def twins(points_mm: Floats) -> Ints:
     """For each node (n, 3) the lowest node of equal x and z, shape (n,)."""
-    _, first, number = np.unique(
-        np.round(points_mm[:, [0, 2]] * 1e7), axis=0, return_index=True, return_inverse=True
-    )
+    _, first, number = np.unique(np.round(points_mm[:, [0, 2]] * 1e7), axis=0, return_index=True, return_inverse=True)
     return np.asarray(first[number.ravel()], dtype=np.int64)

@@ -46,7 +46,9 @@ def parser() -> argparse.ArgumentParser:
     )
     top.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
     top.add_argument(
-        "--print-completion", action=_Completion, choices=("bash", "zsh"),
+        "--print-completion",
+        action=_Completion,
+        choices=("bash", "zsh"),
         help="print the completion of this command line for a shell and exit",
     )
     commands = top.add_subparsers(dest="command", metavar="COMMAND", required=True)
@@ -69,8 +71,7 @@ def _add_run(commands: Any) -> None:
         "run",
         help="build, mesh, press and export one segment",
         description="Build, mesh and press one segment; write CAD, ParaView results, pictures and a report.",
-        epilog="'softdot schema' explains every key of CONFIG.toml; examples/ has files to start from. "
-        + EXIT_STATUS,
+        epilog="'softdot schema' explains every key of CONFIG.toml; examples/ has files to start from. " + EXIT_STATUS,
     )
     _add_config(run)
     _add_output(run)
@@ -122,7 +123,10 @@ def _add_diagnose(commands: Any) -> None:
         "--without", action="append", default=[], metavar="MECHANISM", help="leave a mechanism out of the candidates"
     )
     diagnose.add_argument(
-        "--hold-out", action="append", default=[], metavar="TEXT",
+        "--hold-out",
+        action="append",
+        default=[],
+        metavar="TEXT",
         help="runs with this in their label take no part in naming and only score the result",
     )
     diagnose.add_argument("--seed", type=int, metavar="N", help="seed of everything random, instead of rig.toml's")
@@ -226,15 +230,16 @@ def _add_schema(commands: Any) -> None:
 
 
 def _add_config(command: argparse.ArgumentParser) -> None:
-    command.add_argument(
-        "config", nargs="?", metavar="CONFIG.toml", help="default: the final design of the paper"
-    )
+    command.add_argument("config", nargs="?", metavar="CONFIG.toml", help="default: the final design of the paper")
     _add_set(command)
 
 
 def _add_set(command: argparse.ArgumentParser) -> None:
     command.add_argument(
-        "--set", action="append", default=[], metavar="KEY=VALUE",
+        "--set",
+        action="append",
+        default=[],
+        metavar="KEY=VALUE",
         help="a value instead of that in the file, such as press.indentation_mm=0.2; may be repeated",
     )
 
@@ -243,9 +248,7 @@ def _add_output(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "-o", "--output", required=True, metavar="OUT", help="folder to write; an earlier result is replaced"
     )
-    command.add_argument(
-        "--json", action="store_true", help="print the summary, and nothing else, to standard output"
-    )
+    command.add_argument("--json", action="store_true", help="print the summary, and nothing else, to standard output")
     told = command.add_mutually_exclusive_group()
     told.add_argument("-q", "--quiet", action="store_true", help="print only warnings and errors")
     told.add_argument(

@@ -28,18 +28,14 @@ class Config(Table):
     """All that a command needs to know. Every number carries its unit in its key."""
 
     segment: Segment = Field(description="the sensor segment")
-    materials: dict[str, AnyMaterial] = Field(
-        {}, description="materials beside or instead of the built-in ones"
-    )
+    materials: dict[str, AnyMaterial] = Field({}, description="materials beside or instead of the built-in ones")
     dot: Dot = Field(Dot(), description="the rigid Braille dot")
     press: Press = Field(Press(), description="how the dot is pressed")
     readout: Readout | None = Field(None, description="the amplifier; leave out for open circuit")
     mesh: MeshOptions = Field(MeshOptions(), description="element sizes and mesher")
     mechanisms: tuple[Mechanism, ...] = Field((), description="physics beyond the baseline")
     fabrication: Fabrication = Field(Fabrication(), description="how the parts are made")
-    seed: int = Field(
-        0, ge=0, description="seed of everything random; in a run only the mesher is"
-    )
+    seed: int = Field(0, ge=0, description="seed of everything random; in a run only the mesher is")
 
     _from_default: tuple[str, ...] = PrivateAttr(())
 
@@ -55,9 +51,7 @@ class Config(Table):
     @model_validator(mode="after")
     def _consistent(self) -> Self:
         if self.press.indentation_mm is not None and self.press.force_N is not None:
-            raise ValueError(
-                f"press.force_N = {self.press.force_N:g}: give either indentation_mm or force_N, not both"
-            )
+            raise ValueError(f"press.force_N = {self.press.force_N:g}: give either indentation_mm or force_N, not both")
         if self.readout is not None and self.readout.mode == "charge" and self.readout.feedback_pF is None:
             raise ValueError("readout.feedback_pF is missing: mode = 'charge' needs a feedback capacitance")
         waveform = self.press.waveform
@@ -69,9 +63,7 @@ class Config(Table):
 
     def layer_materials(self) -> dict[str, Material]:
         """Layer name -> material. InputError for an unknown one or one of the wrong kind."""
-        return {
-            layer.name: _fitting(layer.name, layer.material, self.materials) for layer in layers(self.segment)
-        }
+        return {layer.name: _fitting(layer.name, layer.material, self.materials) for layer in layers(self.segment)}
 
 
 def _fitting(layer: str, name: str, own: Mapping[str, Material]) -> Material:

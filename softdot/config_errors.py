@@ -36,9 +36,7 @@ def sentence(error: ValidationError, tables: Mapping[str, Any], model: type[Base
     """One sentence on the most telling problem: a mistyped key first, a missing one last."""
     rank = {"extra_forbidden": 0, "missing": 2}
     problems = sorted(error.errors(include_url=False), key=lambda p: rank.get(p["type"], 1))
-    choices = [
-        p["ctx"]["expected"] for p in problems if p["type"] == "literal_error" and _same_value(p, problems[0])
-    ]
+    choices = [p["ctx"]["expected"] for p in problems if p["type"] == "literal_error" and _same_value(p, problems[0])]
     return _explain(problems[0], tables, model, choices)
 
 
@@ -47,9 +45,7 @@ def _same_value(one: ErrorDetails, other: ErrorDetails) -> bool:
     return one["loc"][:-1] == other["loc"][:-1] and one["input"] == other["input"]
 
 
-def _explain(
-    problem: ErrorDetails, tables: Mapping[str, Any], model: type[BaseModel], choices: Sequence[str]
-) -> str:
+def _explain(problem: ErrorDetails, tables: Mapping[str, Any], model: type[BaseModel], choices: Sequence[str]) -> str:
     kind, context = problem["type"], problem.get("ctx", {})
     path = _existing(problem["loc"], tables, kind)
     key = dotted(path)
@@ -141,9 +137,7 @@ def _tables_at(loc: Sequence[str | int], model: type[BaseModel]) -> list[type[Ba
     for part in loc:
         fields = [table.model_fields[part] for table in here if part in table.model_fields]
         tagged = [
-            table
-            for table in here
-            if "model" in table.model_fields and table.model_fields["model"].default == part
+            table for table in here if "model" in table.model_fields and table.model_fields["model"].default == part
         ]
         if fields:
             here = [found for field in fields for found in _models_in(field.annotation)]

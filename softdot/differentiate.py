@@ -125,7 +125,4 @@ def _varied(config: Config, key: str, change: float) -> Config:
 def model_of(config: Config) -> Model:
     """What the solver is told by a configuration, mechanisms switched on."""
     changed, physics = actual(config)
-    return Model(
-        changed.segment, changed.layer_materials(), changed.dot, changed.press, changed.readout, physics
-    )
-
+    return Model(changed.segment, changed.layer_materials(), changed.dot, changed.press, changed.readout, physics)

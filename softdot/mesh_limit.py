@@ -44,4 +44,3 @@ def expected_tetrahedra(segment: Segment, dot_shape: DotShape, options: MeshOpti
     if sliced:
         return float((high - low)[0] * (high - low)[2] * np.mean(PRISMS / field.at(points) ** 2))
     return float(np.prod(high - low) * np.mean(FILL / field.at(points) ** 3))
-

@@ -62,9 +62,7 @@ def solved(config: Config, on_step: stages.OnStep) -> dict[str, Any]:
     result = stages.press(changed, physics, dot_shape, tet_mesh, on_step)
     readout, channels = stages.readout_voltage(changed, physics, result) or (None, None)
     numbers |= {"mesh": mesh_part(quality, result.unknowns), **press_part(changed, result, readout, channels)}
-    numbers["warnings"] += result_warnings(
-        changed, dot_shape, result.tet_mesh, result, physics.film_yield is not None
-    )
+    numbers["warnings"] += result_warnings(changed, dot_shape, result.tet_mesh, result, physics.film_yield is not None)
     return dict(plain(numbers))
 
 

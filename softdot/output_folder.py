@@ -77,9 +77,7 @@ def check_output(out: Path, product: Product) -> Path:
     foreign = sorted(entries - product.files - {_staging_name(place)})
     if foreign or (entries and not _is_earlier(place, product)):
         found = foreign[0] if foreign else sorted(entries)[0]
-        raise InputError(
-            f"output '{out}': holds '{found}', which softdot did not write; name a new or empty folder"
-        )
+        raise InputError(f"output '{out}': holds '{found}', which softdot did not write; name a new or empty folder")
     return place
 
 

@@ -43,11 +43,7 @@ def design_warnings(config: Config) -> list[str]:
 def _yield(config: Config, result: PressResult) -> list[str]:
     film = config.layer_materials()["film"]
     stress = 1e-6 * result.film_peak.stress_Pa
-    if (
-        not isinstance(film, PiezoelectricFilm)
-        or film.yield_stress_MPa is None
-        or stress <= film.yield_stress_MPa
-    ):
+    if not isinstance(film, PiezoelectricFilm) or film.yield_stress_MPa is None or stress <= film.yield_stress_MPa:
         return []
     return [
         f"the film's largest principal stress of {stress:.3g} MPa exceeds its yield stress of "

@@ -80,9 +80,7 @@ def mesh_quality(config: Config, tet_mesh: TetMesh) -> dict[str, Any]:
     return measure(tet_mesh, config.segment).as_dict()
 
 
-def press(
-    config: Config, physics: Physics, dot_shape: DotShape, tet_mesh: TetMesh, on_step: OnStep
-) -> PressResult:
+def press(config: Config, physics: Physics, dot_shape: DotShape, tet_mesh: TetMesh, on_step: OnStep) -> PressResult:
     """The solved press, as far as it converged."""
     from mesh.cache import folder
     from solve.checkpoint import Checkpoint
@@ -90,7 +88,14 @@ def press(
 
     key = press_key(config, physics, tet_mesh)
     return press_segment(
-        config.segment, config.layer_materials(), dot_shape, config.press, tet_mesh, on_step, physics, config.readout,
+        config.segment,
+        config.layer_materials(),
+        dot_shape,
+        config.press,
+        tet_mesh,
+        on_step,
+        physics,
+        config.readout,
         Checkpoint(folder() / f"press-{key}.npz", key),
     )
 

@@ -75,9 +75,7 @@ def press_part(
         **part,
         "film": film(result),
         "electrodes": electrodes(result, channels_V),
-        "sensitivity": sensitivity(
-            past.indentation_mm, past.reaction_force_N, past.film_charge_pC, voltage, config
-        ),
+        "sensitivity": sensitivity(past.indentation_mm, past.reaction_force_N, past.film_charge_pC, voltage, config),
     }
     return {**found, "solver": _solver_of(found, result)}
 

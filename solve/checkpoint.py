@@ -48,4 +48,3 @@ class Checkpoint:
         """The press has ended."""
         with suppress(OSError):  # a file that stays is found to be of no use by its key
             self.path.unlink(missing_ok=True)
-

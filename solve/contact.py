@@ -166,6 +166,4 @@ def contact_facets(points: Floats, facets: Ints, unknowns: Unknowns, dot: RigidD
         ],
         axis=1,
     )
-    return ContactFacets(
-        facets, points, facet_area(points, facets), dofs, pressure_dofs, index.reshape(-1, 6), dot
-    )
+    return ContactFacets(facets, points, facet_area(points, facets), dofs, pressure_dofs, index.reshape(-1, 6), dot)

@@ -63,9 +63,17 @@ class FilmRegion(Term):
         charge = response.stress @ self.law.coupling + self.law.permittivity * self._field(trial).ravel()
         ke, re = np.empty((len(f), 31, 31)), np.empty((len(f), 31))
         film_solid(
-            self.gradient, self.weight, f, response.stress.reshape(*points, 6),
-            np.ascontiguousarray(response.tangent).reshape(*points, 6, 6), charge.reshape(points), self.law.coupling,
-            self.law.permittivity, -1.0 / self.thickness, ke, re,
+            self.gradient,
+            self.weight,
+            f,
+            response.stress.reshape(*points, 6),
+            np.ascontiguousarray(response.tangent).reshape(*points, 6, 6),
+            charge.reshape(points),
+            self.law.coupling,
+            self.law.permittivity,
+            -1.0 / self.thickness,
+            ke,
+            re,
         )
         yield Block(0, slice(0, len(ke)), ke, re)
 
@@ -157,7 +165,16 @@ def film_region(
         [displacement_dofs[tets].reshape(-1, 30), np.append(voltage_dofs, -1)[electrode][:, None]], axis=1
     )
     return FilmRegion(
-        law, tets, dofs, gradient, volume, electrode, covered, voltage_dofs, thickness, prestrain(law, prestretch),
+        law,
+        tets,
+        dofs,
+        gradient,
+        volume,
+        electrode,
+        covered,
+        voltage_dofs,
+        thickness,
+        prestrain(law, prestretch),
         inelastic,
     )
 

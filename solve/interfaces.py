@@ -11,7 +11,10 @@ from solve.delaminated_patch import delaminated_facets
 from solve.physics import BondLine, Delamination
 
 BONDS = (  # from the base up: the part below an interface keeps its nodes, so that earlier facets stay right
-    "bond-base", "bond-film-medium2", "bond-medium1-film", "bond-effector-medium1",
+    "bond-base",
+    "bond-film-medium2",
+    "bond-medium1-film",
+    "bond-effector-medium1",
 )
 
 

@@ -68,12 +68,8 @@ def refuse_repeated(mechanisms: Sequence["Mechanism"]) -> None:
 class Mechanism(Table):
     """One piece of physics beyond the baseline, switched on at one component."""
 
-    name: str = Field(
-        "viscoelasticity", description="which physics", json_schema_extra={"enum": list(MECHANISMS)}
-    )
-    component: str = Field(
-        "medium2", description="where: a layer, a bond, sides, dot, rig, readout or channel-N"
-    )
+    name: str = Field("viscoelasticity", description="which physics", json_schema_extra={"enum": list(MECHANISMS)})
+    component: str = Field("medium2", description="where: a layer, a bond, sides, dot, rig, readout or channel-N")
     parameters: dict[str, Any] = Field({}, description="its numbers, by name with their unit")
 
     @model_validator(mode="after")

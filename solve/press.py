@@ -53,9 +53,7 @@ def press_segment(
     return setup.recorder.result(failure, linear.name, press, model.follows_time)
 
 
-def _follow(
-    setup: Setup, linear: LinearSolver, on_step: OnStep | None, checkpoint: Checkpoint | None
-) -> str | None:
+def _follow(setup: Setup, linear: LinearSolver, on_step: OnStep | None, checkpoint: Checkpoint | None) -> str | None:
     """March along the schedule; returns why it stopped short, or None."""
     system, recorder, targets = setup.system, setup.recorder, setup.targets(setup.model.follows_time)
     past = [] if checkpoint is None else checkpoint.load(recorder, system.count)

@@ -29,17 +29,13 @@ class Recording:
     progress: Floats
 
 
-def readout_voltage(
-    result: PressResult, press: Press, readout: Readout, physics: Physics | None = None
-) -> Floats:
+def readout_voltage(result: PressResult, press: Press, readout: Readout, physics: Physics | None = None) -> Floats:
     """Voltage (s,) of all electrodes in parallel at the moment each step is first reached."""
     everything = np.ones(len(result.capacitance_F))
     return _at_steps(result, record(result, press, readout, everything, physics))
 
 
-def channel_voltages(
-    result: PressResult, press: Press, readout: Readout, physics: Physics | None = None
-) -> Floats:
+def channel_voltages(result: PressResult, press: Press, readout: Readout, physics: Physics | None = None) -> Floats:
     """Voltage (e, s) of every electrode behind an amplifier of its own, crosstalk between the channels included."""
     physics = physics or Physics()
     alone = [record(result, press, readout, share, physics) for share in np.eye(len(result.capacitance_F))]

@@ -195,4 +195,3 @@ class Recorder:
         touched = trace.contact_area_m2 / max(float(trace.contact_area_m2.max()), 1e-300)
         deposited = 1e-12 * self.physics.contact_charge_pC * touched[:, None] * area / area.sum()
         return np.asarray(pyroelectric + deposited)
-

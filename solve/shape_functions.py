@@ -28,9 +28,7 @@ def quadratic(points: Floats) -> tuple[Floats, Floats]:
     corner = lam * (2.0 * lam - 1.0)
     d_corner = (4.0 * lam - 1.0)[:, :, None] * dlam
     middle = np.stack([4.0 * lam[:, a] * lam[:, b] for a, b in edges], axis=1)
-    d_middle = np.stack(
-        [4.0 * (lam[:, a, None] * dlam[b] + lam[:, b, None] * dlam[a]) for a, b in edges], axis=1
-    )
+    d_middle = np.stack([4.0 * (lam[:, a, None] * dlam[b] + lam[:, b, None] * dlam[a]) for a, b in edges], axis=1)
     return np.concatenate([corner, middle], axis=1), np.concatenate([d_corner, d_middle], axis=1)
 
 

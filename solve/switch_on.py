@@ -169,9 +169,7 @@ def _stiffening(model: Model, component: str, values: Any) -> Model:
 
 def _foam(model: Model, component: str, values: Any) -> Model:
     density = _layer_material(model, component).density_kg_m3
-    new = Hyperfoam(
-        mu_MPa=values.mu_MPa, alpha=values.alpha, poisson_ratio=values.poisson_ratio, density_kg_m3=density
-    )
+    new = Hyperfoam(mu_MPa=values.mu_MPa, alpha=values.alpha, poisson_ratio=values.poisson_ratio, density_kg_m3=density)
     return _layer(model, component, new)
 
 
@@ -239,7 +237,9 @@ def _scaled_dot(model: Model, radius_factor: float, height_factor: float) -> dic
         return {}
     shape = resolve_dot(model.dot, model.segment)
     return {
-        "standard": None, "base_diameter_mm": None, "radius_mm": radius_factor * shape.radius_mm,
+        "standard": None,
+        "base_diameter_mm": None,
+        "radius_mm": radius_factor * shape.radius_mm,
         "height_mm": height_factor * shape.height_mm,
     }
 

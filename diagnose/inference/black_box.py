@@ -48,5 +48,3 @@ def worth_of_form(samples: Samples, metric: System) -> float:
     share = (metric.variance - metric.numerical) / metric.variance
     folds = len(np.unique(samples.fold[metric.live]))
     return 0.5 * float(share[metric.live].sum()) / folds
-
-

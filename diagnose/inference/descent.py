@@ -76,9 +76,7 @@ class Descent:
         return np.zeros_like(place.predicted)
 
 
-def descent(
-    model: ObservedModel, system: System, candidates: Sequence[Candidate], about: Sequence[Setting]
-) -> Descent:
+def descent(model: ObservedModel, system: System, candidates: Sequence[Candidate], about: Sequence[Setting]) -> Descent:
     """about : the mechanisms about which the system is linear."""
     return Descent(model, system, tuple(candidates), model.vector(system.values, about) + system.residual)
 

@@ -182,9 +182,7 @@ def _blocks(recording: Recording, noise: Mapping[tuple[str, str], NoiseModel]) -
     return found
 
 
-def _labels(
-    recording: Recording, blocks: Sequence[Block], channels: Sequence[str]
-) -> tuple[dict[str, Ints], Floats]:
+def _labels(recording: Recording, blocks: Sequence[Block], channels: Sequence[str]) -> tuple[dict[str, Ints], Floats]:
     """Labels (n,) of every sample and the nominal step (n,) of its even piece."""
     columns: dict[str, list[Ints]] = {name: [] for name in ("run", "channel", "phase", "press", "piece")}
     steps = []

@@ -103,10 +103,8 @@ def _relative(
             recorded = run.channels[channel][rows]
             missed += float(((recorded - signals[block.run][channel][rows]) ** 2).sum())
             seen += float((recorded**2).sum())
-            noise += len(recorded) * block.whitening.noise.rms ** 2
+            noise += len(recorded) * block.whitening.noise.rms**2
         if seen > 0.0:
             errors.append(missed / seen)
             floors.append(noise / seen)
     return float(np.sqrt(np.mean(errors))), float(np.sqrt(np.mean(floors)))
-
-

@@ -59,9 +59,7 @@ def _resting_alike(recording: Recording, run: Run, channel: str) -> tuple[int, .
     return tuple(
         number
         for number, other in enumerate(recording.runs)
-        if channel in other.answers
-        and run.readout == other.readout
-        and isclose(run.step_s, other.step_s, rel_tol=0.01)
+        if channel in other.answers and run.readout == other.readout and isclose(run.step_s, other.step_s, rel_tol=0.01)
     )
 
 

@@ -120,9 +120,7 @@ def proportional_engine(recording: Recording, report: Report) -> ProportionalEng
     for run in recording.runs:
         _refuse_unfit(run, recording.runs[0])
     largest_N = max(_above_rest(run) for run in recording.runs)
-    loadings = tuple(
-        _loading(*pair, largest_N) for pair in zip(recording.runs, recording.phases, strict=True)
-    )
+    loadings = tuple(_loading(*pair, largest_N) for pair in zip(recording.runs, recording.phases, strict=True))
     scene = _scene(recording)
     free = [sensitivity(n + 1) for n in range(scene.channels)]
     if any(readout.input_resistance_MOhm for readout in scene.readouts):

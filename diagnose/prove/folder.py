@@ -46,8 +46,12 @@ def _segment(bench: Bench) -> list[str]:
             lines += ["[segment.film]", f"thickness_um = {1e3 * layer.thickness_mm:g}", 'material = "pvdf"', ""]
         elif isinstance(layer, Layer):
             size = "height_mm" if layer.name == "effector" else "thickness_mm"
-            lines += [f"[segment.{layer.name}]", f"{size} = {layer.thickness_mm:g}",
-                      f'material = "as-ordered-{layer.name}"', ""]
+            lines += [
+                f"[segment.{layer.name}]",
+                f"{size} = {layer.thickness_mm:g}",
+                f'material = "as-ordered-{layer.name}"',
+                "",
+            ]
     for layer in made.layers:
         if isinstance(layer, Layer):
             lines += [

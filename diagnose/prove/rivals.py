@@ -133,6 +133,7 @@ def _gaussian_process(bench: Bench, runs: Sequence[Signals], model: Sequence[Sig
 
 def _leakage(bench: Bench, runs: Sequence[Signals]) -> Opinion:
     """One resistor is fitted, whatever is wrong."""
+
     def with_leak(log_MOhm: float) -> Reality:
         return replace(baseline(bench), leak_MOhm=float(10.0**log_MOhm))
 

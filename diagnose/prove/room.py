@@ -40,8 +40,13 @@ def diagnosed(files: Mapping[str, str], cache: Path, limit_s: float, options: tu
         begun = time.perf_counter()
         try:
             ended = subprocess.run(
-                [*guard, "diagnose", "recording", "-o", "verdict", "--json", *options], cwd=room,
-                env=environment(room, cache), capture_output=True, text=True, timeout=limit_s, check=False,
+                [*guard, "diagnose", "recording", "-o", "verdict", "--json", *options],
+                cwd=room,
+                env=environment(room, cache),
+                capture_output=True,
+                text=True,
+                timeout=limit_s,
+                check=False,
             )
         except subprocess.TimeoutExpired:
             return Heard(None, f"no verdict within {limit_s:g} s", time.perf_counter() - begun)
@@ -62,6 +67,11 @@ def environment(room: Path, cache: Path) -> dict[str, str]:
     program = Path(__file__).resolve().parents[2]
     kept = {name: os.environ[name] for name in KEPT if name in os.environ}
     return {
-        **kept, **ONE_THREAD, "HOME": str(room), "TMPDIR": str(room / "tmp"),
-        "PYTHONPATH": str(program), "SOFTDOT_CACHE": str(cache), "MPLCONFIGDIR": str(room / "tmp"),
+        **kept,
+        **ONE_THREAD,
+        "HOME": str(room),
+        "TMPDIR": str(room / "tmp"),
+        "PYTHONPATH": str(program),
+        "SOFTDOT_CACHE": str(cache),
+        "MPLCONFIGDIR": str(room / "tmp"),
     }

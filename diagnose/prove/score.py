@@ -57,9 +57,7 @@ class Score:
         return {**asdict(self), "truth": list(map(list, self.truth)), "named": list(map(list, self.named))}
 
 
-def scored(
-    truth: Mapping[str, Any], verdict: Mapping[str, Any], separation: Separation, seconds: float = 0.0
-) -> Score:
+def scored(truth: Mapping[str, Any], verdict: Mapping[str, Any], separation: Separation, seconds: float = 0.0) -> Score:
     """Compare verdict.json with the revealed truth."""
     true = _names(truth["mechanisms"])
     named = () if verdict["unexplained"] else _names(verdict["missing_physics"])
@@ -69,16 +67,25 @@ def scored(
     held_out = (verdict.get("fit") or {}).get("held_out") or {}
     floor = held_out.get("noise_floor_nrmse")
     return Score(
-        truth["number"], truth["kind"], truth["bench"], true, truth["whitened_rms"],
-        bool(verdict["mismatch"]), named, bool(verdict["unexplained"]),
-        exact, exact or (bool(named) and len(group) > 1 and fair),
+        truth["number"],
+        truth["kind"],
+        truth["bench"],
+        true,
+        truth["whitened_rms"],
+        bool(verdict["mismatch"]),
+        named,
+        bool(verdict["unexplained"]),
+        exact,
+        exact or (bool(named) and len(group) > 1 and fair),
         bool(named) and {m for m, _ in named} == {m for m, _ in true},
         bool(named) and {c for _, c in named} == {c for _, c in true},
-        len(group), _overlap(truth["per_run"], verdict.get("where") or []),
+        len(group),
+        _overlap(truth["per_run"], verdict.get("where") or []),
         held_out["nrmse_after"] / floor if named and floor and held_out.get("nrmse_after") is not None else None,
         held_out.get("log_score_gain_per_press"),
         _covered(truth["mechanisms"], verdict["missing_physics"]) if exact else {},
-        (verdict.get("next_experiment") or {}).get("expected_separation_sigma"), seconds=seconds,
+        (verdict.get("next_experiment") or {}).get("expected_separation_sigma"),
+        seconds=seconds,
     )
 
 

@@ -61,9 +61,7 @@ def _set_up(job: Job) -> Setup:
     model = replace(job.model, press=Press(indentation_mm=job.depth_mm))
     dot = resolve_dot(model.dot, model.segment)
     plane_strain = model.segment.section == "plane-strain"
-    opened_mesh, opened = open_interfaces(
-        job.tet_mesh, model.physics.bonds, model.physics.delaminations, plane_strain
-    )
+    opened_mesh, opened = open_interfaces(job.tet_mesh, model.physics.bonds, model.physics.delaminations, plane_strain)
     return set_up(model, dot, opened_mesh, opened)
 
 

@@ -130,4 +130,3 @@ def _crosstalk(channel: int) -> Candidate:
         return {"coupling": values[0]}
 
     return Candidate("crosstalk", f"channel-{channel}", (coordinate,), parameters, units={"coupling": ""})
-

@@ -77,4 +77,3 @@ def growing(
     return Coordinate(
         name, 0.0, asinh(most / scale), tuple(asinh(s / scale) for s in starts), tuple(asinh(n / scale) for n in nodes)
     )
-

@@ -52,9 +52,7 @@ def write_material(file: Path, out: Path, name: str) -> None:
     numbers = [rows[start].index(column) for column in COLUMNS]
     table = np.array([[float(row[n]) for n in numbers] for row in rows[start + 1 :] if row and row[0]])
     table = table[(table[:, 1] < MAX_STRAIN) & np.concatenate([[True], np.diff(table[:, 0]) > 0.0])]
-    length, width, thickness = (
-        float(about[f"Specimen {size} (mm)"]) for size in ("Length", "Width", "Thickness")
-    )
+    length, width, thickness = (float(about[f"Specimen {size} (mm)"]) for size in ("Length", "Width", "Thickness"))
     time, strain, stress = table.T
     columns = {"time_s": time, "displacement_mm": length * strain, "force_N": width * thickness * stress}
     text = run_text(

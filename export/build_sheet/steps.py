@@ -49,8 +49,12 @@ def _print(contents: Contents) -> Step:
 def _cast(pour: Pour, contents: Contents) -> Step:
     gauge, name = gauging(contents, pour.component), in_words(pour.component)
     mix = " and ".join(f"{mass:.2f} g of component {one}" for one, mass in pour.mixed_masses_g)
-    used = "" if pour.mixed_mass_g <= pour.poured_mass_g * 1.001 else (
-        f" Only {_plain(1e3 * pour.poured_mass_g)} mg of it are needed, but less cannot be weighed and mixed well."
+    used = (
+        ""
+        if pour.mixed_mass_g <= pour.poured_mass_g * 1.001
+        else (
+            f" Only {_plain(1e3 * pour.poured_mass_g)} mg of it are needed, but less cannot be weighed and mixed well."
+        )
     )
     pot = f" You have {pour.pot_life_min:g} minutes to pour." if pour.pot_life_min else ""
     cure = f"Let it cure for {pour.cure_time_h:g} h" if pour.cure_time_h else "Let it cure as its maker says"

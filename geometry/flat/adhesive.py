@@ -77,9 +77,7 @@ def _rings(segment: Segment, fabrication: Fabrication, layout: FilmLayout, panel
     return [_ring(name, gap, where, fabrication, layout, panel) for name, gap, where in faces if gap < layout.flange]
 
 
-def _ring(
-    name: str, gap: float, where: str, fabrication: Fabrication, layout: FilmLayout, panel: Panel
-) -> FlatPattern:
+def _ring(name: str, gap: float, where: str, fabrication: Fabrication, layout: FilmLayout, panel: Panel) -> FlatPattern:
     end, half = layout.body_end, layout.half_body
     inner_u, inner_v = layout.frame.along / 2 + gap, layout.frame.across / 2 + gap
     return FlatPattern(

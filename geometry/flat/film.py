@@ -40,9 +40,7 @@ def film_outline(layout: FilmLayout, count: int) -> Outline:
     return Outline("CUT", distinct([*right, *left]))
 
 
-def mask_patterns(
-    fabrication: Fabrication, every: tuple[Metal, ...], panel: Panel
-) -> tuple[FlatPattern, FlatPattern]:
+def mask_patterns(fabrication: Fabrication, every: tuple[Metal, ...], panel: Panel) -> tuple[FlatPattern, FlatPattern]:
     """Windows of the size of the metal; that of the bottom is seen from below, its panel turned over about the tab."""
     *tops, bottom = every
     masks = []

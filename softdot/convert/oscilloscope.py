@@ -1,9 +1,9 @@
 """CSV files of oscilloscopes. Each maker has its own header; four kinds are told apart by their first cells:
 
-    Tektronix TDS, TPS, TBS1000     Record Length,2.5e+03,,-0.25,2.0      settings on the left, time and value behind
-    Rigol DS1000Z, MSO5000          X,CH1,CH2,Start,Increment             then Sequence,Volt,Volt,-6e-03,2e-06
-    Keysight, Agilent InfiniiVision x-axis,1,2                            then second,Volt,Volt
-    others (Tektronix MSO, Siglent) Time(s),CH1(V)  or  TIME,CH1          perhaps below some settings
+Tektronix TDS, TPS, TBS1000     Record Length,2.5e+03,,-0.25,2.0      settings on the left, time and value behind
+Rigol DS1000Z, MSO5000          X,CH1,CH2,Start,Increment             then Sequence,Volt,Volt,-6e-03,2e-06
+Keysight, Agilent InfiniiVision x-axis,1,2                            then second,Volt,Volt
+others (Tektronix MSO, Siglent) Time(s),CH1(V)  or  TIME,CH1          perhaps below some settings
 """
 
 import csv

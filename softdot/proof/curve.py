@@ -6,8 +6,11 @@ from typing import Any
 
 from diagnose.prove.world.cases import SIZES
 
-CURVES = (("detected", "detected", "#7a7a7a"), ("named", "named, or in a fair group", "#0a5c8a"),
-          ("wrong", "wrongly named", "#b3412e"))
+CURVES = (
+    ("detected", "detected", "#7a7a7a"),
+    ("named", "named, or in a fair group", "#0a5c8a"),
+    ("wrong", "wrongly named", "#b3412e"),
+)
 
 
 def draw(by_size: Sequence[Mapping[str, Any]], path: Path) -> None:
@@ -19,13 +22,19 @@ def draw(by_size: Sequence[Mapping[str, Any]], path: Path) -> None:
     for shift, (key, words, colour) in enumerate(CURVES):
         place = [one["median"] * (1.0 + 0.03 * (shift - 1)) for one in by_size]
         rates = [100.0 * one[key]["rate"] for one in by_size]
-        reach = [[max(0.0, 100.0 * (one[key]["rate"] - one[key]["low"])) for one in by_size],
-                 [max(0.0, 100.0 * (one[key]["high"] - one[key]["rate"])) for one in by_size]]
+        reach = [
+            [max(0.0, 100.0 * (one[key]["rate"] - one[key]["low"])) for one in by_size],
+            [max(0.0, 100.0 * (one[key]["high"] - one[key]["rate"])) for one in by_size],
+        ]
         axes.errorbar(
             place, rates, reach, color=colour, marker="o", markersize=4, capsize=2, linewidth=1.2, label=words
         )
-    axes.set(xscale="log", ylim=(-3, 103), xlabel="size of the effect: whitened rms per sample, nuisances removed",
-             ylabel="share of cases, %")
+    axes.set(
+        xscale="log",
+        ylim=(-3, 103),
+        xlabel="size of the effect: whitened rms per sample, nuisances removed",
+        ylabel="share of cases, %",
+    )
     axes.set_xticks(SIZES, labels=[f"{size:g}" for size in SIZES])
     axes.minorticks_off()
     axes.grid(alpha=0.3)

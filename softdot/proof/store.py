@@ -63,4 +63,3 @@ def records(place: Path) -> Iterator[dict[str, Any]]:
         record = read_checked(path, "is left out of the table")
         if record is not None:
             yield record
-

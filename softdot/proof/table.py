@@ -36,8 +36,11 @@ def _of_rival(name: str, records: Sequence[Mapping[str, Any]]) -> dict[str, Any]
         inside = [r for r in records if r["truth"]["kind"] in kinds and r["truth"]["whitened_rms"] >= least]
         return counted(inside, lambda r: holds(r["rivals"][name], r))
 
-    clear = [r["rivals"][name]["after"] for r in records
-             if r["truth"]["kind"] == SINGLE and r["truth"]["whitened_rms"] >= CLEAR]
+    clear = [
+        r["rivals"][name]["after"]
+        for r in records
+        if r["truth"]["kind"] == SINGLE and r["truth"]["whitened_rms"] >= CLEAR
+    ]
     return {
         "false_names_without_effect": rate((NONE,), 0.0, lambda o, _: o["named"] is not None),
         "clear_exact": rate((SINGLE,), CLEAR, lambda o, r: _is(o["named"], r)),
@@ -67,8 +70,11 @@ def text(summary: Mapping[str, Any]) -> str:
     what = f"{summary['cases']} cases, seed {summary['seed']}, {rigs}: {ended}."
     lines = ["# Concealed proof", "", f"{what} In brackets: Wilson's 95 % intervals.", "", "| | |", "|---|---|"]
     lines += [f"| {words} | {percent(rates[name])} |" for name, words in HEAD.items()]
-    lines += [f"| mean size of a fair group | {_figure(rates['mean_group'])} |",
-              f"| mean overlap of the places of the excess | {_figure(rates['mean_overlap'])} |", ""]
+    lines += [
+        f"| mean size of a fair group | {_figure(rates['mean_group'])} |",
+        f"| mean overlap of the places of the excess | {_figure(rates['mean_overlap'])} |",
+        "",
+    ]
     if rates["by_size"]:
         lines += [*_sizes(rates), "", *_mechanisms(rates), "", "![detection and naming](detection.png)", ""]
     return "\n".join([*lines, *_others(summary), ""])
@@ -84,8 +90,9 @@ def _sizes(rates: Mapping[str, Any]) -> list[str]:
 
 def _mechanisms(rates: Mapping[str, Any]) -> list[str]:
     lines = [f"| mechanism | size {CLEAR:g} or more | all sizes |", "|---|---|---|"]
-    return lines + [f"| {name} | {percent(one['clear'])} | {percent(one['all'])} |"
-                    for name, one in rates["by_mechanism"].items()]
+    return lines + [
+        f"| {name} | {percent(one['clear'])} | {percent(one['all'])} |" for name, one in rates["by_mechanism"].items()
+    ]
 
 
 def _others(summary: Mapping[str, Any]) -> list[str]:
@@ -95,11 +102,15 @@ def _others(summary: Mapping[str, Any]) -> list[str]:
     ours = share(count, of)
     head = ("", "named without effect", "clear effects exactly named", "unknown effects not named")
     lines = [f"| {' | '.join(head)} |", "|---|---|---|---|"]
-    lines.append(f"| {OURS} | {percent(rates['false_names_without_effect'])} | {percent(rates['clear_exact'])} | "
-                 f"{percent(ours)} |")
+    lines.append(
+        f"| {OURS} | {percent(rates['false_names_without_effect'])} | {percent(rates['clear_exact'])} | "
+        f"{percent(ours)} |"
+    )
     for name, one in summary["rivals"].items():
-        lines.append(f"| {name} | {percent(one['false_names_without_effect'])} | {percent(one['clear_exact'])} | "
-                     f"{percent(one['unknown_not_named'])} |")
+        lines.append(
+            f"| {name} | {percent(one['false_names_without_effect'])} | {percent(one['clear_exact'])} | "
+            f"{percent(one['unknown_not_named'])} |"
+        )
     if SPARSE not in summary["rivals"]:
         lines.append(f"| {SPARSE} | not run: pysindy is not installed | | |")
     return lines

@@ -32,9 +32,7 @@ def solve_points(
     return [dict(records[key]) for key in keys]
 
 
-def _solve(
-    missing: Mapping[str, Config], records: dict[str, Record], progress: Progress, workers: int | None
-) -> None:
+def _solve(missing: Mapping[str, Config], records: dict[str, Record], progress: Progress, workers: int | None) -> None:
     """Fill records with what is missing."""
     count = len(records) + len(missing)
     with local_cluster(workers) as client:

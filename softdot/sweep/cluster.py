@@ -50,8 +50,11 @@ def local_cluster(workers: int | None = None) -> Iterator[Any]:
         folder = stack.enter_context(scratch_folder())  # else what a killed sweep leaves there stays for ever
         with _ctrl_c_for_us_alone():
             cluster = LocalCluster(  # type: ignore[no-untyped-call]
-                n_workers=workers or usable_cores(), threads_per_worker=1, processes=True,
-                silence_logs=SILENT, scheduler_kwargs=NO_DASHBOARD,
+                n_workers=workers or usable_cores(),
+                threads_per_worker=1,
+                processes=True,
+                silence_logs=SILENT,
+                scheduler_kwargs=NO_DASHBOARD,
                 local_directory=str(folder),
             )
             stack.enter_context(cluster)

@@ -89,9 +89,7 @@ def write_report(
         ],
         more=max(0, len(rows) - SHOWN_ROWS),
         failures=[
-            (one["point"], _place(one, axes), one["status"], one["reason"])
-            for one in rows
-            if one["status"] != SOLVED
+            (one["point"], _place(one, axes), one["status"], one["reason"]) for one in rows if one["status"] != SOLVED
         ][:SHOWN_ROWS],
         picture=base64.b64encode(picture.read_bytes()).decode("ascii"),
     )

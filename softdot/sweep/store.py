@@ -23,9 +23,7 @@ from softdot.sweep.point import ACCIDENTS, Record
 POINTS, TABLE, SPACE_COPY = "points", "sweep.parquet", "space.toml"
 CSV_TABLE, PICTURE, PAGE = "sweep.csv", "sweep.png", "report.html"
 _WHOLE = ("sweep.json", TABLE, SPACE_COPY, CSV_TABLE, PICTURE, PAGE)
-SWEEP = Product(
-    "softdot-sweep/1", "sweep.json", frozenset({*_WHOLE, *(f".{name}.part" for name in _WHOLE), POINTS})
-)
+SWEEP = Product("softdot-sweep/1", "sweep.json", frozenset({*_WHOLE, *(f".{name}.part" for name in _WHOLE), POINTS}))
 POINT_FORMAT = "softdot-point/1"
 
 

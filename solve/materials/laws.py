@@ -133,9 +133,7 @@ class LinearLaw:
 
     def scaled(self, factor: float) -> "LinearLaw":
         """The same law in another unit of stress."""
-        return replace(
-            self, shear_modulus=factor * self.shear_modulus, bulk_modulus=factor * self.bulk_modulus
-        )
+        return replace(self, shear_modulus=factor * self.shear_modulus, bulk_modulus=factor * self.bulk_modulus)
 
     def stress(self, cauchy_green: Floats) -> tuple[Floats, Floats]:
         """S (n, 6) and tangent (n, 6, 6) at C (n, 3, 3)."""

@@ -94,7 +94,11 @@ def _add_divided_differences(square, p, factor, shear):  # type: ignore[no-untyp
 def _stress_and_tangent(cauchy_green, k, alpha, beta, isochoric, stress, tangent):  # type: ignore[no-untyped-def]
     for batch in nb.prange((len(cauchy_green) + BATCH - 1) // BATCH):
         c, vector, block, basis, image = (
-            np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3)), np.empty((6, 6)), np.empty((6, 6))
+            np.empty((3, 3)),
+            np.empty((3, 3)),
+            np.empty((3, 3)),
+            np.empty((6, 6)),
+            np.empty((6, 6)),
         )
         square, log, x, g, h, shear = np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3)
         for n in range(BATCH * batch, min(BATCH * (batch + 1), len(cauchy_green))):

@@ -120,9 +120,7 @@ class Hyperfoam(MaterialTable):
 class PiezoelectricFilm(MaterialTable):
     """A poled polymer film. Axis 1 is the draw direction, 2 lies across, 3 is the normal."""
 
-    model: Literal["piezoelectric-film"] = Field(
-        "piezoelectric-film", description="linear piezoelectric film"
-    )
+    model: Literal["piezoelectric-film"] = Field("piezoelectric-film", description="linear piezoelectric film")
     youngs_modulus_MPa: Positive = Field(2000.0, description="Young's modulus along the draw direction")
     youngs_modulus_2_MPa: Positive | None = Field(
         None, description="Young's modulus across the draw direction; none: the same as along it"
@@ -133,9 +131,7 @@ class PiezoelectricFilm(MaterialTable):
     d33_pC_per_N: Finite = Field(-33.0, description="charge per force along the normal")
     relative_permittivity: Positive = Field(12.0, description="at constant stress, along the normal")
     pyroelectric_uC_per_m2_K: Finite = Field(30.0, description="charge per area and temperature")
-    yield_stress_MPa: Positive | None = Field(
-        50.0, description="a run warns if the stress of the film exceeds it"
-    )
+    yield_stress_MPa: Positive | None = Field(50.0, description="a run warns if the stress of the film exceeds it")
     density_kg_m3: Positive = Field(1780.0, description="density in the undeformed state")
     coupling: Literal["one-way", "two-way"] = Field(
         "one-way",
@@ -148,9 +144,7 @@ class PiezoelectricFilm(MaterialTable):
         e1, e2, nu = self.youngs_modulus_MPa, self.youngs_modulus_2_MPa, self.poisson_ratio
         if e2 is not None and 2.0 * nu**2 * e2 >= (1.0 - nu) * e1:
             limit = (1.0 - nu) * e1 / (2.0 * nu**2)
-            raise ValueError(
-                f"youngs_modulus_2_MPa = {e2:g}: must be below {limit:.4g} for this poisson_ratio"
-            )
+            raise ValueError(f"youngs_modulus_2_MPa = {e2:g}: must be below {limit:.4g} for this poisson_ratio")
         return self
 
 

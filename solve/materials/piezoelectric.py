@@ -55,9 +55,7 @@ def film_law(material: PiezoelectricFilm, draw_angle_deg: float) -> FilmLaw:
     c, s = np.cos(angle), np.sin(angle)
     turn = strain_rotation(np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]))
     coupling = np.zeros(6)
-    coupling[:3] = 1e-12 * np.array(
-        [material.d31_pC_per_N, material.d32_pC_per_N, material.d33_pC_per_N]
-    )
+    coupling[:3] = 1e-12 * np.array([material.d31_pC_per_N, material.d32_pC_per_N, material.d33_pC_per_N])
     # energy is the same in both axes: S_global = T^t S_film, so D3 = d . S_film = (T^-1 d) . S_global
     return FilmLaw(
         stiffness=turn.T @ _stiffness(material) @ turn,

@@ -10,9 +10,7 @@ from solve.physics import Physics
 from solve.reduced.response_kernel import BY_DEPTH, BY_FORCE
 
 
-def given(
-    time_s: Floats, depth_mm: Floats | None, force_N: Floats | None, gap_mm: float
-) -> tuple[Floats, Floats, int]:
+def given(time_s: Floats, depth_mm: Floats | None, force_N: Floats | None, gap_mm: float) -> tuple[Floats, Floats, int]:
     """Time (t,) in s, drive (t,) in mm from touch or in N, and its kind. ValueError for what is no recording."""
     if (depth_mm is None) == (force_N is None):
         raise ValueError("give either depth_mm or force_N")
@@ -25,9 +23,7 @@ def given(
     return time, drive - (gap_mm if depth_mm is not None else 0.0), BY_DEPTH if depth_mm is not None else BY_FORCE
 
 
-def branches(
-    viscosity: Mapping[str, Prony], layers: tuple[str, ...]
-) -> tuple[Floats, Floats, Ints]:
+def branches(viscosity: Mapping[str, Prony], layers: tuple[str, ...]) -> tuple[Floats, Floats, Ints]:
     """Relative moduli, times (s) and layer numbers (b,) of all Prony branches."""
     rows = [
         (g, tau, layers.index(name))

@@ -12,10 +12,12 @@ def mechanism(draw, name, segment, dot) -> dict | None:
         "low-pass": lambda: ("readout", _low_pass(draw)),
         "saturation": lambda: ("readout", {"limit_V": draw.log(0.01, 10.0), "sharpness": draw.log(1.0, 100.0)}),
         "mains-hum": lambda: (
-            "readout", {"frequency_Hz": draw.between(40.0, 70.0), "amplitude_V": draw.log(1e-3, 1.0)}
+            "readout",
+            {"frequency_Hz": draw.between(40.0, 70.0), "amplitude_V": draw.log(1e-3, 1.0)},
         ),
         "pyroelectric-drift": lambda: (
-            "film", {"temperature_step_K": draw.sign(0.01, 2.0), "time_constant_s": draw.log(0.1, 10.0)}
+            "film",
+            {"temperature_step_K": draw.sign(0.01, 2.0), "time_constant_s": draw.log(0.1, 10.0)},
         ),
         "contact-electrification": lambda: ("film", {"charge_pC": draw.sign(1.0, 50.0)}),
         "viscoelasticity": lambda: (draw.among([*media, *media, "film", *_bonded(segment)]), _prony(draw)),
@@ -26,7 +28,8 @@ def mechanism(draw, name, segment, dot) -> dict | None:
             {"loss_ratio": draw.between(0.05, 0.6), "energy_MPa": draw.log(1e-5, 1e-2), "beta": draw.between(0.1, 0.5)},
         ),
         "film-yield": lambda: (
-            "film", {"yield_stress_MPa": draw.log(5.0, 100.0), "hardening_modulus_MPa": draw.between(0.0, 100.0)}
+            "film",
+            {"yield_stress_MPa": draw.log(5.0, 100.0), "hardening_modulus_MPa": draw.between(0.0, 100.0)},
         ),
         "adhesive-compliance": lambda: (draw.among(bonds), _adhesive(draw)),
         "delamination": lambda: (draw.among(bonds[:3]), _patch(draw, segment)),
@@ -81,7 +84,9 @@ def _stiffening(draw):
 
 def _foam(draw):
     return {
-        "mu_MPa": [draw.log(0.05, 1.0)], "alpha": [draw.between(2.0, 12.0)], "poisson_ratio": [draw.between(0.0, 0.3)]
+        "mu_MPa": [draw.log(0.05, 1.0)],
+        "alpha": [draw.between(2.0, 12.0)],
+        "poisson_ratio": [draw.between(0.0, 0.3)],
     }
 
 
@@ -89,7 +94,8 @@ def _adhesive(draw):
     if draw.perhaps(0.5):
         return {"normal_stiffness_N_per_mm3": draw.log(10.0, 1e6), "shear_stiffness_N_per_mm3": draw.log(5.0, 1e6)}
     return {
-        "thickness_um": draw.log(5.0, 100.0), "youngs_modulus_MPa": draw.log(0.5, 1000.0),
+        "thickness_um": draw.log(5.0, 100.0),
+        "youngs_modulus_MPa": draw.log(0.5, 1000.0),
         "poisson_ratio": draw.between(0.3, 0.48),
     }
 

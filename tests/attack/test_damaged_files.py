@@ -123,4 +123,3 @@ def test_a_cache_folder_that_cannot_be_one_is_refused_before_any_work(name, tmp_
     assert said.startswith(f"softdot: SOFTDOT_CACHE = '{place}': cannot be used as the folder of the cache")
     assert said.count("\n") == 1
     assert not (tmp_path / "out").exists()
-

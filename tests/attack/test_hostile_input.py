@@ -13,7 +13,9 @@ from tests.diagnose.rigs import HEAD, RUN, SEGMENT, csv_text, samples
 
 LIMIT_S, LONGEST = 30, 2_100
 pytestmark = pytest.mark.slow
-CONFIG = SEGMENT + """
+CONFIG = (
+    SEGMENT
+    + """
 [segment.effector]
 shape = "dome"
 diameter_mm = 2.0
@@ -31,6 +33,7 @@ name = "friction"
 component = "dot"
 parameters = { coefficient = 0.2 }
 """
+)
 WAVE = "time_s,fraction\n0,0\n0.5,0.4\n1,1\n2,1\n3,0\n"
 WAVE_CONFIG = SEGMENT + "[press.waveform]\nshape = 'file'\nfile = '{}'\n"
 SWEEP = CONFIG + "[sweep]\n[[sweep.axes]]\nkey = 'press.indentation_mm'\nvalues = [0.1, 0.2]\n"

@@ -98,9 +98,7 @@ def test_a_design_mirrored_in_x_gives_the_same(name, end):
 def test_a_square_segment_turned_by_a_quarter_gives_the_same(end):
     """With its film, its dot beside the middle and the tilt of the dot."""
     tables = changed(SOLID, dot__tilt_deg=[0.0, 2.0])
-    turned = changed(
-        tables, segment__film__draw_angle_deg=110.0, dot__offset_mm=[0.0, 0.2], dot__tilt_deg=[-2.0, 0.0]
-    )
+    turned = changed(tables, segment__film__draw_angle_deg=110.0, dot__offset_mm=[0.0, 0.2], dot__tilt_deg=[-2.0, 0.0])
     same(end(tables), end(turned), rel=ANOTHER_MESH)
 
 

@@ -7,9 +7,7 @@ from tests.softdot.conftest import MINIMAL
 HEAD = 'format = "softdot-recording/1"\n'
 SEGMENT = MINIMAL
 RUN = '[[runs]]\nfile = "press.csv"\n'
-COUPON = (
-    "[specimen]\nkind = 'tension'\nmaterial = 'rubber'\nlength_mm = 20.0\nwidth_mm = 5.0\nthickness_mm = 2.0\n"
-)
+COUPON = "[specimen]\nkind = 'tension'\nmaterial = 'rubber'\nlength_mm = 20.0\nwidth_mm = 5.0\nthickness_mm = 2.0\n"
 
 
 def trapezoid(time_s, depth, touch_s=1.0, rise_s=0.2, hold_s=0.5, clear=-0.2):

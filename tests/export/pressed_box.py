@@ -31,9 +31,7 @@ def box_mesh(across: int = 6, width_mm: float = LENGTH_MM, rows: int | None = No
     facets = _facets(points, tets, np.array(region))
     twin = np.arange(len(points))
     if rows == 1:
-        _, first, group = np.unique(
-            np.round(points[:, [0, 2]], 9), axis=0, return_index=True, return_inverse=True
-        )
+        _, first, group = np.unique(np.round(points[:, [0, 2]], 9), axis=0, return_index=True, return_inverse=True)
         twin = first[group.ravel()]
     return TetMesh(points, tets, np.array(region), tuple(n for n, _, _ in LAYERS), facets, twin, width_mm)
 
@@ -74,9 +72,7 @@ def _facets(points: np.ndarray, tets: np.ndarray, region: np.ndarray) -> dict[st
         flat = (np.abs(low[:, axis] - value) < 1e-9) & (np.abs(high[:, axis] - value) < 1e-9)
         return faces[flat if of is None else flat & (owner == of)]
 
-    z = dict(
-        zip((n for n, _, _ in LAYERS), pairwise(np.cumsum([0.0, *(t for _, t, _ in LAYERS)])), strict=True)
-    )
+    z = dict(zip((n for n, _, _ in LAYERS), pairwise(np.cumsum([0.0, *(t for _, t, _ in LAYERS)])), strict=True))
     names = [n for n, _, _ in LAYERS]
     result = {
         "contact": on(2, HEIGHT_MM),
@@ -143,8 +139,12 @@ def _trace(steps) -> Trace:
     depth = np.array([step.indentation_m for step in steps])
     force = np.array([step.reaction_force_N for step in steps])
     return Trace(
-        time_s=np.arange(len(steps), dtype=float), indentation_m=depth, dot_path_m=depth, reaction_force_N=force,
-        contact_force_N=force[:, None] * [0, 0, 1], film_charge_C=np.array([step.film_charge_C for step in steps]),
+        time_s=np.arange(len(steps), dtype=float),
+        indentation_m=depth,
+        dot_path_m=depth,
+        reaction_force_N=force,
+        contact_force_N=force[:, None] * [0, 0, 1],
+        film_charge_C=np.array([step.film_charge_C for step in steps]),
         contact_area_m2=1e-6 * force,
     )
 

@@ -25,9 +25,7 @@ from solve.result import PressResult
 def pictures(
     segment: TetMesh, press: PressResult, dot: DotShape, tmp_path_factory: pytest.TempPathFactory
 ) -> dict[str, Path]:
-    return write_pictures(
-        segment, press, dot, tmp_path_factory.mktemp("run") / "pictures", np.arange(4) * 1e-3
-    )
+    return write_pictures(segment, press, dot, tmp_path_factory.mktemp("run") / "pictures", np.arange(4) * 1e-3)
 
 
 @pytest.fixture(scope="module")
@@ -60,9 +58,7 @@ def test_pictures_are_png_not_blank_and_not_clipped(pictures: dict[str, Path], n
 def test_slice_shows_each_part_in_its_own_colour_and_size(slice_pictures: dict[str, Path]) -> None:
     """Without light the colours are exact, and areas go like thicknesses."""
     image = pixels(slice_pictures["undeformed"])
-    share = {
-        name: share_of(image, PART_COLOURS[name], 3) for name in ("medium2", "medium1", "effector", "film")
-    }
+    share = {name: share_of(image, PART_COLOURS[name], 3) for name in ("medium2", "medium1", "effector", "film")}
     assert share["medium2"] / share["effector"] == pytest.approx(2.0, rel=0.05)
     assert share["medium2"] / share["medium1"] == pytest.approx(4.0, rel=0.05)
     assert share["film"] > 0.0005
@@ -107,9 +103,7 @@ def test_missing_opengl_is_one_sentence_not_a_crash() -> None:
         "headless.subprocess.run = lambda *a, **k: SimpleNamespace(returncode=-11, stdout=b'')\n"
         "headless.ensure_rendering()"
     )
-    run = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False
-    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
     assert run.stderr.strip().splitlines()[-1] == f"geometry.errors.InputError: {ADVICE}"
 
 

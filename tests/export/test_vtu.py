@@ -17,9 +17,7 @@ from solve.result import PressResult
 
 
 @pytest.fixture(scope="module")
-def results(
-    segment: TetMesh, press: PressResult, dot: DotShape, tmp_path_factory: pytest.TempPathFactory
-) -> Path:
+def results(segment: TetMesh, press: PressResult, dot: DotShape, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("out") / "results"
     write_results(segment, press, dot, folder)
     return folder
@@ -89,9 +87,7 @@ def test_one_coulomb_per_square_metre_is_a_million_picocoulomb_per_square_millim
     charge = press.steps[3].fields.charge_density_C_per_m2
     written = meshio.read(results / "film_0003.vtu").cell_data["charge_density_pC_per_mm2"][0]
     picocoulomb_per_coulomb, square_millimetres_per_square_metre = 1e12, 1e6
-    np.testing.assert_allclose(
-        written, charge * picocoulomb_per_coulomb / square_millimetres_per_square_metre
-    )
+    np.testing.assert_allclose(written, charge * picocoulomb_per_coulomb / square_millimetres_per_square_metre)
 
 
 def test_contact_file_holds_quadratic_triangles(results: Path, press: PressResult) -> None:

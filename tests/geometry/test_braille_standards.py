@@ -1,7 +1,5 @@
 """The table against the numbers of its sources, and what a wrong name says."""
 
-
-
 import pytest
 
 from geometry.braille import QUANTITIES, standard, standard_names
@@ -52,9 +50,7 @@ def test_numbers_are_those_of_the_sources(name, expected):
     quantities = standard(name).quantities
     for quantity, numbers in zip(QUANTITIES, expected, strict=True):
         found = quantities[quantity]
-        for value, number in zip(
-            (found.minimum_mm, found.nominal_mm, found.maximum_mm), numbers, strict=True
-        ):
+        for value, number in zip((found.minimum_mm, found.nominal_mm, found.maximum_mm), numbers, strict=True):
             assert value == (None if number is None else pytest.approx(number, abs=1e-12)), quantity
 
 
@@ -91,9 +87,7 @@ def test_an_alias_is_the_same_standard():
     assert standard("iso-17351") == standard("en-15823")
 
 
-@pytest.mark.parametrize(
-    ("wrong", "near"), [("marburg", "marburg-medium"), ("NLS", "nls"), ("iso17049", "iso-17049")]
-)
+@pytest.mark.parametrize(("wrong", "near"), [("marburg", "marburg-medium"), ("NLS", "nls"), ("iso17049", "iso-17049")])
 def test_a_wrong_name_suggests_the_nearest(wrong, near):
     with pytest.raises(InputError) as error:
         standard(wrong)

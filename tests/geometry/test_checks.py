@@ -17,9 +17,7 @@ def film(*electrodes):
 
 
 def bonds(*pairs):
-    return tuple(
-        Bond(between=p, normal_stiffness_N_per_mm3=1.0, shear_stiffness_N_per_mm3=1.0) for p in pairs
-    )
+    return tuple(Bond(between=p, normal_stiffness_N_per_mm3=1.0, shear_stiffness_N_per_mm3=1.0) for p in pairs)
 
 
 PLANE = "segment.section = 'plane-strain' has nothing"
@@ -71,13 +69,11 @@ REFUSED = {
     ),
     "sliced narrow block": (
         {"section": "plane-strain", "effector": Effector(shape="block", length_mm=1.0, width_mm=1.0)},
-        f"segment.effector.width_mm = 1: {PLANE} that varies over y; leave it out or give "
-        "segment.width_mm, 2.5",
+        f"segment.effector.width_mm = 1: {PLANE} that varies over y; leave it out or give segment.width_mm, 2.5",
     ),
     "electrode over the edge": (
         {"film": film(("a", (0.8, 0.0), (1.0, 1.0)))},
-        "segment.film.electrodes[0]: 'a' reaches 1.3 mm from the centre in x, beyond the edge of the film at "
-        "1.25 mm",
+        "segment.film.electrodes[0]: 'a' reaches 1.3 mm from the centre in x, beyond the edge of the film at 1.25 mm",
     ),
     "overlapping electrodes": (
         {"film": film(("a", (-0.4, 0.0), (1.0, 2.0)), ("b", (0.5, 0.5), (1.0, 1.0)))},
@@ -133,12 +129,8 @@ ALLOWED = {
         "effector": Effector(shape="block", length_mm=1.0),
         "held_layers": ("film",),
     },
-    "touching electrodes": {
-        "film": film(("a", (-0.625, 0.0), (1.25, 2.5)), ("b", (0.625, 0.0), (1.25, 2.5)))
-    },
-    "bonds in either order": {
-        "bonds": bonds(("base", "medium2"), ("medium1", "film"), ("medium1", "effector"))
-    },
+    "touching electrodes": {"film": film(("a", (-0.625, 0.0), (1.25, 2.5)), ("b", (0.625, 0.0), (1.25, 2.5)))},
+    "bonds in either order": {"bonds": bonds(("base", "medium2"), ("medium1", "film"), ("medium1", "effector"))},
     "springs without stiffness": {"boundary": "elastic", "side_stiffness_N_per_mm3": 0.0},
     "free with nothing held": {"boundary": "free", "held_layers": ()},
 }
@@ -170,9 +162,7 @@ def test_a_press_through_the_stack_is_refused(segment):
     check_press_depth(segment, 3.5)
     with pytest.raises(InputError) as error:
         check_press_depth(segment, 3.6)
-    assert str(error.value) == (
-        "press.indentation_mm = 3.6: must be less than the height of the stack, 3.528 mm"
-    )
+    assert str(error.value) == ("press.indentation_mm = 3.6: must be less than the height of the stack, 3.528 mm")
 
 
 def test_a_press_deeper_than_the_dot_brings_the_plate_down(make_segment):
@@ -181,8 +171,7 @@ def test_a_press_deeper_than_the_dot_brings_the_plate_down(make_segment):
     assert press_warnings(shape, segment, 0.5) == []
     (warning,) = press_warnings(shape, segment, 0.6)
     assert warning == (
-        "the indentation of 0.6 mm exceeds the dot's height of 0.5 mm: the plate around the dot touches the "
-        "segment too"
+        "the indentation of 0.6 mm exceeds the dot's height of 0.5 mm: the plate around the dot touches the segment too"
     )
 
 

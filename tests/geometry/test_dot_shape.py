@@ -58,8 +58,7 @@ def test_neighbours_lie_around_the_pressed_dot(segment):
 REFUSED = {
     "standard and size": (
         Dot(standard="nls", height_mm=0.5),
-        "dot.height_mm = 0.5: dot.standard = 'nls' fixes the sizes already; give either the standard or "
-        "explicit sizes",
+        "dot.height_mm = 0.5: dot.standard = 'nls' fixes the sizes already; give either the standard or explicit sizes",
     ),
     "base and radius": (
         Dot(base_diameter_mm=1.5, radius_mm=0.8),

@@ -22,9 +22,7 @@ TWO = (
 def side_by_side(make_segment, way="+x"):
     """Both electrodes beside each other, as seen from the cable."""
     turn = slice(None, None, -1 if way.endswith("y") else 1)
-    pair = (
-        Electrode(name=one.name, center_mm=one.center_mm[turn], size_mm=one.size_mm[turn]) for one in TWO
-    )
+    pair = (Electrode(name=one.name, center_mm=one.center_mm[turn], size_mm=one.size_mm[turn]) for one in TWO)
     return make_segment(film=Film(thickness_um=28.0, electrodes=tuple(pair)))
 
 

@@ -83,9 +83,7 @@ def test_named_facets_have_the_areas_of_the_shape(sample: Sample) -> None:
         assert facet_area(points, facets[f"side-{part}"]) == pytest.approx(perimeter * height, rel=1e-9)
     # Chords lie inside an arc, so flat triangles fall short by (edge / radius)^2 / 24 or so.
     tolerance = 2e-2 if name.split()[0] in ("cylinder", "dome") else 1e-9
-    assert facet_area(points, facets["contact"]) == pytest.approx(
-        contact_area(name, thickness), rel=tolerance
-    )
+    assert facet_area(points, facets["contact"]) == pytest.approx(contact_area(name, thickness), rel=tolerance)
 
 
 def test_facets_point_out_of_the_solid_and_up_on_the_film(sample: Sample) -> None:

@@ -43,8 +43,6 @@ def test_a_node_pushed_through_the_element_is_found_and_refused() -> None:
     nodes = ten(CORNER)
     nodes[0, 4] = [0.5, 0.9, 0.9]
     assert smallest_determinant_ratio(nodes)[0] < 0
-    element = TetMesh(
-        nodes[0], np.arange(10)[None], np.zeros(1, dtype=np.int64), ("medium2",), {}, np.arange(10), 1.0
-    )
+    element = TetMesh(nodes[0], np.arange(10)[None], np.zeros(1, dtype=np.int64), ("medium2",), {}, np.arange(10), 1.0)
     with pytest.raises(MeshingError, match="1 of 1 elements of the mesh are inverted"):
         refuse_inverted(element)

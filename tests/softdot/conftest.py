@@ -59,7 +59,5 @@ def rooms(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
     )
     for name in vars(fakes):
         # looked up at each call, so that a test can exchange one
-        monkeypatch.setattr(
-            stages, name, lambda *args, _name=name: getattr(fakes, _name)(*args), raising=False
-        )
+        monkeypatch.setattr(stages, name, lambda *args, _name=name: getattr(fakes, _name)(*args), raising=False)
     return fakes

@@ -18,7 +18,8 @@ ANYWHERE = {
     ("saturation", "readout"): {"limit_V": log_between(0.01, 10.0), "sharpness": log_between(1.0, 100.0)},
     ("mains-hum", "readout"): {"frequency_Hz": between(40.0, 70.0), "amplitude_V": between(0.0, 1.0)},
     ("pyroelectric-drift", "film"): {
-        "temperature_step_K": between(-1.0, 1.0), "time_constant_s": log_between(0.1, 10.0),
+        "temperature_step_K": between(-1.0, 1.0),
+        "time_constant_s": log_between(0.1, 10.0),
     },
     ("contact-electrification", "film"): {"charge_pC": between(-50.0, 50.0)},
     ("film-yield", "film"): {"yield_stress_MPa": log_between(2.0, 100.0), "hardening_modulus_MPa": between(0.0, 100.0)},

@@ -212,8 +212,17 @@ def bond(one, other):
 
 
 MISTAKES = (
-    wrong_number, wrong_type, unknown_key, missing_key, material_without_stiffness, overlapping_electrodes,
-    impossible_mechanism, impossible_mechanism, impossible_mechanism, contradiction, contradiction,
+    wrong_number,
+    wrong_type,
+    unknown_key,
+    missing_key,
+    material_without_stiffness,
+    overlapping_electrodes,
+    impossible_mechanism,
+    impossible_mechanism,
+    impossible_mechanism,
+    contradiction,
+    contradiction,
 )
 POSITIVE = {
     "length_mm", "width_mm", "thickness_mm", "thickness_um", "height_mm", "diameter_mm", "youngs_modulus_MPa",

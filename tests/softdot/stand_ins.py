@@ -45,8 +45,12 @@ def result_of(depths_mm: list[float], failure: str | None = None, stress_MPa: fl
     """A press that reached these depths and then, with a failure, stopped."""
     depths = np.array(depths_mm)
     trace = Trace(
-        time_s=depths, indentation_m=1e-3 * depths, dot_path_m=1e-3 * depths, reaction_force_N=10.0 * depths,
-        contact_force_N=10.0 * depths[:, None] * [0, 0, 1], film_charge_C=20e-12 * depths[:, None],
+        time_s=depths,
+        indentation_m=1e-3 * depths,
+        dot_path_m=1e-3 * depths,
+        reaction_force_N=10.0 * depths,
+        contact_force_N=10.0 * depths[:, None] * [0, 0, 1],
+        film_charge_C=20e-12 * depths[:, None],
         contact_area_m2=1e-6 * depths,
     )
     return PressResult(

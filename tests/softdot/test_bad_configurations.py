@@ -1,7 +1,5 @@
 """Every mistake in a configuration: one sentence, exit 2, nothing written."""
 
-
-
 import pytest
 
 from softdot.cli import main
@@ -50,9 +48,7 @@ CASES = {
     # numbers out of range
     "[press]\nindentation_mm = 0.0": "press.indentation_mm = 0: must be above 0",
     "[press]\nindentation_mm = -0.3": "press.indentation_mm = -0.3: must be above 0",
-    "[press]\nindentation_mm = 1e200": (
-        "press.indentation_mm = 1e+200: must be at most 1e+12 in size"
-    ),
+    "[press]\nindentation_mm = 1e200": ("press.indentation_mm = 1e+200: must be at most 1e+12 in size"),
     "[dot]\nbase_diameter_mm = 1e-200": "dot.base_diameter_mm = 0: must be above 0",
     "[press]\nload_steps = 0": "press.load_steps = 0: must be at least 1",
     "[dot]\ncell_dot = 9": "dot.cell_dot = 9: must be at most 8",
@@ -73,9 +69,7 @@ CASES = {
     "[materials.vnr]\npoisson_ratio = -1.0": "materials.vnr.poisson_ratio = -1: must be above -1 and below 0.5",
     "[materials.vnr]\npoisson_ratio = nan": "materials.vnr.poisson_ratio = nan: must be above -1 and below 0.5",
     "[materials.vnr]\nyoungs_modulus_MPa = -5.0": "materials.vnr.youngs_modulus_MPa = -5: must be above 0",
-    "[materials.x]\nmodel = 'neo-hookean'": (
-        "materials.x.youngs_modulus_MPa is missing: small-strain Young's modulus"
-    ),
+    "[materials.x]\nmodel = 'neo-hookean'": ("materials.x.youngs_modulus_MPa is missing: small-strain Young's modulus"),
     "[materials.x]\nmodel = 'yeo'\nc10_MPa = 1.0": "materials.x.model = 'yeo': did you mean 'yeoh'?",
     "[materials.x]\nmodel = 'mooney-rivlin'\nc10_MPa = 1.0\nc01_MPa = -1.0": (
         "materials.x: small-strain shear modulus = 0 MPa: 2 (c10_MPa + c01_MPa) must be above 0"
@@ -96,14 +90,11 @@ CASES = {
         "segment.effector.material = 'ruber': no such material; did you mean 'rubber'?"
     ),
     "[segment.effector]\nmaterial = 'pvdf'": (
-        "segment.effector.material = 'pvdf': this material is of model 'piezoelectric-film'; "
-        "effector must not be one"
+        "segment.effector.material = 'pvdf': this material is of model 'piezoelectric-film'; effector must not be one"
     ),
     # physics that is known but not modelled
     "[[mechanisms]]\nname = 'visco'": "mechanisms[0].name = 'visco': did you mean 'viscoelasticity'?",
-    "[[mechanisms]]\nname = 'friction'\ncomponent = 'film'": (
-        "mechanisms[0].component = 'film': friction acts on dot"
-    ),
+    "[[mechanisms]]\nname = 'friction'\ncomponent = 'film'": ("mechanisms[0].component = 'film': friction acts on dot"),
     "[[mechanisms]]\nname = 'friction'\ncomponent = 'dot'\nparameters = {mu = 0.3}": (
         "mechanisms[0].parameters.mu: friction takes coefficient"
     ),
@@ -116,9 +107,7 @@ CASES = {
     PRONY.format("[0.6]", "[0.1, 1.0]"): (
         "mechanisms[0].parameters.relaxation_times_s has 2 values but relative_moduli has 1: one of each per term"
     ),
-    PRONY.format("[0.6]", "[-0.1]"): (
-        "mechanisms[0].parameters.relaxation_times_s.0 = -0.1: must be greater than 0"
-    ),
+    PRONY.format("[0.6]", "[-0.1]"): ("mechanisms[0].parameters.relaxation_times_s.0 = -0.1: must be greater than 0"),
     "[[mechanisms]]\nname = 'friction'\ncomponent = 'dot'\nparameters = {coefficient = -0.1}": (
         "mechanisms[0].parameters.coefficient = -0.1: must be greater than or equal to 0"
     ),
@@ -128,8 +117,7 @@ CASES = {
         "add adhesive-compliance or segment.bonds"
     ),
     "[[mechanisms]]\nname = 'crosstalk'\ncomponent = 'channel-2'\nparameters = {coupling = 0.1}": (
-        "mechanisms: crosstalk into 'channel-2' needs that electrode and another one; "
-        "segment.film.electrodes has 0"
+        "mechanisms: crosstalk into 'channel-2' needs that electrode and another one; segment.film.electrodes has 0"
     ),
     f"[[segment.bonds]]\nbetween = ['film', 'glue']\n{BOND}": (
         "segment.bonds[0].between[1] = 'glue': must be 'effector', 'medium1', 'film', 'medium2' or 'base'"
@@ -158,8 +146,7 @@ WHOLE_FILES = {
         "segment.medium2.material = 'vnr_soft': no such material; did you mean 'vnr-soft'?"
     ),
     MINIMAL.replace("thickness_um", "material = 'vnr'\nthickness_um"): (
-        "segment.film.material = 'vnr': this material is of model 'neo-hookean'; "
-        "the film needs a piezoelectric-film"
+        "segment.film.material = 'vnr': this material is of model 'neo-hookean'; the film needs a piezoelectric-film"
     ),
 }
 

@@ -41,9 +41,7 @@ def test_a_file_on_the_way(tmp_path, refused):
 def test_a_folder_with_other_things(tmp_path, refused):
     (tmp_path / "thesis.tex").write_text("mine")
     said = refused(tmp_path)
-    assert said == (
-        f"output '{tmp_path}': holds 'thesis.tex', which softdot did not write; name a new or empty folder"
-    )
+    assert said == (f"output '{tmp_path}': holds 'thesis.tex', which softdot did not write; name a new or empty folder")
     assert os.listdir(tmp_path) == ["thesis.tex"]
 
 

@@ -62,7 +62,7 @@ def test_every_mistake_is_told_once_and_nothing_else(checked):
 
 
 def test_each_mistake_alone_is_the_sentence_of_a_run(checked, tmp_path, capfd):
-    _, _, err = checked('[press]\nindentation_mm = 9.0\n')
+    _, _, err = checked("[press]\nindentation_mm = 9.0\n")
     assert main(["run", str(tmp_path / "mine.toml"), "-o", str(tmp_path / "out")]) == 2
     assert capfd.readouterr().err == err
 

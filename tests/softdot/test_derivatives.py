@@ -10,7 +10,9 @@ from softdot.differentiate import derivatives, value_of
 
 TABLES = {
     "segment": {
-        "effector": {}, "medium1": {"thickness_mm": 0.5}, "film": {"thickness_um": 28.0},
+        "effector": {},
+        "medium1": {"thickness_mm": 0.5},
+        "film": {"thickness_um": 28.0},
         "medium2": {"thickness_mm": 2.0},
     },
     "press": {"indentation_mm": 0.1, "load_steps": 2},

@@ -32,14 +32,20 @@ material = "sponge"
 [fabrication]
 cavities = [1, 1]
 """
-DOME = """
+DOME = (
+    """
 [segment.effector]
 shape = "dome"
 diameter_mm = 2.0
 height_mm = 0.8
 material = "dragon-skin-10"
-""" + MINIMAL
-COARSE = "[segment.effector]" + MINIMAL + """
+"""
+    + MINIMAL
+)
+COARSE = (
+    "[segment.effector]"
+    + MINIMAL
+    + """
 material = "vnr-soft"
 [fabrication]
 cavities = [1, 1]
@@ -51,6 +57,7 @@ element_size_mm = 0.6
 contact_element_size_mm = 0.4
 mesher = "layered"
 """
+)
 NOMINAL, CHANGE, NOTHING = Response(0.5, 9.0), Response(0.05, 1.8), Response(0.0, 0.0)
 MADE_UP = Budget(
     NOMINAL, NOTHING, CHANGE,

@@ -34,9 +34,7 @@ def pressed():
     rim = np.where(from_side(centre) < 0.07, 50.0, 1.0)
     level = 0.01 * np.exp(-0.5 * (centre[:, :2] ** 2).sum(axis=1)) * rim
     strain = level[:, None] * [1.0, 0.2, -0.5, 0.0, 0.0, 0.0]
-    fields = replace(
-        last.fields, film_strain=strain, film_stress_Pa=2e9 * strain, charge_density_C_per_m2=1e-2 * level
-    )
+    fields = replace(last.fields, film_strain=strain, film_stress_Pa=2e9 * strain, charge_density_C_per_m2=1e-2 * level)
     steps = (*result.steps[:-1], replace(last, fields=fields))
     return tet_mesh, replace(result, steps=steps, film_peak=film_peak((steps[-1],), tet_mesh, SEGMENT))
 

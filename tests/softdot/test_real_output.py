@@ -107,8 +107,6 @@ def test_slicer_finds_every_printable_part_and_the_3mf_manifold(out: Path, parts
 
 def manifold_answers(path: Path) -> list[str]:
     """PrusaSlicer's word on each object of a file."""
-    done = subprocess.run(
-        ["prusa-slicer", "--info", path], capture_output=True, text=True, timeout=120, check=True
-    )
+    done = subprocess.run(["prusa-slicer", "--info", path], capture_output=True, text=True, timeout=120, check=True)
     lines = [line.split(" = ") for line in done.stdout.splitlines()]
     return [line[1].strip() for line in lines if line[0].strip() == "manifold"]

@@ -18,9 +18,7 @@ def two_electrodes():
     """10 pF carrying 20 pC and 30 pF carrying 30 pC at the last of two steps."""
     charge, capacitance = np.array([20e-12, 30e-12]), np.array([10e-12, 30e-12])
     steps = [
-        dataclasses.replace(
-            step, film_charge_C=share * charge, open_circuit_voltage_V=share * charge / capacitance
-        )
+        dataclasses.replace(step, film_charge_C=share * charge, open_circuit_voltage_V=share * charge / capacitance)
         for step, share in zip(result_of([0.0, 0.3]).steps, [0.0, 1.0], strict=True)
     ]
     return dataclasses.replace(
@@ -52,9 +50,7 @@ def test_sensitivity_is_that_of_the_amplifier_and_its_noise():
 
 
 def test_json_has_no_nan():
-    text = json_text(
-        {"a": float("nan"), "b": [np.inf, np.float64(1.0)], "c": np.arange(2), "d": np.bool_(True)}
-    )
+    text = json_text({"a": float("nan"), "b": [np.inf, np.float64(1.0)], "c": np.arange(2), "d": np.bool_(True)})
     assert json.loads(text) == {"a": None, "b": [None, 1.0], "c": [0, 1], "d": True}
 
 

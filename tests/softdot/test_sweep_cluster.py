@@ -58,7 +58,8 @@ def refused(space, address, tmp_path, capfd):
 
 
 @pytest.mark.parametrize(
-    "address", ["", "8786", "localhost", "localhost:8786", "http://localhost:8786", "tcp://", "tcp://a:b", "tcp://a:99999"]
+    "address",
+    ["", "8786", "localhost", "localhost:8786", "http://localhost:8786", "tcp://", "tcp://a:b", "tcp://a:99999"],
 )
 def test_what_is_no_address(space, address, tmp_path, capfd):
     assert refused(space, address, tmp_path, capfd) == (
@@ -103,7 +104,11 @@ def scheduler():
     from distributed import LocalCluster
 
     with LocalCluster(
-        n_workers=1, threads_per_worker=1, processes=False, protocol="tcp", host="127.0.0.1",
+        n_workers=1,
+        threads_per_worker=1,
+        processes=False,
+        protocol="tcp",
+        host="127.0.0.1",
         scheduler_kwargs=NO_DASHBOARD,
     ) as cluster:
         yield cluster
@@ -160,9 +165,12 @@ def test_a_scheduler_that_goes_away_is_one_sentence_and_the_points_stay(tmp_path
     from distributed import LocalCluster
 
     given = space_from(space_of(depths(*DEPTHS_MM)))
-    with LocalCluster(
-        n_workers=1, processes=False, protocol="tcp", host="127.0.0.1", scheduler_kwargs=NO_DASHBOARD
-    ) as cluster, pytest.raises(InputError, match="the Dask scheduler disappeared; finished points are kept"):
+    with (
+        LocalCluster(
+            n_workers=1, processes=False, protocol="tcp", host="127.0.0.1", scheduler_kwargs=NO_DASHBOARD
+        ) as cluster,
+        pytest.raises(InputError, match="the Dask scheduler disappeared; finished points are kept"),
+    ):
         run_sweep(given, tmp_path / "out", cluster.scheduler_address, Closer(cluster))
     kept = len(list(tmp_path.glob("out/points/*.json")))
     assert 1 <= kept < len(DEPTHS_MM)
@@ -209,7 +217,10 @@ def test_a_point_that_kills_its_worker_becomes_a_row_with_its_reason():
     with local_cluster(2) as client:
         records = dict(solve_all(client, configs))
     assert {name: record["status"] for name, record in records.items()} == {
-        "deadly": "lost", "0.03": "solved", "0.04": "solved", "0.05": "solved",
+        "deadly": "lost",
+        "0.03": "solved",
+        "0.04": "solved",
+        "0.05": "solved",
     }
     assert records["deadly"]["reason"] == "its worker died each time, perhaps for lack of memory"
 

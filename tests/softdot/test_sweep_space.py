@@ -152,14 +152,16 @@ def test_a_logarithmic_grid_has_equal_ratios_and_exact_ends():
 def test_a_list_takes_first_with_first():
     axes = ({"key": T1, "values": [0.5, 0.8]}, depths(0.1, 0.05))
     assert [tuple(p.values.values()) for p in space_from(space_of(*axes, sampling="list")).points] == [
-        (0.5, 0.1), (0.8, 0.05),
+        (0.5, 0.1),
+        (0.8, 0.05),
     ]
 
 
 def test_tied_keys_have_one_value():
     space = space_from(space_of({"keys": [T1, T2], "values": [0.5, 0.8]}))
     assert [(p.config.segment.medium1.thickness_mm, p.config.segment.medium2.thickness_mm) for p in space.points] == [
-        (0.5, 0.5), (0.8, 0.8),
+        (0.5, 0.5),
+        (0.8, 0.8),
     ]
 
 

@@ -24,9 +24,7 @@ def test_holding_medium2_closes_a_cavity():
     assert "0.495" in warning
     assert warn(boundary="free", held_layers=every) == []
     assert warn(boundary="clamped") == []
-    assert (
-        warn(boundary="clamped", held_layers=every, medium2={"thickness_mm": 2, "material": "sponge"}) == []
-    )
+    assert warn(boundary="clamped", held_layers=every, medium2={"thickness_mm": 2, "material": "sponge"}) == []
 
 
 def test_film_beyond_yield():

@@ -23,9 +23,7 @@ class KilledError(Exception):
 def press(checkpoint=None, on_step=None):
     stack = segment()
     tet_mesh = coarse_mesh(stack, cap(stack))
-    return press_segment(
-        stack, materials(), cap(stack), PRESS, tet_mesh, on_step, VISCOUS, checkpoint=checkpoint
-    )
+    return press_segment(stack, materials(), cap(stack), PRESS, tet_mesh, on_step, VISCOUS, checkpoint=checkpoint)
 
 
 def kill_at(step):

@@ -11,8 +11,15 @@ AT_REST = np.zeros(3)
 
 def dot(kind="cap", radius=0.8, height=0.5, foot=0.0, centers=((0.0, 0.0),), rotation=None):
     return RigidDot(
-        DotShape(kind, radius, height, foot, np.array(centers), np.array([0.1, 0.2, 3.0]),
-                 np.eye(3) if rotation is None else rotation),
+        DotShape(
+            kind,
+            radius,
+            height,
+            foot,
+            np.array(centers),
+            np.array([0.1, 0.2, 3.0]),
+            np.eye(3) if rotation is None else rotation,
+        ),
         unit_mm=1.0,
     )
 

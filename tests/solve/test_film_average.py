@@ -60,9 +60,7 @@ def press_with_rim():
     factor = np.where(rim, 100.0, 1.0)
     last = result.steps[-1]
     flat = np.full((len(rim), 6), [0.01, 0, 0, 0, 0, 0]) * factor[:, None]
-    fields = replace(
-        last.fields, film_strain=flat, film_stress_Pa=2e9 * flat, charge_density_C_per_m2=1e-6 * factor
-    )
+    fields = replace(last.fields, film_strain=flat, film_stress_Pa=2e9 * flat, charge_density_C_per_m2=1e-6 * factor)
     return tet_mesh, (replace(last, fields=fields),)
 
 

@@ -77,9 +77,7 @@ class Patch:
 def random_state(rng, roughness, drag):
     """Unknowns of a rough surface under pressure (open at some nodes) and its friction."""
     pressure = rng.uniform(-0.3, 1.0, 25)
-    return np.concatenate(
-        [roughness * rng.standard_normal(75), pressure, drag * rng.standard_normal(75), [0.05]]
-    )
+    return np.concatenate([roughness * rng.standard_normal(75), pressure, drag * rng.standard_normal(75), [0.05]])
 
 
 STATES = {"stick": (60.0, 0.2, 0.0), "slip": (0.2, 0.3, 0.4), "mixed": (0.6, 0.3, 0.1), "frictionless": (0.0, 0.3, 0.1)}

@@ -32,7 +32,11 @@ def walk(elastic):
         start = Target(0.0, Load((0.0, 0.0), 0.0), True)
         past, times = [rest_state(system, solver, start)], []
         failure = march(
-            system, solver, past, Target(1.0, Load((0.0, 0.0), elastic.full_drive), True), kink,
+            system,
+            solver,
+            past,
+            Target(1.0, Load((0.0, 0.0), elastic.full_drive), True),
+            kink,
             lambda state, before: times.append((before.time, state.time)),
         )
         return failure, times, past

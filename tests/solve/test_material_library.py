@@ -30,9 +30,7 @@ def test_a_silicone_pulled_to_twice_its_length_has_the_measured_stress(name, str
 
 
 def test_every_material_states_its_source_and_confidence():
-    assert [
-        name for name, material in library().items() if not (material.source and material.confidence)
-    ] == []
+    assert [name for name, material in library().items() if not (material.source and material.confidence)] == []
 
 
 @pytest.mark.parametrize(("name", "g31"), [("pvdf", 0.216), ("pvdf-trfe", 0.162)])

@@ -87,8 +87,10 @@ def test_the_tangent_is_the_derivative_of_the_relaxed_stress():
     law, memory = np.diag(np.arange(1.0, 7.0)), SERIES.start(1)
     _, memory = SERIES.update(Response(np.ones((1, 6)), law[None]), memory, 0.1)
     strain, change = np.linspace(0.1, 0.6, 6), 1e-3
-    at = [SERIES.update(Response((s @ law)[None], law[None]), memory, 0.2)[0] for s in
-          (strain, *(strain + change * e for e in np.eye(6)))]
+    at = [
+        SERIES.update(Response((s @ law)[None], law[None]), memory, 0.2)[0]
+        for s in (strain, *(strain + change * e for e in np.eye(6)))
+    ]
     slope = np.stack([(r.stress - at[0].stress)[0] / change for r in at[1:]], axis=1)
     np.testing.assert_allclose(at[0].tangent[0], slope, atol=1e-10)
 

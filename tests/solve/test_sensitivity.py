@@ -45,20 +45,36 @@ VISCOUS = ("viscoelasticity", "medium2", {"relative_moduli": [0.3], "relaxation_
 CASES = {
     "modulus of an elastic layer": (1.0, lambda p: with_modulus(model(), "medium2", p)),
     "modulus of a viscous stack": (5.0, lambda p: with_modulus(model(VISCOUS), "medium1", p)),
-    "relative modulus": (0.3, lambda p: model(("viscoelasticity", "medium2", {
-        "relative_moduli": [p], "relaxation_times_s": [0.1]}))),
-    "relaxation time": (0.1, lambda p: model(("viscoelasticity", "medium2", {
-        "relative_moduli": [0.3], "relaxation_times_s": [p]}))),
+    "relative modulus": (
+        0.3,
+        lambda p: model(("viscoelasticity", "medium2", {"relative_moduli": [p], "relaxation_times_s": [0.1]})),
+    ),
+    "relaxation time": (
+        0.1,
+        lambda p: model(("viscoelasticity", "medium2", {"relative_moduli": [0.3], "relaxation_times_s": [p]})),
+    ),
     "thickness of a medium": (0.5, lambda p: thickness(model(), "medium1", "thickness_mm", p)),
     "thickness of the film": (28.0, lambda p: thickness(model(), "film", "thickness_um", p)),
     "side stiffness": (5.0, lambda p: with_segment(model(), boundary="elastic", side_stiffness_N_per_mm3=p)),
-    "bond stiffness": (10.0, lambda p: model(("adhesive-compliance", "bond-film-medium2", {
-        "normal_stiffness_N_per_mm3": 50.0, "shear_stiffness_N_per_mm3": p}))),
+    "bond stiffness": (
+        10.0,
+        lambda p: model(
+            (
+                "adhesive-compliance",
+                "bond-film-medium2",
+                {"normal_stiffness_N_per_mm3": 50.0, "shear_stiffness_N_per_mm3": p},
+            )
+        ),
+    ),
     "friction": (0.4, lambda p: model(("friction", "dot", {"coefficient": p}))),
     "softening": (0.3, lambda p: model(("stress-softening", "medium2", {"loss_ratio": p}))),
     "rig compliance": (0.1, lambda p: model(("rig-compliance", "rig", {"compliance_mm_per_N": p}))),
-    "moving mass": (50.0, lambda p: model(
-        ("inertia", "rig", {"moving_mass_g": p}), ("rig-compliance", "rig", {"compliance_mm_per_N": 0.1}))),
+    "moving mass": (
+        50.0,
+        lambda p: model(
+            ("inertia", "rig", {"moving_mass_g": p}), ("rig-compliance", "rig", {"compliance_mm_per_N": 0.1})
+        ),
+    ),
     "dot offset": (0.1, lambda p: model(("dot-offset", "dot", {"offset_mm": [p, 0.0]}))),
     "dot radius": (1.1, lambda p: model(("property-error", "dot", {"radius_factor": p}))),
     "prestretch": (0.004, lambda p: model(("film-prestretch", "film", {"strain_x": p}))),

@@ -62,6 +62,7 @@ def test_a_force_of_what_the_depth_took_gives_the_depth():
 @pytest.mark.slow
 def test_elastic_sides_lie_between_free_and_clamped():
     """Stiffness 0 is free; a very stiff case is clamped."""
+
     def force(**sides):
         stack = segment(**sides)
         return last(stack, materials(), cap(stack)).reaction_force_N

@@ -123,7 +123,13 @@ def _set(name: str, nodes: Ints) -> list[str]:
 def _step(increments: int, slide: float, depth: float) -> list[str]:
     increment = 1.0 / increments
     return [
-        "*STEP, NLGEOM, INC=10000", "*STATIC", f"{increment:.12g}, 1.0, 1e-6, {increment:.12g}", "*BOUNDARY",
-        f"DIE, 1, 1, {slide:.12g}", f"DIE, 3, 3, {-depth:.12g}",
-        "*NODE PRINT, NSET=DIE, TOTALS=ONLY, FREQUENCY=1", "RF", "*END STEP",
+        "*STEP, NLGEOM, INC=10000",
+        "*STATIC",
+        f"{increment:.12g}, 1.0, 1e-6, {increment:.12g}",
+        "*BOUNDARY",
+        f"DIE, 1, 1, {slide:.12g}",
+        f"DIE, 3, 3, {-depth:.12g}",
+        "*NODE PRINT, NSET=DIE, TOTALS=ONLY, FREQUENCY=1",
+        "RF",
+        "*END STEP",
     ]

@@ -117,8 +117,9 @@ def _area(x: Floats) -> Floats:
 def _film(system: System, trial, state: State) -> float:
     film = system.film
     elastic = film.strain_and_stress(trial, system.history_of(film, state))[1].reshape(-1, 6)
-    return 0.5 * float(np.einsum("ni,ni,n->", elastic, np.linalg.solve(film.law.stiffness, elastic.T).T,
-                                 film.weight.ravel()))
+    return 0.5 * float(
+        np.einsum("ni,ni,n->", elastic, np.linalg.solve(film.law.stiffness, elastic.T).T, film.weight.ravel())
+    )
 
 
 def lost(system: System, state: State, before: State) -> float:
@@ -136,8 +137,10 @@ def _lost_in_medium(system: System, solid: SolidRegion, state: State, before: St
     volume, total = solid.weight.ravel(), 0.0
     for law, old, now in zip(solid.inelastic, *histories, strict=True):
         if isinstance(law, Softening):
-            lost_so_far = [law.loss * (law.energy + law.beta * m[0]) *
-                           _area(m[0] / (law.energy + law.beta * m[0] + 1e-300)) for m in (old, now)]
+            lost_so_far = [
+                law.loss * (law.energy + law.beta * m[0]) * _area(m[0] / (law.energy + law.beta * m[0] + 1e-300))
+                for m in (old, now)
+            ]
             total += float((lost_so_far[1] - lost_so_far[0]) @ volume)
         if isinstance(law, Prony):
             rate = 1.0 / (2.0 * solid.law.shear_modulus * np.array(law.relative_moduli) * law.relaxation_times)
@@ -151,7 +154,9 @@ def _plastic_work(system: System, state: State, before: State) -> float:
     memories = [system.history_of(film, s) for s in (before, state)]
     for law, old, now in zip(film.inelastic, *memories, strict=True):
         if isinstance(law, FilmPlasticity):
-            stress = [film.strain_and_stress(trial_of(system, s, s), h)[1].reshape(-1, 6)
-                      for s, h in zip((before, state), memories, strict=True)]
+            stress = [
+                film.strain_and_stress(trial_of(system, s, s), h)[1].reshape(-1, 6)
+                for s, h in zip((before, state), memories, strict=True)
+            ]
             total += float(np.einsum("ni,ni,n->", 0.5 * (stress[0] + stress[1]), now[0] - old[0], film.weight.ravel()))
     return total

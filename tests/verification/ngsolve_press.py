@@ -86,8 +86,12 @@ class DotPress(PlatePress):
             self.state.vec.data -= step
             solved = perf_counter()
             self.timing.append(
-                {"assembly_s": assembled - start, "factorisation_s": factorised - assembled,
-                 "solution_s": solved - factorised, "residual": size}
+                {
+                    "assembly_s": assembled - start,
+                    "factorisation_s": factorised - assembled,
+                    "solution_s": solved - factorised,
+                    "residual": size,
+                }
             )
         raise RuntimeError(f"NGSolve did not converge at {self.depth.Get()} mm")
 

@@ -45,9 +45,15 @@ def save_case(path: Path, part: LinearMesh, stack: Segment, **constants: object)
     """A quarter with its named facets, and constants, for a program that knows nothing of this project."""
     facets = _named(part, stack)
     np.savez(
-        path, points=part.points_mm, tets=part.tets, region=part.region, region_names=part.region_names,
-        held=np.array(stack.held_layers, str), facet_names=list(facets),
-        **{f"facet:{name}": nodes for name, nodes in facets.items()}, **constants,
+        path,
+        points=part.points_mm,
+        tets=part.tets,
+        region=part.region,
+        region_names=part.region_names,
+        held=np.array(stack.held_layers, str),
+        facet_names=list(facets),
+        **{f"facet:{name}": nodes for name, nodes in facets.items()},
+        **constants,
     )
 
 

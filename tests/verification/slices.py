@@ -66,8 +66,9 @@ def setup_of(press: Press, physics: Physics, own=None, readout: Readout | None =
     stack = BLOCK if flat else STACK
     opened_mesh, opened = open_interfaces(mesh_of(flat), physics.bonds, physics.delaminations, True)
     own = own or (foams() if flat else materials())
-    return set_up(Model(stack, own, Dot(), press, readout, physics), plate(stack) if flat else ridge(stack),
-                  opened_mesh, opened)
+    return set_up(
+        Model(stack, own, Dot(), press, readout, physics), plate(stack) if flat else ridge(stack), opened_mesh, opened
+    )
 
 
 def force(result: PressResult):

@@ -16,12 +16,28 @@ from tests.verification.row import agrees
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(CCX is None, reason="CalculiX (ccx) is not installed")]
 CELL_MM = 0.1
 PRESS = Slide(
-    radius_mm=1.0, depth_mm=0.1, slide_mm=0.0, youngs_modulus_MPa=1.0, poisson_ratio=0.45, friction=0.0,
-    normal_penalty=1000.0, slip_penalty=0.0, press_increments=5, slide_increments=0,
+    radius_mm=1.0,
+    depth_mm=0.1,
+    slide_mm=0.0,
+    youngs_modulus_MPa=1.0,
+    poisson_ratio=0.45,
+    friction=0.0,
+    normal_penalty=1000.0,
+    slip_penalty=0.0,
+    press_increments=5,
+    slide_increments=0,
 )
 DRAG = Slide(
-    radius_mm=1.0, depth_mm=0.1, slide_mm=0.1, youngs_modulus_MPa=1.0, poisson_ratio=0.45, friction=0.3,
-    normal_penalty=1000.0, slip_penalty=200.0, press_increments=5, slide_increments=40,
+    radius_mm=1.0,
+    depth_mm=0.1,
+    slide_mm=0.1,
+    youngs_modulus_MPa=1.0,
+    poisson_ratio=0.45,
+    friction=0.3,
+    normal_penalty=1000.0,
+    slip_penalty=200.0,
+    press_increments=5,
+    slide_increments=40,
 )
 
 

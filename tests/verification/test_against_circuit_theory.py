@@ -31,8 +31,12 @@ class Strip:
 
     def __init__(self, d31: float, resistance: float, input_capacitance: float) -> None:
         material = PiezoelectricFilm(
-            youngs_modulus_MPa=1e-6 * YOUNG, poisson_ratio=0.29, d31_pC_per_N=1e12 * d31, d32_pC_per_N=0.0,
-            d33_pC_per_N=0.0, relative_permittivity=12.0,
+            youngs_modulus_MPa=1e-6 * YOUNG,
+            poisson_ratio=0.29,
+            d31_pC_per_N=1e12 * d31,
+            d32_pC_per_N=0.0,
+            d33_pC_per_N=0.0,
+            relative_permittivity=12.0,
         )
         law = film_law(material, 0.0)
         law = replace(

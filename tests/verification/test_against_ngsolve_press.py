@@ -28,16 +28,22 @@ pytestmark = [
 PROGRAM = Path(__file__).with_name("ngsolve_press.py")
 DEPTH_MM, STEPS = 0.3, 4
 AUGMENTATION_MPA_PER_MM = 20.0  # a quarter of it moves the force by 0.05 %, the voltage by 0.2 %
-MESH = MeshOptions(
-    mesher="layered", contact_element_size_mm=0.12, element_size_mm=0.5, film_element_size_mm=0.45
-)
+MESH = MeshOptions(mesher="layered", contact_element_size_mm=0.12, element_size_mm=0.5, film_element_size_mm=0.45)
 
 
 def by_ngsolve(part, stack, dot, path):
     """History of the whole segment from a process of its own: {depth in um: (force N, voltage V)}."""
     save_case(
-        path, part, stack, depth=DEPTH_MM, steps=STEPS, radius=dot.radius_mm, augmentation=AUGMENTATION_MPA_PER_MM,
-        media=["effector", "medium1", "medium2"], moduli=[1.0, 5.0, 1.0], film_thickness=0.028,
+        path,
+        part,
+        stack,
+        depth=DEPTH_MM,
+        steps=STEPS,
+        radius=dot.radius_mm,
+        augmentation=AUGMENTATION_MPA_PER_MM,
+        media=["effector", "medium1", "medium2"],
+        moduli=[1.0, 5.0, 1.0],
+        film_thickness=0.028,
     )
     done = subprocess.run([sys.executable, PROGRAM, path], capture_output=True, text=True, check=True)
     history = json.loads(done.stdout.splitlines()[-1])["history"]

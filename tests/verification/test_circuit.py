@@ -109,4 +109,3 @@ def test_what_leaks_through_the_resistance_is_missing_on_the_capacitance(plain):
 def test_the_capacitance_of_the_film_is_that_of_a_plate_capacitor(plain):
     """eps A / t of 2.5 x 2.5 mm, 28 um: 23.7 pF."""
     assert plain.capacitance_F[0] == pytest.approx(12.0 * 8.8541878128e-12 * 6.25e-6 / 28e-6, rel=1e-6)
-

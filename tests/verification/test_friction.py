@@ -210,8 +210,15 @@ def column(coefficient):
     points, tets = box(2)
     level = np.unique(np.round(points[:, 2], 9), return_inverse=True)[1] - 1  # -1 at the base
     numbers = np.column_stack([level, np.full(len(level), -1), np.where(level < 0, -1, level + level.max() + 1)])
-    body = Block(points, tets, neo_hookean(SHEAR, 0.45), rigid("plate", [0.5, 0.5, HEIGHT]), numbers, coefficient,
-                 node=np.zeros(len(points), int))
+    body = Block(
+        points,
+        tets,
+        neo_hookean(SHEAR, 0.45),
+        rigid("plate", [0.5, 0.5, HEIGHT]),
+        numbers,
+        coefficient,
+        node=np.zeros(len(points), int),
+    )
     return body.step(0.0, 0.0, -DEPTH)
 
 

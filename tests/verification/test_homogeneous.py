@@ -10,6 +10,7 @@ from tests.verification.lattice import grid
 INCOMPRESSIBLE = InvariantLaw(0.5, 0.0, 0.0, 0.0, 1e6)  # mu = 1
 ROUNDING = 5.01e-5  # of the four decimals in the table
 
+
 def nominal_stress(stretch: float, driven: tuple[int, ...], held: tuple[int, ...] = ()) -> float:
     """Reaction per undeformed area on x = 1 with the faces of some axes driven, others held."""
     shape = grid([np.linspace(0.0, 1.0, 4)] * 3, jitter=0.2)

@@ -82,8 +82,16 @@ def test_element_tangent_is_the_derivative_of_its_residual():
         ke, re = np.empty((1, 34, 34)), np.empty((1, 34))
         q = len(reference)
         mixed_solid(
-            gradient, weight, linear(reference), f, x[None, 30:], law.bulk_modulus,
-            s.reshape(1, q, 6), cc.reshape(1, q, 6, 6), ke, re,
+            gradient,
+            weight,
+            linear(reference),
+            f,
+            x[None, 30:],
+            law.bulk_modulus,
+            s.reshape(1, q, 6),
+            cc.reshape(1, q, 6, 6),
+            ke,
+            re,
         )
         return np.triu(ke[0]) + np.triu(ke[0], 1).T, re[0]
 

@@ -28,9 +28,7 @@ def solve(name=None, component="medium2", press=PRESS, readout=None, **parameter
     dot = resolve_dot(model.dot, model.segment)
     same = model.segment.model_copy(update={"boundary": STACK.boundary}) == STACK
     tet_mesh = mesh_of(False) if same else coarse_mesh(model.segment, dot, COARSE)
-    result = press_segment(
-        model.segment, model.materials, dot, press, tet_mesh, None, model.physics, model.readout
-    )
+    result = press_segment(model.segment, model.materials, dot, press, tet_mesh, None, model.physics, model.readout)
     assert result.converged, result.failure
     return result, model
 

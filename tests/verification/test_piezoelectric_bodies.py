@@ -20,8 +20,12 @@ STRESS = 1e9
 def scaled_law(d31: float) -> FilmLaw:
     """The film in units of 1 m, STRESS and VOLT; only d31 couples."""
     material = PiezoelectricFilm(
-        youngs_modulus_MPa=1e-6 * YOUNG, poisson_ratio=POISSON, relative_permittivity=12.0,
-        d31_pC_per_N=1e12 * d31, d32_pC_per_N=0.0, d33_pC_per_N=0.0,
+        youngs_modulus_MPa=1e-6 * YOUNG,
+        poisson_ratio=POISSON,
+        relative_permittivity=12.0,
+        d31_pC_per_N=1e12 * d31,
+        d32_pC_per_N=0.0,
+        d33_pC_per_N=0.0,
     )
     law = film_law(material, 0.0)
     return FilmLaw(law.stiffness / STRESS, law.coupling * VOLT, law.permittivity * VOLT**2 / STRESS, law.to_film_axes)
@@ -58,9 +62,7 @@ def test_unimorph_voltage_is_the_curvature_times_the_distance_from_the_neutral_a
     """
     film, substrate, soft = 28e-6, 500e-6, 0.05 * YOUNG
     bottom, curvature, length = -substrate, 0.05, 2e-3
-    shape = grid(
-        (np.linspace(0.0, length, 4), np.linspace(0.0, 1e-3, 3), np.append(np.linspace(bottom, 0.0, 4), film))
-    )
+    shape = grid((np.linspace(0.0, length, 4), np.linspace(0.0, 1e-3, 3), np.append(np.linspace(bottom, 0.0, 4), film)))
     numbers = np.arange(shape.points.size).reshape(-1, 3)
     body = Body(shape.points, numbers, numbers.size)
     above = shape.centres[:, 2] > 0.0

@@ -36,9 +36,18 @@ def by_ngsolve(tet_mesh, held, path):
     names = [name for name in tet_mesh.facets if not name.startswith("film-")]
     facets = {f"facet:{name}": tet_mesh.facets[name][:, :3] for name in names}
     np.savez(
-        path, points=tet_mesh.points_mm, tets=tet_mesh.tets[:, :4], region=tet_mesh.region,
-        region_names=tet_mesh.region_names, facet_names=names, held=np.array(held, str), depth=DEPTH_MM,
-        media=["effector", "medium1", "medium2"], moduli=[1.0, 5.0, 1.0], film_thickness=0.028, **facets,
+        path,
+        points=tet_mesh.points_mm,
+        tets=tet_mesh.tets[:, :4],
+        region=tet_mesh.region,
+        region_names=tet_mesh.region_names,
+        facet_names=names,
+        held=np.array(held, str),
+        depth=DEPTH_MM,
+        media=["effector", "medium1", "medium2"],
+        moduli=[1.0, 5.0, 1.0],
+        film_thickness=0.028,
+        **facets,
     )
     done = subprocess.run([sys.executable, PROGRAM, path], capture_output=True, text=True, check=True)
     return json.loads(done.stdout.splitlines()[-1])

@@ -35,8 +35,13 @@ def equal_steps():
 def press(scale, physics):
     """A segment scale times as large; the mesh is the same one, scaled."""
     stack = segment(
-        section="plane-strain", length_mm=2.5 * scale, width_mm=2.5 * scale, medium1=Medium(thickness_mm=0.5 * scale),
-        film=Film(thickness_um=28.0 * scale), medium2=Medium(thickness_mm=2.0 * scale), effector=None,
+        section="plane-strain",
+        length_mm=2.5 * scale,
+        width_mm=2.5 * scale,
+        medium1=Medium(thickness_mm=0.5 * scale),
+        film=Film(thickness_um=28.0 * scale),
+        medium2=Medium(thickness_mm=2.0 * scale),
+        effector=None,
     )
     whole = mesh_of(False)
     tet_mesh = replace(whole, points_mm=scale * whole.points_mm, thickness_mm=scale * whole.thickness_mm)
@@ -75,4 +80,3 @@ def in_millimetres():
 def test_the_cases_are_not_all_the_same(in_millimetres):
     ends = [in_millimetres(case).trace.reaction_force_N.max() for case in CASES]
     assert np.unique(np.round(ends, 6)).size == len(ends)
-

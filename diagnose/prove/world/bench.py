@@ -37,7 +37,11 @@ class Bench:
 
 
 NUISANCE = (
-    ("gain", 0.02), ("force_gain", 0.02), ("lag_s", 0.001), ("offset_V", 0.02), ("offset_N", 0.01),
+    ("gain", 0.02),
+    ("force_gain", 0.02),
+    ("lag_s", 0.001),
+    ("offset_V", 0.02),
+    ("offset_N", 0.01),
     ("modulus.medium1", 0.05),
 )
 
@@ -58,10 +62,15 @@ CLAMPED = Bench(
     "ridge-clamped",
     Made(
         (
-            Layer("medium2", 2.0, 1.0), Film(held=True), Layer("medium1", 0.5, 5.0, held=True),
+            Layer("medium2", 2.0, 1.0),
+            Film(held=True),
+            Layer("medium1", 0.5, 5.0, held=True),
             Layer("effector", 1.0, 1.0, held=True),
         ),
-        2.5, 16.0, "ridge", 0.8125,
+        2.5,
+        16.0,
+        "ridge",
+        0.8125,
     ),
     Amplifier(10_000.0, 100.0, (Filter(60.0, 2, "butterworth"),)),
     _runs(0.25, 1000.0),
@@ -73,7 +82,10 @@ FREE = Bench(
     "ridge-free",
     Made(
         (Layer("medium2", 1.5, 0.5), Film(), Layer("medium1", 0.8, 2.0), Layer("effector", 0.8, 1.0)),
-        3.0, 10.0, "ridge", 1.15,
+        3.0,
+        10.0,
+        "ridge",
+        1.15,
     ),
     Amplifier(5_000.0, 220.0, (Filter(100.0, 1, "butterworth"),)),
     _runs(0.3, 500.0),
@@ -85,10 +97,15 @@ SOLID = Bench(
     "dot-clamped",
     Made(
         (
-            Layer("medium2", 1.5, 0.5), Film(held=True), Layer("medium1", 0.5, 3.0, held=True),
+            Layer("medium2", 1.5, 0.5),
+            Film(held=True),
+            Layer("medium1", 0.5, 3.0, held=True),
             Layer("effector", 0.8, 1.0, held=True),
         ),
-        2.5, 2.5, "cap", 0.8125,
+        2.5,
+        2.5,
+        "cap",
+        0.8125,
     ),
     Amplifier(20_000.0, 50.0, (Filter(60.0, 2, "butterworth"),)),
     _runs(0.2, 2000.0),

@@ -65,15 +65,25 @@ class Truth:
         """As JSON has it."""
         mechanisms = [
             {
-                "effect": name, "mechanism": EFFECTS[name].mechanism, "component": EFFECTS[name].component,
-                "form": EFFECTS[name].form, "strength": s, "values": self.values[name],
+                "effect": name,
+                "mechanism": EFFECTS[name].mechanism,
+                "component": EFFECTS[name].component,
+                "form": EFFECTS[name].form,
+                "strength": s,
+                "values": self.values[name],
             }
             for name, s in self.strengths.items()
         ]
         case = {"number": self.case.number, "seed": self.case.seed, "kind": self.case.kind, "bench": self.case.bench}
         return {
-            **case, "without": self.case.without, "mechanisms": mechanisms, "nuisance": self.nuisance,
-            "aimed_rms": self.case.size, "whitened_rms": self.size, "sigma": self.sigma, "per_run": self.per_run,
+            **case,
+            "without": self.case.without,
+            "mechanisms": mechanisms,
+            "nuisance": self.nuisance,
+            "aimed_rms": self.case.size,
+            "whitened_rms": self.size,
+            "sigma": self.sigma,
+            "per_run": self.per_run,
         }
 
 
@@ -179,8 +189,9 @@ def _force_ratio(name: str, bench: Bench, without: Reality, reality: Reality) ->
     """With over without at the deepest press, for laws that stiffen."""
     if EFFECTS[name].mechanism != "hyperelastic-stiffening" or not bench.force:
         return {}
-    on, off = (max(float(run["force_N"].max()) for run in record(replace(r, nuisance={}), bench))
-               for r in (reality, without))
+    on, off = (
+        max(float(run["force_N"].max()) for run in record(replace(r, nuisance={}), bench)) for r in (reality, without)
+    )
     return {"force_ratio": on / off}
 
 

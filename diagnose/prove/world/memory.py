@@ -63,7 +63,8 @@ def respond(layer: Layer, f: Floats, old: Memory, step_s: float) -> tuple[Floats
     rest = np.einsum("b,bnij->nij", kept, old.parts) - weight.sum() * old.stress
     now = 1.0 - layer.spectrum.strength + float(weight.sum())
     memory = replace(
-        new, stress=stress,
+        new,
+        stress=stress,
         parts=kept[:, None, None, None] * old.parts + weight[:, None, None, None] * (stress - old.stress),
     )
     return now * p + f @ rest, now * tangent + geometric(rest), memory
@@ -77,9 +78,7 @@ def _branch_step(spectrum: Spectrum, step_s: float) -> tuple[Floats, Floats]:
     return share / (1.0 + theta * a), (1.0 - (1.0 - theta) * a) / (1.0 + theta * a)
 
 
-def _softened(
-    layer: Layer, energy: Floats, p: Floats, tangent: Floats, largest: Floats
-) -> tuple[Floats, Floats]:
+def _softened(layer: Layer, energy: Floats, p: Floats, tangent: Floats, largest: Floats) -> tuple[Floats, Floats]:
     """P times 1 - loss tanh((largest - W) / energy) below the largest energy."""
     assert layer.damage is not None
     behind = np.maximum(largest - energy, 0.0) / layer.damage.energy_MPa

@@ -20,10 +20,7 @@ PER_RUN = {"gain", "force_gain", "lag_s", "offset_V", "offset_N", "offset_mm"}
 
 def whitened(signals: Sequence[Signals], bench: Bench) -> Floats:
     """All answers of all runs, one after the other, in units of the innovations of their noise."""
-    parts = [
-        noises()[name].whitened(run[name]) / noise_of(bench)[name]
-        for run in signals for name in channels(bench)
-    ]
+    parts = [noises()[name].whitened(run[name]) / noise_of(bench)[name] for run in signals for name in channels(bench)]
     return np.concatenate(parts)
 
 

@@ -64,8 +64,11 @@ class Stack:
         self.made, self.grid = made, grid(made)
         self.parts, self.places = parts(made.layers, self.grid)
         self.dim = self.places.shape[1]
-        self.top = _skin(self.grid, np.isclose(self.grid.mesh.p[-1, self.grid.mesh.facets].max(axis=0), 0.0)
-                         & np.isclose(np.ptp(self.grid.mesh.p[-1, self.grid.mesh.facets], axis=0), 0.0))
+        self.top = _skin(
+            self.grid,
+            np.isclose(self.grid.mesh.p[-1, self.grid.mesh.facets].max(axis=0), 0.0)
+            & np.isclose(np.ptp(self.grid.mesh.p[-1, self.grid.mesh.facets], axis=0), 0.0),
+        )
         self.free = self._free()
         self.springs = self._springs()
         self.scale = made.width_mm * self.grid.copies if self.dim == 2 else float(self.grid.copies)

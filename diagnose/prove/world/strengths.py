@@ -18,8 +18,11 @@ FAINT = 0.02
 
 def strength(made: Made) -> float:
     """Of the one layer that remembers; 0 without."""
-    of = [layer.spectrum.strength if layer.spectrum else layer.damage.loss if layer.damage else 0.0
-          for layer in made.layers if isinstance(layer, Layer)]
+    of = [
+        layer.spectrum.strength if layer.spectrum else layer.damage.loss if layer.damage else 0.0
+        for layer in made.layers
+        if isinstance(layer, Layer)
+    ]
     if sum(value > 0.0 for value in of) > 1:
         raise ValueError("at most one layer of a stack remembers in the proof")
     return max(of)

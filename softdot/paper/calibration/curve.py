@@ -30,7 +30,6 @@ class Curve:
         """The same shape with other values."""
         return replace(self, force_N=force * self.force_N, voltage_V=voltage * self.voltage_V)
 
-
     @cached_property
     def _force(self) -> CubicSpline:
         return CubicSpline(self.depth_mm, self.force_N)

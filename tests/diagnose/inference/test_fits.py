@@ -111,6 +111,7 @@ def test_an_interval_that_a_bound_ends_says_so():
 
 def test_an_interval_may_end_where_a_law_is_a_simpler_one():
     """As the second of two RC stages, the third branch is not told where it is next to nothing."""
+
     def parameters(values):
         return dict(zip(("first", "second", "third"), values if values[2] > 5e-3 else values[:2], strict=False))
 

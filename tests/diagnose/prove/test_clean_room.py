@@ -21,8 +21,12 @@ def run_guarded(where, code):
     """Python code in a process whose hook is on."""
     begin = "from pathlib import Path; from diagnose.prove.guard import watch; watch(Path('room'), Path('cache'));"
     return subprocess.run(
-        [sys.executable, "-c", begin + code], cwd=where, env=room.environment(where / "room", where / "cache"),
-        capture_output=True, text=True, check=False,
+        [sys.executable, "-c", begin + code],
+        cwd=where,
+        env=room.environment(where / "room", where / "cache"),
+        capture_output=True,
+        text=True,
+        check=False,
     )
 
 
@@ -71,9 +75,7 @@ def test_no_variable_gives_a_hint(house, monkeypatch):
         monkeypatch.setenv(name, "charge-leakage")
     given = room.environment(house / "room", house / "cache")
     assert "charge-leakage" not in given.values()
-    assert set(given) <= {
-        *room.KEPT, *ONE_THREAD, "HOME", "TMPDIR", "PYTHONPATH", "SOFTDOT_CACHE", "MPLCONFIGDIR"
-    }
+    assert set(given) <= {*room.KEPT, *ONE_THREAD, "HOME", "TMPDIR", "PYTHONPATH", "SOFTDOT_CACHE", "MPLCONFIGDIR"}
 
 
 def test_the_process_gets_a_folder_with_the_recording_alone(monkeypatch, tmp_path):
@@ -99,8 +101,14 @@ def test_the_truth_is_not_on_disk_while_a_case_is_diagnosed(monkeypatch, tmp_pat
 
     place = store.check(tmp_path / "out")
     store.begin(place)
-    truth = Truth(Case(1, 0, "single", "ridge-clamped", ("leakage",), 5.0), {"leakage": 0.123456789},
-                  {"leakage": {}}, {}, 5.0, 600.0)
+    truth = Truth(
+        Case(1, 0, "single", "ridge-clamped", ("leakage",), 5.0),
+        {"leakage": 0.123456789},
+        {"leakage": {}},
+        {},
+        5.0,
+        600.0,
+    )
     monkeypatch.setattr(trial, "concealed", lambda _case: (truth, []))
     monkeypatch.setattr(trial, "files", lambda _bench, _runs: {})
     monkeypatch.setattr(trial.rivals, "opinions", lambda _bench, _runs: {})

@@ -60,9 +60,7 @@ def test_agreement_is_good_news(recording):
 def test_rivals_that_no_press_parts_are_to_be_measured_by_themselves(recording):
     lines = told(recording, found(recording, (LEAKS, RELAXES), LEAKS, ((0, 1),)))
     assert lines[-1].startswith("Next: None of the presses that were tried tells them apart")
-    assert not any(
-        line.startswith("Next") for line in told(recording, found(recording, (LEAKS,), LEAKS, ((0,),)))
-    )
+    assert not any(line.startswith("Next") for line in told(recording, found(recording, (LEAKS,), LEAKS, ((0,),))))
 
 
 def test_the_unexplained_is_said_with_its_reasons(recording):
@@ -129,8 +127,16 @@ def test_every_mechanism_and_component_has_words():
 
 @pytest.mark.parametrize(
     ("value", "text"),
-    [(0.026, "0.026"), (84.3, "84"), (1234.0, "1200"), (-0.5, "−0.5"),
-     (3e-7, "3 × 10⁻⁷"), (2.5e6, "2.5 × 10⁶"), (0.0, "0"), (np.inf, "∞")],
+    [
+        (0.026, "0.026"),
+        (84.3, "84"),
+        (1234.0, "1200"),
+        (-0.5, "−0.5"),
+        (3e-7, "3 × 10⁻⁷"),
+        (2.5e6, "2.5 × 10⁶"),
+        (0.0, "0"),
+        (np.inf, "∞"),
+    ],
 )
 def test_figures(value, text):
     assert figure(value) == text
@@ -141,9 +147,7 @@ def test_intervals_and_lists():
         "resistance 0.9 MΩ (90 % interval 0.7 to 1.2)"
     )
     narrow = Interval(1993.3, 1963.5, 2023.4, "MOhm")
-    assert interval_words("resistance_MOhm", narrow) == (
-        "resistance 1990 MΩ (90 % interval 1960 to 2020)"
-    )
+    assert interval_words("resistance_MOhm", narrow) == ("resistance 1990 MΩ (90 % interval 1960 to 2020)")
     assert interval_words("relaxed_fraction", Interval(0.3, 0.2, 0.4, "1")) == (
         "relaxed fraction 0.3 (90 % interval 0.2 to 0.4)"
     )

@@ -25,8 +25,14 @@ def solved(name="I", voltages=(40.0, 20.0, 10.0), response=1.0, exponent=1.0):
     responses = {model: {entry: _response(entry, response) for entry in VARIED[model]} for model in VARIED}
     finer = {model: curves[model] for model in (SIMULATED, ROUND)}
     return Solved(
-        case, curves, responses, finer, curves[SIMULATED], curves[SIMULATED].scaled(0.5, 0.5),
-        dict.fromkeys(models, 5000), {},
+        case,
+        curves,
+        responses,
+        finer,
+        curves[SIMULATED],
+        curves[SIMULATED].scaled(0.5, 0.5),
+        dict.fromkeys(models, 5000),
+        {},
     )
 
 

@@ -55,7 +55,10 @@ def test_a_stiff_film_on_soft_foam_is_pressed_to_full_depth():
 def test_the_section_has_its_figures_tables_and_words(tmp_path):
     section = section_of(rig(), tmp_path, 4)
     assert {figure.path.name for figure in section.figures} == {
-        "calibration-pieces.png", "calibration-map.png", "calibration-signal.png", "calibration-outputs.png",
+        "calibration-pieces.png",
+        "calibration-map.png",
+        "calibration-signal.png",
+        "calibration-outputs.png",
     }
     assert all(figure.path.stat().st_size > 10_000 for figure in section.figures)
     for table in section.tables:
