@@ -15,7 +15,7 @@ import numpy as np
 
 import mesh
 from benchmarks.timing import file_argument
-from geometry.dot_shape import resolve_dot
+from geometry.dot import resolve_dot
 from softdot.config import load_config
 from solve.press import press_segment
 

@@ -16,8 +16,8 @@ from pypardiso import PyPardisoSolver
 from benchmarks.cube import cube
 from benchmarks.step_ours import assembler
 from benchmarks.timing import REPEATS, Phases
-from solve.linear import LinearSolver, Pardiso
-from solve.unsymmetric import Tangent
+from solve.fem.sparsity import Tangent
+from solve.solution.linear import LinearSolver, Pardiso
 
 FACTOR_ENTRIES, FACTOR_MFLOP, TWO_LEVEL = 17, 18, 23  # iparm, counted from 0
 SIMILAR = 1e-3  # a tolerance of the inexact Newton method

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 import mesh
-from geometry.dot_shape import resolve_dot
+from geometry.dot import resolve_dot
 from mesh.types import TetMesh
 from softdot.config import Config, load_config
 

@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 
 from benchmarks.press_case import DEPTH_MM, save, segment_mesh
-from geometry.dot_shape import resolve_dot
+from geometry.dot import resolve_dot
 from mesh.types import TetMesh
 from softdot.config import Config, load_config
 from solve.press import press_segment

@@ -12,14 +12,14 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.timing import Table, file_argument
-from geometry.dot_shape import resolve_dot
+from geometry.dot import resolve_dot
 from geometry.parameters import Dot, Effector, Film, Medium, Segment
 from mesh.build import build
 from mesh.parameters import MeshOptions
+from solve.materials.inelastic import Prony
 from solve.materials.parameters import NeoHookean, PiezoelectricFilm
-from solve.materials.prony import Prony
+from solve.model import Physics
 from solve.parameters import Readout
-from solve.physics import Physics
 from solve.reduced.build import build_reduced
 from solve.reduced.model import ReducedModel
 

@@ -14,9 +14,9 @@ import scipy.sparse as sp
 from benchmarks.cube import BULK, SHEAR, cube, state
 from benchmarks.displacement_law import SOFT_BULK
 from benchmarks.timing import REPEATS, Phases
-from solve.linear import Pardiso
-from solve.quadrature import tetrahedron
-from solve.unsymmetric import Tangent
+from solve.fem.quadrature import tetrahedron
+from solve.fem.sparsity import Tangent
+from solve.solution.linear import Pardiso
 
 
 def upper_triangle(matrix: sp.csr_matrix, free: np.ndarray) -> Tangent:

@@ -12,14 +12,12 @@ import numpy as np
 from benchmarks.cube import BULK, SHEAR, Cube, cube, state
 from benchmarks.displacement_law import DisplacementLaw
 from benchmarks.timing import REPEATS, Phases
-from solve.element_kernels import scatter
-from solve.linear import Pardiso
+from solve.fem.kernels import scatter
+from solve.fem.sparsity import Tangent, build_pattern
+from solve.fem.term import Trial, along_x
 from solve.materials.laws import InvariantLaw
-from solve.solid import solid_region
-from solve.sparsity import build_pattern
-from solve.term import Trial
-from solve.unknowns import along_x
-from solve.unsymmetric import Tangent
+from solve.solution.linear import Pardiso
+from solve.terms.solid import solid_region
 
 
 def law_of(name: str) -> InvariantLaw:
@@ -30,7 +28,7 @@ def law_of(name: str) -> InvariantLaw:
 
 
 def numbering(case: Cube, name: str) -> np.ndarray:
-    """Our number of each of the case's unknowns, as solve.unknowns numbers those of a segment."""
+    """Our number of each of the case's unknowns, as solve.fem.term numbers those of a segment."""
     nodes = np.nonzero(case.displacement_dofs >= 0)[0]
     if name == "mixed":
         nodes = np.append(nodes, case.corners)

@@ -14,9 +14,9 @@ from skfem.helpers import ddot, det, grad, identity, inv, transpose
 
 from benchmarks.cube import BULK, SHEAR, cube
 from benchmarks.timing import REPEATS, Phases
-from solve.linear import Pardiso
-from solve.quadrature import tetrahedron
-from solve.unsymmetric import Tangent
+from solve.fem.quadrature import tetrahedron
+from solve.fem.sparsity import Tangent
+from solve.solution.linear import Pardiso
 
 
 def _state(w):

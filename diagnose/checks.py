@@ -9,7 +9,7 @@ from diagnose.columns import place
 from diagnose.phases import segmented
 from diagnose.recording import Run
 from diagnose.sampling import gaps, rates_Hz
-from geometry.errors import InputError
+from geometry.base import InputError
 from mesh.types import Floats
 
 FEWEST = 8  # samples

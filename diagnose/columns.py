@@ -10,10 +10,9 @@ from typing import TextIO
 
 import numpy as np
 
-from geometry.errors import InputError
-from geometry.text_file import regular_file
+from geometry.base import InputError, nearest
+from geometry.files import regular_file
 from mesh.types import Floats
-from solve.nearest import nearest
 
 LARGEST_MB = 500  # of all files together: some 10 million rows, more than any fit could use
 LARGEST = 1e12  # squares and ratios of what is larger leave the range of a computer's numbers

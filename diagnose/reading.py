@@ -10,7 +10,7 @@ from diagnose.columns import read_columns, refuse_by_size
 from diagnose.recording import Recording, Run
 from diagnose.saturation import saturated
 from diagnose.tables import RunTable, Specimen
-from geometry.errors import InputError
+from geometry.base import InputError
 from mesh.types import Bools, Floats
 from solve.parameters import Readout
 

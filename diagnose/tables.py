@@ -6,8 +6,8 @@ from typing import Any, Literal
 
 from pydantic import Field, field_validator
 
+from geometry.base import nearest
 from geometry.parameters import Finite, Positive, Table
-from solve.nearest import nearest
 
 FORMAT = "softdot-recording/1"
 PARTS = ("effector", "medium1", "film", "medium2", "specimen")

@@ -19,7 +19,7 @@ from geometry.fabrication.parameters import Fabrication  # noqa: E402
 from geometry.fabrication.recipes import castable_materials, recipe_for  # noqa: E402
 from softdot.schema import config_schema  # noqa: E402
 from softdot.schema_words import allowed, toml, unit  # noqa: E402
-from solve.materials.library import library_tables  # noqa: E402
+from solve.materials.parameters import library_tables  # noqa: E402
 from solve.mechanisms import MECHANISMS  # noqa: E402
 
 Json = dict[str, Any]

@@ -14,12 +14,11 @@ import pyvista as pv
 DOCS = Path(__file__).resolve().parent
 sys.path.insert(0, str(DOCS.parent))  # the rooms of this repository, whatever is installed
 
-from geometry.colours import PART_COLOURS  # noqa: E402
 from geometry.fabrication.kit import solid_kit  # noqa: E402
 from geometry.fabrication.parameters import Fabrication  # noqa: E402
 from geometry.fabrication.part import FabricationPart  # noqa: E402
-from geometry.layer_solids import layer_solids  # noqa: E402
 from geometry.parameters import Effector, Film, Medium, Segment  # noqa: E402
+from geometry.solids import PART_COLOURS, layer_solids  # noqa: E402
 
 Shift = tuple[float, float, float]
 Item = tuple[Any, Any, Shift]

@@ -26,7 +26,7 @@ from softdot.actual import actual
 from softdot.config import Config, load_config
 from solve.materials.parameters import Hyperfoam, Material, NeoHookean, PiezoelectricFilm
 from solve.parameters import Readout
-from solve.readout import channel_voltages, record
+from solve.readout.recording import channel_voltages, record
 from solve.switch_on import shear_modulus_MPa
 
 BLUE, ORANGE = "#2a6db0", "#d1600a"

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from export.files import whole_folder
-from geometry.part import Part
+from geometry.files import whole_folder
+from geometry.solids import Part
 
 RELATIVE_DEFLECTION = 5e-4
 """Largest distance of a facet from the true surface, against the longest side of the part."""

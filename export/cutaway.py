@@ -7,13 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from export.annotations import COLOUR_MAP, colour_bar, name_parts, ruler
 from export.dot_surface import placed_dot, triangle_surface
+from export.nodal_fields import MM_PER_M
 from export.skin import Skin, nearby_plane, nodal_steps, outer_skin, section
-from export.units import MM_PER_M
-from export.view import INK, Body, View, frame, page, render, save
-from geometry.colours import PART_COLOURS
-from geometry.dot_shape import DotShape
+from export.view import COLOUR_MAP, INK, Body, View, colour_bar, frame, name_parts, page, render, ruler, save
+from geometry.dot import DotShape
+from geometry.solids import PART_COLOURS
 from mesh.types import Floats, TetMesh
 from solve.result import Step
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from geometry.dot_shape import DotShape
+from geometry.dot import DotShape
 from mesh.types import Floats, Ints, TetMesh
 
 PLATE_THICKNESS_MM = 0.2

@@ -6,10 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from export.annotations import COLOUR_MAP, DIVERGING
-from export.nodal_fields import film_at_nodes, largest_principal
-from export.units import MM_PER_M, PC_PER_MM2_PER_C_PER_M2
-from export.view import DPI, HEIGHT_IN, INK, WIDTH_IN, save
+from export.nodal_fields import MM_PER_M, PC_PER_MM2_PER_C_PER_M2, film_at_nodes, largest_principal
+from export.view import COLOUR_MAP, DIVERGING, DPI, HEIGHT_IN, INK, WIDTH_IN, save
 from mesh.types import Floats, Ints, TetMesh
 from solve.result import FilmPeak, Step
 

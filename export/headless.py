@@ -5,7 +5,7 @@ import os
 import subprocess
 import sys
 
-from geometry.errors import InputError
+from geometry.base import InputError
 
 _SWITCH = "VTK_DEFAULT_OPENGL_WINDOW"
 _PROBE = """

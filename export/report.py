@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from export.files import write_whole_text
-from export.page.environment import page_environment
+from export.page import page_environment
+from geometry.files import write_whole_text
 
 HERE = Path(__file__).parent
 CAPTIONS = {

@@ -5,9 +5,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from export.nodal_fields import SplitNodes, film_values, largest_principal, split_nodes, spread
-from export.subdivision import tetra_pattern, triangle_pattern
-from export.units import MM_PER_M, MPA_PER_PA
+from export.nodal_fields import (
+    MM_PER_M,
+    MPA_PER_PA,
+    SplitNodes,
+    film_values,
+    largest_principal,
+    split_nodes,
+    spread,
+    tetra_pattern,
+    triangle_pattern,
+)
 from mesh.types import Floats, Ints, TetMesh
 from solve.result import Step
 

@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from export.annotations import COLOUR_MAP
 from export.cutaway import is_slice
 from export.dot_surface import placed_dot
+from export.nodal_fields import MM_PER_M
 from export.skin import NodalSteps, Skin, film_top, nearby_plane, nodal_steps, outer_skin, section
-from export.units import MM_PER_M
-from geometry.colours import PART_COLOURS
-from geometry.dot_shape import DotShape
+from export.view import COLOUR_MAP
+from geometry.dot import DotShape
+from geometry.solids import PART_COLOURS
 from mesh.types import TetMesh
 from solve.result import FilmPeak, PressResult, Step
 

@@ -1,19 +1,63 @@
-"""ParaView files: one VTU per load step, gathered by PVD collections over the indentation."""
+"""ParaView files: one VTU per load step, PVD collections over the indentation, and a script to open them.
 
-from collections.abc import Callable
+In a shell: paraview --script=show_in_paraview.py, or pvpython show_in_paraview.py.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
 from export.dot_surface import placed_dot
-from export.files import whole_folder
-from export.nodal_fields import film_at_nodes, split_nodes, spread
-from export.paraview import collection, multi_block, paraview_script
-from export.units import MM_PER_M, MPA_PER_PA, PC_PER_MM2_PER_C_PER_M2
-from geometry.dot_shape import DotShape
+from export.nodal_fields import MM_PER_M, MPA_PER_PA, PC_PER_MM2_PER_C_PER_M2, film_at_nodes, split_nodes, spread
+from geometry.dot import DotShape
+from geometry.files import whole_folder
 from mesh.types import Floats, Ints, TetMesh
 from solve.result import PressResult, Step
+
+TEMPLATE = Path(__file__).with_name("paraview_script.txt")
+
+
+def collection(files: Sequence[str], times: Sequence[float]) -> str:
+    """The text of a PVD file: one data file for each time."""
+    rows = [
+        f'    <DataSet timestep="{time:.9g}" group="" part="0" file={quoteattr(file)}/>'
+        for time, file in zip(times, files, strict=True)
+    ]
+    return _index("Collection", "0.1", rows)
+
+
+def multi_block(files: Mapping[str, str]) -> str:
+    """The text of a VTM file: block name -> data file."""
+    rows = [
+        f'    <DataSet index="{index}" name={quoteattr(name)} file={quoteattr(file)}/>'
+        for index, (name, file) in enumerate(files.items())
+    ]
+    return _index("vtkMultiBlockDataSet", "1.0", rows)
+
+
+def _index(kind: str, version: str, rows: Sequence[str]) -> str:
+    head = f'<?xml version="1.0"?>\n<VTKFile type="{kind}" version="{version}" byte_order="LittleEndian">'
+    return "\n".join([head, f"  <{kind}>", *rows, f"  </{kind}>", "</VTKFile>", ""])
+
+
+def paraview_script(tet_mesh: TetMesh, result: PressResult) -> str:
+    """The script with the sizes and ranges of these results: the soft parts' stress, the film's charge density."""
+    soft = tet_mesh.region != tet_mesh.region_names.index("film")
+    stress = float(np.percentile(result.steps[-1].fields.von_mises_Pa[soft], 99)) * MPA_PER_PA
+    charge = PC_PER_MM2_PER_C_PER_M2 * max(map(abs, result.film_peak.charge_density_C_per_m2))
+    length = float(np.ptp(tet_mesh.points_mm[:, 0]))
+    values = {
+        "@STRESS@": stress or 1.0, "@CHARGE@": charge or 1.0, "@ASIDE@": 1.25 * length, "@FOCUS@": 0.6 * length,
+        "@PARTS@": [name for name in tet_mesh.region_names if name != "film"],
+    }  # fmt: skip
+    script = TEMPLATE.read_text("utf-8")
+    for mark, value in values.items():
+        script = script.replace(mark, f"{value:.4g}" if isinstance(value, float) else repr(value))
+    return script
+
 
 QUADRATIC_TRIANGLE = 22
 QUADRATIC_TETRA = 24

@@ -2,14 +2,12 @@
 
 from itertools import pairwise
 
-from geometry.bodies import bodies
-from geometry.case_solid import case_outside
-from geometry.dot_shape import DotShape, resolve_dot
-from geometry.effector_checks import check_effector, covers_footprint
-from geometry.electrode_checks import check_electrodes
-from geometry.errors import InputError
+from geometry.assembly import case_outside
+from geometry.base import InputError
+from geometry.dot import DotShape, resolve_dot
 from geometry.parameters import Dot, Segment
-from geometry.stack import layers
+from geometry.part_checks import check_effector, check_electrodes, covers_footprint
+from geometry.stack import bodies, layers
 
 
 def check_segment(segment: Segment) -> list[str]:

@@ -1,9 +1,12 @@
-"""Radius, height and foot of a dot from what the configuration says."""
+"""Radius, height and foot of a dot as the configuration states them, and where the dots of a cell lie around it."""
 
 from dataclasses import dataclass
 
-from geometry.braille import BrailleStandard, standard
-from geometry.errors import InputError
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.base import InputError
+from geometry.braille import BrailleStandard, dot_offset_mm, raised_dots, standard
 from geometry.parameters import Dot
 
 DEFAULT_STANDARD = "marburg-medium"
@@ -71,3 +74,39 @@ def _from_radius(radius_mm: float, dot: Dot) -> DotSize:
         )
     height = radius_mm if dot.height_mm is None else dot.height_mm
     return DotSize(radius_mm, height, max(0.0, height - radius_mm))
+
+
+Floats = NDArray[np.float64]
+
+
+def cell_centers(dot: Dot) -> Floats:
+    """Axes (n, 2) of the raised dots against the pressed one, which comes first, in mm. InputError."""
+    if dot.cell is None:
+        return refuse_cell_of(dot)
+    raised = raised_dots(dot.cell)
+    if dot.cell_dot not in raised:
+        known = ", ".join(map(str, raised)) or "none"
+        raise InputError(f"dot.cell_dot = {dot.cell_dot}: not raised in dot.cell = '{dot.cell}', which has {known}")
+    pitch = _pitch_mm(dot)
+    pressed = dot_offset_mm(dot.cell_dot, pitch)
+    others = [dot_offset_mm(number, pitch) - pressed for number in raised if number != dot.cell_dot]
+    return np.array([np.zeros(2), *others])
+
+
+def refuse_cell_of(dot: Dot) -> Floats:
+    """The one axis (1, 2) of a dot without a cell. InputError when a cell is asked for."""
+    if dot.cell is not None:
+        raise InputError(f"dot.cell = '{dot.cell}': a cell has dots of dot.shape = 'cap', not '{dot.shape}'")
+    if dot.cell_dot != 1:
+        raise InputError(f"dot.cell_dot = {dot.cell_dot}: has a meaning only together with dot.cell")
+    return np.zeros((1, 2))
+
+
+def _pitch_mm(dot: Dot) -> float:
+    chosen = dot_standard(dot)
+    if chosen is None:
+        raise InputError(
+            f"dot.cell = '{dot.cell}': the distance of its dots comes from dot.standard; "
+            "name one with a dot pitch instead of explicit sizes"
+        )
+    return chosen.nominal_mm("dot_pitch_mm")

@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from geometry.dot_shape import DotShape
+    from geometry.dot import DotShape
     from geometry.parameters import Segment
-    from mesh.linear import LinearMesh
     from mesh.parameters import MeshOptions
-    from mesh.types import TetMesh
+    from mesh.types import LinearMesh, TetMesh
 
 
 def build(segment: Segment, dot: DotShape, options: MeshOptions) -> TetMesh:
@@ -18,7 +17,7 @@ def build(segment: Segment, dot: DotShape, options: MeshOptions) -> TetMesh:
     dot : where and how round the dot is, which is where the mesh is fine.
     Raises InputError when the mesher cannot mesh the shape, MeshingError when it fails or takes too long.
     """
-    from mesh.finish import finished
+    from mesh.quadratic import finished
 
     return finished(_linear(segment, dot, options), segment, options)
 
@@ -26,8 +25,7 @@ def build(segment: Segment, dot: DotShape, options: MeshOptions) -> TetMesh:
 def _linear(segment: Segment, dot: DotShape, options: MeshOptions) -> LinearMesh:
     """Choose the mesher; what pytetwild makes is remembered."""
     from mesh import cache
-    from mesh.layered import layered
-    from mesh.slice import layered_slice, tetwild_slice
+    from mesh.layered import layered, layered_slice, tetwild_slice
     from mesh.tetwild import tetwild
 
     is_slice = segment.section == "plane-strain"

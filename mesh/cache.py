@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from geometry.dot_shape import DotShape
-from geometry.errors import InputError
+from geometry.base import InputError
+from geometry.cache import read_arrays, write_arrays
+from geometry.dot import DotShape
 from geometry.parameters import Segment
-from mesh.arrays_file import read_arrays, write_arrays
 from mesh.fingerprint import data_hash
-from mesh.linear import LinearMesh
 from mesh.parameters import MeshOptions
+from mesh.types import LinearMesh
 
 VERSION = 3  # raise it when the mesher changes what it makes
 

@@ -6,9 +6,8 @@ import sys
 
 import numpy as np
 
-from geometry.held_folder import scratch_folder
-from mesh.errors import MeshingError
-from mesh.types import Floats, Ints
+from geometry.processes import scratch_folder
+from mesh.types import Floats, Ints, MeshingError
 
 
 def tetrahedralize(timeout_s: float, **arrays: object) -> tuple[Floats, Ints]:

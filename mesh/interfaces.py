@@ -1,12 +1,15 @@
-"""The bonded interfaces of a stack, and their nodes doubled where a bond or a gap takes the place of one mesh."""
+"""The bonded interfaces of a stack, their nodes doubled where a bond or a gap takes the place of a perfect joint, and
+the same mesh moved to a segment of other sizes.
+"""
 
 from dataclasses import replace
 
 import numpy as np
 
-from geometry.errors import InputError
-from mesh.topology import TET_FACES, face_neighbours, node_mask
-from mesh.types import Bools, Ints, TetMesh
+from geometry.base import InputError
+from geometry.parameters import Segment
+from geometry.stack import layers
+from mesh.types import TET_FACES, Bools, Ints, TetMesh, face_neighbours, node_mask
 
 # bond -> (part below, part above); the ground below the base is no part
 INTERFACES = {
@@ -87,3 +90,21 @@ def _keys(corners: Ints, count: int) -> Ints:
     """One number for each triangle (k, 3), whatever the order of its corners; count below two million nodes."""
     a, b, c = np.sort(corners, axis=1).T
     return np.asarray((a * count + b) * count + c)
+
+
+def morphed(tet_mesh: TetMesh, old: Segment, new: Segment) -> TetMesh:
+    """Nodes moved linearly within each layer and with length and width; for small changes of the sizes.
+
+    ValueError where the layers differ in number.
+    """
+    before, after = (np.array([0.0, *(layer.top_mm for layer in layers(segment))]) for segment in (old, new))
+    if len(before) != len(after):
+        raise ValueError("the segments differ in their layers")
+    points = tet_mesh.points_mm.copy()
+    points[:, 2] = np.interp(points[:, 2], before, after)
+    points[:, 0] *= new.length_mm / old.length_mm
+    thickness = tet_mesh.thickness_mm
+    if old.section == "solid":
+        points[:, 1] *= new.width_mm / old.width_mm
+        thickness *= new.width_mm / old.width_mm
+    return replace(tet_mesh, points_mm=points, thickness_mm=thickness)

@@ -1,12 +1,14 @@
-"""Ten-node tetrahedra whose mid-side nodes lie on the true curved surface."""
+"""Ten-node tetrahedra whose mid-side nodes lie on the true curved surface, with named quadratic triangles."""
 
 import numpy as np
+from numpy.typing import NDArray
 
-from mesh.jacobian import smallest_determinant_ratio
-from mesh.linear import LinearMesh
-from mesh.surfaces import RoundSurface
-from mesh.topology import TET_FACES, boundary_faces, unique_edges
-from mesh.types import Floats, Ints
+from geometry.parameters import Segment
+from mesh.layered import twins
+from mesh.outline import Outline, RoundSurface, curved_surface, outline
+from mesh.parameters import MeshOptions
+from mesh.quality import refuse_inverted, smallest_determinant_ratio
+from mesh.types import TET_FACES, Floats, Ints, LinearMesh, TetMesh, boundary_faces, face_neighbours, unique_edges
 
 FLATTEST = 0.1  # a curved element keeps at least this share of its mean Jacobian everywhere
 
@@ -55,3 +57,68 @@ def _straighten(points: Floats, tets: Ints, middle: Floats, straight: Floats, cu
         undo = np.unique(tets[bad, 4:] - len(points))
         undo = undo[bent[undo]]
         middle[undo], bent[undo] = straight[undo], False
+
+
+TOLERANCE_MM = 1e-6
+
+
+def named_facets(
+    points_mm: Floats, tets: Ints, region: Ints, names: tuple[str, ...], stack: Outline
+) -> dict[str, Ints]:
+    """The facets of mesh.types.TetMesh by name, each (k, 6)."""
+    neighbour = face_neighbours(tets[:, :4])
+    facets = _outer_facets(points_mm, tets, region, names, stack, neighbour)
+    if "film" in names:
+        film = names.index("film")
+        facets["film-bottom"] = _between(tets, region, neighbour, names.index("medium2"), film)
+        facets["film-top"] = _between(tets, region, neighbour, film, names.index("medium1"))
+    return facets
+
+
+def _outer_facets(
+    points: Floats, tets: Ints, region: Ints, names: tuple[str, ...], stack: Outline, neighbour: Ints
+) -> dict[str, Ints]:
+    """Base, sides of each region and the contact skin."""
+    owner, face = np.nonzero(neighbour < 0)
+    outer = tets[owner[:, None], TET_FACES[face]]
+    corner = points[outer[:, :3]]
+    on_base = _on_plane(corner[..., 2], 0.0)
+    on_x, on_y = _on_either(corner[..., 0], stack.half_x), _on_either(corner[..., 1], stack.half_y)
+    on_side = on_x if stack.is_slice else on_x | on_y
+    cut = on_y & stack.is_slice
+    result = {"contact": outer[~(on_base | on_side | cut)], "base": outer[on_base]}
+    for number, name in enumerate(names):
+        mine = outer[on_side & ~on_base & (region[owner] == number)]
+        if len(mine):
+            result[f"side-{name}"] = mine
+    return result
+
+
+def _on_plane(coordinate: Floats, value: float) -> NDArray[np.bool_]:
+    """Facets (k, 3) whose three corners have this coordinate."""
+    return np.asarray((np.abs(coordinate - value) < TOLERANCE_MM).all(axis=1))
+
+
+def _on_either(coordinate: Floats, half: float) -> NDArray[np.bool_]:
+    """Facets (k, 3) in the plane at plus or at minus half."""
+    return np.asarray(_on_plane(coordinate, half) | _on_plane(coordinate, -half))
+
+
+def _between(tets: Ints, region: Ints, neighbour: Ints, lower: int, upper: int) -> Ints:
+    """Facets from one part to the next above it, normal up."""
+    other = np.where(neighbour >= 0, region[neighbour], -1)
+    owner, face = np.nonzero((region[:, None] == lower) & (other == upper))
+    return np.asarray(tets[owner[:, None], TET_FACES[face]])
+
+
+def finished(linear: LinearMesh, segment: Segment, options: MeshOptions) -> TetMesh:
+    """Add mid-side nodes, facets and twins. Raises MeshingError when an element is inverted."""
+    is_slice = segment.section == "plane-strain"
+    thickness_mm = options.contact_element_size_mm if is_slice else segment.width_mm
+    stack = outline(segment, slice_mm=thickness_mm)
+    points, tets = quadratic(linear, curved_surface(stack))
+    twin = twins(points) if is_slice else np.arange(len(points), dtype=np.int64)
+    facets = named_facets(points, tets, linear.region, linear.region_names, stack)
+    result = TetMesh(points, tets, linear.region, linear.region_names, facets, twin, thickness_mm)
+    refuse_inverted(result)
+    return result

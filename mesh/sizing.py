@@ -1,14 +1,16 @@
-"""Target edge length at a point: fine under the dot, fine on the film, growing smoothly to the base."""
+"""Target edge length at a point: fine under the dot, fine on the film, growing smoothly; on a grid and along a line."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 from math import sqrt
 
 import numpy as np
 
-from geometry.dot_shape import DotShape
+from geometry.dot import DotShape
 from mesh.outline import Outline
 from mesh.parameters import MeshOptions
-from mesh.types import Floats
+from mesh.types import Floats, Ints
 
 GROWTH = 0.4  # mm of edge length per mm of distance: neighbouring edges differ by about a factor 1.4
 DEPTH_MM = 0.3  # the contact zone is refined for a press this deep
@@ -86,3 +88,54 @@ def sizing(outline: Outline, dot: DotShape, options: MeshOptions) -> Sizing:
     reach = min(overlap, widest) + options.contact_element_size_mm
     kind = "plate" if curvature == 0.0 else ("cap" if dot.kind == "plate" else dot.kind)
     return Sizing(outline, options.element_size_mm, options.contact_element_size_mm, film_mm, centers, reach, kind)
+
+
+STEP_MM = 0.12
+MOST_POINTS = 300_000
+
+
+def background(stack: Outline, field: Sizing) -> tuple[Floats, Ints, Floats]:
+    """Vertices (n, 3), tetrahedra (m, 4) and edge lengths (n,) over the bounding box and a little beyond."""
+    low, high = (-stack.half_x, -stack.half_y, 0.0), (stack.half_x, stack.half_y, stack.top)
+    volume = float(np.prod(np.subtract(high, low)))
+    step = max(STEP_MM, (volume / MOST_POINTS) ** (1 / 3))  # a large segment has no more points than a small one
+    lines = []
+    for a, b in zip(low, high, strict=True):  # lines on the outer faces, where the sizes are smallest
+        lines.append(np.concatenate([[a - step], np.linspace(a, b, 2 + int((b - a) / step)), [b + step]]))
+    lines[2] = np.unique(np.concatenate([lines[2], [stack.film_bottom]]))
+    shape = tuple(len(line) for line in lines)
+    points = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 3)
+    return points, _grid_tets(shape), field.at(points)
+
+
+def _grid_tets(shape: tuple[int, ...]) -> Ints:
+    """Six tetrahedra around the main diagonal of every cell of a grid."""
+    _, ny, nz = shape
+    i, j, k = (a.ravel() for a in np.meshgrid(*(np.arange(n - 1) for n in shape), indexing="ij"))
+    corner = (i * ny + j) * nz + k
+    step = np.array([ny * nz, nz, 1])
+    paths = [(0, 1, 2), (1, 2, 0), (2, 0, 1), (1, 0, 2), (0, 2, 1), (2, 1, 0)]
+    offsets = [np.concatenate([[0], np.cumsum(step[list(path)])]) for path in paths]
+    result = np.concatenate([corner[:, None] + offset for offset in offsets])
+    result[3 * len(corner) :] = result[3 * len(corner) :][:, [0, 2, 1, 3]]  # the odd paths, mirrored
+    return np.asarray(result, dtype=np.int64)
+
+
+def graded(start: float, end: float, size: Callable[[Floats], Floats]) -> Floats:
+    """Points from start to end, both included, whose steps follow size at the points.
+
+    The number of steps is the integral of 1/size, rounded up; the points cut that integral into equal parts.
+    """
+    fine = np.linspace(start, end, 513)
+    density = 1.0 / size(fine)
+    integral = np.concatenate([[0.0], np.cumsum((density[1:] + density[:-1]) / 2 * np.diff(fine))])
+    steps = max(1, int(np.ceil(integral[-1] - 1e-9)))
+    points = np.interp(np.linspace(0.0, integral[-1], steps + 1), integral, fine)
+    points[0], points[-1] = start, end
+    return np.asarray(points, dtype=np.float64)
+
+
+def graded_through(breaks: list[float], size: Callable[[Floats], Floats]) -> Floats:
+    """Points through all breaks (rising), graded between them."""
+    pieces = [graded(a, b, size)[:-1] for a, b in pairwise(breaks)]
+    return np.concatenate([*pieces, [breaks[-1]]])

@@ -1,23 +1,135 @@
-"""The default mesher: pytetwild (fTetWild) on the merged surfaces of the parts."""
+"""The default mesher: pytetwild (fTetWild) on the merged surfaces of the parts, snapped to their exact surfaces."""
 
 import logging
+from typing import Any
 
 import numpy as np
 
-from geometry.dot_shape import DotShape
+from geometry.dot import DotShape
 from geometry.parameters import Segment
 from geometry.stack import layers
-from mesh.background import background
 from mesh.child import tetrahedralize
-from mesh.errors import MeshingError
 from mesh.film import with_film
-from mesh.linear import LinearMesh, oriented, shape, without_unused
-from mesh.outline import Outline, outline
+from mesh.outline import Outline, curved_surface, outline
 from mesh.parameters import MeshOptions
-from mesh.part_surfaces import merged_surface
-from mesh.sizing import sizing
-from mesh.snap import snapped
-from mesh.types import Floats, Ints
+from mesh.sizing import background, sizing
+from mesh.types import (
+    TET_FACES,
+    Floats,
+    Ints,
+    LinearMesh,
+    MeshingError,
+    face_neighbours,
+    oriented,
+    shape,
+    without_unused,
+)
+
+DEFLECTION_MM = 2e-3  # nodes are put on the exact surface afterwards
+DEFLECTION = 0.02  # of the smallest detail, where that is more
+TURN_RAD = 0.5  # of neighbouring facets
+
+
+def merged_surface(segment: Segment, stack: Outline, detail_mm: float) -> tuple[Floats, Ints]:
+    """Vertices (n, 3) and faces (m, 3) of the parts; vertices merged, double and flat faces dropped.
+
+    detail_mm : size of the smallest elements or parts; round surfaces get facets that suit it.
+    """
+    deflection = max(DEFLECTION_MM, DEFLECTION * detail_mm)
+    vertices, faces, count = [], [], 0
+    for solid in _solids(segment, stack):
+        points, triangles = solid.tessellate(deflection, TURN_RAD)
+        vertices.append(np.array([tuple(p) for p in points]))
+        faces.append(np.array(triangles, dtype=np.int64) + count)
+        count += len(points)
+    return _merged(np.concatenate(vertices), np.concatenate(faces))
+
+
+def _merged(vertices: Floats, faces: Ints) -> tuple[Floats, Ints]:
+    """Merge vertices closer than a nanometre; drop faces that are degenerate or repeated."""
+    _, first, number = np.unique(np.round(vertices * 1e6), axis=0, return_index=True, return_inverse=True)
+    points, triangles = vertices[first], number.ravel()[faces]
+    corner = points[triangles]
+    area = np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1) / 2
+    triangles = triangles[area > 1e-12]
+    _, kept = np.unique(np.sort(triangles, axis=1), axis=0, return_index=True)
+    return points, triangles[np.sort(kept)]
+
+
+def _solids(segment: Segment, stack: Outline) -> list[Any]:
+    """build123d solids of the stack without its film."""
+    if stack.is_slice:
+        return _slab(stack)
+    from geometry.solids import layer_solids
+
+    return list(layer_solids(segment, film_thickness_mm=0.0).values())
+
+
+def _slab(stack: Outline) -> list[Any]:
+    """The x-z section as a slab: a cylinder is a box then, a dome a circular segment along y."""
+    from build123d import Box, Cylinder, Pos, Rot
+
+    def box(half_x: float, low: float, high: float) -> Any:
+        return Pos(0, 0, (low + high) / 2) * Box(2 * half_x, 2 * stack.half_y, high - low)
+
+    parts = [
+        box(stack.half_x, 0.0, stack.film_bottom),
+        box(stack.half_x, stack.film_top, stack.medium1_top),
+    ]
+    if stack.shape == "dome":
+        ridge = Rot(90, 0, 0) * Cylinder(stack.dome_radius, 2 * stack.half_y)
+        above = box(2 * stack.dome_radius, stack.medium1_top, stack.top)
+        parts.append(Pos(0, 0, stack.dome_centre_z) * ridge & above)
+    elif stack.shape != "none":
+        parts.append(box(stack.effector_half_x, stack.medium1_top, stack.top))
+    return parts
+
+
+EFFECTOR = 2  # its region in a stack without film
+
+
+def snapped(points: Floats, tets: Ints, region: Ints, stack: Outline) -> Floats:
+    """Points (n, 3) with those of facets between different regions (or outside) moved onto their surfaces.
+
+    Each such facet belongs to the surface it lies nearest to; a node gets the surfaces of all its facets.
+    """
+    neighbour = face_neighbours(tets)
+    other = np.where(neighbour >= 0, region[neighbour], -1)
+    owner, face = np.nonzero(other != region[:, None])
+    facets = tets[owner[:, None], TET_FACES[face, :3]]
+    planes, curved = _planes(stack), curved_surface(stack)
+    off = np.array([np.abs(points[facets, axis] - value).max(axis=1) for axis, value in planes])
+    if curved is not None:
+        # The skin of a round effector is its curved surface, its lid or a slice's cut, never a side.
+        skin = (region[owner] == EFFECTOR) & (other[owner, face] < 0)
+        own = [(axis, value) == (2, stack.top) or (axis == 1 and stack.is_slice) for axis, value in planes]
+        off[np.ix_(~np.array(own), skin)] = np.inf
+        away = np.abs(curved.distance(points[facets].reshape(-1, 3))).reshape(-1, 3).max(axis=1)
+        off = np.vstack([off, np.where(skin, away, np.inf)])
+    nearest = np.argmin(off, axis=0)
+    result = points.copy()
+    if curved is not None:
+        on_curved = np.unique(facets[nearest == len(planes)])
+        result[on_curved] = curved.project(result[on_curved])
+    for number, (axis, value) in enumerate(planes):
+        result[np.unique(facets[nearest == number]), axis] = value
+    if curved is not None:
+        result[on_curved] = curved.project(result[on_curved])  # the rim, now in the plane of the foot
+    return result
+
+
+def _planes(stack: Outline) -> list[tuple[int, float]]:
+    """Axis and position of every plane of the stack."""
+    planes = [(0, -stack.half_x), (0, stack.half_x), (1, -stack.half_y), (1, stack.half_y)]
+    planes += [(2, 0.0), (2, stack.film_bottom), (2, stack.medium1_top)]
+    if stack.shape in ("layer", "block", "cylinder"):
+        planes.append((2, stack.top))
+    if stack.shape == "block" or (stack.shape == "cylinder" and stack.is_slice):
+        planes += [(0, -stack.effector_half_x), (0, stack.effector_half_x)]
+    if stack.shape == "block":
+        planes += [(1, -stack.effector_half_y), (1, stack.effector_half_y)]
+    return planes
+
 
 STOP_ENERGY = 7.0
 WEDGE_ENERGY = 60.0

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.end_with_parent import end_with_parent
+from geometry.processes import end_with_parent
 
 
 def main(folder: Path) -> None:

@@ -1,4 +1,4 @@
-"""The mesh that passes from the mesher to the solver and to the exporters."""
+"""The mesh that passes from the mesher to solver and exporters, and the four-node tetrahedra it is made from."""
 
 from dataclasses import dataclass
 
@@ -41,3 +41,110 @@ class TetMesh:
     def region_tets(self, name: str) -> Ints:
         """Indices of the tetrahedra of one part, shape (k,)."""
         return np.flatnonzero(self.region == self.region_names.index(name))
+
+
+class MeshingError(RuntimeError):
+    """A mesh could not be made: one sentence, what happened and what to change. The command exits with 3."""
+
+
+@dataclass(frozen=True)
+class LinearMesh:
+    """Corner nodes only.
+
+    points_mm : (n, 3); tets : (m, 4), positive volume; region : (m,) index into region_names.
+    """
+
+    points_mm: Floats
+    tets: Ints
+    region: Ints
+    region_names: tuple[str, ...]
+
+
+def signed_volumes(points: Floats, tets: Ints) -> Floats:
+    """Signed volumes (m,) of straight tetrahedra (m, 4)."""
+    corner = points[tets]
+    edges = corner[:, 1:] - corner[:, :1]
+    return np.asarray(np.linalg.det(edges) / 6.0)
+
+
+def shape(points: Floats, tets: Ints) -> Floats:
+    """Volume over that of the regular tetrahedron on the longest edge, 6 sqrt(2) V / l^3, shape (m,)."""
+    corner = points[tets]
+    longest = np.linalg.norm(corner[:, :, None] - corner[:, None], axis=3).max(axis=(1, 2))
+    return np.asarray(6 * np.sqrt(2) * signed_volumes(points, tets) / longest**3)
+
+
+def oriented(points: Floats, tets: Ints) -> Ints:
+    """The tetrahedra (m, 4) renumbered so that every volume is positive."""
+    result = tets.copy()
+    negative = signed_volumes(points, tets) < 0
+    result[negative] = result[negative][:, [0, 1, 3, 2]]
+    return result
+
+
+def split_prisms(lower: Ints, upper: Ints) -> Ints:
+    """Split prisms into three tetrahedra each, shape (3 k, 4), not oriented, three after three.
+
+    lower, upper : (k, 3) node numbers of corresponding corners. Every side face is cut by the diagonal from
+    the lower corner of the smaller number, so that prisms sharing a face agree (J. Dompierre et al., How to
+    subdivide pyramids, prisms and hexahedra into tetrahedra, 1999).
+    """
+    order = np.argsort(lower, axis=1)
+    a, b, c = np.take_along_axis(lower, order, axis=1).T
+    d, e, f = np.take_along_axis(upper, order, axis=1).T
+    tets = np.stack([np.stack(t, axis=1) for t in ((a, b, c, f), (a, b, e, f), (a, d, e, f))], axis=1)
+    return np.asarray(tets.reshape(-1, 4), dtype=np.int64)
+
+
+def without_unused(linear: LinearMesh) -> LinearMesh:
+    """The same mesh without nodes that belong to no tetrahedron; the order of nodes is kept."""
+    used = np.unique(linear.tets)
+    number = np.full(len(linear.points_mm), -1, dtype=np.int64)
+    number[used] = np.arange(len(used))
+    return LinearMesh(linear.points_mm[used], number[linear.tets], linear.region, linear.region_names)
+
+
+TET_EDGES = np.array([(0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3)])
+# Outward faces of a positive tetrahedron in VTK's order: corners, then the mid-sides 01, 12, 20 of the face.
+TET_FACES = np.array([(0, 2, 1, 6, 5, 4), (0, 1, 3, 4, 8, 7), (1, 2, 3, 5, 9, 8), (0, 3, 2, 7, 9, 6)])
+
+
+def unique_edges(tets: Ints) -> tuple[Ints, Ints]:
+    """Edges (e, 2), smaller node first, and the number of each tetrahedron's six edges (m, 6)."""
+    pairs = np.sort(tets[:, TET_EDGES], axis=2).reshape(-1, 2)
+    edges, number = np.unique(pairs, axis=0, return_inverse=True)
+    return edges.astype(np.int64), number.reshape(-1, 6).astype(np.int64)
+
+
+def face_neighbours(tets: Ints) -> Ints:
+    """For each tetrahedron and face (m, 4) the tetrahedron on the other side, -1 outside.
+
+    Raises MeshingError when more than two tetrahedra share a face.
+    """
+    corners = np.sort(tets[:, TET_FACES[:, :3]], axis=2).reshape(-1, 3)
+    _, number, count = np.unique(corners, axis=0, return_inverse=True, return_counts=True)
+    if count.max() > 2:
+        raise MeshingError(
+            "more than two tetrahedra share a face, so a part is too small to mesh: "
+            "change its size or mesh.element_size_mm"
+        )
+    number = number.ravel()
+    order = np.argsort(number, kind="stable")
+    paired = np.flatnonzero(number[order][1:] == number[order][:-1])
+    neighbour = np.full(len(number), -1, dtype=np.int64)
+    one, other = order[paired], order[paired + 1]
+    neighbour[one], neighbour[other] = other // 4, one // 4
+    return neighbour.reshape(-1, 4)
+
+
+def boundary_faces(tets: Ints) -> tuple[Ints, Ints]:
+    """Tetrahedra (k,) and local faces (k,) on the outer boundary."""
+    owner, face = np.nonzero(face_neighbours(tets[:, :4]) < 0)
+    return owner.astype(np.int64), face.astype(np.int64)
+
+
+def node_mask(count: int, nodes: Ints) -> NDArray[np.bool_]:
+    """True for the listed nodes, shape (count,)."""
+    mask = np.zeros(count, dtype=bool)
+    mask[nodes] = True
+    return mask

@@ -7,8 +7,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from geometry.errors import InputError
-    from mesh.errors import MeshingError
+    from geometry.base import InputError
+    from mesh.types import MeshingError
     from softdot.config import Config, config_hash, load_config
     from softdot.differentiate import derivatives
     from softdot.run import run_config
@@ -29,8 +29,8 @@ __all__ = [
 ]
 _HOMES = {
     "Config": "softdot.config",
-    "InputError": "geometry.errors",
-    "MeshingError": "mesh.errors",
+    "InputError": "geometry.base",
+    "MeshingError": "mesh.types",
     "config_hash": "softdot.config",
     "config_schema": "softdot.schema",
     "derivatives": "softdot.differentiate",

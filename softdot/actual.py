@@ -2,15 +2,14 @@
 
 from pydantic import ValidationError
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from geometry.parameters import Table
-from geometry.patch_checks import check_patch
+from geometry.part_checks import check_patch
 from geometry.stack import layers
 from softdot.config import Config
 from softdot.config_errors import sentence
 from solve.mechanisms import Mechanism
-from solve.model import Model, declared_bonds
-from solve.physics import Physics
+from solve.model import Model, Physics, declared_bonds
 from solve.switch_on import with_mechanisms
 
 STIFFEST_BOND_N_PER_MM3 = 1e6  # as in segment.bonds

@@ -6,7 +6,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from geometry.whole_file import whole_file
+from geometry.files import whole_file
 from mesh.fingerprint import data_hash
 
 CHECKSUM = "sha256"

@@ -10,7 +10,7 @@ from importlib import import_module
 from threading import Timer
 from types import FrameType
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from softdot.arguments import parser
 from softdot.command_output import BAD_INPUT, GOOD, INTERRUPTED, complain
 from softdot.log import lines_on_stderr

@@ -8,7 +8,7 @@ from typing import Any, Self
 
 from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from geometry.fabrication.parameters import Fabrication
 from geometry.parameters import Dot, Segment, Table
 from geometry.stack import layers
@@ -18,8 +18,7 @@ from softdot.default_design import completed, default_design, from_default
 from softdot.number_size import refuse_absurd_numbers, without_round_off
 from softdot.settings import naming_the_flag, with_settings
 from softdot.toml_file import read_toml
-from solve.materials.library import find_material, library_tables
-from solve.materials.parameters import AnyMaterial, Material, PiezoelectricFilm
+from solve.materials.parameters import AnyMaterial, Material, PiezoelectricFilm, find_material, library_tables
 from solve.mechanisms import Mechanism, refuse_repeated
 from solve.parameters import DEFAULT_INDENTATION_MM, Press, Readout
 

@@ -8,7 +8,7 @@ from typing import Any, get_args
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from solve.nearest import nearest
+from geometry.base import nearest
 
 BOUNDS = {
     "greater_than": ("gt", "above"),

@@ -6,7 +6,7 @@ Measured on two cores of an EPYC without other work (docs/speed.md): 0.29 s a Ne
 
 from dataclasses import dataclass
 
-from geometry.dot_shape import DotShape
+from geometry.dot import DotShape
 from softdot.config import Config
 from softdot.memory import needed_GB
 from softdot.mesh_limit import expected_tetrahedra

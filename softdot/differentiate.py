@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from mesh.types import Floats, TetMesh
 from softdot.actual import actual
 from softdot.config import Config, config_from
@@ -13,7 +13,7 @@ from solve.model import Model
 from solve.result import PressResult
 
 if TYPE_CHECKING:
-    from solve.sensitivity import Slopes, Variation
+    from solve.solution.sensitivity import Slopes, Variation
 
 RELATIVE_STEP = 1e-4
 
@@ -36,7 +36,7 @@ class Derivative:
 
 def derivatives(config: Config, keys: Sequence[str]) -> list[Derivative]:
     """Differentiate the press of a configuration by its keys, such as "materials.vnr.youngs_modulus_MPa",
-    "segment.film.thickness_um" or "mechanisms[0].parameters.coefficient" (see solve.sensitivity).
+    "segment.film.thickness_um" or "mechanisms[0].parameters.coefficient" (see solve.solution.sensitivity).
 
     InputError for a key that is absent, no number, zero or decides which parts there are.
     """
@@ -57,7 +57,7 @@ def press_with_derivatives(
 
     tet_mesh : of its segment. InputError for the keys.
     """
-    from solve.sensitivity import press_with_sensitivities
+    from solve.solution.sensitivity import press_with_sensitivities
 
     try:
         result, slopes = press_with_sensitivities(model_of(config), variations_of(config, keys), tet_mesh)
@@ -68,7 +68,7 @@ def press_with_derivatives(
 
 def variations_of(config: Config, keys: Sequence[str]) -> dict[str, "Variation"]:
     """The models a little below and above each key. InputError for the keys."""
-    from solve.sensitivity import Variation
+    from solve.solution.sensitivity import Variation
 
     variations = {}
     for key in keys:

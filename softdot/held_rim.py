@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from geometry.dot_shape import DotShape
-from geometry.effector_checks import covers_footprint
+from geometry.dot import DotShape
 from geometry.parameters import Segment
+from geometry.part_checks import covers_footprint
 from geometry.stack import layers
 from mesh.types import Floats
-from solve.dot_distance import RigidDot
+from solve.terms.contact import RigidDot
 
 SAMPLES = 201
 """Points along each edge of the rim."""

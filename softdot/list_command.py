@@ -33,7 +33,7 @@ def _short(value: Any) -> str:
 
 
 def _materials() -> list[dict[str, Any]]:
-    from solve.materials.library import library_tables
+    from solve.materials.parameters import library_tables
 
     return [
         {

@@ -4,7 +4,7 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
-from geometry.errors import InputError
+from geometry.base import InputError
 
 BASE_GB = 0.5
 """Libraries and fields of a run on a small mesh."""

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from geometry.dot_shape import DotShape
-from geometry.errors import InputError
+from geometry.base import InputError
+from geometry.dot import DotShape
 from geometry.parameters import Segment
 from mesh.outline import outline
 from mesh.parameters import MeshOptions

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from typing import Any, TypeVar
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from softdot.dotted_keys import parsed
 
 MOST = 100

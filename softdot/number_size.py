@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import Any
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from softdot.config_errors import dotted, shown
 
 LARGEST = 1e12

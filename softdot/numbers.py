@@ -5,7 +5,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from geometry.whole_file import whole_file
+from geometry.files import whole_file
 
 
 def plain(value: Any) -> Any:

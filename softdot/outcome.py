@@ -4,8 +4,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from mesh.errors import MeshingError
 from mesh.fingerprint import data_hash, files_hash
+from mesh.types import MeshingError
 from softdot import stages
 from softdot.actual import actual
 from softdot.config import Config, input_hash

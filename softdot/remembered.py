@@ -4,8 +4,8 @@ import json
 from contextlib import suppress
 from typing import Any
 
+from geometry.cache import read_kept, write_kept
 from mesh.cache import folder
-from mesh.kept_file import read_kept, write_kept
 from softdot.numbers import json_text
 
 

@@ -11,14 +11,13 @@ from pydantic import Field, ValidationError, model_validator
 from diagnose.reading import read_recording
 from diagnose.recording import Recording, Run
 from diagnose.tables import RigTables, RunTable
-from geometry.errors import InputError
+from geometry.base import InputError
 from geometry.parameters import Table
 from softdot.config import Config, config_from, with_built_in_constants
 from softdot.config_errors import sentence
 from softdot.number_size import refuse_absurd_numbers, without_round_off
 from softdot.toml_file import read_toml
-from solve.materials.library import find_material
-from solve.materials.parameters import AnyMaterial, Material
+from solve.materials.parameters import AnyMaterial, Material, find_material
 from solve.parameters import Readout
 
 RIG_FILE = "rig.toml"

@@ -8,9 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from export.headless import ensure_rendering
-from geometry.dot_shape import DotShape
-from mesh.errors import MeshingError
-from mesh.types import Floats, TetMesh
+from geometry.dot import DotShape
+from mesh.types import Floats, MeshingError, TetMesh
 from softdot import stages
 from softdot.actual import actual
 from softdot.config import Config
@@ -22,7 +21,7 @@ from softdot.progress import Logged, Progress
 from softdot.run_warnings import design_warnings, result_warnings
 from softdot.summary import heading, mesh_part, press_part, stopped_solver
 from softdot.system_libraries import named_when_missing
-from solve.physics import Physics
+from solve.model import Physics
 from solve.result import PressResult, Step
 
 LOG = logging.getLogger(__name__)

@@ -1,7 +1,7 @@
 """What a user should know about a result that is otherwise good."""
 
 from geometry.checks import press_warnings
-from geometry.dot_shape import DotShape
+from geometry.dot import DotShape
 from mesh.types import TetMesh
 from softdot.config import Config
 from solve.materials.parameters import Material, PiezoelectricFilm

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from softdot.dotted_keys import with_value
 
 BARE_WORD = re.compile(r"[A-Za-z][\w-]*")

@@ -5,11 +5,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from geometry.dot_shape import DotShape, resolve_dot
-from geometry.part import Part
+from geometry.dot import DotShape, resolve_dot
+from geometry.solids import Part
 from mesh.types import Floats, TetMesh
 from softdot.config import Config, input_hash
-from solve.physics import Physics
+from solve.model import Physics
 from solve.result import PressResult, Step
 
 OnStep = Callable[[Step, int, int], None]
@@ -43,7 +43,7 @@ def check(config: Config) -> tuple[DotShape, list[str]]:
 
 def _check_waveform(config: Config) -> None:
     """Refuse what the read-out would refuse only after the solve."""
-    from solve.waveform import duration_s
+    from solve.solution.schedule import duration_s
 
     waveform = config.press.waveform
     if waveform is None:
@@ -53,7 +53,7 @@ def _check_waveform(config: Config) -> None:
 
 def build_parts(config: Config, dot_shape: DotShape) -> Sequence[Part]:
     """The labelled solids of the segment, its case and the dot."""
-    from geometry.solids import build_parts as build
+    from geometry.assembly import build_parts as build
 
     return build(config.segment, dot_shape)
 
@@ -83,8 +83,8 @@ def mesh_quality(config: Config, tet_mesh: TetMesh) -> dict[str, Any]:
 def press(config: Config, physics: Physics, dot_shape: DotShape, tet_mesh: TetMesh, on_step: OnStep) -> PressResult:
     """The solved press, as far as it converged."""
     from mesh.cache import folder
-    from solve.checkpoint import Checkpoint
     from solve.press import press_segment
+    from solve.solution.checkpoint import Checkpoint
 
     key = press_key(config, physics, tet_mesh)
     return press_segment(
@@ -118,8 +118,8 @@ def readout_voltage(config: Config, physics: Physics, result: PressResult) -> tu
     if not is_amplified(config, physics):
         return None
     from solve.parameters import Readout
-    from solve.readout import channel_voltages
-    from solve.readout import readout_voltage as behind_amplifier
+    from solve.readout.recording import channel_voltages
+    from solve.readout.recording import readout_voltage as behind_amplifier
 
     told = (result, config.press, config.readout or Readout())
     return behind_amplifier(*told, physics), channel_voltages(*told, physics)

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from geometry.errors import InputError
+from geometry.base import InputError
 
 PACKAGES = {
     "libGL.so.1": "libgl1",

@@ -4,8 +4,8 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-from geometry.errors import InputError
-from geometry.text_file import read_text
+from geometry.base import InputError
+from geometry.files import read_text
 
 DEEPEST = 100
 """Levels of a dotted key or of brackets: far more than any table of softdot has."""

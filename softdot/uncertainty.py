@@ -10,14 +10,14 @@ from collections.abc import Mapping, Sequence
 from math import hypot
 from typing import Any
 
-from geometry.errors import InputError
-from mesh.errors import MeshingError
+from geometry.base import InputError
+from mesh.types import MeshingError
 from softdot.config import Config
 from softdot.differentiate import model_of
 from softdot.kit.responses import KitPress, Response, coarser
 from softdot.kit.tolerances import Tolerance, material_tolerances
-from solve.full_load import StoppedShortError
-from solve.linear import LinearSolveError
+from solve.solution.linear import LinearSolveError
+from solve.solution.sensitivity import StoppedShortError
 
 COARSER = 2.0
 STUDY = {"solid": (0.4, 1.0), "plane-strain": (0.5, 0.6)}

@@ -5,9 +5,9 @@ from typing import Any, NamedTuple, Self
 
 from pydantic import Field, ValidationError, model_validator
 
+from geometry.base import nearest
 from geometry.parameters import Table
 from solve import mechanism_parameters as given
-from solve.nearest import nearest
 
 MEDIA = ("effector", "medium1", "medium2")
 BONDS = ("bond-effector-medium1", "bond-medium1-film", "bond-film-medium2", "bond-base")

@@ -1,23 +1,67 @@
-"""Press the dot into the segment and, where a path is given, slide it."""
+"""Press the dot into the segment and, where a path is given, slide it.
+
+From a model and a mesh to what the march needs: the system and the recorder of its history.
+"""
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from itertools import pairwise
 
-from geometry.dot_shape import DotShape
+from geometry.dot import DotShape
 from geometry.parameters import Dot, Segment
 from mesh.types import TetMesh
-from solve.checkpoint import Checkpoint
-from solve.failure import explained
-from solve.interfaces import open_interfaces
-from solve.linear import LinearSolver
-from solve.march import march, rest_state
+from solve.interfaces import OpenInterface, open_interfaces
 from solve.materials.parameters import Material
-from solve.model import Model
-from solve.newton import NoEquilibriumError
+from solve.model import Model, Physics
 from solve.parameters import Press, Readout
-from solve.physics import Physics
+from solve.problem import build_system, refuse_unresolved, scale_of_section
+from solve.recorder import Recorder
 from solve.result import PressResult, Step
-from solve.setup import Setup, set_up
+from solve.solution.checkpoint import Checkpoint
+from solve.solution.failure import explained
+from solve.solution.linear import LinearSolver
+from solve.solution.march import march, rest_state
+from solve.solution.newton import NoEquilibriumError
+from solve.solution.schedule import Target, schedule
+from solve.system import System, Units
+
+
+@dataclass(frozen=True)
+class Setup:
+    """A discretised press."""
+
+    model: Model
+    system: System
+    recorder: Recorder
+
+    @property
+    def full_drive(self) -> float:
+        """Depth or force at the end of the press, solver units."""
+        press, segment = self.model.press, self.model.segment
+        if press.force_N is not None:
+            return press.force_N / scale_of_section(segment, self.recorder.tet_mesh)[0] / self.system.units.force
+        return 1e-3 * press.depth_mm / self.system.units.length
+
+    def targets(self, follows_time: bool) -> list[Target]:
+        """What is to be reached, and when (see solve.solution.schedule)."""
+        return schedule(self.model.press, self.full_drive, self.system.units.length, follows_time)
+
+
+def set_up(
+    model: Model,
+    dot: DotShape,
+    tet_mesh: TetMesh,
+    opened: tuple[OpenInterface, ...],
+    units: Units | None = None,
+) -> Setup:
+    """Discretise a model on a mesh whose interfaces are open already; units : of another system, to share them."""
+    driven = model.press.force_N is not None
+    system = build_system(
+        model.segment, model.materials, dot, tet_mesh, driven, model.physics, model.readout, opened, units
+    )
+    refuse_unresolved(model.segment, system.film.area())
+    return Setup(model, system, Recorder(system, tet_mesh, model.physics, model.segment, model.materials))
+
 
 OnStep = Callable[[Step, int, int], None]
 

@@ -1,37 +1,72 @@
-"""From parameters and a mesh to the discrete problem in solver units."""
+"""From parameters and a mesh to the discrete problem in solver units.
+
+Where the electrodes lie, and what a plane-strain slice stands for.
+"""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.dot_shape import DotShape
+from geometry.base import InputError
+from geometry.dot import DotShape
 from geometry.parameters import Segment
 from mesh.types import Floats, TetMesh
-from solve.bond import bond
-from solve.circuit import Circuit
-from solve.contact import contact_facets
-from solve.delamination import opening_nodes, unilateral_interface
-from solve.dot_distance import RigidDot
-from solve.electrodes import electrode_rectangles
-from solve.film import FilmRegion, film_region
-from solve.friction import FrictionalContact
+from solve.fem.sparsity import build_pattern
+from solve.fem.term import Numbers, Term, Unknowns, number
 from solve.interfaces import OpenInterface
-from solve.materials.film_plasticity import FilmPlasticity
-from solve.materials.film_yield import YieldLaw
+from solve.materials.film import FilmLaw, FilmPlasticity, YieldLaw, film_law
+from solve.materials.inelastic import Inelastic
 from solve.materials.laws import MediumLaw, medium_law
 from solve.materials.parameters import Material, PiezoelectricFilm
-from solve.materials.piezoelectric import FilmLaw, film_law
-from solve.materials.response import Inelastic
+from solve.model import Physics
 from solve.parameters import Readout
-from solve.physics import Physics
-from solve.rig import Rig
-from solve.sides import side_springs
-from solve.solid import SolidRegion, solid_region
-from solve.sparsity import build_pattern
 from solve.system import System, Units
-from solve.term import Term
-from solve.unknowns import Numbers, Unknowns, number
+from solve.terms.contact import RigidDot, contact_facets
+from solve.terms.delamination import opening_nodes, unilateral_interface
+from solve.terms.film import FilmRegion, film_region
+from solve.terms.friction import FrictionalContact
+from solve.terms.rig import Circuit, Rig
+from solve.terms.solid import SolidRegion, solid_region
+from solve.terms.springs import bond, side_springs
+
+
+def electrode_rectangles(segment: Segment) -> Floats:
+    """Electrodes as (e, 4) x0, x1, y0, y1 in mm; without any, one over everything.
+
+    In a plane-strain slice nothing varies over y: the electrodes then reach over the whole slice, and their
+    share of the width is applied with the width (see scale_of_section).
+    """
+    if not segment.film.electrodes:
+        return np.array([[-np.inf, np.inf, -np.inf, np.inf]])
+    centre = np.array([e.center_mm for e in segment.film.electrodes])
+    half = 0.5 * np.array([e.size_mm for e in segment.film.electrodes])
+    rectangles = np.column_stack([centre - half, centre + half])[:, [0, 2, 1, 3]]
+    if segment.section == "plane-strain":
+        rectangles[:, 2:] = -np.inf, np.inf
+    return rectangles
+
+
+def scale_of_section(segment: Segment, tet_mesh: TetMesh) -> tuple[float, Floats]:
+    """Factors from what is meshed to the whole segment: for the force, and for each electrode's charge (e,)."""
+    count = max(1, len(segment.film.electrodes))
+    if segment.section == "solid":
+        return 1.0, np.ones(count)
+    force = segment.width_mm / tet_mesh.thickness_mm
+    if not segment.film.electrodes:
+        return force, np.array([force])
+    widths = np.array([e.size_mm[1] for e in segment.film.electrodes])
+    return force, np.minimum(widths, segment.width_mm) / tet_mesh.thickness_mm
+
+
+def refuse_unresolved(segment: Segment, area: Floats) -> None:
+    """InputError for an electrode that covers no quadrature point of the film; area (e,)."""
+    for electrode, covered in zip(segment.film.electrodes, area, strict=False):
+        if covered == 0.0:
+            raise InputError(
+                f"segment.film.electrodes: '{electrode.name}' with size_mm = {list(electrode.size_mm)} is smaller than "
+                "the elements of the film; reduce mesh.film_element_size_mm"
+            )
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ class Fields:
     von_mises_Pa, pressure_Pa (positive in compression), max_stretch : (m,)
     film_tets : (k,) indices of the film's tetrahedra; the film arrays follow it, in the film's own axes (1 along
         the draw direction, 2 across, 3 normal):
-    The film arrays are means through the film's thickness (solve.film_average), the same for all tetrahedra that
+    The film arrays are means through the film's thickness (solve.fields), the same for all tetrahedra that
     stand over one another:
     film_strain : (k, 6) Green-Lagrange strain 11, 22, 33, 12, 23, 13
     film_stress_Pa : (k, 6) second Piola-Kirchhoff stress, same order
@@ -44,7 +44,7 @@ class Step:
     """One converged load step. Charges and voltages: one per electrode, shape (e,).
 
     reaction_force_N is what the rig's force sensor reads, dot_force_N (3,) what the segment does to the dot.
-    dot_position_m : (3,) origin of the dot's frame (see geometry.dot_shape) in the segment's frame.
+    dot_position_m : (3,) origin of the dot's frame (see geometry.dot) in the segment's frame.
     """
 
     time_s: float

@@ -7,9 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from geometry.dot_shape import resolve_dot
-from solve.bond import layer_stiffness
-from solve.filters import Filter
+from geometry.dot import resolve_dot
+from solve.materials.inelastic import Prony, Softening
 from solve.materials.parameters import (
     Hyperfoam,
     Linear,
@@ -20,13 +19,11 @@ from solve.materials.parameters import (
     PiezoelectricFilm,
     Yeoh,
 )
-from solve.materials.prony import Prony
-from solve.materials.softening import Softening
 from solve.mechanisms import Mechanism
-from solve.model import Model
+from solve.model import BondLine, Delamination, Model, Pyroelectric, Yield
 from solve.parameters import Readout
-from solve.physics import BondLine, Delamination, Pyroelectric, Yield
-from solve.saturation import Saturation
+from solve.readout.filters import Filter, Saturation
+from solve.terms.springs import layer_stiffness
 
 
 def with_mechanisms(model: Model, mechanisms: Iterable[Mechanism]) -> Model:

@@ -10,16 +10,14 @@ from functools import cached_property
 import numpy as np
 
 from mesh.types import Bools, Floats, Ints
-from solve.contact import ContactFacets
-from solve.element_kernels import scatter
-from solve.film import FilmRegion
-from solve.friction import FrictionalContact
-from solve.rig import Rig
-from solve.solid import SolidRegion
-from solve.sparsity import Pattern
-from solve.term import History, Term, Trial
-from solve.unknowns import Unknowns
-from solve.unsymmetric import Tangent, scatter_unsymmetric
+from solve.fem.kernels import scatter
+from solve.fem.sparsity import Pattern, Tangent, scatter_unsymmetric
+from solve.fem.term import History, Term, Trial, Unknowns
+from solve.terms.contact import ContactFacets
+from solve.terms.film import FilmRegion
+from solve.terms.friction import FrictionalContact
+from solve.terms.rig import Rig
+from solve.terms.solid import SolidRegion
 
 CONTACT_SPRING = 1e4  # only steers the preconditioner of the linear solver
 
@@ -61,8 +59,8 @@ class State:
     """A converged state: time in s, load, unknowns, memory of each term, largest norm of contact forces so far.
 
     time_error : of the step to it, where it exceeds the tolerance (see System.time_error), else zero.
-    snapped : Newton found no equilibrium near the one before it (see solve.snap).
-    work, most_work : what the dot has put into the segment, now and at most so far (see solve.opening).
+    snapped : Newton found no equilibrium near the one before it (see solve.solution.snap).
+    work, most_work : what the dot has put into the segment, now and at most so far (see solve.solution.snap).
     """
 
     time: float

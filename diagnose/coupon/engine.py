@@ -13,14 +13,13 @@ from diagnose.coupon.point import MaterialPoint
 from diagnose.forward import Candidate, Report, Setting, Signals
 from diagnose.recording import Recording, Run
 from diagnose.tables import Drive, Specimen
-from geometry.errors import InputError
+from geometry.base import InputError
 from solve.materials.laws import medium_law
-from solve.materials.library import find_material
-from solve.materials.parameters import Material, PiezoelectricFilm
+from solve.materials.parameters import Material, PiezoelectricFilm, find_material
 from solve.mechanisms import Mechanism
 from solve.model import Model
-from solve.newton import NoEquilibriumError
-from solve.reduced.recording import felt
+from solve.reduced.model import felt
+from solve.solution.newton import NoEquilibriumError
 
 ACCURACY = 1e-3  # of a drive that is taken as straight between its samples
 FACTORS = {f"modulus.{SPECIMEN}": "modulus_factor", f"thickness.{SPECIMEN}": "thickness_factor"}

@@ -1,6 +1,6 @@
 """A whole history of the stress at one material point: relaxation by scans over time, softening by its running maximum.
 
-The formulas are those of solve.materials.prony and solve.materials.softening; tests hold both ways together.
+The formulas are those of solve.materials.inelastic; tests hold both ways together.
 """
 
 from dataclasses import dataclass, replace
@@ -9,9 +9,7 @@ import numba as nb
 import numpy as np
 
 from mesh.types import Floats
-from solve.materials.prony import Prony
-from solve.materials.response import Response
-from solve.materials.softening import Softening
+from solve.materials.inelastic import Prony, Response, Softening
 
 NO_SERIES = Prony((), ())
 

@@ -7,8 +7,7 @@ from collections.abc import Sequence
 
 from diagnose.forward import Candidate, Setting
 from geometry.parameters import Dot, Film, Medium, Segment
-from solve.materials.library import library
-from solve.materials.parameters import Material
+from solve.materials.parameters import Material, library
 from solve.mechanisms import Mechanism
 from solve.model import Model
 from solve.parameters import Readout

@@ -15,11 +15,9 @@ from diagnose.coupon.kinematics import Kinematics, Reading, SimpleShear
 from diagnose.coupon.memory import NO_SERIES, Relaxation, earlier_peaks, softened
 from diagnose.tables import Drive
 from mesh.types import Floats
+from solve.materials.inelastic import Prony, Response, Softening
 from solve.materials.laws import MediumLaw
-from solve.materials.prony import Prony
-from solve.materials.response import Response
-from solve.materials.softening import Softening
-from solve.newton import NoEquilibriumError
+from solve.solution.newton import NoEquilibriumError
 
 TOLERANCE = 1e-7  # of the logarithm of the stretch, or of the shear; the iterate behind it errs by the square
 MAX_ITERATIONS = 80  # four or five, unless samples lie at the kink of softening

@@ -16,7 +16,7 @@ from diagnose.noise.repeats import repeated, scatter
 from diagnose.noise.rest import resting, stretches
 from diagnose.phases import Segmentation
 from diagnose.recording import Recording, Run
-from geometry.errors import InputError
+from geometry.base import InputError
 from mesh.types import Floats
 
 REPEATS, REST, STATED = "repeated runs", "rest", "stated"

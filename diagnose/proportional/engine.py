@@ -19,12 +19,12 @@ from diagnose.proportional.candidates import (
 from diagnose.proportional.sensor import MEDIUM, Loading, film_charge, other_charge, voltage
 from diagnose.recording import Recording, Run
 from diagnose.vocabulary.scene import Scene, film_capacitance_pF
-from geometry.errors import InputError
+from geometry.base import InputError
 from mesh.types import Floats
 from solve.mechanisms import Mechanism
 from solve.model import Model
-from solve.newton import NoEquilibriumError
 from solve.parameters import Readout
+from solve.solution.newton import NoEquilibriumError
 
 HUM = "mains-hum"
 

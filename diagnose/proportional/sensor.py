@@ -18,11 +18,11 @@ from diagnose.coupon.one_layer import LAYER
 from diagnose.coupon.point import MaterialPoint
 from diagnose.vocabulary.scene import film_capacitance_pF
 from mesh.types import Floats
-from solve.amplifier import amplify
 from solve.materials.laws import medium_law
 from solve.materials.parameters import PiezoelectricFilm, Yeoh
 from solve.model import Model
 from solve.parameters import Readout
+from solve.readout.amplifier import amplify
 
 MEDIUM = Yeoh(c10_MPa=0.5, poisson_ratio=0.495)
 """Of shear modulus 1, the unit of stress here."""

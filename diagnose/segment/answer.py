@@ -8,12 +8,12 @@ import numpy as np
 from diagnose.recording import Run
 from diagnose.segment.drive import Drive
 from mesh.types import Floats
-from solve.amplifier import amplify
 from solve.model import Model
 from solve.parameters import Readout
+from solve.readout.amplifier import amplify
 from solve.reduced.fit import Fit
-from solve.reduced.recording import branches, sensed
-from solve.reduced.response_kernel import TOO_DEEP, follow
+from solve.reduced.kernels import TOO_DEEP, follow
+from solve.reduced.model import branches, sensed
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import numpy as np
 from diagnose.phases import Segmentation
 from diagnose.recording import Run
 from mesh.types import Bools, Floats
-from solve.reduced.response_kernel import BY_DEPTH, BY_FORCE
+from solve.reduced.kernels import BY_DEPTH, BY_FORCE
 
 
 @dataclass(frozen=True)

@@ -13,14 +13,14 @@ from diagnose.segment.answer import FilmPlate, Mechanics, other_charge, shown
 from diagnose.segment.drive import Drive
 from diagnose.segment.knots import knots
 from diagnose.segment.prepared import ungapped
-from geometry.dot_shape import resolve_dot
-from geometry.held_folder import scratch_folder
+from geometry.dot import resolve_dot
+from geometry.processes import scratch_folder
 from mesh.types import Floats, TetMesh
 from solve.model import Model
-from solve.newton import NoEquilibriumError
 from solve.parameters import Press, Waveform
 from solve.press import press_segment
 from solve.result import PressResult, Trace
+from solve.solution.newton import NoEquilibriumError
 
 LOAD_STEPS = 8  # of a press in which time does not count
 TOLERANCE = 0.002  # of the largest drive, by which the thinned drive may differ

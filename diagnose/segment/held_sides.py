@@ -6,8 +6,7 @@ import numpy as np
 
 from geometry.parameters import Segment
 from mesh.outline import outline
-from mesh.topology import TET_EDGES
-from mesh.types import Floats, TetMesh
+from mesh.types import TET_EDGES, Floats, TetMesh
 
 FROM, ROOM = 0.6, 0.05
 """Share of half the footprint up to which nodes stay; least share that must be left beyond the foot of an effector."""

@@ -23,10 +23,9 @@ from diagnose.segment.workers import run_all
 from diagnose.vocabulary.memory import relaxable
 from mesh.parameters import MeshOptions
 from mesh.types import Floats, TetMesh
-from solve.model import Model
-from solve.newton import NoEquilibriumError
-from solve.physics import Physics
+from solve.model import Model, Physics
 from solve.reduced.fit import CELLS, Fit
+from solve.solution.newton import NoEquilibriumError
 from solve.switch_on import with_mechanisms
 
 SHARES = 0.1, 0.25, 0.45, 0.7, 1.0

@@ -6,17 +6,17 @@ from itertools import pairwise
 
 import numpy as np
 
-from geometry.dot_shape import resolve_dot
+from geometry.dot import resolve_dot
 from mesh.types import Floats, TetMesh
 from solve.interfaces import open_interfaces
-from solve.linear import LinearSolver
-from solve.march import rest_state
 from solve.model import Model
-from solve.near import Equilibria, reach
-from solve.newton import NoEquilibriumError
 from solve.parameters import Press
-from solve.schedule import Target
-from solve.setup import Setup, set_up
+from solve.press import Setup, set_up
+from solve.solution.linear import LinearSolver
+from solve.solution.march import rest_state
+from solve.solution.near import Equilibria, reach
+from solve.solution.newton import NoEquilibriumError
+from solve.solution.schedule import Target
 from solve.system import Load, State
 
 RETURN = 0.95, 0.85, 0.65, 0.4, 0.15, 0.03

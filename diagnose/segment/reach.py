@@ -7,13 +7,12 @@ import numpy as np
 from diagnose.recording import Recording
 from diagnose.segment import store
 from diagnose.segment.presses import Job
-from geometry.dot_shape import resolve_dot
+from geometry.dot import resolve_dot
 from mesh.types import TetMesh
-from solve.model import Model
-from solve.newton import NoEquilibriumError
+from solve.model import Model, Physics
 from solve.parameters import Press
-from solve.physics import Physics
 from solve.press import press_segment
+from solve.solution.newton import NoEquilibriumError
 
 RUNG = 1.05  # noise of the drive is far less than a step, and a table 5 % too deep costs nothing
 DEEPER = 1.3  # of the depth that a force reaches: softer candidates go deeper, and layers creep

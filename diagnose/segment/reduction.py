@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnose.vocabulary.memory import LARGEST_SHARE
-from geometry.dot_shape import resolve_dot
+from geometry.dot import resolve_dot
 from mesh.types import Floats, TetMesh
 from solve.model import Model
 from solve.reduced.build import build_reduced

@@ -1,8 +1,8 @@
 """What a diagnosis with the 3D model cannot take as its baseline."""
 
 from diagnose.recording import Recording
+from geometry.base import InputError
 from geometry.checks import check_press_depth
-from geometry.errors import InputError
 from solve.materials.parameters import PiezoelectricFilm
 from solve.model import Model
 

@@ -5,13 +5,12 @@ from dataclasses import replace
 import numpy as np
 
 from diagnose.segment.held_sides import crowded
-from geometry.dot_shape import DotShape, resolve_dot
+from geometry.dot import DotShape, resolve_dot
 from mesh.build import build
-from mesh.errors import MeshingError
-from mesh.morph import morphed
+from mesh.interfaces import morphed
 from mesh.outline import outline
 from mesh.parameters import MeshOptions
-from mesh.types import TetMesh
+from mesh.types import MeshingError, TetMesh
 from solve.model import Model
 
 LARGEST = 3000  # nodes: some 8,000 unknowns, and 2 s a press on one core

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 from diagnose.segment.presses import Job
-from mesh.arrays_file import read_arrays, write_arrays
+from geometry.cache import read_arrays, write_arrays
 from mesh.cache import folder
 from mesh.fingerprint import data_hash, files_hash, mesh_hash
 from mesh.types import Floats
 from solve.model import Model
-from solve.near import Equilibria
+from solve.solution.near import Equilibria
 
 ROOT = Path(__file__).parents[2]
 SOURCES = "solve/**/*.py", "mesh/*.py", "geometry/*.py", "diagnose/segment/presses.py"

@@ -10,9 +10,9 @@ import sys
 from diagnose.segment import store
 from diagnose.segment.presses import Job
 from diagnose.segment.reduction import Reduction
-from geometry.end_with_parent import end_with_parent
+from geometry.processes import end_with_parent
 from mesh.types import Floats
-from solve.newton import NoEquilibriumError
+from solve.solution.newton import NoEquilibriumError
 
 
 def answer(job: Job | Reduction) -> Floats | Exception:

@@ -16,9 +16,9 @@ from diagnose.forward import Report
 from diagnose.segment import store, worker
 from diagnose.segment.presses import RETURN, Job
 from diagnose.segment.reduction import Reduction
-from geometry.one_thread import ONE_THREAD
+from geometry.processes import ONE_THREAD
 from mesh.types import Floats
-from solve.newton import NoEquilibriumError
+from solve.solution.newton import NoEquilibriumError
 
 WORTH_A_PROCESS = 4  # presses: a process takes seconds to start
 LARGE = 3000  # nodes: one such press is worth a process, as are the many of a reduction

@@ -7,7 +7,7 @@ from typing import Any
 from diagnose.forward import Candidate, Coordinate
 from diagnose.vocabulary.scene import Scene
 from solve.mechanisms import BONDS
-from solve.physics import BondLine
+from solve.model import BondLine
 
 STIFF_N_PER_MM3 = 50.0  # a film of PVDF, a few mm long, begins to lag behind a medium
 PERFECT_N_PER_MM3 = 1e6

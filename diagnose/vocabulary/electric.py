@@ -7,7 +7,7 @@ from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
 from diagnose.vocabulary.scene import Scene, growing, shrinking
-from solve.filters import corner_over_natural
+from solve.readout.filters import corner_over_natural
 
 SHARPEST = 2.0  # Q^2 of a filter whose resonance is 3 dB
 DEAD = 0.8  # of a filter's whole delay

@@ -6,8 +6,8 @@ from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
 from diagnose.vocabulary.scene import Scene
+from solve.materials.inelastic import Softening
 from solve.materials.parameters import Hyperfoam, Material, MooneyRivlin, NeoHookean, Ogden, Yeoh
-from solve.materials.softening import Softening
 from solve.mechanisms import MEDIA
 from solve.switch_on import shear_modulus_MPa
 

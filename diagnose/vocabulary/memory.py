@@ -8,7 +8,7 @@ import numpy as np
 
 from diagnose.forward import Candidate, Coordinate
 from diagnose.vocabulary.scene import Scene
-from solve.materials.prony import Prony
+from solve.materials.inelastic import Prony
 from solve.model import Model
 
 BRANCHES = 4

@@ -6,7 +6,7 @@ from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
 from diagnose.vocabulary.scene import Scene
-from geometry.dot_shape import resolve_dot
+from geometry.dot import resolve_dot
 from geometry.stack import layers
 
 MODULUS = log(3.5)  # data and data sheets of one silicone differ up to 3.5 times

@@ -20,9 +20,9 @@ from softdot.actual import actual
 from softdot.config import config_from
 from softdot.convert import run_text, write_recording
 from softdot.toml_file import parse_toml
-from solve.amplifier import amplify
+from solve.model import Physics
 from solve.parameters import Readout
-from solve.physics import Physics
+from solve.readout.amplifier import amplify
 
 RIG = """# Made up by examples/recordings/leaky_amplifier.py; no real sensor was pressed.
 format = "softdot-recording/1"

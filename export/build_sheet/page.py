@@ -1,18 +1,137 @@
-"""kit.html: one self-contained page for A4."""
+"""kit.html: one self-contained page for A4, with what to measure on the way and what to expect."""
 
 import base64
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from export.build_sheet.bill import bill, components
-from export.build_sheet.checks import checks
-from export.build_sheet.contents import RESIN_G_CM3, Contents, spoken
+from export.build_sheet.contents import RESIN_G_CM3, Contents, bill, components, gauging, in_words, spoken
 from export.build_sheet.steps import steps
-from export.cut_files.layers import STYLES
-from export.files import write_whole_text
-from export.page.environment import page_environment
+from export.cut_files.drawing import STYLES
+from export.page import page_environment
 from export.report import number
+from geometry.files import write_whole_text
+from geometry.flat.electrodes import stray_area_mm2
+
+VACUUM_PF_PER_MM = 8.8541878128e-3
+SHEET_OHM = {"NiAl": 3.0, "silver ink": 0.1}
+"""Ohm per square, the most: MSI Piezo Film Sensors Technical Manual, p. 3."""
+
+
+@dataclass(frozen=True)
+class Check:
+    """what : to measure; expect : the number; otherwise : what a wrong number tells."""
+
+    what: str
+    expect: str
+    otherwise: str
+
+
+def checks(contents: Contents) -> list[Check]:
+    """In the order of the work."""
+    return [
+        *_printed(contents),
+        *_thicknesses(contents),
+        *_electrical(contents),
+        *_stack(contents),
+        *_press(contents),
+    ]
+
+
+def capacitance_pF(contents: Contents) -> list[tuple[str, float]]:
+    """Of every top electrode against the common one: relative permittivity times area over thickness."""
+    per_mm2 = VACUUM_PF_PER_MM * contents.permittivity / (1e-3 * contents.segment.film.thickness_um)
+    tops = [metal for metal in contents.flat.metals if metal.face == "top"]
+    return [(metal.name, per_mm2 * (metal.rect[1] - metal.rect[0]) * (metal.rect[3] - metal.rect[2])) for metal in tops]
+
+
+def _printed(contents: Contents) -> list[Check]:
+    """Sizes of printed parts on which others depend."""
+    along, across = contents.segment.length_mm, contents.segment.width_mm
+    found = []
+    for pour in contents.solid.pours:
+        gauge = gauging(contents, pour.component)
+        depth = gauge.size_mm / (1.0 - pour.shrinkage_percent / 100)
+        again = "print the mould again, its cavity deeper or shallower by the difference"
+        where = ", at its deepest point" if gauge.shape == "dome" else ""
+        what = f"depth of each cavity in the mould of {in_words(pour.component)}{where}"
+        found.append(Check(what, f"{depth:.3f} mm", again))
+    frame = contents.frame
+    for label, run in (("frame-body", frame.body), ("frame-ring", frame.ring[-1] if frame.ring else None)):
+        if run is not None:
+            size = f"{along + 2 * run.gap:.4g} × {across + 2 * run.gap:.4g} mm"
+            tight = "file it wider: a layer that is too tight bulges"
+            found.append(Check(f"opening of {label} at its top, x × y", size, tight))
+    return found
+
+
+def _thicknesses(contents: Contents) -> list[Check]:
+    rows = {row["label"]: row for row in contents.budget["rows"]} if contents.budget else {}
+    found, again = [], "write the measured value into the configuration and run it again"
+    for layer in reversed(contents.layers):
+        if layer.name == "film":
+            continue
+        name, gauge = in_words(layer.name), gauging(contents, layer.name)
+        row = rows.get(f"thickness of {name}")
+        within = f" ± {row['plus_minus']:.2g}" if row else ""
+        expect = f"{gauge.size_mm:.4g}{within} mm"
+        found.append(Check(f"{gauge.quantity} of {name}, {gauge.where}", expect, again))
+        if gauge.foot is not None:
+            found.append(Check(f"{name}: {gauge.foot[0]}", gauge.foot[1], again))
+    return found
+
+
+def _electrical(contents: Contents) -> list[Check]:
+    stray = stray_area_mm2(contents.flat.metals)
+    area = sum((m.rect[1] - m.rect[0]) * (m.rect[3] - m.rect[2]) for m in contents.flat.metals if m.face == "top")
+    more = f", and {100 * stray / area:.2g} % more where leads cross the common electrode" if stray > 0.0 else ""
+    found = [
+        Check(
+            f"capacitance of electrode '{name}' against the common one, 1 kHz, cable subtracted",
+            f"{expected:.3g} pF{more}",
+            "too high: metal is left beside the electrode; too low: a lead is broken or the film is thicker",
+        )
+        for name, expected in capacitance_pF(contents)
+    ]
+    squares = max(metal.squares for metal in contents.flat.metals)
+    most = ", ".join(f"{squares * ohm:.2g} Ω for {metal}" for metal, ohm in SHEET_OHM.items())
+    found += [
+        Check(f"resistance from pad to electrode, {squares:.0f} squares", f"at most {most}", "a lead is scratched"),
+        Check("resistance between the pads", "no reading (above 100 MΩ)", "metal bridges the cut edge: trim it"),
+    ]
+    return found
+
+
+def _stack(contents: Contents) -> list[Check]:
+    segment_top, floor = contents.layers[-1].top_mm, contents.fabrication.floor_mm
+    carrier = "base" if contents.part("base") is not None else "frame"
+    effector = contents.segment.effector
+    where = ", at the crown of the dome" if effector is not None and effector.shape == "dome" else ""
+    lines = contents.fabrication.adhesive_thickness_mm * (3 if contents.segment.effector is None else 4)
+    return [
+        Check(
+            f"height of the finished segment above the underside of its {carrier}{where}",
+            f"{segment_top + floor:.4g} mm, and up to {lines:.2g} mm more for the adhesive",
+            "there is dirt or a bubble between two layers",
+        )
+    ]
+
+
+def _press(contents: Contents) -> list[Check]:
+    budget = contents.budget
+    if budget is None:
+        return []
+    total = budget["root_sum_square"]
+    return [
+        Check(
+            f"first press: {contents.press}",
+            f"{budget['nominal']['force_N']:.2g} ± {total['force_N']:.2g} N and {budget['nominal']['voltage_V']:.2g} ± "
+            f"{total['voltage_V']:.2g} V",
+            "the tolerance budget tells what shifts it most; a voltage of the other sign: the film is upside down",
+        )
+    ]
+
 
 HERE = Path(__file__).parent
 

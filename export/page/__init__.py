@@ -1,1 +1,17 @@
 """What the HTML pages share: frame, style and the filling of templates."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import jinja2
+
+HERE = Path(__file__).parent
+
+
+def page_environment(folder: Path) -> "jinja2.Environment":
+    """Of the templates in a folder, which may extend base.html and include article.css. Values are escaped."""
+    import jinja2
+
+    loader = jinja2.FileSystemLoader([folder, HERE])
+    return jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)

@@ -3,7 +3,7 @@
 from export.printability.check import check_part
 from export.printability.findings import CriticalSize, Finding, Printability
 from export.printability.picture import draw_findings
-from geometry.printers import PrinterProfile, printer_names, printer_profile
+from geometry.fabrication.printers import PrinterProfile, printer_names, printer_profile
 
 __all__ = [
     "CriticalSize",

@@ -1,21 +1,69 @@
-"""The check of one part against one printer."""
+"""The check of one part against one printer, and one sentence of advice on how to make it."""
 
 from collections.abc import Sequence
 from typing import Any
 
-from export.printability import body_rules, detail_rules
-from export.printability.advice import advise
-from export.printability.findings import RULES, SEVERITIES, CriticalSize, Finding, Point, Printability
+from export.printability import rules
+from export.printability.findings import RULES, SEVERITIES, CriticalSize, Finding, Point, Printability, Process
 from export.printability.measure import Measured, measure
-from geometry.printers import PrinterProfile, printer_names, printer_profile
+from export.printability.rules import SLACK_MM
+from geometry.fabrication.printers import PrinterProfile, printer_names, printer_profile
+
+Findings = Sequence[Finding]
+
+
+def advise(
+    measured: Measured,
+    profile: PrinterProfile,
+    findings: Findings,
+    others: Sequence[tuple[PrinterProfile, Findings]],
+) -> tuple[Process, str]:
+    """The process to make the part by, and why.
+
+    findings : of the profile; others : every printer of the table with its findings. The profile's own process
+    where it does at least as well as the others.
+    """
+    name, worst = profile.process.upper(), [_in_words(finding) for finding in findings[:1]]
+    rules = {finding.rule for finding in errors(findings)}
+    if "manifold" in rules:
+        return "repair", f"repair this: {worst[0]}"
+    sheet = _sheet_thickness(measured)
+    if "wall" in rules and sheet is not None:
+        return "cast", f"cast this: {sheet:.2g} mm sheet cannot be printed by {name}"
+    best, found = min([(profile, findings), *others], key=lambda pair: (len(errors(pair[1])), len(pair[1])))
+    if best.process != profile.process and not errors(found):
+        return best.process, f"print this by {best.process.upper()}, not by {name}: {findings[0].problem}"
+    if not rules:
+        return profile.process, "; ".join([f"print this by {name}", *worst])
+    if rules == {"size"}:
+        return "split", f"split this: {worst[0]}"
+    return "cast", f"cast or machine this: {findings[0].problem}"
+
+
+def _in_words(finding: Finding) -> str:
+    return f"{finding.problem}; {finding.advice}"
+
+
+def errors(findings: Findings) -> list[Finding]:
+    """Those that keep the part from being printed."""
+    return [finding for finding in findings if finding.severity == "error"]
+
+
+def _sheet_thickness(measured: Measured) -> float | None:
+    """Thickness in mm of a part that is one flat sheet along an axis of its drawing, else None."""
+    if measured.walls is None or len(measured.walls.length_mm) == 0:
+        return None
+    thinnest = float(measured.walls.length_mm[0])
+    return thinnest if min(measured.surface.extents) < thinnest + SLACK_MM else None
+
 
 RULES_WITH_LIMITS = (
-    body_rules.size,
-    body_rules.overhang,
-    detail_rules.wall,
-    detail_rules.feature,
-    detail_rules.relief,
-    detail_rules.gap,
+    rules.size,
+    rules.overhang,
+    rules.wall,
+    rules.feature,
+    rules.relief,
+    rules.gap,
 )
 
 
@@ -55,7 +103,7 @@ def check_on_printers(
 
 def _findings(measured: Measured, profile: PrinterProfile, sizes: Sequence[CriticalSize]) -> tuple[Finding, ...]:
     """Errors first, then in the order of the rules."""
-    found = list(body_rules.manifold(measured))
+    found = list(rules.manifold(measured))
     found += [finding for rule in RULES_WITH_LIMITS for finding in rule(measured, profile)]
-    found += detail_rules.tolerance(sizes, profile)
+    found += rules.tolerance(sizes, profile)
     return tuple(sorted(found, key=lambda f: (SEVERITIES.index(f.severity), RULES.index(f.rule))))

@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 
 from export.printability.findings import Finding, Printability
-from export.printability.rays import Floats, Rays
-from export.printability.surface import surface_of
+from export.printability.surface import Floats, Rays, surface_of
 from export.view import INK, WIDTH_IN, Body, View, frame, page, render, save
 
 VIEWS = tuple(View(azimuth, elevation) for elevation in (40.0, -30.0) for azimuth in (20.0, 110.0, 200.0, 290.0))

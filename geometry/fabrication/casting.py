@@ -1,17 +1,168 @@
-"""The moulds of all components that are cast."""
+"""The moulds of all components that are cast, checked against the parts that are to come out, and what to pour."""
 
 from dataclasses import dataclass
+from typing import Any
 
-from geometry.errors import InputError
-from geometry.fabrication.cavity_check import CavityCheck, check_cavity
-from geometry.fabrication.mould import Mould, mould_of
-from geometry.fabrication.mould_checks import check_mould_sizes, styled_cavity
+from geometry.base import InputError
+from geometry.fabrication.cavity import check_mould_sizes, styled_cavity
+from geometry.fabrication.mould import LID_MM, Mould, mould_of
 from geometry.fabrication.parameters import Fabrication
-from geometry.fabrication.part import PROCESSES, FabricationPart, fabrication_part
-from geometry.fabrication.pours import Pour, pour_of
-from geometry.fabrication.routes import cast_components
+from geometry.fabrication.part import PROCESSES, FabricationPart, box, fabrication_part, scaled, volume, without
+from geometry.fabrication.printers import printer_profile
+from geometry.fabrication.recipes import CastComponent, cast_components
 from geometry.parameters import Segment
-from geometry.printers import printer_profile
+
+
+@dataclass(frozen=True)
+class Pour:
+    """One mould full of one material. Masses in g, volumes in mm^3.
+
+    component : "effector", "medium1" or "medium2".
+    material : its material in the configuration.
+    recipe : name of what is poured; another one than the material where that cannot be cast.
+    cavities : number of them in the mould.
+    cavity_volume_mm3 : of all cavities together, enlarged for shrinkage.
+    poured_volume_mm3 : with the overfill.
+    poured_mass_g : of the poured volume.
+    mixed_mass_g : the poured mass, or the smallest batch that can be mixed.
+    mixed_masses_g : (name, mass) of each component of the mix, such as (("A", 5.0), ("B", 5.0)).
+    shrinkage_percent : linear, by which the cavities are enlarged.
+    pot_life_min, cure_time_h : None where not known.
+    release : note on the release agent.
+    note : what else to know.
+    source : of the numbers.
+    """
+
+    component: str
+    material: str
+    recipe: str
+    cavities: int
+    cavity_volume_mm3: float
+    poured_volume_mm3: float
+    poured_mass_g: float
+    mixed_mass_g: float
+    mixed_masses_g: tuple[tuple[str, float], ...]
+    shrinkage_percent: float
+    pot_life_min: float | None
+    cure_time_h: float | None
+    release: str
+    note: str
+    source: str
+
+
+def pour_of(component: CastComponent, mould: Mould, fabrication: Fabrication) -> Pour:
+    """What one mould takes. The liquid is counted at the density of the cured part and the volume of the cavity."""
+    recipe, cavities = component.recipe, len(mould.gang.centers)
+    cavity_volume = cavities * float(mould.cavity.solid.volume)
+    poured_volume = cavity_volume * (1.0 + fabrication.overfill_percent / 100.0)
+    poured = poured_volume * 1e-3 * recipe.density_g_cm3
+    mixed = max(poured, fabrication.smallest_batch_g)
+    return Pour(
+        component=component.name,
+        material=component.material,
+        recipe=recipe.name,
+        cavities=cavities,
+        cavity_volume_mm3=cavity_volume,
+        poured_volume_mm3=poured_volume,
+        poured_mass_g=poured,
+        mixed_mass_g=mixed,
+        mixed_masses_g=recipe.masses_g(mixed),
+        shrinkage_percent=100.0 * recipe.shrinkage,
+        pot_life_min=recipe.pot_life_min,
+        cure_time_h=recipe.cure_time_h,
+        release=recipe.release,
+        note=recipe.note,
+        source=recipe.source,
+    )
+
+
+@dataclass(frozen=True)
+class CavityCheck:
+    """The void of the closed mould, shrunk, against the designed part.
+
+    component : "effector", "medium1" or "medium2".
+    style : "open" or "split".
+    designed_volume_mm3, cast_volume_mm3 : of the part and of the shrunk void of one cavity.
+    difference_mm3 : volume of the symmetric difference of both.
+    deviation_mm : largest distance between their surfaces.
+    tolerance_mm : what is allowed.
+    """
+
+    component: str
+    style: str
+    designed_volume_mm3: float
+    cast_volume_mm3: float
+    difference_mm3: float
+    deviation_mm: float
+    tolerance_mm: float
+
+
+def check_cavity(mould: Mould, fabrication: Fabrication) -> CavityCheck:
+    """Measure the void of the closed mould by cuts with its printed parts, not with what it was made from.
+
+    What stands in the vents is trimmed off the cast part and does not count.
+    """
+    designed, shrink = mould.cavity.designed, 1.0 - mould.cavity.shrinkage
+    void, vents = scaled(_void(mould, fabrication), shrink), [scaled(notch, shrink) for notch in _vents_at_axis(mould)]
+    beyond = _volume_outside(vents, void.cut(designed))
+    lacking = volume(designed.cut(void))
+    return CavityCheck(
+        component=mould.component,
+        style=mould.style,
+        designed_volume_mm3=float(designed.volume),
+        cast_volume_mm3=float(designed.volume) + beyond - lacking,
+        difference_mm3=beyond + lacking,
+        deviation_mm=max(_farthest(void, designed, vents), _farthest(designed, void, vents)),
+        tolerance_mm=fabrication.tolerance_mm,
+    )
+
+
+def _void(mould: Mould, fabrication: Fabrication) -> Any:
+    """What the closed mould leaves hollow around its first cavity, moved to the axis.
+
+    The probe reaches half-way into the land and the walls, not as far as the overflow.
+    """
+    from build123d import Pos
+
+    cavity, (x, y) = mould.cavity, mould.gang.centers[0]
+    reach = min(fabrication.land_mm, fabrication.mould_wall_mm, LID_MM) / 2
+    probe = box(
+        (x - cavity.size_x / 2 - reach, x + cavity.size_x / 2 + reach),
+        (y - cavity.size_y / 2 - reach, y + cavity.size_y / 2 + reach),
+        (-reach, cavity.height + reach),
+    )
+    return Pos(-x, -y, 0) * without(probe, mould.solids.values())
+
+
+def _vents_at_axis(mould: Mould) -> list[Any]:
+    """The vents of the first cavity, moved with it."""
+    from build123d import Pos
+
+    x, y = mould.gang.centers[0]
+    return [Pos(-x, -y, 0) * notch for notch in mould.vents[:2]]
+
+
+def _volume_outside(vents: list[Any], excess: Any) -> float:
+    """Volume in mm^3 of what lies beyond the part, without what stands in the vents."""
+    pieces = [] if excess is None else excess.solids()
+    return sum(volume(piece.cut(*vents)) for piece in pieces)
+
+
+def _farthest(solid: Any, other: Any, vents: list[Any]) -> float:
+    """Largest distance in mm of points on one surface, outside the vents, from the other surface."""
+    from build123d import Vertex
+
+    points, _ = solid.tessellate(0.02, 0.5)
+    surface, boxes = other.shell(), [notch.bounding_box() for notch in vents]
+    kept = [point for point in points if not any(_within(one, point) for one in boxes)]
+    return max(float(surface.distance_to(Vertex(*point))) for point in kept)
+
+
+def _within(one: Any, point: Any) -> bool:
+    """Whether a point lies in a box or on it."""
+    low, high, edge = tuple(one.min), tuple(one.max), 1e-6
+    return all(a - edge <= x <= b + edge for a, x, b in zip(low, point, high, strict=True))
+
 
 PURPOSES = {
     "plate": "Holds the cavities of {component}; the cast parts leave it upwards.",

@@ -1,14 +1,113 @@
-"""The clamp frame of held sides and the open base of free ones. Lengths in millimetres, in the segment's frame."""
+"""The clamp frame of held sides and the open base of free ones; refused where it cannot be printed or assembled."""
 
 from typing import Any
 
-from geometry.fabrication.frame_checks import check_frame
-from geometry.fabrication.frame_layout import TAB_CLEARANCE_MM, TIE_MM, FrameLayout, Run, frame_layout
+from geometry.base import InputError
+from geometry.fabrication.frame_layout import (
+    TAB_CLEARANCE_MM,
+    TIE_MM,
+    FrameLayout,
+    Run,
+    frame_layout,
+    held_names,
+    widest_gap,
+)
 from geometry.fabrication.parameters import Fabrication
-from geometry.fabrication.part import PROCESSES, FabricationPart, fabrication_part
-from geometry.fabrication.shapes import box, joined, post, without
+from geometry.fabrication.part import (
+    PROCESSES,
+    ROUNDING_MM,
+    FabricationPart,
+    box,
+    fabrication_part,
+    joined,
+    post,
+    refuse_small_keys,
+    refuse_thin,
+    without,
+)
+from geometry.fabrication.printers import PrinterProfile, printer_profile
 from geometry.parameters import Segment
-from geometry.printers import printer_profile
+
+
+def check_frame(segment: Segment, layout: FrameLayout, fabrication: Fabrication) -> None:
+    """InputError with the limit that a wall, ledge, hole or flange breaks."""
+    printer = printer_profile(fabrication.printer)
+    _check_keys(fabrication, printer)
+    _check_pitch(layout, fabrication, printer)
+    _check_cable(layout, fabrication, printer)
+    for run in layout.ring:
+        refuse_thin(
+            f"segment.held_layers = {list(segment.held_layers)}: the clamp frame needs a ledge",
+            run.top - run.bottom,
+            printer["supported_wall_mm"],
+            f"the {printer.process.upper()} limit for the supported wall",
+            "hold a thicker layer or several neighbours",
+        )
+    _check_flange(segment, layout, fabrication)
+
+
+def _check_keys(fabrication: Fabrication, printer: PrinterProfile) -> None:
+    checks = (
+        ("wall_mm", "an outer wall", printer["wall_mm"], "unsupported wall"),
+        ("floor_mm", "a floor", printer["supported_wall_mm"], "supported wall"),
+        ("screw_diameter_mm", "a hole", printer["hole_mm"], "hole"),
+        ("tab_slot_mm", "a channel", printer["groove_mm"], "engraving"),
+        ("pin_diameter_mm", "a pin", printer["feature_mm"], "pin"),
+    )
+    refuse_small_keys(fabrication, printer, checks)
+
+
+def _check_cable(layout: FrameLayout, fabrication: Fabrication, printer: PrinterProfile) -> None:
+    """The tab is narrower than the footprint, its channel leaves a floor and the shelf has room for a tie."""
+    widest = layout.frame.across - 2 * TAB_CLEARANCE_MM
+    if fabrication.tab_width_mm > widest + ROUNDING_MM:
+        raise InputError(
+            f"fabrication.tab_width_mm = {fabrication.tab_width_mm:g}: must be at most {widest:.3g}, the footprint at "
+            f"cable_exit = '{fabrication.cable_exit}' less {TAB_CLEARANCE_MM:g} mm on each side"
+        )
+    refuse_thin(
+        f"fabrication.tab_slot_mm = {fabrication.tab_slot_mm:g}: the shelf under the tab has a thickness",
+        layout.film_bottom + fabrication.floor_mm - fabrication.tab_slot_mm,
+        printer["supported_wall_mm"],
+        f"the {printer.process.upper()} limit for the supported wall",
+        "make the slot shallower or floor_mm larger",
+    )
+    refuse_thin(
+        f"fabrication.shelf_mm = {fabrication.shelf_mm:g}: the slots for the cable tie leave a wall",
+        (fabrication.shelf_mm - TIE_MM[0]) / 2,
+        printer["supported_wall_mm"],
+        f"the {printer.process.upper()} limit for the supported wall",
+        "make the shelf longer",
+    )
+
+
+def _check_pitch(layout: FrameLayout, fabrication: Fabrication, printer: PrinterProfile) -> None:
+    """The wall between neighbours is what the pitch leaves beside the widest opening."""
+    if fabrication.pitch_mm is None:
+        if max(fabrication.array) > 1:
+            raise InputError(f"fabrication.pitch_mm is missing: array = {list(fabrication.array)} needs it")
+        return
+    gap = widest_gap(layout.body, layout.ring)
+    size = layout.size_between
+    largest = max(fabrication.pitch_mm - printer["supported_wall_mm"] - 2 * gap, 0.0)
+    refuse_thin(
+        f"fabrication.pitch_mm = {fabrication.pitch_mm:g}: segments of {size:g} mm with a gap of {gap:g} mm on each "
+        "side leave a wall between them",
+        fabrication.pitch_mm - size - 2 * gap,
+        printer["supported_wall_mm"],
+        f"the {printer.process.upper()} limit for the supported wall",
+        f"at this pitch a segment may be at most {largest:.3g} mm wide",
+    )
+
+
+def _check_flange(segment: Segment, layout: FrameLayout, fabrication: Fabrication) -> None:
+    """The flange of a held film lies on the body beside medium 2."""
+    room = layout.half_along - layout.frame.along / 2 - (layout.frame.count_along - 1) * layout.pitch / 2
+    if "film" in held_names(segment) and fabrication.film_flange_mm > room + ROUNDING_MM:
+        raise InputError(
+            f"fabrication.film_flange_mm = {fabrication.film_flange_mm:g}: the frame has only {room:.3g} mm beside "
+            f"the footprint; must be at most that, or give a thicker wall than wall_mm = {fabrication.wall_mm:g}"
+        )
 
 
 def frame_parts(segment: Segment, fabrication: Fabrication) -> tuple[FabricationPart, ...]:

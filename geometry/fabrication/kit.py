@@ -1,16 +1,128 @@
-"""All solids of the fabrication kit of one segment."""
+"""All solids of the fabrication kit of one segment, with the assembly jig in which its layers are stacked."""
 
 from dataclasses import dataclass
+from typing import Any
 
-from geometry.fabrication.casting import casting_kit
-from geometry.fabrication.cavity_check import CavityCheck
+import numpy as np
+
+from geometry.fabrication.casting import CavityCheck, Pour, casting_kit
 from geometry.fabrication.clamp_frame import frame_parts
-from geometry.fabrication.jig import jig_parts
+from geometry.fabrication.frame_layout import ExitFrame, exit_frame, held_names
 from geometry.fabrication.parameters import Fabrication
-from geometry.fabrication.part import FabricationPart
-from geometry.fabrication.pours import Pour
-from geometry.fabrication.routes import sheet_components
+from geometry.fabrication.part import PROCESSES, FabricationPart, box, fabrication_part, joined, pin, post, without
+from geometry.fabrication.recipes import sheet_components
 from geometry.parameters import Segment
+from geometry.part_checks import covers_footprint
+from geometry.stack import Box, bodies, layers
+
+RELIEF_MM = 1.0
+"""Diameter of the hole in the corner: sharp edges of the layers find room there."""
+STEP_MM = 3.0
+"""Width of a step of the gauge."""
+REACH_MM = 4.0
+"""Floor beyond the footprint, at least, for tweezers."""
+LOCATOR_MM = 1.2
+
+
+def jig_parts(segment: Segment, fabrication: Fabrication) -> tuple[FabricationPart, ...]:
+    """The jig, and the locator where the effector is narrower than the footprint.
+
+    They lie in the frame of the segment but for the height: the floor of the jig is at z = 0.
+    """
+    frame, tops = exit_frame(segment, fabrication), stacked_tops(segment, fabrication)
+    narrow = not covers_footprint(segment)
+    stops = list(tops.values())[-2 if narrow else -1]
+    jig = joined(_corner(frame, stops, fabrication), _steps(tops, frame, fabrication))
+    if narrow:
+        tall = (-fabrication.floor_mm / 2, stops + LOCATOR_MM)
+        jig = joined(jig, [pin(x, y, tall, fabrication.pin_diameter_mm) for x, y in _pins(frame, fabrication)])
+    heights = ", ".join(f"{top:.3g} mm" for name, top in tops.items() if name != "film")
+    purpose = (
+        "The layers are stacked against its two stops; the steps beside it show how high the stack is after each "
+        f"layer: {heights}."
+    )
+    fine = PROCESSES[fabrication.printer]
+    parts = [fabrication_part("jig", frame.placed(jig), "jig", purpose, fine)]
+    if narrow:
+        plate = frame.placed(_locator(segment, frame, stops, fabrication))
+        purpose = "Lies on the jig's stops and pins and centres the effector on medium 1."
+        parts.append(fabrication_part("jig-locator", plate, "jig", purpose, fine))
+    return tuple(parts)
+
+
+def stacked_tops(segment: Segment, fabrication: Fabrication) -> dict[str, float]:
+    """Name -> height over the floor of the jig, in mm, of the layers that are stacked there, in order.
+
+    A film with a flange does not go into the corner: then the jig takes what lies above the film, and the frame
+    takes the rest.
+    """
+    flanged = "film" in held_names(segment) and fabrication.film_flange_mm > 0.0
+    stack = [layer for layer in layers(segment) if not flanged or layer.name in ("medium1", "effector")]
+    return {layer.name: layer.top_mm - stack[0].bottom_mm for layer in stack}
+
+
+def _corner(frame: ExitFrame, stops: float, fabrication: Fabrication) -> Any:
+    """Floor and two walls: one away from the cable, one beside it."""
+    half_x, half_y, thick, reach = frame.along / 2, frame.across / 2, _thick(fabrication), _reach(fabrication)
+    whole_x, whole_y = (-half_x - thick, half_x + reach), (-half_y - thick, half_y + reach)
+    floor = box(whole_x, whole_y, (-fabrication.floor_mm, 0.0))
+    low = -fabrication.floor_mm / 2
+    behind = box((-half_x - thick, -half_x), whole_y, (low, stops))
+    beside = box(whole_x, (-half_y - thick, -half_y), (low, stops))
+    return without(joined(floor, [behind, beside]), [post(-half_x, -half_y, (0.0, stops + 1.0), RELIEF_MM)])
+
+
+def _steps(tops: dict[str, float], frame: ExitFrame, fabrication: Fabrication) -> list[Any]:
+    """A staircase along the outer side of the wall beside the cable; the film is too thin for a step of its own."""
+    start = -frame.along / 2 - _thick(fabrication)
+    outer = -frame.across / 2 - _thick(fabrication)
+    return [
+        box(
+            (start + number * STEP_MM, start + (number + 1) * STEP_MM),
+            (outer - STEP_MM, outer),
+            (-fabrication.floor_mm, top),
+        )
+        for number, top in enumerate(top for name, top in tops.items() if name != "film")
+    ]
+
+
+def _thick(fabrication: Fabrication) -> float:
+    """Of the stops: they carry the pins of the locator, whose holes are wider by the clearance."""
+    beside = fabrication.wall_mm + fabrication.pin_clearance_mm
+    return max(2 * fabrication.wall_mm, fabrication.pin_diameter_mm + 2 * beside)
+
+
+def _reach(fabrication: Fabrication) -> float:
+    """Floor beyond the footprint; the end of the stop that stands on it carries a pin too."""
+    return max(REACH_MM, _thick(fabrication))
+
+
+def _pins(frame: ExitFrame, fabrication: Fabrication) -> list[tuple[float, float]]:
+    """On the stop behind, in the middle of its ends, so that each hole of the locator has a whole wall around it."""
+    thick, half = _thick(fabrication), frame.across / 2
+    x = -frame.along / 2 - thick / 2
+    return [(x, -half - thick / 2), (x, half + _reach(fabrication) / 2)]
+
+
+def _locator(segment: Segment, frame: ExitFrame, stops: float, fabrication: Fabrication) -> Any:
+    thick, reach, tall = _thick(fabrication), _reach(fabrication), (stops, stops + LOCATOR_MM)
+    low_x, low_y = -frame.along / 2 - thick, -frame.across / 2 - thick
+    plate = box((low_x, frame.along / 2 + reach), (low_y, frame.across / 2 + reach), tall)
+    through = (tall[0] - 1.0, tall[1] + 1.0)
+    hole = fabrication.pin_diameter_mm + 2 * fabrication.pin_clearance_mm
+    holes = [post(x, y, through, hole) for x, y in _pins(frame, fabrication)]
+    return without(plate, [*holes, _effector_hole(segment, frame, through, fabrication)])
+
+
+def _effector_hole(segment: Segment, frame: ExitFrame, through: tuple[float, float], fabrication: Fabrication) -> Any:
+    """The outline of the effector's foot, wider by the glue gap on each side."""
+    body, gap = bodies(segment)[-1], fabrication.glue_gap_mm
+    if isinstance(body, Box):
+        halves = (body.half_x + gap, body.half_y + gap)
+        half_x, half_y = halves if frame.turn_deg in (0.0, 180.0) else halves[::-1]
+        return box((-half_x, half_x), (-half_y, half_y), through)
+    radius = float(body.reach(np.array([1.0, 0.0, 0.0])))
+    return post(0.0, 0.0, through, 2 * (radius + gap))
 
 
 @dataclass(frozen=True)

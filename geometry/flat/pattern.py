@@ -1,5 +1,6 @@
-"""A flat pattern: closed lines on named layers, with the dimensions that a bench needs."""
+"""A flat pattern: closed lines on named layers, with the dimensions that a bench needs; kerf compensation."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import cos, hypot, pi, radians, sin
 from typing import Literal
@@ -187,3 +188,78 @@ def _turned_dimension(one: Dimension, quarter: int) -> Dimension:
     ends = (_turned_point(one.start, quarter), _turned_point(one.end, quarter))
     start, end = sorted(ends, key=lambda point: point[0 if along == "x" else 1])
     return Dimension(start, end, along, moved[1] if along == "x" else moved[0])
+
+
+def gap_mm(one: Sequence[Point], other: Sequence[Point]) -> float:
+    """Largest separation of two convex polygons along a normal of their edges; negative where they overlap."""
+    found = -float("inf")
+    for first, second in ((one, other), (other, one)):
+        for a, b in zip(first, (*first[1:], first[0]), strict=True):
+            length = hypot(b[0] - a[0], b[1] - a[1])
+            n = ((b[1] - a[1]) / length, (a[0] - b[0]) / length)
+            reach = max(n[0] * p[0] + n[1] * p[1] for p in first)
+            found = max(found, min(n[0] * p[0] + n[1] * p[1] for p in second) - reach)
+    return found
+
+
+def shared_area_mm2(one: Sequence[Point], other: Sequence[Point]) -> float:
+    """Area common to two convex, counter-clockwise polygons (Sutherland and Hodgman, 1974)."""
+    kept = list(one)
+    for a, b in zip(other, (*other[1:], other[0]), strict=True):
+        kept = _left_of(kept, a, b)
+    after = [*kept[1:], *kept[:1]]
+    return abs(sum(p[0] * q[1] - q[0] * p[1] for p, q in zip(kept, after, strict=True))) / 2
+
+
+def _left_of(polygon: list[Point], a: Point, b: Point) -> list[Point]:
+    """What of a polygon lies to the left of the line from a to b."""
+
+    def side(p: Point) -> float:
+        return (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])
+
+    kept: list[Point] = []
+    for p, q in zip(polygon, [*polygon[1:], *polygon[:1]], strict=True):
+        s, t = side(p), side(q)
+        if s >= 0.0:
+            kept.append(p)
+        if s * t < 0.0:
+            share = s / (s - t)
+            kept.append((p[0] + share * (q[0] - p[0]), p[1] + share * (q[1] - p[1])))
+    return kept
+
+
+def compensated(pattern: FlatPattern) -> FlatPattern:
+    """The pattern with its cut lines moved by half a kerf into the waste; marks stay."""
+    half = pattern.kerf_mm / 2
+    return replace(pattern, cuts=tuple(_moved(cut, half) for cut in pattern.cuts))
+
+
+def _moved(cut: Outline | Circle, distance: float) -> Outline | Circle:
+    """Outer lines grow, holes shrink."""
+    outwards = -distance if cut.hole else distance
+    if isinstance(cut, Circle):
+        return replace(cut, radius=cut.radius + outwards)
+    return replace(cut, points=offset(cut.points, outwards))
+
+
+def offset(points: tuple[Point, ...], distance: float) -> tuple[Point, ...]:
+    """A counter-clockwise polygon with every edge moved outwards by the distance; corners stay sharp.
+
+    For distances below the lengths of the edges.
+    """
+    before, after = (points[-1], *points[:-1]), (*points[1:], points[0])
+    return tuple(_corner(a, b, c, distance) for a, b, c in zip(before, points, after, strict=True))
+
+
+def _corner(a: Point, b: Point, c: Point, distance: float) -> Point:
+    """b moved along the bisector: b + d (n1 + n2) / (1 + n1 . n2), with the outward normals of both edges."""
+    n1, n2 = _normal(a, b), _normal(b, c)
+    scale = distance / (1.0 + n1[0] * n2[0] + n1[1] * n2[1])
+    return (b[0] + scale * (n1[0] + n2[0]), b[1] + scale * (n1[1] + n2[1]))
+
+
+def _normal(a: Point, b: Point) -> Point:
+    """Unit normal to the right of the way from a to b: outwards, where the polygon runs counter-clockwise."""
+    dx, dy = b[0] - a[0], b[1] - a[1]
+    length = hypot(dx, dy)
+    return (dy / length, -dx / length)

@@ -2,16 +2,21 @@
 
 from dataclasses import dataclass, replace
 
-from geometry.errors import InputError
-from geometry.fabrication.limits import ROUNDING_MM
+from geometry.base import InputError
 from geometry.fabrication.parameters import Fabrication
-from geometry.fabrication.routes import sheet_components
-from geometry.flat.adhesive import adhesive_patterns, body_dimensions, body_outline
-from geometry.flat.electrodes import Metal, half_head_mm, lead_width, metals
-from geometry.flat.film import film_pattern, mask_patterns
-from geometry.flat.layout import FilmLayout, film_layout
-from geometry.flat.panel import Panel, panel_of
+from geometry.fabrication.part import ROUNDING_MM
+from geometry.fabrication.recipes import sheet_components
+from geometry.flat.electrodes import FilmLayout, Metal, film_layout, half_head_mm, lead_width, metals
 from geometry.flat.pattern import FlatPattern, arrow, turned
+from geometry.flat.sheets import (
+    Panel,
+    adhesive_patterns,
+    body_dimensions,
+    body_outline,
+    film_pattern,
+    mask_patterns,
+    panel_of,
+)
 from geometry.parameters import Segment
 from geometry.stack import layers
 

@@ -7,9 +7,8 @@ import numpy as np
 from scipy.io import loadmat
 from scipy.io.matlab import MatReadError, matfile_version
 
-from geometry.errors import InputError
+from geometry.base import InputError, nearest
 from mesh.types import Floats
-from solve.nearest import nearest
 
 HDF5 = 2
 """Major version of files that MATLAB calls 7.3: an HDF5 library more would save their user one save(..., '-v7')."""

@@ -14,8 +14,8 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.errors import InputError
-from geometry.text_file import regular_file
+from geometry.base import InputError
+from geometry.files import regular_file
 from mesh.types import Floats
 
 HEADER_ROWS = 60

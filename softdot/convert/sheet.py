@@ -5,7 +5,7 @@ from zipfile import BadZipFile
 
 import numpy as np
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from mesh.types import Floats
 
 

@@ -6,7 +6,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from mesh.types import Floats
 from softdot.rig_file import RIG_FILE, load_rig
 

@@ -4,16 +4,16 @@ from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from softdot.command_output import GOOD, NOT_CONVERGED, complain, only_the_summary_on_stdout, show
 
 
 def command(chosen: Namespace) -> int:
     """Diagnose chosen.recording into chosen.output; 0, or 3 when a press did not converge. InputError."""
-    from mesh.errors import MeshingError
+    from mesh.types import MeshingError
     from softdot.diagnosis.run import FULL_MODEL_S, Options, run_diagnosis
     from softdot.progress import progress_of
-    from solve.newton import NoEquilibriumError
+    from solve.solution.newton import NoEquilibriumError
 
     if chosen.seed is not None and chosen.seed < 0:
         raise InputError(f"--seed = {chosen.seed}: must be at least 0")

@@ -21,15 +21,14 @@ from diagnose.thinning import thinned
 from diagnose.verdict.content import FORMAT, verdict
 from diagnose.verdict.resimulation import OutOfTimeError, Resimulated, resimulate
 from diagnose.verdict.words import sentences
-from geometry.errors import InputError
+from geometry.base import InputError, nearest
 from mesh.cache import check_folder
 from softdot.numbers import plain, write_json
 from softdot.output_folder import Product, staged_folder
 from softdot.progress import Logged, Progress
 from softdot.rig_file import Rig, load_rig
 from solve.mechanisms import MECHANISMS
-from solve.nearest import nearest
-from solve.newton import NoEquilibriumError
+from solve.solution.newton import NoEquilibriumError
 
 NEXT_PRESS = "next-press.csv"
 DIAGNOSIS = Product(

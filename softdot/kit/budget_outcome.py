@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from mesh.errors import MeshingError
-from solve.full_load import StoppedShortError
-from solve.linear import LinearSolveError
+from mesh.types import MeshingError
+from solve.solution.linear import LinearSolveError
+from solve.solution.sensitivity import StoppedShortError
 
 
 @dataclass(frozen=True)

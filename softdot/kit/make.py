@@ -8,13 +8,13 @@ from export.build_sheet.contents import Contents
 from export.build_sheet.page import write_page
 from export.build_sheet.pictures import draw_all
 from export.cad import write_3mf, write_step, write_stl
-from export.cut_files.write import write_cut_files
+from export.cut_files import write_cut_files
 from export.headless import ensure_rendering
 from export.printability import check_part, printer_profile
-from geometry.errors import InputError
+from geometry.base import InputError
 from geometry.fabrication.kit import solid_kit
 from geometry.flat.patterns import flat_kit
-from mesh.errors import MeshingError
+from mesh.types import MeshingError
 from softdot import stages
 from softdot.config import Config
 from softdot.kit.budget import budget_of
@@ -27,9 +27,9 @@ from softdot.output_folder import Product, staged_folder
 from softdot.progress import Logged, Progress
 from softdot.run_warnings import design_warnings
 from softdot.system_libraries import named_when_missing
-from solve.full_load import StoppedShortError
-from solve.linear import LinearSolveError
 from solve.materials.parameters import PiezoelectricFilm
+from solve.solution.linear import LinearSolveError
+from solve.solution.sensitivity import StoppedShortError
 
 KIT = Product(
     "softdot-kit/1",

@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from mesh.fingerprint import data_hash, files_hash
-from mesh.morph import morphed
+from mesh.interfaces import morphed
 from mesh.types import TetMesh
 from softdot import stages
 from softdot.actual import actual
@@ -22,8 +22,8 @@ from softdot.kit.factors import with_factors
 from softdot.outcome import outcome_key
 from softdot.remembered import recall, remember
 from softdot.summary import history
-from solve.full_load import FullLoad, StoppedShortError
 from solve.result import PressResult
+from solve.solution.sensitivity import FullLoad, StoppedShortError
 
 LOAD_STEPS = 3
 """Enough for the march; what is asked for is the deepest step alone."""

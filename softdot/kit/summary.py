@@ -3,12 +3,10 @@
 from dataclasses import asdict
 from typing import Any
 
-from export.build_sheet.bill import bill, components
-from export.build_sheet.checks import capacitance_pF, checks
-from export.build_sheet.contents import Contents
+from export.build_sheet.contents import Contents, bill, components
+from export.build_sheet.page import capacitance_pF, checks
 from export.build_sheet.steps import steps
-from geometry.flat.kerf import compensated
-from geometry.flat.pattern import FlatPattern
+from geometry.flat.pattern import FlatPattern, compensated
 from softdot.config import Config, config_hash
 from softdot.output_folder import Product
 from softdot.version import installed_version

@@ -6,9 +6,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from export.files import write_whole_text
-from export.page.environment import page_environment
+from export.page import page_environment
 from export.report import number
+from geometry.files import write_whole_text
 from softdot.paper.collected import claims_table, inconsistencies_table, numbers_table
 from softdot.paper.section import Block, Figure, Heading, Section, Table
 from softdot.version import installed_version

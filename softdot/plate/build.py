@@ -2,11 +2,16 @@
 
 from dataclasses import dataclass
 
-from geometry.plates.plate import Plate
-from geometry.plates.series import HEIGHTS_MM, height_series
-from geometry.plates.sizes import BrailleSizes, braille_sizes
-from geometry.plates.text_plate import MARGIN_MM, THICKNESS_MM, text_plate
-from geometry.plates.tip import THREADS, indenter_tip
+from geometry.plates.plate import THREADS, Plate, indenter_tip
+from geometry.plates.text_plate import (
+    HEIGHTS_MM,
+    MARGIN_MM,
+    THICKNESS_MM,
+    BrailleSizes,
+    braille_sizes,
+    height_series,
+    text_plate,
+)
 from softdot.plate.cells import Translation, translate
 from softdot.plate.request import PlateRequest, check_request
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from softdot.plate.english import english_cells, english_table
 from softdot.plate.liblouis import INSTALL, liblouis, louis_cells
 

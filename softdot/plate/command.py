@@ -4,8 +4,8 @@ from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
+from geometry.base import InputError
 from geometry.braille import QUANTITIES
-from geometry.errors import InputError
 from softdot.command_output import GOOD, only_the_summary_on_stdout, show
 from softdot.plate.request import PlateRequest
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.util import find_spec
 
-from geometry.errors import InputError
+from geometry.base import InputError
 
 INSTALL = (
     "liblouis translates contracted Braille and other languages: install it (Debian and Ubuntu 'apt-get install "

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal, get_args
 
+from geometry.base import InputError
 from geometry.braille import QuantityName
-from geometry.errors import InputError
-from geometry.plates.sizes import require_length
+from geometry.plates.text_plate import require_length
 
 Kind = Literal["text", "dot", "height-series", "tip"]
 KINDS: tuple[Kind, ...] = get_args(Kind)

@@ -10,7 +10,7 @@ from typing import Any
 from diagnose.prove.score import Score
 from diagnose.prove.trial import Terms
 from diagnose.prove.world.cases import KINDS, Case, plan
-from geometry.errors import InputError
+from geometry.base import InputError
 from mesh.cache import check_folder
 from mesh.fingerprint import data_hash, files_hash
 from softdot.log import LOG_FILE, log_file

@@ -8,8 +8,7 @@ from contextlib import ExitStack, contextmanager
 from multiprocessing import resource_tracker
 from typing import Any
 
-from geometry.held_folder import scratch_folder
-from geometry.one_thread import ONE_THREAD
+from geometry.processes import ONE_THREAD, scratch_folder
 from softdot.outcome import outcome, remembered
 from softdot.sweep.point import warm_up_config
 

@@ -3,7 +3,7 @@
 import time
 from typing import Any
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from softdot.config import Config, config_from
 from softdot.outcome import outcome
 

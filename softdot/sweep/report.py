@@ -7,11 +7,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from export.files import write_whole_text
-from export.page.environment import page_environment
+from export.page import page_environment
 from export.report import number
 from export.view import INK
-from geometry.whole_file import whole_file
+from geometry.files import whole_file, write_whole_text
 from softdot.sweep.point import SOLVED
 
 HERE = Path(__file__).parent

@@ -7,7 +7,7 @@ from contextlib import AbstractContextManager, ExitStack
 from pathlib import Path
 from typing import Any
 
-from geometry.held_folder import release
+from geometry.processes import release
 from mesh.cache import check_folder
 from softdot.config import Config, config_hash
 from softdot.log import LOG_FILE, log_file

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from mesh.types import Floats
 from softdot.sweep.parameters import MOST_POINTS, Axis, Sweep
 

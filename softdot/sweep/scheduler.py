@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from softdot.outcome import source_hash
 from softdot.sweep.cluster import SILENT, warm_up
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from geometry.parameters import Table
 from softdot.config import Config, config_from
 from softdot.config_errors import sentence, shown

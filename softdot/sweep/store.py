@@ -10,9 +10,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from geometry.errors import InputError
-from geometry.held_folder import hold
-from geometry.whole_file import whole_file
+from geometry.base import InputError
+from geometry.files import whole_file
+from geometry.processes import hold
 from softdot.checked_record import read_checked, write_checked
 from softdot.config import Config, config_hash
 from softdot.numbers import plain, write_json

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from softdot.config import Config
 from softdot.sweep.point import CRASHED, LOST, Record, failed, solve_point
 

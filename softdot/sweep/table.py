@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from geometry.errors import InputError
-from geometry.whole_file import whole_file
+from geometry.base import InputError
+from geometry.files import whole_file
 from softdot.numbers import plain
 from softdot.sweep.point import Record
 

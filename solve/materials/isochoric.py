@@ -3,6 +3,8 @@
 With A = dI1/dC = J^(-2/3) (1 - I1/3 C^-1) and B = dI2/dC = J^(-4/3) (I1 1 - C - 2/3 I2 C^-1):
     S = 2 (W1 A + W2 B),     CC = 4 (W11 A x A + W1 dA/dC + W2 dB/dC)
 (Holzapfel, Nonlinear Solid Mechanics, 2000, eqs. 6.116 and 6.168 ff.)
+
+Symmetric tensors as six numbers: 11, 22, 33, 12, 23, 13; strains carry engineering shears.
 """
 
 import numba as nb
@@ -93,3 +95,28 @@ def isochoric_energy(cauchy_green: Floats, constants: Floats) -> Floats:
     x, y = j23 * trace - 3.0, 0.5 * j23**2 * (trace**2 - square) - 3.0
     energy: Floats = x * (c10 + x * (c20 + x * c30)) + c01 * y
     return energy
+
+
+PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))
+
+
+def to_voigt(tensor: Floats, shear: float = 1.0) -> Floats:
+    """(..., 3, 3) -> (..., 6); shear = 2 for strains."""
+    scale = np.array([1.0, 1.0, 1.0, shear, shear, shear])
+    vector: Floats = np.stack([tensor[..., i, j] for i, j in PAIRS], axis=-1) * scale
+    return vector
+
+
+def from_voigt(vector: Floats, shear: float = 1.0) -> Floats:
+    """(..., 6) -> (..., 3, 3); shear = 2 for strains."""
+    tensor = np.empty((*vector.shape[:-1], 3, 3))
+    for k, (i, j) in enumerate(PAIRS):
+        value = vector[..., k] / (shear if k > 2 else 1.0)
+        tensor[..., i, j] = tensor[..., j, i] = value
+    return tensor
+
+
+def strain_rotation(rotation: Floats) -> Floats:
+    """(6, 6) matrix T with strain' = T strain for axes turned by rotation (3, 3), e'_i = R_ij e_j."""
+    columns = [to_voigt(rotation @ from_voigt(unit, 2.0) @ rotation.T, 2.0) for unit in np.eye(6)]
+    return np.stack(columns, axis=1)

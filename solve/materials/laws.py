@@ -11,11 +11,9 @@ from typing import Protocol
 import numpy as np
 
 from mesh.types import Floats
-from solve.materials.hyperfoam import HyperfoamLaw
-from solve.materials.isochoric import isochoric_energy, isochoric_stress
-from solve.materials.ogden import log_stretches, principal_stress
+from solve.materials.isochoric import isochoric_energy, isochoric_stress, to_voigt
 from solve.materials.parameters import Hyperfoam, Linear, Material, MooneyRivlin, NeoHookean, Ogden, Yeoh
-from solve.materials.voigt import to_voigt
+from solve.materials.principal_stretches import HyperfoamLaw, log_stretches, principal_stress
 
 
 class MediumLaw(Protocol):

@@ -1,9 +1,14 @@
-"""The material models that a configuration can name, with their constants."""
+"""The material models that a configuration can name, with their constants, and the library of built-in materials."""
 
-from typing import Annotated, Literal, Self, TypeVar
+import tomllib
+from collections.abc import Mapping
+from functools import cache
+from importlib.resources import files
+from typing import Annotated, Any, Literal, Self, TypeVar
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field, TypeAdapter, model_validator
 
+from geometry.base import InputError, nearest
 from geometry.parameters import Finite, Positive, Table
 
 
@@ -165,3 +170,27 @@ def _require_shear_modulus(material: M, shear_MPa: float, formula: str) -> M:
 Medium = NeoHookean | Linear | MooneyRivlin | Yeoh | Ogden | Hyperfoam
 Material = NeoHookean | Linear | MooneyRivlin | Yeoh | Ogden | Hyperfoam | PiezoelectricFilm
 AnyMaterial = Annotated[Material, Field(discriminator="model")]
+
+
+@cache
+def library_tables() -> dict[str, dict[str, Any]]:
+    """The built-in materials as they stand in library.toml."""
+    return tomllib.loads(files(__package__).joinpath("library.toml").read_text("utf-8"))
+
+
+@cache
+def library() -> dict[str, Material]:
+    """The built-in materials by name."""
+    adapter: TypeAdapter[Material] = TypeAdapter(AnyMaterial)
+    return {name: adapter.validate_python(table) for name, table in library_tables().items()}
+
+
+def find_material(name: str, own: Mapping[str, Material], key: str) -> Material:
+    """A material by name, the user's own before the built-in ones.
+
+    key : the configuration key that names it. InputError with the nearest name for an unknown one.
+    """
+    known = {**library(), **own}
+    if name in known:
+        return known[name]
+    raise InputError(f"{key} = '{name}': no such material; {nearest(name, known)}")

@@ -1,18 +1,118 @@
-"""The reduced model of one segment: force, charge and voltage for a recording, in milliseconds."""
+"""The reduced model of one segment: force, charge and voltage for a recording, in milliseconds.
+
+What a reduced model gives back, and how far it may be off.
+
+A recording as the reduced model's kernel takes it, and what the force sensor reads in the end.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from mesh.types import Floats
-from solve.amplifier import amplify, filters, input_of
+from mesh.types import Floats, Ints
+from solve.materials.inelastic import Prony
+from solve.model import Physics
 from solve.parameters import Readout
-from solve.physics import Physics
-from solve.reduced.answer import Accuracy, ErrorBound, Raw, Response
+from solve.readout.amplifier import amplify, filters, input_of
 from solve.reduced.fit import CELLS, Fit
-from solve.reduced.recording import branches, given, sensed
-from solve.reduced.response_kernel import BY_DEPTH, TOO_DEEP, follow
+from solve.reduced.kernels import BY_DEPTH, BY_FORCE, TOO_DEEP, follow
+
+
+@dataclass(frozen=True)
+class Raw:
+    """The dot's path from its nominal touch (t,), and force, contact area and charges (t, 2 + e)."""
+
+    time_s: Floats
+    path_mm: Floats
+    outputs: Floats
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """Largest error against the 3D presses kept out of the fit, each a share of the 3D model's largest value.
+
+    force, charge; charge_rate : of the charge's rate between the 3D model's time steps.
+    """
+
+    force: float
+    charge: float
+    charge_rate: float
+
+
+@dataclass(frozen=True)
+class ErrorBound:
+    """What the answer may be off by at any time: a margin over what was measured on the presses kept out of the fit."""
+
+    force_N: float
+    charge_C: float
+    voltage_V: float
+
+
+@dataclass(frozen=True)
+class Response:
+    """Over time (t,): the dot's path, the force sensor's reading, the charge and the amplifier's voltage.
+
+    charge_C is that of the electrodes on this amplifier together, electrode_charge_C (t, e) of each.
+    """
+
+    time_s: Floats
+    dot_path_mm: Floats
+    force_N: Floats
+    charge_C: Floats
+    electrode_charge_C: Floats
+    voltage_V: Floats
+    error_bound: ErrorBound
+
+
+def given(time_s: Floats, depth_mm: Floats | None, force_N: Floats | None, gap_mm: float) -> tuple[Floats, Floats, int]:
+    """Time (t,) in s, drive (t,) in mm from touch or in N, and its kind. ValueError for what is no recording."""
+    if (depth_mm is None) == (force_N is None):
+        raise ValueError("give either depth_mm or force_N")
+    given = depth_mm if depth_mm is not None else force_N
+    time, drive = np.ascontiguousarray(time_s, dtype=np.float64), np.array(given, dtype=np.float64)
+    if time.ndim != 1 or drive.shape != time.shape or len(time) < 2:
+        raise ValueError("time_s and the drive need the same length, at least 2")
+    if not (np.isfinite(time).all() and np.isfinite(drive).all() and (np.diff(time) > 0.0).all()):
+        raise ValueError("time_s must increase, and both it and the drive be finite")
+    return time, drive - (gap_mm if depth_mm is not None else 0.0), BY_DEPTH if depth_mm is not None else BY_FORCE
+
+
+def branches(viscosity: Mapping[str, Prony], layers: tuple[str, ...]) -> tuple[Floats, Floats, Ints]:
+    """Relative moduli, times (s) and layer numbers (b,) of all Prony branches."""
+    rows = [
+        (g, tau, layers.index(name))
+        for name, series in viscosity.items()
+        for g, tau in zip(series.relative_moduli, series.relaxation_times, strict=True)
+        if g > 0.0
+    ]
+    table = np.array(rows).reshape(-1, 3)
+    return table[:, 0].copy(), table[:, 1].copy(), table[:, 2].astype(np.int64)
+
+
+def sensed(time: Floats, drive: Floats, kind: int, path: Floats, contact: Floats, physics: Physics) -> Floats:
+    """What the force sensor reads (t,): the force that drives, that of the rig's spring, or F_contact + m a''."""
+    if kind == BY_FORCE:
+        return drive.copy()
+    if physics.rig_compliance_mm_per_N > 0.0:
+        return np.asarray((drive - path) / physics.rig_compliance_mm_per_N)
+    return felt(time, drive, contact, physics.moving_mass_g)
+
+
+def felt(time: Floats, depth: Floats, force: Floats, moving_mass_g: float) -> Floats:
+    """Force (t,) with that of a mass which moves along a path (t,) in mm: F + m a''."""
+    if moving_mass_g == 0.0:
+        return force.copy()
+    return np.asarray(force + 1e-6 * moving_mass_g * _acceleration(time, depth))
+
+
+def _acceleration(time: Floats, depth: Floats) -> Floats:
+    """Second derivative (t,) by differences, at rest before and after."""
+    step = np.diff(time)
+    rate = np.concatenate([[0.0], np.diff(depth) / step, [0.0]])
+    width = np.concatenate([step[:1], 0.5 * (step[1:] + step[:-1]), step[-1:]])
+    return np.asarray(np.diff(rate) / width)
+
 
 MARGIN = 2.0  # of the bound over the largest error that was measured
 

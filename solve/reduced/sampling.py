@@ -1,4 +1,11 @@
-"""Presses of the 3D model with memories that do not fade: the samples of which the reduced model is made."""
+"""Presses of the 3D model with memories that do not fade: the samples of which the reduced model is made.
+
+A memory that does not fade: the state of a viscoelastic layer at one moment, held while the dot moves.
+
+The Prony series of solve.materials.inelastic, S = (1 - sum g_i) S0 + sum Q_i, is the elastic stress less an overstress,
+    S = S0 - M,      M = sum (g_i S0 - Q_i),
+and M is all that a layer remembers. Pressing with M held fixed shows what the segment does at that memory.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -7,19 +14,44 @@ import numpy as np
 from scipy.optimize import brentq
 
 from mesh.types import Floats
-from solve.bond import Bond
-from solve.film import FilmRegion
-from solve.linear import LinearSolver
-from solve.march import rest_state
-from solve.near import Course, reach
-from solve.newton import NoEquilibriumError, equilibrate
-from solve.reduced.frozen import Frozen
-from solve.reduced.yardstick import Yardstick, held
-from solve.schedule import Target
-from solve.setup import Setup
-from solve.solid import SolidRegion
+from solve.fem.term import History, Term
+from solve.materials.inelastic import Memory, Prony, Response
+from solve.press import Setup
+from solve.reduced.modes import Yardstick, held
+from solve.solution.linear import LinearSolver
+from solve.solution.march import rest_state
+from solve.solution.near import Course, reach
+from solve.solution.newton import NoEquilibriumError, equilibrate
+from solve.solution.schedule import Target
 from solve.system import Load, State
-from solve.term import History, Term
+from solve.terms.film import FilmRegion
+from solve.terms.solid import SolidRegion
+from solve.terms.springs import Bond
+
+
+@dataclass(frozen=True)
+class Frozen(Prony):
+    """S = S0 - M; the memory carries the elastic stress S0 of the last state and M, (n, 6) each (a bond: (n, 4)).
+
+    layer : whose it is.
+    """
+
+    relative_moduli: tuple[float, ...] = ()
+    relaxation_times: tuple[float, ...] = ()
+    layer: str = ""
+
+    def start(self, points: int) -> Memory:
+        """Nothing remembered."""
+        return np.zeros((points, 6)), np.zeros((points, 6))
+
+    def update(self, elastic: Response, memory: Memory, time_step: float) -> tuple[Response, Memory]:
+        """Response with the memory M, which stays."""
+        return Response(elastic.stress - memory[1], elastic.tangent), (elastic.stress, memory[1])
+
+    def time_error(self, memory: Memory, new: Memory, time_step: float, after_kink: bool) -> float:
+        """No time passes."""
+        return 0.0
+
 
 CROWDING = 1.5  # exponent of the depth nodes: closer together near touch, where the force bends most
 

@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mesh.arrays_file import read_arrays, write_arrays
+from geometry.cache import read_arrays, write_arrays
 from mesh.cache import folder
 from mesh.fingerprint import data_hash, files_hash, mesh_hash
-from solve.reduced.answer import Accuracy
 from solve.reduced.fit import Fit
-from solve.reduced.model import ReducedModel, structure
+from solve.reduced.model import Accuracy, ReducedModel, structure
 
 if TYPE_CHECKING:
     from solve.reduced.build import Case

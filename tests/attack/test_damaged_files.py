@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from mesh import cache
-from mesh.linear import LinearMesh
+from mesh.types import LinearMesh
 from softdot.config import config_from
 from softdot.remembered import recall, remember
 from softdot.sweep import store as points
-from solve.archive import read_archive, write_archive
+from solve.solution.checkpoint import read_archive, write_archive
 
 DAMAGED = 1000
 LAYERS = {"medium1": {"thickness_mm": 0.5}, "film": {"thickness_um": 28}, "medium2": {"thickness_mm": 2}}

@@ -14,14 +14,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from softdot.config import Config, config_from
 from softdot.held_rim import held_rim_warnings
 from softdot.numbers import plain
 from softdot.run_warnings import design_warnings, result_warnings
 from softdot.summary import mesh_part, press_part
 from solve.mechanisms import MECHANISMS
-from solve.newton import ROUNDED_TOLERANCE
+from solve.solution.newton import ROUNDED_TOLERANCE
 from tests.attack.random_designs import design, keys_of_schema, keys_set
 from tests.softdot.press_checks import solved, wrong
 from tests.softdot.toml_text import toml_text

@@ -8,7 +8,7 @@ import pytest
 
 from diagnose import columns
 from diagnose.checks import refuse_slow_sampling
-from geometry.errors import InputError
+from geometry.base import InputError
 from softdot.rig_file import load_rig
 from tests.diagnose.rigs import COUPON, HEAD, RUN, SEGMENT, csv_text, samples, write_rig
 

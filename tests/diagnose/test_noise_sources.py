@@ -6,7 +6,7 @@ import pytest
 from diagnose.noise.estimate import noise_models
 from diagnose.noise.rest import resting
 from diagnose.phases import segmented
-from geometry.errors import InputError
+from geometry.base import InputError
 from softdot.rig_file import load_rig
 from tests.diagnose.rigs import COUPON, HEAD, RUN, SEGMENT, samples, write_rig
 

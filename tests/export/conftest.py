@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from geometry.dot_shape import DotShape
+from geometry.dot import DotShape
 from mesh.types import TetMesh
 from solve.result import PressResult
 

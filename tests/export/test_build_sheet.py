@@ -4,10 +4,10 @@ import re
 
 import pytest
 
-from export.build_sheet.checks import checks
-from export.build_sheet.measuring import gauging
+from export.build_sheet.contents import gauging
+from export.build_sheet.page import checks
 from export.build_sheet.steps import steps
-from geometry.errors import InputError
+from geometry.base import InputError
 from softdot.config import config_from
 from softdot.kit.make import contents_of
 

@@ -11,11 +11,10 @@ import trimesh
 from build123d import import_step
 
 from export.cad import write_cad
-from geometry.colours import PART_COLOURS
-from geometry.dot_shape import resolve_dot
+from geometry.assembly import build_parts
+from geometry.dot import resolve_dot
 from geometry.parameters import Dot, Effector, Film, Medium, Segment
-from geometry.part import volume_mm3
-from geometry.solids import build_parts
+from geometry.solids import PART_COLOURS, volume_mm3
 
 CORE = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
 DOME = Effector(shape="dome", diameter_mm=2.0, height_mm=0.8)

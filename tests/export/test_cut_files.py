@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from svgpathtools import parse_path
 
-from export.cut_files.layers import STYLES
-from export.cut_files.write import draw_cut_file, write_cut_files
+from export.cut_files import draw_cut_file, write_cut_files
+from export.cut_files.drawing import STYLES
 from geometry.fabrication.parameters import Fabrication
 from geometry.flat.patterns import flat_kit
 from geometry.parameters import Film, Medium, Segment

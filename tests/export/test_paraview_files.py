@@ -7,7 +7,7 @@ import pytest
 import pyvista
 
 from export.vtu import write_results
-from geometry.dot_shape import DotShape
+from geometry.dot import DotShape
 from mesh.types import TetMesh
 from solve.result import PressResult
 

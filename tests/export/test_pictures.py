@@ -15,8 +15,8 @@ from export.film_map import film_map
 from export.headless import ADVICE
 from export.pictures import FILES, write_pictures
 from export.view import PICTURE_SIZE, View
-from geometry.colours import PART_COLOURS
-from geometry.dot_shape import DotShape
+from geometry.dot import DotShape
+from geometry.solids import PART_COLOURS
 from mesh.types import TetMesh
 from solve.result import PressResult
 
@@ -104,7 +104,7 @@ def test_missing_opengl_is_one_sentence_not_a_crash() -> None:
         "headless.ensure_rendering()"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
-    assert run.stderr.strip().splitlines()[-1] == f"geometry.errors.InputError: {ADVICE}"
+    assert run.stderr.strip().splitlines()[-1] == f"geometry.base.InputError: {ADVICE}"
 
 
 def test_parts_whose_stresses_are_far_apart_have_scales_of_their_own(

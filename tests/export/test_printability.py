@@ -16,8 +16,8 @@ from export.printability.measure import measure
 from export.printability.picture import RING_IN, VIEWS, buried_mm, clearest_view
 from export.printability.surface import surface_of
 from export.view import frame, page
-from geometry.errors import InputError
-from geometry.printers import LimitName
+from geometry.base import InputError
+from geometry.fabrication.printers import LimitName
 
 FDM, SLA = printer_profile("fdm"), printer_profile("sla")
 UP = (0.0, 0.0, 1.0)

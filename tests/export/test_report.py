@@ -13,7 +13,7 @@ from pressed_box import DEPTHS_MM, box_mesh, made_up_press
 
 from export.report import number, write_report
 from export.viewer_data import viewer_data
-from geometry.dot_shape import DotShape
+from geometry.dot import DotShape
 from mesh.types import TetMesh
 from solve.result import PressResult
 

@@ -11,7 +11,7 @@ import pyvista
 from pressed_box import DEPTHS_MM, HEIGHT_MM
 
 from export.vtu import write_results
-from geometry.dot_shape import DotShape
+from geometry.dot import DotShape
 from mesh.types import TetMesh
 from solve.result import PressResult
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from geometry.braille_cell import dot_offset_mm, raised_dots
-from geometry.errors import InputError
+from geometry.base import InputError
+from geometry.braille import dot_offset_mm, raised_dots
 
 
 @pytest.mark.parametrize(

@@ -2,8 +2,8 @@
 
 import pytest
 
+from geometry.base import InputError
 from geometry.braille import QUANTITIES, standard, standard_names
-from geometry.errors import InputError
 
 NONE = (None, None, None)
 # minimum, nominal, maximum of base diameter, height, dot pitch, cell pitch, line pitch

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from geometry.base import InputError
 from geometry.checks import check_press_depth, check_segment, press_warnings
-from geometry.dot_shape import resolve_dot
-from geometry.errors import InputError
+from geometry.dot import resolve_dot
 from geometry.parameters import Bond, Dot, Effector, Electrode, Film
 
 

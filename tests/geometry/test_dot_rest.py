@@ -5,11 +5,11 @@ from math import asin, atan2, degrees, hypot, radians, sin
 import numpy as np
 import pytest
 
-from geometry.bodies import Box, Disc, Dome
+from geometry.base import InputError
 from geometry.checks import check_dot
-from geometry.dot_shape import resolve_dot
-from geometry.errors import InputError
+from geometry.dot import resolve_dot
 from geometry.parameters import Dot, Effector
+from geometry.stack import Box, Disc, Dome
 
 TOP = 3.528
 MARBURG_RADIUS = 0.8125

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from geometry.dot_shape import resolve_dot
-from geometry.errors import InputError
+from geometry.base import InputError
+from geometry.dot import resolve_dot
 from geometry.parameters import Dot
 
 

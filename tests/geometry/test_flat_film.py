@@ -4,11 +4,10 @@ from math import pi
 
 import pytest
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from geometry.fabrication.parameters import Fabrication
-from geometry.flat.convex import gap_mm, shared_area_mm2
 from geometry.flat.electrodes import stray_area_mm2
-from geometry.flat.pattern import Label
+from geometry.flat.pattern import Label, gap_mm, shared_area_mm2
 from geometry.flat.patterns import flat_kit
 from geometry.parameters import Electrode, Film
 

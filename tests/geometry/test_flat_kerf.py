@@ -5,9 +5,18 @@ from math import pi
 import pytest
 
 from geometry.fabrication.parameters import Fabrication
-from geometry.flat.convex import gap_mm, shared_area_mm2
-from geometry.flat.kerf import compensated, offset
-from geometry.flat.pattern import Circle, Dimension, FlatPattern, Outline, rectangle, turned
+from geometry.flat.pattern import (
+    Circle,
+    Dimension,
+    FlatPattern,
+    Outline,
+    compensated,
+    gap_mm,
+    offset,
+    rectangle,
+    shared_area_mm2,
+    turned,
+)
 from geometry.flat.patterns import flat_kit
 from geometry.parameters import Effector
 

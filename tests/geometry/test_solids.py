@@ -6,12 +6,10 @@ from math import pi, radians, tan
 import pytest
 from build123d import GeomType, Vector
 
-from geometry.case_solid import CLEARANCE_MM, FLOOR_MM, WALL_MM
-from geometry.colours import PART_COLOURS
-from geometry.dot_shape import resolve_dot
-from geometry.dot_solid import PLATE_THICKNESS_MM, dot_solid
+from geometry.assembly import CLEARANCE_MM, FLOOR_MM, PLATE_THICKNESS_MM, WALL_MM, build_parts, dot_solid, layer_solids
+from geometry.dot import resolve_dot
 from geometry.parameters import Dot, Effector
-from geometry.solids import build_parts, layer_solids
+from geometry.solids import PART_COLOURS
 
 EXACT = 1e-9
 CURVED = 1e-6  # OCC follows the circle between a sphere and a plane within its tolerance

@@ -4,8 +4,8 @@ import os
 
 import pytest
 
-from geometry.errors import InputError
-from geometry.text_file import LARGEST_MB, read_text
+from geometry.base import InputError
+from geometry.files import LARGEST_MB, read_text
 
 
 def refusal(path):

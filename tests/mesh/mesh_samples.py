@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 
 import mesh
-from geometry.dot_shape import DotShape
+from geometry.dot import DotShape
 from geometry.parameters import Effector, Film, Medium, Segment
 from mesh.parameters import MeshOptions
 from mesh.types import TetMesh

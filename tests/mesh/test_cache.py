@@ -8,7 +8,7 @@ from mesh_samples import dot, options, segment
 
 from geometry.parameters import Medium
 from mesh import cache
-from mesh.linear import LinearMesh
+from mesh.types import LinearMesh
 
 ONE = LinearMesh(np.vstack([np.zeros(3), np.eye(3)]), np.array([[0, 1, 2, 3]]), np.array([0]), ("medium2",))
 

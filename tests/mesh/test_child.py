@@ -11,7 +11,7 @@ from mesh_samples import dot, options, segment
 
 import mesh
 from mesh import child
-from mesh.errors import MeshingError
+from mesh.types import MeshingError
 
 
 def children() -> set[int]:

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 from mesh_samples import built, corner_faces, facet_area
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from mesh.interfaces import INTERFACES, inner_nodes, interface_facets, split_interface
-from mesh.topology import TET_FACES
-from mesh.types import TetMesh
+from mesh.types import TET_FACES, TetMesh
 
 SAMPLES = ["cylinder solid layered", "block plane-strain layered"]
 FOOT = {"cylinder solid layered": np.pi * 0.75**2, "block plane-strain layered": 1.2 * 0.2}

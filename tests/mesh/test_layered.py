@@ -5,12 +5,11 @@ import pytest
 from mesh_samples import corner_faces, dot, options, segment
 
 import mesh
-from geometry.errors import InputError
-from mesh.bisection import refine
-from mesh.footprint import start_triangulation
-from mesh.linear import split_prisms
+from geometry.base import InputError
+from mesh.footprint import refine, start_triangulation
 from mesh.outline import outline
-from mesh.spacing import graded, graded_through
+from mesh.sizing import graded, graded_through
+from mesh.types import split_prisms
 
 
 @pytest.mark.parametrize("section", ["solid", "plane-strain"])

@@ -13,12 +13,11 @@ from softdot import stages
 from softdot.actual import actual
 from softdot.config import config_from
 from solve import press as press_module
-from solve.contact import HATS, SHAPES, facet_area
-from solve.delamination import UnilateralInterface
-from solve.kinematics import deformation_gradient
-from solve.materials.voigt import from_voigt
-from solve.quadrature import tetrahedron
-from solve.shape_functions import linear, quadratic
+from solve.fem.kinematics import deformation_gradient
+from solve.fem.quadrature import linear, quadratic, tetrahedron
+from solve.materials.isochoric import from_voigt
+from solve.terms.contact import HATS, SHAPES, facet_area
+from solve.terms.delamination import UnilateralInterface
 
 SMALL = 1e-6  # of the largest force so far; Newton stops at 1e-9
 SMALLEST_FORCE = 1e-3  # solver units; of less than this round-off leaves too much to judge

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from geometry.dot_shape import DotShape
+from geometry.dot import DotShape
 from mesh.types import TetMesh
 from solve.result import Fields, FilmPeak, PressResult, Step, Trace
 

@@ -6,7 +6,7 @@ import tomllib
 import pytest
 from hypothesis import HealthCheck, given, settings
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from softdot import stages
 from softdot.actual import actual
 from softdot.cli import main

@@ -2,7 +2,7 @@
 
 import pytest
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from softdot import stages
 from softdot.config import config_hash, load_config
 from softdot.rig_file import load_rig

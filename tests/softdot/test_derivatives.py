@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import softdot
-from geometry.errors import InputError
+from geometry.base import InputError
 from softdot.config import config_from
 from softdot.differentiate import derivatives, value_of
 

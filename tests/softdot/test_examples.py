@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from geometry.dot_shape import resolve_dot
+from geometry.dot import resolve_dot
 from mesh.parameters import MeshOptions
 from softdot import stages
 from softdot.actual import actual
@@ -22,9 +22,9 @@ from softdot.config import Config, config_hash, load_config
 from softdot.run import run_config
 from softdot.summary import history
 from solve.mechanisms import MECHANISMS
+from solve.model import Physics
 from solve.parameters import Readout
-from solve.physics import Physics
-from solve.readout import record
+from solve.readout.recording import record
 from solve.result import PressResult
 
 FOLDER = Path(__file__).parents[2] / "examples"

@@ -14,8 +14,8 @@ from softdot.kit import make
 from softdot.kit.budget import Budget, Effect
 from softdot.kit.responses import Response
 from softdot.kit.tolerances import Tolerance
-from solve.full_load import StoppedShortError
-from solve.linear import LinearSolveError
+from solve.solution.linear import LinearSolveError
+from solve.solution.sensitivity import StoppedShortError
 from tests.softdot.conftest import MINIMAL
 
 FREE = """

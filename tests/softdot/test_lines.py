@@ -58,7 +58,7 @@ def test_each_load_step_is_a_line_and_each_hundredth_of_ten_thousand_points(caps
 
 
 def test_details_are_in_the_log_always_and_on_stderr_when_asked_for(tmp_path, capsys):
-    from solve.newton import LOG
+    from solve.solution.newton import LOG
 
     for verbose in (False, True):
         with lines_on_stderr(verbose=verbose), log_file(tmp_path / LOG_FILE):

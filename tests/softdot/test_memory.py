@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from softdot import memory
 from softdot.cli import main
 
@@ -24,10 +24,9 @@ def test_more_than_the_limit_is_refused_by_name(monkeypatch):
 @pytest.mark.parametrize("factor", [100, 1000])
 def test_a_segment_of_metres_is_meshed_or_refused_but_never_fills_the_memory(factor):
     """All lengths times a factor, element sizes too: as many points as the segment of millimetres."""
-    from geometry.dot_shape import resolve_dot
-    from mesh.background import background
+    from geometry.dot import resolve_dot
     from mesh.outline import outline
-    from mesh.sizing import sizing
+    from mesh.sizing import background, sizing
     from softdot.config import config_from
 
     tables = {

@@ -2,8 +2,8 @@
 
 import pytest
 
-from geometry.dot_shape import resolve_dot
-from geometry.errors import InputError
+from geometry.base import InputError
+from geometry.dot import resolve_dot
 from mesh.build import build
 from mesh.parameters import MeshOptions
 from softdot.config import load_config

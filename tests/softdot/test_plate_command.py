@@ -15,7 +15,7 @@ from build123d import import_step
 from matplotlib.image import imread
 from scipy import ndimage
 
-from geometry.part import volume_mm3
+from geometry.solids import volume_mm3
 from softdot.cli import main
 from softdot.plate import make
 

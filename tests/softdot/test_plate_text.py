@@ -4,7 +4,7 @@ import shutil
 
 import pytest
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from softdot.plate.cells import translate
 from softdot.plate.english import english_table
 from softdot.plate.liblouis import liblouis

@@ -7,7 +7,7 @@ import pytest
 
 from softdot.config import Config, config_from
 from softdot.stages import press_key
-from solve.physics import Physics
+from solve.model import Physics
 from tests.softdot.stand_ins import one_tetrahedron
 
 SLOW, FAST = "time_s,fraction\n0,0\n2,1\n", "time_s,fraction\n0,0\n1,1\n"

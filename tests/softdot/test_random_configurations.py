@@ -11,7 +11,7 @@ from unittest.mock import patch
 import pytest
 from hypothesis import HealthCheck, Phase, given, note, seed, settings
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from softdot import stages
 from softdot.config import load_config
 from softdot.run import run_config

@@ -11,8 +11,8 @@ import pytest
 import trimesh
 from PIL import Image
 
-from geometry.dot_shape import resolve_dot
-from geometry.solids import build_parts
+from geometry.assembly import build_parts
+from geometry.dot import resolve_dot
 from mesh.parameters import MeshOptions
 from softdot.config import Config, load_config
 from softdot.run import run_config

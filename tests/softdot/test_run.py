@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from mesh.errors import MeshingError
+from mesh.types import MeshingError
 from softdot.cli import main
 from tests.softdot.complaints import complaints
 from tests.softdot.stand_ins import result_of

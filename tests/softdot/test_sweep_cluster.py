@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from softdot.cli import main
 from softdot.config import Config, config_from
 from softdot.outcome import outcome

@@ -6,7 +6,7 @@ from functools import partial
 
 import pytest
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from softdot import outcome as outcome_module
 from softdot.cli import main
 from softdot.sweep import read_table, run_sweep, space_from, store
@@ -290,7 +290,7 @@ def test_a_sweep_is_a_csv_table_a_picture_and_a_page_too(presses, tmp_path, out)
 
 @pytest.mark.usefixtures("presses")
 def test_a_second_sweep_into_a_folder_is_refused_and_the_first_keeps_its_file(tmp_path, out):
-    from geometry.held_folder import hold, release
+    from geometry.processes import hold, release
 
     assert sweep(tmp_path, out, depths(0.1)) == 0
     half = out / "points" / ".half.json.part"

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from softdot.cli import main
 from softdot.dotted_keys import parsed, with_value
 from softdot.sweep.point import TINY

@@ -7,7 +7,7 @@ from softdot.actual import actual
 from softdot.config import config_from
 from softdot.kit.responses import KitPress
 from softdot.uncertainty import uncertainty
-from solve.full_load import StoppedShortError
+from solve.solution.sensitivity import StoppedShortError
 
 SLICE = {
     "segment": {

@@ -4,7 +4,7 @@ import dataclasses
 
 import pytest
 
-from geometry.dot_shape import resolve_dot
+from geometry.dot import resolve_dot
 from softdot.config import config_from, load_config
 from softdot.held_rim import held_rim_warnings
 from softdot.run_warnings import design_warnings, result_warnings

@@ -7,11 +7,11 @@ import numpy as np
 from scipy.sparse.linalg import spsolve
 
 from mesh.types import Floats, Ints
-from solve.element_kernels import scatter
+from solve.fem.kernels import scatter
+from solve.fem.quadrature import TET_EDGES
+from solve.fem.sparsity import build_pattern
 from solve.materials.laws import MediumLaw
-from solve.shape_functions import TET_EDGES
-from solve.solid import SolidRegion, solid_region
-from solve.sparsity import build_pattern
+from solve.terms.solid import SolidRegion, solid_region
 from tests.solve.trial import trial
 
 KUHN = [list(itertools.accumulate((0, *(1 << a for a in axes)))) for axes in itertools.permutations(range(3))]

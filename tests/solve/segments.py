@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from geometry.dot_shape import DotShape
+from geometry.dot import DotShape
 from geometry.parameters import Effector, Film, Medium, Segment
 from geometry.stack import layers
 from mesh.build import build

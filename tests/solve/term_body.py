@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse.linalg import spsolve
 
-from mesh.slice import twins
+from mesh.layered import twins
 from mesh.types import Bools, Floats, Ints, TetMesh
-from solve.element_kernels import scatter
+from solve.fem.kernels import scatter
+from solve.fem.sparsity import build_pattern
+from solve.fem.term import Term, Trial
 from solve.materials.laws import MediumLaw
-from solve.solid import solid_region
-from solve.sparsity import build_pattern
-from solve.term import Term, Trial
+from solve.terms.solid import solid_region
 from tests.verification.lattice import grid
 
 MAX_ITERATIONS = 60  # an interface that peels opens about one node an iteration

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.signal import butter, lsim
 
-from solve.amplifier import amplify
-from solve.filters import Filter
+from solve.model import Physics
 from solve.parameters import Readout
-from solve.physics import Physics
+from solve.readout.amplifier import amplify
+from solve.readout.filters import Filter
 
 FILM_F = 24e-12
 

@@ -3,13 +3,12 @@
 import numpy as np
 import pytest
 
-import solve.checkpoint
-from solve.archive import read_archive, write_archive
-from solve.checkpoint import Checkpoint
-from solve.materials.prony import Prony
+import solve.solution.checkpoint
+from solve.materials.inelastic import Prony
+from solve.model import Physics
 from solve.parameters import Press, Waveform
-from solve.physics import Physics
 from solve.press import press_segment
+from solve.solution.checkpoint import Checkpoint, read_archive, write_archive
 from tests.solve.segments import cap, coarse_mesh, materials, segment
 
 PRESS = Press(indentation_mm=0.1, load_steps=2, waveform=Waveform(shape="trapezoid", hold_s=0.2))
@@ -36,7 +35,7 @@ def kill_at(step):
 
 @pytest.mark.slow
 def test_a_killed_press_ends_as_one_that_was_not(tmp_path, monkeypatch):
-    monkeypatch.setattr(solve.checkpoint, "EVERY_S", 0.0)
+    monkeypatch.setattr(solve.solution.checkpoint, "EVERY_S", 0.0)
     file = Checkpoint(tmp_path / "press.npz", "key")
     with pytest.raises(KilledError):
         press(file, kill_at(4))
@@ -56,7 +55,7 @@ def test_a_killed_press_ends_as_one_that_was_not(tmp_path, monkeypatch):
 
 @pytest.mark.slow
 def test_a_checkpoint_of_another_press_is_not_used(tmp_path, monkeypatch):
-    monkeypatch.setattr(solve.checkpoint, "EVERY_S", 0.0)
+    monkeypatch.setattr(solve.solution.checkpoint, "EVERY_S", 0.0)
     with pytest.raises(KilledError):
         press(Checkpoint(tmp_path / "press.npz", "one"), kill_at(3))
     solved = []

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from solve.newton import MAX_CIRCLES, Circles
+from solve.solution.newton import MAX_CIRCLES, Circles
 
 OPEN, CLOSED = np.array([False]), np.array([True])
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from solve.amplifier import leaky_integral
-from solve.circuit import Circuit
+from solve.readout.amplifier import leaky_integral
+from solve.terms.rig import Circuit
 from tests.solve.trial import trial
 
 C_FILM, C_INPUT = 3.0, 2.0

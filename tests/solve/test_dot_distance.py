@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from geometry.dot_shape import DotShape
-from solve.dot_distance import RigidDot
+from geometry.dot import DotShape
+from solve.terms.contact import RigidDot
 
 AT_REST = np.zeros(3)
 

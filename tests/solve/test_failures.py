@@ -5,18 +5,18 @@ import re
 import numpy as np
 import pytest
 
+from geometry.base import InputError
 from geometry.checks import check_pushed_dot
-from geometry.dot_shape import DotShape
-from geometry.errors import InputError
+from geometry.dot import DotShape
 from geometry.parameters import Dot, Electrode, Film, Medium, Segment
 from geometry.stack import layers
 from mesh.build import build
 from mesh.parameters import MeshOptions
-from solve import march as marching
-from solve import newton
 from solve.materials.parameters import Linear, NeoHookean, PiezoelectricFilm
 from solve.parameters import Press
 from solve.press import press_segment
+from solve.solution import march as marching
+from solve.solution import newton
 
 SLICE = MeshOptions(element_size_mm=0.8, contact_element_size_mm=0.4, mesher="layered")
 FILM = PiezoelectricFilm()

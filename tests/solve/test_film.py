@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from solve.film import film_region
+from solve.materials.film import VACUUM_PERMITTIVITY, film_law
 from solve.materials.parameters import PiezoelectricFilm
-from solve.materials.piezoelectric import VACUUM_PERMITTIVITY, film_law
+from solve.terms.film import film_region
 from tests.solve.box import box
 from tests.solve.trial import trial
 

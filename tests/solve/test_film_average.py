@@ -8,7 +8,7 @@ import pytest
 from geometry.parameters import Film, Medium, Segment
 from mesh.parameters import MeshOptions
 from mesh.types import TetMesh
-from solve.film_average import RIM_THICKNESSES, film_columns, film_peak
+from solve.fields import RIM_THICKNESSES, film_columns, film_peak
 from solve.parameters import Press
 from solve.press import press_segment
 from tests.export.pressed_box import box_mesh, made_up_press

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from solve.materials.film_yield import YieldLaw, von_mises
+from solve.materials.film import YieldLaw, film_law, von_mises
 from solve.materials.parameters import PiezoelectricFilm
-from solve.materials.piezoelectric import film_law
 
 E, NU, G, YIELD = 2000.0, 0.29, 2000.0 / 2.58, 50.0  # MPa
 ISOTROPIC = film_law(PiezoelectricFilm(youngs_modulus_MPa=E, poisson_ratio=NU), 0.0).stiffness / 1e6

@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import least_squares
 from scipy.signal import bessel, butter, cheby1, freqs, lsim
 
-from solve.filters import Filter
+from solve.readout.filters import Filter
 
 CORNER_HZ = 12.0
 ANGULAR = 2.0 * np.pi * CORNER_HZ

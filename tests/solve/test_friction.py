@@ -3,12 +3,10 @@
 import numpy as np
 import pytest
 
-from geometry.dot_shape import DotShape
-from solve.contact import contact_facets
-from solve.dot_distance import RigidDot
-from solve.friction import FrictionalContact
-from solve.term import Trial
-from solve.unknowns import Unknowns
+from geometry.dot import DotShape
+from solve.fem.term import Trial, Unknowns
+from solve.terms.contact import RigidDot, contact_facets
+from solve.terms.friction import FrictionalContact
 
 NOTHING = np.zeros((0, 4), int)
 

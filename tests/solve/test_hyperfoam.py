@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from solve.compressible_kernel import compressible_solid
-from solve.materials.hyperfoam import HyperfoamLaw
-from solve.materials.voigt import from_voigt
-from solve.quadrature import tetrahedron
-from solve.shape_functions import physical_gradients, quadratic
+from solve.fem.kernels import compressible_solid
+from solve.fem.quadrature import physical_gradients, quadratic, tetrahedron
+from solve.materials.isochoric import from_voigt
+from solve.materials.principal_stretches import HyperfoamLaw
 from tests.solve.box import box
 
 MU, ALPHA, BETA = np.array([0.025, 0.01]), np.array([12.0, -3.0]), np.array([0.05 / 0.9, 0.5])

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from solve.materials.hyperfoam import HyperfoamLaw
+from solve.materials.isochoric import from_voigt, to_voigt
 from solve.materials.laws import InvariantLaw, LinearLaw, OgdenLaw, bulk_modulus, medium_law
 from solve.materials.parameters import Hyperfoam, Linear, MooneyRivlin, NeoHookean, Ogden, PiezoelectricFilm, Yeoh
-from solve.materials.voigt import from_voigt, to_voigt
+from solve.materials.principal_stretches import HyperfoamLaw
 
 LAWS = {
     "neo-hookean": InvariantLaw(0.5, 0.0, 0.0, 0.0, 100.0),

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-import solve.linear
-from solve.linear import LinearSolveError, LinearSolver, Pardiso, SuperLU
-from solve.unsymmetric import Tangent
+import solve.solution.linear
+from solve.fem.sparsity import Tangent
+from solve.solution.linear import LinearSolveError, LinearSolver, Pardiso, SuperLU
 
 TOLERANCE = 1e-10
 
@@ -114,7 +114,7 @@ def test_an_old_factorisation_serves_a_similar_matrix(saddle, monkeypatch):
     similar.data *= 1.0 + 1e-3 * np.sin(np.arange(len(upper.data)))
     solution = solver.solve(Tangent(similar), rhs, 1e-6, similar=True)
     assert np.linalg.norm(rhs - Tangent(similar) @ (solution)) <= 1e-6 * np.linalg.norm(rhs)
-    assert solve.linear.KRYLOV_ITERATIONS < 20
+    assert solve.solution.linear.KRYLOV_ITERATIONS < 20
 
 
 @pytest.fixture

@@ -6,12 +6,12 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from solve.linear import LinearSolver
-from solve.march import _extrapolate, march, rest_state
-from solve.newton import NoEquilibriumError
-from solve.physics import Physics
-from solve.schedule import Target
-from solve.setup import set_up
+from solve.model import Physics
+from solve.press import set_up
+from solve.solution.linear import LinearSolver
+from solve.solution.march import _extrapolate, march, rest_state
+from solve.solution.newton import NoEquilibriumError
+from solve.solution.schedule import Target
 from solve.system import Load, State
 from tests.solve.segments import ridge
 from tests.verification.slices import STACK, mesh_of, setup_of, waved
@@ -47,7 +47,7 @@ def walk(elastic):
 
 def refuse(monkeypatch, longest):
     """Newton fails for steps longer than that."""
-    import solve.march as module
+    import solve.solution.march as module
 
     real = module._equilibrate
 
@@ -83,7 +83,7 @@ def test_it_gives_up_below_the_smallest_sub_step_and_says_why(walk, monkeypatch)
 
 
 def test_what_converged_before_a_failure_is_kept(walk, monkeypatch):
-    import solve.march as module
+    import solve.solution.march as module
 
     real = module._equilibrate
 

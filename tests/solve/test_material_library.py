@@ -2,8 +2,7 @@
 
 import pytest
 
-from solve.materials.library import library
-from solve.materials.parameters import PiezoelectricFilm, Yeoh
+from solve.materials.parameters import PiezoelectricFilm, Yeoh, library
 
 # stress at 100 % strain in kPa of the tensile data that the silicones were fitted to
 STRESS_AT_100_PERCENT_KPA = {

@@ -5,18 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import solve.near
+import solve.solution.near
 from geometry.parameters import Dot
 from mesh.types import TetMesh
 from solve.interfaces import open_interfaces
-from solve.linear import LinearSolver
-from solve.march import rest_state
-from solve.model import Model
-from solve.near import Course, Equilibria, Found, combined, reach
+from solve.model import BondLine, Model, Physics
 from solve.parameters import Press
-from solve.physics import BondLine, Physics
-from solve.schedule import Target
-from solve.setup import Setup, set_up
+from solve.press import Setup, set_up
+from solve.solution.linear import LinearSolver
+from solve.solution.march import rest_state
+from solve.solution.near import Course, Equilibria, Found, combined, reach
+from solve.solution.schedule import Target
 from solve.system import Load
 from tests.solve.segments import cap, coarse_mesh, materials, ridge, segment
 
@@ -61,7 +60,7 @@ def plain() -> Equilibria:
 def test_the_way_to_an_equilibrium_does_not_matter(plain, other, monkeypatch):
     """From beside it at once, without a march, the same displacements and pressures."""
     marched = equilibria(press(**other))
-    monkeypatch.setattr(solve.near, "march", lambda *_: pytest.fail("it marched"))
+    monkeypatch.setattr(solve.solution.near, "march", lambda *_: pytest.fail("it marched"))
     near = equilibria(press(near=plain, **other))
     for name in ("displacement_m", "pressure_Pa", "contact_Pa"):
         wanted = getattr(marched, name)

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from solve.materials.prony import Prony
-from solve.materials.response import Response
+from solve.materials.inelastic import Prony, Response
 
 G, TAU = (0.3, 0.2), (0.05, 0.7)
 SERIES = Prony(G, TAU)

@@ -5,8 +5,8 @@ from math import factorial
 import numpy as np
 import pytest
 
-from solve.contact import HATS, POINTS, WEIGHTS
-from solve.quadrature import tetrahedron, triangle
+from solve.fem.quadrature import tetrahedron, triangle
+from solve.terms.contact import HATS, POINTS, WEIGHTS
 
 
 def monomials(dimension: int, degree: int):

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from geometry.errors import InputError
-from solve.amplifier import leaky_integral
+from geometry.base import InputError
+from solve.model import Physics
 from solve.parameters import Press, Readout, Waveform
-from solve.physics import Physics
-from solve.readout import readout_voltage
-from solve.saturation import Saturation
-from solve.waveform import fraction
+from solve.readout.amplifier import leaky_integral
+from solve.readout.filters import Saturation
+from solve.readout.recording import readout_voltage
+from solve.solution.schedule import fraction
 
 FILM_F = 971e-12  # 16 x 16 mm, 28 um
 

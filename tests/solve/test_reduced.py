@@ -10,13 +10,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solve.materials.prony import Prony
+from solve.materials.inelastic import Prony
+from solve.model import Physics
 from solve.parameters import Readout
-from solve.physics import Physics
 from solve.reduced import store
-from solve.reduced.answer import Accuracy
 from solve.reduced.fit import CELLS, Fit
-from solve.reduced.model import ReducedModel
+from solve.reduced.model import Accuracy, ReducedModel
 
 STIFFNESS, FULL, SHARE, TAU = 2.0, 0.5, 0.3, 0.2
 SOLID = Physics(viscosity={"medium2": Prony((SHARE,), (TAU,))})

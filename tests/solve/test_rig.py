@@ -6,7 +6,7 @@ The contact is a linear spring k here: m a'' + k a = F, or (u - a) / c on the ri
 import numpy as np
 import pytest
 
-from solve.rig import Rig
+from solve.terms.rig import Rig
 from tests.solve.trial import trial
 
 STIFFNESS, MASS = 5.0, 0.02

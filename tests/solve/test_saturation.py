@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from solve.saturation import Saturation
+from solve.readout.filters import Saturation
 
 VOLTAGE = np.linspace(-50.0, 50.0, 2001)
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from solve.parameters import Press, Waveform
-from solve.schedule import Target, load_between, schedule
+from solve.solution.schedule import Target, load_between, schedule
 from solve.system import Load
 
 TRAPEZOID = Waveform(shape="trapezoid", rise_s=0.2, hold_s=0.5, fall_s=0.1)

@@ -5,15 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import solve.march
-from geometry.dot_shape import resolve_dot
+import solve.solution.march
+from geometry.dot import resolve_dot
 from geometry.parameters import Dot
 from mesh.build import build
 from mesh.parameters import MeshOptions
 from solve.mechanisms import Mechanism
 from solve.model import Model
 from solve.parameters import Press, Waveform
-from solve.sensitivity import Variation, press_with_sensitivities
+from solve.solution.sensitivity import Variation, press_with_sensitivities
 from solve.switch_on import with_mechanisms
 from tests.solve.segments import materials, segment
 
@@ -85,7 +85,7 @@ CASES = {
 
 @pytest.mark.parametrize("case", CASES)
 def test_sensitivity_is_the_difference_of_two_presses(case, monkeypatch):
-    monkeypatch.setattr(solve.march, "TIME_TOLERANCE", np.inf)  # the same times for all presses
+    monkeypatch.setattr(solve.solution.march, "TIME_TOLERANCE", np.inf)  # the same times for all presses
     value, at = CASES[case]
     small = 1e-4 * value
     base = at(value)
@@ -102,7 +102,7 @@ def test_sensitivity_is_the_difference_of_two_presses(case, monkeypatch):
 
 def whole_press(changed, base, tet_mesh):
     """The trace of a press of its own at the same times, on the moved mesh."""
-    from mesh.morph import morphed
+    from mesh.interfaces import morphed
 
     moved = morphed(tet_mesh, base.segment, changed.segment)
     return press_with_sensitivities(changed, {}, moved)[0].trace

@@ -12,15 +12,15 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-import solve.march as marching
-from solve.doubts import doubts
-from solve.linear import LinearSolver
-from solve.newton import NoEquilibriumError
-from solve.schedule import Target
-from solve.snap import snapped
-from solve.solid import InvertedElementError
+import solve.solution.march as marching
+from solve.fem.sparsity import Tangent
+from solve.recorder import doubts
+from solve.solution.linear import LinearSolver
+from solve.solution.newton import NoEquilibriumError
+from solve.solution.schedule import Target
+from solve.solution.snap import snapped
 from solve.system import Evaluation, Load, State, System
-from solve.unsymmetric import Tangent
+from solve.terms.solid import InvertedElementError
 
 RISE = 0.3
 LIMIT = RISE * (1.0 - 1.0 / np.sqrt(3.0))

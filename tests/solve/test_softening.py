@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from scipy.special import erf
 
-from solve.materials.response import Response
-from solve.materials.softening import Softening
+from solve.materials.inelastic import Response, Softening
 
 STIFFNESS = 3.0
 LAW = Softening(0.4, 0.01, 0.2)

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from geometry.parameters import Dot
-from solve.amplifier import amplify
 from solve.materials.parameters import Hyperfoam, MooneyRivlin, Ogden, Yeoh
 from solve.mechanisms import MECHANISMS, Mechanism
 from solve.model import Model
 from solve.parameters import Readout
+from solve.readout.amplifier import amplify
 from solve.switch_on import SWITCHES, shear_modulus_MPa, with_mechanisms
 from tests.solve.segments import materials, segment
 

@@ -3,17 +3,15 @@
 import numpy as np
 import pytest
 
-import solve.newton
+import solve.solution.newton
 from geometry.parameters import Dot, Film
 from mesh.parameters import MeshOptions
-from solve.linear import LinearSolver
-from solve.march import march
-from solve.model import Model
+from solve.model import Model, Physics
 from solve.parameters import Press
-from solve.physics import Physics
-from solve.press import press_segment
+from solve.press import press_segment, set_up
 from solve.problem import build_system
-from solve.setup import set_up
+from solve.solution.linear import LinearSolver
+from solve.solution.march import march
 from solve.system import Load
 from tests.solve.segments import cap, coarse_mesh, materials, ridge, segment
 
@@ -147,15 +145,15 @@ def test_a_slide_keeps_its_depth_and_ends_where_it_was_sent():
 
 def test_want_of_convergence_is_told_with_its_place_and_keeps_what_converged(monkeypatch):
     stack, calls = segment(), []
-    whole = solve.newton.equilibrate
+    whole = solve.solution.newton.equilibrate
 
     def fails_after_the_first(system, linear, x, load, time, previous):
         calls.append(load)
         if load.drive * 2.5 > 0.11:
-            monkeypatch.setattr(solve.newton, "MAX_ITERATIONS", 1)
+            monkeypatch.setattr(solve.solution.newton, "MAX_ITERATIONS", 1)
         return whole(system, linear, x, load, time, previous)
 
-    monkeypatch.setattr("solve.march.equilibrate", fails_after_the_first)
+    monkeypatch.setattr("solve.solution.march.equilibrate", fails_after_the_first)
     result = press_segment(stack, materials(), cap(stack), SHALLOW, coarse_mesh(stack, cap(stack)))
     assert not result.converged
     assert result.steps[1].indentation_m == pytest.approx(1e-4)

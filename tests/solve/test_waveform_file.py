@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from solve.parameters import Waveform
-from solve.waveform import duration_s, fraction
+from solve.solution.schedule import duration_s, fraction
 
 GOOD = "time_s,fraction\n0,0\n1,0.5\n2,1\n"
 

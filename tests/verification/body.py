@@ -10,14 +10,12 @@ from types import SimpleNamespace
 import numpy as np
 
 from mesh.types import Floats, Ints
-from solve.contact import ContactFacets, contact_facets
-from solve.dot_distance import RigidDot
-from solve.element_kernels import scatter
-from solve.linear import LinearSolver
-from solve.solid import solid_region
-from solve.sparsity import build_pattern
-from solve.term import Term, Trial
-from solve.unsymmetric import Tangent
+from solve.fem.kernels import scatter
+from solve.fem.sparsity import Tangent, build_pattern
+from solve.fem.term import Term, Trial
+from solve.solution.linear import LinearSolver
+from solve.terms.contact import ContactFacets, RigidDot, contact_facets
+from solve.terms.solid import solid_region
 from tests.verification.loads import FollowerPressure
 
 FREE = np.nan

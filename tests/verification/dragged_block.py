@@ -7,15 +7,13 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
-from geometry.dot_shape import DotShape
+from geometry.dot import DotShape
 from mesh.types import Floats
-from solve.contact import ContactFacets, contact_facets
-from solve.dot_distance import RigidDot
-from solve.friction import FrictionalContact
+from solve.fem.term import Term, Trial, Unknowns
 from solve.materials.laws import MediumLaw
-from solve.solid import solid_region
-from solve.term import Term, Trial
-from solve.unknowns import Unknowns
+from solve.terms.contact import ContactFacets, RigidDot, contact_facets
+from solve.terms.friction import FrictionalContact
+from solve.terms.solid import solid_region
 from tests.verification.lattice import Grid
 
 MAX_ITERATIONS, TOLERANCE = 30, 1e-10  # of the contact forces

@@ -12,18 +12,16 @@ import numpy as np
 from scipy.special import erf
 
 from mesh.types import Floats
-from solve.friction import FrictionalContact
-from solve.linear import LinearSolver
-from solve.march import march, rest_state
-from solve.materials.film_plasticity import FilmPlasticity
-from solve.materials.prony import Prony
-from solve.materials.softening import Softening
-from solve.quadrature import tetrahedron
-from solve.schedule import Target
-from solve.setup import Setup
-from solve.shape_functions import linear
-from solve.solid import SolidRegion, deformation_gradient
+from solve.fem.quadrature import linear, tetrahedron
+from solve.materials.film import FilmPlasticity
+from solve.materials.inelastic import Prony, Softening
+from solve.press import Setup
+from solve.solution.linear import LinearSolver
+from solve.solution.march import march, rest_state
+from solve.solution.schedule import Target
 from solve.system import State, System
+from solve.terms.friction import FrictionalContact
+from solve.terms.solid import SolidRegion, deformation_gradient
 
 SQUARE = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])  # S : S of six components
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from mesh.types import Floats, Ints
-from solve.contact import SHAPES, SLOPES, WEIGHTS
-from solve.term import Term
+from solve.fem.term import Term
+from solve.terms.contact import SHAPES, SLOPES, WEIGHTS
 
 
 @dataclass

@@ -8,14 +8,22 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.dot_shape import DotShape
+from geometry.dot import DotShape
 from geometry.parameters import Segment
-from mesh.finish import finished
 from mesh.layered import layered
-from mesh.linear import LinearMesh, oriented, signed_volumes, without_unused
 from mesh.parameters import MeshOptions
-from mesh.topology import TET_FACES, boundary_faces
-from mesh.types import Floats, Ints, TetMesh
+from mesh.quadratic import finished
+from mesh.types import (
+    TET_FACES,
+    Floats,
+    Ints,
+    LinearMesh,
+    TetMesh,
+    boundary_faces,
+    oriented,
+    signed_volumes,
+    without_unused,
+)
 
 
 def quarter(stack: Segment, dot: DotShape, options: MeshOptions) -> LinearMesh:

@@ -4,18 +4,16 @@ from functools import cache
 
 import numpy as np
 
-from geometry.dot_shape import DotShape
+from geometry.dot import DotShape
 from geometry.parameters import Dot, Segment
 from geometry.stack import layers
 from mesh.types import TetMesh
 from solve.interfaces import open_interfaces
 from solve.materials.parameters import Hyperfoam, PiezoelectricFilm
-from solve.model import Model
+from solve.model import Model, Physics
 from solve.parameters import Press, Readout, Waveform
-from solve.physics import Physics
-from solve.press import press_segment
+from solve.press import Setup, press_segment, set_up
 from solve.result import PressResult
-from solve.setup import Setup, set_up
 from tests.solve.segments import coarse_mesh, materials, ridge, segment
 
 STACK = segment(section="plane-strain")

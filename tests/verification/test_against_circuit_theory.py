@@ -12,11 +12,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solve.circuit import Circuit
-from solve.film import film_region
+from solve.fem.term import Trial
+from solve.materials.film import VACUUM_PERMITTIVITY, film_law
 from solve.materials.parameters import PiezoelectricFilm
-from solve.materials.piezoelectric import VACUUM_PERMITTIVITY, film_law
-from solve.term import Trial
+from solve.terms.film import film_region
+from solve.terms.rig import Circuit
 from tests.solve.box import box
 
 YOUNG, EPSILON = 2e9, 12.0 * VACUUM_PERMITTIVITY

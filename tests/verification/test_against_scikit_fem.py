@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import spsolve
 
-from solve.film import film_region
+from solve.fem.sparsity import build_pattern
+from solve.materials.film import FilmLaw
 from solve.materials.laws import LinearLaw, bulk_modulus
-from solve.materials.piezoelectric import FilmLaw
-from solve.sparsity import build_pattern
+from solve.terms.film import film_region
 from tests.solve.box import box
 from tests.solve.trial import trial
 from tests.verification.body import solid_body

@@ -6,9 +6,9 @@ Two-way coupling: the voltage stiffens the film, so that it differs from the pos
 import numpy as np
 import pytest
 
+from solve.model import Physics, Pyroelectric
 from solve.parameters import Readout
-from solve.physics import Physics, Pyroelectric
-from solve.readout import record
+from solve.readout.recording import record
 from tests.verification.slices import charge, force, pressed, waved
 
 STRONG = {"d31_pC_per_N": 60.0, "d32_pC_per_N": 60.0}

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 import scipy.linalg
 
+from solve.fem.sparsity import Tangent, build_pattern
 from solve.materials.laws import InvariantLaw, LinearLaw, bulk_modulus
-from solve.sparsity import build_pattern
-from solve.unsymmetric import Tangent
 from tests.verification.body import Body, solid_body
 from tests.verification.lattice import Grid, grid
 from tests.verification.loads import traction_force

@@ -5,11 +5,10 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from solve.materials.inelastic import Prony, Softening
 from solve.materials.parameters import Linear
-from solve.materials.prony import Prony
-from solve.materials.softening import Softening
-from solve.physics import Physics, Yield
-from solve.schedule import Target
+from solve.model import Physics, Yield
+from solve.solution.schedule import Target
 from solve.system import Load
 from tests.solve.segments import materials
 from tests.verification.energies import follow
@@ -41,7 +40,7 @@ def test_an_elastic_press_stores_all_work_and_gives_it_back():
 
 @pytest.mark.slow
 def test_viscosity(monkeypatch):
-    monkeypatch.setattr("solve.march.TIME_TOLERANCE", np.inf)
+    monkeypatch.setattr("solve.solution.march.TIME_TOLERANCE", np.inf)
     series = Prony((0.3, 0.2), (0.05, 0.5))
     balance = cycle(Physics(viscosity={"medium2": series, "effector": series}), hookean(), 60, 0.1)
     assert balance.loss > 0.02

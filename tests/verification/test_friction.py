@@ -9,17 +9,14 @@ import scipy.sparse as sp
 from scipy.optimize import brentq
 from scipy.sparse.linalg import splu
 
-from geometry.dot_shape import DotShape
-from solve.contact import ContactFacets, contact_facets
-from solve.dot_distance import RigidDot
-from solve.friction import FrictionalContact
-from solve.kinematics import deformation_gradient
+from geometry.dot import DotShape
+from solve.fem.kinematics import deformation_gradient
+from solve.fem.quadrature import linear, tetrahedron
+from solve.fem.term import Trial, Unknowns
 from solve.materials.laws import InvariantLaw, bulk_modulus
-from solve.quadrature import tetrahedron
-from solve.shape_functions import linear
-from solve.solid import InvertedElementError, solid_region
-from solve.term import Trial
-from solve.unknowns import Unknowns
+from solve.terms.contact import ContactFacets, RigidDot, contact_facets
+from solve.terms.friction import FrictionalContact
+from solve.terms.solid import InvertedElementError, solid_region
 from tests.solve.box import box
 
 MAX_ITERATIONS = 25

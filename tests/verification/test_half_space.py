@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from geometry.dot_shape import DotShape
-from solve.contact import HATS, SHAPES
-from solve.dot_distance import RigidDot
+from geometry.dot import DotShape
 from solve.materials.laws import InvariantLaw, bulk_modulus
+from solve.terms.contact import HATS, SHAPES, RigidDot
 from tests.verification.body import Body, solid_body
 from tests.verification.lattice import Grid, disc, graded
 from tests.verification.row import agrees

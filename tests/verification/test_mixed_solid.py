@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 
-from solve.element_kernels import mixed_solid
+from solve.fem.kernels import mixed_solid
+from solve.fem.quadrature import linear, physical_gradients, quadratic, tetrahedron
+from solve.materials.isochoric import from_voigt
 from solve.materials.laws import InvariantLaw, LinearLaw
-from solve.materials.voigt import from_voigt
-from solve.quadrature import tetrahedron
-from solve.shape_functions import linear, physical_gradients, quadratic
 from tests.solve.box import box, mixed_body
 
 NEARLY_INCOMPRESSIBLE = InvariantLaw(0.4, 0.1, 0.02, 0.0, 1000.0)  # K / G = 1000: nu = 0.4995

@@ -3,20 +3,12 @@
 import numpy as np
 import pytest
 
-from geometry.dot_shape import DotShape
-from solve.dot_distance import RigidDot
-from solve.film import film_region
+from geometry.dot import DotShape
+from solve.materials.film import FilmLaw, film_law
 from solve.materials.laws import medium_law
-from solve.materials.parameters import (
-    Hyperfoam,
-    Linear,
-    MooneyRivlin,
-    NeoHookean,
-    Ogden,
-    PiezoelectricFilm,
-    Yeoh,
-)
-from solve.materials.piezoelectric import FilmLaw, film_law
+from solve.materials.parameters import Hyperfoam, Linear, MooneyRivlin, NeoHookean, Ogden, PiezoelectricFilm, Yeoh
+from solve.terms.contact import RigidDot
+from solve.terms.film import film_region
 from tests.verification.body import Body, solid_body
 from tests.verification.lattice import grid
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from solve.film import film_region
+from solve.materials.film import VACUUM_PERMITTIVITY, FilmLaw, film_law
 from solve.materials.laws import LinearLaw, bulk_modulus
 from solve.materials.parameters import PiezoelectricFilm
-from solve.materials.piezoelectric import VACUUM_PERMITTIVITY, FilmLaw, film_law
+from solve.terms.film import film_region
 from tests.verification.body import Body
 from tests.verification.lattice import grid
 from tests.verification.row import agrees

@@ -13,13 +13,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.dot_shape import DotShape
+from geometry.dot import DotShape
 from geometry.stack import layers
 from mesh.build import build
 from mesh.parameters import MeshOptions
+from solve.fem.quadrature import tetrahedron
 from solve.parameters import Press
 from solve.press import press_segment
-from solve.quadrature import tetrahedron
 from tests.solve.segments import materials, segment
 
 pytestmark = [
@@ -55,7 +55,7 @@ def by_ngsolve(tet_mesh, held, path):
 
 @pytest.mark.parametrize("held", [(), ("medium1", "film")], ids=["free", "film held"])
 def test_plate(held, tmp_path, monkeypatch):
-    for module in ("solid", "film", "fields"):
+    for module in ("terms.solid", "terms.film", "fields"):
         monkeypatch.setattr(f"solve.{module}.tetrahedron", lambda: tetrahedron(5))
     stack = segment(boundary="clamped" if held else "free", held_layers=held or ("film",))
     top = np.array([0.0, 0.0, layers(stack)[-1].top_mm])

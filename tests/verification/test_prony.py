@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from solve.materials.prony import Prony
-from solve.physics import Physics
+from solve.materials.inelastic import Prony
+from solve.model import Physics
 from tests.verification.slices import charge, force, pressed, waved
 
 G, TAU = (0.3, 0.2), (0.05, 0.7)
@@ -77,7 +77,7 @@ RUBBER = Physics(viscosity={"medium2": SERIES, "effector": SERIES})
 @pytest.mark.slow
 def test_the_raised_cosine_press_is_second_order_in_time(monkeypatch):
     """Force at the end of the rise against Richardson's limit of the two finest."""
-    monkeypatch.setattr("solve.march.TIME_TOLERANCE", np.inf)
+    monkeypatch.setattr("solve.solution.march.TIME_TOLERANCE", np.inf)
     end = [force(pressed(waved("raised-cosine", n, rise_s=0.3), RUBBER))[-1] for n in (6, 12, 24, 48)]
     limit = end[-1] + (end[-1] - end[-2]) / 3.0
     errors = np.abs(np.array(end[:3]) - limit)
@@ -89,7 +89,7 @@ def test_a_smaller_tolerance_gives_a_smaller_error(monkeypatch):
     """The targets along the waveform stay: what changes is only the steps between them."""
 
     def end(tolerance):
-        monkeypatch.setattr("solve.march.TIME_TOLERANCE", tolerance)
+        monkeypatch.setattr("solve.solution.march.TIME_TOLERANCE", tolerance)
         result = pressed(waved("raised-cosine", 2, rise_s=0.3), RUBBER)
         return force(result)[-1], len(result.trace.time_s)
 

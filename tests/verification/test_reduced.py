@@ -8,13 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solve.amplifier import amplify
-from solve.materials.prony import Prony
+from solve.materials.inelastic import Prony
+from solve.model import BondLine, Physics
 from solve.parameters import Press, Readout, Waveform
-from solve.physics import BondLine, Physics
 from solve.press import press_segment
-from solve.reduced.accuracy import BETWEEN, refined, relative_error
-from solve.reduced.build import build_reduced
+from solve.readout.amplifier import amplify
+from solve.reduced.build import BETWEEN, build_reduced, refined, relative_error
 from tests.solve.segments import cap, coarse_mesh, materials, segment
 
 STACK = segment()

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from solve.model import Physics
 from solve.parameters import Press
-from solve.physics import Physics
 from solve.press import press_segment
 from tests.solve.segments import materials, ridge
 from tests.verification.slices import BLOCK, STACK, charge, foams, force, mesh_of, plate, pressed, waved
@@ -85,7 +85,7 @@ def tapped(stiffness, steps):
 @pytest.mark.slow
 def test_a_tapped_mass_follows_the_linear_oscillator(stiffness, monkeypatch):
     """x = F0/k (sin r w t - r sin w t) / (1 - r^2), within the block's own 0.4 % and the step; of second order."""
-    monkeypatch.setattr("solve.march.TIME_TOLERANCE", np.inf)
+    monkeypatch.setattr("solve.solution.march.TIME_TOLERANCE", np.inf)
     paths = [tapped(stiffness, steps) for steps in (12, 24, 48)]
     np.testing.assert_allclose(*paths[-1], atol=0.015)
     coarse, middle, fine = (path[:: len(path) // 12] for path, _ in paths)

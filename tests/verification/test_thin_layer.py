@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from geometry.dot_shape import DotShape
-from solve.dot_distance import RigidDot
+from geometry.dot import DotShape
 from solve.materials.laws import InvariantLaw
+from solve.terms.contact import RigidDot
 from tests.verification.body import solid_body
 from tests.verification.lattice import disc, graded
 from tests.verification.row import agrees

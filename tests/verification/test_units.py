@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from geometry.parameters import Film, Medium
-from solve.materials.prony import Prony
+from solve.materials.inelastic import Prony
+from solve.model import Physics
 from solve.parameters import Press, Waveform
-from solve.physics import Physics
 from solve.press import press_segment
 from tests.solve.segments import materials, ridge, segment
 from tests.verification.slices import mesh_of
@@ -28,7 +28,7 @@ CASES = {
 def equal_steps():
     """Only the load steps: a step's length must not hang on the last digits of an error estimate."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("solve.march.TIME_TOLERANCE", np.inf)
+        patch.setattr("solve.solution.march.TIME_TOLERANCE", np.inf)
         yield
 
 

@@ -15,9 +15,8 @@ from softdot.paper.analytical.composite import plane_strain_modulus_Pa
 from softdot.paper.analytical.softness import index_of_modulus, index_of_thickness, softness
 from softdot.paper.beyond.designs import Design
 from softdot.paper.reading import INDENTATION_MM, LENGTH_MM, POISSON_RATIO, RIDGE_RADIUS_MM
-from solve.materials.library import find_material
-from solve.materials.parameters import PiezoelectricFilm
-from solve.materials.piezoelectric import VACUUM_PERMITTIVITY
+from solve.materials.film import VACUUM_PERMITTIVITY
+from solve.materials.parameters import PiezoelectricFilm, find_material
 
 CONTACT_MM = 2.0 * np.sqrt(RIDGE_RADIUS_MM * INDENTATION_MM)
 """Width of the contact, 2 sqrt(R u): the scale of Hertz."""

@@ -12,7 +12,7 @@ from softdot.paper.beyond.surrogate import Surrogate
 from softdot.paper.beyond.trials import Trial, solve_trials
 from softdot.paper.reading import LENGTH_MM
 from softdot.progress import Progress
-from solve.materials.piezoelectric import VACUUM_PERMITTIVITY
+from solve.materials.film import VACUUM_PERMITTIVITY
 
 MESH = {"element_size_mm": 0.8, "contact_element_size_mm": 0.4, "mesher": "layered"}
 """Coarse: some 10 % off in voltage. What the search finds is solved again on finer meshes."""

@@ -3,7 +3,7 @@
 The film's charge Q(t) drives R parallel to film and cable, and an eighth-order low-pass follows:
     (C_f + C) V' + V / R = Q',        V_hat = i w Q_hat / (1/R + i w (C_f + C)) H(w).
 Everything is linear and periodic, so that the steady state after many presses follows exactly from the Fourier series
-of one period. A single press from rest is integrated in time by solve.readout.
+of one period. A single press from rest is integrated in time by solve.readout.recording.
 """
 
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from scipy.signal import butter, freqs
 
 from mesh.types import Floats
 from solve.parameters import Waveform
-from solve.waveform import fraction
+from solve.solution.schedule import fraction
 
 PERIOD_S = 1.0  # ten presses in ten seconds
 SAMPLES = 2048

@@ -6,11 +6,9 @@ import pytest
 from diagnose.coupon.kinematics import SimpleShear, Uniaxial
 from diagnose.coupon.memory import Relaxation, earlier_peaks, softened
 from diagnose.coupon.point import MaterialPoint
+from solve.materials.inelastic import Prony, Response, Softening
 from solve.materials.laws import InvariantLaw
-from solve.materials.prony import Prony
-from solve.materials.response import Response
-from solve.materials.softening import Softening
-from solve.solid import solid_region
+from solve.terms.solid import solid_region
 from tests.solve.box import box
 from tests.solve.trial import trial
 

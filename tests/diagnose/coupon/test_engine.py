@@ -6,7 +6,7 @@ import pytest
 from diagnose.coupon import coupon_engine, improved_material
 from diagnose.forward import Setting
 from diagnose.recording import Recording
-from geometry.errors import InputError
+from geometry.base import InputError
 from softdot.config import config_from
 from solve.materials.parameters import Hyperfoam, Linear, MooneyRivlin, NeoHookean, Ogden, PiezoelectricFilm, Yeoh
 from tests.diagnose.coupon.coupons import RUBBER, TIME, TRAVEL, candidate, engine, run, silent, specimen

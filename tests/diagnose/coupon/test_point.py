@@ -7,11 +7,10 @@ from scipy.special import erf
 from diagnose.coupon.kinematics import SimpleShear, Uniaxial
 from diagnose.coupon.memory import NO_SERIES
 from diagnose.coupon.point import MaterialPoint
-from solve.materials.hyperfoam import HyperfoamLaw
+from solve.materials.inelastic import Prony, Softening
 from solve.materials.laws import InvariantLaw, LinearLaw, OgdenLaw
-from solve.materials.prony import Prony
-from solve.materials.softening import Softening
-from solve.newton import NoEquilibriumError
+from solve.materials.principal_stretches import HyperfoamLaw
+from solve.solution.newton import NoEquilibriumError
 
 C10, C20, C30, STIFF = 0.4, 0.05, 0.01, 1e7
 YEOH = InvariantLaw(C10, 0.0, C20, C30, STIFF)

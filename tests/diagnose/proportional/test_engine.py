@@ -7,7 +7,7 @@ from scipy.special import erf
 from diagnose.forward import Setting
 from diagnose.proportional import proportional_engine
 from diagnose.recording import Recording, Run
-from geometry.errors import InputError
+from geometry.base import InputError
 from solve.parameters import Readout
 
 RATE = 200.0

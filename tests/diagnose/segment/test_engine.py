@@ -5,7 +5,7 @@ import pytest
 
 from diagnose.forward import Setting
 from diagnose.segment import store
-from geometry.errors import InputError
+from geometry.base import InputError
 from solve.mechanisms import Mechanism
 from solve.parameters import Readout
 from tests.diagnose.segment.rigs import DEPTH_MM, candidate, engine, press, run, silent

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from diagnose.segment.held_sides import crowded
-from geometry.dot_shape import resolve_dot
+from geometry.dot import resolve_dot
 from geometry.parameters import Dot, Segment
 from mesh.build import build
 from mesh.parameters import MeshOptions

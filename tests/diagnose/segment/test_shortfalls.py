@@ -8,7 +8,7 @@ from diagnose.forward import Candidate, Coordinate
 from diagnose.segment import prepared
 from diagnose.segment.interpolation import effect_of
 from diagnose.segment.prepared import Prepared, press_name
-from solve.newton import NoEquilibriumError
+from solve.solution.newton import NoEquilibriumError
 from tests.diagnose.segment.rigs import model
 
 GLUE = Candidate(

@@ -12,7 +12,7 @@ from diagnose.vocabulary.scene import Scene
 from diagnose.vocabulary.wrong_numbers import nuisance
 from solve.mechanisms import BONDS, MECHANISMS, MEDIA
 from solve.parameters import Readout
-from solve.saturation import Saturation
+from solve.readout.filters import Saturation
 from solve.switch_on import with_mechanisms
 from tests.diagnose.segment.rigs import LEAKY, model
 

@@ -8,9 +8,9 @@ from diagnose.findings import Detection, Findings, Fit, Interval, Model, Place
 from diagnose.forward import Candidate, Coordinate, Setting
 from diagnose.noise.estimate import noise_models
 from diagnose.recording import Recording, Run
-from solve.amplifier import amplify
+from solve.model import Physics
 from solve.parameters import Readout
-from solve.physics import Physics
+from solve.readout.amplifier import amplify
 from tests.diagnose.rigs import trapezoid
 
 NEWTONS_PER_MM, PICOCOULOMBS_PER_MM, PICOFARADS = 2.0, 50.0, 100.0

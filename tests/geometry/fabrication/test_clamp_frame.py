@@ -5,9 +5,9 @@ from build123d import Solid
 
 from geometry.fabrication.clamp_frame import frame_parts
 from geometry.fabrication.parameters import Fabrication
-from geometry.fabrication.shapes import box, volume
-from geometry.layer_solids import layer_solids
+from geometry.fabrication.part import box, volume
 from geometry.parameters import Effector
+from geometry.solids import layer_solids
 
 GLUE, AIR = 0.05, 0.3
 

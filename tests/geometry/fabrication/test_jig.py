@@ -3,11 +3,11 @@
 import pytest
 from build123d import Pos
 
-from geometry.fabrication.jig import jig_parts, stacked_tops
+from geometry.fabrication.kit import jig_parts, stacked_tops
 from geometry.fabrication.parameters import Fabrication
-from geometry.fabrication.shapes import box, volume
-from geometry.layer_solids import layer_solids
+from geometry.fabrication.part import box, volume
 from geometry.parameters import Effector
+from geometry.solids import layer_solids
 
 CYLINDER = Effector(shape="cylinder", diameter_mm=1.6, height_mm=0.7)
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from geometry.fabrication.kit import solid_kit
 from geometry.fabrication.parameters import Fabrication
 from geometry.parameters import Effector, Medium

@@ -6,13 +6,13 @@ from math import hypot, radians, sqrt, tan
 import pytest
 from build123d import Pos, Vector
 
-from geometry.fabrication.cavity_check import check_cavity
+from geometry.fabrication.casting import check_cavity
+from geometry.fabrication.cavity import check_mould_sizes, least_draft_deg, styled_cavity
 from geometry.fabrication.mould import mould_of
-from geometry.fabrication.mould_checks import check_mould_sizes, least_draft_deg, styled_cavity
 from geometry.fabrication.parameters import Fabrication
-from geometry.fabrication.shapes import box, volume
+from geometry.fabrication.part import box, volume
+from geometry.fabrication.printers import printer_profile
 from geometry.parameters import Effector
-from geometry.printers import printer_profile
 from geometry.stack import layers
 
 EXACT = 1e-6

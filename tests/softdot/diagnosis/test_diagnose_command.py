@@ -14,12 +14,12 @@ from diagnose.forward import Setting
 from diagnose.inference import diagnose as inference
 from diagnose.verdict import resimulation
 from diagnose.verdict.resimulation import Resimulated
-from mesh.errors import MeshingError
+from mesh.types import MeshingError
 from softdot.config import load_config
 from softdot.diagnosis import engines, page, run
 from softdot.diagnosis.command import short_text
 from softdot.rig_file import load_rig
-from solve.newton import NoEquilibriumError
+from solve.solution.newton import NoEquilibriumError
 from tests.diagnose.verdict.test_verdict import QUIET, SHAPE, require
 from tests.diagnose.verdict.toy import LEAK, RELAXING, ToyEngine, fitted, found, toy_recording, toy_run
 from tests.softdot.diagnosis.toy_rig import write_toy

@@ -19,7 +19,7 @@ from softdot.paper.beyond.predictors import (
     spread_softness,
 )
 from softdot.paper.reading import INDENTATION_MM, LENGTH_MM
-from solve.materials.piezoelectric import VACUUM_PERMITTIVITY
+from solve.materials.film import VACUUM_PERMITTIVITY
 
 GIVE, REST = 0.5, 0.3
 

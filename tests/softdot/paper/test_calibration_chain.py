@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from softdot.paper.calibration.chain import LOW_PASS_HZ, SAMPLES, Chain, pressed, recorded_V, swing_V, times_s
-from solve.amplifier import amplify
+from solve.model import Physics
 from solve.parameters import Readout
-from solve.physics import Physics
+from solve.readout.amplifier import amplify
 
 CHARGE_PC, FILM_PF = 4000.0, 971.0
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from geometry.errors import InputError
+from geometry.base import InputError
 from softdot.paper.presses import NotSolvedError, solve_named
 from softdot.paper.reading import segment_config
 from softdot.paper.segments.solved import press_of

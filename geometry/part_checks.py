@@ -1,0 +1,143 @@
+"""Whether an effector, the electrodes and a delaminated patch fit on their segment."""
+
+from itertools import combinations
+
+from geometry.base import InputError
+from geometry.parameters import Effector, Electrode, Segment
+
+USED_SIZES: dict[str, tuple[str, ...]] = {
+    "layer": (),
+    "block": ("length_mm", "width_mm"),
+    "cylinder": ("diameter_mm",),
+    "dome": ("diameter_mm",),
+}
+ROUNDING_MM = 1e-9
+
+
+def check_effector(segment: Segment) -> None:
+    """Raise InputError for an effector with missing, unused or too large sizes; nothing without effector."""
+    effector = segment.effector
+    if effector is None:
+        return
+    if segment.section == "plane-strain" and effector.shape in ("cylinder", "dome"):
+        raise InputError(
+            f"segment.effector.shape = '{effector.shape}': segment.section = 'plane-strain' has nothing "
+            "round about z; use 'block' or 'layer'"
+        )
+    _check_sizes(segment, effector)
+    _check_foot(segment, effector)
+    if effector.shape == "dome":
+        _check_dome(effector)
+
+
+def covers_footprint(segment: Segment) -> bool:
+    """Whether all sides of the effector are flush with those of the segment; True without effector."""
+    effector = segment.effector
+    if effector is None or effector.shape == "layer":
+        return True
+    if effector.shape != "block":
+        return False
+    sizes = ((effector.length_mm, segment.length_mm), (effector.width_mm, segment.width_mm))
+    return all(size is None or size >= limit - ROUNDING_MM for size, limit in sizes)
+
+
+def _check_sizes(segment: Segment, effector: Effector) -> None:
+    used = USED_SIZES[effector.shape]
+    sliced = segment.section == "plane-strain"
+    for name in ("length_mm", "width_mm", "diameter_mm"):
+        value = getattr(effector, name)
+        if value is None and name in used and not (sliced and name == "width_mm"):
+            raise InputError(f"segment.effector.{name} is missing: shape = '{effector.shape}' needs it")
+        if value is not None and name not in used:
+            raise InputError(
+                f"segment.effector.{name} = {value:g}: shape = '{effector.shape}' has no such size, leave it out"
+            )
+    if sliced and effector.width_mm not in (None, segment.width_mm):
+        raise InputError(
+            f"segment.effector.width_mm = {effector.width_mm:g}: segment.section = 'plane-strain' has "
+            f"nothing that varies over y; leave it out or give segment.width_mm, {segment.width_mm:g}"
+        )
+
+
+def _check_foot(segment: Segment, effector: Effector) -> None:
+    """The foot lies within the footprint."""
+    limits = [("length_mm", segment.length_mm), ("width_mm", segment.width_mm)]
+    if effector.diameter_mm is not None:
+        limits = [("diameter_mm", segment.length_mm), ("diameter_mm", segment.width_mm)]
+    for number, (name, limit) in enumerate(limits):
+        value = getattr(effector, name)
+        if value is not None and value > limit + ROUNDING_MM:
+            whole = ("segment.length_mm", "segment.width_mm")[number]
+            raise InputError(
+                f"segment.effector.{name} = {value:g}: wider than the segment, at most {whole} = {limit:g}"
+            )
+
+
+def _check_dome(effector: Effector) -> None:
+    """A spherical cap is at most a hemisphere: h <= d / 2."""
+    diameter = effector.diameter_mm or 0.0
+    if effector.height_mm > diameter / 2 + ROUNDING_MM:
+        raise InputError(
+            f"segment.effector.height_mm = {effector.height_mm:g}: a dome is at most half as high as its "
+            f"foot is wide, {diameter / 2:g} for diameter_mm = {diameter:g}"
+        )
+
+
+def check_electrodes(segment: Segment) -> None:
+    """Raise InputError for electrodes that leave the film, overlap each other or share a name."""
+    electrodes = segment.film.electrodes
+    for number, electrode in enumerate(electrodes):
+        _check_on_film(number, electrode, segment)
+    for first, second in combinations(electrodes, 2):
+        if first.name == second.name:
+            raise InputError(f"segment.film.electrodes: the name '{first.name}' is given twice")
+        if all(_shared(first, second, axis) > ROUNDING_MM for axis in (0, 1)):
+            raise InputError(
+                f"segment.film.electrodes: '{first.name}' and '{second.name}' overlap by "
+                f"{_shared(first, second, 0):.3g} x {_shared(first, second, 1):.3g} mm"
+            )
+
+
+def _check_on_film(number: int, electrode: Electrode, segment: Segment) -> None:
+    for axis, limit in enumerate((segment.length_mm, segment.width_mm)):
+        reach = abs(electrode.center_mm[axis]) + electrode.size_mm[axis] / 2
+        if reach > limit / 2 + ROUNDING_MM:
+            raise InputError(
+                f"segment.film.electrodes[{number}]: '{electrode.name}' reaches {reach:g} mm from the "
+                f"centre in {'xy'[axis]}, beyond the edge of the film at {limit / 2:g} mm"
+            )
+
+
+def _shared(first: Electrode, second: Electrode, axis: int) -> float:
+    """Length in mm along an axis that two electrodes share; negative for a gap."""
+    high = min(one.center_mm[axis] + one.size_mm[axis] / 2 for one in (first, second))
+    low = max(one.center_mm[axis] - one.size_mm[axis] / 2 for one in (first, second))
+    return high - low
+
+
+def check_patch(segment: Segment, bond: str, center_mm: tuple[float, float], diameter_mm: float) -> None:
+    """Raise InputError for a disc that leaves the interface of a bond, of a slice for a strip that does so in x.
+
+    bond : its name as in the mechanism delamination; only below the effector is the interface smaller than the
+    footprint. A round foot counts as its square.
+    """
+    half = _half_sizes(segment, bond)
+    axes = "x" if segment.section == "plane-strain" else "xy"
+    for axis, middle, limit in zip(axes, center_mm, half, strict=False):
+        reach = abs(middle) + diameter_mm / 2
+        if reach > limit + ROUNDING_MM:
+            raise InputError(
+                f"mechanisms: the delamination of '{bond}' with center_mm = [{center_mm[0]:g}, {center_mm[1]:g}] and "
+                f"diameter_mm = {diameter_mm:g} reaches {reach:g} mm from the centre in {axis}, beyond the edge of "
+                f"the interface at {limit:g} mm"
+            )
+
+
+def _half_sizes(segment: Segment, bond: str) -> tuple[float, float]:
+    """Half the size in x and y of an interface."""
+    effector = segment.effector
+    sizes = (segment.length_mm, segment.width_mm)
+    if bond == "bond-effector-medium1" and effector is not None and effector.shape != "layer":
+        foot = (effector.length_mm or effector.diameter_mm, effector.width_mm or effector.diameter_mm)
+        sizes = (foot[0] or sizes[0], foot[1] or sizes[1])
+    return sizes[0] / 2, sizes[1] / 2

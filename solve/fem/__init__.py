@@ -1,0 +1,1 @@
+"""Finite-element building blocks: quadrature, kinematics, compiled element kernels, numbering, sparsity."""

@@ -1,0 +1,1 @@
+"""From the charge of the film to the voltage that an amplifier records."""

@@ -1,0 +1,1 @@
+"""How the discrete problem is solved: Newton, linear solver, load steps, sensitivities, checkpoints."""

@@ -1,0 +1,288 @@
+"""Solution of the indefinite tangent, with a residual check after every solve.
+
+PARDISO where MKL exists, as real symmetric indefinite (mtype -2) or, with friction, unsymmetric (mtype 11), else or
+when its answer is wrong SciPy's SuperLU. PARDISO can return a wrong answer without an error on a weak diagonal, hence
+the check.
+Two measures: Newton's method asks for a relative residual |r| / |b|, which its next iteration mends anyway. Where
+nothing comes after, as in derivatives, that measure is no good: with a film a million times stiffer than its medium
+rounding alone leaves a |r| / |b| of 1e-7 of a right solution, while 1e-9 may hide an error of 3 % in the soft part. The
+measure there is the componentwise backward error, max |r|_i / (|A| |x| + |b|)_i (Oettli and Prager, Numer. Math. 6,
+1964), brought to round-off by iterative refinement (Arioli, Demmel and Duff, SIAM J. Matrix Anal. Appl. 10, 1989;
+Higham, Accuracy and Stability of Numerical Algorithms, 2002, ch. 12).
+The contact rows have a zero diagonal, which costs pivots; the matrix that is factorised carries a small negative one
+instead, and GMRES preconditioned by it solves the true system in a few back substitutions (Saad, Iterative Methods
+for Sparse Linear Systems, 2003, ch. 9). A factorisation costs tens of them, so one of an earlier Newton step is used
+again where the tangent has changed little.
+"""
+
+import os
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.metadata import files
+from typing import Any, Protocol
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import LinearOperator, gmres, splu
+
+from mesh.types import Floats
+from solve.fem.sparsity import Tangent
+
+KRYLOV_ITERATIONS = 18  # with a factorisation of the same matrix
+REFINEMENTS = 5  # as LAPACK's xSYRFS; each must at least halve the error
+REFINED, ACCEPTED = 1e-12, 1e-10  # backward errors: refinement goes on down to the first, the second will do
+WEAK_SHIFT = 1e-4  # of Newton's: many right-hand sides share the factorisation, and each then takes fewer iterations
+MOST_FAILURES = 3  # one after the other, then a solver is left out
+EVENS_OUT = 15_000, 20.0, 2.0 / 3.0  # unknowns, back substitutions that cost as much as a factorisation, exponent
+
+
+class LinearSolveError(RuntimeError):
+    """No solver gave a solution with a small residual: the tangent is singular."""
+
+
+class Factorisation(Protocol):
+    """A direct solver that keeps its analysis of one sparsity pattern."""
+
+    name: str
+
+    def factorise(self, tangent: Tangent) -> None:
+        """Factorise."""
+
+    def back_substitute(self, rhs: Floats) -> Floats:
+        """Solve with the last factorisation."""
+
+    def free(self) -> None:
+        """Give its memory back."""
+
+
+class Pardiso:
+    """MKL PARDISO; the analysis of the pattern is kept."""
+
+    name = "pardiso"
+
+    def __init__(self) -> None:
+        self._solver: Any = None
+        self._matrix: sp.csr_matrix | None = None
+
+    def factorise(self, tangent: Tangent) -> None:
+        """Factorise; analyse the pattern the first time, an unsymmetric one each time: its pivots follow values."""
+        symmetric = tangent.excess is None
+        matrix = tangent.upper if symmetric else tangent.full()
+        if self._solver is None:
+            self._solver = _pardiso(-2 if symmetric else 11)
+        self._solver.set_phase(22 if symmetric and self._matrix is not None else 12)
+        self._matrix = matrix
+        self._call(np.zeros(matrix.shape[0]))
+
+    def back_substitute(self, rhs: Floats) -> Floats:
+        """Solve with the last factorisation."""
+        self._solver.set_phase(33)
+        return self._call(rhs)
+
+    def _call(self, rhs: Floats) -> Floats:
+        """One phase."""
+        solution: Floats = self._solver._call_pardiso(self._matrix, rhs)
+        return solution
+
+    def free(self) -> None:
+        """Give MKL's memory back."""
+        if self._solver is not None:
+            self._solver.free_memory(everything=True)
+
+
+def _pardiso(kind: int) -> Any:
+    """PyPardiso for a matrix type, with the parameters of MKL's iparm that differ from its defaults.
+
+    iparm(10), the size of perturbed pivots: with 1e-13, the default of unsymmetric matrices, one perturbed pivot of
+    a sticking contact left residuals of 1e-3 that GMRES could not remove; with 1e-8, that of symmetric ones, 1e-7.
+    """
+    _tell_where_mkl_is()  # before the import, which looks for it
+    from pypardiso import PyPardisoSolver
+
+    solver = PyPardisoSolver(mtype=kind)
+    symmetric = ((1, 1), (2, 3), (10, 13), (11, 0), (13, 0), (21, 1))
+    unsymmetric = ((1, 1), (2, 3), (10, 8), (11, 1), (13, 1))
+    for parameter, value in symmetric if kind == -2 else unsymmetric:
+        solver.set_iparm(parameter, value)
+    return solver
+
+
+def _tell_where_mkl_is() -> None:
+    """PyPardiso would search the whole environment for MKL's library; its wheel knows."""
+    if "PYPARDISO_MKL_RT" in os.environ:
+        return
+    for file in files("mkl") or ():
+        if "mkl_rt" in file.name:
+            os.environ["PYPARDISO_MKL_RT"] = str(file.locate())
+            return
+
+
+class SuperLU:
+    """SciPy's SuperLU in symmetric mode."""
+
+    name = "superlu"
+
+    def __init__(self) -> None:
+        self._factor: Any = None
+
+    def factorise(self, tangent: Tangent) -> None:
+        """Factorise the full matrix."""
+        options = {"SymmetricMode": tangent.excess is None}
+        ordering = "MMD_AT_PLUS_A" if tangent.excess is None else "COLAMD"
+        pivoting = 0.01 if tangent.excess is None else 1.0
+        self._factor = splu(tangent.full().tocsc(), permc_spec=ordering, diag_pivot_thresh=pivoting, options=options)
+
+    def back_substitute(self, rhs: Floats) -> Floats:
+        """Solve with the last factorisation."""
+        solution: Floats = self._factor.solve(rhs)
+        return solution
+
+    def free(self) -> None:
+        """Give its memory back."""
+        self._factor = None
+
+
+class LinearSolver:
+    """Solves with the first factorisation of the registry that passes the residual check.
+
+    shift : (count,) added to the diagonal of what is factorised, not of what is solved.
+    """
+
+    def __init__(self, shift: Floats) -> None:
+        self._shift = shift
+        self._registry: list[type[Pardiso] | type[SuperLU]] = [Pardiso, SuperLU]
+        self._current: Factorisation | None = None
+        self._failures: Counter[str] = Counter()
+        self.name = Pardiso.name
+        """Name of the factorisation used last."""
+
+    def solve(self, tangent: Tangent, rhs: Floats, tolerance: float, similar: bool = False) -> Floats:
+        """Solve A x = rhs to a relative residual.
+
+        similar : the tangent has changed little since the last factorisation.
+        LinearSolveError when every factorisation fails.
+        """
+        return self._solve(tangent, rhs, similar, _Goal(_relative_residual, tolerance, tolerance, tolerance, 1.0, 0))
+
+    def solve_to_round_off(self, tangent: Tangent, rhs: Floats, similar: bool = False) -> Floats:
+        """Solve A x = rhs by iterative refinement until x is exact for coefficients that differ by round-off.
+
+        similar : the tangent is that of the last such solution. LinearSolveError when every factorisation fails.
+        """
+        goal = _Goal(_backward_error, 1e-8, REFINED, ACCEPTED, WEAK_SHIFT, REFINEMENTS)
+        return self._solve(tangent, rhs, similar, goal) if rhs.any() else np.zeros_like(rhs)
+
+    def _solve(self, tangent: Tangent, rhs: Floats, similar: bool, goal: "_Goal") -> Floats:
+        """With the last factorisation where that will do, else with the first of the registry that does."""
+        if similar and self._current is not None:
+            solution, error = self._refined(tangent, rhs, self._patience, goal, goal.similar_refinements)
+            if error <= goal.accepted:
+                return solution
+        reasons = []
+        for kind in tuple(self._registry):
+            try:
+                self._factorise(tangent, kind, goal.shift)
+                solution, error = self._refined(tangent, rhs, KRYLOV_ITERATIONS, goal, REFINEMENTS)
+            except Exception as failure:  # MKL absent, zero pivot, out of memory: the next one may do
+                reasons.append(f"{kind.name}: {failure}")
+            else:
+                if error <= goal.accepted:
+                    self._remember_success(kind.name)
+                    return solution
+                reasons.append(f"{kind.name}: {goal.measure.__name__.strip('_').replace('_', ' ')} {error:.1e}")
+        raise LinearSolveError("; ".join(reasons))
+
+    def _remember_success(self, name: str) -> None:
+        """Those before it in the registry have failed on the same matrix; they are given up after a few times."""
+        names = [kind.name for kind in self._registry]
+        self._failures.update(names[: names.index(name)])
+        self._failures[name] = 0
+        self._registry = [kind for kind in self._registry if self._failures[kind.name] < MOST_FAILURES]
+        self.name = name
+
+    def may_reuse(self, changed: int) -> bool:
+        """Whether the last factorisation is worth trying after so many constraints have changed their state.
+
+        Each costs GMRES up to two more back substitutions.
+        """
+        return 2 * changed <= self._patience // 2
+
+    @property
+    def _patience(self) -> int:
+        """Back substitutions that cost half a factorisation: more would be wasted if they fail (ski rental)."""
+        unknowns, worth, exponent = EVENS_OUT
+        return int(0.5 * worth * max(1.0, len(self._shift) / unknowns) ** exponent)
+
+    def close(self) -> None:
+        """Give the memory of the factorisation back."""
+        if self._current is not None:
+            self._current.free()
+        self._current = None
+
+    def _factorise(self, tangent: Tangent, kind: type[Pardiso] | type[SuperLU], shift: float) -> None:
+        """With a share of the shift."""
+        if type(self._current) is not kind:
+            self.close()
+            self._current = kind()
+        assert self._current is not None
+        if tangent.excess is None:
+            tangent = tangent.shifted(shift * self._shift)
+        self._current.factorise(tangent)
+
+    def _refined(
+        self, tangent: Tangent, rhs: Floats, iterations: int, goal: "_Goal", refinements: int
+    ) -> tuple[Floats, float]:
+        """GMRES on the right-hand side, then on what is left of it while that at least halves the error."""
+        solution = self._krylov(tangent, rhs, goal.krylov, iterations)
+        residual = rhs - tangent @ solution
+        error = goal.measure(tangent, rhs, solution, residual)
+        for _ in range(refinements):
+            if error <= goal.refined or not np.isfinite(error):
+                break
+            finer = solution + self._krylov(tangent, residual, goal.krylov, iterations)
+            left = rhs - tangent @ finer
+            less = goal.measure(tangent, rhs, finer, left)
+            if not less < error:
+                break
+            enough, solution, residual, error = less > 0.5 * error, finer, left, less
+            if enough:
+                break
+        return solution, error if np.isfinite(error) else np.inf
+
+    def _krylov(self, tangent: Tangent, rhs: Floats, tolerance: float, iterations: int) -> Floats:
+        """GMRES preconditioned from the right by the last factorisation."""
+        direct = self._current
+        assert direct is not None
+        operator = LinearOperator(tangent.upper.shape, lambda v: tangent @ direct.back_substitute(v), dtype=float)
+        transformed, _ = gmres(operator, rhs, rtol=0.9 * tolerance, restart=iterations, maxiter=1)
+        return direct.back_substitute(transformed)
+
+
+Measure = Callable[[Tangent, Floats, Floats, Floats], float]
+"""Of a tangent, a right-hand side, a solution and its residual."""
+
+
+@dataclass(frozen=True)
+class _Goal:
+    """krylov : relative residual of one run of GMRES; refined, accepted : by the measure, what ends the refinement and
+    what will do. shift : share of the solver's. similar_refinements : with a factorisation of another tangent.
+    """
+
+    measure: Measure
+    krylov: float
+    refined: float
+    accepted: float
+    shift: float
+    similar_refinements: int
+
+
+def _relative_residual(_tangent: Tangent, rhs: Floats, _solution: Floats, residual: Floats) -> float:
+    return float(np.linalg.norm(residual)) / (float(np.linalg.norm(rhs)) or 1.0)
+
+
+def _backward_error(tangent: Tangent, rhs: Floats, solution: Floats, residual: Floats) -> float:
+    """Componentwise; a row without anything in it is solved by anything."""
+    size = tangent.absolute() @ np.abs(solution) + np.abs(rhs)
+    rows = size > 0.0
+    return float(np.max(np.abs(residual[rows]) / size[rows], initial=0.0))

@@ -1,0 +1,113 @@
+"""A press from the equilibria of a similar one: Newton's method starts beside each of them, without the steps between.
+
+Moduli, glue or remembered stress change an equilibrium less than the way down to it does.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.interpolate import BSpline, make_interp_spline
+
+from mesh.types import Floats, Ints, TetMesh
+from solve.solution.linear import LinearSolver
+from solve.solution.march import march
+from solve.solution.newton import NoEquilibriumError, equilibrate
+from solve.solution.schedule import Target
+from solve.system import State, System
+
+Found = Sequence[tuple[float, Floats]]
+"""Places and the unknowns (count,) there, one at least, in the order in which they were found."""
+
+
+@dataclass(frozen=True)
+class Equilibria:
+    """Of one press at n places, element by element, so that any numbering of the unknowns can read them.
+
+    places : (n,), ascending. displacement_m : (n, m, 10, 3) of the nodes of the tetrahedra. pressure_Pa : (n, m, 4) of
+    their corners. contact_Pa : (n, k, 6) of the nodes of the contact's facets. What acts in one place only, a glue or
+    an electrode, is left out.
+    """
+
+    places: Floats
+    displacement_m: Floats
+    pressure_Pa: Floats
+    contact_Pa: Floats
+
+    @classmethod
+    def of(cls, system: System, tet_mesh: TetMesh, found: Found) -> "Equilibria":
+        """Of places, which ascend, and unknowns."""
+        displacement, pressure, contact = _numbers(system, tet_mesh)
+        course, units = Course.of(found), system.units
+        known = np.column_stack([course.unknowns, np.zeros(len(found))])  # index -1, a prescribed value, reads zero
+        return cls(course.places, known[:, displacement] * units.length, known[:, pressure] * units.stress,
+                   known[:, contact] * units.stress)  # fmt: skip
+
+    def course(self, system: System, tet_mesh: TetMesh) -> "Course | None":
+        """For another system on these elements; None on other ones, such as a slice in the place of a solid."""
+        numbers, units = _numbers(system, tet_mesh), system.units
+        known = self.displacement_m / units.length, self.pressure_Pa / units.stress, self.contact_Pa / units.stress
+        if any(values.shape[1:] != place.shape for place, values in zip(numbers, known, strict=True)):
+            return None
+        found = np.zeros((len(self.places), system.count + 1))
+        for place, values in zip(numbers, known, strict=True):
+            found[:, place] = values
+        return Course(self.places, found[:, :-1])
+
+
+def _numbers(system: System, tet_mesh: TetMesh) -> tuple[Ints, Ints, Ints]:
+    """Of the unknowns by element: (m, 10, 3), (m, 4) and (k, 6)."""
+    numbers = system.unknowns
+    return numbers.displacement[tet_mesh.tets], numbers.pressure, numbers.contact[tet_mesh.facets["contact"]]
+
+
+@dataclass(frozen=True)
+class Course:
+    """Of a similar press: unknowns (n, count) at places (n,), which ascend."""
+
+    places: Floats
+    unknowns: Floats
+
+    @classmethod
+    def of(cls, found: Found) -> "Course":
+        """That was found at ascending places."""
+        places, unknowns = zip(*found, strict=True)
+        return cls(np.array(places), np.array(unknowns))
+
+    def at(self, place: float) -> Floats:
+        """Between two places on the straight line."""
+        return np.asarray(self._line(place))
+
+    @cached_property
+    def _line(self) -> BSpline:
+        return make_interp_spline(self.places, self.unknowns, k=1)
+
+    def guess(self, found: Found, place: float) -> Floats:
+        """The unknowns (count,) there: those of this course, and the difference of the last two found, carried on."""
+        (last, x), *before = found[:-3:-1]
+        off = x - self.at(last)
+        for earlier, y in before:
+            off = off + (off - (y - self.at(earlier))) * (place - last) / (last - earlier)
+        return np.asarray(self.at(place) + off)
+
+
+def combined(*weighed: tuple[float, Course]) -> Course:
+    """The weighed sum, at the places of the first."""
+    places = weighed[0][1].places
+    return Course(places, np.array([sum(weight * course.at(place) for weight, course in weighed) for place in places]))
+
+
+def reach(
+    system: System, linear: LinearSolver, past: list[State], target: Target, kink: bool, guess: Floats | None
+) -> str | None:
+    """At once from a guess (count,) beside the equilibrium, else by marching; as solve.solution.march.march."""
+    if guess is not None:
+        try:
+            past.append(equilibrate(system, linear, guess, target.load, target.time, past[-1]))
+        except NoEquilibriumError:
+            pass
+        else:
+            del past[:-3]
+            return None
+    return march(system, linear, past, target, kink, lambda *_: None)

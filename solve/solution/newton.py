@@ -1,0 +1,132 @@
+"""Semismooth Newton iteration at fixed load."""
+
+import logging
+from dataclasses import replace
+
+import numpy as np
+
+from mesh.types import Bools, Floats
+from solve.solution.linear import LinearSolveError, LinearSolver
+from solve.system import Evaluation, Load, State, System
+from solve.terms.solid import InvertedElementError
+
+LOG = logging.getLogger(__name__)
+TOLERANCE = 1e-9
+ROUND_OFF = 1e-12  # of the largest displacement: a smaller correction changes nothing
+ROUNDED_TOLERANCE = 1e-6  # a stiff film on a soft foam: its own round-off may exceed TOLERANCE of a small load
+LEAST_LOAD = 1e-5  # solver units: what is less, the first touch of a moving mass, counts as this much
+MAX_ITERATIONS = 25
+MAX_HALVINGS = 6
+SAME = 1e-3  # relative: a residual that comes back with the same discrete states runs in a circle
+MAX_CIRCLES = 3
+LOOSEST = 1e-2  # relative residual of a linear solution, far from the end
+
+
+class NoEquilibriumError(RuntimeError):
+    """Newton did not converge; says why, and at which node the forces are least in balance."""
+
+    def __init__(self, reason: str, x: Floats, worst: int | None) -> None:
+        super().__init__(reason)
+        self.x, self.worst = x, worst
+
+
+class LostContactError(NoEquilibriumError):
+    """A force pushes the dot, and nothing pushes back."""
+
+
+def equilibrate(
+    system: System, linear: LinearSolver, x: Floats, load: Load, time: float, previous: State, damped: bool = False
+) -> State:
+    """Find the equilibrium near x (count,) at a time after a converged state; damped : see Trial.
+
+    NoEquilibriumError when there is none within the iterations.
+    """
+    x, lost, correction = x.copy(), False, np.inf
+    try:
+        now = _evaluate(system, x, load, time, previous, damped)
+        lost = system.force_driven and not now.touching
+        status: Bools | None = None
+        circles = Circles()
+        for iteration in range(MAX_ITERATIONS):
+            norm = float(np.linalg.norm(now.residual))
+            scale = max(now.load_norm, previous.force_scale)
+            relative = norm / max(scale, LEAST_LOAD)
+            LOG.debug("Newton iteration %d at time %.4g: relative residual %.2g", iteration, time, relative)
+            settled = status is None or np.array_equal(status, now.status)
+            exact = correction <= ROUND_OFF and relative <= ROUNDED_TOLERANCE
+            if (relative <= TOLERANCE or exact) and settled:
+                converged = State(time, load, x, previous.histories, scale, iteration, relative)
+                trial = system.trial(x, load, time, previous, damped)
+                return replace(converged, histories=system.advance(trial, previous.histories))
+            if not np.isfinite(norm):
+                break
+            similar = status is not None and linear.may_reuse(int(np.sum(status != now.status)))
+            # inexact Newton: the linear residual need fall neither faster than the nonlinear one nor below its goal
+            tolerance = min(max(0.01 * relative, 0.01 * TOLERANCE / max(relative, 1e-300)), LOOSEST)
+            step = circles.share(now.status, norm) * linear.solve(now.tangent, -now.residual, tolerance, similar)
+            if circles.count > MAX_CIRCLES:
+                break
+            status, before = now.status, x
+            x, now = _advance(system, x, step, load, time, previous, damped)
+            correction = _relative_change(system, before, x)
+            lost = lost or (system.force_driven and not now.touching)
+    except LinearSolveError as error:
+        if lost:
+            raise LostContactError("the dot that a force pushes loses contact", x, None) from error
+        raise NoEquilibriumError(f"the tangent is singular ({error})", x, _worst_node(system, now)) from error
+    except InvertedElementError as error:
+        raise NoEquilibriumError(str(error), x, None) from error
+    if lost:
+        raise LostContactError("the dot that a force pushes loses contact", x, None)
+    raise NoEquilibriumError(f"no convergence in {MAX_ITERATIONS} Newton iterations", x, _worst_node(system, now))
+
+
+class Circles:
+    """Finds iterations that run in a circle: the same nodes open and close again and again, and full steps repeat it.
+
+    A shorter step leaves the circle, each time half as long.
+    """
+
+    def __init__(self) -> None:
+        self.count = 0
+        self._visited: dict[bytes, list[float]] = {}
+
+    def share(self, status: Bools, norm: float) -> float:
+        """How much of the next step to take from an iterate with these discrete states and norm of the residual."""
+        norms = self._visited.setdefault(status.tobytes(), [])
+        if not any(abs(norm - other) <= SAME * norm for other in norms):
+            norms.append(norm)
+            return 1.0
+        self.count += 1
+        self._visited.clear()
+        return float(0.5**self.count)
+
+
+def _relative_change(system: System, before: Floats, x: Floats) -> float:
+    """Largest change of a displacement, against the largest displacement."""
+    largest = float(np.abs(system.displacement(x)).max())
+    return float(np.abs(system.displacement(x - before)).max()) / largest if largest > 0.0 else np.inf
+
+
+def _worst_node(system: System, now: Evaluation) -> int:
+    """The node with the largest unbalanced force."""
+    force = np.nan_to_num(np.abs(np.append(now.residual, 0.0)[system.unknowns.displacement]), nan=np.inf)
+    return int(np.argmax(force.max(axis=1)))
+
+
+def _evaluate(system: System, x: Floats, load: Load, time: float, previous: State, damped: bool) -> Evaluation:
+    return system.evaluate(system.trial(x, load, time, previous, damped), previous.histories)
+
+
+def _advance(
+    system: System, x: Floats, step: Floats, load: Load, time: float, previous: State, damped: bool
+) -> tuple[Floats, Evaluation]:
+    """The full Newton step, halved while it turns an element inside out."""
+    for _ in range(MAX_HALVINGS):
+        trial = x + step
+        try:
+            return trial, _evaluate(system, trial, load, time, previous, damped)
+        except InvertedElementError as error:
+            failure = error
+            step = 0.5 * step
+    raise failure

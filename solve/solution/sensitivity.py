@@ -1,0 +1,288 @@
+"""Derivatives of a whole press by any parameter, by direct differentiation along the march.
+
+The state of a step obeys R(x, history, p) = 0. Differentiated, with the converged tangent K,
+    K dx/dp = -(R(x, history + e dhistory, p + e) - R(x, history - e dhistory, p - e)) / 2e,
+and the new memory follows from the terms' own advance at x +- e dx. Each parameter so carries two twins, systems at
+p + e and p - e whose states stay within first order of their equilibria; one factorisation serves all of them.
+The difference quotient of the residual makes this the semi-analytical method (Tsay and Arora, Comput. Methods Appl.
+Mech. Eng. 81, 1990, for path dependence; van Keulen, Haftka and Kim, ibid. 194, 2005): no law states derivatives of
+its own.
+
+A press at its full load where the path there does not matter: its answer, derivatives of it, and similar presses.
+
+Without memory an equilibrium depends on the load alone. All derivatives then follow from the tangent at full load,
+one linear solution each (see solve.solution.sensitivity), and a press that differs a little is a few Newton steps away.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from itertools import pairwise
+from typing import NamedTuple
+
+from geometry.dot import resolve_dot
+from mesh.interfaces import morphed
+from mesh.types import Floats, TetMesh
+from solve.fem.sparsity import Tangent
+from solve.interfaces import OpenInterface, open_interfaces
+from solve.model import Model
+from solve.press import Setup, set_up
+from solve.readout.amplifier import amplify
+from solve.recorder import Recorder
+from solve.result import PressResult, Trace
+from solve.solution.linear import LinearSolver
+from solve.solution.march import march, rest_state
+from solve.solution.near import reach
+from solve.solution.newton import NoEquilibriumError
+from solve.solution.schedule import Target
+from solve.system import Load, State
+
+
+@dataclass(frozen=True)
+class Variation:
+    """A parameter by its models a little below and above, apart by span in the unit of the parameter."""
+
+    below: Model
+    above: Model
+    span: float
+
+
+@dataclass(frozen=True)
+class Slopes:
+    """Derivatives of a press by one parameter: of its trace, whose time_s holds the times themselves; of the
+    open-circuit voltage (t,) of all electrodes in parallel; and of the voltage behind the amplifier (t,), None
+    without one.
+    """
+
+    trace: Trace
+    open_circuit_voltage_V: Floats
+    readout_voltage_V: Floats | None
+
+
+class Twin:
+    """A system at p + e or p - e, and the state that follows the base to first order."""
+
+    def __init__(self, setup: Setup, drive_ratio: float) -> None:
+        self.setup, self.drive_ratio = setup, drive_ratio
+        self.state: State | None = None
+
+    def load(self, base: Load) -> Load:
+        """The load at this parameter."""
+        return replace(base, drive=base.drive * self.drive_ratio)
+
+    def start(self, base: State) -> None:
+        """At rest."""
+        self.state = replace(base, load=self.load(base.load), histories=self.setup.system.at_rest(base.load).histories)
+        self.setup.recorder.start(self.state)
+
+    def residual(self, x: Floats, base: State) -> Floats:
+        """Of the base's unknowns under this parameter and this memory (count,)."""
+        assert self.state is not None
+        trial = self.setup.system.trial(x, self.load(base.load), base.time, self.state, base.damped)
+        return self.setup.system.evaluate(trial, self.state.histories).residual
+
+    def history(self) -> Slopes:
+        """The histories themselves, not yet derivatives."""
+        model, recorder = self.setup.model, self.setup.recorder
+        trace, capacitance = recorder.trace(model.press), float(recorder.capacitance_F.sum())
+        charge = trace.film_charge_C.sum(axis=1)
+        amplified = None
+        if model.readout is not None:
+            amplified = amplify(trace.time_s, charge, capacitance, model.readout, model.physics)
+        return Slopes(trace, charge / capacitance, amplified)
+
+    def follow(self, x: Floats, base: State) -> None:
+        """Take the step to the unknowns x."""
+        assert self.state is not None
+        load = self.load(base.load)
+        trial = self.setup.system.trial(x, load, base.time, self.state, base.damped)
+        new = State(base.time, load, x, self.setup.system.advance(trial, self.state.histories))
+        self.setup.recorder.record(new, self.state)
+        self.state = new
+
+
+def press_with_sensitivities(
+    model: Model, variations: Mapping[str, Variation], tet_mesh: TetMesh
+) -> tuple[PressResult, dict[str, Slopes]]:
+    """Solve a press and its derivatives by every variation, along its waveform; tet_mesh : of the model's segment.
+
+    Of a press that stops short they end where it does. ValueError for a parameter that changes the mesh or the number
+    of unknowns; InputError as press_segment.
+    """
+    physics, plane_strain = model.physics, model.segment.section == "plane-strain"
+    opened_mesh, opened = open_interfaces(tet_mesh, physics.bonds, physics.delaminations, plane_strain)
+    base = set_up(model, resolve_dot(model.dot, model.segment), opened_mesh, opened)
+    twins: dict[str, tuple[Twin, Twin]] = {}
+    for name, variation in variations.items():
+        twins[name] = twins_of(name, variation, base, opened_mesh, opened)
+    linear = LinearSolver(base.system.factorisation_shift)
+    failure = _march(base, linear, twins)
+    linear.close()
+    result = base.recorder.result(failure, linear.name, model.press, follows_time=True)
+    return result, {name: _difference(*pair, variations[name].span) for name, pair in twins.items()}
+
+
+def twins_of(
+    name: str, variation: Variation, base: Setup, opened_mesh: TetMesh, opened: tuple[OpenInterface, ...]
+) -> tuple[Twin, Twin]:
+    """Below and above, on the base's mesh moved to their sizes; ValueError as press_with_sensitivities."""
+    pair = []
+    for changed in (variation.below, variation.above):
+        moved = morphed(opened_mesh, base.model.segment, changed.segment)
+        setup = set_up(changed, resolve_dot(changed.dot, changed.segment), moved, opened, base.system.units)
+        if setup.system.count != base.system.count:
+            raise ValueError(f"{name}: this parameter switches something on or off at its present value")
+        pair.append(Twin(setup, setup.full_drive / base.full_drive))
+    return pair[0], pair[1]
+
+
+def _march(base: Setup, linear: LinearSolver, twins: Mapping[str, tuple[Twin, Twin]]) -> str | None:
+    """Along the schedule, twins in tow; why it stopped short, or None. NoEquilibriumError at rest."""
+    targets = base.targets(follows_time=True)
+    rest = rest_state(base.system, linear, targets[0])
+    base.recorder.start(rest)
+    for pair in twins.values():
+        for twin in pair:
+            twin.start(rest)
+
+    def on_state(state: State, before: State) -> None:
+        base.recorder.record(state, before)
+        _tow(base, linear, twins, state, before)
+
+    past, kink, failure = [rest], targets[0].kink, None
+    for target in targets[1:]:
+        failure = march(base.system, linear, past, target, kink, on_state)
+        if past[-1].time > base.recorder.steps[-1].time_s:
+            base.recorder.report()
+        if failure is not None:
+            break
+        kink = target.kink
+    return failure
+
+
+def _tow(
+    base: Setup, linear: LinearSolver, twins: Mapping[str, tuple[Twin, Twin]], state: State, before: State
+) -> None:
+    """Bring all twins to first order to a converged state of the base."""
+    trial = base.system.trial(state.x, state.load, state.time, before, state.damped)
+    tangent = base.system.evaluate(trial, before.histories).tangent
+    for number, pair in enumerate(twins.values()):
+        tow(pair, linear, tangent, state, similar=number > 0)
+
+
+def tow(pair: tuple[Twin, Twin], linear: LinearSolver, tangent: Tangent, state: State, similar: bool) -> None:
+    """Bring two twins to first order to a converged state of the base; similar : its tangent is factorised already."""
+    below, above = pair
+    change = above.residual(state.x, state) - below.residual(state.x, state)
+    half = 0.5 * linear.solve_to_round_off(tangent, -change, similar=similar)
+    below.follow(state.x - half, state)
+    above.follow(state.x + half, state)
+
+
+def _difference(below: Twin, above: Twin, span: float) -> Slopes:
+    """Central differences of the two histories; the times are the same."""
+    low, high = below.history(), above.history()
+    trace = {f.name: (getattr(high.trace, f.name) - getattr(low.trace, f.name)) / span for f in fields(Trace)}
+    amplified = None
+    if low.readout_voltage_V is not None and high.readout_voltage_V is not None:
+        amplified = (high.readout_voltage_V - low.readout_voltage_V) / span
+    open_circuit = (high.open_circuit_voltage_V - low.open_circuit_voltage_V) / span
+    return Slopes(Trace(**{**trace, "time_s": low.trace.time_s}), open_circuit, amplified)
+
+
+class StoppedShortError(RuntimeError):
+    """A press did not reach its full load."""
+
+
+class FullResponse(NamedTuple):
+    """Force in N and open-circuit voltage in V of all electrodes in parallel, or their derivatives."""
+
+    force: float
+    voltage: float
+
+
+class FullLoad:
+    """A press under its full load, before any slide; answer : what it gives.
+
+    ValueError for a model whose path matters, InputError as press_segment, StoppedShortError.
+    """
+
+    def __init__(self, model: Model, tet_mesh: TetMesh) -> None:
+        if model.follows_time:
+            raise ValueError("the path of this press matters")
+        self._model = model
+        plane_strain = model.segment.section == "plane-strain"
+        self._mesh, self._opened = open_interfaces(
+            tet_mesh, model.physics.bonds, model.physics.delaminations, plane_strain
+        )
+        self._base = set_up(model, resolve_dot(model.dot, model.segment), self._mesh, self._opened)
+        self._linear = LinearSolver(self._base.system.factorisation_shift)
+        self._rest = _rest(self._base, self._linear)
+        past = [self._rest]
+        for before, target in pairwise(_targets(self._base)):
+            _refuse(march(self._base.system, self._linear, past, target, before.kink, self._base.recorder.record))
+        self._state = past[-1]
+        self.answer = _answer(self._base)
+
+    def derivatives(self, variations: Mapping[str, Variation]) -> dict[str, FullResponse]:
+        """Of the answer by each parameter. ValueError for one that changes the mesh or the number of unknowns."""
+        base, system, found = self._base, self._base.system, {}
+        trial = system.trial(self._state.x, self._state.load, self._state.time, self._rest)
+        tangent = system.evaluate(trial, self._rest.histories).tangent
+        for number, (name, variation) in enumerate(variations.items()):
+            pair = twins_of(name, variation, base, self._mesh, self._opened)
+            for twin in pair:
+                twin.start(self._rest)
+            tow(pair, self._linear, tangent, self._state, similar=number > 0)
+            below, above = (_answer(twin.setup) for twin in pair)
+            found[name] = FullResponse(*((high - low) / variation.span for low, high in zip(below, above, strict=True)))
+        return found
+
+    def beside(self, model: Model) -> FullResponse:
+        """What a similar model gives on the same mesh, moved to its sizes; from rest where that is too far.
+
+        ValueError, StoppedShortError.
+        """
+        if model.follows_time:
+            raise ValueError("the path of this press matters")
+        moved = morphed(self._mesh, self._model.segment, model.segment)
+        dot, units = resolve_dot(model.dot, model.segment), self._base.system.units
+        setup = set_up(model, dot, moved, self._opened, units)
+        linear = LinearSolver(setup.system.factorisation_shift)
+        past, last = [_rest(setup, linear)], _targets(setup)[-1]
+        guess = self._state.x if setup.system.count == self._base.system.count else None
+        rest = past[0]
+        _refuse(reach(setup.system, linear, past, last, True, guess))
+        linear.close()
+        setup.recorder.record(past[-1], rest)
+        return _answer(setup)
+
+    def close(self) -> None:
+        """Give the memory of the factorisation back."""
+        self._linear.close()
+
+
+def _targets(setup: Setup) -> list[Target]:
+    """From rest to the full load."""
+    return setup.targets(follows_time=False)[: setup.model.press.load_steps + 1]
+
+
+def _rest(setup: Setup, linear: LinearSolver) -> State:
+    try:
+        rest = rest_state(setup.system, linear, _targets(setup)[0])
+    except NoEquilibriumError as error:
+        raise StoppedShortError(f"the prestretched film at rest has no equilibrium: {error}") from error
+    setup.recorder.start(rest)
+    return rest
+
+
+def _refuse(failure: str | None) -> None:
+    if failure is not None:
+        raise StoppedShortError(failure)
+
+
+def _answer(setup: Setup) -> FullResponse:
+    """Of the last recorded state."""
+    recorder: Recorder = setup.recorder
+    trace = recorder.trace(setup.model.press)
+    charge = float(trace.film_charge_C[-1].sum())
+    return FullResponse(float(trace.reaction_force_N[-1]), charge / float(recorder.capacitance_F.sum()))

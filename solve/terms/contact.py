@@ -1,0 +1,214 @@
+"""Frictionless contact with the rigid dot: a contact pressure at every surface node, no penalty number.
+
+Lagrangian L = W - sum_i lambda_i g_i with the weighted gap g_i = int phi_i g(X + u) dA over the undeformed facet.
+phi_i is the hat function of node i on the facet cut into four, so that there is one positive pressure for each
+surface node: with the corner nodes alone a compressed surface can wrinkle below the size of the elements.
+The complementarity lambda_i >= 0, g_i >= 0 is solved by the primal-dual active set, a semismooth Newton method
+(Hueeber and Wohlmuth, Comput. Methods Appl. Mech. Eng. 194, 2005; Popp et al., Int. J. Numer. Meth. Eng. 83,
+2010). lambda is a nominal pressure, per undeformed area.
+
+Signed distance to the rigid dot, with its gradient and Hessian, exact for every primitive.
+
+The dot is the union of balls (or cylinders along y), their cylindrical feet and the half-space of the plate;
+outside it the distance to a union is the smallest distance to a member.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from geometry.dot import DotShape
+from mesh.types import Bools, Floats, Ints
+from solve.fem.quadrature import linear, quadratic, triangle
+from solve.fem.term import Block, History, Term, Trial, Unknowns
+
+
+@dataclass(frozen=True)
+class RigidDot:
+    """A dot in the solver's unit of length, at rest."""
+
+    shape: DotShape
+    unit_mm: float
+
+    def distance(self, points: Floats, move: Floats) -> tuple[Floats, Floats, Floats]:
+        """Gap (n,), gradient (n, 3) and Hessian (n, 3, 3) at points (n, 3), the dot displaced by move (3,)."""
+        rotation = self.shape.rotation
+        local = (points - self.shape.origin_mm / self.unit_mm - move) @ rotation
+        gap, normal, hessian = self._plate(local)
+        if self.shape.kind != "plate":
+            for centre in self.shape.centers_xy_mm / self.unit_mm:
+                other = self._bump(local, centre)
+                nearer = other[0] < gap
+                gap = np.where(nearer, other[0], gap)
+                normal = np.where(nearer[:, None], other[1], normal)
+                hessian = np.where(nearer[:, None, None], other[2], hessian)
+        return gap, normal @ rotation.T, rotation @ hessian @ rotation.T
+
+    def _plate(self, local: Floats) -> tuple[Floats, Floats, Floats]:
+        gap = self.shape.height_mm / self.unit_mm - local[:, 2]
+        return gap, np.tile([0.0, 0.0, -1.0], (len(local), 1)), np.zeros((len(local), 3, 3))
+
+    def _bump(self, local: Floats, centre: Floats) -> tuple[Floats, Floats, Floats]:
+        """One ball, or one cylinder along y, with its foot: the distance to its axis minus the radius."""
+        radius = self.shape.radius_mm / self.unit_mm
+        free = np.ones((len(local), 3))  # directions in which the distance to the axis varies
+        nearest = np.column_stack([np.tile(centre, (len(local), 1)), np.full(len(local), radius)])
+        if self.shape.kind == "ridge":
+            free[:, 1] = 0.0
+        if self.shape.foot_mm > 0.0:
+            free[local[:, 2] > radius, 2] = 0.0
+        arm = (local - nearest) * free
+        length = np.maximum(np.linalg.norm(arm, axis=1), 1e-12 * radius)
+        normal = arm / length[:, None]
+        projector = free[:, :, None] * np.eye(3) - normal[:, :, None] * normal[:, None, :]
+        return length - radius, normal, projector / length[:, None, None]
+
+
+ACTIVE_SET_STIFFNESS = 10.0  # only steers the active set; the converged answer does not contain it
+
+QUARTERS = ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5))  # a quadratic facet as four linear ones
+NODES = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]])
+
+
+def composite_rule() -> tuple[Floats, Floats, Floats]:
+    """Quadrature on the four quarters of a facet: points (q, 2), weights (q,), hat functions (q, 6)."""
+    points, weights = triangle()
+    hats = np.zeros((4, len(points), 6))
+    for quarter, nodes in enumerate(QUARTERS):
+        hats[quarter][:, nodes] = linear(points)
+    hat = hats.reshape(-1, 6)
+    return hat @ NODES, np.tile(weights / 4.0, 4), hat
+
+
+POINTS, WEIGHTS, HATS = composite_rule()
+SHAPES, SLOPES = quadratic(POINTS)
+
+
+@dataclass(frozen=True)
+class ContactFacets(Term):
+    """Contact facets with their quadrature, in the solver's unit of length.
+
+    facets : (k, 6) nodes; points : (n, 3) undeformed nodes; area : (k, q) weights;
+    dofs : (k, 25) unknowns: 6 x 3 displacements, 6 contact pressures, the dot's approach.
+    pressure_dofs : (c,) distinct contact-pressure unknowns, index : (k, 6) into them.
+    """
+
+    facets: Ints
+    points: Floats
+    area: Floats
+    dofs: Ints
+    pressure_dofs: Ints
+    index: Ints
+    dot: RigidDot
+
+    @property
+    def groups(self) -> tuple[Ints, ...]:
+        """Facets (k, 25) and, for the rows of open nodes, contact pressures (c, 1)."""
+        return self.dofs, self.pressure_dofs[:, None]
+
+    @property
+    def nodal_area(self) -> Floats:
+        """int phi_i dA, shape (c,)."""
+        return self._sum(np.einsum("kq,qi->ki", self.area, HATS))
+
+    def _sum(self, local: Floats) -> Floats:
+        total: Floats = np.bincount(self.index.ravel(), local.ravel(), len(self.pressure_dofs)).astype(np.float64)
+        return total
+
+    def _at_quadrature(self, displacement: Floats, move: Floats) -> tuple[Floats, Floats, Floats]:
+        position = (self.points + displacement)[self.facets]
+        x = np.einsum("qn,kni->kqi", SHAPES, position)
+        gap, normal, hessian = self.dot.distance(x.reshape(-1, 3), move)
+        shape = x.shape[:2]
+        return gap.reshape(shape), normal.reshape(*shape, 3), hessian.reshape(*shape, 3, 3)
+
+    def weighted_gap(self, displacement: Floats, move: Floats) -> Floats:
+        """g_i, shape (c,), at nodal displacements (n, 3) and the dot displaced by move (3,)."""
+        return self._weighted(self._at_quadrature(displacement, move)[0])
+
+    def _weighted(self, gap: Floats) -> Floats:
+        """g_i (c,) from the gap (k, q) at the quadrature points."""
+        return self._sum(np.einsum("kq,qi,kq->ki", self.area, HATS, gap))
+
+    def mean_gap(self, displacement: Floats, move: Floats) -> Floats:
+        """The same as a mean around each node (c,)."""
+        return self.weighted_gap(displacement, move) / self.nodal_area
+
+    def constraints(self) -> tuple[Ints, Floats]:
+        """The contact pressures."""
+        return self.pressure_dofs, self.nodal_area
+
+    def status(self, trial: Trial, history: History) -> Bools:
+        """Nodes in contact (c,)."""
+        return self.closed(trial)
+
+    def closed(self, trial: Trial) -> Bools:
+        """Nodes in contact: lambda_i - c g_i > 0, shape (c,) bool."""
+        return self._pressed(trial, self._at_quadrature(trial.displacement, trial.move)[0])
+
+    def _pressed(self, trial: Trial, gap: Floats) -> Bools:
+        """The same with the gap (k, q) at the quadrature points."""
+        mean_gap = self._weighted(gap) / self.nodal_area
+        return np.asarray(trial.x[self.pressure_dofs] - ACTIVE_SET_STIFFNESS * mean_gap > 0.0)
+
+    def elements(self, trial: Trial, history: History) -> Iterator[Block]:
+        """-sum lambda_i g_i over the active nodes; -lambda_i = 0 in the rows of the others."""
+        distance = self._at_quadrature(trial.displacement, trial.move)
+        active, pressure = self._pressed(trial, distance[0]), trial.x[self.pressure_dofs]
+        yield Block(0, slice(0, len(self.facets)), *self._facets(distance, pressure, active))
+        closed = np.where(active, 0.0, -1.0)
+        yield Block(1, slice(0, len(closed)), closed[:, None, None], (closed * pressure)[:, None])
+
+    def _facets(
+        self, distance: tuple[Floats, Floats, Floats], pressure: Floats, active: Bools
+    ) -> tuple[Floats, Floats]:
+        """Matrices (k, 25, 25) and residuals (k, 25); rows of inactive nodes carry no coupling."""
+        phi = HATS
+        gap, normal, hessian = distance
+        on = active[self.index].astype(float)
+        lam = np.einsum("qi,ki->kq", phi, np.where(active, pressure, 0.0)[self.index])
+        # generalised direction of each unknown: displacement of node n along i, then the approach along -z
+        count = len(self.facets)
+        direction = np.zeros((len(phi), 19, 3))
+        direction[:, :18] = np.einsum("qn,ij->qnij", SHAPES, np.eye(3)).reshape(len(phi), 18, 3)
+        direction[:, 18, 2] = 1.0  # the dot moves by -z: the gap changes as if the surface moved by +z
+        slope = np.einsum("kqi,qdi->kqd", normal, direction)
+        columns = np.r_[0:18, 24]
+        ke, re = np.zeros((count, 25, 25)), np.zeros((count, 25))
+        curvature = np.einsum("kq,kq,qdi,kqij,qej->kde", self.area, lam, direction, hessian, direction, optimize=True)
+        ke[:, columns[:, None], columns[None, :]] = -curvature
+        coupling = -np.einsum("kq,kqd,qi->kdi", self.area, slope, phi, optimize=True) * on[:, None, :]
+        ke[:, columns, 18:24] = coupling
+        ke[:, 18:24, 24] = coupling[:, 18, :]
+        re[:, columns] = -np.einsum("kq,kq,kqd->kd", self.area, lam, slope)
+        re[:, 18:24] = -np.einsum("kq,qi,kq->ki", self.area, phi, gap) * on
+        return ke, re
+
+    def force(self, displacement: Floats, move: Floats, pressure: Floats) -> Floats:
+        """Resultant of the dot on the meshed body, shape (3,), in the solver's units."""
+        lam = np.einsum("qi,ki->kq", HATS, pressure[self.index])
+        normal = self._at_quadrature(displacement, move)[1]
+        resultant: Floats = np.einsum("kq,kq,kqi->i", self.area, lam, normal)
+        return resultant
+
+
+def facet_area(points: Floats, facets: Ints) -> Floats:
+    """Area weights (k, q) of quadratic facets (k, 6) under the composite rule."""
+    tangents = np.einsum("qna,kni->kqai", SLOPES, points[facets])
+    area: Floats = np.linalg.norm(np.cross(tangents[:, :, 0], tangents[:, :, 1]), axis=-1) * WEIGHTS
+    return area
+
+
+def contact_facets(points: Floats, facets: Ints, unknowns: Unknowns, dot: RigidDot) -> ContactFacets:
+    """Collect the contact facets (k, 6) of a problem; points (n, 3)."""
+    pressure_dofs, index = np.unique(unknowns.contact[facets], return_inverse=True)
+    dofs = np.concatenate(
+        [
+            unknowns.displacement[facets].reshape(-1, 18),
+            unknowns.contact[facets],
+            np.full((len(facets), 1), unknowns.approach),
+        ],
+        axis=1,
+    )
+    return ContactFacets(facets, points, facet_area(points, facets), dofs, pressure_dofs, index.reshape(-1, 6), dot)

@@ -1,0 +1,194 @@
+"""The piezoelectric film: quadratic tetrahedra of its true thickness, charge collected by electrodes."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from mesh.types import Floats, Ints
+from solve.fem.kernels import film_solid
+from solve.fem.kinematics import deformation_gradient, green_lagrange
+from solve.fem.quadrature import physical_gradients, quadratic, tetrahedron
+from solve.fem.term import Block, History, Term, Trial
+from solve.materials.film import FilmLaw
+from solve.materials.inelastic import Inelastic, Prony, Response
+from solve.terms.solid import refuse_inversion
+
+
+@dataclass(frozen=True)
+class FilmRegion(Term):
+    """The film in the solver's units.
+
+    tets : (m, 10); dofs : (m, 31) displacements and the voltage (-1 when it does not act back);
+    electrode : (m,) index of the electrode over the element, -1 for bare film; electrodes : their number.
+    covered : (m, q) the same at each quadrature point, for the charge.
+    voltage_dofs : (e,); thickness : undeformed; prestrain : (6,) Green-Lagrange, engineering shears.
+    inelastic : laws with memory that act on the stress.
+    """
+
+    law: FilmLaw
+    tets: Ints
+    dofs: Ints
+    gradient: Floats
+    weight: Floats
+    electrode: Ints
+    covered: Ints
+    voltage_dofs: Ints
+    thickness: float
+    prestrain: Floats
+    inelastic: tuple[Inelastic, ...] = ()
+
+    @property
+    def groups(self) -> tuple[Ints, ...]:
+        """Unknowns of the elements."""
+        return (self.dofs,)
+
+    @property
+    def electrodes(self) -> int:
+        """Their number."""
+        return len(self.voltage_dofs)
+
+    def start(self) -> History:
+        """Memory of every inelastic law at rest."""
+        return tuple(law.start(self.weight.size) for law in self.inelastic)
+
+    def elements(self, trial: Trial, history: History) -> Iterator[Block]:
+        """Element matrices (m, 31, 31), upper triangle, and residuals (m, 31)."""
+        f = deformation_gradient(self.gradient, trial.displacement[self.tets])
+        refuse_inversion(f, "film", self.tets)
+        response = self._respond(trial, history)[0]
+        points = self.weight.shape
+        charge = response.stress @ self.law.coupling + self.law.permittivity * self._field(trial).ravel()
+        ke, re = np.empty((len(f), 31, 31)), np.empty((len(f), 31))
+        film_solid(
+            self.gradient,
+            self.weight,
+            f,
+            response.stress.reshape(*points, 6),
+            np.ascontiguousarray(response.tangent).reshape(*points, 6, 6),
+            charge.reshape(points),
+            self.law.coupling,
+            self.law.permittivity,
+            -1.0 / self.thickness,
+            ke,
+            re,
+        )
+        yield Block(0, slice(0, len(ke)), ke, re)
+
+    def advance(self, trial: Trial, history: History) -> History:
+        """Memory at the converged state."""
+        return self._respond(trial, history)[1]
+
+    def time_error(self, history: History, new: History, time_step: float, after_kink: bool) -> float:
+        """Error of the time integration in this step, relative to the largest stress."""
+        errors = [
+            law.time_error(old, now, time_step, after_kink)
+            for law, old, now in zip(self.inelastic, history, new, strict=True)
+            if isinstance(law, Prony)
+        ]
+        return max(errors, default=0.0)
+
+    def _field(self, trial: Trial) -> Floats:
+        """Electric field e3 (m, q) of the electrode over each element."""
+        voltage = np.append(trial.x, 0.0)[np.append(self.voltage_dofs, -1)[self.electrode]]
+        return np.broadcast_to(-voltage[:, None] / self.thickness, self.weight.shape)
+
+    def _strain(self, displacement: Floats) -> Floats:
+        return green_lagrange(self.gradient, displacement[self.tets]) + self.prestrain
+
+    def _respond(self, trial: Trial, history: History) -> tuple[Response, History]:
+        """Response at the quadrature points (m q) in order, and the new memory."""
+        elastic = self._strain(trial.displacement).reshape(-1, 6)
+        elastic = elastic - self._field(trial).reshape(-1, 1) * self.law.coupling
+        tangent = np.broadcast_to(self.law.stiffness, (len(elastic), 6, 6))
+        response, new = Response(elastic @ self.law.stiffness, tangent), []
+        for law, old in zip(self.inelastic, history, strict=True):
+            response, now = law.update(response, old, trial.time_step)
+            new.append(now)
+        return response, tuple(new)
+
+    def strain_and_stress(self, trial: Trial, history: History) -> tuple[Floats, Floats]:
+        """Green-Lagrange strain, prestrain included, and second Piola-Kirchhoff stress, (m, q, 6) each.
+
+        history : the memory before the trial's step.
+        """
+        strain = self._strain(trial.displacement)
+        return strain, self._respond(trial, history)[0].stress.reshape(strain.shape)
+
+    def prestress_resultant(self) -> float:
+        """Largest membrane force of the prestretch, per width."""
+        return float(np.abs(self.law.stiffness @ self.prestrain).max()) * self.thickness
+
+    def _collect(self, density: Floats) -> Floats:
+        """Integral over the undeformed area of each electrode, shape (e,)."""
+        part = np.broadcast_to(density * self.weight / self.thickness, self.weight.shape).ravel()
+        under, index = self.covered.ravel() >= 0, self.covered.ravel()
+        total: Floats = np.bincount(index[under], part[under], self.electrodes).astype(np.float64)
+        return total
+
+    def charge(self, trial: Trial, history: History) -> Floats:
+        """Short-circuit charge of each electrode: integral of d . S over its undeformed area, shape (e,)."""
+        return self._collect(self.strain_and_stress(trial, history)[1] @ self.law.coupling)
+
+    def area(self) -> Floats:
+        """Undeformed area of each electrode, shape (e,)."""
+        return self._collect(np.ones(1))
+
+    def capacitance(self) -> Floats:
+        """eps A / t of the undeformed film under each electrode, shape (e,)."""
+        return self.area() * self.law.permittivity / self.thickness
+
+
+def film_region(
+    law: FilmLaw,
+    points: Floats,
+    tets: Ints,
+    displacement_dofs: Ints,
+    voltage_dofs: Ints,
+    rectangles: Floats,
+    thickness: float,
+    prestretch: tuple[float, float] = (0.0, 0.0),
+    inelastic: tuple[Inelastic, ...] = (),
+) -> FilmRegion:
+    """Prepare the film: points (n, 3), tets (m, 10), electrodes as rectangles (e, 4) x0, x1, y0, y1.
+
+    prestretch : nominal strains in x and y that the film has been given before it was bonded.
+    """
+    reference, weight = tetrahedron()
+    shape, slope = quadratic(reference)
+    gradient, volume = physical_gradients(points[tets], slope, weight)
+    covered = electrode_over(np.einsum("qn,mni->mqi", shape, points[tets]), rectangles)
+    electrode = electrode_over(points[tets[:, :4]].mean(axis=1), rectangles)
+    dofs = np.concatenate(
+        [displacement_dofs[tets].reshape(-1, 30), np.append(voltage_dofs, -1)[electrode][:, None]], axis=1
+    )
+    return FilmRegion(
+        law,
+        tets,
+        dofs,
+        gradient,
+        volume,
+        electrode,
+        covered,
+        voltage_dofs,
+        thickness,
+        prestrain(law, prestretch),
+        inelastic,
+    )
+
+
+def prestrain(law: FilmLaw, prestretch: tuple[float, float]) -> Floats:
+    """Green-Lagrange strain (6,) of a film stretched in its plane and free to thin: S33 = 0."""
+    strain = np.zeros(6)
+    strain[:2] = [e + 0.5 * e * e for e in prestretch]
+    strain[2] = -float(law.stiffness[2] @ strain) / law.stiffness[2, 2]
+    return strain
+
+
+def electrode_over(points: Floats, rectangles: Floats) -> Ints:
+    """Index of the electrode that covers each point (..., 3), -1 for bare film."""
+    index = np.full(points.shape[:-1], -1)
+    for number, (x0, x1, y0, y1) in enumerate(rectangles):
+        x, y = points[..., 0], points[..., 1]
+        index[(x >= x0) & (x <= x1) & (y >= y0) & (y <= y1)] = number
+    return index

@@ -1,0 +1,172 @@
+"""The jump across an interface of matched quadratic facets, and its opening along the deformed normal.
+
+With the mid-surface x_m = X + (u_lower + u_upper) / 2, its tangents t1, t2 and a = t1 x t2,
+    d = u_upper - u_lower,    n = a / |a|,    opening = d . n
+The opening is a function of z = (d, t1, t2). With p = (d - (d . n) n) / |a|:
+    d opening = n . dd + p . da,    da = dt1 x t2 + t1 x dt2
+    d2 opening / dd da = (1 - n n) / |a|
+    d2 opening / da2 = -(d . n) (1 - n n) / |a|^2 - (p n + n p) / |a|
+(Ortiz and Pandolfi, Int. J. Numer. Meth. Eng. 44, 1999, for the mid-surface; the derivatives follow from the chain
+rule.) A rigid motion of both faces turns d with n: the opening and |d| do not change.
+
+Compiled loops over the quadrature points of an interface; the formulae are those of solve.terms.jump.
+"""
+
+from dataclasses import dataclass
+
+import numba as nb
+import numpy as np
+
+from mesh.types import Floats, Ints
+from solve.fem.quadrature import quadratic
+
+
+@nb.njit(parallel=True, cache=True)
+def differentiate_opening(z, value, slope, curvature):  # type: ignore[no-untyped-def]
+    """Opening (p,), its slope (p, 9) and curvature (p, 9, 9) by z = (d, t1, t2) (p, 9); all are overwritten."""
+    for point in nb.prange(len(z)):
+        a, n, p = np.empty(3), np.empty(3), np.empty(3)
+        by_tangents, product = np.empty((3, 6)), np.empty((3, 6))
+        across, by_area = np.empty((3, 3)), np.empty((3, 3))
+        d, t1, t2 = z[point, :3], z[point, 3:6], z[point, 6:]
+        delta = 0.0
+        for i in range(3):
+            j, k = (i + 1) % 3, (i + 2) % 3
+            a[i] = t1[j] * t2[k] - t1[k] * t2[j]
+            for b in range(6):
+                by_tangents[i, b] = 0.0
+            by_tangents[i, j], by_tangents[i, k] = t2[k], -t2[j]  # -t2 x
+            by_tangents[i, 3 + j], by_tangents[i, 3 + k] = -t1[k], t1[j]  # t1 x
+        size = np.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
+        for i in range(3):
+            n[i] = a[i] / size
+            delta += d[i] * n[i]
+        value[point] = delta
+        for i in range(3):
+            p[i] = (d[i] - delta * n[i]) / size
+        for i in range(3):
+            for j in range(3):
+                across[i, j] = ((1.0 if i == j else 0.0) - n[i] * n[j]) / size
+                by_area[i, j] = -(delta * across[i, j] + p[i] * n[j] + n[i] * p[j]) / size
+        c, s = curvature[point], slope[point]
+        for i in range(3):
+            s[i] = n[i]
+            for j in range(3):
+                c[i, j] = 0.0
+            for b in range(6):
+                c[i, 3 + b] = product[i, b] = 0.0
+                for k in range(3):
+                    c[i, 3 + b] += across[i, k] * by_tangents[k, b]
+                    product[i, b] += by_area[i, k] * by_tangents[k, b]
+                c[3 + b, i] = c[i, 3 + b]
+        for b in range(6):
+            s[3 + b] = 0.0
+            for k in range(3):
+                s[3 + b] += p[k] * by_tangents[k, b]
+            for e in range(6):
+                c[3 + b, 3 + e] = 0.0
+                for k in range(3):
+                    c[3 + b, 3 + e] += by_tangents[k, b] * product[k, e]
+        for i in range(3):  # p . (dt1 x dt2)
+            j, k = (i + 1) % 3, (i + 2) % 3
+            c[3 + j, 6 + k] += p[i]
+            c[3 + k, 6 + j] -= p[i]
+            c[6 + k, 3 + j] += p[i]
+            c[6 + j, 3 + k] -= p[i]
+
+
+@nb.njit(parallel=True, cache=True)
+def integrate_tangent(rows, hessian, area, ke):  # type: ignore[no-untyped-def]
+    """ke (k, 3n, 3n), upper triangle: sum over q of area (k, q) times rows (q, 3, n) on both sides of (k, q, 9, 9)."""
+    count = rows.shape[2]
+    for e in nb.prange(len(hessian)):
+        half = np.empty((9, 3 * count))
+        ke[e] = 0.0
+        for q in range(rows.shape[0]):
+            for i in range(9):
+                for b in range(count):
+                    for j in range(3):
+                        x = 0.0
+                        for r in range(3):
+                            x += hessian[e, q, i, 3 * r + j] * rows[q, r, b]
+                        half[i, 3 * b + j] = area[e, q] * x
+            for b in range(count):
+                for i in range(3):
+                    for r in range(3):
+                        factor = rows[q, r, b]
+                        for j in range(3 * b, 3 * count):
+                            ke[e, 3 * b + i, j] += factor * half[3 * r + i, j]
+
+
+Rule = tuple[Floats, Floats]  # points (q, 2) and weights (q,) on the reference triangle
+
+
+@dataclass(frozen=True)
+class Jump:
+    """At quadrature points: d (k, q, 3), opening (k, q), its derivatives by z (k, q, 9) and (k, q, 9, 9)."""
+
+    d: Floats
+    opening: Floats
+    slope: Floats
+    curvature: Floats
+
+
+@dataclass(frozen=True)
+class MatchedFacets:
+    """Two faces of an interface. nodes : (k, n), the 6 lower then the 6 upper, or the 6 above a rigid ground.
+
+    rows : (q, 3, n) so that (d, t1, t2) = rows u, alike for x, y and z; tangents : (k, q, 6) undeformed t1 and t2;
+    area : (k, q) undeformed weights; dofs : (k, 3n) unknowns.
+    """
+
+    nodes: Ints
+    rows: Floats
+    tangents: Floats
+    area: Floats
+    dofs: Ints
+
+    def jump(self, displacement: Floats) -> Jump:
+        """The jump at nodal displacements (n, 3)."""
+        z = np.matmul(self._stacked, displacement[self.nodes]).reshape(*self.area.shape, 9)
+        z[..., 3:] += self.tangents
+        value, slope, curvature = np.empty(self.area.size), np.empty((z.size // 9, 9)), np.empty((z.size // 9, 9, 9))
+        differentiate_opening(z.reshape(-1, 9), value, slope, curvature)
+        shape = self.area.shape
+        return Jump(z[..., :3], value.reshape(shape), slope.reshape(*shape, 9), curvature.reshape(*shape, 9, 9))
+
+    @property
+    def _stacked(self) -> Floats:
+        return self.rows.reshape(-1, self.rows.shape[2])
+
+    def residual(self, gradient: Floats) -> Floats:
+        """int gradient . dz/du, shape (k, 3n), of the derivative by z (k, q, 9) of an energy per undeformed area."""
+        return self.coupling(gradient[..., None])[..., 0]
+
+    def coupling(self, columns: Floats) -> Floats:
+        """int (dz/du)^t columns, shape (k, 3n, c), of columns (k, q, 9, c)."""
+        count, width = len(self.nodes), columns.shape[-1]
+        weighted = (columns * self.area[..., None, None]).reshape(count, -1, 3 * width)
+        return np.asarray(np.matmul(self._stacked.T, weighted).reshape(count, -1, width))
+
+    def tangent(self, hessian: Floats) -> Floats:
+        """int (dz/du)^t hessian dz/du, upper triangle (k, 3n, 3n), of the second derivative by z (k, q, 9, 9)."""
+        ke = np.empty((*self.dofs.shape, self.dofs.shape[1]))
+        integrate_tangent(self.rows, hessian, self.area, ke)
+        return ke
+
+
+def matched_facets(points: Floats, lower: Ints, upper: Ints, displacement_dofs: Ints, rule: Rule) -> MatchedFacets:
+    """Prepare an interface: points (n, 3), facets lower and upper (k, 6) with normal up, dofs (n, 3).
+
+    Lower nodes of -1 are the rigid ground: the mid-surface then stays where it is.
+    """
+    shape, slope = quadratic(rule[0])
+    tangents = np.einsum("qna,kni->kqai", slope, points[upper])
+    area = np.linalg.norm(np.cross(tangents[:, :, 0], tangents[:, :, 1]), axis=-1) * rule[1]
+    ground = bool((lower < 0).all())
+    nodes = upper if ground else np.concatenate([lower, upper], axis=1)
+    signed = shape if ground else np.concatenate([-shape, shape], axis=1)
+    middle = np.zeros_like(slope) if ground else np.tile(0.5 * slope, (1, 2, 1))
+    rows = np.ascontiguousarray(np.concatenate([signed[:, None], middle.transpose(0, 2, 1)], axis=1))
+    dofs = np.ascontiguousarray(displacement_dofs[nodes].reshape(len(nodes), -1))
+    return MatchedFacets(nodes, rows, tangents.reshape(*area.shape, 6), area, dofs)

@@ -1,0 +1,142 @@
+"""What stands between the rig's sensor and the dot: a spring, a moving mass, or a prescribed force.
+
+The dot's approach a is unknown (Newton's law for the mass m that moves with it):
+    m a'' + F_contact(a) = (u - a) / c    driven by a sensor displacement u through the compliance c, or
+    m a'' + F_contact(a) = F              driven by a force F.
+Time integration by the alpha method of Wood, Bossak and Zienkiewicz (Int. J. Numer. Methods Eng. 15, 1981), second
+order: the mass feels (1 - alpha) a''_new + alpha a''_old, Newmark's beta = (1 - alpha)^2 / 4, gamma = 1/2 - alpha. Of
+an oscillation too fast for the step a share FADE is left after each; one that is resolved keeps its energy to third
+order. Without this a small mass between coarse steps would ring at a made-up frequency for ever. The contact adds
+F_contact.
+
+Where the dot strikes within a step that is too coarse for the blow, the velocities of that method are made up, and the
+dot may rebound with more energy than it came with. Such a step is damped: by Euler's implicit method, which never gains
+energy against a contact whose force grows with the depth.
+
+The input of the amplifier, solved together with the film: resistance and capacitance parallel to it.
+
+With the film's short-circuit charge Q_s, its capacitance C_f, input C_in and R, and C = C_f + C_in,
+    C V' = Q_s' - V / R.
+For a charge that is linear over the step the exact update is (as in amplifier.leaky_integral)
+    Q_s - Q_s,old - C (V - exp(-a) V_old) / phi = 0,      a = dt / (R C),    phi = (1 - exp(-a)) / a.
+The film's elements contribute Q_s - C_f V to the row of their voltage; this term adds the rest, so that the tangent
+stays symmetric. R = inf with C_in = 0 is open circuit: the total charge stays zero.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from mesh.types import Floats, Ints
+from solve.fem.term import Block, History, Term, Trial
+
+FADE = 0.5  # spectral radius at infinite frequency
+ALPHA = (FADE - 1.0) / (FADE + 1.0)
+BETA, GAMMA = 0.25 * (1.0 - ALPHA) ** 2, 0.5 - ALPHA
+
+
+@dataclass(frozen=True)
+class Rig(Term):
+    """approach_dof : unknown number; mass, compliance : solver units, None where a force drives."""
+
+    approach_dof: int
+    mass: float
+    compliance: float | None
+
+    @property
+    def groups(self) -> tuple[Ints, ...]:
+        """The dot's approach."""
+        return (np.array([[self.approach_dof]]),)
+
+    def start(self) -> History:
+        """Velocity, acceleration of the dot and the approach itself, (3,)."""
+        return np.zeros(3)
+
+    def _motion(self, trial: Trial, history: History) -> Floats:
+        """Velocity, acceleration and approach at the end of the step."""
+        velocity, acceleration, before = history
+        now, dt = float(trial.x[self.approach_dof]), trial.time_step
+        if np.isinf(dt):  # long at rest
+            return np.array([0.0, 0.0, now])
+        if trial.damped:
+            mean = (now - before) / dt
+            return np.array([mean, (mean - velocity) / dt, now])
+        new = (now - before - dt * velocity) / (BETA * dt**2) - (0.5 / BETA - 1.0) * acceleration
+        return np.array([velocity + dt * ((1.0 - GAMMA) * acceleration + GAMMA * new), new, now])
+
+    def elements(self, trial: Trial, history: History) -> Iterator[Block]:
+        """Residual and tangent of the balance of forces without the contact's."""
+        residual, tangent = -self.drive_force(trial), 0.0
+        if self.compliance is not None:
+            tangent += 1.0 / self.compliance
+        elif np.isinf(trial.time_step) or (trial.drive == 0.0 and self.mass == 0.0):  # nothing pushes: it is at rest
+            residual, tangent = float(trial.x[self.approach_dof]), 1.0
+        if self.mass > 0.0:
+            new, alpha, beta = float(self._motion(trial, history)[1]), *((0.0, 1.0) if trial.damped else (ALPHA, BETA))
+            residual += self.mass * ((1.0 - alpha) * new + alpha * float(history[1]))
+            tangent += self.mass * (1.0 - alpha) / (beta * trial.time_step**2)
+        yield Block(0, slice(0, 1), np.array([[[tangent]]]), np.array([[residual]]))
+
+    def drive_force(self, trial: Trial) -> float:
+        """What the rig's force sensor reads, in solver units."""
+        if self.compliance is None:
+            return trial.drive
+        return (trial.drive - float(trial.x[self.approach_dof])) / self.compliance
+
+    def advance(self, trial: Trial, history: History) -> History:
+        """Motion at the converged state."""
+        return self._motion(trial, history) if self.mass > 0.0 else history
+
+    def time_error(self, history: History, new: History, time_step: float, after_kink: bool) -> float:
+        """Local error (beta - 1/6) dt^2 (a_new - a_old) of the approach (Zienkiewicz and Xie, 1991), relative to it.
+
+        The acceleration does not jump where the rate of loading does.
+        """
+        if self.mass == 0.0:
+            return 0.0
+        largest = max(abs(float(new[2])), abs(float(history[2])), 1e-12)
+        return (BETA - 1.0 / 6.0) * time_step**2 * abs(float(new[1] - history[1])) / largest
+
+
+SHORT = 1e9  # as good as a short circuit
+
+
+@dataclass(frozen=True)
+class Circuit(Term):
+    """All electrodes in parallel on one input, in solver units; resistance is one of charge, so in seconds times V."""
+
+    voltage_dof: int
+    film_capacitance: float
+    input_capacitance: float
+    resistance: float
+
+    @property
+    def groups(self) -> tuple[Ints, ...]:
+        """The voltage."""
+        return (np.array([[self.voltage_dof]]),)
+
+    def start(self) -> History:
+        """Short-circuit charge and voltage at rest."""
+        return 0.0, 0.0
+
+    def _balance(self, trial: Trial, history: History) -> tuple[float, float]:
+        """The charge Q_s that the circuit asks for at the trial voltage, and its derivative."""
+        charge, voltage = history
+        capacitance = self.film_capacitance + self.input_capacitance
+        if np.isinf(trial.time_step):  # long at rest: discharged
+            return SHORT * capacitance * float(trial.x[self.voltage_dof]), SHORT * capacitance
+        a = trial.time_step / (self.resistance * capacitance)
+        phi = -np.expm1(-a) / a if a > 0.0 else 1.0
+        now = float(trial.x[self.voltage_dof])
+        return charge + capacitance * (now - np.exp(-a) * voltage) / phi, capacitance / phi
+
+    def elements(self, trial: Trial, history: History) -> Iterator[Block]:
+        """What is missing in the film's own row."""
+        charge, slope = self._balance(trial, history)
+        residual = self.film_capacitance * float(trial.x[self.voltage_dof]) - charge
+        yield Block(0, slice(0, 1), np.array([[[self.film_capacitance - slope]]]), np.array([[residual]]))
+
+    def advance(self, trial: Trial, history: History) -> History:
+        """Charge and voltage at the converged state."""
+        return self._balance(trial, history)[0], float(trial.x[self.voltage_dof])

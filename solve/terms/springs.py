@@ -1,0 +1,131 @@
+"""A compliant adhesive of no thickness between two matched faces, elastic or viscous.
+
+Energy per undeformed area, with the jump d and its opening d . n along the deformed normal (solve.terms.jump):
+    psi = ks |d|^2 / 2 + (kn - ks) (d . n)^2 / 2
+the elastic interface to which a thin soft layer tends (Klarbring, Int. J. Eng. Sci. 29, 1991; Geymonat, Krasucki
+and Lenci, Math. Mech. Solids 4, 1999). It is blind to a rigid motion of both faces.
+
+A viscous bond puts the Prony series of solve.materials.inelastic on d and on d . n. The memory of d keeps fixed axes:
+it is objective as long as the bond turns little within its relaxation times, as it does in a clamped stack.
+
+Elastic sides: the case as springs, normal and tangential, per undeformed area of the held faces.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from mesh.types import Floats, Ints
+from solve.fem.quadrature import triangle
+from solve.fem.term import Block, History, Term, Trial
+from solve.materials.inelastic import Prony, Response
+from solve.terms.contact import SHAPES, facet_area
+from solve.terms.jump import Jump, MatchedFacets, matched_facets
+
+
+@dataclass(frozen=True)
+class Bond(Term):
+    """normal, shear : traction per jump in the solver's units; prony : None for an elastic bond."""
+
+    facets: MatchedFacets
+    normal: float
+    shear: float
+    prony: Prony | None = None
+
+    @property
+    def groups(self) -> tuple[Ints, ...]:
+        """Unknowns of the facets, (k, 36), or (k, 18) on the ground."""
+        return (self.facets.dofs,)
+
+    def start(self) -> History:
+        """Jumps (n, 4), their rates and the branches (n, i, 4) at the n quadrature points."""
+        if self.prony is None:
+            return None
+        points, branches = self.facets.area.size, len(self.prony.relative_moduli)
+        return np.zeros((points, 4)), np.full((points, 4), np.nan), np.zeros((points, branches, 4))
+
+    def elements(self, trial: Trial, history: History) -> Iterator[Block]:
+        """Matrices (k, w, w) and residuals (k, w) of the facets."""
+        jump = self.facets.jump(trial.displacement)
+        relaxed, instant, _ = self._relax(jump, history, trial.time_step)
+        normal = self.normal - self.shear
+        force = normal * relaxed[..., 3]
+        gradient = force[..., None] * jump.slope
+        gradient[..., :3] += self.shear * relaxed[..., :3]
+        hessian = normal * instant * jump.slope[..., :, None] * jump.slope[..., None, :]
+        hessian += force[..., None, None] * jump.curvature
+        hessian[..., :3, :3] += self.shear * instant * np.eye(3)
+        matrices, residuals = self.facets.tangent(hessian), self.facets.residual(gradient)
+        yield Block(0, slice(0, len(residuals)), matrices, residuals)
+
+    def advance(self, trial: Trial, history: History) -> History:
+        """Memory at the converged jump."""
+        return self._relax(self.facets.jump(trial.displacement), history, trial.time_step)[2]
+
+    def time_error(self, history: History, new: History, time_step: float, after_kink: bool) -> float:
+        """Error of the time integration in this step, relative to the largest jump."""
+        return 0.0 if self.prony is None else self.prony.time_error(history, new, time_step, after_kink)
+
+    def _relax(self, jump: Jump, history: History, time_step: float) -> tuple[Floats, float, History]:
+        """Relaxed (d, d . n) (k, q, 4), its derivative by the jump, and the new memory."""
+        jumps = np.concatenate([jump.d, jump.opening[..., None]], axis=-1)
+        if self.prony is None:
+            return jumps, 1.0, history
+        response, memory = self.prony.update(Response(jumps.reshape(-1, 4), np.ones(1)), history, time_step)
+        return response.stress.reshape(jumps.shape), float(response.tangent[0]), memory
+
+
+def bond(
+    points: Floats,
+    lower: Ints,
+    upper: Ints,
+    displacement_dofs: Ints,
+    normal: float,
+    shear: float,
+    prony: Prony | None = None,
+) -> Bond:
+    """Bond the facets lower and upper (k, 6) of mesh.interfaces.split_interface; lower -1 is the rigid ground.
+
+    points (n, 3) and the stiffnesses per area, normal and shear, in the solver's units. The rule of degree 4 is
+    exact for the elastic bond of straight facets.
+    """
+    facets = matched_facets(points, lower, upper, displacement_dofs, triangle())
+    return Bond(facets, normal, shear, prony)
+
+
+def layer_stiffness(thickness_um: float, youngs_modulus_MPa: float, poisson_ratio: float) -> tuple[float, float]:
+    """Normal and shear stiffness in N/mm3 of an adhesive layer: M / t and G / t.
+
+    The faces keep a layer that is thin against its width from contracting sideways, so that the confined modulus
+    M = E (1 - nu) / ((1 + nu) (1 - 2 nu)) counts and not E (the limit of Geymonat, Krasucki and Lenci, 1999).
+    """
+    shear = youngs_modulus_MPa / (2.0 * (1.0 + poisson_ratio))
+    confined = 2.0 * shear * (1.0 - poisson_ratio) / (1.0 - 2.0 * poisson_ratio)
+    return confined / (1e-3 * thickness_um), shear / (1e-3 * thickness_um)
+
+
+@dataclass(frozen=True)
+class SideSprings(Term):
+    """Traction -k u on facets. dofs : (k, 18); matrices : (k, 18, 18) constant."""
+
+    facets: Ints
+    dofs: Ints
+    matrices: Floats
+
+    @property
+    def groups(self) -> tuple[Ints, ...]:
+        """Unknowns of the facets."""
+        return (self.dofs,)
+
+    def elements(self, trial: Trial, history: History) -> Iterator[Block]:
+        """The constant matrices and their residuals (k, 18)."""
+        local = trial.displacement[self.facets].reshape(-1, 18)
+        yield Block(0, slice(0, len(local)), self.matrices, np.einsum("kij,kj->ki", self.matrices, local))
+
+
+def side_springs(points: Floats, facets: Ints, displacement_dofs: Ints, stiffness: float) -> SideSprings:
+    """Springs of a stiffness (traction per displacement, the solver's units) on facets (k, 6)."""
+    mass = stiffness * np.einsum("kq,qn,qm->knm", facet_area(points, facets), SHAPES, SHAPES)
+    matrices = np.einsum("knm,ij->knimj", mass, np.eye(3)).reshape(-1, 18, 18)
+    return SideSprings(facets, displacement_dofs[facets].reshape(-1, 18), matrices)
