@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from diagnose.forward import Setting, Signals
-from mesh.types import Floats
+from geometry.arrays import Floats
 
 
 @dataclass(frozen=True)

@@ -1,17 +1,21 @@
-"""What a diagnosis asks of a forward model, whatever solves it: the segment in 3D, a coupon, a proportional sensor."""
+"""What a diagnosis asks of a forward model, whatever solves it: the segment in 3D, a coupon, a proportional sensor;
+and engines that pass on what another one answers, for some of the runs.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
-from diagnose.recording import Run
-from mesh.types import Floats
+import numpy as np
+
+from diagnose.figures import figure
+from diagnose.signals.recording import Recording, Run
+from geometry.arrays import Floats
+from geometry.base import Report
 from solve.mechanisms import Mechanism
 
 Signals = Mapping[str, Floats]
 """Channel -> samples (t,) of one run, named as in the recording."""
-Report = Callable[[str, int, int], None]
-"""Told of long work: what, done, of how many."""
 
 
 @dataclass(frozen=True)
@@ -121,3 +125,93 @@ class Engine(Protocol):
 
     def solve(self, run: int, mechanisms: Sequence[Mechanism], report: Report) -> Signals:
         """The same by the full model with these mechanisms switched on, in minutes. NoEquilibriumError."""
+
+
+class PassingOn:
+    """Implements diagnose.forward.Engine by another engine."""
+
+    def __init__(self, engine: Engine) -> None:
+        self._engine = engine
+        self.name, self.accuracy = engine.name, engine.accuracy
+        self.candidates, self.free_nuisances = engine.candidates, engine.free_nuisances
+
+    @property
+    def shortfalls(self) -> tuple[str, ...]:
+        """Of the engine."""
+        return self._engine.shortfalls
+
+    def nuisance(self, name: str) -> Candidate | None:
+        """As the engine."""
+        return self._engine.nuisance(name)
+
+    def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
+        """As the engine."""
+        self._engine.prepare(candidates, report)
+
+    def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
+        """As the engine."""
+        return self._engine.predict(run, settings)
+
+    def imagine(self, run: Run, settings: Sequence[Setting]) -> Signals:
+        """As the engine."""
+        return self._engine.imagine(run, settings)
+
+    def solve(self, run: int, mechanisms: Sequence[Mechanism], report: Report) -> Signals:
+        """As the engine."""
+        return self._engine.solve(run, mechanisms, report)
+
+
+def some_runs(recording: Recording, numbers: Sequence[int]) -> Recording:
+    """The recording of these runs alone."""
+    return replace(recording, runs=tuple(recording.runs[number] for number in numbers))
+
+
+def all_but(recording: Recording, numbers: Sequence[int]) -> list[int]:
+    """Numbers of all other runs."""
+    return [number for number in range(len(recording.runs)) if number not in numbers]
+
+
+class SomeRuns(PassingOn):
+    """The engine of a recording for some_runs of it: a run has the number that it has among them."""
+
+    def __init__(self, engine: Engine, numbers: Sequence[int]) -> None:
+        super().__init__(engine)
+        self._numbers = tuple(numbers)
+
+    def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
+        """As the engine."""
+        return super().predict(self._numbers[run], settings)
+
+    def solve(self, run: int, mechanisms: Sequence[Mechanism], report: Report) -> Signals:
+        """As the engine."""
+        return super().solve(self._numbers[run], mechanisms, report)
+
+
+THOUSAND = 1000.0
+MEANT = {"V": "millivolts", "N": "millinewtons", "mm": "micrometres"}
+
+
+def other_units(recording: Recording, engine: Engine) -> list[str]:
+    """One sentence for each channel of a run whose size fits the model better after division by a thousand.
+
+    Both are compared by their largest absolute values; on a logarithmic scale a thousandth is nearer to the model where
+    the ratio is above the root of a thousand. Physics that a model lacks takes signal away or adds a part of it.
+    """
+    said = []
+    for number, run in enumerate(recording.runs):
+        simulated = engine.predict(number, ())
+        for channel in run.answers:
+            used = run.usable(channel)
+            recorded = float(np.abs(run.channels[channel][used]).max(initial=0.0))
+            expected = float(np.abs(simulated[channel][used]).max(initial=0.0))
+            if expected > 0.0 and recorded > np.sqrt(THOUSAND) * expected:
+                said.append(_sentence(run.file, channel, recorded, expected))
+    return said
+
+
+def _sentence(file: str, channel: str, recorded: float, expected: float) -> str:
+    unit = channel.rpartition("_")[2]
+    return (
+        f"recording '{file}', column {channel}: reaches {figure(recorded)} {unit}, {figure(recorded / expected)} times "
+        f"the {figure(expected)} {unit} that the model of this rig gives; are these {MEANT[unit]}?"
+    )

@@ -17,8 +17,12 @@ sys.path.insert(0, str(DOCS.parent))  # the rooms of this repository, whatever i
 from geometry.braille import QUANTITIES, Quantity, standard, standard_names  # noqa: E402
 from geometry.fabrication.parameters import Fabrication  # noqa: E402
 from geometry.fabrication.recipes import castable_materials, recipe_for  # noqa: E402
-from softdot.schema import config_schema  # noqa: E402
-from softdot.schema_words import allowed, toml, unit  # noqa: E402
+from softdot.commands.new import (  # noqa: E402
+    allowed,
+    config_schema,
+    toml,
+    unit,
+)
 from solve.materials.parameters import library_tables  # noqa: E402
 from solve.mechanisms import MECHANISMS  # noqa: E402
 

@@ -20,7 +20,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from scipy.interpolate import PchipInterpolator
 
-from mesh.types import Floats
+from geometry.arrays import Floats
 from softdot import stages
 from softdot.actual import actual
 from softdot.config import Config, load_config

@@ -11,9 +11,10 @@ from export.dot_surface import placed_dot, triangle_surface
 from export.nodal_fields import MM_PER_M
 from export.skin import Skin, nearby_plane, nodal_steps, outer_skin, section
 from export.view import COLOUR_MAP, INK, Body, View, colour_bar, frame, name_parts, page, render, ruler, save
+from geometry.arrays import Floats
 from geometry.dot import DotShape
 from geometry.solids import PART_COLOURS
-from mesh.types import Floats, TetMesh
+from mesh.types import TetMesh
 from solve.result import Step
 
 OPEN, FRONT = View(28.0, 18.0), View(0.0, 0.0)

@@ -5,8 +5,9 @@ from typing import Any
 
 import numpy as np
 
+from geometry.arrays import Floats, Ints
 from geometry.dot import DotShape
-from mesh.types import Floats, Ints, TetMesh
+from mesh.types import TetMesh
 
 PLATE_THICKNESS_MM = 0.2
 """Drawn only: the real plate is of no consequence behind its face."""

@@ -8,7 +8,8 @@ import numpy as np
 
 from export.nodal_fields import MM_PER_M, PC_PER_MM2_PER_C_PER_M2, film_at_nodes, largest_principal
 from export.view import COLOUR_MAP, DIVERGING, DPI, HEIGHT_IN, INK, WIDTH_IN, save
-from mesh.types import Floats, Ints, TetMesh
+from geometry.arrays import Floats, Ints
+from mesh.types import TetMesh
 from solve.result import FilmPeak, Step
 
 

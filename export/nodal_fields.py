@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mesh.types import Floats, Ints, TetMesh
+from geometry.arrays import Floats, Ints
+from mesh.types import TetMesh
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,10 @@ from export.cutaway import draw_parts, draw_von_mises, is_slice, open_scene
 from export.film_map import draw_film
 from export.nodal_fields import MM_PER_M
 from export.view import DPI, HEIGHT_IN, INK, WIDTH_IN, save
+from geometry.arrays import Floats
 from geometry.dot import DotShape
 from geometry.files import whole_folder
-from mesh.types import Floats, TetMesh
+from mesh.types import TetMesh
 from solve.result import PressResult, Step
 
 RED, GREEN = "#b5263b", "#3f7a4d"

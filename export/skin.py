@@ -16,7 +16,8 @@ from export.nodal_fields import (
     tetra_pattern,
     triangle_pattern,
 )
-from mesh.types import Floats, Ints, TetMesh
+from geometry.arrays import Floats, Ints
+from mesh.types import TetMesh
 from solve.result import Step
 
 FACES = np.array([[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 3, 2, 7, 9, 6]])

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from mesh.types import Floats
+from geometry.arrays import Floats
 
 WIDTH_IN, HEIGHT_IN, DPI = 8.0, 6.0, 200
 PICTURE_SIZE = (int(WIDTH_IN * DPI), int(HEIGHT_IN * DPI))

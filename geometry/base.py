@@ -1,7 +1,7 @@
 """What every room shares: the one exception for bad input, and what a mistyped name was probably meant to be."""
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 
 class InputError(ValueError):
@@ -13,3 +13,7 @@ def nearest(word: str, known: Iterable[str]) -> str:
     names = sorted(known)
     near = difflib.get_close_matches(word, names, n=1, cutoff=0.5)
     return f"did you mean '{near[0]}'?" if near else f"known are {', '.join(names)}"
+
+
+Report = Callable[[str, int, int], None]
+"""Told of long work: what, done, of how many."""

@@ -1,4 +1,4 @@
-"""Braille standards (sizes of dots and their spacing, from one data table) and Unicode cells: which dots are raised."""
+"""Braille: standards (sizes of dots and their spacing, from one data table), Unicode cells, the dots of a segment."""
 
 import tomllib
 from dataclasses import dataclass
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.base import InputError
+from geometry.parameters import Dot
 
 Confidence = Literal["high", "medium", "low"]
 QuantityName = Literal["base_diameter_mm", "height_mm", "dot_pitch_mm", "cell_pitch_mm", "line_pitch_mm"]
@@ -119,3 +120,106 @@ def dot_offset_mm(dot: int, pitch_mm: float) -> NDArray[np.float64]:
     """Position (2,) of a dot against dot 1 of its cell, x and y in mm."""
     column, row = COLUMN_AND_ROW[dot]
     return np.array([COLUMNS_ALONG_X * column, ROWS_ALONG_Y * row]) * pitch_mm
+
+
+DEFAULT_STANDARD = "marburg-medium"
+SIZES = ("base_diameter_mm", "height_mm", "radius_mm")
+
+
+@dataclass(frozen=True)
+class DotSize:
+    """In mm: radius of the sphere or cylinder, height over the plate, height of the cylindrical foot."""
+
+    radius_mm: float
+    height_mm: float
+    foot_mm: float
+
+
+def dot_standard(dot: Dot) -> BrailleStandard | None:
+    """The standard a dot follows: the named one, the default when no size is given, else None. InputError."""
+    given = [name for name in SIZES if getattr(dot, name) is not None]
+    if dot.standard is None:
+        return None if given else standard(DEFAULT_STANDARD)
+    if given:
+        raise InputError(
+            f"dot.{given[0]} = {getattr(dot, given[0]):g}: dot.standard = '{dot.standard}' fixes the sizes "
+            "already; give either the standard or explicit sizes"
+        )
+    return standard(dot.standard)
+
+
+def dot_size(dot: Dot) -> DotSize:
+    """The sizes of a cap or ridge. InputError for sizes that miss, contradict each other or are not fixed."""
+    chosen = dot_standard(dot)
+    if chosen is not None:
+        return from_base(chosen.nominal_mm("base_diameter_mm"), chosen.nominal_mm("height_mm"))
+    if dot.radius_mm is not None:
+        return _from_radius(dot.radius_mm, dot)
+    if dot.base_diameter_mm is None:
+        raise InputError(
+            f"dot.height_mm = {dot.height_mm:g}: a height alone is not a dot; add dot.base_diameter_mm or dot.radius_mm"
+        )
+    if dot.height_mm is None:
+        raise InputError(
+            f"dot.base_diameter_mm = {dot.base_diameter_mm:g}: a base alone is not a dot; add dot.height_mm"
+        )
+    return from_base(dot.base_diameter_mm, dot.height_mm)
+
+
+def from_base(base_diameter_mm: float, height_mm: float) -> DotSize:
+    """Sizes of a dot from its base and height in mm.
+
+    A spherical cap has R = (d^2 / 4 + h^2) / 2h. Higher than d / 2 it would pass the hemisphere and undercut
+    its base: such a dot is a hemisphere of radius d / 2 on a cylindrical foot of height h - d / 2.
+    """
+    half = base_diameter_mm / 2
+    if height_mm > half:
+        return DotSize(half, height_mm, height_mm - half)
+    return DotSize((half**2 + height_mm**2) / (2 * height_mm), height_mm, 0.0)
+
+
+def _from_radius(radius_mm: float, dot: Dot) -> DotSize:
+    """Sizes from the radius of the sphere or cylinder; without a height it stands out by its radius."""
+    if dot.base_diameter_mm is not None:
+        raise InputError(
+            f"dot.radius_mm = {radius_mm:g}: dot.base_diameter_mm = {dot.base_diameter_mm:g} is given too; "
+            "give either of them"
+        )
+    height = radius_mm if dot.height_mm is None else dot.height_mm
+    return DotSize(radius_mm, height, max(0.0, height - radius_mm))
+
+
+Floats = NDArray[np.float64]
+
+
+def cell_centers(dot: Dot) -> Floats:
+    """Axes (n, 2) of the raised dots against the pressed one, which comes first, in mm. InputError."""
+    if dot.cell is None:
+        return refuse_cell_of(dot)
+    raised = raised_dots(dot.cell)
+    if dot.cell_dot not in raised:
+        known = ", ".join(map(str, raised)) or "none"
+        raise InputError(f"dot.cell_dot = {dot.cell_dot}: not raised in dot.cell = '{dot.cell}', which has {known}")
+    pitch = _pitch_mm(dot)
+    pressed = dot_offset_mm(dot.cell_dot, pitch)
+    others = [dot_offset_mm(number, pitch) - pressed for number in raised if number != dot.cell_dot]
+    return np.array([np.zeros(2), *others])
+
+
+def refuse_cell_of(dot: Dot) -> Floats:
+    """The one axis (1, 2) of a dot without a cell. InputError when a cell is asked for."""
+    if dot.cell is not None:
+        raise InputError(f"dot.cell = '{dot.cell}': a cell has dots of dot.shape = 'cap', not '{dot.shape}'")
+    if dot.cell_dot != 1:
+        raise InputError(f"dot.cell_dot = {dot.cell_dot}: has a meaning only together with dot.cell")
+    return np.zeros((1, 2))
+
+
+def _pitch_mm(dot: Dot) -> float:
+    chosen = dot_standard(dot)
+    if chosen is None:
+        raise InputError(
+            f"dot.cell = '{dot.cell}': the distance of its dots comes from dot.standard; "
+            "name one with a dot pitch instead of explicit sizes"
+        )
+    return chosen.nominal_mm("dot_pitch_mm")

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.base import InputError
-from geometry.dot_size import SIZES, DotSize, cell_centers, dot_size, refuse_cell_of
+from geometry.braille import SIZES, DotSize, cell_centers, dot_size, refuse_cell_of
 from geometry.parameters import Dot, Segment
 from geometry.stack import bodies, layers
 

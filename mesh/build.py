@@ -1,13 +1,20 @@
-"""The front door of the mesher. It imports late because the command line imports it early."""
+"""The front door of the mesher. What pytetwild makes is kept on disk, for it is slow and not repeatable."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from geometry.cache import data_hash, folder, read_arrays, write_arrays
+from geometry.dot import DotShape
+from geometry.parameters import Segment
+from mesh.parameters import MeshOptions
+from mesh.types import LinearMesh
 
 if TYPE_CHECKING:
-    from geometry.dot import DotShape
-    from geometry.parameters import Segment
-    from mesh.parameters import MeshOptions
     from mesh.types import LinearMesh, TetMesh
 
 
@@ -24,7 +31,6 @@ def build(segment: Segment, dot: DotShape, options: MeshOptions) -> TetMesh:
 
 def _linear(segment: Segment, dot: DotShape, options: MeshOptions) -> LinearMesh:
     """Choose the mesher; what pytetwild makes is remembered."""
-    from mesh import cache
     from mesh.layered import layered, layered_slice, tetwild_slice
     from mesh.tetwild import tetwild
 
@@ -32,4 +38,52 @@ def _linear(segment: Segment, dot: DotShape, options: MeshOptions) -> LinearMesh
     if options.mesher == "layered":
         return (layered_slice if is_slice else layered)(segment, dot, options)
     make = tetwild_slice if is_slice else tetwild
-    return cache.remembered(cache.key(segment, dot, options), lambda: make(segment, dot, options))
+    return remembered(key(segment, dot, options), lambda: make(segment, dot, options))
+
+
+VERSION = 3  # raise it when the mesher changes what it makes
+
+
+def key(segment: Segment, dot: DotShape, options: MeshOptions) -> str:
+    """Hash of the geometry, of the dot's place and size, of the options and of the mesher's version."""
+    import pytetwild
+
+    effector = segment.effector
+    content = {
+        "version": [VERSION, getattr(pytetwild, "__version__", "")],
+        "segment": [segment.length_mm, segment.width_mm, segment.section, segment.film.thickness_um],
+        "layers": [segment.medium1.thickness_mm, segment.medium2.thickness_mm],
+        "effector": effector and effector.model_dump(exclude={"material"}),
+        "dot": [dot.kind, dot.radius_mm, *(np.round(a, 9).tolist() for a in _places(dot))],
+        "options": options.model_dump(exclude={"timeout_s"}),
+    }
+    return data_hash(content)
+
+
+def _places(dot: DotShape) -> tuple[Any, Any, Any]:
+    """The arrays of a dot."""
+    return np.asarray(dot.centers_xy_mm), np.asarray(dot.origin_mm), np.asarray(dot.rotation)
+
+
+def remembered(name: str, make: Callable[[], LinearMesh]) -> LinearMesh:
+    """The mesh kept under this name, or a new one that is then kept. A damaged file is a miss."""
+    path = folder() / f"mesh-{name}.npz"
+    found = read_arrays(path, _decoded)
+    if found is not None:
+        return found
+    made = make()
+    names = np.array(made.region_names)
+    arrays = {"points": made.points_mm, "tets": made.tets, "region": made.region, "names": names}
+    with suppress(OSError):  # a cache that cannot be written is no cache
+        write_arrays(path, arrays, compressed=True)
+    return made
+
+
+def _decoded(data: Mapping[str, Any]) -> LinearMesh:
+    """The mesh in a file; ValueError when its arrays do not fit together."""
+    found = LinearMesh(data["points"], data["tets"], data["region"], tuple(str(name) for name in data["names"]))
+    if found.points_mm.shape[1:] != (3,) or found.tets.shape != (len(found.region), 4):
+        raise ValueError("array shapes")
+    if found.tets.min() < 0 or found.tets.max() >= len(found.points_mm):
+        raise ValueError("node numbers")
+    return found

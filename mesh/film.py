@@ -5,9 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.arrays import Floats, Ints
 from mesh.outline import Outline
 from mesh.sizing import Sizing, graded_through
-from mesh.types import TET_FACES, Floats, Ints, LinearMesh, face_neighbours, oriented, split_prisms
+from mesh.types import TET_FACES, LinearMesh, face_neighbours, oriented, split_prisms
 
 
 @dataclass(frozen=True)

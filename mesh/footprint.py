@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.arrays import Floats, Ints
 from geometry.base import InputError
 from mesh.outline import Outline
-from mesh.types import Floats, Ints
 
 Bools = NDArray[np.bool_]
 

@@ -6,10 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from geometry.arrays import Bools, Ints
 from geometry.base import InputError
 from geometry.parameters import Segment
 from geometry.stack import layers
-from mesh.types import TET_FACES, Bools, Ints, TetMesh, face_neighbours, node_mask
+from mesh.types import TET_FACES, TetMesh, face_neighbours, node_mask
 
 # bond -> (part below, part above); the ground below the base is no part
 INTERFACES = {

@@ -5,6 +5,7 @@ A plane-strain slice: the x-z section extruded once in y and split into tetrahed
 
 import numpy as np
 
+from geometry.arrays import Floats, Ints
 from geometry.base import InputError
 from geometry.dot import DotShape
 from geometry.parameters import Segment
@@ -14,7 +15,7 @@ from mesh.outline import Outline, outline
 from mesh.parameters import MeshOptions
 from mesh.sizing import Sizing, graded, sizing
 from mesh.tetwild import bare_stack
-from mesh.types import TET_FACES, Floats, Ints, LinearMesh, boundary_faces, oriented, split_prisms, without_unused
+from mesh.types import TET_FACES, LinearMesh, boundary_faces, oriented, split_prisms, without_unused
 
 
 def layered(segment: Segment, dot: DotShape, options: MeshOptions) -> LinearMesh:

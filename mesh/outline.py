@@ -7,8 +7,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.arrays import Floats
 from geometry.parameters import Segment
-from mesh.types import Floats
 
 Shape = Literal["none", "layer", "block", "cylinder", "dome"]
 

@@ -3,12 +3,13 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.arrays import Floats, Ints
 from geometry.parameters import Segment
 from mesh.layered import twins
 from mesh.outline import Outline, RoundSurface, curved_surface, outline
 from mesh.parameters import MeshOptions
 from mesh.quality import refuse_inverted, smallest_determinant_ratio
-from mesh.types import TET_FACES, Floats, Ints, LinearMesh, TetMesh, boundary_faces, face_neighbours, unique_edges
+from mesh.types import TET_FACES, LinearMesh, TetMesh, boundary_faces, face_neighbours, unique_edges
 
 FLATTEST = 0.1  # a curved element keeps at least this share of its mean Jacobian everywhere
 

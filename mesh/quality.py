@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.arrays import Floats, Ints
 from geometry.parameters import Segment
 from mesh.outline import curved_surface, outline
-from mesh.types import TET_EDGES, TET_FACES, Floats, Ints, MeshingError, TetMesh, boundary_faces
+from mesh.types import TET_EDGES, TET_FACES, MeshingError, TetMesh, boundary_faces
 
 _INNER = (5 - np.sqrt(5)) / 20
 # Corners, mid-sides, centroid and the four points of the rule of degree 2, in barycentric coordinates.

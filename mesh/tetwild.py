@@ -5,25 +5,16 @@ from typing import Any
 
 import numpy as np
 
+from geometry.arrays import Floats, Ints
 from geometry.dot import DotShape
 from geometry.parameters import Segment
 from geometry.stack import layers
-from mesh.child import tetrahedralize
 from mesh.film import with_film
 from mesh.outline import Outline, curved_surface, outline
 from mesh.parameters import MeshOptions
 from mesh.sizing import background, sizing
-from mesh.types import (
-    TET_FACES,
-    Floats,
-    Ints,
-    LinearMesh,
-    MeshingError,
-    face_neighbours,
-    oriented,
-    shape,
-    without_unused,
-)
+from mesh.tetwild_process import tetrahedralize
+from mesh.types import TET_FACES, LinearMesh, MeshingError, face_neighbours, oriented, shape, without_unused
 
 DEFLECTION_MM = 2e-3  # nodes are put on the exact surface afterwards
 DEFLECTION = 0.02  # of the smallest detail, where that is more

@@ -1,13 +1,12 @@
 """The mesh that passes from the mesher to solver and exporters, and the four-node tetrahedra it is made from."""
 
+import hashlib
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
+from geometry.arrays import Floats, Ints
 
 
 @dataclass(frozen=True)
@@ -148,3 +147,14 @@ def node_mask(count: int, nodes: Ints) -> NDArray[np.bool_]:
     mask = np.zeros(count, dtype=bool)
     mask[nodes] = True
     return mask
+
+
+def mesh_hash(tet_mesh: TetMesh) -> str:
+    """Of all that a mesh holds."""
+    facets = sorted(tet_mesh.facets)
+    told = (tet_mesh.thickness_mm, tet_mesh.region_names, facets)
+    digest = hashlib.sha256(repr(told).encode())
+    arrays = [tet_mesh.points_mm, tet_mesh.tets, tet_mesh.region, tet_mesh.twin]
+    for array in [*arrays, *(tet_mesh.facets[name] for name in facets)]:
+        digest.update(str(array.shape).encode() + np.ascontiguousarray(array).tobytes())
+    return digest.hexdigest()

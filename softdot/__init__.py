@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from geometry.base import InputError
     from mesh.types import MeshingError
+    from softdot.commands.new import config_schema
+    from softdot.commands.run import run_config
     from softdot.config import Config, config_hash, load_config
     from softdot.differentiate import derivatives
-    from softdot.run import run_config
-    from softdot.schema import config_schema
 
     __version__: str
 
@@ -32,17 +32,17 @@ _HOMES = {
     "InputError": "geometry.base",
     "MeshingError": "mesh.types",
     "config_hash": "softdot.config",
-    "config_schema": "softdot.schema",
+    "config_schema": "softdot.commands.new",
     "derivatives": "softdot.differentiate",
     "load_config": "softdot.config",
-    "run_config": "softdot.run",
+    "run_config": "softdot.commands.run",
 }
 
 
 def __getattr__(name: str) -> Any:
     """Import a public name from its home."""
     if name == "__version__":
-        from softdot.version import installed_version
+        from softdot.numbers import installed_version
 
         return installed_version()
     if name in _HOMES:

@@ -7,7 +7,7 @@ from geometry.parameters import Table
 from geometry.part_checks import check_patch
 from geometry.stack import layers
 from softdot.config import Config
-from softdot.config_errors import sentence
+from softdot.config.errors import sentence
 from solve.mechanisms import Mechanism
 from solve.model import Model, Physics, declared_bonds
 from solve.switch_on import with_mechanisms

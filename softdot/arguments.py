@@ -3,7 +3,7 @@
 import argparse
 from typing import Any, NoReturn
 
-from softdot.command_output import BAD_INPUT, GOOD
+from softdot.console import BAD_INPUT, GOOD
 
 EXIT_STATUS = "Exit status: 0 good, 2 bad input, 3 a computation did not converge, 130 interrupted."
 LISTED = ("materials", "standards", "mechanisms")
@@ -22,7 +22,7 @@ class _Version(argparse.Action):
     """Looks the version up only when asked."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_args: Any) -> None:
-        from softdot.version import installed_version
+        from softdot.numbers import installed_version
 
         print(f"softdot {installed_version()}")
         parser.exit(GOOD)

@@ -12,21 +12,20 @@ from types import FrameType
 
 from geometry.base import InputError
 from softdot.arguments import parser
-from softdot.command_output import BAD_INPUT, GOOD, INTERRUPTED, complain
-from softdot.log import lines_on_stderr
-from softdot.no_room import without_room
+from softdot.console import BAD_INPUT, GOOD, INTERRUPTED, complain, lines_on_stderr
+from softdot.machine import without_room
 
 COMMANDS = {
-    "run": "softdot.run_command",
-    "paper": "softdot.paper.command",
-    "sweep": "softdot.sweep.command",
-    "diagnose": "softdot.diagnosis.command",
-    "prove": "softdot.proof.command",
-    "kit": "softdot.kit.command",
-    "plate": "softdot.plate.command",
-    "check": "softdot.check_command",
-    "new": "softdot.new_command",
-    "list": "softdot.list_command",
+    "run": "softdot.commands.run",
+    "paper": "softdot.commands.paper",
+    "sweep": "softdot.commands.sweep",
+    "diagnose": "softdot.commands.diagnose",
+    "prove": "softdot.commands.prove",
+    "kit": "softdot.commands.kit",
+    "plate": "softdot.commands.plate",
+    "check": "softdot.commands.check",
+    "new": "softdot.commands.new",
+    "list": "softdot.commands.list",
 }
 STOPPED = "interrupted, nothing was written"
 UNINTERRUPTED = "<frozen importlib", "llvmlite"  # in the file names of their code
@@ -99,8 +98,8 @@ def _refuse_unprintable(chosen: argparse.Namespace) -> None:
 
 def _command(chosen: argparse.Namespace) -> int:
     if chosen.command == "schema":
+        from softdot.commands.new import config_schema
         from softdot.numbers import json_text
-        from softdot.schema import config_schema
 
         sys.stdout.write(json_text(config_schema()))
         return GOOD

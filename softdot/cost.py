@@ -1,4 +1,4 @@
-"""What a run will cost: elements, unknowns, time and memory, from measured runs. Rough, within a factor of two.
+"""What a run will cost: elements, unknowns, time and memory, from measured runs; what no computer holds is refused.
 
 Measured on two cores of an EPYC without other work (docs/speed.md): 0.29 s a Newton iteration at 14,800 unknowns,
 2.9 s at 68,400, about seven iterations a load step where the path does not ask for more.
@@ -6,10 +6,52 @@ Measured on two cores of an EPYC without other work (docs/speed.md): 0.29 s a Ne
 
 from dataclasses import dataclass
 
+import numpy as np
+
+from geometry.base import InputError
 from geometry.dot import DotShape
+from geometry.parameters import Segment
+from mesh.outline import outline
+from mesh.parameters import MeshOptions
+from mesh.sizing import sizing
 from softdot.config import Config
-from softdot.memory import needed_GB
-from softdot.mesh_limit import expected_tetrahedra
+from softdot.machine import needed_GB, refuse_too_little_memory
+
+TOO_MANY = 1_000_000
+POINTS = 100_000
+FILL = 6.0 * np.sqrt(2.0)
+"""A regular tetrahedron of edge h has the volume h^3 / (6 sqrt 2)."""
+PRISMS = 12.0 / np.sqrt(3.0)
+
+
+def refuse_huge_mesh(segment: Segment, dot_shape: DotShape, options: MeshOptions) -> None:
+    """InputError when the wished edge lengths mean more than a million elements, or more than fit into memory."""
+    count = expected_tetrahedra(segment, dot_shape, options)
+    sizes = {name: value for name, value in options if name.endswith("size_mm") and value is not None}
+    name = min(sizes, key=lambda one: float(sizes[one]))
+    if count > TOO_MANY:
+        raise InputError(
+            f"mesh.{name} = {sizes[name]:g}: means about {count:.1g} elements, "
+            f"at most {TOO_MANY:.0g} are allowed; use a larger size"
+        )
+    refuse_too_little_memory(count, segment.section == "plane-strain", name, float(sizes[name]))
+
+
+def expected_tetrahedra(segment: Segment, dot_shape: DotShape, options: MeshOptions) -> float:
+    """Rough number of elements of the soft layers: the mean of 6 sqrt 2 / h^3 over points in the stack.
+
+    A slice is one layer of triangles of area sqrt 3 / 4 h^2, each of three tetrahedra.
+    """
+    sliced = segment.section == "plane-strain"
+    shape = outline(segment, slice_mm=options.contact_element_size_mm) if sliced else outline(segment)
+    field = sizing(shape, dot_shape, options)
+    high = np.array([shape.half_x, shape.half_y, shape.top])
+    low = np.array([-shape.half_x, -shape.half_y, 0.0])
+    points = np.random.default_rng(0).uniform(low, high, (POINTS, 3))
+    if sliced:
+        return float((high - low)[0] * (high - low)[2] * np.mean(PRISMS / field.at(points) ** 2))
+    return float(np.prod(high - low) * np.mean(FILL / field.at(points) ** 3))
+
 
 UNKNOWNS_PER_TETRAHEDRON = {"solid": 4.4, "plane-strain": 1.6}
 ITERATIONS = 7

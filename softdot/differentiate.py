@@ -5,8 +5,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from geometry.arrays import Floats
 from geometry.base import InputError
-from mesh.types import Floats, TetMesh
+from mesh.types import TetMesh
 from softdot.actual import actual
 from softdot.config import Config, config_from
 from solve.model import Model

@@ -1,7 +1,8 @@
-"""Numbers as JSON knows them."""
+"""Numbers as JSON knows them, and the version that is installed."""
 
 import json
 import math
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
@@ -30,3 +31,11 @@ def write_json(path: Path, value: Any) -> None:
     """Write JSON that never exists half-written."""
     with whole_file(path) as beside:
         beside.write_text(json_text(value), "utf-8")
+
+
+def installed_version() -> str:
+    """Version of the installed distribution, "unknown" for a bare copy of the sources."""
+    try:
+        return version("softdot")
+    except PackageNotFoundError:
+        return "unknown"

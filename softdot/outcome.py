@@ -1,21 +1,15 @@
 """The numbers of one press without its files: what sweeps and studies ask for, kept on disk."""
 
-from functools import cache
-from pathlib import Path
 from typing import Any
 
-from mesh.fingerprint import data_hash, files_hash
+from geometry.cache import data_hash, recall, remember, source_hash
 from mesh.types import MeshingError
 from softdot import stages
 from softdot.actual import actual
 from softdot.config import Config, input_hash
 from softdot.numbers import plain
-from softdot.remembered import recall, remember
-from softdot.run_warnings import design_warnings, result_warnings
 from softdot.summary import mesh_part, press_part, stopped_solver
-
-ROOMS = ("geometry/*", "mesh/*", "solve/**/*")
-FILES = ("actual", "outcome", "run_warnings", "sensitivity", "stages", "summary")
+from softdot.warnings import design_warnings, result_warnings
 
 
 def outcome(config: Config, on_step: stages.OnStep | None = None) -> dict[str, Any]:
@@ -42,7 +36,7 @@ def remembered(config: Config) -> dict[str, Any] | None:
 
 def outcome_key(config: Config) -> str:
     """Hash of all that an outcome depends on: configuration, the file of its waveform, the program."""
-    return data_hash([input_hash(config), source_hash()])
+    return data_hash([input_hash(config), source_hash(__name__)])
 
 
 def _name(config: Config) -> str:
@@ -64,15 +58,6 @@ def solved(config: Config, on_step: stages.OnStep) -> dict[str, Any]:
     numbers |= {"mesh": mesh_part(quality, result.unknowns), **press_part(changed, result, readout, channels)}
     numbers["warnings"] += result_warnings(changed, dot_shape, result.tet_mesh, result, physics.film_yield is not None)
     return dict(plain(numbers))
-
-
-@cache
-def source_hash() -> str:
-    """Hash of the files of the program that a press depends on: an edit forgets old outcomes."""
-    root = Path(__file__).parent.parent
-    sources = [path for room in ROOMS for path in root.glob(room) if path.suffix in (".py", ".toml", ".csv")]
-    sources += [root / "softdot" / f"{name}.py" for name in FILES]
-    return files_hash(sources)
 
 
 def _silent(*_args: Any) -> None:

@@ -5,9 +5,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from geometry.arrays import Floats
 from geometry.dot import DotShape, resolve_dot
 from geometry.solids import Part
-from mesh.types import Floats, TetMesh
+from mesh.types import TetMesh
 from softdot.config import Config, input_hash
 from solve.model import Physics
 from solve.result import PressResult, Step
@@ -20,10 +21,10 @@ def check(config: Config) -> tuple[DotShape, list[str]]:
 
     Returns the dot at rest and what a user should know about this design.
     """
+    from geometry.cache import check_folder
     from geometry.checks import check_press_depth, check_pushed_dot, check_segment, press_warnings
-    from mesh.cache import check_folder
-    from softdot.held_rim import held_rim_warnings
-    from softdot.mesh_limit import refuse_huge_mesh
+    from softdot.cost import refuse_huge_mesh
+    from softdot.warnings import held_rim_warnings
 
     check_folder()
     _check_waveform(config)
@@ -82,7 +83,7 @@ def mesh_quality(config: Config, tet_mesh: TetMesh) -> dict[str, Any]:
 
 def press(config: Config, physics: Physics, dot_shape: DotShape, tet_mesh: TetMesh, on_step: OnStep) -> PressResult:
     """The solved press, as far as it converged."""
-    from mesh.cache import folder
+    from geometry.cache import folder
     from solve.press import press_segment
     from solve.solution.checkpoint import Checkpoint
 
@@ -102,8 +103,9 @@ def press(config: Config, physics: Physics, dot_shape: DotShape, tet_mesh: TetMe
 
 def press_key(config: Config, physics: Physics, tet_mesh: TetMesh) -> str:
     """Hash of all that a press depends on: configuration, the file of its waveform, physics, mesh and version."""
-    from mesh.fingerprint import data_hash, mesh_hash
-    from softdot.version import installed_version
+    from geometry.cache import data_hash
+    from mesh.types import mesh_hash
+    from softdot.numbers import installed_version
 
     return data_hash([installed_version(), input_hash(config), str(physics), mesh_hash(tet_mesh)])
 

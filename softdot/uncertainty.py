@@ -14,8 +14,8 @@ from geometry.base import InputError
 from mesh.types import MeshingError
 from softdot.config import Config
 from softdot.differentiate import model_of
-from softdot.kit.responses import KitPress, Response, coarser
-from softdot.kit.tolerances import Tolerance, material_tolerances
+from softdot.tolerances.responses import KitPress, Response, coarser
+from softdot.tolerances.tolerances import Tolerance, material_tolerances
 from solve.solution.linear import LinearSolveError
 from solve.solution.sensitivity import StoppedShortError
 

@@ -15,8 +15,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from geometry.arrays import Floats, Ints
 from geometry.parameters import Segment
-from mesh.types import Floats, Ints, TetMesh
+from mesh.types import TetMesh
 from solve.fem.kinematics import deformation_gradient
 from solve.fem.quadrature import linear, tetrahedron
 from solve.fem.term import History, Trial

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from geometry.arrays import Bools, Floats, Ints
 from geometry.base import InputError
 from mesh.interfaces import inner_nodes, interface_facets, split_interface
-from mesh.types import Bools, Floats, Ints, TetMesh
+from mesh.types import TetMesh
 from solve.model import BondLine, Delamination
 
 ROUND_OFF_MM = 1e-9

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from geometry.arrays import Floats
 from geometry.base import InputError
 from geometry.dot import DotShape
 from geometry.parameters import Segment
-from mesh.types import Floats, TetMesh
+from mesh.types import TetMesh
 from solve.fem.sparsity import build_pattern
 from solve.fem.term import Numbers, Term, Unknowns, number
 from solve.interfaces import OpenInterface

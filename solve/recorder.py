@@ -11,8 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from geometry.arrays import Floats
 from geometry.parameters import Segment
-from mesh.types import Floats, TetMesh
+from mesh.types import TetMesh
 from solve.fields import fields, film_peak
 from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.model import Physics

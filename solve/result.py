@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass, field
 
-from mesh.types import Floats, Ints, TetMesh
+from geometry.arrays import Floats, Ints
+from mesh.types import TetMesh
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from mesh.types import Bools, Floats, Ints
+from geometry.arrays import Bools, Floats, Ints
 from solve.fem.kernels import scatter
 from solve.fem.sparsity import Pattern, Tangent, scatter_unsymmetric
 from solve.fem.term import History, Term, Trial, Unknowns

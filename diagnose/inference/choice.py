@@ -6,22 +6,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnose.figures import figure
-from diagnose.forward import Candidate, Report
-from diagnose.inference.ambiguity import alike, grouped, separations
-from diagnose.inference.baseline import within_priors
+from diagnose.fit.baseline import within_priors
+from diagnose.fit.descent import coordinates
+from diagnose.fit.observed_model import ObservedModel
+from diagnose.fit.refit import Fitted
+from diagnose.forward import Candidate
 from diagnose.inference.black_box import box_scores, memory, worth_of_form
-from diagnose.inference.descent import coordinates
-from diagnose.inference.excess import share_left
-from diagnose.inference.forecasts import Forecasted, forecasted, separation
-from diagnose.inference.observed_model import ObservedModel
-from diagnose.inference.rates import FIRSTS, LEFT, RATES
-from diagnose.inference.refit import Fitted
+from diagnose.inference.forecasts import Forecasted, alike, forecasted, grouped, separation, separations, share_left
 from diagnose.inference.residual_test import DRAWS, checked, strain_of
 from diagnose.inference.search import Screening, paired, pairs, singles
-from diagnose.statistics.abstain import Decision, Evidence, decide
-from diagnose.statistics.held_out import Gain, gain_over_noise
-from diagnose.statistics.information import bic, held_out_probabilities
-from mesh.types import Bools, Floats
+from diagnose.statistics.abstain import FIRSTS, LEFT, RATES, Decision, Evidence, decide
+from diagnose.statistics.held_out import Gain, bic, gain_over_noise, held_out_probabilities
+from geometry.arrays import Bools, Floats
+from geometry.base import Report
 
 FEWER_DRAWS = 499  # for models that are not the best
 

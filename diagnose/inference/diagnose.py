@@ -1,27 +1,108 @@
-"""The whole chain: from a recording and a forward model to findings."""
+"""The whole chain: from a recording and a forward model to findings.
+
+Named on some runs, scored on others that took no part: another speed, another depth, another day.
+
+What the findings rest on, in sentences for somebody at a bench.
+"""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
+from diagnose.figures import figure, p_equals, part
 from diagnose.findings import Detection, Findings, Model
-from diagnose.forward import Engine, Report, Setting, Signals
+from diagnose.fit.baseline import believed, fitted_baseline
+from diagnose.fit.intervals import intervals, points
+from diagnose.fit.observed_model import ObservedModel
+from diagnose.fit.refit import Fitted
+from diagnose.fit.samples import Samples
+from diagnose.fit.system import System, linearised
+from diagnose.forward import Engine, Setting, Signals, SomeRuns, all_but, some_runs
 from diagnose.inference import hum
-from diagnose.inference.baseline import fitted_baseline
-from diagnose.inference.choice import Choice, Judged, choose
-from diagnose.inference.intervals import intervals, points
+from diagnose.inference.choice import Choice, Judged, choose, criteria
+from diagnose.inference.held_out import errors, relaxed, trained_and_held, unimproved
 from diagnose.inference.localisation import explanations, places, shares
-from diagnose.inference.observed_model import ObservedModel
-from diagnose.inference.rates import RATES
-from diagnose.inference.reasons import reasons_of, warnings_of
 from diagnose.inference.residual_test import Checked, checked
-from diagnose.inference.samples import Samples
 from diagnose.inference.search import Screening, screen
-from diagnose.inference.system import System
-from diagnose.inference.train_and_hold import trained_and_held, unimproved
 from diagnose.noise.estimate import noise_models
-from diagnose.recording import Recording
-from mesh.types import Floats
+from diagnose.signals.recording import Recording
+from diagnose.statistics.abstain import RATES
+from diagnose.statistics.held_out import Sums
+from geometry.arrays import Bools, Floats
+from geometry.base import Report
+
+FAR = 3.0  # deviations of a prior
+
+
+def named(fit: Fitted) -> str:
+    """charge-leakage (readout) and friction (dot)."""
+    return " and ".join(f"{candidate.mechanism} ({candidate.component})" for candidate in fit.candidates)
+
+
+def reasons_of(p_mismatch: float, choice: Choice | None) -> tuple[str, ...]:
+    """Why something is named, or why not."""
+    if choice is None:
+        return (f"The residual is no larger than noise and the errors of the model make it ({p_equals(p_mismatch)}).",)
+    if not choice.models:
+        return choice.decision.reasons
+    best = choice.models[0]
+    return (_for(best), *choice.decision.reasons, *_alternatives(choice))
+
+
+def _for(best: Judged) -> str:
+    share = part(1.0 - min(best.left, 1.0))
+    return (
+        f"The best explanation is {named(best.fit)}. It accounts for {share} of what your simulation leaves "
+        f"unexplained and predicts held-out presses better by {figure(best.gain.mean)} nats per press (at least "
+        f"{figure(best.gain.lower)})."
+    )
+
+
+def _alternatives(choice: Choice) -> tuple[str, ...]:
+    others = [named(choice.models[n].fit) for n in choice.groups[0] if n > 0]
+    return (f"These recordings cannot tell it from {' or from '.join(others)}.",) if others else ()
+
+
+def warnings_of(model: ObservedModel, baseline: System, choice: Choice | None) -> tuple[str, ...]:
+    """What makes the findings less sure than they look."""
+    said = _strained(model, baseline)
+    folds = len(np.unique(model.samples.fold))
+    if len(model.samples.presses) < 2:
+        held = "its phases were held out in turn instead" if folds > 1 else "nothing could be held out"
+        more = "A second press at another speed or depth would make the result surer."
+        said.append(f"There is only one press, so {held}. {more}")
+    if choice is not None and len(choice.models) > 1:
+        said += _second_opinion(choice)
+    return tuple(said)
+
+
+def _strained(model: ObservedModel, baseline: System) -> list[str]:
+    """Nuisances that lie farther from 0 than rig.toml says, a sentence for each name."""
+    far: dict[str, list[tuple[float, float, str]]] = {}
+    for nuisance, value in zip(model.nuisances, baseline.values, strict=True):
+        deviations = abs(value) / nuisance.sigma
+        if deviations > FAR:
+            of = "all runs" if nuisance.run is None else f"run '{model.runs[nuisance.run].label}'"
+            far.setdefault(nuisance.name, []).append((deviations, value, of))
+    said = []
+    for name, each in far.items():
+        deviations, value, of = max(each)
+        others = f", and by less in {len(each) - 1} more" if len(each) > 1 else ""
+        said.append(
+            f"Your simulation fits best with {name} = {figure(value)} in {of}, {figure(deviations)} times the stated "
+            f"uncertainty{others}: this value may stand in for what is missing."
+        )
+    return said
+
+
+def _second_opinion(choice: Choice) -> list[str]:
+    """Schwarz's criterion, where it prefers another model by more than ten to one."""
+    badness = criteria(choice.models)
+    least = int(np.argmin(badness))
+    if least == 0 or badness[0] - badness[least] < 2.0 * np.log(10.0):
+        return []
+    return [f"By the fit to all presses alone (BIC), {named(choice.models[least].fit)} would be preferred."]
 
 
 def diagnose(recording: Recording, engine: Engine, seed: int, report: Report) -> Findings:
@@ -150,3 +231,78 @@ def _information(choice: Choice) -> Floats:
         total[first:last, first:last] = fit.system.quadratic.product(columns, columns)
         first = last
     return total
+
+
+HUM = "mains-hum"
+
+
+def diagnose_and_score(
+    recording: Recording, engine: Engine, held: Sequence[int], seed: int, report: Report
+) -> Findings:
+    """Findings of all runs but some, with held-out errors of those: numbers of runs of the recording.
+
+    Mechanisms and what all runs share are those of the training runs. What floats in a held-out run is fitted to it,
+    without mechanisms and with them alike. InputError for a channel without noise.
+    """
+    trained = all_but(recording, held)
+    own = some_runs(recording, trained)
+    findings = diagnose(own, SomeRuns(engine, trained), seed, report)
+    report("held-out runs", 0, 1)
+    return _scored(findings, _model_of(own, engine, trained), _model_of(some_runs(recording, held), engine, held))
+
+
+def _model_of(recording: Recording, engine: Engine, numbers: Sequence[int]) -> ObservedModel:
+    return ObservedModel(Samples(recording, noise_models(recording)), SomeRuns(engine, numbers))
+
+
+def _scored(findings: Findings, train: ObservedModel, held: ObservedModel) -> Findings:
+    """Findings whose errors, signals and noise speak of the held-out runs too."""
+    best: Model | None = findings.models[0] if findings.models else None
+    settings = tuple(one for one in best.settings if one.candidate.mechanism != HUM) if best else ()
+    starts = [believed(model, fitted_baseline(model)).values for model in (train, held)]
+    before, after = (_transferred((train, held), starts, chosen) for chosen in ((), settings))
+    gains = _log_scores(held, after, settings) - _log_scores(held, before, ())
+    fit = errors(held, range(len(held.samples.presses)), before, after, settings, gains)
+    named = findings.best is not None
+    shown = findings.improved
+    return replace(
+        findings,
+        detection=replace(findings.detection, noise={**findings.detection.noise, **held.samples.noise_summaries()}),
+        held_out=fit if named else unimproved(fit),
+        unnamed=fit if best and not named else None,
+        baseline={**findings.baseline, **labelled(held, before, ())},
+        improved=None if shown is None else {**shown, **labelled(held, after, settings)},
+    )
+
+
+def _transferred(
+    models: tuple[ObservedModel, ObservedModel], starts: Sequence[Floats], settings: Sequence[Setting]
+) -> Floats:
+    """Nuisances (p,) of held-out runs: what is shared as in the training runs, the rest fitted from starts of both."""
+    train, held = models
+    known = _fitted(train, starts[0], settings, {})
+    shared = {one.name: value for one, value in zip(train.nuisances, known, strict=True) if one.run is None}
+    return _fitted(held, starts[1], settings, shared)
+
+
+def _fitted(model: ObservedModel, start: Floats, settings: Sequence[Setting], shared: dict[str, float]) -> Floats:
+    """Nuisances (p,) with these mechanisms on, within what is plausible; shared ones by name are not touched."""
+    values = start.copy()
+    frozen: Bools = np.array([one.run is None and one.name in shared for one in model.nuisances], dtype=bool)
+    values[frozen] = [shared[one.name] for one in model.nuisances if one.run is None and one.name in shared]
+    return relaxed(model, values, settings, np.ones(len(model.samples), dtype=bool), frozen)
+
+
+def _log_scores(model: ObservedModel, values: Floats, settings: Sequence[Setting]) -> Floats:
+    """Log-density (presses,) of each press alone, its own nuisances integrated out under their priors."""
+    system, samples = linearised(model, values, settings), model.samples
+    shared = np.flatnonzero([one.run is None for one in model.nuisances])
+    kept = np.setdiff1d(np.arange(len(system.sigma)), shared)
+    columns = system.weighted(system.excused)
+    white = system.weighted(system.residual) - columns[:, shared] @ values[shared]
+    scale = np.log(system.weight)
+    rows = [samples.press == number for number in range(len(samples.presses))]
+    return np.array([
+        Sums.of(columns[own][:, kept], white[own]).log_evidence(system.sigma[kept]) + float(scale[own].sum())
+        for own in rows
+    ])  # fmt: skip

@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from diagnose.forward import Candidate, Coordinate, Engine, Report, Setting, Signals
+from diagnose.forward import Candidate, Coordinate, Engine, PassingOn, Setting, Signals
 from diagnose.noise.lines import Line, basis
 from diagnose.noise.model import NoiseModel
-from diagnose.passing_on import PassingOn
-from diagnose.recording import Recording, Run
-from mesh.types import Floats
+from diagnose.signals.recording import Recording, Run
+from geometry.arrays import Floats
+from geometry.base import Report
 
 LOUD = 1.0  # power over that of all other noise, per whitened sample
 WIDEST = 10.0  # times the amplitude at rest: what a fit may reach

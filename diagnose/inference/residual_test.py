@@ -5,12 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import norm
 
-from diagnose.inference.quadratic import Quadratic
-from diagnose.inference.samples import Samples
-from diagnose.inference.system import System
-from diagnose.statistics.family_wise import null_energies, step_down
-from diagnose.statistics.nuisance import Marginal
-from mesh.types import Floats
+from diagnose.fit.samples import Samples
+from diagnose.fit.system import Quadratic, System
+from diagnose.statistics.cells import null_energies, step_down
+from diagnose.statistics.score_test import Marginal
+from geometry.arrays import Floats
 
 DRAWS = 1999
 UNTOUCHED = 1e-6  # of its prior variance: what a parameter must at least have learnt to be judged

@@ -1,19 +1,137 @@
-"""The press by which the surviving rivals part most, in sigma, after all that may float has floated."""
+"""The press by which the surviving rivals part most, in sigma, after all that may float has floated.
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+How far apart rivals are in a proposed press, once all that may float has floated as far as is still open.
+
+What may float is what an inference excuses too: nuisances, errors of the model, and of each mechanism's law.
+
+A recording that nobody has made yet, of one proposed press, and the engine that answers it.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+from typing import Any, cast
 
 import numpy as np
 
 from diagnose.findings import Findings, Model
-from diagnose.forward import Engine
-from diagnose.next_press.judge import Judge
-from diagnose.next_press.proposals import Proposal, base_setup, repeats
-from diagnose.next_press.variations import variations
-from diagnose.recording import Recording, Run
-from diagnose.statistics.design import best_press
-from diagnose.statistics.separation import least_separation
+from diagnose.fit.discrepancy import FORM
+from diagnose.fit.observed_model import ObservedModel
+from diagnose.fit.samples import Samples
+from diagnose.fit.system import Quadratic, System, linearised
+from diagnose.forward import Candidate, Engine, Setting, Signals
+from diagnose.next_press.proposals import Proposal, base_setup, repeats, variations
+from diagnose.noise.estimate import noise_models
+from diagnose.signals.recording import Recording, Run
+from diagnose.statistics.separation import best_press, least_separation, remaining_spread
+from geometry.arrays import Floats
+
+FREE_PHASE = "mains-hum"
+
+
+def without_phase(settings: Sequence[Setting]) -> tuple[Setting, ...]:
+    """Settings without hum: its phase is that of one run, and means nothing to another model or another press."""
+    return tuple(setting for setting in settings if setting.candidate.mechanism != FREE_PHASE)
+
+
+class ImaginedEngine:
+    """The part of an engine that fits ask for, with the proposed press as its only run."""
+
+    def __init__(self, engine: Engine, proposal: Proposal) -> None:
+        self._engine, self._proposal = engine, proposal
+        self.name, self.accuracy, self.candidates = engine.name, engine.accuracy, engine.candidates
+        self.free_nuisances = engine.free_nuisances
+
+    def nuisance(self, name: str) -> Candidate | None:
+        """As the engine."""
+        return self._engine.nuisance(name)
+
+    def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
+        """All channels of the press. ValueError where the engine cannot tell."""
+        kept = [setting for setting in settings if setting.candidate.mechanism != self._proposal.removes]
+        if self._proposal.number is not None:
+            return self._engine.predict(self._proposal.number, kept)
+        if not hasattr(self._engine, "imagine"):
+            raise ValueError(f"the model '{self.name}' can predict only the presses of the recording")
+        return self._engine.imagine(self._proposal.run, kept)
+
+
+STEP = 1e-3  # of a coordinate, for its slope
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What one rival says of a press. prediction : (n,) whitened. slopes : (n, q) by its coordinates."""
+
+    system: System
+    prediction: Floats
+    slopes: Floats
+
+
+class Judge:
+    """Rivals, and spreads (q, q): for each a root of the covariance that the recording leaves to its coordinates."""
+
+    def __init__(
+        self, recording: Recording, engine: Engine, rivals: Sequence[Model], fitted: Mapping[str, float]
+    ) -> None:
+        """fitted : nuisance that all runs share -> value. ValueError as the engine's."""
+        self.engine, self.fitted = engine, fitted
+        self.rivals = [without_phase(rival.settings) for rival in rivals]
+        self.specimen, self.noise = recording.specimen, noise_models(recording)
+        model = ObservedModel(Samples(recording, self.noise), engine)
+        self.spreads = [self._spread(self._answer(model, rival), rival) for rival in self.rivals]
+
+    def separations(self, proposal: Proposal) -> Floats:
+        """(pairs,) sigma between each two rivals. ValueError where the engine cannot tell."""
+        answers = self.answers(proposal)
+        pairs = combinations(range(len(answers)), 2)
+        return np.array([self._separation(answers[i], answers[j], self.spreads[i], self.spreads[j]) for i, j in pairs])
+
+    def answers(self, proposal: Proposal) -> list[Answer]:
+        """What each rival says of a press. ValueError where the engine cannot tell."""
+        run = proposal.run
+        noise = {(run.label, name): self.noise[run.label, name] for name in run.answers}
+        samples = Samples(Recording((run,), self.specimen), noise)
+        model = ObservedModel(samples, cast(Engine, ImaginedEngine(self.engine, proposal)))
+        return [self._answer(model, rival) for rival in self.rivals]
+
+    def _answer(self, model: ObservedModel, settings: tuple[Setting, ...]) -> Answer:
+        values = np.array([0.0 if n.run is not None else self.fitted.get(n.name, 0.0) for n in model.nuisances])
+        prediction = model.vector(values, settings)
+        slopes = [(model.vector(values, moved) - prediction) / step for moved, step in _moved(settings)]
+        return Answer(
+            linearised(model, values, settings, FORM),
+            prediction,
+            np.column_stack([np.zeros((len(prediction), 0)), *slopes]),
+        )
+
+    def _spread(self, answer: Answer, settings: Sequence[Setting]) -> Floats:
+        """From what the recording tells of the coordinates, and what is plausible without it."""
+        widths = [c.high - c.low for setting in settings for c in setting.candidate.coordinates]
+        slopes = answer.system.weighted(answer.slopes)
+        told = answer.system.quadratic.product(slopes, slopes)
+        return remaining_spread(told + np.diag(np.square(1.0 / np.array(widths))))
+
+    def _separation(self, one: Answer, other: Answer, *spreads: Floats) -> float:
+        """The expected separation of statistics/design.py, by inner products: presses may have many samples."""
+        weight = 1.0 / np.sqrt(np.maximum(one.system.variance, other.system.variance))[:, None]
+        open_still = np.column_stack([one.slopes @ spreads[0], other.slopes @ spreads[1]])
+        columns = np.column_stack([open_still, one.system.excused, other.system.excused])
+        sigma = np.concatenate([np.ones(open_still.shape[1]), one.system.sigma, other.system.sigma])
+        difference = weight[:, 0] * (one.prediction - other.prediction)
+        return float(np.sqrt(max(Quadratic(weight * columns, sigma).square(difference), 0.0)))
+
+
+def _moved(settings: Sequence[Setting]) -> Iterator[tuple[list[Setting], float]]:
+    """The settings with one coordinate after the other a little nearer to the middle of its range, and by how much."""
+    for number, setting in enumerate(settings):
+        for which, coordinate in enumerate(setting.candidate.coordinates):
+            value = setting.values[which]
+            towards = 1.0 if value < 0.5 * (coordinate.low + coordinate.high) else -1.0
+            step = towards * STEP * (abs(value) + STEP * (coordinate.high - coordinate.low))
+            values = tuple(v + step if n == which else v for n, v in enumerate(setting.values))
+            yield [replace(s, values=values) if n == number else s for n, s in enumerate(settings)], step
+
 
 MOST_RIVALS = 3
 PLAUSIBLE = 0.01  # a model below this probability is no rival

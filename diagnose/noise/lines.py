@@ -1,6 +1,8 @@
 """Mains lines: sinusoids at 50 or 60 Hz and its harmonics, found by an F test against the neighbouring frequencies.
 
 After Thomson, Proc. IEEE 70 (1982) 1055, with single periodogram ordinates in place of tapered ones.
+
+The step of an analogue-to-digital converter, seen in the values it gave.
 """
 
 from collections.abc import Sequence
@@ -10,7 +12,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 from scipy.stats import f as f_distribution
 
-from mesh.types import Floats
+from geometry.arrays import Floats
 
 MAINS_HZ = (50.0, 60.0)
 DEVIATION_HZ = 0.3  # of the mains' frequency
@@ -97,3 +99,22 @@ def _sharpened(near: float, orders: list[int], time: Floats, values: Floats, dur
     best = min(fine, key=lost)
     step = float(fine[1] - fine[0])
     return float(minimize_scalar(lost, bounds=(best - step, best + step), method="bounded").x)
+
+
+LEVELS = 3  # fewer different values show no step
+SHARE = 0.99  # of the differences that must be whole multiples
+
+
+def quantisation_step(values: Floats) -> float | None:
+    """Step of which all differences of the finite values (n,) are whole multiples; None for a fine or dense scale."""
+    levels = np.unique(values[np.isfinite(values)])
+    span = float(np.ptp(levels)) if len(levels) else 0.0
+    if len(levels) < LEVELS:
+        return None
+    distance = np.diff(levels)
+    distance = distance[distance > 1e-9 * span]
+    smallest = float(distance.min())
+    step = float(np.median(distance[distance < 1.5 * smallest]))
+    multiples = distance / step
+    near = np.abs(multiples - np.round(multiples)) < 0.05 * np.maximum(1.0, np.log10(multiples + 1.0))
+    return step if float(near.mean()) >= SHARE else None

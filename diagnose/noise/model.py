@@ -12,11 +12,10 @@ from typing import Any
 import numpy as np
 from scipy.signal import lfilter, lfiltic
 
-from diagnose.noise.autoregression import Autoregression
-from diagnose.noise.innovations import innovations
+from diagnose.noise.autoregression import Autoregression, innovations
 from diagnose.noise.lines import Line, basis
-from diagnose.sampling import even_pieces, is_even
-from mesh.types import Bools, Floats
+from diagnose.signals.recording import even_pieces, is_even
+from geometry.arrays import Bools, Floats
 
 SAME_RATE = 0.1  # relative: at another rate the autoregression says only how large the noise is
 

@@ -1,10 +1,17 @@
-"""What a verdict is worth against the truth: one case."""
+"""What a verdict is worth against the truth: one case.
 
-from collections.abc import Callable, Mapping, Sequence
+All scores as rates with Wilson's intervals.
+"""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
-from typing import Any
+from itertools import pairwise
+from typing import Any, TypeVar
 
-from diagnose.prove.world.cases import LEFT_OUT, NONE, OUTSIDE
+import numpy as np
+
+from diagnose.prove.world.cases import AMBIGUOUS, LEFT_OUT, NONE, OUTSIDE, PAIR, SINGLE
+from diagnose.statistics.abstain import wilson_interval
 
 Name = tuple[str, str]
 LARGEST_GROUP = 3
@@ -142,3 +149,87 @@ def _covered(true: Sequence[Mapping[str, Any]], named: Sequence[Mapping[str, Any
             if interval is not None and interval["low"] is not None and interval["high"] is not None:
                 found[f"{one['mechanism']}.{name}"] = interval["low"] <= value <= interval["high"]
     return found
+
+
+CLEAR = 5.0
+"""Size from which an effect has to be named."""
+EDGES = (0.0, 0.35, 0.75, 1.5, 3.5, 7.5, 15.0, np.inf)
+ON_FLOOR = 1.2
+Item = TypeVar("Item")
+
+
+def rate(items: Iterable[Item], holds: Callable[[Item], bool]) -> dict[str, Any]:
+    """Of how many it holds, with the 95 % interval."""
+    found = [bool(holds(item)) for item in items]
+    return share(sum(found), len(found))
+
+
+def share(count: int, of: int) -> dict[str, Any]:
+    """The same of numbers."""
+    if of == 0:
+        return {"count": 0, "of": 0, "rate": None, "low": None, "high": None}
+    low, high = wilson_interval(count, of)
+    return {"count": count, "of": of, "rate": count / of, "low": low, "high": high}
+
+
+def tally(scores: Sequence[Score]) -> dict[str, Any]:
+    """Every rate of the proof."""
+    of = {kind: [s for s in scores if s.kind == kind] for kind in (NONE, SINGLE, PAIR, LEFT_OUT, OUTSIDE, AMBIGUOUS)}
+    clear = [s for s in of[SINGLE] if s.size >= CLEAR]
+    told = [s for s in scores if s.exact and s.held_out is not None]
+    covered = [(name, holds) for s in scores for name, holds in s.covered.items()]
+    return {
+        "false_names_without_effect": rate(of[NONE], lambda s: bool(s.named)),
+        "false_alarms_without_effect": rate(of[NONE], lambda s: s.detected),
+        "abstention_left_out": rate(of[LEFT_OUT], lambda s: not s.named),
+        "abstention_outside": rate(of[OUTSIDE], lambda s: not s.named),
+        "abstention_unknown_clear": rate(
+            [s for s in of[LEFT_OUT] + of[OUTSIDE] if s.size >= CLEAR], lambda s: s.abstained),
+        "clear_named_or_grouped": rate(clear, lambda s: s.grouped),
+        "clear_exact": rate(clear, lambda s: s.exact),
+        "clear_component": rate(clear, lambda s: s.component),
+        "pairs_exact": rate(of[PAIR], lambda s: s.exact),
+        "ambiguous_told": rate(of[AMBIGUOUS], lambda s: s.group > 1 or not s.named),
+        "next_press_resolves": rate([s for s in scores if s.resolved is not None], lambda s: bool(s.resolved)),
+        "held_out_on_floor": rate(told, lambda s: (s.held_out or 0.0) <= ON_FLOOR),
+        "covered": rate(covered, lambda one: one[1]),
+        "covered_by_value": {name: rate([h for n, h in covered if n == name], bool) for name in
+                             sorted({n for n, _ in covered})},
+        "mean_group": float(np.mean([s.group for s in clear if s.grouped])) if any(s.grouped for s in clear) else None,
+        "mean_overlap": _mean([s.overlap for s in of[SINGLE] if s.overlap is not None]),
+        "by_size": _by_size(of[SINGLE]),
+        "by_mechanism": _by_mechanism(of[SINGLE]),
+        "seconds_per_case": _mean([s.seconds for s in scores]),
+    }  # fmt: skip
+
+
+def _by_size(scores: Sequence[Score]) -> list[dict[str, Any]]:
+    """Detection and naming against the size of the effect."""
+    bins = []
+    for low, high in pairwise(EDGES):
+        inside = [s for s in scores if low <= s.size < high]
+        if inside:
+            bins.append({
+                "from": low, "to": high if np.isfinite(high) else None,
+                "median": float(np.median([s.size for s in inside])),
+                "detected": rate(inside, lambda s: s.detected), "named": rate(inside, lambda s: s.grouped),
+                "wrong": rate(inside, lambda s: bool(s.named) and not s.grouped),
+            })  # fmt: skip
+    return bins
+
+
+def _by_mechanism(scores: Sequence[Score]) -> dict[str, Any]:
+    """Of clear effects and of all, by mechanism and component."""
+    names = sorted({s.truth for s in scores})
+    return {
+        " + ".join(f"{m} ({c})" for m, c in name): {
+            "all": rate([s for s in scores if s.truth == name], lambda s: s.grouped),
+            "clear": rate([s for s in scores if s.truth == name and s.size >= CLEAR], lambda s: s.grouped),
+        }
+        for name in names
+    }
+
+
+def _mean(values: Sequence[float | None]) -> float | None:
+    known = [value for value in values if value is not None]
+    return float(np.mean(known)) if known else None

@@ -1,6 +1,17 @@
-"""One case from its seed to its score: conceal, commit, diagnose in the clean room, reveal, verify, compare."""
+"""One case from its seed to its score: conceal, commit, diagnose in the clean room, reveal, verify, compare.
 
-from collections.abc import Callable, Mapping
+The press that a verdict asks for, made in the hidden world, and whether the longer recording settles the name.
+
+Commit, diagnose, reveal, verify: a truth is fixed by a hash before anybody looks at its recording.
+
+A commitment is the SHA-256 of a random salt and the truth as canonical JSON. The salt keeps short truths from being
+guessed; nobody can exchange the truth afterwards (Blum, Coin flipping by telephone, 1981).
+"""
+
+import hashlib
+import json
+import secrets
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -11,12 +22,71 @@ from diagnose.prove import rivals
 from diagnose.prove.folder import files
 from diagnose.prove.room import Heard, diagnosed
 from diagnose.prove.score import Name, Score, scored
-from diagnose.prove.seal import seal, verified
-from diagnose.prove.settle import with_asked
-from diagnose.prove.world.bench import BENCHES
-from diagnose.prove.world.cases import Case, concealed, rival_family
+from diagnose.prove.world.bench import BENCHES, Bench, Run, traced
+from diagnose.prove.world.cases import Case, concealed, pressed_again, rival_family
 from diagnose.prove.world.effects import EFFECTS, fits
+from diagnose.prove.world.reality import Signals
 from diagnose.prove.world.size import Judge
+
+SHAPE = frozenset({"speed_factor", "hold_s", "displacement_mm", "cycles"})
+"""Changes that the waveform holds already."""
+RESISTOR, CAPACITANCE = "input_resistance_MOhm", "input_capacitance_pF"
+
+
+def asked_run(bench: Bench, experiment: Mapping[str, Any], wave: str) -> Run | None:
+    """The run of next_experiment, its waveform as CSV text; None where this world cannot change what is asked."""
+    changes = experiment["changes"]
+    if not changes.keys() <= SHAPE | {RESISTOR, CAPACITANCE}:
+        return None
+    like = next(run for run in bench.runs if run.label == experiment["as_in"])
+    time_s, path_mm = np.loadtxt(wave.splitlines(), delimiter=",", skiprows=1, unpack=True)
+    added_pF = changes.get(CAPACITANCE, bench.amplifier.capacitance_pF) - bench.amplifier.capacitance_pF
+    return traced("as asked for", time_s, path_mm, changes.get(RESISTOR, like.resistance_MOhm), added_pF)
+
+
+def with_asked(
+    case: Case, runs: Sequence[Signals], experiment: Mapping[str, Any], wave: str
+) -> tuple[Bench, list[Signals]] | None:
+    """Bench and recording with one more run; None where it cannot be made here."""
+    bench = BENCHES[case.bench]
+    run = asked_run(bench, experiment, wave)
+    if run is None:
+        return None
+    try:
+        more = pressed_again(case, run)
+    except (RuntimeError, FloatingPointError):  # no equilibrium that deep
+        return None
+    return replace(bench, runs=(*bench.runs, run)), [*runs, more]
+
+
+@dataclass(frozen=True)
+class Sealed:
+    """A truth with its salt; digest is what may be shown before."""
+
+    truth: Mapping[str, Any]
+    salt: str
+
+    @property
+    def digest(self) -> str:
+        """SHA-256 in hexadecimal."""
+        return digest_of(self.truth, self.salt)
+
+
+def seal(truth: Mapping[str, Any]) -> Sealed:
+    """With a new salt of 256 bits."""
+    return Sealed(truth, secrets.token_hex(32))
+
+
+def digest_of(truth: Mapping[str, Any], salt: str) -> str:
+    """SHA-256 of salt and truth."""
+    text = json.dumps(truth, sort_keys=True, separators=(",", ":"), allow_nan=False)
+    return hashlib.sha256(f"{salt}\n{text}".encode()).hexdigest()
+
+
+def verified(truth: Mapping[str, Any], salt: str, digest: str) -> bool:
+    """Whether truth and salt are those of the digest."""
+    return secrets.compare_digest(digest_of(truth, salt), digest)
+
 
 FAST = "--fast-model-only"
 """What the full model presses again comes after the name and changes no score."""

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from diagnose.findings import Findings, Fit
-from diagnose.forward import Engine, Report, Setting, Signals
-from diagnose.next_press.imagined import without_phase
-from diagnose.recording import Recording, Run
-from mesh.types import Floats
+from diagnose.forward import Engine, Setting, Signals
+from diagnose.next_press.choose import without_phase
+from diagnose.signals.recording import Recording, Run
+from geometry.arrays import Floats
+from geometry.base import Report
 from solve.mechanisms import Mechanism
 
 TRAINING, HELD_OUT = "training", "held-out"

@@ -6,11 +6,10 @@ from dataclasses import dataclass
 from diagnose.figures import figure, p_equals, percent
 from diagnose.findings import Findings, Fit, Model
 from diagnose.next_press.choose import NextPress, surviving
-from diagnose.recording import Recording
-from diagnose.verdict.content import without_press
+from diagnose.signals.recording import Recording
+from diagnose.verdict.content import where_words, without_press
 from diagnose.verdict.names import interval_words, listed, model_words, short_name
 from diagnose.verdict.resimulation import Resimulated
-from diagnose.verdict.where import where_words
 
 
 @dataclass(frozen=True)

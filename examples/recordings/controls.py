@@ -9,9 +9,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnose.align import lag_between
-from diagnose.recording import Recording, Run
-from mesh.types import Floats
+from diagnose.signals.align import lag_between
+from diagnose.signals.recording import Recording, Run
+from geometry.arrays import Floats
 
 
 def shuffled(recording: Recording) -> Recording:

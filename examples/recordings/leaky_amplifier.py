@@ -14,12 +14,12 @@ from pathlib import Path
 
 import numpy as np
 
-from mesh.types import Floats
+from geometry.arrays import Floats
 from softdot import stages
 from softdot.actual import actual
 from softdot.config import config_from
+from softdot.config.toml import parse_toml
 from softdot.convert import run_text, write_recording
-from softdot.toml_file import parse_toml
 from solve.model import Physics
 from solve.parameters import Readout
 from solve.readout.amplifier import amplify

@@ -20,8 +20,8 @@ from scipy.ndimage import gaussian_filter1d
 from scipy.optimize import minimize_scalar
 from scipy.signal import decimate
 
-from diagnose.align import Lag, lag_between
-from mesh.types import Floats
+from diagnose.signals.align import Lag, lag_between
+from geometry.arrays import Floats
 from softdot.convert import run_text, write_recording
 
 RATE_HZ = 2000.0

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mesh.types import Floats
+from geometry.arrays import Floats
 from softdot.convert import run_text, white_noise, write_recording
 
 MODULUS = 1.0  # one sigma, relative: it is what the test is for

@@ -7,7 +7,7 @@ from typing import Any
 
 from geometry.assembly import cap_solid
 from geometry.base import InputError
-from geometry.dot_size import from_base
+from geometry.braille import from_base
 from geometry.solids import Part, upright_cylinder, volume_mm3
 
 

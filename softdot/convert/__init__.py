@@ -4,20 +4,16 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from softdot.convert.matlab import read_mat
-    from softdot.convert.oscilloscope import read_oscilloscope
-    from softdot.convert.rig_text import run_text
-    from softdot.convert.sheet import read_sheet
-    from softdot.convert.white import white_noise
-    from softdot.convert.write import write_recording
+    from softdot.convert.instruments import read_mat, read_oscilloscope, read_sheet
+    from softdot.convert.recording import run_text, white_noise, write_recording
 
 _HOMES = {
-    "read_mat": "matlab",
-    "read_oscilloscope": "oscilloscope",
-    "read_sheet": "sheet",
-    "run_text": "rig_text",
-    "white_noise": "white",
-    "write_recording": "write",
+    "read_mat": "instruments",
+    "read_oscilloscope": "instruments",
+    "read_sheet": "instruments",
+    "run_text": "recording",
+    "white_noise": "recording",
+    "write_recording": "recording",
 }
 __all__ = ["read_mat", "read_oscilloscope", "read_sheet", "run_text", "white_noise", "write_recording"]
 

@@ -8,8 +8,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from softdot.sweep.batch import solve_points
-    from softdot.sweep.run import run_sweep
+    from softdot.commands.sweep import run_sweep
+    from softdot.sweep.cluster import solve_points
     from softdot.sweep.space import Space, load_space, space_from
     from softdot.sweep.table import read_table
 
@@ -18,8 +18,8 @@ _HOMES = {
     "Space": "softdot.sweep.space",
     "load_space": "softdot.sweep.space",
     "read_table": "softdot.sweep.table",
-    "run_sweep": "softdot.sweep.run",
-    "solve_points": "softdot.sweep.batch",
+    "run_sweep": "softdot.commands.sweep",
+    "solve_points": "softdot.sweep.cluster",
     "space_from": "softdot.sweep.space",
 }
 

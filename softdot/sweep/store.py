@@ -11,14 +11,14 @@ from pathlib import Path
 from typing import Any
 
 from geometry.base import InputError
+from geometry.cache import read_checked, write_checked
 from geometry.files import whole_file
 from geometry.processes import hold
-from softdot.checked_record import read_checked, write_checked
 from softdot.config import Config, config_hash
 from softdot.numbers import plain, write_json
 from softdot.outcome import outcome_key
-from softdot.output_folder import Product, check_output
-from softdot.sweep.point import ACCIDENTS, Record
+from softdot.output import Product, check_output
+from softdot.sweep.points import ACCIDENTS, Record
 
 POINTS, TABLE, SPACE_COPY = "points", "sweep.parquet", "space.toml"
 CSV_TABLE, PICTURE, PAGE = "sweep.csv", "sweep.png", "report.html"
@@ -72,7 +72,7 @@ def kept(place: Path, config: Config) -> Record | None:
 
 def keep(place: Path, config: Config, record: Record) -> Record:
     """Write the summary of a point, whole or not at all, and return it."""
-    from softdot.version import installed_version
+    from softdot.numbers import installed_version
 
     summary: dict[str, Any] = plain({
         "format": POINT_FORMAT,
@@ -94,8 +94,7 @@ def finish(
     place: Path, rows: list[dict[str, Any]], axes: Sequence[str], text: str | None, summary: Mapping[str, Any]
 ) -> None:
     """Replace tables, picture, page, space and, last, the summary. axes : the columns that the sweep has varied."""
-    from softdot.sweep.report import draw, write_csv, write_report
-    from softdot.sweep.table import write_table
+    from softdot.sweep.table import draw, write_csv, write_report, write_table
 
     write_table(place / TABLE, rows)
     write_csv(place / CSV_TABLE, rows)

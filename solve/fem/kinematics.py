@@ -6,7 +6,7 @@ F = 1 + du/dX, C = F^t F, J = det F (Holzapfel, Nonlinear Solid Mechanics, 2000,
 import numba as nb
 import numpy as np
 
-from mesh.types import Floats
+from geometry.arrays import Floats
 from solve.materials.isochoric import I_OF, J_OF
 
 

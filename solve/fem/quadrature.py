@@ -4,7 +4,7 @@ from itertools import permutations
 
 import numpy as np
 
-from mesh.types import Floats
+from geometry.arrays import Floats
 
 
 def _orbit(*barycentric: float) -> Floats:

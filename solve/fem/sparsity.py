@@ -13,7 +13,7 @@ import numba as nb
 import numpy as np
 import scipy.sparse as sp
 
-from mesh.types import Floats, Ints
+from geometry.arrays import Floats, Ints
 
 
 @dataclass(frozen=True)

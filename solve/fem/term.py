@@ -7,7 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mesh.types import Bools, Floats, Ints, TetMesh
+from geometry.arrays import Bools, Floats, Ints
+from mesh.types import TetMesh
 
 History = Any  # arrays that a term carries from one converged state to the next; None for one without memory
 

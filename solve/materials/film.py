@@ -29,7 +29,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy.linalg
 
-from mesh.types import Floats
+from geometry.arrays import Floats
 from solve.materials.inelastic import Memory, Response
 from solve.materials.isochoric import strain_rotation
 from solve.materials.parameters import PiezoelectricFilm

@@ -24,7 +24,7 @@ from typing import Protocol
 import numpy as np
 from scipy.special import erf
 
-from mesh.types import Floats
+from geometry.arrays import Floats
 
 Memory = tuple[Floats, ...]  # arrays whose first axis counts the quadrature points
 

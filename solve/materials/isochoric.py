@@ -10,7 +10,7 @@ Symmetric tensors as six numbers: 11, 22, 33, 12, 23, 13; strains carry engineer
 import numba as nb
 import numpy as np
 
-from mesh.types import Floats
+from geometry.arrays import Floats
 
 I_OF = np.array([0, 1, 2, 0, 1, 0])
 J_OF = np.array([0, 1, 2, 1, 2, 2])

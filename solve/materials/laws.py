@@ -10,7 +10,7 @@ from typing import Protocol
 
 import numpy as np
 
-from mesh.types import Floats
+from geometry.arrays import Floats
 from solve.materials.isochoric import isochoric_energy, isochoric_stress, to_voigt
 from solve.materials.parameters import Hyperfoam, Linear, Material, MooneyRivlin, NeoHookean, Ogden, Yeoh
 from solve.materials.principal_stretches import HyperfoamLaw, log_stretches, principal_stress

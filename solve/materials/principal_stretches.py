@@ -25,7 +25,7 @@ import numba as nb
 import numpy as np
 from scipy.special import exprel
 
-from mesh.types import Floats
+from geometry.arrays import Floats
 from solve.materials.isochoric import I_OF, J_OF
 
 PAIR_A, PAIR_B = np.array([0, 1, 0]), np.array([1, 2, 2])

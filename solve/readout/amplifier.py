@@ -9,7 +9,7 @@ The input is integrated exactly for what is linear between the samples; then com
 import numba as nb
 import numpy as np
 
-from mesh.types import Floats
+from geometry.arrays import Floats
 from solve.model import Physics
 from solve.parameters import Readout
 from solve.readout.filters import Filter, Saturation

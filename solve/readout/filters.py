@@ -24,7 +24,7 @@ import numpy as np
 from scipy.linalg import expm
 from scipy.signal import butter, impulse, tf2ss
 
-from mesh.types import Floats
+from geometry.arrays import Floats
 
 SAMPLES = 4001  # of the even grid of a filter, at least
 

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from mesh.types import Floats
+from geometry.arrays import Floats
 from solve.model import Physics
 from solve.parameters import Press, Readout, Waveform
 from solve.readout.amplifier import amplify

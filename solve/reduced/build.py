@@ -14,9 +14,10 @@ from itertools import combinations
 
 import numpy as np
 
+from geometry.arrays import Floats
 from geometry.dot import DotShape
 from geometry.parameters import Dot, Segment
-from mesh.types import Floats, TetMesh
+from mesh.types import TetMesh
 from solve.interfaces import open_interfaces
 from solve.materials.inelastic import Prony
 from solve.materials.parameters import Material, PiezoelectricFilm

@@ -14,7 +14,7 @@ Reading the table of a reduced model: outputs as a function of depth and of the 
 import numba as nb
 import numpy as np
 
-from mesh.types import Floats, Ints
+from geometry.arrays import Floats, Ints
 
 STEPS = 60  # of the search for a depth
 CLOSE = 1e-12  # of the full depth

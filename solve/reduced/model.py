@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mesh.types import Floats, Ints
+from geometry.arrays import Floats, Ints
 from solve.materials.inelastic import Prony
 from solve.model import Physics
 from solve.parameters import Readout

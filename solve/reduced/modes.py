@@ -14,7 +14,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from mesh.types import Floats
+from geometry.arrays import Floats
 from solve.fem.term import History, Term
 from solve.solution.linear import LinearSolver
 from solve.system import State, System

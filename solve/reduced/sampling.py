@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import brentq
 
-from mesh.types import Floats
+from geometry.arrays import Floats
 from solve.fem.term import History, Term
 from solve.materials.inelastic import Memory, Prony, Response
 from solve.press import Setup

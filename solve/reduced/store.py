@@ -9,16 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from geometry.cache import read_arrays, write_arrays
-from mesh.cache import folder
-from mesh.fingerprint import data_hash, files_hash, mesh_hash
+from geometry.cache import data_hash, folder, read_arrays, source_hash, write_arrays
+from mesh.types import mesh_hash
 from solve.reduced.fit import Fit
 from solve.reduced.model import Accuracy, ReducedModel, structure
 
 if TYPE_CHECKING:
     from solve.reduced.build import Case
-
-ROOT = Path(__file__).parents[1]  # the solver: any change of its code makes another model
 
 
 def key(case: "Case", check: bool) -> str:
@@ -31,7 +28,7 @@ def key(case: "Case", check: bool) -> str:
         "dot": [dot.kind, dot.radius_mm, dot.height_mm, repr(dot), *places],
         "asked": [case.depth_mm, list(case.relaxing.items()), structure(case.physics), case.depth_nodes, check],
         "mesh": mesh_hash(case.tet_mesh),
-        "solver": files_hash(ROOT.rglob("*.py")),
+        "solver": source_hash("solve.reduced.build"),
     }
     return data_hash(content)
 

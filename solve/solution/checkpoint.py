@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from geometry.arrays import Floats
 from geometry.cache import read_arrays, write_arrays
-from mesh.types import Floats
 from solve.recorder import Recorder
 from solve.result import Fields, Record, Step
 from solve.system import Load, State

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mesh.types import Floats, Ints
+from geometry.arrays import Floats, Ints
 from solve.fem.kinematics import deformation_gradient, smallest_jacobian
 from solve.solution.linear import LinearSolveError
 from solve.solution.newton import LostContactError, NoEquilibriumError

@@ -26,7 +26,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import LinearOperator, gmres, splu
 
-from mesh.types import Floats
+from geometry.arrays import Floats
 from solve.fem.sparsity import Tangent
 
 KRYLOV_ITERATIONS = 18  # with a factorisation of the same matrix

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from mesh.types import Floats
+from geometry.arrays import Floats
 from solve.solution.failure import explained, rim_met
 from solve.solution.linear import LinearSolver
 from solve.solution.newton import NoEquilibriumError, equilibrate

@@ -10,7 +10,8 @@ from functools import cached_property
 import numpy as np
 from scipy.interpolate import BSpline, make_interp_spline
 
-from mesh.types import Floats, Ints, TetMesh
+from geometry.arrays import Floats, Ints
+from mesh.types import TetMesh
 from solve.solution.linear import LinearSolver
 from solve.solution.march import march
 from solve.solution.newton import NoEquilibriumError, equilibrate

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from mesh.types import Bools, Floats
+from geometry.arrays import Bools, Floats
 from solve.solution.linear import LinearSolveError, LinearSolver
 from solve.system import Evaluation, Load, State, System
 from solve.terms.solid import InvertedElementError

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
+from geometry.arrays import Bools, Floats
 from geometry.base import InputError
 from geometry.files import read_text, regular_file
-from mesh.types import Bools, Floats
 from solve.parameters import Press, Waveform
 from solve.system import Load
 

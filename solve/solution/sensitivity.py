@@ -19,9 +19,10 @@ from dataclasses import dataclass, fields, replace
 from itertools import pairwise
 from typing import NamedTuple
 
+from geometry.arrays import Floats
 from geometry.dot import resolve_dot
 from mesh.interfaces import morphed
-from mesh.types import Floats, TetMesh
+from mesh.types import TetMesh
 from solve.fem.sparsity import Tangent
 from solve.interfaces import OpenInterface, open_interfaces
 from solve.model import Model

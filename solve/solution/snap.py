@@ -14,7 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from mesh.types import Floats
+from geometry.arrays import Floats
 from solve.fem.term import Trial
 from solve.solution.linear import LinearSolveError, LinearSolver
 from solve.solution.newton import NoEquilibriumError, equilibrate

@@ -18,8 +18,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from geometry.arrays import Bools, Floats, Ints
 from geometry.dot import DotShape
-from mesh.types import Bools, Floats, Ints
 from solve.fem.quadrature import linear, quadratic, triangle
 from solve.fem.term import Block, History, Term, Trial, Unknowns
 

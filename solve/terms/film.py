@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mesh.types import Floats, Ints
+from geometry.arrays import Floats, Ints
 from solve.fem.kernels import film_solid
 from solve.fem.kinematics import deformation_gradient, green_lagrange
 from solve.fem.quadrature import physical_gradients, quadratic, tetrahedron

@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mesh.types import Bools, Floats, Ints
+from geometry.arrays import Bools, Floats, Ints
 from solve.fem.term import Block, History, Term, Trial
 from solve.terms.contact import ACTIVE_SET_STIFFNESS, HATS, SHAPES, ContactFacets
 

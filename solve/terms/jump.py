@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numba as nb
 import numpy as np
 
-from mesh.types import Floats, Ints
+from geometry.arrays import Floats, Ints
 from solve.fem.quadrature import quadratic
 
 

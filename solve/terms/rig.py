@@ -28,7 +28,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mesh.types import Floats, Ints
+from geometry.arrays import Floats, Ints
 from solve.fem.term import Block, History, Term, Trial
 
 FADE = 0.5  # spectral radius at infinite frequency

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mesh.types import Floats, Ints
+from geometry.arrays import Floats, Ints
 from solve.fem.kernels import compressible_solid, mixed_solid
 from solve.fem.kinematics import cauchy_green, deformation_gradient, smallest_jacobian
 from solve.fem.quadrature import linear, physical_gradients, quadratic, tetrahedron

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mesh.types import Floats, Ints
+from geometry.arrays import Floats, Ints
 from solve.fem.quadrature import triangle
 from solve.fem.term import Block, History, Term, Trial
 from solve.materials.inelastic import Prony, Response

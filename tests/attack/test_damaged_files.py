@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mesh import cache
+from geometry.cache import recall, remember
+from mesh.build import remembered
 from mesh.types import LinearMesh
 from softdot.config import config_from
-from softdot.remembered import recall, remember
 from softdot.sweep import store as points
 from solve.solution.checkpoint import read_archive, write_archive
 
@@ -32,7 +32,7 @@ def mesh_answer() -> object:
         anew.append(1)
         return a_mesh()
 
-    found = cache.remembered("attack", make)
+    found = remembered("attack", make)
     return None if anew else (found.points_mm.tolist(), found.tets.tolist(), found.region_names)
 
 

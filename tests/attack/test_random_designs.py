@@ -16,10 +16,9 @@ import pytest
 
 from geometry.base import InputError
 from softdot.config import Config, config_from
-from softdot.held_rim import held_rim_warnings
 from softdot.numbers import plain
-from softdot.run_warnings import design_warnings, result_warnings
 from softdot.summary import mesh_part, press_part
+from softdot.warnings import design_warnings, held_rim_warnings, result_warnings
 from solve.mechanisms import MECHANISMS
 from solve.solution.newton import ROUNDED_TOLERANCE
 from tests.attack.random_designs import design, keys_of_schema, keys_set

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from diagnose.align import clock_between, lag_between
 from diagnose.noise.autoregression import Autoregression
 from diagnose.noise.model import NoiseModel
+from diagnose.signals.align import clock_between, lag_between
 
 WHITE = Autoregression(np.zeros(0), 1.0)
 SLOW = Autoregression(np.array([0.8]), 0.36)

@@ -6,10 +6,10 @@ import re
 import numpy as np
 import pytest
 
-from diagnose import columns
-from diagnose.checks import refuse_slow_sampling
+from diagnose.signals import columns
+from diagnose.signals.checks import refuse_slow_sampling
 from geometry.base import InputError
-from softdot.rig_file import load_rig
+from softdot.config.rig import load_rig
 from tests.diagnose.rigs import COUPON, HEAD, RUN, SEGMENT, csv_text, samples, write_rig
 
 GOOD = HEAD + SEGMENT + RUN

@@ -12,8 +12,8 @@ from diagnose.noise.autoregression import fit_autoregression
 from diagnose.noise.estimate import noise_models
 from diagnose.noise.model import NoiseModel
 from geometry.base import InputError
+from softdot.config.rig import load_rig
 from softdot.convert import read_mat, read_oscilloscope, read_sheet, white_noise, write_recording
-from softdot.rig_file import load_rig
 from tests.diagnose.rigs import HEAD, RUN, SEGMENT, samples
 
 TIME, FIRST, SECOND = [-0.02, -0.01, 0.0, 0.01], [0.1, 0.2, 0.3, 0.4], [1.0, 2.0, 3.0, 4.0]

@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 
-from diagnose.noise.estimate import noise_models
-from diagnose.noise.rest import resting
-from diagnose.phases import segmented
+from diagnose.noise.estimate import noise_models, resting
+from diagnose.signals.phases import segmented
 from geometry.base import InputError
-from softdot.rig_file import load_rig
+from softdot.config.rig import load_rig
 from tests.diagnose.rigs import COUPON, HEAD, RUN, SEGMENT, samples, write_rig
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from diagnose.phases import PHASES, segmented
-from diagnose.sampling import even_pieces, gaps, rates_Hz
+from diagnose.signals.phases import PHASES, segmented
+from diagnose.signals.recording import even_pieces, gaps, rates_Hz
 from tests.diagnose.rigs import trapezoid
 
 TIME = 1e-3 * np.arange(4000)

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diagnose.tables import NUISANCES
-from softdot.rig_file import load_rig
+from diagnose.signals.tables import NUISANCES
+from softdot.config.rig import load_rig
 from tests.diagnose.rigs import COUPON, HEAD, RUN, SEGMENT, csv_text, samples, write_rig
 
 FULL = """format = "softdot-recording/1"

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnose.recording import Recording
-from diagnose.thinning import ENOUGH, LEAST_Hz, averaged, thinned
+from diagnose.signals.reading import ENOUGH, LEAST_Hz, averaged, thinned
+from diagnose.signals.recording import Recording
 from tests.diagnose.segment.rigs import run
 
 RATE_Hz = 1000.0

@@ -8,8 +8,8 @@ from export.build_sheet.contents import gauging
 from export.build_sheet.page import checks
 from export.build_sheet.steps import steps
 from geometry.base import InputError
+from softdot.commands.kit import contents_of
 from softdot.config import config_from
-from softdot.kit.make import contents_of
 
 EFFECTORS = {
     "none": None,

@@ -10,7 +10,7 @@ import pytest
 from mesh_samples import dot, options, segment
 
 import mesh
-from mesh import child
+from mesh import tetwild_process as child
 from mesh.types import MeshingError
 
 

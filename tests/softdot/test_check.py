@@ -11,9 +11,9 @@ from softdot import stages
 from softdot.actual import actual
 from softdot.cli import main
 from softdot.config import config_from, load_config
+from softdot.config.defaults import completed
+from softdot.config.errors import mistakes
 from softdot.cost import expected_cost
-from softdot.default_design import completed
-from softdot.mistakes import mistakes
 from tests.softdot.random_mistakes import invalid_configurations
 from tests.softdot.toml_text import toml_text
 

@@ -5,7 +5,7 @@ import pytest
 from geometry.base import InputError
 from softdot import stages
 from softdot.config import config_hash, load_config
-from softdot.rig_file import load_rig
+from softdot.config.rig import load_rig
 
 DEFAULT = load_config()
 

@@ -16,9 +16,9 @@ import mesh.parameters
 import solve.materials.parameters
 import solve.mechanisms
 import solve.parameters
+from softdot.commands.new import config_schema
 from softdot.config import Config, config_from
-from softdot.default_design import completed
-from softdot.schema import config_schema
+from softdot.config.defaults import completed
 from softdot.summary import heading, mesh_part, press_part
 from tests.softdot.stand_ins import result_of
 

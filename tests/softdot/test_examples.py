@@ -18,8 +18,8 @@ from geometry.dot import resolve_dot
 from mesh.parameters import MeshOptions
 from softdot import stages
 from softdot.actual import actual
+from softdot.commands.run import run_config
 from softdot.config import Config, config_hash, load_config
-from softdot.run import run_config
 from softdot.summary import history
 from solve.mechanisms import MECHANISMS
 from solve.model import Physics

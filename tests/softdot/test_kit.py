@@ -10,10 +10,10 @@ import pytest
 import trimesh
 
 from softdot.cli import main
-from softdot.kit import make
-from softdot.kit.budget import Budget, Effect
-from softdot.kit.responses import Response
-from softdot.kit.tolerances import Tolerance
+from softdot.commands import kit as make
+from softdot.tolerances.budget import Budget, Effect
+from softdot.tolerances.responses import Response
+from softdot.tolerances.tolerances import Tolerance
 from solve.solution.linear import LinearSolveError
 from solve.solution.sensitivity import StoppedShortError
 from tests.softdot.conftest import MINIMAL

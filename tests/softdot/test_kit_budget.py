@@ -3,11 +3,10 @@
 import pytest
 
 from softdot.config import config_from
-from softdot.kit import budget as budget_module
-from softdot.kit.budget import budget_of
-from softdot.kit.factors import FACTORS, factor_key, with_factors
-from softdot.kit.responses import KitPress, Response, coarser, mesh_of, path_matters, slopes_along, value_along
-from softdot.kit.tolerances import shifts, tolerances
+from softdot.tolerances import budget as budget_module
+from softdot.tolerances.budget import budget_of
+from softdot.tolerances.responses import KitPress, Response, coarser, mesh_of, path_matters, slopes_along, value_along
+from softdot.tolerances.tolerances import FACTORS, factor_key, shifts, tolerances, with_factors
 
 TABLES = {
     "segment": {

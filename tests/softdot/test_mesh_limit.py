@@ -7,7 +7,7 @@ from geometry.dot import resolve_dot
 from mesh.build import build
 from mesh.parameters import MeshOptions
 from softdot.config import load_config
-from softdot.mesh_limit import expected_tetrahedra, refuse_huge_mesh
+from softdot.cost import expected_tetrahedra, refuse_huge_mesh
 
 SEGMENT = load_config().segment
 DOT = resolve_dot(load_config().dot, SEGMENT)

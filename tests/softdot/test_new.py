@@ -9,9 +9,8 @@ from softdot import stages
 from softdot.actual import actual
 from softdot.arguments import TEMPLATES
 from softdot.cli import main
+from softdot.commands.new import TABLES, config_schema, template_text
 from softdot.config import config_from, config_hash, load_config
-from softdot.new_command import TABLES, template_text
-from softdot.schema import config_schema
 
 
 @pytest.mark.parametrize("name", TEMPLATES)

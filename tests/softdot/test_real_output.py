@@ -14,8 +14,8 @@ from PIL import Image
 from geometry.assembly import build_parts
 from geometry.dot import resolve_dot
 from mesh.parameters import MeshOptions
+from softdot.commands.run import run_config
 from softdot.config import Config, load_config
-from softdot.run import run_config
 from solve.parameters import Press
 
 DEPTH_MM, LOAD_STEPS = 0.2, 2

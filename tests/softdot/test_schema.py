@@ -4,8 +4,8 @@ import tomllib
 
 import pytest
 
+from softdot.commands.new import config_schema
 from softdot.config import config_from, config_hash, load_config
-from softdot.schema import config_schema
 
 EVERY_KEY = """
 [segment]

@@ -17,13 +17,12 @@ import pytest
 from geometry.base import InputError
 from softdot.cli import main
 from softdot.config import Config, config_from
+from softdot.console import Logged
 from softdot.outcome import outcome
-from softdot.progress import Logged
+from softdot.sweep import cluster as scheduler_module
 from softdot.sweep import read_table, run_sweep, solve_points, space_from
-from softdot.sweep import scheduler as scheduler_module
 from softdot.sweep.cluster import NO_DASHBOARD, local_cluster
-from softdot.sweep.point import TINY
-from softdot.sweep.stream import solve_all
+from softdot.sweep.points import TINY, solve_all
 from tests.softdot.complaints import complaints
 from tests.softdot.interrupts import heard
 from tests.softdot.sweep_spaces import DEPTHS, depths, space_of
@@ -124,13 +123,13 @@ def test_a_sweep_on_a_cluster_that_runs_already(scheduler, space, tmp_path):
 
 
 def test_workers_with_another_softdot_are_refused(scheduler, space, tmp_path, capfd, monkeypatch):
-    monkeypatch.setattr(scheduler_module, "source_hash", lambda: str(time.perf_counter_ns()))
+    monkeypatch.setattr(scheduler_module, "source_hash", lambda _: str(time.perf_counter_ns()))
     said = refused(space, scheduler.scheduler_address, tmp_path, capfd)
     assert said.endswith("has another softdot; install the same one there")
 
 
 def test_workers_without_softdot_are_refused(scheduler, space, tmp_path, capfd, monkeypatch):
-    def absent():
+    def absent(_):
         raise ModuleNotFoundError("No module named 'softdot'")
 
     monkeypatch.setattr(scheduler_module, "source_hash", absent)

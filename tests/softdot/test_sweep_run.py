@@ -9,9 +9,9 @@ import pytest
 from geometry.base import InputError
 from softdot import outcome as outcome_module
 from softdot.cli import main
+from softdot.commands import sweep as run_module
 from softdot.sweep import read_table, run_sweep, space_from, store
-from softdot.sweep import run as run_module
-from softdot.sweep.point import CRASHED, LOST, NOT_CONVERGED, REFUSED, failed, solve_point
+from softdot.sweep.points import CRASHED, LOST, NOT_CONVERGED, REFUSED, failed, solve_point
 from softdot.sweep.table import write_table
 from tests.softdot.complaints import complaints
 from tests.softdot.stand_ins import result_of
@@ -211,7 +211,7 @@ def test_a_damaged_summary_is_solved_again(presses, tmp_path, out, monkeypatch):
 
 def test_a_changed_program_solves_again(presses, tmp_path, out, monkeypatch):
     sweep(tmp_path, out, depths(0.1))
-    monkeypatch.setattr(outcome_module, "source_hash", lambda: "of another program")
+    monkeypatch.setattr(outcome_module, "source_hash", lambda _: "of another program")
     presses.depths = []
     sweep(tmp_path, out, depths(0.1))
     assert presses.depths == [0.1]

@@ -8,7 +8,7 @@ import pytest
 
 from softdot.cli import main
 from softdot.config import config_from
-from softdot.toml_file import parse_toml
+from softdot.config.toml import parse_toml
 
 TEXT = (Path(__file__).parents[2] / "docs" / "tutorial.md").read_text("utf-8")
 

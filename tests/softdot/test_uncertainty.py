@@ -5,7 +5,7 @@ import pytest
 from softdot import stages
 from softdot.actual import actual
 from softdot.config import config_from
-from softdot.kit.responses import KitPress
+from softdot.tolerances.responses import KitPress
 from softdot.uncertainty import uncertainty
 from solve.solution.sensitivity import StoppedShortError
 

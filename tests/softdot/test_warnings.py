@@ -6,8 +6,7 @@ import pytest
 
 from geometry.dot import resolve_dot
 from softdot.config import config_from, load_config
-from softdot.held_rim import held_rim_warnings
-from softdot.run_warnings import design_warnings, result_warnings
+from softdot.warnings import design_warnings, held_rim_warnings, result_warnings
 from tests.softdot.stand_ins import cap_of_height, one_tetrahedron, result_of, step_at
 
 LAYERS = {"medium1": {"thickness_mm": 0.5}, "film": {"thickness_um": 28}, "medium2": {"thickness_mm": 2}}

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse.linalg import spsolve
 
-from mesh.types import Floats, Ints
+from geometry.arrays import Floats, Ints
 from solve.fem.kernels import scatter
 from solve.fem.quadrature import TET_EDGES
 from solve.fem.sparsity import build_pattern

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse.linalg import spsolve
 
+from geometry.arrays import Bools, Floats, Ints
 from mesh.layered import twins
-from mesh.types import Bools, Floats, Ints, TetMesh
+from mesh.types import TetMesh
 from solve.fem.kernels import scatter
 from solve.fem.sparsity import build_pattern
 from solve.fem.term import Term, Trial

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from mesh.types import Floats, Ints
+from geometry.arrays import Floats, Ints
 from solve.fem.kernels import scatter
 from solve.fem.sparsity import Tangent, build_pattern
 from solve.fem.term import Term, Trial

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mesh.types import Floats, Ints
+from geometry.arrays import Floats, Ints
 from tests.verification.lattice import FACES, Grid, disc
 
 CCX = shutil.which("ccx")

@@ -7,8 +7,8 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
+from geometry.arrays import Floats
 from geometry.dot import DotShape
-from mesh.types import Floats
 from solve.fem.term import Term, Trial, Unknowns
 from solve.materials.laws import MediumLaw
 from solve.terms.contact import ContactFacets, RigidDot, contact_facets

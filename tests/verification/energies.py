@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.special import erf
 
-from mesh.types import Floats
+from geometry.arrays import Floats
 from solve.fem.quadrature import linear, tetrahedron
 from solve.materials.film import FilmPlasticity
 from solve.materials.inelastic import Prony, Softening

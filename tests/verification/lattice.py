@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mesh.types import Bools, Floats, Ints
+from geometry.arrays import Bools, Floats, Ints
 from solve.fem.quadrature import TET_EDGES
 from tests.solve.box import KUHN
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mesh.types import Floats, Ints
+from geometry.arrays import Floats, Ints
 from solve.fem.term import Term
 from solve.terms.contact import SHAPES, SLOPES, WEIGHTS
 

@@ -8,22 +8,13 @@ from pathlib import Path
 
 import numpy as np
 
+from geometry.arrays import Floats, Ints
 from geometry.dot import DotShape
 from geometry.parameters import Segment
 from mesh.layered import layered
 from mesh.parameters import MeshOptions
 from mesh.quadratic import finished
-from mesh.types import (
-    TET_FACES,
-    Floats,
-    Ints,
-    LinearMesh,
-    TetMesh,
-    boundary_faces,
-    oriented,
-    signed_volumes,
-    without_unused,
-)
+from mesh.types import TET_FACES, LinearMesh, TetMesh, boundary_faces, oriented, signed_volumes, without_unused
 
 
 def quarter(stack: Segment, dot: DotShape, options: MeshOptions) -> LinearMesh:

@@ -7,11 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from diagnose.prove.world.bench import BENCHES, VOLTAGE_ONLY, Bench
+from diagnose.prove.world.bench import BENCHES, VOLTAGE_ONLY, Bench, Run
 from diagnose.prove.world.effects import EFFECTS, KNOWN, STAGED, UNKNOWN, applied, fits
 from diagnose.prove.world.made import Floats
 from diagnose.prove.world.noise import noises
-from diagnose.prove.world.programme import Run
 from diagnose.prove.world.reality import Reality, Signals, baseline, record
 from diagnose.prove.world.size import PER_RUN, Judge, channels, judge_of, noise_of, shares
 

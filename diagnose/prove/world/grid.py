@@ -1,11 +1,19 @@
-"""Rectangular elements of the stack, graded towards dot, film and sides: quadrilaterals, or bricks of a quarter."""
+"""Rectangular elements of the stack, graded towards dot, film and sides: quadrilaterals, or bricks of a quarter.
+
+Regions of the stack as arrays at integration points, and their element matrices.
+
+Displacements are quadratic; the volume change of a rubber is averaged over an element by least squares with linear
+functions (Simo, Taylor and Pister 1985), so that no pressure is left as an unknown.
+"""
 
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from skfem import MeshHex, MeshQuad  # type: ignore[import-untyped]
+from skfem import Basis, ElementHex2, ElementQuad2, MeshHex, MeshQuad  # type: ignore[import-untyped]
 
+from diagnose.prove.world import laws
+from diagnose.prove.world.laws import Memory, at_rest, respond
 from diagnose.prove.world.made import Film, Floats, Glue, Layer, Made
 
 AXIAL_MM = 0.04
@@ -89,3 +97,103 @@ def _rows(layer: Layer | Film | Glue, made: Made) -> Floats:
     count = min(max(2, round(layer.thickness_mm / ACROSS_MM[made.dot])), MOST_ACROSS[made.dot])
     even = np.linspace(0.0, 1.0, round(made.fine * count) + 1)
     return np.asarray(layer.thickness_mm * (even - TO_FACES[made.dot] * np.sin(2.0 * np.pi * even) / (2.0 * np.pi)))
+
+
+Indices = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Part:
+    """One layer. nodes : (m, a); gradient : (m, q, a, d); weight : (m, q); linear : (m, q, d + 1)."""
+
+    layer: Layer | Film | Glue
+    nodes: Indices
+    gradient: Floats
+    weight: Floats
+    linear: Floats
+
+    @property
+    def dofs(self) -> Indices:
+        """(m, a d) unknowns: node by node, component by component."""
+        d = self.gradient.shape[3]
+        return np.asarray((self.nodes[:, :, None] * d + np.arange(d)).reshape(len(self.nodes), -1))
+
+    def start(self) -> Memory | None:
+        """Memory at rest; None for what has none."""
+        return at_rest(self.layer, self.weight.size) if isinstance(self.layer, Layer) else None
+
+    def deformed(self, u: Floats) -> Floats:
+        """F (m q, 3, 3) for displacements (n, d); in two dimensions nothing moves along y."""
+        d = u.shape[1]
+        axes = np.array([0, 2] if d == 2 else [0, 1, 2])
+        inner = np.einsum("mqaj,mai->mqij", self.gradient, u[self.nodes])
+        f = np.broadcast_to(np.eye(3), (*self.weight.shape, 3, 3)).copy()
+        f[..., axes[:, None], axes] += inner
+        return f.reshape(-1, 3, 3)
+
+    def elements(self, u: Floats, old: Memory | None, step_s: float) -> tuple[Floats, Floats, Memory | None]:
+        """Residuals (m, a d), matrices (m, a d, a d), memory after the step. FloatingPointError when inside out."""
+        f = self.deformed(u)
+        if np.linalg.det(f).min() <= 0.0:
+            raise FloatingPointError("an element is turned inside out")
+        if isinstance(self.layer, Film):
+            _, p, tangent = laws.film_stress(self.layer, f)
+            return *self._integrated(p, tangent), None
+        new = old
+        if isinstance(self.layer, Layer) and old is not None:
+            p, tangent, new = respond(self.layer, f, old, step_s)
+        else:
+            _, p, tangent = laws.isochoric(self.layer, f)
+        j, _, _ = laws.volumetric(f, np.zeros(len(f)))
+        pressure, average = self._averaged(j - 1.0)
+        _, cofactor, bend = laws.volumetric(f, pressure)
+        residual, matrix = self._integrated(p + pressure[:, None, None] * cofactor, tangent + bend)
+        return residual, matrix + self._volume_matrix(cofactor, average), new
+
+    def _averaged(self, change: Floats) -> tuple[Floats, Floats]:
+        """Pressure (m q,), and the inverse (m, l, l) of the averaging."""
+        weighted = self.weight[..., None] * self.linear
+        inverse = np.linalg.inv(np.einsum("mql,mqk->mlk", weighted, self.linear))
+        share = np.einsum("mlk,mqk,mq->ml", inverse, weighted, change.reshape(self.weight.shape))
+        return laws.bulk_modulus(self.layer) * np.einsum("mql,ml->mq", self.linear, share).ravel(), inverse
+
+    def _volume_matrix(self, cofactor: Floats, inverse: Floats) -> Floats:
+        """Bulk modulus times the derivative of the averaged volume change, squared."""
+        b = np.einsum("mqij,mqaj->mqai", self._plane(cofactor), self.gradient)
+        rate = np.einsum("mq,mql,mqx->mlx", self.weight, self.linear, b.reshape(*self.weight.shape, -1))
+        return np.asarray(laws.bulk_modulus(self.layer) * rate.transpose(0, 2, 1) @ inverse @ rate)
+
+    def _plane(self, tensor: Floats) -> Floats:
+        """(m q, 3, 3) -> (m, q, d, d)."""
+        axes = np.array([0, 2] if self.gradient.shape[3] == 2 else [0, 1, 2])
+        return tensor[:, axes[:, None], axes].reshape(*self.weight.shape, len(axes), len(axes))
+
+    def _integrated(self, p: Floats, tangent: Floats) -> tuple[Floats, Floats]:
+        """Residuals and matrices of elements from stress and tangent at the points."""
+        m, q, a, d = self.gradient.shape
+        axes = np.array([0, 2] if d == 2 else [0, 1, 2])
+        residual = np.einsum("mq,mqij,mqaj->mai", self.weight, self._plane(p), self.gradient, optimize=True)
+        inner = tangent[:, axes[:, None, None, None], axes[:, None, None], axes[:, None], axes]
+        law = inner.reshape(m, q, d * d, d * d) * self.weight[..., None, None]
+        by_component = np.zeros((m, q, d, d, a, d))
+        for i in range(d):
+            by_component[:, :, i, :, :, i] = self.gradient.transpose(0, 1, 3, 2)
+        operator = by_component.reshape(m, q, d * d, a * d)
+        right = (law @ operator).reshape(m, q * d * d, a * d)
+        return residual.reshape(m, -1), operator.reshape(m, q * d * d, a * d).transpose(0, 2, 1) @ right
+
+
+def parts(made_layers: tuple[Layer | Film | Glue, ...], mesh: Grid) -> tuple[list[Part], Floats]:
+    """Every layer, and the places (n, d) of the nodes."""
+    element = ElementQuad2() if mesh.mesh.dim() == 2 else ElementHex2()
+    basis = Basis(mesh.mesh, element, intorder=4)
+    gradient = np.stack([field[0].grad for field in basis.basis]).transpose(2, 3, 0, 1)
+    where = np.asarray(basis.global_coordinates()).transpose(1, 2, 0)
+    weight, nodes = basis.dx, basis.element_dofs.T.astype(np.int64)
+    found = []
+    for number, layer in enumerate(made_layers):
+        inside = mesh.part == number
+        arms = where[inside] - where[inside].mean(axis=1, keepdims=True)
+        linear = np.concatenate([np.ones((*arms.shape[:2], 1)), arms / np.abs(arms).max()], axis=2)
+        found.append(Part(layer, nodes[inside], gradient[inside], weight[inside], linear))
+    return found, basis.doflocs.T

@@ -21,8 +21,6 @@ STEPS_PER_DEPTH = 18
 DIGEST = hashlib.sha256().digest_size
 STILL = 1e-4  # of the deepest press
 LONGEST, GROWTH, SHORTEST_S = 0.5, 1.5, 0.006
-MECHANICS = ("made", "grid", "laws", "memory", "parts", "stack", "march")
-"""Modules on which a solved press depends."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +61,7 @@ def table(made: Made, depth_mm: float) -> Table:
     if made.remembers:
         raise ValueError("what remembers has no table over depth")
     points = depth_mm * np.linspace(0.0, 1.0, POINTS[made.dot] + 1) ** GRADING
-    kept = _kept(f"table-{_mechanics()}-{made.key()}-{depth_mm:.6f}")
+    kept = _kept(f"table-{_program()}-{made.key()}-{depth_mm:.6f}")
     course = kept.read() or kept.write(_pressed(made, points, np.ones(len(points))))
     return Table(points, course)
 
@@ -71,7 +69,7 @@ def table(made: Made, depth_mm: float) -> Table:
 def through_time(made: Made, time_s: Floats, depth_mm: Floats) -> tuple[list[int], Course]:
     """Samples (m,) of the path (t,) of the dot at which it was solved, and the answers there; at rest at first."""
     marks = steps(time_s, depth_mm)
-    kept = _kept(f"time-{_mechanics()}-{made.key()}-{_digest(time_s[marks], depth_mm[marks])}")
+    kept = _kept(f"time-{_program()}-{made.key()}-{_digest(time_s[marks], depth_mm[marks])}")
     course = kept.read() or kept.write(_pressed(made, depth_mm[marks], np.diff(time_s[marks], prepend=time_s[0] - 1.0)))
     return marks, course
 
@@ -129,10 +127,10 @@ def _spline(depth_mm: Floats, values: Floats) -> CubicSpline:
 
 
 @cache
-def _mechanics() -> str:
-    """Hash of the program, so that an edit forgets what was kept."""
-    sources = (Path(__file__).with_name(f"{name}.py").read_bytes() for name in MECHANICS)
-    return hashlib.sha256(b"".join(sources)).hexdigest()[:16]
+def _program() -> str:
+    """Hash of the hidden world's own source, so that an edit forgets what was kept."""
+    sources = sorted(Path(__file__).parent.glob("*.py"))
+    return hashlib.sha256(b"".join(path.read_bytes() for path in sources)).hexdigest()[:16]
 
 
 def _digest(*arrays: Floats) -> str:

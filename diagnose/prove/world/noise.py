@@ -1,4 +1,7 @@
-"""Noise of the recorder: autoregressions fitted to rest in real recordings, scaled to a stated size."""
+"""Noise of the recorder: autoregressions fitted to rest in real recordings, scaled to a stated size.
+
+From charge to voltage by the trapezoidal rule on a finer grid, and filters of another kind than the rig states.
+"""
 
 import os
 import tomllib
@@ -6,10 +9,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 from scipy.linalg import solve_toeplitz
-from scipy.signal import lfilter, resample_poly
+from scipy.signal import bessel, butter, lfilter, resample_poly, sosfilt
 
 from diagnose.prove.world.made import Floats
 
@@ -74,3 +79,64 @@ def yule_walker(stretches: list[Floats], order: int = ORDER) -> Autoregression:
 def _rest(values: Floats, rate_Hz: float) -> Floats:
     """The first samples, before anything is touched, at the rate of the proof."""
     return np.asarray(resample_poly(values[: int(REST_S * RECORDED_HZ)], 1, round(RECORDED_HZ / rate_Hz))[4:-4])
+
+
+FINER = 8
+
+
+@dataclass(frozen=True)
+class Filter:
+    """cutoff_Hz at -3 dB; kind : "bessel", or "butterworth" as the rig states its own."""
+
+    cutoff_Hz: float
+    order: int
+    kind: Literal["bessel", "butterworth"] = "bessel"
+
+    def applied(self, voltage: Floats, rate_Hz: float) -> Floats:
+        """By the bilinear transform, from rest."""
+        if self.kind == "bessel":
+            sections = bessel(self.order, self.cutoff_Hz, fs=rate_Hz, output="sos", norm="mag")
+        else:
+            sections = butter(self.order, self.cutoff_Hz, fs=rate_Hz, output="sos")
+        return np.asarray(sosfilt(sections, voltage))
+
+
+@dataclass(frozen=True)
+class Amplifier:
+    """Input resistance and capacitance, filters in order, hum and a soft limit before them."""
+
+    resistance_MOhm: float | None
+    capacitance_pF: float
+    filters: tuple[Filter, ...] = ()
+    hum_V: float = 0.0
+    limit_V: float | None = None
+
+    def voltage(self, time_s: Floats, charge_pC: Floats, film_pF: float, hum_phase: float) -> Floats:
+        """Voltage (t,) for the charge (t,) of the film at even times (t,), from rest."""
+        rate = FINER * (len(time_s) - 1) / (time_s[-1] - time_s[0])
+        fine = time_s[0] + np.arange(FINER * (len(time_s) - 1) + 1) / rate
+        voltage = self._input(CubicSpline(time_s, charge_pC)(fine), film_pF, rate)
+        angle = 2.0 * np.pi * HUM_HZ * fine
+        voltage += self.hum_V * (np.sin(angle + hum_phase) + HARMONIC * np.sin(3.0 * (angle + hum_phase)))
+        if self.limit_V is not None:
+            voltage = _softly_clipped(voltage, self.limit_V)
+        for one in self.filters:
+            voltage = one.applied(voltage, rate)
+        return np.asarray(voltage[::FINER])
+
+    def _input(self, charge_pC: Floats, film_pF: float, rate_Hz: float) -> Floats:
+        """(C_f + C) V' = Q' - V / R; MOhm times pF is microseconds."""
+        capacitance = film_pF + self.capacitance_pF
+        half = 0.0 if self.resistance_MOhm is None else 0.5e6 / (rate_Hz * self.resistance_MOhm * capacitance)
+        gain = 1.0 / (capacitance * (1.0 + half))
+        return np.asarray(lfilter([gain, -gain], [1.0, -(1.0 - half) / (1.0 + half)], charge_pC - charge_pC[0]))
+
+
+def _softly_clipped(voltage: Floats, limit_V: float) -> Floats:
+    """A clip whose corners are those of log(1 + exp(x))."""
+    knee = limit_V / SHARPNESS
+    from_below, from_above = (np.logaddexp(0.0, (voltage + side) / knee) for side in (limit_V, -limit_V))
+    return np.asarray(knee * (from_below - from_above) - limit_V)
+
+
+HUM_HZ, HARMONIC, SHARPNESS = 49.98, 0.15, 8.0

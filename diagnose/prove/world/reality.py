@@ -1,18 +1,86 @@
-"""One reality: what was made, and everything between the stage, the film and the recorder."""
+"""One reality: what was made, and everything between the stage, the film and the recorder.
+
+Presses with memory at any strength, from three that are solved through time and kept.
+
+The difference to the elastic press is interpolated over the strength by the parabola through none, half and full
+(NODES), and scaled by the elastic answers of the specimen over those of the nominal stack.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 from scipy.special import erfc
 
-from diagnose.prove.world.amplifier import Amplifier
-from diagnose.prove.world.bench import Bench
-from diagnose.prove.world.made import Floats, Made
-from diagnose.prove.world.march import Course, Table, table
-from diagnose.prove.world.programme import Run
-from diagnose.prove.world.strengths import forgetful, scaled_memory
+from diagnose.prove.world.bench import Bench, Run
+from diagnose.prove.world.made import Floats, Layer, Made
+from diagnose.prove.world.march import Course, Table, table, through_time
+from diagnose.prove.world.noise import Amplifier
+
+NODES = 0.25, 0.5
+FAINT = 0.02
+
+
+def strength(made: Made) -> float:
+    """Of the one layer that remembers; 0 without."""
+    of = [
+        layer.spectrum.strength if layer.spectrum else layer.damage.loss if layer.damage else 0.0
+        for layer in made.layers
+        if isinstance(layer, Layer)
+    ]
+    if sum(value > 0.0 for value in of) > 1:
+        raise ValueError("at most one layer of a stack remembers in the proof")
+    return max(of)
+
+
+def with_strength(made: Made, value: float) -> Made:
+    """The same with the memory at another strength; 0 forgets."""
+    layers = []
+    for layer in made.layers:
+        if isinstance(layer, Layer) and layer.spectrum:
+            layer = replace(layer, spectrum=replace(layer.spectrum, strength=value) if value else None)
+        if isinstance(layer, Layer) and layer.damage:
+            layer = replace(layer, damage=replace(layer.damage, loss=value) if value else None)
+        layers.append(layer)
+    return replace(made, layers=tuple(layers))
+
+
+def forgetful(made: Made) -> Made:
+    """Without memory."""
+    return with_strength(made, 0.0)
+
+
+def scaled_memory(made: Made, time: Floats, path: Floats, elastic: Course, nominal: Course) -> Course:
+    """Answers (t,) to the path of the dot. ValueError beyond the largest strength that is solved."""
+    value = strength(made)
+    if value > NODES[-1]:
+        raise ValueError(f"a strength of {value:g} is beyond {NODES[-1]:g}")
+    marks, near = through_time(with_strength(made, NODES[0]), time, path)
+    far = through_time(with_strength(made, NODES[1]), time, path)[1]
+
+    def scaled(name: str) -> Floats:
+        own, base = getattr(elastic, name), getattr(nominal, name)
+        solved = [getattr(course, name) - base[marks] for course in (near, far)]
+        return _scaled(own, base, PchipInterpolator(time[marks], _parabola(value, *solved))(time))
+
+    return Course(np.where(path > 0.0, scaled("force_N"), 0.0), scaled("charge_pC"), elastic.area_mm2)
+
+
+def _parabola(value: float, near: Floats, far: Floats) -> Floats:
+    """Difference to the elastic press at a strength: a s + b s^2, which has the solved differences at both nodes."""
+    first, second = near / NODES[0], far / NODES[1]
+    bend = (second - first) / (NODES[1] - NODES[0])
+    return np.asarray(value * (first + bend * (value - NODES[0])))
+
+
+def _scaled(elastic: Floats, nominal: Floats, difference: Floats) -> Floats:
+    """elastic + ratio times the difference: only that is interpolated in time, for the path itself is known."""
+    faint = FAINT * float(np.abs(nominal).max())
+    ratio = np.where(np.abs(nominal) > faint, elastic / np.where(np.abs(nominal) > faint, nominal, 1.0), 1.0)
+    return np.asarray(elastic + ratio * difference)
+
 
 PYRO_PC_PER_MM2_K = 30.0
 Signals = dict[str, Floats]

@@ -8,10 +8,9 @@ from numpy.typing import NDArray
 from skfem import ElementHex2, ElementQuad2, FacetBasis  # type: ignore[import-untyped]
 
 from diagnose.prove.world import laws
-from diagnose.prove.world.grid import Grid, grid
+from diagnose.prove.world.grid import Grid, Indices, grid, parts
+from diagnose.prove.world.laws import Memory
 from diagnose.prove.world.made import Film, Floats, Layer, Made
-from diagnose.prove.world.memory import Memory
-from diagnose.prove.world.parts import Indices, parts
 
 try:
     from pypardiso import spsolve

@@ -1,4 +1,7 @@
-"""Between free and clamped: sides held by springs, from none to rigid, with the paper's cases as end points."""
+"""Between free and clamped: sides held by springs, from none to rigid, with the paper's cases as end points.
+
+Everything that this part solves.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -6,10 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from softdot.config import Config
-from softdot.paper.beyond.trials import Press, press_of
-from softdot.paper.presses import solve_named
-from softdot.paper.reading import segment_config
-from softdot.progress import Progress
+from softdot.console import Progress
+from softdot.paper.beyond.designs import Press, Trial, press_of
+from softdot.paper.beyond.ranking import Ranking, rank
+from softdot.paper.beyond.search import GOALS, Search, compare, search
+from softdot.paper.published import segment_config
+from softdot.paper.section import solve_named
 
 STIFFNESS_N_PER_MM3 = tuple(float(f"{k:.2g}") for k in np.geomspace(0.1, 1e4, 11))
 """Two a decade. A wall of modulus E and thickness t gives about E / t."""
@@ -72,3 +77,25 @@ def elastic(config: Config, stiffness: float) -> Config:
     """The same segment with the sides of its held layers on springs, in N/mm³."""
     changes = {"boundary": "elastic", "side_stiffness_N_per_mm3": stiffness}
     return config.model_copy(update={"segment": config.segment.model_copy(update=changes)})
+
+
+@dataclass(frozen=True)
+class Beyond:
+    """What was solved. compared: model -> the paper's final design, then the best one for each of GOALS."""
+
+    curves: Mapping[str, Curve]
+    ranking: Ranking
+    search: Search
+    compared: Mapping[str, Sequence[Trial]]
+
+
+def solve_beyond(progress: Progress) -> Beyond:
+    """Solve what is not remembered. NotSolvedError."""
+    progress.stage("between free and clamped")
+    curves = solve_curves(progress)
+    progress.stage("what predicts the output")
+    ranking = rank(progress)
+    progress.stage("design search")
+    found = search(progress, dict(ranking.constants))
+    progress.stage("designs compared")
+    return Beyond(curves, ranking, found, compare([found.best(goal).design for goal in GOALS], progress))

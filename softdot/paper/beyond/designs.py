@@ -1,4 +1,7 @@
-"""The designs of a segment that can be made: what may vary, within which limits, and the press that judges one."""
+"""The designs of a segment that can be made: what may vary, within which limits, and the press that judges one.
+
+Designs pressed with free and with clamped sides.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import astuple, dataclass, replace
@@ -7,9 +10,10 @@ from typing import Any
 import numpy as np
 from scipy.stats import qmc
 
-from mesh.types import Floats
+from geometry.arrays import Floats
 from softdot.config import Config
-from softdot.paper.reading import Boundary, Reading, segment_config
+from softdot.console import Progress
+from softdot.paper.published import Boundary, Reading, segment_config
 
 FILMS_UM = (9.0, 28.0, 52.0, 110.0)
 """Thicknesses of drawn PVDF film that are sold: MSI Piezo Film Sensors Technical Manual, p. 3."""
@@ -33,7 +37,7 @@ class Design:
 
 
 PAPERS = Design(0.5, 5.0, 2.0, 1.0, 1.0, 1.0, 28.0)
-"""The paper's final design; its effector's height is fitted, see softdot.paper.reading."""
+"""The paper's final design; its effector's height is fitted, see softdot.paper.published."""
 LOW = Design(SHEET_MM[0], SOFT_MPA[0], 0.5, SOFT_MPA[0], SHEET_MM[0], SOFT_MPA[0], FILMS_UM[0])
 HIGH = Design(SHEET_MM[1], SOFT_MPA[1], 4.0, SOFT_MPA[1], 1.5, SOFT_MPA[1], FILMS_UM[-1])
 
@@ -73,3 +77,78 @@ def design_config(design: Design, boundary: Boundary, reading: Reading, mesh: Ma
         effector_height_mm=design.effector_height_mm, effector_MPa=design.effector_MPa, e1_MPa=design.e1_MPa,
         load_steps=3, mesh=mesh,
     )  # fmt: skip
+
+
+BOUNDARIES: tuple[Boundary, Boundary] = ("free", "clamped")
+
+
+@dataclass(frozen=True)
+class Press:
+    """One press at its full depth."""
+
+    force_N: float
+    voltage_V: float
+    """Open circuit."""
+    charge_pC: float
+    capacitance_pF: float
+    film_stress_MPa: float
+    """Largest principal stress of the film, a mean over an element of the mesh."""
+
+    def voltage_behind_V(self, cable_pF: float) -> float:
+        """With a cable and an amplifier of this capacitance beside the film, which lose no charge."""
+        return self.charge_pC / (self.capacitance_pF + cable_pF)
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One design with both boundaries."""
+
+    design: Design
+    free: Press
+    clamped: Press
+
+    @property
+    def presses(self) -> tuple[Press, Press]:
+        """Free, clamped."""
+        return self.free, self.clamped
+
+    def worse_V(self, cable_pF: float = 0.0) -> float:
+        """The smaller of the two voltages: open circuit, or behind a cable."""
+        return min(press.voltage_behind_V(cable_pF) for press in self.presses)
+
+    @property
+    def force_N(self) -> float:
+        """The larger of the two forces."""
+        return max(press.force_N for press in self.presses)
+
+    @property
+    def film_stress_MPa(self) -> float:
+        """The larger of the two film stresses."""
+        return max(press.film_stress_MPa for press in self.presses)
+
+
+def solve_trials(
+    designs: Sequence[Design], reading: Reading, mesh: Mapping[str, Any], progress: Progress
+) -> list[Trial]:
+    """Press every design with both boundaries; a design of which one press does not converge is left out."""
+    from softdot.sweep import solve_points
+
+    configs = [design_config(design, boundary, reading, mesh) for design in designs for boundary in BOUNDARIES]
+    records = solve_points(configs, progress)
+    pairs = zip(designs, records[::2], records[1::2], strict=True)
+    return [Trial(design, press_of(free), press_of(held)) for design, free, held in pairs if _solved(free, held)]
+
+
+def _solved(*records: Mapping[str, Any]) -> bool:
+    return all(record["status"] == "solved" for record in records)
+
+
+def press_of(outcome: Mapping[str, Any]) -> Press:
+    """The numbers that count here from the outcome of a press."""
+    return Press(
+        force_N=outcome["reaction_force_N"][-1],
+        voltage_V=outcome["open_circuit_voltage_V"][-1],
+        charge_pC=outcome["film_charge_pC"][-1],
+        capacitance_pF=outcome["film"]["capacitance_pF"],
+        film_stress_MPa=outcome["film"]["max_principal_stress_MPa"],
+    )

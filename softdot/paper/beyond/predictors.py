@@ -9,12 +9,16 @@ from typing import cast
 
 import numpy as np
 
-from mesh.types import Floats
-from softdot.paper.analytical.beam import bending_softness
-from softdot.paper.analytical.composite import plane_strain_modulus_Pa
-from softdot.paper.analytical.softness import index_of_modulus, index_of_thickness, softness
+from geometry.arrays import Floats
+from softdot.paper.analytical.formulas import (
+    bending_softness,
+    index_of_modulus,
+    index_of_thickness,
+    plane_strain_modulus_Pa,
+    softness,
+)
 from softdot.paper.beyond.designs import Design
-from softdot.paper.reading import INDENTATION_MM, LENGTH_MM, POISSON_RATIO, RIDGE_RADIUS_MM
+from softdot.paper.published import INDENTATION_MM, LENGTH_MM, POISSON_RATIO, RIDGE_RADIUS_MM
 from solve.materials.film import VACUUM_PERMITTIVITY
 from solve.materials.parameters import PiezoelectricFilm, find_material
 

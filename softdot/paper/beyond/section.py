@@ -5,18 +5,24 @@ from pathlib import Path
 
 import numpy as np
 
-from softdot.paper.beyond import figures, tables
-from softdot.paper.beyond.claims import claims
-from softdot.paper.beyond.continuum import STIFFNESS_N_PER_MM3, WALLS, Curve
-from softdot.paper.beyond.designs import HIGH, LOW, PAPERS
-from softdot.paper.beyond.final import MESHERS
+from softdot.console import Progress
+from softdot.paper.beyond import tables
+from softdot.paper.beyond import tables as figures
+from softdot.paper.beyond.continuum import STIFFNESS_N_PER_MM3, WALLS, Beyond, Curve, solve_beyond
+from softdot.paper.beyond.designs import BOUNDARIES, HIGH, LOW, PAPERS, Trial
 from softdot.paper.beyond.ranking import CORRECTED, FOUR, SEVEN, correlations, scatter
-from softdot.paper.beyond.search import CABLE_PF, FIRST, FORCE_MARGIN, GOALS, STRESS_MARGIN
-from softdot.paper.beyond.study import Beyond, solve_beyond
-from softdot.paper.beyond.tolerance import COPIES, made_worse_V
-from softdot.paper.beyond.trials import BOUNDARIES, Trial
+from softdot.paper.beyond.search import (
+    CABLE_PF,
+    COPIES,
+    FIRST,
+    FORCE_MARGIN,
+    GOALS,
+    MESHERS,
+    STRESS_MARGIN,
+    made_worse_V,
+)
+from softdot.paper.beyond.tables import claims
 from softdot.paper.section import Block, Figure, Heading, Section
-from softdot.progress import Progress
 
 
 def section(progress: Progress, folder: Path) -> Section:

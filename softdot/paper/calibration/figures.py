@@ -1,19 +1,101 @@
-"""Pictures of p: its pieces, the two unknowns that decide, and the signal."""
+"""Pictures of p: its pieces, the two unknowns that decide, and the signal.
 
-from collections.abc import Mapping
+Which input resistance and press time give the printed p.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.optimize import brentq
 
-from softdot.paper.calibration import contours
-from softdot.paper.calibration.chain import pressed, recorded_V, times_s
-from softdot.paper.calibration.factor import PIECES, chain, charge_pC, dot_depth, factor
-from softdot.paper.calibration.inputs import INPUTS, Values, assumed
-from softdot.paper.calibration.ranges import Ranges, quantiles
-from softdot.paper.calibration.solved import FOAM, Solved
-from softdot.paper.drawing import CLAMPED, FREE, PAPER, SOFT, label, new_figure, save
+from geometry.arrays import Floats
+from softdot.paper.calibration.factor import (
+    PIECES,
+    Ranges,
+    chain,
+    charge_pC,
+    dot_depth,
+    factor,
+    pressed,
+    quantiles,
+    recorded_V,
+    swing_V,
+    times_s,
+)
+from softdot.paper.calibration.rig import INPUTS, Values, assumed
+from softdot.paper.calibration.solved import FOAM, SIMULATED, Curve, Solved
 from softdot.paper.published import published
+from softdot.paper.section import CLAMPED, FREE, PAPER, SOFT, label, new_figure, save
+
+RESISTANCES_MOHM = (0.1, 30.0)
+"""What is searched and drawn."""
+TIMES_S = tuple(float(t) for t in np.linspace(0.1, 0.5, 17))
+
+
+@dataclass(frozen=True)
+class Rest:
+    """What R and T do not change: ideal voltage, press of the real sensor, depth of its dot in mm."""
+
+    ideal_V: float
+    curve: Curve
+    depth_mm: float
+
+    def p(self, resistance_MOhm: float, press_time_s: float) -> float:
+        """p with the assumed inputs but these two."""
+        charge = charge_pC(self.curve, self.depth_mm, press_time_s)
+        values = assumed(resistance_MOhm=resistance_MOhm)
+        return self.ideal_V / swing_V(charge, self.curve.capacitance_pF, chain(values))
+
+
+def rest(solved: Solved) -> Rest:
+    """Everything but R and T as assumed."""
+    values = assumed()
+    real, read_mm = solved.curve(FOAM, values), solved.case.depth_mm
+    ideal = float(solved.curve(SIMULATED, values).voltage_at(read_mm))
+    return Rest(ideal, real, dot_depth(real, read_mm, values))
+
+
+def resistance_for(solved: Solved, p: float, press_time_s: float) -> float | None:
+    """Input resistance in MΩ that gives p at a press time; None where none between RESISTANCES_MOHM does."""
+
+    found = rest(solved)
+
+    def excess(logarithm: float) -> float:
+        return float(np.log(found.p(float(np.exp(logarithm)), press_time_s) / p))
+
+    low, high = np.log(RESISTANCES_MOHM)
+    if excess(low) * excess(high) > 0.0:
+        return None
+    return float(np.exp(brentq(excess, low, high, xtol=1e-4)))
+
+
+def time_for(solved: Solved, p: float, resistance_MOhm: float) -> float | None:
+    """Press time in s that gives p at an input resistance; None where none between TIMES_S does."""
+
+    found = rest(solved)
+
+    def excess(time_s: float) -> float:
+        return found.p(resistance_MOhm, time_s) - p
+
+    if excess(TIMES_S[0]) * excess(TIMES_S[-1]) > 0.0:
+        return None
+    return float(brentq(excess, TIMES_S[0], TIMES_S[-1], xtol=1e-4))
+
+
+def curve(solved: Solved, p: float, times_s: Sequence[float] = TIMES_S) -> list[tuple[float, float]]:
+    """Pairs of press time in s and resistance in MΩ that give p."""
+    found = [(time, resistance_for(solved, p, time)) for time in times_s]
+    return [(time, resistance) for time, resistance in found if resistance is not None]
+
+
+def grid(solved: Solved, resistances_MOhm: Floats, times_s: Floats) -> Floats:
+    """p (t, r) over press times (t,) and resistances (r,)."""
+    found = rest(solved)
+    return np.array([[found.p(float(r), float(t)) for r in resistances_MOhm] for t in times_s])
+
 
 COLOURS = {"I": FREE, "II": CLAMPED}
 PIECE_COLOURS = dict(zip(PIECES, ("#33658a", "#9dbf9e", "#e7cfa3", "#b5263b", "#8a949e"), strict=True))
@@ -69,10 +151,10 @@ def _number(panel: Any, place: float, height: float, text: str) -> None:
 def draw_map(rig: Mapping[str, Solved], folder: Path) -> Path:
     """p over input resistance and press time, and where it is what the paper prints."""
     figure, panels = new_figure(2, height_in=4.0)
-    resistances, times = np.geomspace(*contours.RESISTANCES_MOHM, 24), np.array(contours.TIMES_S)
+    resistances, times = np.geomspace(*RESISTANCES_MOHM, 24), np.array(TIMES_S)
     possible = INPUTS["resistance_MOhm"]
     for panel, (name, solved) in zip(panels, rig.items(), strict=True):
-        found = contours.grid(solved, resistances, times)
+        found = grid(solved, resistances, times)
         lines = panel.contour(resistances, times, found, LEVELS, colors=SOFT, linewidths=0.9)
         panel.clabel(lines, fmt="%g", fontsize=9)
         panel.contour(resistances, times, found, [printed(name)], colors=COLOURS[name], linewidths=2.6)

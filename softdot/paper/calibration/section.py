@@ -5,16 +5,14 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from softdot.paper.calibration import contours, figures, tables
-from softdot.paper.calibration.answers import answers, claims
-from softdot.paper.calibration.beam import tip_stiffness_N_per_mm
-from softdot.paper.calibration.factor import LEAKAGE, Factor, factors
-from softdot.paper.calibration.inputs import INPUTS, assumed
-from softdot.paper.calibration.ranges import SAMPLE_EXPONENT, Ranges, quantiles, ranges
-from softdot.paper.calibration.rig import FINENESS
+from softdot.console import Progress
+from softdot.paper.calibration import figures, tables
+from softdot.paper.calibration import figures as contours
+from softdot.paper.calibration.factor import LEAKAGE, SAMPLE_EXPONENT, Factor, Ranges, factors, quantiles, ranges
+from softdot.paper.calibration.rig import FINENESS, INPUTS, assumed, tip_stiffness_N_per_mm
 from softdot.paper.calibration.solved import Solved, solve_rig
+from softdot.paper.calibration.tables import answers, claims
 from softdot.paper.section import Block, Figure, Heading, Section
-from softdot.progress import Progress
 
 Rig = Mapping[str, Solved]
 

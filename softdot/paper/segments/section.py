@@ -1,17 +1,133 @@
-"""Part 3 of the study: the paper's simulations of one segment, in two readings."""
+"""Part 3 of the study: the paper's simulations of one segment, in two readings.
 
-from collections.abc import Mapping
+What the presses say, in sentences made from their numbers.
+"""
+
+from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from pathlib import Path
 
-from softdot.paper.reading import EFFECTOR_HEIGHT_MM, RIDGE_RADIUS_MM
+from softdot.console import Progress
+from softdot.paper.published import EFFECTOR_HEIGHT_MM, RIDGE_RADIUS_MM, published, segment_config
 from softdot.paper.section import Block, Figure, Heading, Section
-from softdot.paper.segments import figures, tables, trends
-from softdot.paper.segments.answers import answers
-from softdot.paper.segments.cases import CLAMPED, FREE
-from softdot.paper.segments.findings import changes, findings, yielding
-from softdot.paper.segments.solved import Press, Study, solve_study
-from softdot.progress import Progress
+from softdot.paper.segments import tables, trends
+from softdot.paper.segments.cases import (
+    ADDED_PAIRS,
+    CASES,
+    CLAMPED,
+    FORCE_CASES,
+    FREE,
+    LATER_PAIRS,
+    PAIRS,
+    Press,
+    Study,
+    answers,
+    solve_study,
+    title,
+)
+from softdot.paper.segments.trends import SHORT_NAMES, claims
+
+FINAL = "final-clamped"
+VERDICTS = {True: "true", False: "false", None: "undecided"}
+OUT_OF_REACH = 1.5
+"""A voltage this many times the paper's is not reproduced."""
+
+
+def findings(study: Study) -> list[str]:
+    """For the top of the page."""
+    slab, solid = (presses[FINAL] for presses in study.readings.values())
+    forces = [press.force_N / published()[f"section4.force.{name}"].value for name, press in _stated_forces(study)]
+    ratios = _voltage_ratios(study)
+    near = [ratio for ratio in ratios if ratio < OUT_OF_REACH]
+    return [
+        "Read as a cross-section 16 mm wide, the simulated numbers come back: six forces within "
+        f"{_furthest(forces)}, {len(near)} of {len(ratios)} voltages within {_furthest(near)}. Three sizes that the "
+        f"paper does not state had to be fitted for this. {_verdicts(study)}",
+        f"A true segment of 2.5 × 2.5 mm under a round dot gives {slab.force_N / solid.force_N:.0f} times less force "
+        f"and {slab.voltage_V / solid.voltage_V:.0f} times less voltage in the final clamped design; "
+        f"{_passing(study)}, and {_clamped_below_free(study)}.",
+        f"With held sides the voltage grows with depth to the power {slab.exponent:.1f} (cross-section) or "
+        f"{solid.exponent:.1f} (true segment): volts per millimetre are not a constant of such a sensor.",
+    ]
+
+
+def changes(study: Study) -> str:
+    """What the true segment changes in the paper's conclusions."""
+    both = claims(study)
+    other = [
+        f"“{slab.text}” ({VERDICTS[slab.holds]} in cross-section, {VERDICTS[solid.holds]} in a true segment)"
+        for slab, solid in zip(both[::2], both[1::2], strict=True)
+        if slab.holds is not solid.holds
+    ]
+    words = f"Verdicts that change: {'; '.join(other)}." if other else "No verdict on a trend changes."
+    return (
+        f"What the true segment changes: forces are {_span(study, lambda press: press.force_N)} times smaller and "
+        f"voltages {_span(study, lambda press: press.voltage_V)} times, since a round dot presses a small part of the "
+        f"film where a ridge presses its whole width; {_passing(study)}. {words} The factor 337 was found for a film "
+        "of 16 × 16 mm; it belongs to that film and its amplifier, so even the calibrated voltages of a true segment "
+        "are not what an amplifier would show."
+    )
+
+
+def yielding(study: Study) -> str:
+    """Where the film is stressed beyond its yield."""
+    film = segment_config("free", 0.8, 5.0).layer_materials()["film"]
+    limit = film.model_dump()["yield_stress_MPa"]
+    beyond = {
+        SHORT_NAMES[reading]: [title(name) for name in CASES if presses[name].film_stress_MPa > limit]
+        for reading, presses in study.readings.items()
+    }
+    words = "; ".join(f"{reading}: {', '.join(names) if names else 'none'}" for reading, names in beyond.items())
+    return (
+        f"PVDF film begins to yield at some {limit:g} MPa; neither the paper's simulation nor these presses let it. "
+        f"Cases whose largest film stress is beyond that: {words}."
+    )
+
+
+def _stated_forces(study: Study) -> list[tuple[str, Press]]:
+    return [(name, study.readings["plane-strain"][name]) for name in FORCE_CASES]
+
+
+def _voltage_ratios(study: Study) -> list[float]:
+    """Ours over the paper's: three sums, final free, final clamped."""
+    ours = answers(study)
+    keys = [f"section4.sum.{'+'.join(pair)}" for pair in ADDED_PAIRS] + ["fig10.final-free", "fig10.final-clamped"]
+    return [value / published()[key].value for key in keys if (value := ours[key].ours) is not None]
+
+
+def _furthest(ratios: list[float]) -> str:
+    return f"{100 * max(abs(ratio - 1) for ratio in ratios):.0f} %"
+
+
+def _verdicts(study: Study) -> str:
+    """How many trends hold in the cross-section."""
+    verdicts = [claim.holds for claim in claims(study) if claim.reading == SHORT_NAMES["plane-strain"]]
+    return (
+        f"Of {len(verdicts)} statements on trends {verdicts.count(True)} hold, {verdicts.count(False)} fail and "
+        f"{verdicts.count(None)} are not decided."
+    )
+
+
+def _passing(study: Study) -> str:
+    """How many designs pass the criterion in a true segment."""
+    rows = tables.criterion(study).rows
+    passed = sum(row[-1] is True for row in rows)
+    words = f"all {len(rows)} pairs" if passed == len(rows) else f"{passed or 'none'} of the {len(rows)} pairs"
+    return f"{words} of designs then come up to the paper's criterion of 50 mV"
+
+
+def _clamped_below_free(study: Study) -> str:
+    """How often held sides give less in a true segment."""
+    solid, pairs = study.readings["solid"], (*PAIRS, *LATER_PAIRS)
+    below = sum(solid[clamped].voltage_V < solid[free].voltage_V for clamped, free in pairs)
+    return f"held sides give less voltage than free ones in {below} of them"
+
+
+def _span(study: Study, quantity: Callable[[Press], float]) -> str:
+    """Smallest and largest ratio of cross-section over true segment."""
+    slab, solid = study.readings.values()
+    ratios = [quantity(slab[name]) / quantity(solid[name]) for name in CASES]
+    return f"{min(ratios):.2g} to {max(ratios):.2g}"
 
 
 def section(progress: Progress, folder: Path) -> Section:
@@ -81,7 +197,7 @@ def _two_readings(study: Study, folder: Path) -> list[Block]:
         "constants of a data sheet (d₃₁ 23, d₃₂ 2.3, d₃₃ −33 pC/N, relative permittivity 12).",
         tables.readings(study),
         Figure(
-            figures.draw_forces(study, folder),
+            tables.draw_forces(study, folder),
             "Forces",
             "Bars: ours, blue for free and red for clamped sides. Diamonds: the six forces that the paper states. The "
             "last one is not reached: the paper's force rises when medium 1 becomes thinner, ours falls.",
@@ -94,14 +210,14 @@ def _both_boundaries(study: Study, folder: Path) -> list[Block]:
     return [
         Heading("Free sides: the paper's Fig. 7"),
         Figure(
-            figures.draw_cases(study, FREE, folder, "fig07-free"),
+            tables.draw_cases(study, FREE, folder, "fig07-free"),
             "Segments with free sides",
             "Note the two scales. The paper prints no single values of its Fig. 7, only sums with the clamped cases. "
             "Its order F1 > F2 > F3, and F4 to F6 far below, is tested in both readings below.",
         ),
         Heading("Clamped sides: the paper's Fig. 8"),
         Figure(
-            figures.draw_cases(study, CLAMPED, folder, "fig08-clamped"),
+            tables.draw_cases(study, CLAMPED, folder, "fig08-clamped"),
             "Segments with clamped sides",
             "The thinner medium 1 (0.8 mm in C1, C2; 4 mm in C5, C6), the more the film is stretched. C1, C3, C5 have "
             "the soft medium 2.",
@@ -114,7 +230,7 @@ def _selected(study: Study, folder: Path) -> list[Block]:
     return [
         Heading("Selected designs: the paper's Fig. 10, and the 50 mV criterion"),
         Figure(
-            figures.draw_selected(study, folder),
+            tables.draw_selected(study, folder),
             "Free plus clamped voltage",
             "Bars: ours, free below and clamped on top. Diamonds: sums that the paper states. Dotted: its 50 mV limit.",
         ),
@@ -128,7 +244,7 @@ def _depth(study: Study, folder: Path) -> list[Block]:
     return [
         Heading("The voltage is not proportional to the depth"),
         Figure(
-            figures.draw_depth(study, folder),
+            tables.draw_depth(study, folder),
             "Voltage against depth",
             "On these axes a straight line is a power of the depth; n is its slope in the second half. Held sides "
             "give a much larger n than free ones, since there the film is stretched and stretch grows with the square "

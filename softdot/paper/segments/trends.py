@@ -3,13 +3,11 @@
 from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 
-from softdot.paper.analytical.softness import output_m
+from softdot.paper.analytical.formulas import output_m
 from softdot.paper.analytical.tables import recomputed
-from softdot.paper.published import published
-from softdot.paper.reading import Reading
+from softdot.paper.published import Reading, published
 from softdot.paper.section import Claim
-from softdot.paper.segments.cases import ADDED_PAIRS, PAIRS, title
-from softdot.paper.segments.solved import Press, Study
+from softdot.paper.segments.cases import ADDED_PAIRS, PAIRS, Press, Study, title
 
 Presses = Mapping[str, Press]
 Verdict = tuple[bool | None, str]

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from diagnose.coupon import coupon_engine
-from diagnose.recording import Recording, Run
-from diagnose.tables import Specimen
+from diagnose.engines.coupon import coupon_engine
+from diagnose.signals.recording import Recording, Run
+from diagnose.signals.tables import Specimen
 from solve.materials.parameters import NeoHookean
 
 TIME = np.linspace(0.0, 20.0, 401)

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from diagnose.coupon.kinematics import SimpleShear, Uniaxial
-from diagnose.coupon.memory import Relaxation, earlier_peaks, softened
-from diagnose.coupon.point import MaterialPoint
+from diagnose.engines.coupon.kinematics import SimpleShear, Uniaxial
+from diagnose.engines.coupon.point import MaterialPoint, Relaxation, earlier_peaks, softened
 from solve.materials.inelastic import Prony, Response, Softening
 from solve.materials.laws import InvariantLaw
 from solve.terms.solid import solid_region

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from diagnose.coupon import coupon_engine, improved_material
+from diagnose.engines.coupon import coupon_engine, improved_material
 from diagnose.forward import Setting
-from diagnose.recording import Recording
+from diagnose.signals.recording import Recording
 from geometry.base import InputError
 from softdot.config import config_from
 from solve.materials.parameters import Hyperfoam, Linear, MooneyRivlin, NeoHookean, Ogden, PiezoelectricFilm, Yeoh

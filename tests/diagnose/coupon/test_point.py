@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from scipy.special import erf
 
-from diagnose.coupon.kinematics import SimpleShear, Uniaxial
-from diagnose.coupon.memory import NO_SERIES
-from diagnose.coupon.point import MaterialPoint
+from diagnose.engines.coupon.kinematics import SimpleShear, Uniaxial
+from diagnose.engines.coupon.point import NO_SERIES, MaterialPoint
 from solve.materials.inelastic import Prony, Softening
 from solve.materials.laws import InvariantLaw, LinearLaw, OgdenLaw
 from solve.materials.principal_stretches import HyperfoamLaw

@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 
 from diagnose.inference.diagnose import diagnose
-from softdot.diagnosis.engines import engine_for
-from softdot.rig_file import load_rig
+from softdot.commands.diagnose import engine_for
+from softdot.config.rig import load_rig
 from tests.diagnose.real import NEEDED, control, converted, silent
 
 pytestmark = NEEDED

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from diagnose.inference.diagnose import diagnose
-from diagnose.recording import Recording
+from diagnose.signals.recording import Recording
 from solve.parameters import Readout
 from tests.diagnose.inference.toy import (
     CANDIDATES,

@@ -6,16 +6,16 @@ from functools import cache
 import numpy as np
 import pytest
 
+from diagnose.fit.baseline import believed, fitted_baseline
+from diagnose.fit.descent import descended, descent
+from diagnose.fit.discrepancy import FORM
+from diagnose.fit.intervals import intervals
+from diagnose.fit.observed_model import ObservedModel
+from diagnose.fit.refit import common_metric, fitted, largest_form
+from diagnose.fit.samples import Samples
+from diagnose.fit.system import linearised
 from diagnose.forward import Candidate, Coordinate
-from diagnose.inference.baseline import believed, fitted_baseline
-from diagnose.inference.descent import descended, descent
-from diagnose.inference.discrepancy import FORM
-from diagnose.inference.excess import excess, share_left
-from diagnose.inference.intervals import intervals
-from diagnose.inference.observed_model import ObservedModel
-from diagnose.inference.refit import common_metric, fitted, largest_form
-from diagnose.inference.samples import Samples
-from diagnose.inference.system import linearised
+from diagnose.inference.forecasts import excess, share_left
 from diagnose.noise.estimate import noise_models
 from tests.diagnose.inference.toy import CANDIDATES, Sensor, ToyEngine, small
 

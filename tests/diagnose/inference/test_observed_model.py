@@ -5,13 +5,11 @@ from functools import cache
 import numpy as np
 import pytest
 
+from diagnose.fit.discrepancy import allowance, columns, drive_noise
+from diagnose.fit.observed_model import ObservedModel
+from diagnose.fit.samples import Samples
+from diagnose.fit.system import linearised, live_rows
 from diagnose.forward import Setting
-from diagnose.inference.discrepancy import allowance, columns
-from diagnose.inference.drive_noise import drive_noise
-from diagnose.inference.live import live_rows
-from diagnose.inference.observed_model import ObservedModel
-from diagnose.inference.samples import Samples
-from diagnose.inference.system import linearised
 from diagnose.noise.estimate import noise_models
 from tests.diagnose.inference.toy import CANDIDATES, NUISANCE, Sensor, ToyEngine, small
 

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.signal import lfilter
 
 from diagnose.forward import Candidate, Coordinate
-from diagnose.recording import Recording, Run
+from diagnose.signals.recording import Recording, Run
 
 TAUS = (0.05, 0.5, 5.0)
 LEAK_S = 20.0  # time constant of the input

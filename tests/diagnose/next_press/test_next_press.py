@@ -7,14 +7,11 @@ import pytest
 from scipy.linalg import block_diag
 
 from diagnose.forward import Setting
-from diagnose.next_press.choose import next_press, surviving
-from diagnose.next_press.judge import Judge
-from diagnose.next_press.proposals import base_setup, repeats
-from diagnose.next_press.shape import Shape, recorded_shape
-from diagnose.next_press.variations import variations
-from diagnose.phases import segmented
-from diagnose.recording import Recording
-from diagnose.statistics.design import expected_separation
+from diagnose.next_press.choose import Judge, next_press, surviving
+from diagnose.next_press.proposals import Shape, base_setup, recorded_shape, repeats, variations
+from diagnose.signals.phases import segmented
+from diagnose.signals.recording import Recording
+from diagnose.statistics.separation import expected_separation
 from tests.diagnose.verdict.toy import LEAK, RELAXING, ToyEngine, fitted, found, toy_recording, toy_run
 
 LEAKS, RELAXES = fitted(LEAK, 0.5), fitted(RELAXING, 0.3, 0.5)

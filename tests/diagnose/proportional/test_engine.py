@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.special import erf
 
+from diagnose.engines.proportional import proportional_engine
 from diagnose.forward import Setting
-from diagnose.proportional import proportional_engine
-from diagnose.recording import Recording, Run
+from diagnose.signals.recording import Recording, Run
 from geometry.base import InputError
 from solve.parameters import Readout
 

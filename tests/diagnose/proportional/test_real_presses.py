@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import pytest
 
+from diagnose.engines.proportional import proportional_engine
 from diagnose.inference.diagnose import diagnose
-from diagnose.proportional import proportional_engine
-from softdot.rig_file import load_rig
+from softdot.config.rig import load_rig
 from tests.diagnose.real import NEEDED, control, converted, silent
 
 pytestmark = NEEDED

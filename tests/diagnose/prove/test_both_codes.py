@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
+from diagnose.engines.segment.prepared import SHARES as SHARES_OF_CHANGES
 from diagnose.forward import Setting
 from diagnose.prove.folder import files
 from diagnose.prove.world.bench import BENCHES
 from diagnose.prove.world.effects import applied
 from diagnose.prove.world.reality import baseline, record
 from diagnose.prove.world.stack import Stack
-from diagnose.segment.prepared import SHARES as SHARES_OF_CHANGES
-from softdot.diagnosis.engines import engine_for
-from softdot.rig_file import load_rig
+from softdot.commands.diagnose import engine_for
+from softdot.config.rig import load_rig
 
 SHARES = np.array([0.1, 0.25, 0.5, 0.75, 1.0])
 

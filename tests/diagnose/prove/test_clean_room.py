@@ -10,11 +10,11 @@ import pytest
 
 from diagnose.prove import room
 from diagnose.prove.guard import allowed_roots
-from diagnose.prove.seal import digest_of, seal, verified
+from diagnose.prove.trial import digest_of, seal, verified
 from geometry.processes import ONE_THREAD
 
 ROOT = Path(__file__).resolve().parents[3]
-FOREIGN = ("solve", "mesh", "geometry", "export", "softdot", "diagnose.forward", "diagnose.recording")
+FOREIGN = ("solve", "mesh", "geometry", "export", "softdot", "diagnose.forward", "diagnose.signals.recording")
 
 
 def run_guarded(where, code):
@@ -97,7 +97,8 @@ def test_the_process_gets_a_folder_with_the_recording_alone(monkeypatch, tmp_pat
 def test_the_truth_is_not_on_disk_while_a_case_is_diagnosed(monkeypatch, tmp_path):
     from diagnose.prove import trial
     from diagnose.prove.world.cases import Case, Truth
-    from softdot.proof import store, work
+    from softdot import proof as store
+    from softdot.commands import prove as work
 
     place = store.check(tmp_path / "out")
     store.begin(place)
@@ -144,7 +145,7 @@ def test_a_record_whose_truth_was_changed_is_not_kept(tmp_path):
     from dataclasses import asdict
 
     from diagnose.prove.world.cases import Case
-    from softdot.proof import store
+    from softdot import proof as store
 
     place, case = store.check(tmp_path / "out"), Case(1, 0, "none", "ridge-free")
     store.begin(place)
@@ -162,7 +163,7 @@ def test_a_record_with_a_changed_digit_is_told_of_and_not_used(tmp_path, caplog)
     from dataclasses import asdict
 
     from diagnose.prove.world.cases import Case
-    from softdot.proof import store
+    from softdot import proof as store
 
     place, case = store.check(tmp_path / "out"), Case(1, 0, "none", "ridge-free")
     store.begin(place)
@@ -181,7 +182,7 @@ def test_a_record_with_a_changed_digit_is_told_of_and_not_used(tmp_path, caplog)
 
 def test_the_generator_shares_no_code_with_what_it_tests():
     text = (
-        "import sys, diagnose.prove.world.cases, diagnose.prove.folder;"
+        "import sys, diagnose.prove.world.cases, diagnose.prove.room;"
         "print(*(n for n in sys.modules if n.split('.')[0] in ('solve','mesh','geometry','export','softdot')"
         " or (n.startswith('diagnose.') and not n.startswith('diagnose.prove'))))"
     )

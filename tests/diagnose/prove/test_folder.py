@@ -6,7 +6,7 @@ import pytest
 from diagnose.prove.folder import files, rig_text
 from diagnose.prove.world.bench import BENCHES, CLAMPED
 from diagnose.prove.world.size import channels
-from softdot.rig_file import load_rig
+from softdot.config.rig import load_rig
 
 
 def silent(bench):

@@ -5,10 +5,11 @@ from dataclasses import asdict
 
 import pytest
 
-from diagnose.prove.seal import seal
+from diagnose.prove.trial import seal
 from diagnose.prove.world.cases import LEFT_OUT, NONE, OUTSIDE
+from softdot import proof as store
 from softdot.cli import main
-from softdot.proof import run, store
+from softdot.commands import prove as run
 
 RIDGES = "ridge-clamped,ridge-free"
 
@@ -91,7 +92,7 @@ def test_bad_input_is_one_sentence(arguments, sentence, tmp_path, capsys):
 
 
 def test_without_the_other_code_it_says_what_to_install(monkeypatch, tmp_path, capsys):
-    monkeypatch.setattr("softdot.proof.command.find_spec", lambda _: None)
+    monkeypatch.setattr("softdot.commands.prove.find_spec", lambda _: None)
     assert main(["prove", "--cases", "1", "-o", str(tmp_path / "proof")]) == 2
     assert "pip install 'softdot[prove]'" in capsys.readouterr().err
 

@@ -2,12 +2,11 @@
 
 import pytest
 
-from diagnose.prove.score import scored
-from diagnose.prove.tally import rate, tally
+from diagnose.prove.score import rate, scored, tally
 from diagnose.prove.world.bench import BENCHES
 from diagnose.prove.world.cases import KINDS, NONE, OUTSIDE, PAIR, SINGLE, plan
 from diagnose.prove.world.effects import fits
-from diagnose.statistics.wilson import wilson_interval
+from diagnose.statistics.abstain import wilson_interval
 
 LEAK = {"mechanism": "charge-leakage", "component": "readout"}
 CABLE = {"mechanism": "parasitic-capacitance", "component": "readout"}

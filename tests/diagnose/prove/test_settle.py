@@ -9,8 +9,7 @@ from diagnose.prove import trial
 from diagnose.prove.folder import rig_text
 from diagnose.prove.room import Heard
 from diagnose.prove.score import scored
-from diagnose.prove.settle import asked_run, with_asked
-from diagnose.prove.trial import Terms
+from diagnose.prove.trial import Terms, asked_run, with_asked
 from diagnose.prove.world.bench import CLAMPED, VOLTAGE_ONLY
 from diagnose.prove.world.cases import AMBIGUOUS, Case
 
@@ -50,7 +49,7 @@ def test_a_dot_that_has_to_be_as_warm_as_the_film_cannot_be_had_here():
 
 def test_the_longer_recording_begins_with_what_there_was(monkeypatch):
     more = {"time_s": TIME, "of": "the same specimen"}
-    monkeypatch.setattr("diagnose.prove.settle.pressed_again", lambda *_: more)
+    monkeypatch.setattr("diagnose.prove.trial.pressed_again", lambda *_: more)
     before = [{"time_s": TIME}] * 4
     bench, runs = with_asked(CASE, before, experiment(), WAVE)
     assert runs[:4] == before

@@ -5,12 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnose.prove.world.amplifier import Amplifier, Filter
-from diagnose.prove.world.bench import CLAMPED, FREE, VOLTAGE_ONLY
+from diagnose.prove.world.bench import CLAMPED, FREE, VOLTAGE_ONLY, Run
 from diagnose.prove.world.effects import EFFECTS, applied, fits
 from diagnose.prove.world.march import Course, Table
-from diagnose.prove.world.noise import Autoregression, noises, yule_walker
-from diagnose.prove.world.programme import Run
+from diagnose.prove.world.noise import Amplifier, Autoregression, Filter, noises, yule_walker
 from diagnose.prove.world.reality import Reality, _path, baseline
 from diagnose.prove.world.size import Judge
 

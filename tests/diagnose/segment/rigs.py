@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from diagnose.recording import Recording, Run
-from diagnose.segment import segment_engine
+from diagnose.engines.segment import segment_engine
+from diagnose.signals.recording import Recording, Run
 from mesh.parameters import MeshOptions
 from softdot.actual import actual
 from softdot.config import config_from

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from diagnose.forward import Setting
-from diagnose.segment import store
 from geometry.base import InputError
 from solve.mechanisms import Mechanism
 from solve.parameters import Readout
+from solve.tables import store
 from tests.diagnose.segment.rigs import DEPTH_MM, candidate, engine, press, run, silent
 
 KINKS = 0.01  # of the peak: so coarse a surface touches node by node, which neither table nor press resolves

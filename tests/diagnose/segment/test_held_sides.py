@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from diagnose.segment.held_sides import crowded
 from geometry.dot import resolve_dot
 from geometry.parameters import Dot, Segment
 from mesh.build import build
 from mesh.parameters import MeshOptions
 from mesh.quality import measure
+from solve.tables.rig_mesh import crowded
 
 SHAPES = [
     {"shape": "layer"},

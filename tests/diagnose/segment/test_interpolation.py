@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from diagnose.engines.segment.interpolation import effect
 from diagnose.forward import Coordinate
-from diagnose.segment.interpolation import effect
 
 X = Coordinate("x", 0.0, 1.0, (0.1,), (0.3, 1.0))
 Y = Coordinate("y", -1.0, 1.0, (0.1,), (-1.0, 0.5, 1.0))

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from diagnose.segment import rig_mesh
 from mesh.parameters import MeshOptions
+from solve.tables import rig_mesh
 from tests.diagnose.segment.rigs import model
 
 DOME = {"segment": {

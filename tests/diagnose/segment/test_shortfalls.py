@@ -4,10 +4,10 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from diagnose.engines.segment import prepared
+from diagnose.engines.segment.interpolation import effect_of
+from diagnose.engines.segment.prepared import Prepared, press_name
 from diagnose.forward import Candidate, Coordinate
-from diagnose.segment import prepared
-from diagnose.segment.interpolation import effect_of
-from diagnose.segment.prepared import Prepared, press_name
 from solve.solution.newton import NoEquilibriumError
 from tests.diagnose.segment.rigs import model
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from diagnose.segment import store, workers
+from solve.tables import store, workers
 from tests.diagnose.segment.rigs import engine, silent
 
 

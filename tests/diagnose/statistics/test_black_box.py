@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from diagnose.statistics.black_box import black_box_forecast, doubling_edges, lagged_means, ridge_by_evidence
-from diagnose.statistics.held_out import gain_over_presses, linear_forecast
-from diagnose.statistics.linear_gaussian import Sums
+from diagnose.inference.black_box import black_box_forecast, doubling_edges, lagged_means, ridge_by_evidence
+from diagnose.statistics.held_out import Sums, gain_over_presses, linear_forecast
 
 RNG = np.random.default_rng(101)
 PRESSES, LENGTH = 8, 100

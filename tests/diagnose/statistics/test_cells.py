@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import chi2, kstest
 
-from diagnose.statistics.cells import FilterBank, octave_edges, segments
-from diagnose.statistics.hypotheses import pooled
+from diagnose.statistics.cells import FilterBank, octave_edges, pooled, segments
 
 STEP_S = 0.01
 RUN = np.repeat([0, 1], [300, 340])

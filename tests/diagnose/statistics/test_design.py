@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from diagnose.statistics.design import best_press, chance_of_right_choice, expected_separation, remaining_spread
+from diagnose.statistics.separation import best_press, chance_of_right_choice, expected_separation, remaining_spread
 from tests.diagnose.statistics.rejections import is_fair
 
 RNG = np.random.default_rng(111)

@@ -5,10 +5,17 @@ import pytest
 from scipy.sparse import eye_array
 from scipy.stats import chi2, kstest, norm
 
-from diagnose.statistics.cells import FilterBank, octave_edges, segments
-from diagnose.statistics.family_wise import maximum_threshold, null_energies, step_down
-from diagnose.statistics.hypotheses import Hypotheses, with_pools
-from diagnose.statistics.nuisance import Marginal
+from diagnose.statistics.cells import (
+    FilterBank,
+    Hypotheses,
+    maximum_threshold,
+    null_energies,
+    octave_edges,
+    segments,
+    step_down,
+    with_pools,
+)
+from diagnose.statistics.score_test import Marginal
 from tests.diagnose.statistics.rejections import is_fair
 
 COUNT, LEVEL, TRIALS = 400, 0.05, 400

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from diagnose.statistics.information import bic, bic_probabilities, held_out_probabilities
-from diagnose.statistics.linear_gaussian import Sums
+from diagnose.statistics.held_out import Sums, bic, bic_probabilities, held_out_probabilities
 
 
 def test_the_formula():

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
-from diagnose.statistics.linear_gaussian import Sums
-from diagnose.statistics.nuisance import Marginal
+from diagnose.statistics.held_out import Sums
+from diagnose.statistics.score_test import Marginal
 
 RNG = np.random.default_rng(41)
 COLUMNS, RESIDUAL = RNG.standard_normal((25, 3)), 2.0 * RNG.standard_normal(25)

@@ -4,16 +4,19 @@ from functools import cache
 
 import numpy as np
 
-from diagnose.statistics.abstain import Evidence, Rates, decide
-from diagnose.statistics.black_box import black_box_forecast, doubling_edges, lagged_means
-from diagnose.statistics.cells import FilterBank, octave_edges, segments
-from diagnose.statistics.family_wise import null_energies, step_down
+from diagnose.inference.black_box import black_box_forecast, doubling_edges, lagged_means
+from diagnose.statistics.abstain import Evidence, Rates, decide, rate_for_promise
+from diagnose.statistics.cells import (
+    FilterBank,
+    Hypotheses,
+    null_energies,
+    octave_edges,
+    segments,
+    step_down,
+    with_pools,
+)
 from diagnose.statistics.held_out import gain_over_noise, linear_forecast, separation_by_press
-from diagnose.statistics.holm import holm
-from diagnose.statistics.hypotheses import Hypotheses, with_pools
-from diagnose.statistics.nuisance import Marginal
-from diagnose.statistics.score_test import score_test
-from diagnose.statistics.wilson import rate_for_promise
+from diagnose.statistics.score_test import Marginal, holm, score_test
 
 PRESSES, LENGTH, CANDIDATES = 8, 60, 20
 PRESS = np.repeat(np.arange(PRESSES), LENGTH)

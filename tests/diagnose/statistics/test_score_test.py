@@ -4,9 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
-from diagnose.statistics.holm import holm
-from diagnose.statistics.nuisance import Marginal
-from diagnose.statistics.score_test import score_test
+from diagnose.statistics.score_test import Marginal, holm, score_test
 from tests.diagnose.statistics.rejections import is_fair
 
 RNG = np.random.default_rng(21)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
-from diagnose.statistics.nuisance import Marginal
+from diagnose.statistics.score_test import Marginal
 from diagnose.statistics.separation import (
     ambiguity_groups,
     distance_to_rival,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from diagnose.statistics.shares import component_shares, shares_of_excess
+from diagnose.inference.localisation import component_shares, shares_of_excess
 
 RNG = np.random.default_rng(31)
 BASIS, _ = np.linalg.qr(RNG.standard_normal((50, 6)))

@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import brentq
 from scipy.stats import binom
 
-from diagnose.statistics.wilson import rate_for_promise, wilson_interval
+from diagnose.statistics.abstain import rate_for_promise, wilson_interval
 
 
 def test_the_ends_solve_the_score_equation():

@@ -8,9 +8,16 @@ from matplotlib.image import imread
 
 from diagnose.findings import Place
 from diagnose.forward import Setting
-from diagnose.report.bars import draw_gains, draw_shares
-from diagnose.report.overview import EDGES_HZ, band_of, draw_overview, shares
-from diagnose.report.series import channels_to_draw, draw_run
+from diagnose.verdict.pictures import (
+    EDGES_HZ,
+    band_of,
+    channels_to_draw,
+    draw_gains,
+    draw_overview,
+    draw_run,
+    draw_shares,
+    shares,
+)
 from tests.diagnose.verdict.toy import LEAK, RELAXING, fitted, found, toy_recording, toy_run
 
 LEAKS, RELAXES = fitted(LEAK, 0.5), fitted(RELAXING, 0.3, 0.09)

@@ -10,9 +10,8 @@ from diagnose.figures import figure
 from diagnose.findings import Fit, Interval, Place
 from diagnose.forward import Candidate, Coordinate, Setting
 from diagnose.next_press.choose import next_press
-from diagnose.verdict.content import verdict
+from diagnose.verdict.content import verdict, where_words
 from diagnose.verdict.names import WHAT, WHERE, interval_words, listed, mechanism_words
-from diagnose.verdict.where import where_words
 from diagnose.verdict.words import sentences
 from solve.mechanisms import MECHANISMS
 from tests.diagnose.verdict.toy import LEAK, RELAXING, ToyEngine, fitted, found, toy_recording

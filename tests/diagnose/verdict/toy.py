@@ -7,7 +7,7 @@ import numpy as np
 from diagnose.findings import Detection, Findings, Fit, Interval, Model, Place
 from diagnose.forward import Candidate, Coordinate, Setting
 from diagnose.noise.estimate import noise_models
-from diagnose.recording import Recording, Run
+from diagnose.signals.recording import Recording, Run
 from solve.model import Physics
 from solve.parameters import Readout
 from solve.readout.amplifier import amplify

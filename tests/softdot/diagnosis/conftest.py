@@ -5,7 +5,8 @@ import json
 import pytest
 
 from softdot.cli import main
-from softdot.diagnosis import engines, page
+from softdot.commands import diagnose as engines
+from softdot.commands import verdict_page as page
 from tests.diagnose.verdict.toy import ToyEngine
 from tests.softdot.complaints import complaints
 

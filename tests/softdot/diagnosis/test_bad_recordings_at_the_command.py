@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from softdot.cli import main
-from softdot.diagnosis import engines
+from softdot.commands import diagnose as engines
 from tests.diagnose.rigs import COUPON, HEAD, RUN, SEGMENT, csv_text, samples, write_rig
 
 GOOD = HEAD + SEGMENT + RUN

@@ -15,10 +15,12 @@ from diagnose.inference import diagnose as inference
 from diagnose.verdict import resimulation
 from diagnose.verdict.resimulation import Resimulated
 from mesh.types import MeshingError
+from softdot.commands import diagnose as engines
+from softdot.commands import diagnose as run
+from softdot.commands import verdict_page as page
+from softdot.commands.diagnose import short_text
 from softdot.config import load_config
-from softdot.diagnosis import engines, page, run
-from softdot.diagnosis.command import short_text
-from softdot.rig_file import load_rig
+from softdot.config.rig import load_rig
 from solve.solution.newton import NoEquilibriumError
 from tests.diagnose.verdict.test_verdict import QUIET, SHAPE, require
 from tests.diagnose.verdict.toy import LEAK, RELAXING, ToyEngine, fitted, found, toy_recording, toy_run

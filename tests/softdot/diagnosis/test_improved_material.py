@@ -6,8 +6,8 @@ import pytest
 
 from diagnose.forward import Setting
 from softdot.actual import actual
+from softdot.commands.verdict_page import improved_text
 from softdot.config import load_config
-from softdot.diagnosis.improved import improved_text
 from tests.diagnose.coupon.coupons import candidate, engine, specimen
 from tests.diagnose.verdict.toy import LEAK, fitted
 

@@ -14,7 +14,7 @@ from diagnose.verdict.content import verdict
 from diagnose.verdict.names import interval_words, mechanism_words
 from diagnose.verdict.resimulation import Resimulated
 from diagnose.verdict.words import sentences
-from softdot.diagnosis.page import page_text
+from softdot.commands.verdict_page import page_text
 from softdot.numbers import plain
 from solve.mechanisms import MECHANISMS
 from tests.diagnose.verdict.toy import LEAK, RELAXING, ToyEngine, fitted, found, toy_recording

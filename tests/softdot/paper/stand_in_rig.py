@@ -2,11 +2,8 @@
 
 import numpy as np
 
-from softdot.paper.calibration.curve import Curve
-from softdot.paper.calibration.inputs import INPUTS
-from softdot.paper.calibration.response import Response
-from softdot.paper.calibration.rig import CASES
-from softdot.paper.calibration.solved import FOAM, ROUND, SIMULATED, VARIED, Solved
+from softdot.paper.calibration.rig import CASES, INPUTS
+from softdot.paper.calibration.solved import FOAM, ROUND, SIMULATED, VARIED, Curve, Response, Solved
 
 FILM_PF = 1000.0
 

@@ -1,7 +1,6 @@
 """Presses that nobody solved, with round numbers, for tests of words, tables and pages."""
 
-from softdot.paper.segments.cases import CASES, Case
-from softdot.paper.segments.solved import CHECKED, VARIANTS, VARIED, Press, Study
+from softdot.paper.segments.cases import CASES, CHECKED, VARIANTS, VARIED, Case, Press, Study
 
 
 def press(force_N: float = 1.0, millivolts: float = 100.0, exponent: float = 2.0) -> Press:

@@ -3,9 +3,8 @@
 import pytest
 
 from softdot.outcome import outcome
-from softdot.paper.beyond.designs import PAPERS, Design, design_config
-from softdot.paper.beyond.final import beats
-from softdot.paper.beyond.trials import Trial, press_of
+from softdot.paper.beyond.designs import PAPERS, Design, Trial, design_config, press_of
+from softdot.paper.beyond.search import beats
 
 FOUND = Design(0.41, 1.1, 1.3, 2.9, 0.41, 0.58, 52.0)
 MESH = {"element_size_mm": 0.6, "contact_element_size_mm": 0.3}

@@ -17,7 +17,7 @@ from softdot.paper.beyond.designs import (
     papers_variables,
     sample,
 )
-from softdot.paper.reading import segment_config
+from softdot.paper.published import segment_config
 
 COARSE = {"element_size_mm": 0.6, "contact_element_size_mm": 0.3, "mesher": "layered"}
 

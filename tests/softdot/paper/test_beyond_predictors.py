@@ -18,7 +18,7 @@ from softdot.paper.beyond.predictors import (
     shape_factor,
     spread_softness,
 )
-from softdot.paper.reading import INDENTATION_MM, LENGTH_MM
+from softdot.paper.published import INDENTATION_MM, LENGTH_MM
 from solve.materials.film import VACUUM_PERMITTIVITY
 
 GIVE, REST = 0.5, 0.3

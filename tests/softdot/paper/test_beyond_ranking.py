@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from softdot.paper.beyond.claims import claims
 from softdot.paper.beyond.continuum import STIFFNESS_N_PER_MM3
-from softdot.paper.beyond.final import MESHERS, beats
 from softdot.paper.beyond.ranking import CORRECTED, FOUR, WITHOUT_FILM, correlations, fit, interval, scatter, spearman
+from softdot.paper.beyond.search import MESHERS, beats
 from softdot.paper.beyond.section import section_of
+from softdot.paper.beyond.tables import claims
 from softdot.paper.section import Table
 from tests.softdot.paper import stand_in_beyond as stand_in
 

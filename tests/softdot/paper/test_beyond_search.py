@@ -5,13 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from softdot.console import Logged
 from softdot.paper.beyond import search as searching
-from softdot.paper.beyond.designs import PAPERS, coordinates, sample
-from softdot.paper.beyond.final import beats
-from softdot.paper.beyond.search import GOALS, capacitance_pF, limits_of, to_beat
-from softdot.paper.beyond.surrogate import Surrogate
-from softdot.paper.beyond.trials import Press, Trial
-from softdot.progress import Logged
+from softdot.paper.beyond.designs import PAPERS, Press, Trial, coordinates, sample
+from softdot.paper.beyond.ranking import Surrogate
+from softdot.paper.beyond.search import GOALS, beats, capacitance_pF, limits_of, to_beat
 from tests.softdot.paper import stand_in_beyond as stand_in
 
 

@@ -3,11 +3,20 @@
 import numpy as np
 import pytest
 
-from softdot.paper.calibration import contours
-from softdot.paper.calibration.answers import answers, claims, lost_more
-from softdot.paper.calibration.factor import BEAM, DIMENSION, FILTER, LEAKAGE, SPONGE, factor, factors
-from softdot.paper.calibration.inputs import INPUTS, assumed
-from softdot.paper.calibration.ranges import quantiles, ranges
+from softdot.paper.calibration import figures as contours
+from softdot.paper.calibration.factor import (
+    BEAM,
+    DIMENSION,
+    FILTER,
+    LEAKAGE,
+    SPONGE,
+    factor,
+    factors,
+    quantiles,
+    ranges,
+)
+from softdot.paper.calibration.rig import INPUTS, assumed
+from softdot.paper.calibration.tables import answers, claims, lost_more
 from softdot.paper.published import published
 from tests.softdot.paper.stand_in_rig import rig, solved
 

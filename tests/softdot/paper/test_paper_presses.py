@@ -3,17 +3,17 @@
 import pytest
 
 from geometry.base import InputError
-from softdot.paper.presses import NotSolvedError, solve_named
-from softdot.paper.reading import segment_config
-from softdot.paper.segments.solved import press_of
-from softdot.progress import Logged
+from softdot.console import Logged
+from softdot.paper.published import segment_config
+from softdot.paper.section import NotSolvedError, solve_named
+from softdot.paper.segments.cases import press_of
 
 SOLVED = {"status": "solved", "reason": None}
 
 
 def solver(monkeypatch, *records):
     """Records in place of a cluster."""
-    monkeypatch.setattr("softdot.sweep.batch.solve_points", lambda _configs, _progress: list(records))
+    monkeypatch.setattr("softdot.sweep.cluster.solve_points", lambda _configs, _progress: list(records))
 
 
 def test_outcomes_come_back_by_name(monkeypatch):

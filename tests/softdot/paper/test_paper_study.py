@@ -7,10 +7,10 @@ import re
 import pytest
 
 from softdot.cli import main
-from softdot.paper import study as whole
+from softdot.commands import paper as whole
 from softdot.paper.analytical.section import section as analytical
-from softdot.paper.presses import NotSolvedError
 from softdot.paper.published import published
+from softdot.paper.section import NotSolvedError
 from softdot.paper.segments.section import section_of
 from tests.softdot.paper.stand_in_study import study
 

@@ -1,0 +1,172 @@
+"""The forward model of a coupon test.
+
+What a coupon test teaches about a material, as a configuration has it.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from diagnose.engines.coupon.candidates import (
+    LAYER,
+    SPECIMEN,
+    coupon_candidates,
+    drive_error,
+    one_layer,
+    relative_error,
+    switched,
+    with_factors_last,
+)
+from diagnose.engines.coupon.kinematics import kinematics_of
+from diagnose.engines.coupon.point import NO_SERIES, MaterialPoint
+from diagnose.forward import Candidate, Setting, Signals
+from diagnose.signals.recording import Recording, Run
+from diagnose.signals.tables import Drive, Specimen
+from geometry.base import InputError, Report
+from solve.materials.laws import medium_law
+from solve.materials.parameters import Material, PiezoelectricFilm, find_material
+from solve.mechanisms import Mechanism
+from solve.model import Model
+from solve.reduced.model import felt
+from solve.solution.newton import NoEquilibriumError
+
+ACCURACY = 1e-3  # of a drive that is taken as straight between its samples
+FACTORS = {f"modulus.{SPECIMEN}": "modulus_factor", f"thickness.{SPECIMEN}": "thickness_factor"}
+DRIVE_ERRORS: Mapping[str, Drive] = {"offset_mm": "displacement_mm", "offset_N": "force_N", "force_gain": "force_N"}
+
+
+@dataclass(frozen=True)
+class CouponEngine:
+    """One material point in the place of a coupon that deforms uniformly; the 3D elements would find the same.
+
+    material : as rig.toml states it. Nothing has to be prepared, and solve is predict.
+    """
+
+    recording: Recording
+    specimen: Specimen
+    material: Material
+    candidates: tuple[Candidate, ...]
+    name: str = "material point"
+    accuracy: Mapping[str, float] = field(default_factory=lambda: {"force_N": ACCURACY, "displacement_mm": ACCURACY})
+    free_nuisances: tuple[Candidate, ...] = ()
+    shortfalls: tuple[str, ...] = ()
+
+    def nuisance(self, name: str) -> Candidate | None:
+        """Relative error of modulus.specimen or thickness.specimen, or an error of the column that drives."""
+        if name in FACTORS:
+            return relative_error(name, FACTORS[name])
+        return drive_error(name) if name in DRIVE_ERRORS else None
+
+    def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
+        """Nothing: a point is solved in milliseconds."""
+
+    def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
+        """Force or displacement of a run. ValueError beyond the bounds of a value, or where a law turns over."""
+        return self.imagine(self.recording.runs[run], settings)
+
+    def imagine(self, run: Run, settings: Sequence[Setting]) -> Signals:
+        """The same of a run that was not made."""
+        of_drive = {s.candidate.mechanism: s.values[0] for s in settings if s.candidate.component == "drive"}
+        of_coupon = [s for s in settings if s.candidate.component != "drive"]
+        try:
+            return self._answer(run, switched(of_coupon), of_drive)
+        except NoEquilibriumError as error:
+            raise ValueError(str(error)) from None
+
+    def solve(self, run: int, mechanisms: Sequence[Mechanism], report: Report) -> Signals:
+        """The same; mechanisms of a coupon act on medium 1. NoEquilibriumError."""
+        return self._answer(self.recording.runs[run], mechanisms, {})
+
+    def model(self, mechanisms: Sequence[Mechanism]) -> Model:
+        """A segment whose medium 1 is the coupon with these mechanisms."""
+        return with_factors_last(one_layer(self.material, self.specimen.thickness_mm), mechanisms)
+
+    def _answer(self, run: Run, mechanisms: Sequence[Mechanism], of_drive: Mapping[str, float]) -> Signals:
+        kind = run.drive
+        shift = sum(of_drive.get(name, 0.0) for name, of in DRIVE_ERRORS.items() if of == kind and name != "force_gain")
+        gain = of_drive.get("force_gain", 0.0) if kind == "force_N" else 0.0
+        drive = (run.drive_values - shift) / (1.0 + gain)
+        model = self.model(mechanisms)
+        values = point_of(self.specimen, model).answer(run.time_s, drive, kind)
+        if kind == "force_N":
+            return {"displacement_mm": values}
+        return {"force_N": felt(run.time_s, drive, values, model.physics.moving_mass_g)}
+
+
+def point_of(specimen: Specimen, model: Model) -> MaterialPoint:
+    """The coupon whose material, thickness and physics are those of medium 1 of a model."""
+    physics, material = model.physics, model.materials[LAYER]
+    thickness = model.segment.medium1.thickness_mm
+    ratio = material.poisson_ratio
+    return MaterialPoint(
+        kinematics_of(specimen.model_copy(update={"thickness_mm": thickness})),
+        medium_law(material).scaled(1e-6),
+        float(np.mean(ratio)),
+        physics.softening.get(LAYER),
+        physics.viscosity.get(LAYER, NO_SERIES),
+        physics.rig_compliance_mm_per_N,
+    )
+
+
+def coupon_engine(recording: Recording, materials: Mapping[str, Material], report: Report) -> CouponEngine:
+    """The engine of a recording with a specimen; materials : the user's own.
+
+    InputError for a material that is none of a coupon, a column that is missing, or a travel beyond the specimen.
+    """
+    specimen = recording.specimen
+    assert specimen is not None
+    material = find_material(specimen.material, materials, "specimen.material")
+    if isinstance(material, PiezoelectricFilm):
+        raise InputError(f"specimen.material = '{specimen.material}': a film cannot be a coupon; name a medium")
+    _refuse_unfit(recording, specimen)
+    candidates = coupon_candidates(recording, material, point_of(specimen, one_layer(material, specimen.thickness_mm)))
+    engine = CouponEngine(recording, specimen, material, tuple(candidates))
+    report("material point", 1, 1)
+    return engine
+
+
+def _refuse_unfit(recording: Recording, specimen: Specimen) -> None:
+    """Both columns are needed, and a block cannot be pressed through its whole thickness."""
+    for run in recording.runs:
+        for name in ("displacement_mm", "force_N"):
+            if name not in run.channels:
+                raise InputError(f"recording '{run.file}': column {name} is missing; a coupon test has both")
+        for name in run.voltages:
+            raise InputError(f"recording '{run.file}', column {name}: a coupon has no voltage")
+        deepest = float(np.nanmax(run.channels["displacement_mm"]))
+        if specimen.kind == "compression" and deepest >= 0.95 * specimen.thickness_mm:
+            raise InputError(
+                f"recording '{run.file}', column displacement_mm: reaches {deepest:.3g} mm, but the specimen is "
+                f"{specimen.thickness_mm:g} mm thick"
+            )
+
+
+OF_MATERIAL = ("viscoelasticity", "stress-softening")
+
+
+@dataclass(frozen=True)
+class ImprovedMaterial:
+    """name : as in rig.toml. table : [materials.NAME], its law with the fitted constants.
+
+    mechanisms : [[mechanisms]] of the layer that is made of it, for relaxation and softening are no constants of a law.
+    """
+
+    name: str
+    table: dict[str, Any]
+    mechanisms: tuple[dict[str, Any], ...]
+
+
+def improved_material(engine: CouponEngine, settings: Sequence[Setting], component: str = LAYER) -> ImprovedMaterial:
+    """The material with fitted settings, nuisances of its modulus among them; component : the layer made of it."""
+    of_material = [s for s in settings if s.candidate.component not in ("drive", "rig")]
+    mechanisms = switched(of_material)
+    law = engine.model([one for one in mechanisms if one.name not in OF_MATERIAL]).materials[LAYER]
+    table = law.model_dump(mode="json", exclude_none=True, exclude={"source", "confidence", "max_fitted_strain"})
+    kept = tuple(
+        {"name": one.name, "component": component, "parameters": dict(one.parameters)}
+        for one in mechanisms
+        if one.name in OF_MATERIAL
+    )
+    return ImprovedMaterial(engine.specimen.material, table, kept)

@@ -1,0 +1,234 @@
+"""The answer of a coupon over a whole run: Newton on all samples at once.
+
+Every sample has the residuals
+    travel + c force - u = 0 (or force - f = 0)   and   lateral stress = 0
+with the tester's compliance c. The stress remembers earlier samples only, so that the linearised system is solved by
+forward substitution in time; Newton's iteration converges quadratically whatever relaxes. The largest energies of a
+softening law are those of the round before, first of the coupon that does not soften: on first loading it is the same.
+
+A whole history of the stress at one material point: relaxation by scans over time, softening by its running maximum.
+
+The formulas are those of solve.materials.inelastic; tests hold both ways together.
+"""
+
+from dataclasses import dataclass, replace
+
+import numba as nb
+import numpy as np
+
+from diagnose.engines.coupon.kinematics import Kinematics, Reading, SimpleShear
+from diagnose.signals.tables import Drive
+from geometry.arrays import Floats
+from solve.materials.inelastic import Prony, Response, Softening
+from solve.materials.laws import MediumLaw
+from solve.solution.newton import NoEquilibriumError
+
+NO_SERIES = Prony((), ())
+
+
+@dataclass(frozen=True)
+class Relaxation:
+    """A Prony series on one clock, at rest before the first sample.
+
+    moduli : g_i (b,); fade : exp(-a), gain : (1 - exp(-a)) / a with a = dt / tau_i, (t, b), dt = 0 at first.
+    """
+
+    moduli: Floats
+    fade: Floats
+    gain: Floats
+
+    @classmethod
+    def of(cls, series: Prony, time_s: Floats) -> "Relaxation":
+        """The series at times (t,)."""
+        a = np.diff(time_s, prepend=time_s[0])[:, None] / np.array(series.relaxation_times).reshape(1, -1)
+        gain = -np.expm1(-a) / np.where(a > 0.0, a, 1.0) + (a == 0.0)
+        return cls(np.array(series.relative_moduli, dtype=np.float64), np.exp(-a), gain)
+
+    @property
+    def instant(self) -> Floats:
+        """d stress / d elastic stress at the same time, (t,)."""
+        return np.asarray(1.0 - self.moduli.sum() + self.gain @ self.moduli)
+
+    def relaxed(self, elastic: Floats) -> Floats:
+        """Stress (t, c) of the history (t, c) of the elastic one."""
+        return np.asarray(_relaxed(elastic, self.moduli, self.fade, self.gain))
+
+    def newton_step(self, residual: Floats, by_stress: Floats, stress_by: Floats, by_unknown: Floats) -> Floats:
+        """Correction (t, m) of the unknowns that makes residual (t, m) vanish, memory included.
+
+        by_stress (t, m, c) : of the residual; stress_by (t, c, m) : of the elastic stress by the unknowns;
+        by_unknown (t, m, m) : of the residual at fixed stress.
+        """
+        return np.asarray(_newton_step(residual, by_stress, stress_by, by_unknown, self.moduli, self.fade, self.gain))
+
+
+def earlier_peaks(energy: Floats) -> Floats:
+    """Largest energy (t,) before each sample of a history (t,), 0 before the first."""
+    return np.concatenate([[0.0], np.maximum.accumulate(energy)[:-1]])
+
+
+def softened(law: Softening, elastic: Response, peaks: Floats) -> Response:
+    """The response (t points) where every sample remembers a largest energy (t,)."""
+    return replace(law.update(elastic, (peaks,), 0.0)[0], energy=None)
+
+
+@nb.njit(cache=True)
+def _relaxed(elastic, moduli, fade, gain):  # type: ignore[no-untyped-def]
+    samples, parts = elastic.shape
+    branches = np.zeros((len(moduli), parts))
+    stress = np.empty_like(elastic)
+    rest = 1.0 - moduli.sum()
+    for t in range(samples):
+        for c in range(parts):
+            change = elastic[t, c] - (elastic[t - 1, c] if t > 0 else 0.0)
+            stress[t, c] = rest * elastic[t, c]
+            for b in range(len(moduli)):
+                branches[b, c] = fade[t, b] * branches[b, c] + moduli[b] * gain[t, b] * change
+                stress[t, c] += branches[b, c]
+    return stress
+
+
+@nb.njit(cache=True)
+def _newton_step(residual, by_stress, stress_by, by_unknown, moduli, fade, gain):  # type: ignore[no-untyped-def]
+    """Forward substitution in time: the correction of a sample depends on those before through the branches."""
+    samples, size = residual.shape
+    parts = stress_by.shape[1]
+    branches, old, new = np.zeros((len(moduli), parts)), np.zeros(parts), np.zeros(parts)
+    matrix, right, step = np.empty((size, size)), np.empty(size), np.empty_like(residual)
+    for t in range(samples):
+        instant = 1.0 - moduli.sum()
+        for b in range(len(moduli)):
+            instant += moduli[b] * gain[t, b]
+        for i in range(size):
+            right[i] = -residual[t, i]
+            for c in range(parts):
+                for b in range(len(moduli)):
+                    right[i] -= by_stress[t, i, c] * (fade[t, b] * branches[b, c] - moduli[b] * gain[t, b] * old[c])
+            for j in range(size):
+                matrix[i, j] = by_unknown[t, i, j]
+                for c in range(parts):
+                    matrix[i, j] += instant * by_stress[t, i, c] * stress_by[t, c, j]
+        if size == 1:
+            step[t, 0] = right[0] / matrix[0, 0]
+        else:
+            determinant = matrix[0, 0] * matrix[1, 1] - matrix[0, 1] * matrix[1, 0]
+            step[t, 0] = (right[0] * matrix[1, 1] - right[1] * matrix[0, 1]) / determinant
+            step[t, 1] = (right[1] * matrix[0, 0] - right[0] * matrix[1, 0]) / determinant
+        for c in range(parts):
+            new[c] = 0.0
+            for j in range(size):
+                new[c] += stress_by[t, c, j] * step[t, j]
+            for b in range(len(moduli)):
+                branches[b, c] = fade[t, b] * branches[b, c] + moduli[b] * gain[t, b] * (new[c] - old[c])
+            old[c] = new[c]
+    return step
+
+
+TOLERANCE = 1e-7  # of the logarithm of the stretch, or of the shear; the iterate behind it errs by the square
+MAX_ITERATIONS = 80  # four or five, unless samples lie at the kink of softening
+MAX_ROUNDS = 30  # two or three
+LARGEST_STEP = 0.3  # of the logarithm of the stretch, or of the shear, in one iteration
+
+
+@dataclass(frozen=True)
+class MaterialPoint:
+    """law : in MPa; poisson_ratio : where the iteration starts; compliance_mm_per_N : of the tester."""
+
+    kinematics: Kinematics
+    law: MediumLaw
+    poisson_ratio: float
+    softening: Softening | None = None
+    series: Prony = NO_SERIES
+    compliance_mm_per_N: float = 0.0
+
+    def answer(self, time_s: Floats, drive: Floats, kind: Drive) -> Floats:
+        """Force (t,) in N of a travel (t,) in mm, or travel of a force. NoEquilibriumError."""
+        return _Test(self, drive, kind == "displacement_mm", Relaxation.of(self.series, time_s)).answer()
+
+    def travel_if_linear(self, force: Floats) -> Floats:
+        """Travel (t,) of a force at the stiffness of small strains."""
+        shear, bulk = self.law.shear_modulus, self.law.bulk_modulus
+        modulus = shear if isinstance(self.kinematics, SimpleShear) else 9.0 * bulk * shear / (3.0 * bulk + shear)
+        return force * self.kinematics.length_mm / (self.kinematics.area_mm2 * modulus)
+
+    def energy(self, unknown: Floats) -> Floats:
+        """Strain energy (t,) without softening."""
+        return self.law.energy(self.kinematics.cauchy_green(unknown))
+
+    def elastic(self, unknown: Floats, peaks: Floats | None) -> Response:
+        """Stress and tangent without relaxation; softened from the largest energies before (t,), where given."""
+        c = self.kinematics.cauchy_green(unknown)
+        response = Response(*self.law.stress(c))
+        if self.softening is None or peaks is None:
+            return response
+        return softened(self.softening, replace(response, energy=self.law.energy(c)), peaks)
+
+    def reading(self, unknown: Floats, stress: Floats) -> Reading:
+        """What the tester reads at a stress (t, 6)."""
+        return self.kinematics.reading(unknown, stress, 0.0 if self.law.compressible else self.law.bulk_modulus)
+
+
+@dataclass(frozen=True)
+class _Test:
+    """One run: drive (t,) in mm or N."""
+
+    point: MaterialPoint
+    drive: Floats
+    by_travel: bool
+    relaxation: Relaxation
+
+    def answer(self) -> Floats:
+        """Force or travel (t,). NoEquilibriumError."""
+        point, peaks = self.point, None
+        travel = self.drive if self.by_travel else point.travel_if_linear(self.drive)
+        unknown = self._settled(point.kinematics.start(travel, point.poisson_ratio), None)
+        if point.softening is not None:
+            unknown, peaks = self._softened(unknown)
+        now = point.reading(unknown, self.relaxation.relaxed(point.elastic(unknown, peaks).stress))
+        return now.force if self.by_travel else now.travel + point.compliance_mm_per_N * now.force
+
+    def _softened(self, unknown: Floats) -> tuple[Floats, Floats]:
+        """Unknowns with softening and the largest energies before, from those without."""
+        for _ in range(MAX_ROUNDS):
+            peaks, before = earlier_peaks(self.point.energy(unknown)), unknown
+            unknown = self._settled(before, peaks)
+            if np.abs(unknown - before).max() <= TOLERANCE:
+                return unknown, peaks
+        raise self._nowhere()
+
+    def _settled(self, unknown: Floats, peaks: Floats | None) -> Floats:
+        """Unknowns (t, m) in balance."""
+        last, damping = np.zeros_like(unknown), np.ones((len(unknown), 1))
+        for _ in range(MAX_ITERATIONS):
+            step = self._step(unknown, self.point.elastic(unknown, peaks))
+            largest = float(np.abs(step).max())
+            if not np.isfinite(largest):
+                break
+            damping = _damped(damping, step, last)
+            last = np.clip(damping * step, -LARGEST_STEP, LARGEST_STEP)
+            unknown = unknown + last
+            if largest <= TOLERANCE:
+                return unknown
+        raise self._nowhere()
+
+    def _step(self, unknown: Floats, elastic: Response) -> Floats:
+        """Newton's correction (t, m)."""
+        now = self.point.reading(unknown, self.relaxation.relaxed(elastic.stress))
+        weight = self.point.compliance_mm_per_N if self.by_travel else 1.0
+        along = float(self.by_travel)
+        residual = np.column_stack([along * now.travel + weight * now.force - self.drive, now.lateral])
+        by_stress = np.concatenate([weight * now.force_stress[:, None, :], now.lateral_stress], axis=1)
+        of_drive = along * now.travel_unknown + weight * now.force_unknown
+        by_unknown = np.concatenate([of_drive[:, None, :], now.lateral_unknown], axis=1)
+        stress_by = np.asarray(elastic.tangent) @ self.point.kinematics.strain_rates(unknown)
+        return self.relaxation.newton_step(residual, by_stress, stress_by, by_unknown)
+
+    def _nowhere(self) -> NoEquilibriumError:
+        reason = "the coupon has no equilibrium: the stress of its law falls within this travel or force"
+        return NoEquilibriumError(reason, self.drive, None)
+
+
+def _damped(damping: Floats, step: Floats, last: Floats) -> Floats:
+    """Share (t, 1) of the step: halved where samples jump to and fro over a kink of softening, else raised to 1."""
+    reversed_ = (step * last).sum(axis=1, keepdims=True) < -0.25 * (last * last).sum(axis=1, keepdims=True)
+    return np.where(reversed_, 0.5 * damping, np.minimum(1.2 * damping, 1.0))

@@ -1,0 +1,316 @@
+"""The forward model of a sensor of unknown geometry, which nobody can mesh: charge in proportion to force.
+
+    Q(t) = s g(t),    g the strain of one medium under the measured force f = F / F_max,    g = f at the baseline
+s is one unknown number for each channel. A medium that relaxes, softens or stiffens is the coupon of
+diagnose.engines.coupon in simple shear: the same laws of the 3D solver, on a strain of unknown size. A tenth is taken
+at the largest force, small enough that relaxation is linear. Of a Yeoh law then f = g + a g^3 + b g^5.
+    Charge of the touch: in proportion to the contact area of a sphere, f^(2/3) (Hertz, J. reine angew. Math. 92, 1882).
+    Heat: p dT(t) over the film, in terms of the voltage of 28 um of PVDF, with dT from the first touch.
+
+What may be missing in a sensor of unknown geometry.
+
+A factor on all signals is nothing but another sensitivity, which is free: parasitic capacitance, d31, moduli and, with
+free sensitivities, crosstalk cannot be found, and are no candidates. What acts on "medium1" acts on whatever medium
+strains the film.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from math import sinh
+
+import numpy as np
+
+from diagnose.engines.coupon.candidates import LAYER, one_layer, stress_softening, switched, with_factors_last
+from diagnose.engines.coupon.kinematics import SimpleShear
+from diagnose.engines.coupon.laws import Stiffening, relaxation_times, viscoelasticity
+from diagnose.engines.coupon.point import NO_SERIES, MaterialPoint, Relaxation
+from diagnose.forward import Candidate, Coordinate, Setting, Signals
+from diagnose.signals.phases import Segmentation, rest_of, segmented
+from diagnose.signals.recording import Recording, Run
+from diagnose.vocabulary.electric import electric, hard_limit
+from diagnose.vocabulary.rig import around
+from diagnose.vocabulary.scene import Scene, film_capacitance_pF, growing
+from geometry.arrays import Floats
+from geometry.base import InputError, Report
+from solve.materials.laws import medium_law
+from solve.materials.parameters import PiezoelectricFilm, Yeoh
+from solve.mechanisms import Mechanism
+from solve.model import Model
+from solve.parameters import Readout
+from solve.readout.amplifier import amplify
+from solve.solution.newton import NoEquilibriumError
+
+MEDIUM = Yeoh(c10_MPa=0.5, poisson_ratio=0.495)
+"""Of shear modulus 1, the unit of stress here."""
+LARGEST_STRAIN = 0.1
+HERTZ = 2.0 / 3.0
+
+
+@dataclass(frozen=True)
+class Loading:
+    """What a run gives: time_s (t,), force (t,) over the largest of the recording and from its rest, touch_s."""
+
+    time_s: Floats
+    force: Floats
+    touch_s: float
+
+
+def strain(model: Model, loading: Loading) -> Floats:
+    """Strain (t,) of the medium over that at the largest force at the baseline. NoEquilibriumError."""
+    physics, material = model.physics, model.materials[LAYER]
+    series, softening = physics.viscosity.get(LAYER, NO_SERIES), physics.softening.get(LAYER)
+    if material == MEDIUM and softening is None and series == NO_SERIES:
+        return loading.force
+    law = medium_law(material).scaled(1e-6)
+    point = MaterialPoint(SimpleShear(1.0, 1.0), law, MEDIUM.poisson_ratio, softening, series)
+    return point.answer(loading.time_s, LARGEST_STRAIN * loading.force, "force_N") / LARGEST_STRAIN
+
+
+def film_charge(model: Model, loading: Loading) -> Floats:
+    """Charge (t,) that follows the load, in units of s, the film's own relaxation included. NoEquilibriumError."""
+    charge = strain(model, loading)
+    series = model.physics.viscosity.get("film")
+    if series is None:
+        return charge
+    return Relaxation.of(series, loading.time_s).relaxed(charge[:, None])[:, 0]
+
+
+def other_charge(model: Model, loading: Loading) -> Floats:
+    """Charge (t,) in C of the touch and of heat."""
+    physics, film = model.physics, model.materials["film"]
+    assert isinstance(film, PiezoelectricFilm)
+    touch = 1e-12 * physics.contact_charge_pC * np.maximum(loading.force, 0.0) ** HERTZ
+    area_m2 = 1e-6 * model.segment.length_mm * model.segment.width_mm
+    since = np.maximum(loading.time_s - loading.touch_s, 0.0)
+    warming = -np.expm1(-since / physics.pyroelectric.time_constant_s) * physics.pyroelectric.temperature_step_K
+    return np.asarray(touch + 1e-6 * film.pyroelectric_uC_per_m2_K * area_m2 * warming)
+
+
+def voltage(model: Model, loading: Loading, charge_C: Floats) -> Floats:
+    """What the amplifier gives (t,), at rest before the first sample."""
+    before = loading.time_s[0] - (loading.time_s[1] - loading.time_s[0])
+    time, charge = np.append(before, loading.time_s), np.append(0.0, charge_C)
+    capacitance = 1e-12 * film_capacitance_pF(model)
+    return amplify(time, charge, capacitance, model.readout or Readout(), model.physics)[1:]
+
+
+ELECTRIC = ("charge-leakage", "low-pass", "mains-hum")
+AROUND = ("pyroelectric-drift", "contact-electrification")
+SENSITIVITY, CAPACITANCE = "sensitivity", "film-capacitance"
+MOST = 1.0  # modulus of one branch, in terms of what never relaxes
+MOST_CAPACITANCE = 1e4  # of the assumed film
+ANY_FACTOR = 1e6
+
+
+def proportional_candidates(recording: Recording, scene: Scene) -> Iterator[Candidate]:
+    """Every mechanism that shows whatever the geometry."""
+    yield from (_with_time_constant(scene, one) for one in electric(scene) if one.mechanism in ELECTRIC)
+    yield hard_limit(scene)  # a soft knee looks like any sensor that is not quite linear
+    yield from (one for one in around(scene) if one.mechanism in AROUND)
+    times = relaxation_times(recording)
+    yield from (viscoelasticity(Candidate, component, times, MOST) for component in (LAYER, "film"))
+    yield _stiffening()
+    yield stress_softening(Candidate, LAYER)
+
+
+def _with_time_constant(scene: Scene, one: Candidate) -> Candidate:
+    """What a leak shows is its time constant; its resistance is that for the assumed capacitance.
+
+    A charge that is gone within a sample leaves the derivative of the force, whose size the free sensitivity takes.
+    """
+    if one.mechanism != "charge-leakage":
+        return one
+
+    def derived(values: Sequence[float]) -> dict[str, float]:
+        resistance_MOhm = float(one.parameters(values)["resistance_MOhm"])
+        return {"time_constant_s": 1e-6 * scene.capacitance_pF * resistance_MOhm}
+
+    coordinates = tuple(replace(coordinate, levels_off=(True, True)) for coordinate in one.coordinates)
+    return replace(one, coordinates=coordinates, derived=derived, units={**one.units, "time_constant_s": "s"})
+
+
+def _stiffening() -> Candidate:
+    """force_ratio is that at the strain of the largest force without: the force that it takes with."""
+    stretch = SimpleShear(1.0, 1.0).principal_stretch(np.array([LARGEST_STRAIN]))
+    law = Stiffening(MEDIUM, stretch, SimpleShear.lateral, by_force=True)
+
+    def derived(values: Sequence[float]) -> dict[str, float]:
+        return {"force_ratio": 1.0 + sum(values)}
+
+    unit = "of twice the shear modulus"
+    units = {"c10_MPa": unit, "c20_MPa": unit, "c30_MPa": unit, "force_ratio": ""}
+    return Candidate("hyperelastic-stiffening", LAYER, law.coordinates, law.parameters, derived, units)
+
+
+def sensitivity(channel: int) -> Candidate:
+    """Relative change of the sensitivity of a channel (from 1), of either sign; no mechanism."""
+    coordinate = Coordinate(f"sensitivity of channel {channel}", -ANY_FACTOR, ANY_FACTOR, (0.5,))
+    return Candidate(SENSITIVITY, f"channel-{channel}", (coordinate,), lambda values: {"factor": 1.0 + values[0]})
+
+
+def film_capacitance() -> Candidate:
+    """What the film has more than the assumed one, in terms of that; no mechanism."""
+    coordinate = growing(CAPACITANCE, 1.0, MOST_CAPACITANCE, (1.0, 30.0, 1000.0))
+    return Candidate(CAPACITANCE, "film", (coordinate,), lambda values: {"coordinate": values[0]})
+
+
+HUM = "mains-hum"
+
+
+@dataclass(frozen=True)
+class ProportionalEngine:
+    """Charge in proportion to the measured force, behind the amplifier as stated.
+
+    largest_N : force above rest, of all runs. scene : sizes of the recording; its film is assumed, for only time
+    constants show. loadings : of each run.
+    sensitivity_C : (channels,) charge at the largest force at which the free sensitivities start. Nothing has to be
+    prepared, and solve is predict at those starts.
+    """
+
+    recording: Recording
+    largest_N: float
+    scene: Scene
+    loadings: tuple[Loading, ...]
+    sensitivity_C: Floats
+    candidates: tuple[Candidate, ...]
+    free_nuisances: tuple[Candidate, ...]
+    name: str = "charge proportional to force"
+    accuracy: Mapping[str, float] = field(default_factory=dict)
+    shortfalls: tuple[str, ...] = ()
+
+    def nuisance(self, name: str) -> Candidate | None:
+        """None: moduli and thicknesses of a sensor that nobody knows hide in its sensitivity."""
+
+    def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
+        """Nothing."""
+
+    def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
+        """Voltages of a run. ValueError beyond the bounds of a value, or where a law turns over."""
+        hum = [s.values for s in settings if s.candidate.mechanism == HUM]
+        signals = self._answer(self.recording.runs[run], self.loadings[run], settings)
+        return {name: values + sum(self._hum(run, one) for one in hum) for name, values in signals.items()}
+
+    def imagine(self, run: Run, settings: Sequence[Setting]) -> Signals:
+        """The same of a run that was not made, without hum."""
+        phases = segmented(run.time_s, run.drive_values, from_touch=False)
+        return self._answer(run, _loading(run, phases, self.largest_N), settings)
+
+    def _answer(self, run: Run, loading: Loading, settings: Sequence[Setting]) -> Signals:
+        own = {s.candidate.name: s.values[0] for s in settings if s.candidate.mechanism in (SENSITIVITY, CAPACITANCE)}
+        rest = [s for s in settings if s.candidate.mechanism not in (SENSITIVITY, CAPACITANCE, HUM)]
+        more = sinh(own.get((CAPACITANCE, "film"), 0.0))
+        factors = [1.0 + own.get((SENSITIVITY, f"channel-{n + 1}"), 0.0) for n in range(len(self.sensitivity_C))]
+        try:
+            signals = self._voltages(run, loading, switched(rest), self.sensitivity_C * factors, more)
+        except NoEquilibriumError as error:
+            raise ValueError(str(error)) from None
+        return signals
+
+    def solve(self, run: int, mechanisms: Sequence[Mechanism], report: Report) -> Signals:
+        """The same. NoEquilibriumError."""
+        return self._voltages(self.recording.runs[run], self.loadings[run], mechanisms, self.sensitivity_C)
+
+    def _voltages(
+        self,
+        run: Run,
+        loading: Loading,
+        mechanisms: Sequence[Mechanism],
+        sensitivity_C: Floats,
+        more_capacitance: float = 0.0,
+    ) -> Signals:
+        model = with_factors_last(model_of(run, more_capacitance), mechanisms)
+        shape, other = film_charge(model, loading), other_charge(model, loading)
+        return {
+            name: voltage(model, loading, charge * shape + other)
+            for name, charge in zip(self.recording.runs[0].voltages, sensitivity_C, strict=True)
+        }
+
+    def _hum(self, run: int, values: Sequence[float]) -> Floats:
+        """Sine and cosine (t,) of a run: behind the amplifier, whose filters only change amplitude and phase."""
+        phase = 2.0 * np.pi * self.scene.mains_Hz * self.recording.runs[run].time_s
+        return np.asarray(values[2 * run] * np.sin(phase) + values[2 * run + 1] * np.cos(phase))
+
+
+def model_of(run: Run, more_capacitance: float = 0.0) -> Model:
+    """The idle segment with the medium of unit modulus and the amplifier of a run.
+
+    more_capacitance : of the film, in terms of the assumed one. Charge flows into film and input together, so that
+    it stands at the input.
+    """
+    model = one_layer(MEDIUM, 1.0, run.readout or Readout())
+    assert model.readout is not None
+    added = model.readout.input_capacitance_pF + more_capacitance * film_capacitance_pF(model)
+    return replace(model, readout=model.readout.model_copy(update={"input_capacitance_pF": added}))
+
+
+def proportional_engine(recording: Recording, report: Report) -> ProportionalEngine:
+    """The engine of a recording of force and voltages. InputError for another drive, or columns beside them."""
+    for run in recording.runs:
+        _refuse_unfit(run, recording.runs[0])
+    largest_N = max(_above_rest(run) for run in recording.runs)
+    loadings = tuple(_loading(*pair, largest_N) for pair in zip(recording.runs, recording.phases, strict=True))
+    scene = _scene(recording)
+    free = [sensitivity(n + 1) for n in range(scene.channels)]
+    if any(readout.input_resistance_MOhm for readout in scene.readouts):
+        free.append(film_capacitance())
+    engine = ProportionalEngine(
+        recording, largest_N, scene, loadings, np.ones(scene.channels),
+        tuple(proportional_candidates(recording, scene)), tuple(free),
+    )  # fmt: skip
+    report("charge proportional to force", 1, 1)
+    return replace(engine, sensitivity_C=_start(engine))
+
+
+def _refuse_unfit(run: Run, first: Run) -> None:
+    where = f"recording '{run.file}'"
+    if run.drive != "force_N":
+        raise InputError(f"{where}: geometry = 'unknown' needs drive = 'force_N', because its stiffness is not known")
+    others = [name for name in run.answers if name not in run.voltages]
+    if others:
+        raise InputError(f"{where}: geometry = 'unknown' cannot explain column {others[0]}; leave it out")
+    if not run.voltages:
+        raise InputError(f"{where}: has no column of voltage")
+    if run.voltages != first.voltages:
+        raise InputError(f"{where}: has other columns of voltage than '{first.file}'")
+
+
+def _above_rest(run: Run) -> float:
+    """Largest distance of the force from its rest."""
+    return float(np.abs(run.drive_values - rest_of(run.drive_values)[0]).max())
+
+
+def _loading(run: Run, phases: Segmentation, largest_N: float) -> Loading:
+    """Force from its rest, over the largest of all runs."""
+    level = rest_of(run.drive_values)[0]
+    return Loading(run.time_s, (run.drive_values - level) / largest_N, float(run.time_s[phases.presses[0].touch]))
+
+
+def _scene(recording: Recording) -> Scene:
+    runs = recording.runs
+    return Scene(
+        model=model_of(runs[0]),
+        readouts=tuple(run.readout or Readout() for run in runs),
+        depth_mm=1.0,
+        force_N=1.0,
+        voltage_V=max(float(np.nanmax(np.abs(run.channels[name]))) for run in runs for name in run.voltages),
+        step_s=min(run.step_s for run in runs),
+        duration_s=max(float(run.time_s[-1] - run.time_s[0]) for run in runs),
+        channels=len(runs[0].voltages),
+    )
+
+
+def _start(engine: ProportionalEngine) -> Floats:
+    """Charge (channels,) in C at the largest force that makes voltages of the size and, mostly, sign recorded."""
+    recorded, predicted, product = (np.zeros(len(engine.sensitivity_C)) for _ in range(3))
+    for number, run in enumerate(engine.recording.runs):
+        signals = engine.solve(number, (), lambda *_: None)
+        for n, name in enumerate(run.voltages):
+            there = run.usable(name)
+            given, unit = run.channels[name][there], signals[name][there]
+            recorded[n] = max(recorded[n], float(np.abs(given).max()))
+            predicted[n] = max(predicted[n], float(np.abs(unit).max()))
+            product[n] += float((given - given.mean()) @ (unit - unit.mean()))
+    return np.asarray(np.where(product < 0.0, -1.0, 1.0) * recorded / predicted)
+
+
+__all__ = ["ProportionalEngine", "proportional_engine"]

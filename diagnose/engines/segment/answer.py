@@ -1,0 +1,146 @@
+"""From a table and a drive to what the instruments of a run show.
+
+The drive of a run as the model takes it, and where its first touch is.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diagnose.signals.phases import Segmentation
+from diagnose.signals.recording import Run
+from geometry.arrays import Bools, Floats
+from solve.model import Model
+from solve.parameters import Readout
+from solve.readout.amplifier import amplify
+from solve.reduced.fit import Fit
+from solve.reduced.kernels import BY_DEPTH, BY_FORCE, TOO_DEEP, follow
+from solve.reduced.model import branches, sensed
+
+
+@dataclass(frozen=True)
+class Drive:
+    """time_s (t,) from the first touch; values (t,) mm from the touch or N, of a kind; touching (t,)."""
+
+    time_s: Floats
+    values: Floats
+    kind: int
+    touching: Bools
+
+    @property
+    def by_depth(self) -> bool:
+        """Whether a displacement drives."""
+        return self.kind == BY_DEPTH
+
+
+def drive_of(run: Run, phases: Segmentation) -> Drive:
+    """A force cannot pull."""
+    first = phases.presses[0].touch if phases.presses else 0
+    by_depth = run.drive == "displacement_mm"
+    values = run.drive_values if by_depth else np.maximum(run.drive_values, 0.0)
+    touching = np.zeros(len(values), dtype=np.bool_)
+    for press in phases.presses:
+        touching[press.touch : press.clear] = True
+    time = run.time_s - run.time_s[first]
+    return Drive(np.ascontiguousarray(time), np.ascontiguousarray(values), BY_DEPTH if by_depth else BY_FORCE, touching)
+
+
+@dataclass(frozen=True)
+class FilmPlate:
+    """Per electrode the capacitance in F and the area in m2, (e, 2); pyroelectric constant in uC / m2 K."""
+
+    electrodes: Floats
+    pyroelectric_uC_per_m2_K: float
+
+    def thinner(self, factor: float) -> "FilmPlate":
+        """A film whose capacitance is larger by a factor."""
+        return replace(self, electrodes=self.electrodes * [factor, 1.0])
+
+
+@dataclass(frozen=True)
+class Mechanics:
+    """Over time (t,): the dot's path in mm, the contact force in N, its area in m2; charges (t, e) in C."""
+
+    path_mm: Floats
+    force_N: Floats
+    area_m2: Floats
+    charge_C: Floats
+
+
+def mechanics(fit: Fit, depth_mm: float, layers: tuple[str, ...], drive: Drive, values: Floats, on: Model) -> Mechanics:
+    """The dot and the segment under a drive of these values (t,). ValueError where it goes deeper than the table."""
+    physics, modes = on.physics, int(fit.start[-1])
+    observed = fit.table.shape[2] - modes
+    path, outputs = np.empty(len(values)), np.empty((len(values), observed))
+    moduli, times, layer = branches(physics.viscosity, layers)
+    mass = 1e-6 * physics.moving_mass_g  # N s2 / mm
+    status = follow(
+        drive.time_s, values, drive.kind, physics.rig_compliance_mm_per_N, mass, fit.table, fit.touch, depth_mm,
+        fit.pairs, fit.start, moduli, times, layer, observed, path, outputs,
+    )  # fmt: skip
+    if status == TOO_DEEP:
+        raise ValueError(f"the dot goes deeper than {depth_mm:.4g} mm, the most that was prepared")
+    return Mechanics(path, outputs[:, 0], outputs[:, 1], outputs[:, 2:])
+
+
+def shown(
+    run: Run, names: Sequence[str], drive: Drive, values: Floats, found: Mechanics, film: FilmPlate, on: Model,
+    ahead_s: float = 0.0,
+) -> dict[str, Floats]:  # fmt: skip
+    """Channels of the run (t,) by name. Where nothing pushes, nobody can tell where a dot hangs: as recorded.
+
+    ahead_s : by which the mains are ahead of the first touch.
+    """
+    signals: dict[str, Floats] = {}
+    voltages = sorted((name for name in names if name.startswith("voltage")), key=_electrode)
+    if voltages:
+        signals |= amplified(voltages, drive.time_s, found, film, on, ahead_s)
+    if "force_N" in names:
+        signals["force_N"] = sensed(drive.time_s, values, drive.kind, found.path_mm, found.force_N, on.physics)
+    if "displacement_mm" in names:
+        path = found.path_mm + on.dot.gap_mm
+        signals["displacement_mm"] = np.where(drive.touching, path, run.channels.get("displacement_mm", path))
+    return {name: signals[name] for name in names}
+
+
+def _electrode(name: str) -> int:
+    """voltage_3_V -> 3."""
+    return int("0" + "".join(filter(str.isdigit, name)))
+
+
+def amplified(
+    names: Sequence[str], time_s: Floats, found: Mechanics, film: FilmPlate, on: Model, ahead_s: float
+) -> dict[str, Floats]:
+    """Voltage channels (t,): one of all electrodes together, or one of each with what leaks in from the others.
+
+    names : in the order of the electrodes.
+    """
+    charge = found.charge_C + other_charge(time_s, found.area_m2, film, on)
+    time_s = time_s + ahead_s  # the amplifier itself knows differences of time only
+    readout = on.readout or Readout()
+    if len(names) == 1:
+        told = (time_s, charge.sum(axis=1), float(film.electrodes[:, 0].sum()), readout, on.physics)
+        return {names[0]: amplify(*told)}
+    alone = [
+        amplify(time_s, np.ascontiguousarray(own), float(capacitance), readout, on.physics)
+        for own, capacitance in zip(charge.T, film.electrodes[:, 0], strict=True)
+    ]
+    total = np.sum(alone, axis=0)
+    coupling = on.physics.crosstalk
+    mixed = [own + coupling.get(number, 0.0) * (total - own) for number, own in enumerate(alone, start=1)]
+    return dict(zip(names, mixed, strict=True))
+
+
+def other_charge(time_s: Floats, area_m2: Floats, film: FilmPlate, on: Model) -> Floats:
+    """Charge of heat and of touch (t, e), as solve.recorder adds it; the heat comes with the first touch."""
+    area, heat = film.electrodes[:, 1], on.physics.pyroelectric
+    charge = np.zeros((len(time_s), len(area)))
+    if heat.temperature_step_K != 0.0:
+        elapsed = np.maximum(time_s, 0.0)
+        temperature = -heat.temperature_step_K * np.expm1(-elapsed / heat.time_constant_s)
+        charge += 1e-6 * film.pyroelectric_uC_per_m2_K * temperature[:, None] * area
+    if on.physics.contact_charge_pC != 0.0:
+        touched = area_m2 / max(float(area_m2.max()), 1e-300)
+        charge += 1e-12 * on.physics.contact_charge_pC * touched[:, None] * area / area.sum()
+    return charge

@@ -1,0 +1,250 @@
+"""The forward model of a rig with a known segment.
+
+What a diagnosis with the 3D model cannot take as its baseline.
+
+Quantities that are comparable between laws, read from the tables.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import cached_property
+
+import numpy as np
+
+from diagnose.engines.segment import full
+from diagnose.engines.segment.answer import Drive, FilmPlate, Mechanics, drive_of, mechanics, shown
+from diagnose.engines.segment.path import with_history
+from diagnose.engines.segment.prepared import ZERO, Prepared, nuisance
+from diagnose.forward import Candidate, Setting, Signals
+from diagnose.signals.recording import Recording, Run
+from diagnose.vocabulary.candidates import candidates
+from diagnose.vocabulary.scene import Scene
+from geometry.arrays import Floats
+from geometry.base import InputError, Report
+from geometry.checks import check_press_depth
+from mesh.parameters import MeshOptions
+from solve.materials.parameters import PiezoelectricFilm
+from solve.mechanisms import Mechanism
+from solve.model import Model
+from solve.parameters import Readout
+from solve.reduced.fit import Fit
+from solve.switch_on import with_mechanisms
+from solve.tables.rig_mesh import mesh_of
+from solve.tables.smooth import changed
+
+
+def refuse(model: Model, recording: Recording) -> None:
+    """InputError with one sentence."""
+    film, physics = model.materials["film"], model.physics
+    if isinstance(film, PiezoelectricFilm) and film.coupling == "two-way":
+        raise InputError("coupling = 'two-way': a diagnosis needs a film whose voltage does not act back")
+    declared = {"friction": physics.friction, "stress-softening": physics.softening, "film-yield": physics.film_yield}
+    for name, value in declared.items():
+        if value:
+            raise InputError(f"mechanisms: '{name}' is a candidate of a diagnosis and cannot be declared; leave it out")
+    if physics.viscosity and physics.prestretch != (0.0, 0.0):
+        raise InputError("mechanisms: a diagnosis accepts declared viscoelasticity or film-prestretch, but not both")
+    for run in recording.runs:
+        if run.drive == "displacement_mm":
+            try:
+                check_press_depth(model.segment, float(run.drive_values.max()))
+            except InputError as error:
+                raise InputError(f"run '{run.label}' goes too deep (are these micrometres?): {error}") from None
+
+
+FORCE_RATIO = frozenset({"hyperelastic-stiffening", "foam-densification"})
+COMPARED = 0.5
+"""Of the deepest press, where the second cycle is set against the first: near the deepest both are the same."""
+Derived = Callable[[Sequence[float]], dict[str, float]]
+
+
+def with_derived(candidate: Candidate, prepared: Prepared) -> Candidate:
+    """A candidate that tells force_ratio, with over without it at the deepest press, or the loss_ratio of the force.
+
+    They are told once the candidate is prepared.
+    """
+    if candidate.mechanism in FORCE_RATIO:
+        return replace(candidate, derived=_force_ratio(candidate, prepared))
+    if candidate.mechanism == "stress-softening":
+        return replace(candidate, derived=_loss_ratio(candidate, prepared))
+    return candidate
+
+
+def _force_ratio(candidate: Candidate, prepared: Prepared) -> Derived:
+    def derived(values: Sequence[float]) -> dict[str, float]:
+        change = prepared.change((0.0, 0.0), [Setting(candidate, tuple(values))])
+        return {"force_ratio": 1.0 if change is None else float(np.exp(change[-1, 0]))}
+
+    return derived
+
+
+def _loss_ratio(candidate: Candidate, prepared: Prepared) -> Derived:
+    """1 - second / first cycle force at equal depth."""
+
+    def derived(values: Sequence[float]) -> dict[str, float]:
+        if not any(values):
+            return {"loss_ratio": 0.0}
+        (history,) = prepared.histories([Setting(candidate, tuple(values))])
+        again = history.along(np.array([1.0, COMPARED]))[0][1, 0]
+        return {"loss_ratio": -float(again)}
+
+    return derived
+
+
+DIRECT = frozenset({
+    "charge-leakage", "parasitic-capacitance", "low-pass", "saturation", "pyroelectric-drift", "crosstalk",
+    "contact-electrification", "viscoelasticity", "contact-gap", "rig-compliance", "inertia", "property-error",
+})  # fmt: skip
+"""Mechanisms, or parts of one, that act on the table as they do on the 3D model."""
+ROUNDS = 40
+SETTLED = 1e-6  # of the largest force
+Hum = tuple[tuple[float, float], ...]
+Asked = tuple[tuple[float, float], list[Setting], float]
+
+
+def segment_engine(model: Model, mesh_settings: MeshOptions, recording: Recording, report: Report) -> "SegmentEngine":
+    """Press the baseline, or recall it. InputError, MeshingError, NoEquilibriumError."""
+    return SegmentEngine(model, mesh_settings, recording, report)
+
+
+class SegmentEngine:
+    """Implements diagnose.forward.Engine."""
+
+    name = "3D FEM"
+    free_nuisances: tuple[Candidate, ...] = ()
+
+    def __init__(self, model: Model, mesh_settings: MeshOptions, recording: Recording, report: Report) -> None:
+        refuse(model, recording)
+        self.model, self.recording = model, recording
+        self.drives = [drive_of(*pair) for pair in zip(recording.runs, recording.phases, strict=True)]
+        self.prepared: Prepared = Prepared(model, mesh_settings, recording, report)
+        self.prepared.add((), [run.dot_offset_mm for run in recording.runs], report)
+        self.accuracy = self.prepared.accuracy
+        self._last: tuple[Asked, Fit] | None = None
+        self.candidates: tuple[Candidate, ...] = tuple(with_derived(c, self.prepared) for c in candidates(self.scene))
+
+    @cached_property
+    def scene(self) -> Scene:
+        """What the candidates depend on."""
+        runs = self.recording.runs
+        values = [run.channels[name][run.usable(name)] for run in runs for name in run.voltages]
+        return Scene(
+            model=self.model,
+            readouts=tuple(self._readout(run) or Readout() for run in runs),
+            depth_mm=self.prepared.pressed_mm,
+            force_N=float(self.prepared.fit.table[-1, 0, 0]),
+            voltage_V=max((float(np.abs(v).max()) for v in values if len(v)), default=0.0),
+            step_s=min(run.step_s for run in runs),
+            duration_s=max(float(run.time_s[-1] - run.time_s[0]) for run in runs),
+            channels=max(1, len(self.model.segment.film.electrodes)),
+        )
+
+    @property
+    def shortfalls(self) -> tuple[str, ...]:
+        """Candidates that the 3D model could not press as it should."""
+        return tuple(self.prepared.shortfalls.values())
+
+    def nuisance(self, name: str) -> Candidate | None:
+        """See diagnose.forward.Engine; also "offset_mm", the error of the first touch where a displacement drives."""
+        return nuisance(self.scene, self.recording, name)
+
+    def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
+        """Press what these candidates need. NoEquilibriumError."""
+        self.prepared.add(candidates, (), report)
+        self._last = None
+
+    def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
+        """Every answer of a run. ValueError for what was not prepared."""
+        asked, drive = self.recording.runs[run], self.drives[run]
+        ahead_s, hum = self._hum(run, settings)
+        return self._answer(asked, drive, asked.answers, settings, hum, ahead_s)
+
+    def imagine(self, run: Run, settings: Sequence[Setting]) -> Signals:
+        """Every channel of a run that was not made, its hum left out. ValueError for what was not prepared."""
+        names = dict.fromkeys(name for each in self.recording.runs for name in each.channels if name != run.drive)
+        return self._answer(run, drive_of(run, Recording((run,)).phases[0]), tuple(names), settings, (), 0.0)
+
+    def _answer(
+        self, run: Run, drive: Drive, names: Sequence[str], settings: Sequence[Setting], hum: Hum, ahead_s: float
+    ) -> Signals:
+        """Named channels of a run."""
+        settings = [setting for setting in settings if any(setting.values)]
+        direct = [s.candidate.switched_on(s.values) for s in settings if s.candidate.mechanism in DIRECT]
+        on = with_mechanisms(replace(self.model, readout=self._readout(run)), direct)
+        values = self._driven(drive, on, settings)
+        found = self._mechanics(run, drive, values, on, settings)
+        on = replace(on, physics=replace(on.physics, hum=(*on.physics.hum, *hum)))
+        return shown(run, names, drive, values, found, self._film(on), on, ahead_s)
+
+    def solve(self, run: int, mechanisms: Sequence[Mechanism], report: Report) -> Signals:
+        """The same by the 3D model along the run's own drive. ValueError, NoEquilibriumError."""
+        base, asked, drive = self.prepared, self.recording.runs[run], self.drives[run]
+        believed = replace(base.moved(asked.dot_offset_mm), readout=self._readout(asked))
+        on = with_mechanisms(believed, mechanisms)
+        elastic, values = replace(on, physics=replace(on.physics, viscosity={})), self._driven(drive, on, ())
+
+        def shape(fit: Fit) -> full.Shape:
+            return lambda of, values: mechanics(fit, base.depth_mm, base.relaxing, of, values, elastic)
+
+        tet_mesh = mesh_of(on, self.model, base.tet_mesh, base.options)
+        task = full.Task(asked, drive, values, on, tet_mesh, self._film(on), shape(base.raw), shape(base.fit))
+        return full.solve(task, report)
+
+    def _readout(self, run: Run) -> Readout | None:
+        return run.readout if run.readout is not None else self.model.readout
+
+    def _driven(self, drive: Drive, on: Model, settings: Sequence[Setting]) -> Floats:
+        """The drive (t,) from the first touch of a model, in mm, or in N."""
+        if not drive.by_depth:
+            return drive.values
+        zero = sum(setting.values[0] for setting in settings if setting.candidate.mechanism == ZERO)
+        return np.asarray(drive.values - on.dot.gap_mm - zero)
+
+    def _mechanics(self, run: Run, drive: Drive, values: Floats, on: Model, settings: Sequence[Setting]) -> Mechanics:
+        """Path, force and charge. What depends on the path acts back on a compliant drive: a fixed point."""
+        base, fit = self.prepared, self._fit(run, on, settings)
+        found = mechanics(fit, base.depth_mm, base.relaxing, drive, values, on)
+        histories = base.histories(settings)
+        if not histories:
+            return found
+        give = on.physics.rig_compliance_mm_per_N if drive.by_depth else 1.0
+        added = np.zeros(len(values))
+        for _ in range(ROUNDS):
+            whole = with_history(found, histories, fit, base.depth_mm)
+            change = whole.force_N - found.force_N - added
+            added = added + change
+            if give == 0.0 or np.abs(change).max() <= SETTLED * np.abs(whole.force_N).max():
+                break
+            found = mechanics(fit, base.depth_mm, base.relaxing, drive, values - give * added, on)
+        return whole
+
+    def _fit(self, run: Run, on: Model, settings: Sequence[Setting]) -> Fit:
+        """The table with all that changes it; kept, as runs share it."""
+        base = self.prepared
+        factor = _d31(on) / _d31(self.model)
+        asked = run.dot_offset_mm, list(settings), factor
+        if self._last is None or self._last[0] != asked:
+            change = base.change(run.dot_offset_mm, settings)
+            same = change is None and factor == 1.0
+            nothing = base.nothing if change is None else change
+            self._last = asked, base.fit if same else changed(base.fit, base.depths, nothing, factor)
+        return self._last[1]
+
+    def _film(self, on: Model) -> FilmPlate:
+        """A thinner film has more capacitance."""
+        return self.prepared.film.thinner(self.model.segment.film.thickness_um / on.segment.film.thickness_um)
+
+    def _hum(self, run: int, settings: Sequence[Setting]) -> tuple[float, Hum]:
+        """By how much the mains are ahead of the touch in a run, and their hum."""
+        for setting in settings:
+            if setting.candidate.mechanism == "mains-hum":
+                sine, cosine = setting.values[2 * run : 2 * run + 2]
+                ahead_s = float(np.arctan2(cosine, sine)) / (2.0 * np.pi * self.scene.mains_Hz)
+                return ahead_s, ((self.scene.mains_Hz, float(np.hypot(sine, cosine))),)
+        return 0.0, ()
+
+
+def _d31(model: Model) -> float:
+    film = model.materials["film"]
+    assert isinstance(film, PiezoelectricFilm)
+    return film.d31_pC_per_N or film.d33_pC_per_N

@@ -1,0 +1,171 @@
+"""A run by the 3D model itself: its drive as a waveform, its answer at the run's own times.
+
+The fewest times at which the 3D model must be solved to follow a drive.
+"""
+
+import csv
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from diagnose.engines.segment.answer import Drive, FilmPlate, Mechanics, other_charge, shown
+from diagnose.engines.segment.prepared import ungapped
+from diagnose.forward import Signals
+from diagnose.signals.recording import Run
+from geometry.arrays import Bools, Floats, Ints
+from geometry.base import Report
+from geometry.dot import resolve_dot
+from geometry.processes import scratch_folder
+from mesh.types import TetMesh
+from solve.model import Model
+from solve.parameters import Press, Waveform
+from solve.press import press_segment
+from solve.result import PressResult, Trace
+from solve.solution.newton import NoEquilibriumError
+
+SLOPE = 0.06, 0.2, 0.4, 0.6, 0.8, 0.94  # of a slope: closest where softened rubber leaves its first curve
+STEEP = 0.2  # of the largest drive: a lesser rise needs no point between
+HOLD = 0.03, 0.1, 0.3  # of a stretch without much change: what relaxes does so at first
+
+
+def knots(time: Floats, share: Floats, tolerance: float, most: int) -> Ints:
+    """Samples (k,) to solve at, for a drive in shares (t,) of its largest: corners, and between them by SLOPE or HOLD.
+
+    What is clear of the segment has no points of its own.
+    """
+    kept = np.flatnonzero(corners(time, share, tolerance, most // 2))
+    more: list[int] = []
+    for first, last in pairwise(kept):
+        rise = abs(share[last] - share[first])
+        if max(share[first], share[last]) <= tolerance:
+            continue
+        places = SLOPE if rise > STEEP else HOLD
+        more += [int(np.searchsorted(time, time[first] + p * (time[last] - time[first]))) for p in places]
+    found = np.unique([*kept, *more])
+    return found if len(found) <= most else kept
+
+
+def corners(time: Floats, values: Floats, tolerance: float, most: int) -> Bools:
+    """Which samples (t,) to keep so that straight lines between them stay within a tolerance of all values.
+
+    The sample farthest from its line is added until none is too far (Ramer 1972; Douglas and Peucker 1973), or until
+    there are as many as allowed.
+    """
+    kept = np.zeros(len(time), dtype=np.bool_)
+    kept[[0, -1]] = True
+    spans = [_farthest(time, values, 0, len(time) - 1)]
+    while spans and int(kept.sum()) < most:
+        worst = max(range(len(spans)), key=lambda n: spans[n][0])
+        distance, place, first, last = spans.pop(worst)
+        if distance <= tolerance:
+            break
+        kept[place] = True
+        spans += [_farthest(time, values, *part) for part in ((first, place), (place, last)) if part[1] - part[0] > 1]
+    return kept
+
+
+def _farthest(time: Floats, values: Floats, first: int, last: int) -> tuple[float, int, int, int]:
+    """Largest distance from the line between two samples, where, and these samples."""
+    inner = slice(first + 1, last)
+    line = np.interp(time[inner], time[[first, last]], values[[first, last]])
+    off = np.abs(values[inner] - line)
+    worst = int(np.argmax(off)) if len(off) else 0
+    return (float(off[worst]) if len(off) else 0.0), first + 1 + worst, first, last
+
+
+LOAD_STEPS = 8  # of a press in which time does not count
+TOLERANCE = 0.002  # of the largest drive, by which the thinned drive may differ
+MOST_POINTS = 199  # what a waveform file may have
+WAVEFORM = "drive.csv"
+Shape = Callable[[Drive, Floats], Mechanics]
+
+
+@dataclass(frozen=True)
+class Task:
+    """A run, its drive with values (t,) in mm or N, and the model with all mechanisms on its mesh.
+
+    shape : the elastic answer of this mesh's table to any drive. Between the states of the 3D model only the
+    difference from it is interpolated, which is smooth where force and charge bend. fine : the same of the table that
+    is corrected by a finer mesh.
+    """
+
+    run: Run
+    drive: Drive
+    values: Floats
+    model: Model
+    tet_mesh: TetMesh
+    film: FilmPlate
+    shape: Shape
+    fine: Shape
+
+
+def solve(task: Task, report: Report) -> Signals:
+    """Every answer of the run. NoEquilibriumError."""
+    found = _through_time(task, report) if task.model.follows_time else _by_depth(task, report)
+    # path, force and charge are those of the press itself: only the amplifier is still to come
+    return shown(task.run, task.run.answers, task.drive, task.values, found, task.film, task.model)
+
+
+def _press(task: Task, press: Press, report: Report) -> PressResult:
+    """NoEquilibriumError where it stops short."""
+    model, dot = task.model, resolve_dot(ungapped(task.model).dot, task.model.segment)
+    result = press_segment(
+        model.segment, model.materials, dot, press, task.tet_mesh,
+        lambda _, number, count: report(f"3D press of {task.run.label}", number, count), model.physics,
+    )  # fmt: skip
+    if result.failure is not None:
+        raise NoEquilibriumError(f"the 3D press of {task.run.label}: {result.failure}", np.zeros(0), None)
+    return result
+
+
+def _largest(task: Task) -> dict[str, float]:
+    name = "indentation_mm" if task.drive.by_depth else "force_N"
+    return {name: float(task.values.max())}
+
+
+def _by_depth(task: Task, report: Report) -> Mechanics:
+    """One press down; the run passes the same states, up and down."""
+    trace = _press(task, Press(**_largest(task), load_steps=LOAD_STEPS), report).trace
+    at = 1e3 * trace.indentation_m if task.drive.by_depth else trace.reaction_force_N
+    at, first = np.unique(at, return_index=True)
+    alike = Drive(np.arange(float(len(at))), at, task.drive.kind, np.ones(len(at), dtype=np.bool_))
+    return _between(_columns(trace, task)[first], at, _of(task.shape(alike, at)), np.maximum(task.values, 0.0), task)
+
+
+def _through_time(task: Task, report: Report) -> Mechanics:
+    """Along the run's own waveform."""
+    time = task.drive.time_s - task.drive.time_s[0]
+    share = np.maximum(task.values, 0.0) / task.values.max()
+    kept = knots(time, share, TOLERANCE, MOST_POINTS)
+    with scratch_folder() as folder:
+        path = folder / WAVEFORM
+        with path.open("w", encoding="utf-8", newline="") as stream:
+            csv.writer(stream).writerows([("time_s", "fraction"), *zip(time[kept], share[kept], strict=True)])
+        press = Press(**_largest(task), waveform=Waveform(shape="file", file=str(path)))
+        trace = _press(task, press, report).trace
+    alike = _of(task.shape(task.drive, task.values))
+    known = np.column_stack([np.interp(trace.time_s, time, column) for column in alike.T])
+    return _between(_columns(trace, task), trace.time_s, known, time, task)
+
+
+def _between(columns: Floats, at: Floats, known: Floats, asked: Floats, task: Task) -> Mechanics:
+    """Columns (s, 3 + e) known at (s,), where the elastic answer is known (s, 3 + e), at what was asked for (t,)."""
+    difference = PchipInterpolator(at, columns - known)(np.clip(asked, at[0], at[-1]))
+    path, force, area, *charge = (_of(task.fine(task.drive, task.values)) + difference).T
+    if task.drive.by_depth:  # clear of the segment the dot follows the sensor
+        path = np.where(task.values < 0.0, task.values, path)
+    return Mechanics(path, np.maximum(force, 0.0), np.maximum(area, 0.0), np.column_stack(charge))
+
+
+def _of(found: Mechanics) -> Floats:
+    """Path in mm, force, area and charges (t, 3 + e)."""
+    return np.column_stack([found.path_mm, found.force_N, found.area_m2, found.charge_C])
+
+
+def _columns(trace: Trace, task: Task) -> Floats:
+    """The same of a press, without the charge of heat and touch that the recorder has added."""
+    charge = trace.film_charge_C - other_charge(trace.time_s, trace.contact_area_m2, task.film, task.model)
+    return np.column_stack([1e3 * trace.dot_path_m, trace.contact_force_N[:, 2], trace.contact_area_m2, charge])

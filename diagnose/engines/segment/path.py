@@ -1,0 +1,101 @@
+"""What depends on the path: softening and yield, from presses down and up again.
+
+While the dot goes deeper than ever, force and charge are those of the way down. On the way up, and down again as far
+as the largest depth U so far, they are those of the way up from U. The curves of several U go over into each other as
+functions of u / U.
+
+Friction is not here: a straight press slips on the way down and sticks on the way up, where the force was found the
+same to 0.1 %.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from diagnose.engines.segment.answer import Mechanics
+from geometry.arrays import Floats
+from solve.reduced.fit import CELLS, Fit
+from solve.tables.job import RETURN
+
+MECHANISMS = frozenset({"stress-softening", "film-yield"})
+BACK = 2, 4
+"""Which of the shares of the depth are turned at."""
+ROWS = np.linspace(0.0, 1.0, CELLS + 1)
+
+
+@dataclass(frozen=True)
+class History:
+    """values (n + b r, 2 + e) : changes on the way down and on the ways back: of force and area relative to the
+    baseline's, of charges per force of the baseline.
+
+    shares (n,) : of the depth on the way down.
+    """
+
+    values: Floats
+    shares: tuple[float, ...]
+
+    def along(self, share: Floats) -> tuple[Floats, Floats]:
+        """Changes (t, 2 + e) along a path in shares (t,) of the depth, and the depths (t,) that charges refer to."""
+        place = np.clip(share, 0.0, None)
+        largest = np.maximum.accumulate(place)
+        down = _curve(np.array(self.shares), self.values[: len(self.shares)], place)
+        inside = np.clip(place / np.maximum(largest, 1e-12), 0.0, 1.0)
+        turned = np.array([self.shares[m] for m in BACK])
+        back = _between(turned, [self._way(number, inside) for number in range(len(BACK))], largest)
+        returning = place < largest
+        return np.where(returning[:, None], back, down), np.where(returning, largest, place)
+
+    def _way(self, number: int, inside: Floats) -> Floats:
+        """Changes (t, 2 + e) on a way back at parts (t,) of the depth where it began."""
+        first = len(self.shares) + number * len(RETURN)
+        values = np.vstack([self.values[first : first + len(RETURN)][::-1], self.values[BACK[number]]])
+        return _curve(np.array([*RETURN[::-1], 1.0]), values, inside)
+
+
+def changes(outputs: Floats, base: Floats, shares: Sequence[float], fit: Fit) -> Floats:
+    """Changes (n + b r, 2 + e) from outputs of a press down and up; base (n, 2 + e) : of the baseline down.
+
+    The baseline's way back is its way down; charges on a way back are per force at the depth where it began.
+    """
+    found = [_relative(outputs[: len(shares)], base, base[:, :1])]
+    for number, m in enumerate(BACK):
+        rows = outputs[len(shares) + number * len(RETURN) :][: len(RETURN)]
+        depths = np.array(RETURN) * shares[m]
+        before = np.column_stack([np.interp(depths, ROWS, column) for column in fit.table[:, 0, : outputs.shape[1]].T])
+        found.append(_relative(rows, before, base[m, :1]))
+    return np.concatenate(found)
+
+
+def _relative(outputs: Floats, base: Floats, force: Floats) -> Floats:
+    """(n, 2 + e) from outputs (n, 2 + e) and the baseline's; force in N that charges are referred to."""
+    ratios = outputs[:, :2] / np.maximum(base[:, :2], 1e-300) - 1.0
+    return np.concatenate([ratios, (outputs[:, 2:] - base[:, 2:]) / np.maximum(force, 1e-300)], axis=1)
+
+
+def _curve(at: Floats, values: Floats, place: Floats) -> Floats:
+    """Values (t, o) over the depth, constant towards touch."""
+    curve = PchipInterpolator(np.array([0.0, *at]), np.vstack([values[:1], values]))
+    return np.asarray(curve(np.clip(place, 0.0, 1.0)))
+
+
+def _between(turned: Floats, curves: Sequence[Floats], largest: Floats) -> Floats:
+    """Linear in the largest depth, constant beyond the ends."""
+    place = np.interp(largest, turned, np.arange(len(turned)))
+    low = np.minimum(place.astype(np.int64), len(turned) - 2)
+    mix, stack = (place - low)[:, None], np.array(curves)
+    rows = np.arange(len(largest))
+    return np.asarray((1.0 - mix) * stack[low, rows] + mix * stack[low + 1, rows])
+
+
+def with_history(found: Mechanics, histories: Sequence[History], fit: Fit, depth_mm: float) -> Mechanics:
+    """The same path with force, area and charge as its history makes them."""
+    share, force = found.path_mm / depth_mm, fit.table[:, 0, 0]
+    factors, charge = np.ones((len(share), 2)), found.charge_C
+    for history in histories:
+        change, at = history.along(share)
+        factors = factors * np.maximum(1.0 + change[:, :2], 0.0)
+        charge = charge + np.interp(at, ROWS, force)[:, None] * change[:, 2:]
+    contact = factors.T * [found.force_N, found.area_m2]
+    return replace(found, force_N=contact[0], area_m2=contact[1], charge_C=charge)

@@ -1,0 +1,1 @@
+"""A forward model fitted to a recording: whitened samples, nuisance parameters, descent, intervals."""

@@ -1,0 +1,244 @@
+"""Bounded Levenberg-Marquardt over the coordinates of mechanisms, with all that is excused integrated out.
+
+What is linear leaves only inner products (variable projection; Golub and Pereyra, SIAM J. Numer. Anal. 10 (1973) 413).
+
+Mechanisms and nuisances fitted together: bounded Levenberg-Marquardt where both are far from linear.
+
+The objective is the square of the residual, with discrepancies integrated out, plus that of the nuisances in units of
+their priors. Variances and discrepancies stay those of the system from which it starts.
+"""
+
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import lsq_linear
+
+from diagnose.fit.observed_model import STEP, Nuisance, ObservedModel
+from diagnose.fit.system import Quadratic, System
+from diagnose.forward import Candidate, Coordinate, Setting
+from geometry.arrays import Floats
+
+ITERATIONS = 40
+STILL = 0.02  # of a standard error: a step below it is none
+LEAST_GAIN = 1e-3  # in half squares: less is no progress
+TIGHTEST = 1e6  # damping beyond which no step is tried
+RIDGE = 1e-12  # on a unit diagonal: coordinates that act exactly alike
+
+
+@dataclass(frozen=True)
+class Place:
+    """values : (q,). predicted : (n,) there. left : weighted residual. cost : half its square."""
+
+    values: Floats
+    predicted: Floats
+    left: Floats
+    cost: float
+
+
+@dataclass(frozen=True)
+class Descent:
+    """Mechanisms in the metric of a system. origin : the prediction at which its residual was taken, and the residual.
+
+    The best values are those whose prediction comes nearest to the origin.
+    """
+
+    model: ObservedModel
+    system: System
+    candidates: tuple[Candidate, ...]
+    origin: Floats
+
+    def vector(self, values: Floats) -> Floats:
+        """The prediction (n,) at the system's nuisances. ValueError where the model has no answer."""
+        return self.model.vector(self.system.values, settings(self.candidates, values))
+
+    def at(self, values: Floats) -> Place:
+        """Residual and cost at values (q,); an infinite cost where the model has no answer."""
+        try:
+            predicted = self.vector(values)
+        except ValueError:
+            return Place(values, self.origin, np.zeros(int(self.system.live.sum())), np.inf)
+        left = self.system.weighted(self.origin - predicted)
+        return Place(values, predicted, left, 0.5 * self.system.quadratic.square(left))
+
+    def slopes(self, place: Place) -> Floats:
+        """(n, q) change per unit of each value, by differences towards the inside, or where the model has an answer."""
+        columns = []
+        for number, coordinate in enumerate(coordinates(self.candidates)):
+            step = STEP * max(min(map(abs, coordinate.starts)), abs(place.values[number]))
+            step = -step if place.values[number] + step > coordinate.high else step
+            columns.append(self._slope(place, number, step))
+        return np.column_stack(columns)
+
+    def _slope(self, place: Place, number: int, step: float) -> Floats:
+        """(n,) per unit of one value; 0 where the model has an answer on neither side."""
+        for signed in (step, -step):
+            moved = place.values.copy()
+            moved[number] += signed
+            with suppress(ValueError):
+                return np.asarray((self.vector(moved) - place.predicted) / signed)
+        return np.zeros_like(place.predicted)
+
+
+def descent(model: ObservedModel, system: System, candidates: Sequence[Candidate], about: Sequence[Setting]) -> Descent:
+    """about : the mechanisms about which the system is linear."""
+    return Descent(model, system, tuple(candidates), model.vector(system.values, about) + system.residual)
+
+
+def descended(problem: Descent, start: Floats, least: float = LEAST_GAIN) -> tuple[Place, Floats]:
+    """The best place from a start (q,), and the slopes (n, q) there; a step that gains less than least is the last."""
+    limits = bounds(problem.candidates)
+    here = problem.at(np.clip(start, *limits.T))
+    if not np.isfinite(here.cost):
+        return here, np.zeros((len(here.predicted), len(start)))
+    slopes, damping = problem.slopes(here), 1e-3
+    for _ in range(ITERATIONS):
+        columns = problem.system.weighted(slopes)
+        cleared = problem.system.quadratic.cleared(columns)
+        after, damping = _improved(problem, here, columns.T @ cleared, cleared.T @ here.left, damping, limits)
+        if after is None:
+            break
+        gain, moved = here.cost - after.cost, after.values - here.values
+        still = float(moved @ columns.T @ cleared @ moved) < STILL**2
+        here = after
+        slopes = problem.slopes(here)
+        if gain < least or still:
+            break
+    return here, slopes
+
+
+def lowest(problem: Descent, starts: Sequence[Floats], least: float = LEAST_GAIN) -> Place | None:
+    """The best place from several starts (q,); none where the model has no answer."""
+    tries = [descended(problem, start, least)[0] for start in starts]
+    return min((place for place in tries if np.isfinite(place.cost)), key=lambda place: place.cost, default=None)
+
+
+def settings(candidates: Sequence[Candidate], values: Floats) -> tuple[Setting, ...]:
+    """Values (q,) dealt out to the candidates."""
+    edges = np.cumsum([0, *(len(c.coordinates) for c in candidates)])
+    return tuple(
+        Setting(candidate, tuple(values[a:b].tolist()))
+        for candidate, a, b in zip(candidates, edges[:-1], edges[1:], strict=True)
+    )
+
+
+def coordinates(candidates: Sequence[Candidate]) -> tuple[Coordinate, ...]:
+    """All of them, in order."""
+    return tuple(coordinate for candidate in candidates for coordinate in candidate.coordinates)
+
+
+def bounds(candidates: Sequence[Candidate]) -> Floats:
+    """(q, 2) of all coordinates."""
+    return np.array([(c.low, c.high) for c in coordinates(candidates)])
+
+
+def scales(hessian: Floats) -> Floats:
+    """Root of the diagonal (q,), 1 for a coordinate that changes nothing."""
+    diagonal = np.diag(hessian)
+    return np.asarray(np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0)))
+
+
+def _improved(
+    problem: Descent, here: Place, hessian: Floats, gradient: Floats, damping: float, limits: Floats
+) -> tuple[Place | None, float]:
+    """A better place and the damping that found it; none where only steps too small to matter are left."""
+    while damping < TIGHTEST:
+        step = bounded_step(hessian, gradient, damping, here.values, limits)
+        after = problem.at(here.values + step)
+        if after.cost < here.cost:
+            return after, damping / 10.0
+        if float(step @ hessian @ step) < STILL**2:
+            break
+        damping = max(damping * 10.0, 1e-3)
+    return None, damping
+
+
+def bounded_step(hessian: Floats, gradient: Floats, damping: float, values: Floats, limits: Floats) -> Floats:
+    """The damped Newton step within the bounds."""
+    scale = scales(hessian)
+    damped = hessian / np.outer(scale, scale) + (damping + RIDGE) * np.eye(len(values))
+    root = np.linalg.cholesky(damped)
+    low, high = ((limits - values[:, None]) * scale[:, None]).T
+    found = lsq_linear(root.T, np.linalg.solve(root, gradient / scale), (low, high), method="bvls")
+    return np.asarray(np.clip(found.x / scale, limits[:, 0] - values, limits[:, 1] - values))
+
+
+JOINT_ITERATIONS = 30
+JOINT_LEAST_GAIN = 0.01  # in half squares: less is no progress
+JOINT_STILL = 0.05  # of a standard error: a step below it is none
+
+
+@dataclass(frozen=True)
+class Joint:
+    """values : (q,) of the mechanisms. nuisances : (p,). cost : half the objective."""
+
+    values: Floats
+    nuisances: Floats
+    cost: float
+
+
+class _Problem:
+    def __init__(self, model: ObservedModel, system: System, candidates: Sequence[Candidate]) -> None:
+        self.model, self.system, self.candidates = model, system, tuple(candidates)
+        self.count = len(bounds(candidates))
+        self.excused = Quadratic(
+            system.weighted(system.excused[:, len(system.values) :]), system.sigma[len(system.values) :]
+        )
+        self.precision = np.concatenate([np.zeros(self.count), 1.0 / model.sigma**2])
+        own = np.array([_limits(nuisance) for nuisance in model.nuisances]).reshape(-1, 2)
+        self.limits = np.concatenate([bounds(candidates), own])
+
+    def residual(self, point: Floats) -> tuple[Floats, float]:
+        """Weighted (l,), and the cost; infinite where the model has no answer."""
+        try:
+            predicted = self.model.vector(point[self.count :], settings(self.candidates, point[: self.count]))
+        except ValueError:
+            return np.zeros(int(self.system.live.sum())), np.inf
+        left = self.system.weighted(self.model.samples.recorded - predicted)
+        return left, 0.5 * self.excused.square(left) + 0.5 * float(self.precision @ point**2)
+
+    def columns(self, point: Floats) -> Floats:
+        """Weighted slopes (l, q + p)."""
+        values, nuisances = point[: self.count], point[self.count :]
+        on = settings(self.candidates, values)
+        problem = descent(self.model, _at(self.system, nuisances), self.candidates, on)
+        predicted = self.model.vector(nuisances, on)
+        slopes = problem.slopes(Place(values, predicted, np.zeros(0), 0.0))
+        return self.system.weighted(np.column_stack([slopes, self.model.tangents(nuisances, on)]))
+
+
+def _at(system: System, nuisances: Floats) -> System:
+    return replace(system, values=nuisances)
+
+
+def _limits(nuisance: Nuisance) -> tuple[float, float]:
+    if nuisance.candidate is None:
+        return -np.inf, np.inf
+    coordinate = nuisance.candidate.coordinates[nuisance.coordinate]
+    return coordinate.low, coordinate.high
+
+
+def fitted_jointly(model: ObservedModel, system: System, candidates: Sequence[Candidate], start: Floats) -> Joint:
+    """From values (q,) and the system's own nuisances."""
+    problem = _Problem(model, system, candidates)
+    point = np.clip(np.concatenate([start, system.values]), *problem.limits.T)
+    left, cost = problem.residual(point)
+    damping = 1e-3
+    for _ in range(JOINT_ITERATIONS if np.isfinite(cost) else 0):
+        columns = problem.columns(point)
+        cleared = problem.excused.cleared(columns)
+        hessian = columns.T @ cleared + np.diag(problem.precision)
+        gradient = cleared.T @ left - problem.precision * point
+        gain, still = 0.0, False
+        while damping < TIGHTEST and not still:
+            step = bounded_step(hessian, gradient, damping, point, problem.limits)
+            after, lower = problem.residual(point + step)
+            gain, still = cost - lower, float(step @ hessian @ step) < JOINT_STILL**2
+            if gain > 0.0:
+                point, left, cost, damping = point + step, after, lower, damping / 10.0
+                break
+            damping = max(10.0 * damping, 1e-3)
+        if gain < JOINT_LEAST_GAIN or still:
+            break
+    return Joint(point[: problem.count], point[problem.count :], cost)

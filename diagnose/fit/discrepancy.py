@@ -1,0 +1,117 @@
+"""What a model may be wrong by without lacking physics: columns smooth over a press, and a variance for the rest.
+
+A signal with relative error sigma is taken as signal times (1 + sigma m(t)), with m a random function over each press.
+Its smooth part is a few cosines over the press, common to the presses of a run (columns with prior sigma). What no
+column can follow adds to the variance of the coefficients where the signal itself is, and of those next to them.
+
+The noise of the measured drive shows in what a model predicts from it: it adds to the variance, band by band.
+
+In a piece of a press the answer changes by s times the change of the drive. White noise of the drive then has the
+density 2 dt (s sigma)^2, and each whitened coefficient the ratio of that to the density of the channel's own noise.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from diagnose.fit.samples import Samples
+from diagnose.forward import Signals
+from diagnose.signals.phases import rest_of
+from geometry.arrays import Floats
+
+FORM = 0.05
+"""One sigma by which the effect of a mechanism may differ from that of the right one by its law alone."""
+COSINES = 3
+Relative = Sequence[float]
+"""One sigma per channel, in the order of the samples' channels."""
+
+
+def columns(samples: Samples, signals: Sequence[Signals], relative: Relative) -> tuple[Floats, Floats]:
+    """Columns (n, k) and their prior sigmas (k,): each block times low cosines, and each channel as a whole."""
+    found: list[Floats] = []
+    sigma: list[float] = []
+    whole: dict[str, Floats] = {}
+    for block in samples.blocks:
+        size = relative[samples.channels.index(block.channel)]
+        if size == 0.0:
+            continue
+        waves = _waves(samples, block.run) * signals[block.run][block.channel][:, None]
+        own = samples.of_block(block, block.whitening(waves))
+        found += list(own.T)
+        sigma += [size] * COSINES
+        whole[block.channel] = whole.get(block.channel, np.zeros(len(samples))) + own[:, 0]
+    found += list(whole.values())
+    sigma += [relative[samples.channels.index(channel)] for channel in whole]
+    return (np.column_stack(found) if found else np.zeros((len(samples), 0))), np.array(sigma)
+
+
+def repeated(samples: Samples, signals: Sequence[Signals], relative: Relative) -> tuple[Floats, Floats]:
+    """Columns (n, k) and their prior sigmas (k,) of an error over depth, which is the same in all runs.
+
+    Low cosines of each channel over its range, which stands for the depth as it grows with it; the constant one is
+    among columns().
+    """
+    orders = np.arange(1, COSINES)
+    found = {name: np.zeros((len(samples), len(orders))) for name in samples.channels}
+    largest = {
+        name: max(float(np.abs(of_run[name]).max(initial=0.0)) for of_run in signals if name in of_run)
+        for name in samples.channels
+    }
+    for block in samples.blocks:
+        signal = signals[block.run][block.channel]
+        share = np.abs(signal) / max(largest[block.channel], np.finfo(float).tiny)
+        waves = np.cos(np.pi * share[:, None] * orders) * signal[:, None]
+        found[block.channel] += samples.of_block(block, block.whitening(waves))
+    known = [name for name, size in zip(samples.channels, relative, strict=True) if size > 0.0]
+    sigma = [size for size in relative if size > 0.0]
+    columns = np.column_stack([found[name] for name in known]) if known else np.zeros((len(samples), 0))
+    return columns, np.repeat(sigma, len(orders))
+
+
+def allowance(samples: Samples, vector: Floats, relative: Relative) -> Floats:
+    """Variance (n,) that is added to the coefficients of a signal (n,).
+
+    Half of the expected square is where the signal is (its cell), half is spread over its piece with the spectrum of
+    a random walk: an error of form is rougher than the signal.
+    """
+    size = np.asarray(relative)[samples.kind[samples.block_of]] ** 2
+    square = vector**2
+    here = (np.bincount(samples.bank.cell, square) / samples.bank.degrees)[samples.bank.cell]
+    falling = 1.0 / (1.0 + samples.order_in_piece) ** 2
+    piece = samples.piece_of
+    spread = (np.bincount(piece, square) / np.bincount(piece, falling))[piece] * falling
+    return np.asarray(size * 0.5 * (here + spread))
+
+
+def _waves(samples: Samples, run: int) -> Floats:
+    """Cosines (t, COSINES) over each press of a run, from its touch to its end."""
+    presses, count = samples.recording.phases[run].presses, len(samples.recording.runs[run].time_s)
+    place = np.zeros(count)
+    for press in presses:
+        length = max(press.end - press.touch, 1)
+        place[press.touch : press.end] = (np.arange(press.end - press.touch) + 0.5) / length
+    return np.cos(np.pi * place[:, None] * np.arange(COSINES))
+
+
+def drive_noise(samples: Samples, signals: Sequence[Signals]) -> Floats:
+    """Variance (n,) that is added to each coefficient; 0 where the drive is a command without noise."""
+    sigma = [rest_of(run.drive_values)[1] for run in samples.recording.runs]
+    added = np.zeros(len(samples))
+    for block in samples.blocks:
+        run = samples.recording.runs[block.run]
+        if sigma[block.run] == 0.0:
+            continue
+        drive, answer = run.drive_values[block.observed], signals[block.run][block.channel][block.observed]
+        first = block.rows.start
+        for piece in samples.pieces_of(block):
+            own = slice(piece.samples.start - first, piece.samples.stop - first)
+            slope = _slope(drive[own], answer[own])
+            density = samples.noise_density[piece.samples]
+            added[piece.samples] = 2.0 * piece.step_s * (slope * sigma[block.run]) ** 2 / density
+    return added
+
+
+def _slope(drive: Floats, answer: Floats) -> float:
+    """Root mean square change of the answer over that of the drive."""
+    moved = float(np.sum(np.diff(drive) ** 2))
+    return float(np.sqrt(np.sum(np.diff(answer) ** 2) / moved)) if moved > 0.0 else 0.0

@@ -1,0 +1,155 @@
+"""Intervals of parameters by the profile likelihood, for any function of the fitted coordinates.
+
+The profile interval of g is the range of g over all values whose log-likelihood is within half the chi-square
+quantile of the best (Venzon and Moolgavkar, Appl. Stat. 37 (1988) 87). Its ends are found by steps that are exact where
+the likelihood is quadratic and g linear: with Hessian H and slope a of g, to the end of the ellipsoid along H^-1 a.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from numbers import Real
+
+import numpy as np
+from scipy.stats import chi2
+
+from diagnose.findings import Interval
+from diagnose.fit import discrepancy
+from diagnose.fit.descent import bounds, descent, scales, settings
+from diagnose.fit.observed_model import ObservedModel
+from diagnose.fit.refit import Fitted
+from diagnose.fit.system import relative
+from diagnose.forward import Candidate, Setting
+from geometry.arrays import Bools, Floats
+
+LEVEL = 0.9
+STEPS = 8
+CLOSE = 0.01  # of the half width: another step is not worth it
+SMALL = 1e-4  # of the width of a coordinate's range, for slopes of g
+
+Function = Callable[[Floats], float]
+
+
+def intervals(model: ObservedModel, fit: Fitted) -> tuple[Mapping[str, Interval], ...]:
+    """For each mechanism of a fit, its parameters and derived quantities by name."""
+    fit = _model_may_err(model, _law_may_differ(fit))
+    return tuple(_of_mechanism(model, fit, number) for number in range(len(fit.candidates)))
+
+
+def points(fit: Fitted) -> tuple[Mapping[str, Interval], ...]:
+    """The fitted values alone, as intervals without width."""
+    return tuple(
+        {name: Interval(value, value, value, _unit(one.candidate, name)) for name, value in _numbers(one).items()}
+        for one in fit.settings
+    )
+
+
+def _law_may_differ(fit: Fitted) -> Fitted:
+    """With the error of form at its largest, where the law is one of several: those have derived quantities."""
+    if not any(one.candidate.derived(one.values) for one in fit.settings):
+        return fit
+    return replace(fit, system=replace(fit.system, form=fit.largest_form))
+
+
+def _model_may_err(model: ObservedModel, fit: Fitted) -> Fitted:
+    """With an error over depth that no further run averages out, as all have it. A name needs no such allowance."""
+    shown = model.signals(fit.system.values, fit.settings)
+    columns, sigma = discrepancy.repeated(model.samples, shown, relative(model))
+    return replace(fit, system=fit.system.excusing(columns, sigma))
+
+
+def _of_mechanism(model: ObservedModel, fit: Fitted, number: int) -> Mapping[str, Interval]:
+    def function(name: str) -> Function:  # what a simpler law has no number for is 0: the quality of one RC stage
+        return lambda values: _numbers(settings(fit.candidates, values)[number]).get(name, 0.0)
+
+    names = _numbers(fit.settings[number])
+    candidate = fit.candidates[number]
+    return {name: _interval(model, fit, function(name), _unit(candidate, name)) for name in names}
+
+
+def _unit(candidate: Candidate, name: str) -> str:
+    """Of relative_moduli[0] as of relative_moduli."""
+    return candidate.units.get(name.partition("[")[0], "")
+
+
+def _numbers(one: Setting) -> dict[str, float]:
+    """Parameters and derived quantities by name, lists taken apart: name[0], name[1]; one value keeps its name."""
+    values = {**one.candidate.parameters(one.values), **one.candidate.derived(one.values)}
+    flat: dict[str, float] = {}
+    for name, value in values.items():
+        items = list(value) if isinstance(value, list | tuple) else [value]
+        for n, item in enumerate(items):
+            if isinstance(item, Real):
+                flat[name if len(items) == 1 else f"{name}[{n}]"] = float(item)
+    return flat
+
+
+def _interval(model: ObservedModel, fit: Fitted, function: Function, unit: str) -> Interval:
+    value = function(fit.values)
+    if not _gradient(function, fit.values, bounds(fit.candidates)).any():
+        return Interval(value, value, value, unit, fixed=True)
+    ends = [_end(model, fit, function, side) for side in (-1.0, 1.0)]
+    low, high = min(value, ends[0][0]), max(value, ends[1][0])
+    return Interval(value, low, high, unit, ends[0][1], ends[1][1])
+
+
+def _end(model: ObservedModel, fit: Fitted, function: Function, side: float) -> tuple[float, bool]:
+    """The end of g on one side, and whether a coordinate stands at its bound there."""
+    limits, best = bounds(fit.candidates), function(fit.values)
+    problem = descent(model, fit.system, fit.candidates, fit.settings)
+    here, reached = problem.at(fit.values), best
+    allowed = here.cost + 0.5 * float(chi2.ppf(LEVEL, 1))
+    for _ in range(STEPS):
+        slope = side * _gradient(function, here.values, limits)
+        if not slope.any():
+            break
+        columns = fit.system.weighted(problem.slopes(here))
+        cleared = fit.system.quadratic.cleared(columns)
+        step = _step(columns.T @ cleared, cleared.T @ here.left, slope, allowed - here.cost, here.values, limits)
+        after = problem.at(np.clip(here.values + step, *limits.T))
+        if not np.isfinite(after.cost):
+            break
+        here = after
+        before, reached = reached, function(here.values)
+        if abs(reached - before) <= CLOSE * abs(reached - best):
+            break
+    return reached, bool(np.any((here.values <= limits[:, 0]) | (here.values >= limits[:, 1])))
+
+
+def _step(hessian: Floats, gradient: Floats, slope: Floats, room: float, values: Floats, limits: Floats) -> Floats:
+    """The farthest step along a slope (q,) that a quadratic log-likelihood allows; gradient : (q,) of the likelihood.
+
+    Coordinates that would leave their bounds are held there, and the others are solved anew.
+    """
+    free: Bools = np.ones(len(values), dtype=bool)
+    step = np.zeros(len(values))
+    for _ in range(len(values) + 1):
+        if not free.any():
+            break
+        own = hessian[np.ix_(free, free)]
+        pull = gradient[free] - hessian[np.ix_(free, ~free)] @ step[~free]
+        scale = scales(own)
+        inverse = np.linalg.inv(own / np.outer(scale, scale) + 1e-9 * np.eye(len(own))) / np.outer(scale, scale)
+        fixed = step[~free]
+        held = float(0.5 * fixed @ hessian[np.ix_(~free, ~free)] @ fixed - gradient[~free] @ fixed)
+        radius = max(room - held + 0.5 * float(pull @ inverse @ pull), 0.0)
+        along = float(slope[free] @ inverse @ slope[free])
+        step[free] = inverse @ pull + (np.sqrt(2.0 * radius / along) * (inverse @ slope[free]) if along > 0.0 else 0.0)
+        target = values + step
+        outside = free & ((target < limits[:, 0]) | (target > limits[:, 1]))
+        if not outside.any():
+            break
+        step[outside] = np.clip(target, *limits.T)[outside] - values[outside]
+        free &= ~outside
+    return step
+
+
+def _gradient(function: Function, values: Floats, limits: Floats) -> Floats:
+    """Slope (q,) of a function, by differences towards the inside."""
+    slope, here = np.zeros(len(values)), function(values)
+    for n in range(len(values)):
+        step = SMALL * (limits[n, 1] - limits[n, 0])
+        step = -step if values[n] + step > limits[n, 1] else step
+        moved = values.copy()
+        moved[n] += step
+        slope[n] = (function(moved) - here) / step
+    return slope

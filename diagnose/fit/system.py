@@ -1,0 +1,201 @@
+"""The recording linearised about nuisances and mechanisms: a residual, its variance, and all that is excused.
+
+The log-likelihood of whitened residuals once nuisances are integrated out, as inner products.
+
+With columns T and prior deviations P the covariance is S = 1 + T P^2 T'. S^-1 = 1 - T A^-1 T', A = T'T + P^-2
+(Rasmussen and Williams 2006, appendix A.3), so that only the small A is factorised.
+
+Where the sensitivities live: fits leave the other coefficients alone, which hold noise and nothing to fit.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve
+
+from diagnose.fit import discrepancy
+from diagnose.fit.discrepancy import drive_noise
+from diagnose.fit.observed_model import ObservedModel
+from diagnose.fit.samples import Samples
+from diagnose.forward import Setting
+from geometry.arrays import Bools, Floats
+
+TINY = np.finfo(float).tiny ** 0.25
+RIDGE = 1e-12  # relative to the square of a column's length: parallel columns without a prior
+
+
+class Quadratic:
+    """a' S^-1 b for vectors in the whitened space."""
+
+    def __init__(self, columns: Floats, sigma: Floats) -> None:
+        """columns : (n, k) whitened. sigma : (k,) prior deviations, inf for none."""
+        length = np.where(sigma > 0.0, np.linalg.norm(columns, axis=0), 0.0)
+        self._scale = np.where(length > 0.0, length, 1.0)
+        self.columns = columns / self._scale
+        self.columns[:, length == 0.0] = 0.0
+        prior = np.where(length > 0.0, 1.0 / np.maximum(sigma * self._scale, TINY) ** 2 + RIDGE, 1.0)
+        gram = self.columns.T @ self.columns + np.diag(prior)
+        self._factor = cho_factor(gram, lower=True)
+        known = np.isfinite(sigma) & (length > 0.0)
+        self.log_scale = float(np.log(np.diag(self._factor[0])).sum() + np.log((sigma * self._scale)[known]).sum())
+
+    def product(self, a: Floats, b: Floats) -> Floats:
+        """(p, q) inner products of columns (n, p) and (n, q)."""
+        return np.asarray(a.T @ b - (self.columns.T @ a).T @ cho_solve(self._factor, self.columns.T @ b))
+
+    def square(self, a: Floats) -> float:
+        """a' S^-1 a of one vector (n,)."""
+        along = self.columns.T @ a
+        return float(a @ a - along @ cho_solve(self._factor, along))
+
+    def mean(self, residual: Floats) -> Floats:
+        """Posterior mean (k,) of the nuisances given a residual (n,)."""
+        return np.asarray(cho_solve(self._factor, self.columns.T @ residual) / self._scale)
+
+    def variances(self) -> Floats:
+        """Posterior variances (k,) of the nuisances."""
+        inverse = cho_solve(self._factor, np.eye(len(self._scale)))
+        return np.asarray(np.diag(inverse) / self._scale**2)
+
+    def cleared(self, a: Floats) -> Floats:
+        """S^-1 a, (n,) or (n, q)."""
+        return np.asarray(a - self.columns @ cho_solve(self._factor, self.columns.T @ a))
+
+
+@dataclass(frozen=True)
+class System:
+    """residual = excused @ parameters + noise, each coefficient with its own variance.
+
+    values : (p,) nuisances about which it is linear; the first p columns are their tangents, so that their prior stays
+    centred at 0. residual : (n,) recorded - predicted + tangents @ values. variance : (n,) 1 plus what the model may be
+    wrong by. excused : (n, k). sigma : (k,) prior deviations. effect : (n,) of the mechanisms, whitened.
+    live : (n,) where fits look; elsewhere no sensitivity has any energy.
+    """
+
+    values: Floats
+    residual: Floats
+    numerical: Floats
+    formal: Floats
+    excused: Floats
+    sigma_of_one: Floats
+    laws: int
+    effect: Floats
+    form: float
+    live: Bools
+
+    @property
+    def variance(self) -> Floats:
+        """Of each coefficient, (n,)."""
+        return np.asarray(self.numerical + self.form**2 * self.formal)
+
+    @property
+    def sigma(self) -> Floats:
+        """Prior deviations (k,) of what is excused."""
+        sigma = self.sigma_of_one.copy()
+        sigma[len(sigma) - self.laws :] *= self.form
+        return sigma
+
+    @cached_property
+    def weight(self) -> Floats:
+        """One over the standard deviation of each coefficient, (n,)."""
+        return np.asarray(1.0 / np.sqrt(self.variance))
+
+    def weighted(self, vectors: Floats) -> Floats:
+        """Live rows of (n, ...), or live rows themselves, in units of their standard deviation."""
+        rows = vectors[self.live] if len(vectors) == len(self.live) else vectors
+        weight = self.weight[self.live]
+        return np.asarray(rows * (weight if rows.ndim == 1 else weight[:, None]))
+
+    def reached(self, live: Bools) -> "System":
+        """The same where only some of its live rows are looked at."""
+        return replace(self, excused=self.excused[live[self.live]], live=live)
+
+    def excusing(self, columns: Floats, sigma: Floats) -> "System":
+        """The same with more columns (n, k) excused, of prior deviations (k,)."""
+        place = len(self.sigma_of_one) - self.laws
+        excused = np.hstack([self.excused[:, :place], columns[self.live], self.excused[:, place:]])
+        return replace(self, excused=excused, sigma_of_one=np.insert(self.sigma_of_one, place, sigma))
+
+    @cached_property
+    def quadratic(self) -> Quadratic:
+        """Inner products with all that is excused integrated out."""
+        return Quadratic(self.weighted(self.excused), self.sigma)
+
+    def nuisances(self, residual: Floats) -> Floats:
+        """Best values (p,) for another residual (n,) of the same system."""
+        return self.quadratic.mean(self.weighted(residual))[: len(self.values)]
+
+    def closest(self) -> Floats:
+        """Nuisances (p,) that come closest to the recording under their priors, were the model exact.
+
+        What a prediction is made with: beside its stated errors, which predict nothing, gains would be shrunk.
+        """
+        own = slice(len(self.values))
+        return Quadratic(self.weighted(self.excused[:, own]), self.sigma[own]).mean(self.weighted(self.residual))
+
+
+def relative(model: ObservedModel) -> list[float]:
+    """The engine's own error of each channel."""
+    accuracy = model.engine.accuracy
+    kinds = {"V": "voltage_V", "N": "force_N", "mm": "displacement_mm"}
+    return [float(accuracy.get(kinds[name.rpartition("_")[2]], 0.0)) for name in model.samples.channels]
+
+
+def linearised(
+    model: ObservedModel, values: Floats, settings: Sequence[Setting] = (), form: float = 0.0, live: Bools | None = None
+) -> System:
+    """About nuisances (p,) and mechanisms; form : relative error of their effect."""
+    samples, own = model.samples, relative(model)
+    shown = model.signals(values, settings)
+    predicted = samples.coefficients(shown)
+    tangents = model.tangents(values, settings)
+    numerical, numerical_sigma = discrepancy.columns(samples, shown, own)
+    excused, sigma = [tangents, numerical], [model.sigma, numerical_sigma]
+    effect, formal, laws = np.zeros(len(samples)), np.zeros(len(samples)), 0
+    if settings:
+        without = model.signals(values)
+        effect = predicted - samples.coefficients(without)
+        ones = [1.0] * len(samples.channels)
+        change = [{name: a[name] - b[name] for name in a} for a, b in zip(shown, without, strict=True)]
+        columns, deviations = discrepancy.columns(samples, change, ones)
+        excused, sigma, laws = [*excused, columns], [*sigma, deviations], len(deviations)
+        formal = discrepancy.allowance(samples, effect, ones)
+    return System(
+        values,
+        samples.recorded - predicted + tangents @ values,
+        1.0 + discrepancy.allowance(samples, predicted, own) + drive_noise(samples, shown),
+        formal,
+        np.column_stack([columns if live is None else columns[live] for columns in excused]),
+        np.concatenate(sigma),
+        laws,
+        effect,
+        form,
+        np.ones(len(samples), dtype=bool) if live is None else live,
+    )
+
+
+SEEN = 0.3  # standard deviations: what no sensitivity, as large as all the residual, can make is not looked at
+
+
+def live_rows(samples: Samples, system: System, sensitivities: Sequence[Floats]) -> Bools:
+    """Coefficients (n,) in which a column of the (n, k), scaled to the length of the residual, shows at all.
+
+    What is excused is scaled to its prior where that is less. Only the length of the residual counts, not its shape, so
+    that no test is biased.
+    """
+    weight = system.weight
+    length = float(np.linalg.norm(system.residual * weight))
+    largest = np.zeros(len(samples))
+    for columns, sigma in [(system.excused, system.sigma), *((c, np.full(c.shape[1], np.inf)) for c in sensitivities)]:
+        shown = np.abs(columns) * weight[:, None]
+        size = np.linalg.norm(shown, axis=0)
+        scale = np.minimum(sigma, np.divide(length, size, out=np.zeros(len(size)), where=size > 0.0))
+        largest = np.maximum(largest, (shown * scale).max(axis=1, initial=0.0))
+    kept = largest > SEEN
+    for label in np.unique(samples.fold):  # every press keeps something to be judged by
+        own = samples.fold == label
+        if not kept[own].any():
+            kept |= own
+    return kept

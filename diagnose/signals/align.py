@@ -1,0 +1,149 @@
+"""Lag and clock ratio between two signals that were sampled on two clocks.
+
+The lag maximises the likelihood of signal(t) = a reference(t - lag) + b + noise: the peak of the cross-correlation,
+refined below the sampling step by Gauss-Newton on a cubic spline. Its variance is the Cramer-Rao bound of a delay
+(Kay, Fundamentals of Statistical Signal Processing: Estimation Theory, 1993, example 3.13), with the
+covariance of an autoregression that is fitted to what is left.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.signal import correlate
+
+from diagnose.noise.autoregression import fit_autoregression
+from geometry.arrays import Floats
+
+ROUNDS = 20
+FINEST = 1e-5  # steps: no lag is known better
+
+
+@dataclass(frozen=True)
+class Lag:
+    """lag_s : by how much the signal comes later than the reference. sigma_s : its standard error.
+
+    correlation : of signal and shifted reference, -1 to 1.
+    """
+
+    lag_s: float
+    sigma_s: float
+    correlation: float
+
+
+@dataclass(frozen=True)
+class Clock:
+    """signal time = lag_s + ratio * reference time, each with its standard error."""
+
+    lag_s: float
+    lag_sigma_s: float
+    ratio: float
+    ratio_sigma: float
+
+
+def lag_between(reference: Floats, signal: Floats, step_s: float, largest_s: float | None = None) -> Lag:
+    """Lag of a signal (n,) behind a reference (m,) that start together, both every step_s.
+
+    largest_s : largest lag that is sought, either way; half of the shorter one if None. ValueError for a constant.
+    """
+    if np.ptp(reference) == 0.0 or np.ptp(signal) == 0.0:
+        raise ValueError("a constant has no lag")
+    limit = min(len(reference), len(signal)) / 2.0
+    limit = limit if largest_s is None else min(limit, largest_s / step_s)
+    shift = float(_coarse(reference, signal, int(limit)))
+    spline = CubicSpline(np.arange(len(reference)), reference)
+    for _ in range(ROUNDS):
+        fit = _fitted(spline, len(reference), signal, shift)
+        shift = float(np.clip(shift + fit.update, -limit, limit))
+        if abs(fit.update) < FINEST:
+            break
+    return Lag(shift * step_s, max(_standard_error(fit), FINEST) * step_s, fit.correlation)
+
+
+def clock_between(reference: Floats, signal: Floats, step_s: float, windows: int = 4) -> Clock:
+    """Lag and rate of the signal's clock against the reference's, from the lags of several windows.
+
+    ValueError where fewer than two windows hold anything.
+    """
+    whole = lag_between(reference, signal, step_s)
+    size = min(len(reference), len(signal)) // windows
+    lags, centres = [], []
+    for n in range(windows):
+        part = slice(n * size, (n + 1) * size)
+        if np.ptp(reference[part]) < 0.1 * np.ptp(reference):
+            continue
+        lags.append(_lag_of_window(reference, signal, part, step_s, whole.lag_s))
+        centres.append(_centre(reference, part) * step_s)
+    if len(lags) < 2:
+        raise ValueError("a clock ratio needs a signal that moves early and late")
+    return _line(np.array(centres), lags)
+
+
+def _lag_of_window(reference: Floats, signal: Floats, part: slice, step_s: float, near_s: float) -> Lag:
+    """Lag of one window, sought around the lag of the whole."""
+    offset = round(near_s / step_s)
+    first, last = max(part.start + offset, 0), min(part.stop + offset, len(signal))
+    found = lag_between(reference[first - offset : last - offset], signal[first:last], step_s)
+    return Lag(found.lag_s + offset * step_s, found.sigma_s, found.correlation)
+
+
+def _line(time_s: Floats, lags: list[Lag]) -> Clock:
+    """Weighted straight line through the lags; its errors widened where they scatter more than they state."""
+    weight = 1.0 / np.array([lag.sigma_s for lag in lags])
+    rows = np.column_stack([np.ones(len(lags)), time_s]) * weight[:, None]
+    values = np.array([lag.lag_s for lag in lags]) * weight
+    solution, *_ = np.linalg.lstsq(rows, values, rcond=None)
+    spare = len(lags) - 2
+    misfit = float(((rows @ solution - values) ** 2).sum()) / spare if spare else 1.0
+    error = np.sqrt(np.diag(np.linalg.inv(rows.T @ rows)) * max(misfit, 1.0))
+    return Clock(float(solution[0]), float(error[0]), 1.0 + float(solution[1]), float(error[1]))
+
+
+def _coarse(reference: Floats, signal: Floats, limit: int) -> int:
+    """Whole steps at which the magnitude of the cross-correlation is largest."""
+    product = np.abs(correlate(signal - signal.mean(), reference - reference.mean(), mode="full", method="fft"))
+    shifts = np.arange(len(product)) - (len(reference) - 1)
+    allowed = np.abs(shifts) <= limit
+    return int(shifts[allowed][np.argmax(product[allowed])])
+
+
+@dataclass(frozen=True)
+class _Fit:
+    """update : Gauss-Newton step of the shift. sensitivity : (n,) to the shift, gain and offset projected out.
+
+    rest : (n,) what is left of the signal.
+    """
+
+    update: float
+    sensitivity: Floats
+    rest: Floats
+    correlation: float
+
+
+def _fitted(spline: CubicSpline, length: int, signal: Floats, shift: float) -> _Fit:
+    """Least squares for shift, gain and offset, linear about a shift; all in steps."""
+    place = np.arange(len(signal)) - shift
+    inside = (place >= 0.0) & (place <= length - 1.0)
+    template, slope, values = spline(place[inside]), spline(place[inside], 1), signal[inside]
+    scale, _offset = np.polyfit(template, values, 1)
+    free = np.column_stack([template, np.ones(len(template))])
+    moving = -scale * slope
+    sensitivity = moving - free @ np.linalg.lstsq(free, moving, rcond=None)[0]
+    update = float(sensitivity @ values / (sensitivity @ sensitivity))
+    left = values - update * moving
+    rest = left - free @ np.linalg.lstsq(free, left, rcond=None)[0]
+    return _Fit(update, sensitivity, rest, float(np.corrcoef(template, values)[0, 1]))
+
+
+def _standard_error(fit: _Fit) -> float:
+    """Of the shift, in steps: sqrt(w' C w) / w' w, with C of an autoregression fitted to the rest, by its density."""
+    weights, count = fit.sensitivity, 2 * len(fit.sensitivity)
+    density = 0.5 * fit_autoregression([fit.rest]).density(np.asarray(np.fft.fftfreq(count), dtype=np.float64), 1.0)
+    variance = np.mean(np.abs(np.fft.fft(weights, count)) ** 2 * density)
+    return float(np.sqrt(variance) / (weights @ weights))
+
+
+def _centre(reference: Floats, part: slice) -> float:
+    """The place of a window that its lag speaks of: where the reference changes, by the square of its slope."""
+    slope = np.asarray(np.gradient(reference[part]) ** 2)
+    return float(part.start + np.average(np.arange(len(slope)), weights=slope))

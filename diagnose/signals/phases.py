@@ -1,0 +1,150 @@
+"""Phases of every press: approach, loading, hold, unloading, after. From the drive alone, never from an answer."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy.ndimage import uniform_filter1d
+
+from geometry.arrays import Bools, Floats, Ints
+
+PHASES = ("approach", "loading", "hold", "unloading", "after")
+APPROACH, LOADING, HOLD, UNLOADING, AFTER = range(5)
+SLOW = 0.1  # of the mean rate of loading: the drive counts as held below it
+SHORTEST_HOLD = 0.1  # of the press: a half-sine is slow for 6 % of it
+FEWEST_AT_REST = 8
+MOVING = 3.0  # change over the lead, in standard deviations about its straight line
+SHALLOW = 0.05  # of the deepest: what is lower is no press
+BRIEF = 0.05  # of the longest: what is shorter is a spike or a rebound
+
+
+@dataclass(frozen=True)
+class Press:
+    """Samples that bound the phases of one press; each phase is [this, next).
+
+    start : of the approach. touch, held, released, clear : of loading, hold, unloading and after. end : of after.
+    A phase that does not occur is empty.
+    """
+
+    start: int
+    touch: int
+    held: int
+    released: int
+    clear: int
+    end: int
+
+    @property
+    def bounds(self) -> tuple[int, ...]:
+        """The six bounds in order."""
+        return (self.start, self.touch, self.held, self.released, self.clear, self.end)
+
+
+@dataclass(frozen=True)
+class Segmentation:
+    """presses : in order, none where the drive never touches. phase : (t,) index into PHASES.
+
+    press : (t,) number of the press to which a sample belongs.
+    """
+
+    presses: tuple[Press, ...]
+    phase: Ints
+    press: Ints
+
+
+def segmented(time_s: Floats, drive: Floats, from_touch: bool = True) -> Segmentation:
+    """Cut a drive (t,) at times (t,) without missing samples into presses and phases.
+
+    from_touch : the drive is a displacement that counts from the first touch; else (a force, or the travel of a
+    tester) rest is where it starts. A press begins where the drive leaves rest by more than its own noise.
+    """
+    level, noise = rest_of(drive)
+    depth = drive - (0.0 if from_touch else level)
+    spans = _spans(depth, noise)
+    bounds = [0, *((b + c) // 2 for (_, b), (c, _) in pairwise(spans)), len(drive)]
+    presses = tuple(_press(time_s, depth, span, bounds[n], bounds[n + 1]) for n, span in enumerate(spans))
+    phase, number = np.zeros(len(drive), dtype=np.int64), np.zeros(len(drive), dtype=np.int64)
+    for n, press in enumerate(presses):
+        number[press.start : press.end] = n
+        for kind, (first, last) in enumerate(zip(press.bounds[:-1], press.bounds[1:], strict=True)):
+            phase[first:last] = kind
+    return Segmentation(presses, phase, number)
+
+
+def rest_of(drive: Floats) -> tuple[float, float]:
+    """Level and one sigma of a drive (t,) at rest, from the samples before it leaves a tenth of its range.
+
+    A drive that moves from its first sample has no rest: then the level is that sample and the noise is taken from
+    second differences, in whose median a smooth motion hardly shows.
+    """
+    first = float(np.median(drive[:5]))
+    away = np.flatnonzero(np.abs(drive - first) > 0.1 * np.ptp(drive))
+    lead = drive[: (int(away[0]) if len(away) else len(drive)) // 2]  # behind may be the foot of a slow rise
+    if len(lead) < FEWEST_AT_REST:
+        return float(drive[0]), _white(drive)
+    place = np.arange(len(lead)) / len(lead)
+    slope, start = np.polyfit(place, lead, 1)
+    spread = float(np.std(lead - start - slope * place))
+    if abs(slope) > MOVING * max(spread, 1e-9 * float(np.ptp(drive))):
+        return float(drive[0]), _white(drive)
+    return float(np.median(lead)), max(spread, _white(lead))
+
+
+def _white(values: Floats) -> float:
+    """One sigma of white noise from second differences."""
+    return float(np.median(np.abs(np.diff(values, 2))) / 0.6745 / np.sqrt(6.0)) if len(values) > 2 else 0.0
+
+
+def _spans(depth: Floats, noise: float) -> list[tuple[int, int]]:
+    """First and one past the last sample of every press: out of the noise, and to a good part of the deepest."""
+    deepest = float(depth.max())
+    touching = depth > max(5.0 * noise, 1e-3 * deepest, 0.0)
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], touching.astype(np.int8), [0]])))
+    spans = [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]
+    deep = [(a, b) for a, b in spans if depth[a:b].max() > max(SHALLOW * deepest, 10.0 * noise)]
+    longest = max((b - a for a, b in deep), default=0)
+    return [(a, b) for a, b in deep if b - a > BRIEF * longest]
+
+
+def _press(time_s: Floats, depth: Floats, span: tuple[int, int], start: int, end: int) -> Press:
+    """Bounds of the phases within one press."""
+    touch, clear = span
+    time, course = time_s[touch:clear], depth[touch:clear]
+    smooth = _smoothed(course)
+    peak = float(smooth.max())
+    top = int(np.argmax(smooth >= 0.9 * peak))
+    down = _last_fall(smooth, peak)
+    slow = _rate(time, smooth) < SLOW * _loading_rate(time, smooth, peak)
+    held = top + _first(slow[top:])
+    released = down - _first(slow[: down + 1][::-1]) + 1 if down < len(smooth) else len(smooth)
+    if released - held < max(3.0, SHORTEST_HOLD * len(course)):
+        held = released = min(int(np.argmax(smooth)) + 1, len(smooth))
+    return Press(start, touch, touch + held, touch + released, clear, end)
+
+
+def _smoothed(course: Floats) -> Floats:
+    """Running mean over a tenth of the rise, (t,)."""
+    peak = float(course.max())
+    rise = int(np.argmax(course >= 0.9 * peak)) - int(np.argmax(course >= 0.1 * peak))
+    return np.asarray(uniform_filter1d(course, max(1, rise // 10), mode="nearest"))
+
+
+def _loading_rate(time: Floats, smooth: Floats, peak: float) -> float:
+    """Mean rate from a tenth to nine tenths of the peak; infinite where both are one sample."""
+    low, high = int(np.argmax(smooth >= 0.1 * peak)), int(np.argmax(smooth >= 0.9 * peak))
+    return float(0.8 * peak / (time[high] - time[low])) if high > low else np.inf
+
+
+def _rate(time: Floats, smooth: Floats) -> Floats:
+    """|d smooth / dt|, (t,)."""
+    return np.asarray(np.abs(np.gradient(smooth, time))) if len(smooth) > 1 else np.zeros(1)
+
+
+def _last_fall(smooth: Floats, peak: float) -> int:
+    """The last sample above half the peak that is followed by one below; the length where there is none."""
+    above = np.flatnonzero(smooth >= 0.5 * peak)
+    return int(above[-1]) if above[-1] < len(smooth) - 1 else len(smooth)
+
+
+def _first(condition: Bools) -> int:
+    """Index of the first True; the length where there is none."""
+    return int(np.argmax(condition)) if condition.any() else len(condition)

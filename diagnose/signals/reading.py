@@ -1,0 +1,147 @@
+"""Read the runs of a recording, and average over blocks where there are more samples than a diagnosis needs.
+
+To average is a linear filter, and it commutes with what is linear and constant in time: the answer to an averaged drive
+is the averaged answer, as far as force and charge are straight over a block of 4 ms.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from math import ceil
+from pathlib import Path
+
+import numpy as np
+
+from diagnose.noise.lines import quantisation_step
+from diagnose.signals.checks import LARGEST_STRAIN, refuse_bad_columns, refuse_bad_time, refuse_untouched, suspicions
+from diagnose.signals.columns import read_columns, refuse_by_size, saturated
+from diagnose.signals.recording import Recording, Run
+from diagnose.signals.tables import RunTable, Specimen
+from geometry.arrays import Bools, Floats, Ints
+from geometry.base import InputError
+from solve.parameters import Readout
+
+COVARIATES = ("dot_x_mm", "dot_y_mm", "temperature_C")
+
+
+def read_recording(
+    folder: Path, runs: Sequence[RunTable], readouts: Sequence[Readout | None], specimen: Specimen | None
+) -> Recording:
+    """All runs of a folder. InputError naming file, row and column; every size is checked before any file is read."""
+    names = [run.name for run in runs]
+    for number, name in enumerate(names):
+        if name in names[:number]:
+            raise InputError(f"recording '{folder / 'rig.toml'}': runs[{number}].label = '{name}' appears twice")
+    refuse_by_size(folder / run.file for run in runs)
+    pairs = [
+        (read_run(folder, table, readout, touches=specimen is None), folder / table.file)
+        for table, readout in zip(runs, readouts, strict=True)
+    ]
+    travel_mm = np.inf if specimen is None else LARGEST_STRAIN * specimen.gauge_mm
+    warnings = [sentence for run, path in pairs for sentence in suspicions(run, path, travel_mm)]
+    return Recording(tuple(run for run, _ in pairs), specimen, tuple(warnings))
+
+
+def read_run(folder: Path, table: RunTable, readout: Readout | None, touches: bool = True) -> Run:
+    """One run. touches : whether the dot has to touch; a coupon is held from the start. InputError."""
+    path = folder / table.file
+    columns = read_columns(path)
+    refuse_bad_time(columns["time_s"], path)
+    refuse_bad_columns(columns, table.drive, path)
+    _refuse_unknown_noise(table, columns, folder)
+    channels = {name: values for name, values in columns.items() if name not in (*COVARIATES, "time_s")}
+    driven = np.isfinite(channels[table.drive])
+    valid = {name: np.isfinite(values) & driven for name, values in channels.items()}
+    channels[table.drive] = _bridged(columns["time_s"], channels[table.drive])
+    if touches:
+        refuse_untouched(table.drive, columns["time_s"], channels[table.drive], path)
+    return Run(
+        label=table.name,
+        file=table.file,
+        time_s=columns["time_s"],
+        drive=table.drive,
+        channels=channels,
+        valid=valid,
+        saturated={name: _limited(name, values, readout) for name, values in channels.items()},
+        covariates={name: columns[name] for name in COVARIATES if name in columns},
+        dot_offset_mm=table.dot_offset_mm,
+        temperature_C=table.temperature_C,
+        readout=readout,
+        nuisance=table.nuisance,
+        noise=table.noise,
+    )
+
+
+def _limited(name: str, values: Floats, readout: Readout | None) -> Bools:
+    """Saturated samples of an amplifier; a motion or a force may well stand still at its largest."""
+    if not name.startswith("voltage"):
+        return np.zeros(len(values), dtype=bool)
+    return saturated(values, readout.limit_V if readout is not None else None)
+
+
+def _bridged(time_s: Floats, drive: Floats) -> Floats:
+    """The drive (t,) with straight lines across missing samples."""
+    there = np.isfinite(drive)
+    return np.interp(time_s, time_s[there], drive[there])
+
+
+def _refuse_unknown_noise(table: RunTable, columns: Mapping[str, Floats], folder: Path) -> None:
+    for name in table.noise:
+        if name not in columns:
+            raise InputError(
+                f"recording '{folder / 'rig.toml'}': noise.{name} of the run '{table.name}' names no column of "
+                f"'{table.file}'"
+            )
+
+
+ENOUGH = 15_000
+"""Samples of a channel over all runs: as many as a diagnosis handles in a minute."""
+LEAST_Hz = 250.0
+"""No recording gets slower: mains and their second harmonic stay visible, and so does every press by hand."""
+
+
+def thinned(recording: Recording) -> Recording:
+    """The recording with ENOUGH samples, if its rate allows; a warning says so."""
+    count = sum(len(run.time_s) for run in recording.runs)
+    asked = ceil(count / ENOUGH)
+    factors = [max(1, min(asked, int(1.0 / (run.step_s * LEAST_Hz) + 1e-6))) for run in recording.runs]
+    if max(factors) == 1:
+        return recording
+    runs = tuple(averaged(run, factor) for run, factor in zip(recording.runs, factors, strict=True))
+    said = (
+        f"{count:,} samples of a channel are more than needed: up to {max(factors)} in a row were averaged, and "
+        f"nothing faster than {0.5 / max(run.step_s for run in runs):.3g} Hz was analysed."
+    )
+    return replace(recording, runs=runs, warnings=(*recording.warnings, said))
+
+
+def averaged(run: Run, factor: int) -> Run:
+    """Means over factor samples in a row within even sampling, gaps left out; shorter ends are dropped.
+
+    A block counts as missing where one of its samples is, and as saturated likewise.
+    """
+    if factor == 1:
+        return run
+    first = np.concatenate([np.arange(p.start, p.stop - factor + 1, factor) for p in run.pieces])
+    blocks = first[:, None] + np.arange(factor)
+    return replace(
+        run,
+        time_s=run.time_s[blocks].mean(axis=1),
+        channels={name: _means(values, blocks) for name, values in run.channels.items()},
+        valid={name: _all(there, blocks) for name, there in run.valid.items()},
+        saturated={name: ~_all(~at, blocks) for name, at in run.saturated.items()},
+        covariates={name: values[blocks].mean(axis=1) for name, values in run.covariates.items()},
+        noise={name: sigma / np.sqrt(factor) for name, sigma in run.noise.items()},
+    )
+
+
+def _means(values: Floats, blocks: Ints) -> Floats:
+    """On the steps of the converter, where it has any: they are part of the noise."""
+    means, step = values[blocks].mean(axis=1), quantisation_step(values)
+    if step is None:
+        return np.asarray(means)
+    zero = values[np.isfinite(values)][0]
+    return np.asarray(zero + step * np.round((means - zero) / step))
+
+
+def _all(flags: Bools, blocks: Ints) -> Bools:
+    return np.asarray(flags[blocks].all(axis=1))

@@ -1,0 +1,138 @@
+"""Recordings: runs with their drive and their channels, on time axes that are even in stretches."""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from scipy.ndimage import median_filter
+
+from diagnose.signals.phases import Segmentation, segmented
+from diagnose.signals.tables import Drive, Specimen
+from geometry.arrays import Bools, Floats
+from solve.parameters import Readout
+
+WINDOW = 9  # steps of the running median: a single late sample is a gap, five in a row are another rate
+GAP, OTHER_RATE = 1.5, 1.2  # ratios to the running median, and of the running median to the one before
+
+
+def even_pieces(time_s: Floats) -> tuple[slice, ...]:
+    """Slices of a time axis (t,), together all of it, each without a gap and at one rate."""
+    step = np.diff(time_s)
+    usual = median_filter(step, WINDOW, mode="nearest")
+    other_rate = np.abs(np.diff(np.log(usual))) > np.log(OTHER_RATE)
+    edges = {0, *(np.flatnonzero(step > GAP * usual) + 1), *(np.flatnonzero(other_rate) + 1), len(time_s)}
+    return tuple(slice(int(a), int(b)) for a, b in pairwise(sorted(edges)))
+
+
+def gaps(time_s: Floats) -> list[int]:
+    """Samples before which the time jumps."""
+    step = np.diff(time_s)
+    return [int(n) + 1 for n in np.flatnonzero(step > GAP * median_filter(step, WINDOW, mode="nearest"))]
+
+
+def rates_Hz(time_s: Floats) -> list[float]:
+    """The sampling rates that occur, one after the other, without equal neighbours; short pieces do not count."""
+    found: list[float] = []
+    for piece in even_pieces(time_s):
+        if piece.stop - piece.start <= WINDOW:
+            continue
+        rate = 1.0 / float(np.median(np.diff(time_s[piece])))
+        if not found or abs(np.log(rate / found[-1])) > np.log(OTHER_RATE):
+            found.append(rate)
+    return found
+
+
+def is_even(time_s: Floats) -> bool:
+    """Whether steps differ from their median by less than a tenth, as noise models in discrete time need."""
+    step = np.diff(time_s)
+    return bool(len(step) > 0 and np.abs(step / np.median(step) - 1.0).max() < 0.1)
+
+
+@dataclass(frozen=True)
+class Run:
+    """Samples of one run. Every array is (t,); channel names carry their units.
+
+    file : as rig.toml names it.
+    time_s : increases.
+    drive : name of the channel that drives the simulation; it has no missing sample (short gaps are bridged).
+    channels : displacement_mm, force_N, voltage_V or voltage_1_V ..., as far as measured; NaN where missing.
+    valid : channel -> True where the sample, and that of the drive, was measured.
+    saturated : channel -> True where the sensor or amplifier stood at its limit.
+    covariates : dot_x_mm, dot_y_mm, temperature_C, as far as measured.
+    readout : the amplifier of this run as rig.toml states it; None for open circuit.
+    nuisance : what may float without counting as physics -> one-sigma width.
+    noise : channel -> one sigma of its white noise, where the experimenter states it.
+    """
+
+    label: str
+    file: str
+    time_s: Floats
+    drive: Drive
+    channels: Mapping[str, Floats]
+    valid: Mapping[str, Bools]
+    saturated: Mapping[str, Bools]
+    covariates: Mapping[str, Floats] = field(default_factory=dict)
+    dot_offset_mm: tuple[float, float] = (0.0, 0.0)
+    temperature_C: float | None = None
+    readout: Readout | None = None
+    nuisance: Mapping[str, float] = field(default_factory=dict)
+    noise: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def drive_values(self) -> Floats:
+        """The channel that drives the simulation, (t,)."""
+        return self.channels[self.drive]
+
+    @property
+    def answers(self) -> tuple[str, ...]:
+        """The channels that a model has to explain."""
+        return tuple(name for name in self.channels if name != self.drive)
+
+    @property
+    def voltages(self) -> tuple[str, ...]:
+        """The voltage channels in the order of the electrodes."""
+        return tuple(sorted((name for name in self.channels if name.startswith("voltage")), key=_number))
+
+    def usable(self, channel: str) -> Bools:
+        """Samples (t,) that a fit may use: measured and not at the limit."""
+        return self.valid[channel] & ~self.saturated[channel]
+
+    @cached_property
+    def pieces(self) -> tuple[slice, ...]:
+        """Stretches of even sampling: a gap in time or another rate begins a new one."""
+        return even_pieces(self.time_s)
+
+    @cached_property
+    def step_s(self) -> float:
+        """Median step of time."""
+        return float(np.median(np.diff(self.time_s)))
+
+
+@dataclass(frozen=True)
+class Recording:
+    """All runs of one rig. specimen : the coupon, where it is a coupon test. warnings : one sentence each."""
+
+    runs: tuple[Run, ...]
+    specimen: Specimen | None = None
+    warnings: tuple[str, ...] = ()
+
+    @cached_property
+    def phases(self) -> tuple[Segmentation, ...]:
+        """Presses and phases of each run. Only the dot's displacement counts from the touch."""
+        return tuple(
+            segmented(run.time_s, run.drive_values, self.specimen is None and run.drive == "displacement_mm")
+            for run in self.runs
+        )
+
+    def run(self, label: str) -> Run:
+        """The run with this label. KeyError."""
+        return {run.label: run for run in self.runs}[label]
+
+
+def _number(name: str) -> int:
+    """voltage_3_V -> 3."""
+    found = re.search(r"\d+", name)
+    return int(found[0]) if found else 0

@@ -1,0 +1,71 @@
+"""softdot check: every mistake of a configuration at once, or what its run will cost. Nothing is solved."""
+
+import sys
+from argparse import Namespace
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from softdot.console import BAD_INPUT, GOOD, complain
+from softdot.numbers import json_text, plain
+
+FORMAT = "softdot-check/1"
+
+
+def command(chosen: Namespace) -> int:
+    """Check chosen.config; 0, or 2 when it has mistakes. InputError for a file that cannot be read."""
+    summary = check_file(Path(chosen.config), chosen.set)
+    if chosen.json:
+        sys.stdout.write(json_text(summary))
+    elif not summary["mistakes"] and not chosen.quiet:
+        print(short_text(summary))
+    for mistake in summary["mistakes"]:
+        complain(mistake)
+    return BAD_INPUT if summary["mistakes"] else GOOD
+
+
+def check_file(path: Path, settings: list[str]) -> dict[str, Any]:
+    """Mistakes, warnings and the expected cost of a configuration."""
+    from softdot.config import config_from
+    from softdot.config.defaults import completed, from_default, with_settings
+    from softdot.config.errors import mistakes
+    from softdot.config.toml import read_toml
+    from softdot.cost import expected_cost
+    from softdot.warnings import design_warnings
+
+    def check(tables: Mapping[str, Any]) -> tuple[Any, ...]:
+        from softdot import stages
+        from softdot.actual import actual
+
+        config = config_from(completed(tables))
+        changed, _ = actual(config)
+        return (config, *stages.check(changed))
+
+    stated = with_settings(read_toml(path), settings)
+    found, checked = mistakes(stated, check)
+    summary: dict[str, Any] = {"format": FORMAT, "config": str(path), "mistakes": found}
+    if checked is None:
+        return summary
+    config, dot_shape, warnings = checked
+    cost = expected_cost(config, dot_shape)
+    told: dict[str, Any] = plain({"warnings": [*warnings, *design_warnings(config)], "expected": vars(cost)})
+    return {**summary, **told, "from_default": list(from_default(stated, config.model_dump(mode="json")))}
+
+
+def short_text(summary: dict[str, Any]) -> str:
+    """What the run will cost, the warnings, and what came from the default design."""
+    cost = summary["expected"]
+    lines = [
+        f"no mistakes in '{summary['config']}'",
+        f"mesh: about {cost['tetrahedra']:,} tetrahedra, {cost['unknowns']:,} unknowns",
+        f"run: about {_duration(cost['time_s'])} on two cores and {cost['memory_GB']:g} GB, within a factor of two; "
+        f"the first run on a machine takes up to {_duration(cost['first_run_s'])} more, to compile",
+    ]
+    lines += [f"warning: {warning}" for warning in summary["warnings"]]
+    if summary["from_default"]:
+        lines.append(f"from the default design: {', '.join(summary['from_default'])}")
+    return "\n".join(lines)
+
+
+def _duration(seconds: float) -> str:
+    return f"{seconds:.0f} s" if seconds < 90 else f"{seconds / 60:.1f} min"

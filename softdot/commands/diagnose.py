@@ -1,0 +1,237 @@
+"""softdot diagnose: from a folder of recordings to a verdict; everything appears at once or not at all."""
+
+from argparse import Namespace
+from collections.abc import Sequence
+from copy import copy
+from dataclasses import dataclass, field, replace
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from diagnose.findings import Findings
+from diagnose.forward import Engine, all_but, other_units, some_runs
+from diagnose.next_press.choose import NextPress, next_press
+from diagnose.noise.estimate import noise_models
+from diagnose.signals.checks import refuse_slow_sampling
+from diagnose.signals.reading import thinned
+from diagnose.signals.recording import Recording
+from diagnose.verdict.content import FORMAT, verdict
+from diagnose.verdict.resimulation import OutOfTimeError, Resimulated, resimulate
+from diagnose.verdict.words import sentences
+from geometry.base import InputError, Report, nearest
+from geometry.cache import check_folder
+from softdot.config import Config
+from softdot.config.rig import Rig, load_rig
+from softdot.console import GOOD, NOT_CONVERGED, Logged, Progress, complain, only_the_summary_on_stdout, show
+from softdot.numbers import plain, write_json
+from softdot.output import Product, staged_folder
+from solve.mechanisms import MECHANISMS
+from solve.solution.newton import NoEquilibriumError
+
+NEXT_PRESS = "next-press.csv"
+DIAGNOSIS = Product(
+    FORMAT, "verdict.json", frozenset({"verdict.json", "report.html", "plots", "improved.toml", NEXT_PRESS})
+)
+ACTS_UP_TO = {"mains-hum": "frequency_Hz", "low-pass": "cutoff_Hz"}
+UNCHECKED = "The result was not checked with the full 3D model, because --fast-model-only was given."
+FULL_MODEL_S = 240.0  # for presses by the full model, of the ten minutes that a first diagnosis may take
+
+
+@dataclass(frozen=True)
+class Options:
+    """full_model_s : for runs by the full model; None: for every run, however long. 0 : for none.
+
+    seed : of everything random; None: that of rig.toml. without : mechanisms that are no candidates.
+    hold_out : parts of labels; runs whose label has one of them only score what the others named.
+    """
+
+    full_model_s: float | None = FULL_MODEL_S
+    seed: int | None = None
+    without: tuple[str, ...] = ()
+    hold_out: tuple[str, ...] = ()
+
+
+@dataclass
+class Proof:
+    """Runs pressed again by the full model. failure : why one has no equilibrium. warnings : why one is missing."""
+
+    runs: list[Resimulated] = field(default_factory=list)
+    failure: str | None = None
+    warnings: list[str] = field(default_factory=list)
+
+
+def run_diagnosis(
+    folder: Path, out: Path, options: Options | None = None, progress: Progress | None = None
+) -> dict[str, Any]:
+    """Diagnose a recording into the folder out and return the content of verdict.json.
+
+    InputError before any work for what cannot be read or written; NoEquilibriumError when the baseline has none. In
+    both cases nothing is written. A named mechanism that the full model cannot press is told in fit.failure.
+    """
+    options, progress = options or Options(), progress or Logged()
+    check_folder()
+    rig = load_rig(folder)
+    _refuse_what_sampling_misses(rig)
+    rig = replace(rig, recording=thinned(rig.recording))
+    held_out(rig.recording, options.hold_out)
+    noise_models(rig.recording)  # refuses a channel without known noise before any press
+    with staged_folder(out, DIAGNOSIS) as staged:
+        summary: dict[str, Any] = plain(_fill(rig, options, progress, staged))
+        write_json(staged / DIAGNOSIS.summary, summary)
+    return summary
+
+
+def _refuse_what_sampling_misses(rig: Rig) -> None:
+    """InputError for a run that is too slow for a mechanism of rig.toml that acts up to a frequency."""
+    asked = rig.config.mechanisms if rig.config is not None else ()
+    for mechanism, run in product(asked, rig.recording.runs):
+        if mechanism.name in ACTS_UP_TO:
+            frequency_Hz = getattr(mechanism.values(), ACTS_UP_TO[mechanism.name])
+            refuse_slow_sampling(run, frequency_Hz, mechanism.name)
+
+
+def _fill(rig: Rig, options: Options, progress: Progress, folder: Path) -> dict[str, Any]:
+    """Everything but verdict.json; returns the verdict."""
+    from diagnose.inference.diagnose import diagnose, diagnose_and_score
+    from softdot.commands.verdict_page import write_evidence
+    from softdot.numbers import installed_version
+
+    report = _reporting(progress)
+    seed = rig.bench.seed if options.seed is None else options.seed
+    progress.stage("model")
+    engine = narrowed(engine_for(rig, report), options.without)
+    progress.stage("compare")
+    held = held_out(rig.recording, options.hold_out)
+    if held:
+        findings = diagnose_and_score(rig.recording, engine, held, seed, report)
+    else:
+        findings = diagnose(rig.recording, engine, seed, report)
+    named_on = some_runs(rig.recording, all_but(rig.recording, held))
+    progress.stage("check with the full model")
+    proof = _proof(rig, engine, findings, report, options.full_model_s)
+    progress.stage("plan")
+    following = next_press(rig.recording, engine, findings)
+    progress.stage("write")
+    told = sentences(named_on, findings, following, proof.runs)
+    units = other_units(rig.recording, engine)
+    warnings = [*rig.recording.warnings, *units, *engine.shortfalls, *proof.warnings]
+    summary = verdict(findings, [str(sentence) for sentence in told], following, proof.runs, warnings)
+    summary["fit"]["failure"] = proof.failure
+    summary |= {"softdot_version": installed_version(), "seed": seed}
+    _write_files(rig, engine, findings, following, folder)
+    write_evidence(rig.recording, findings, told, plain(summary), proof.runs, folder)
+    return summary
+
+
+def narrowed(engine: Engine, without: Sequence[str]) -> Engine:
+    """The engine without the candidates of some mechanisms. InputError for a name that no mechanism has."""
+    for name in without:
+        if name not in MECHANISMS:
+            raise InputError(f"--without '{name}': {nearest(name, MECHANISMS)}")
+    fewer = copy(engine)
+    kept = tuple(one for one in engine.candidates if one.mechanism not in without)
+    object.__setattr__(fewer, "candidates", kept)  # engines may be frozen
+    return fewer
+
+
+def held_out(recording: Recording, parts: Sequence[str]) -> list[int]:
+    """Numbers of the runs whose label has one of these parts. InputError for a part that none has, or all."""
+    labels = [run.label for run in recording.runs]
+    for part in parts:
+        if not any(part in label for label in labels):
+            raise InputError(f"--hold-out '{part}': no run has it in its label; they are {', '.join(labels)}")
+    held = [number for number, label in enumerate(labels) if any(part in label for part in parts)]
+    if len(held) == len(labels):
+        raise InputError(f"--hold-out '{parts[-1]}': holds out every run; at least one has to stay")
+    return held
+
+
+def _proof(rig: Rig, engine: Engine, findings: Findings, report: Report, limit_s: float | None) -> Proof:
+    """As many runs by the full model as the time allows."""
+    proof = Proof()
+    if limit_s == 0.0:
+        proof.warnings += [UNCHECKED] if findings.best is not None else []
+        return proof
+    try:
+        for run in resimulate(rig.recording, engine, findings, report, limit_s):
+            proof.runs.append(run)  # those before an error are kept
+    except OutOfTimeError as error:
+        proof.warnings.append(f"{error}; --all-presses checks every run")
+    except NoEquilibriumError as error:
+        proof.failure = str(error)
+    return proof
+
+
+def _write_files(rig: Rig, engine: Engine, findings: Findings, following: NextPress | None, folder: Path) -> None:
+    from softdot.commands.verdict_page import improved_text
+
+    improved = improved_text(rig, engine, findings)
+    if improved is not None:
+        (folder / "improved.toml").write_text(improved, "utf-8")
+    if following is not None:
+        run = following.run
+        columns = np.column_stack([run.time_s, run.drive_values])
+        np.savetxt(folder / NEXT_PRESS, columns, "%.9g", ",", header=f"time_s,{run.drive}", comments="")
+
+
+def _reporting(progress: Progress) -> Report:
+    """Pass on what long work says."""
+
+    def report(what: str, done: int, count: int) -> None:
+        progress.step(done, count, what)
+
+    return report
+
+
+def command(chosen: Namespace) -> int:
+    """Diagnose chosen.recording into chosen.output; 0, or 3 when a press did not converge. InputError."""
+    from mesh.types import MeshingError
+    from softdot.console import progress_of
+    from solve.solution.newton import NoEquilibriumError
+
+    if chosen.seed is not None and chosen.seed < 0:
+        raise InputError(f"--seed = {chosen.seed}: must be at least 0")
+    limit_s = None if chosen.all_presses else 0.0 if chosen.fast_model_only else FULL_MODEL_S
+    options = Options(limit_s, chosen.seed, tuple(chosen.without), tuple(chosen.hold_out))
+    try:
+        with only_the_summary_on_stdout(), progress_of(chosen) as progress:
+            summary = run_diagnosis(Path(chosen.recording), Path(chosen.output), options, progress)
+    except (NoEquilibriumError, MeshingError) as error:
+        complain(f"diagnose, {error}; nothing was written")
+        return NOT_CONVERGED
+    show(summary, chosen, short_text)
+    if summary["fit"]["failure"] is None:
+        return GOOD
+    complain(f"not converged, {summary['fit']['failure']}; the verdict without it is in '{chosen.output}'")
+    return NOT_CONVERGED
+
+
+def short_text(summary: dict[str, Any], output: str) -> str:
+    """The sentences of the verdict and where to look."""
+    return "\n".join([*summary["summary"], f"{output}/report.html"])
+
+
+def engine_for(rig: Rig, report: Report) -> Engine:
+    """The engine for what rig.toml describes. InputError; NoEquilibriumError where its baseline has none."""
+    if rig.config is not None:
+        return _of_segment(rig, rig.config, report)
+    if rig.recording.specimen is not None:
+        from diagnose.engines.coupon import coupon_engine
+
+        return coupon_engine(rig.recording, rig.materials, report)
+    from diagnose.engines.proportional import proportional_engine
+
+    return proportional_engine(rig.recording, report)
+
+
+def _of_segment(rig: Rig, config: Config, report: Report) -> Engine:
+    from diagnose.engines.segment import segment_engine
+    from softdot.actual import actual
+    from solve.model import Model
+
+    changed, physics = actual(config)
+    materials = changed.layer_materials()
+    model = Model(changed.segment, materials, changed.dot, changed.press, changed.readout, physics)
+    return segment_engine(model, changed.mesh, rig.recording, report)

@@ -1,0 +1,76 @@
+"""softdot list: the built-in materials, Braille standards and mechanisms, with where they come from."""
+
+import sys
+from argparse import Namespace
+from typing import Any
+
+from softdot.console import GOOD
+from softdot.numbers import json_text
+
+ABOUT = ("model", "source", "confidence")
+
+
+def command(chosen: Namespace) -> int:
+    """Print what chosen.what names."""
+    entries = LISTS[chosen.what]()
+    if chosen.json:
+        sys.stdout.write(json_text({"format": f"softdot-{chosen.what}/1", chosen.what: entries}))
+    else:
+        print("\n".join(_lines(entry) for entry in entries))
+    return GOOD
+
+
+def _lines(entry: dict[str, Any]) -> str:
+    """The name and what it is on one line, then one line per remark."""
+    head = [entry["name"], entry["is"]]
+    values = ", ".join(f"{key} = {_short(value)}" for key, value in entry["values"].items())
+    about = [f"    {key}: {entry[key]}" for key in ("components", "confidence", "source") if entry.get(key)]
+    return "\n".join(["  ".join(head), *([f"    {values}"] if values else []), *about])
+
+
+def _short(value: Any) -> str:
+    return str(value) if isinstance(value, str) else json_text(value).replace("\n", "").replace("  ", "")
+
+
+def _materials() -> list[dict[str, Any]]:
+    from solve.materials.parameters import library_tables
+
+    return [
+        {
+            "name": name, "is": table["model"],
+            "values": {key: value for key, value in table.items() if key not in ABOUT},
+            "confidence": table["confidence"], "source": table["source"],
+        }
+        for name, table in library_tables().items()
+    ]  # fmt: skip
+
+
+def _standards() -> list[dict[str, Any]]:
+    from geometry.braille import QUANTITIES, standard, standard_names
+
+    found = [standard(name) for name in standard_names()]
+    return [
+        {
+            "name": one.name, "is": one.title,
+            "values": {key: size for key in QUANTITIES if (size := one.quantities[key].nominal_mm) is not None},
+            "confidence": one.confidence, "source": one.source,
+        }
+        for one in found
+    ]  # fmt: skip
+
+
+def _mechanisms() -> list[dict[str, Any]]:
+    from solve.mechanisms import MECHANISMS
+
+    return [
+        {
+            "name": name, "is": (kind.parameters.__doc__ or "").split("\n")[0],
+            "values": {key: field.description or "" for key, field in kind.parameters.model_fields.items()},
+            "components": ", ".join(kind.components),
+            "source": f"docs/mechanisms.md#{name}: equation, source and typical values",
+        }
+        for name, kind in MECHANISMS.items()
+    ]  # fmt: skip
+
+
+LISTS = {"materials": _materials, "standards": _standards, "mechanisms": _mechanisms}

@@ -1,0 +1,175 @@
+"""softdot run: check, geometry, mesh, solve, export; everything appears at once or not at all."""
+
+import logging
+import time
+from argparse import Namespace
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from export.headless import ensure_rendering
+from geometry.arrays import Floats
+from geometry.dot import DotShape
+from mesh.types import MeshingError, TetMesh
+from softdot import stages
+from softdot.actual import actual
+from softdot.config import Config
+from softdot.config.defaults import told
+from softdot.console import (
+    GOOD,
+    NOT_CONVERGED,
+    Logged,
+    Progress,
+    complain,
+    lines_when_interactive,
+    only_the_summary_on_stdout,
+    show,
+    warn,
+)
+from softdot.machine import named_when_missing
+from softdot.numbers import plain, write_json
+from softdot.output import RUN, staged_folder
+from softdot.summary import heading, mesh_part, press_part, stopped_solver
+from softdot.warnings import design_warnings, result_warnings
+from solve.model import Physics
+from solve.result import PressResult, Step
+
+LOG = logging.getLogger(__name__)
+
+
+class Clock:
+    """Wall-clock seconds by stage."""
+
+    def __init__(self) -> None:
+        self.seconds = dict.fromkeys(("geometry", "mesh", "solve", "uncertainty", "export"), 0.0)
+
+    @contextmanager
+    def __call__(self, stage: str) -> Iterator[None]:
+        """Add the time of a block to a stage."""
+        start = time.perf_counter()
+        try:
+            yield
+        finally:
+            self.seconds[stage] += time.perf_counter() - start
+
+
+def run_config(config: Config, out: Path, progress: Progress | None = None) -> dict[str, Any]:
+    """Run the whole pipeline into the folder out and return its summary.
+
+    InputError before any work for what cannot be built or written. Where a computation does not converge
+    nothing is raised: solver.converged is False, solver.failure says why and what converged is written.
+    """
+    progress = progress or Logged()
+    with named_when_missing(), lines_when_interactive():
+        changed, physics = actual(config)
+        dot_shape, warnings = stages.check(changed)
+        ensure_rendering()
+        with staged_folder(out, RUN) as folder:
+            summary: dict[str, Any] = heading(config) | plain(
+                _fill(config, changed, physics, dot_shape, warnings, folder, progress)
+            )
+            write_json(folder / RUN.summary, summary)
+    return summary
+
+
+def _fill(
+    stated: Config,
+    config: Config,
+    physics: Physics,
+    dot_shape: DotShape,
+    warnings: list[str],
+    folder: Path,
+    progress: Progress,
+) -> dict[str, Any]:
+    """Everything but summary.json; returns the summary. config : as stated, with its mechanisms switched on."""
+    clock = Clock()
+    summary = {**heading(config), "warnings": [*warnings, *design_warnings(config)]}
+    warn(summary["warnings"])
+    if config.from_default:
+        LOG.info("%s", told(config.from_default, config.model_dump(mode="json")))
+    progress.stage("geometry")
+    with clock("geometry"):
+        parts = stages.build_parts(config, dot_shape)
+    with clock("export"):
+        stages.write_cad(parts, folder / "cad")
+    progress.stage("mesh")
+    try:
+        with clock("mesh"):
+            tet_mesh = stages.build_mesh(config, dot_shape)
+            quality = stages.mesh_quality(config, tet_mesh)
+    except MeshingError as error:
+        return {**summary, "solver": stopped_solver(f"meshing: {error}"), "timing_s": clock.seconds}
+    progress.stage("solve")
+    with clock("solve"):
+        result = stages.press(config, physics, dot_shape, tet_mesh, _reporting(progress))
+        amplified = stages.readout_voltage(config, physics, result)
+        readout, channels = amplified if amplified is not None else (None, None)
+    tet_mesh = result.tet_mesh
+    summary |= {"mesh": mesh_part(quality, result.unknowns), **press_part(config, result, readout, channels)}
+    late = result_warnings(config, dot_shape, tet_mesh, result, physics.film_yield is not None)
+    warn(late)
+    summary["warnings"] += late
+    if result.converged:
+        progress.stage("uncertainty")
+        with clock("uncertainty"):
+            summary |= stages.uncertainty(stated, summary)
+    progress.stage("export")
+    with clock("export"):
+        so_far = {"timing_s": dict(clock.seconds)}
+        _export(dot_shape, tet_mesh, result, readout, plain(summary | so_far), folder)
+    return {**summary, "timing_s": clock.seconds}
+
+
+def _export(
+    dot_shape: DotShape,
+    tet_mesh: TetMesh,
+    result: PressResult,
+    readout_voltage_V: Floats | None,
+    summary: dict[str, Any],
+    folder: Path,
+) -> None:
+    stages.write_results(tet_mesh, result, dot_shape, folder / "results")
+    pictures = stages.write_pictures(tet_mesh, result, dot_shape, folder / "pictures", readout_voltage_V)
+    stages.write_report(summary, pictures, tet_mesh, result, dot_shape, folder / "report.html")
+
+
+def _reporting(progress: Progress) -> stages.OnStep:
+    """Pass the solver's steps on as text."""
+
+    def on_step(step: Step, number: int, count: int) -> None:
+        progress.step(number, count, f"{1e3 * step.indentation_m:.3f} mm, {step.reaction_force_N:.3g} N")
+
+    return on_step
+
+
+def command(chosen: Namespace) -> int:
+    """Run chosen.config into chosen.output; 0, or 3 when a computation did not converge. InputError."""
+    from softdot.config import load_config
+    from softdot.console import progress_of
+
+    config = load_config(chosen.config, chosen.set)
+    with only_the_summary_on_stdout(), progress_of(chosen) as progress:
+        summary = run_config(config, Path(chosen.output), progress)
+    show(summary, chosen, short_text)
+    if summary["solver"]["converged"]:
+        return GOOD
+    complain(f"not converged, {summary['solver']['failure']}; what converged is in '{chosen.output}'")
+    return NOT_CONVERGED
+
+
+def short_text(summary: dict[str, Any], output: str) -> str:
+    """The deepest step and where to look, in a few lines."""
+    from export.report import plus_minus
+
+    lines = []
+    if summary.get("indentation_mm"):
+        force, voltage = (plus_minus(summary, name) for name in ("force_percent", "voltage_percent"))
+        lines.append(
+            f"{summary['indentation_mm'][-1]:.3g} mm: force {summary['reaction_force_N'][-1]:.4g} N{force}, "
+            f"charge {summary['film_charge_pC'][-1]:.4g} pC, "
+            f"open-circuit voltage {summary['open_circuit_voltage_V'][-1]:.4g} V{voltage}"
+        )
+    if summary.get("from_default"):
+        lines.append(told(summary["from_default"], summary["config"]))
+    return "\n".join([*lines, f"{output}/report.html"])

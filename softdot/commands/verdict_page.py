@@ -1,0 +1,246 @@
+"""Files of a diagnosis: report.html (the verdict in sentences, then the evidence), plots and improved.toml."""
+
+import base64
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, cast
+
+import tomlkit
+from tomlkit.items import InlineTable, Table
+
+from diagnose.engines.coupon import CouponEngine, improved_material
+from diagnose.figures import figure, p_alone, percent, probability
+from diagnose.findings import Findings, Model
+from diagnose.forward import Engine
+from diagnose.next_press.proposals import Shape, base_setup
+from diagnose.signals.recording import Recording
+from diagnose.verdict.names import (
+    component_words,
+    interval_figures,
+    interval_remark,
+    mechanism_words,
+    model_words,
+    quantity_words,
+    unit_words,
+)
+from diagnose.verdict.pictures import draw_gains, draw_overview, draw_run, draw_shares
+from diagnose.verdict.resimulation import Resimulated, switched_on
+from diagnose.verdict.words import Sentence, detected, separation_words
+from export.page import page_environment
+from geometry.files import write_whole_text
+from softdot.config.rig import OWN, RIG_FILE, Rig
+from softdot.numbers import installed_version
+
+HERE = Path(__file__).parent
+MOST_RUNS = 4
+MOST_SCREENED = 12
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A PNG with its caption. section : of the page."""
+
+    section: str
+    path: Path
+    title: str
+    text: str
+
+
+def write_evidence(
+    recording: Recording,
+    findings: Findings,
+    told: Sequence[Sentence],
+    summary: dict[str, Any],
+    resimulated: Sequence[Resimulated],
+    folder: Path,
+) -> None:
+    """folder/plots/*.png and folder/report.html. summary : content of verdict.json in plain data."""
+    pictures = list(_pictures(recording, findings, resimulated, folder / "plots"))
+    write_whole_text(folder / "report.html", page_text(findings, told, summary, pictures))
+
+
+def page_text(
+    findings: Findings, told: Sequence[Sentence], summary: dict[str, Any], pictures: Sequence[Picture]
+) -> str:
+    """report.html. Every number is printed by diagnose.figures, as in the sentences that are told."""
+    environment = page_environment(HERE)
+    environment.filters |= {
+        "figure": figure, "percent": percent, "p_value": p_alone, "probability": probability, "where": component_words
+    }  # fmt: skip
+    environment.globals |= {"what": mechanism_words, "separation": separation_words}
+    return environment.get_template("verdict.html").render(
+        v=summary,
+        version=installed_version(),
+        verdict_class=_verdict_class(findings),
+        title=_title(findings),
+        told=told,
+        detected=detected(findings),
+        parameters=list(_parameter_rows(findings.best)) if summary["missing_physics"] and findings.best else [],
+        explanations=_explanation_rows(findings),
+        pictures=[(picture, base64.b64encode(picture.path.read_bytes()).decode("ascii")) for picture in pictures],
+        screened=summary["screened"][:MOST_SCREENED],
+        noise=_noise_rows(summary),
+    )
+
+
+def _parameter_rows(best: Model) -> Iterator[list[str]]:
+    """Mechanism, quantity, value, low, high, unit and remark."""
+    for setting, intervals in zip(best.settings, best.parameters, strict=True):
+        what = mechanism_words(*setting.candidate.name)
+        for name, interval in intervals.items():
+            value, low, high = interval_figures(interval)
+            ends = ["–", "–"] if interval.fixed else [low, high]
+            unit, remark = unit_words(interval.unit), interval_remark(interval)
+            yield [what, quantity_words(name, interval.unit), value, *ends, unit, remark]
+            what = ""
+        if not intervals:
+            yield [what, "–", "–", "–", "–", "", "has no parameter"]
+
+
+def _explanation_rows(findings: Findings) -> list[tuple[bool, str, Model]]:
+    """Whether it is the named one, its words, and the model."""
+    named = findings.best if findings.mismatch and not findings.unexplained else None
+    return [(model is named, model_words(model), model) for model in findings.models]
+
+
+def _verdict_class(findings: Findings) -> str:
+    if not findings.mismatch:
+        return "good"
+    return "unknown" if findings.unexplained or findings.best is None else "found"
+
+
+def _title(findings: Findings) -> str:
+    titles = {
+        "good": "Simulation and recordings agree",
+        "unknown": "Simulation and recordings differ, and no known mechanism explains it",
+        "found": "What your simulation left out",
+    }
+    return titles[_verdict_class(findings)]
+
+
+def _pictures(
+    recording: Recording, findings: Findings, resimulated: Sequence[Resimulated], folder: Path
+) -> Iterator[Picture]:
+    overview = draw_overview(recording, findings, folder / "where.png")
+    if overview is not None:
+        text = (
+            "Each cell is one phase of the presses in one band of frequencies; the redder it is, the larger its share "
+            "of the excess over noise. Grey cells show no more than noise."
+        )
+        yield Picture("where", overview, "Where recording and simulation differ", text)
+    shares = draw_shares(findings, folder / "components.png") if findings.mismatch else None
+    if shares is not None:
+        text = "How much of the excess over noise has the shape that a change of each part would give it."
+        yield Picture("where", shares, "Which part the excess resembles", text)
+    for count, (label, full) in enumerate(runs_to_draw(recording, findings, resimulated), start=1):
+        path = draw_run(recording.run(label), findings, full, folder / f"run-{count}.png")
+        text = "Top: signals. Bottom: residuals, with a grey band of two standard deviations of the noise."
+        yield Picture("runs", path, f"Run “{label}”", text)
+    gains = draw_gains(findings, folder / "gains.png") if findings.mismatch else None
+    if gains is not None:
+        text = (
+            "How much better each explanation predicts held-out presses than your simulation does. Black lines reach "
+            "down to the lower bound. The black box is a flexible model without mechanics."
+        )
+        yield Picture("gains", gains, "Which explanation predicts best", text)
+
+
+def runs_to_draw(recording: Recording, findings: Findings, resimulated: Sequence[Resimulated]) -> list[tuple[str, Any]]:
+    """Labels and signals of the full model: runs that were pressed again, then those with the largest excess."""
+    pressed = {one.run: one.signals for one in resimulated}
+    excess = {run.label: 0.0 for run in recording.runs}
+    for place in findings.places:
+        excess[place.run] += place.share
+    others = sorted((label for label in excess if label not in pressed), key=lambda label: -excess[label])
+    return [(label, pressed.get(label)) for label in [*pressed, *others]][:MOST_RUNS]
+
+
+def _noise_rows(summary: dict[str, Any]) -> list[tuple[str, str, dict[str, Any]]]:
+    noise = summary["detection"]["noise_model"]
+    return [(label, channel, its) for label, channels in noise.items() for channel, its in channels.items()]
+
+
+WITH = "Your {} with what the recordings say was left out: {}."
+UNCHANGED = "Your {} unchanged: the diagnosis named nothing that was left out."
+EXAMPLE = (
+    "The material '{}' as its coupon says: {}. It is in medium 2 of the default segment; copy it where you need it."
+)
+
+
+def improved_text(rig: Rig, engine: Engine, findings: Findings) -> str | None:
+    """The configuration as TOML, comments kept; None for a coupon that teaches nothing and for an unknown geometry.
+
+    Without a [press] of its own it presses like the deepest press of the recording.
+    """
+    if rig.config is not None:
+        document, head = _segment(rig, findings)
+    elif rig.recording.specimen is not None and findings.best is not None:
+        document, head = _coupon(cast(CouponEngine, engine), findings.best)
+    else:
+        return None
+    return f"# {head}\n\n{tomlkit.dumps(document).strip()}\n"
+
+
+def _segment(rig: Rig, findings: Findings) -> tuple[tomlkit.TOMLDocument, str]:
+    document = tomlkit.parse((rig.folder / RIG_FILE).read_text("utf-8-sig"))
+    for key in OWN & document.keys():
+        document.remove(key)
+    deepest = base_setup(rig.recording)
+    if "press" not in document and deepest is not None:
+        document.add(tomlkit.nl())
+        document["press"] = _press(deepest.run.drive, deepest.shape)
+    if findings.best is None:
+        return document, UNCHANGED.format(RIG_FILE)
+    _append(document, [switched_on(setting).model_dump(mode="json") for setting in findings.best.settings])
+    return document, WITH.format(RIG_FILE, model_words(findings.best))
+
+
+def _coupon(engine: CouponEngine, best: Model) -> tuple[tomlkit.TOMLDocument, str]:
+    layer = "medium2"
+    found = improved_material(engine, best.settings, layer)
+    document = tomlkit.parse(files("softdot.config").joinpath("default.toml").read_text("utf-8"))
+    document["segment"][layer]["material"] = found.name
+    document["materials"] = {found.name: _rounded(found.table, 6)}
+    _append(document, found.mechanisms)
+    return document, EXAMPLE.format(found.name, model_words(best))
+
+
+def _append(document: tomlkit.TOMLDocument, mechanisms: Sequence[Mapping[str, Any]]) -> None:
+    """Further tables [[mechanisms]] behind those that the user has."""
+    tables = document.get("mechanisms", tomlkit.aot())
+    for mechanism in mechanisms:
+        table = tomlkit.table()
+        table.add("name", mechanism["name"])
+        table.add("component", mechanism["component"])
+        table.add("parameters", _inline(mechanism["parameters"]))
+        table.add(tomlkit.nl())
+        tables.append(table)
+    if tables:
+        document["mechanisms"] = tables
+
+
+def _press(drive: str, shape: Shape) -> Table:
+    depth = "indentation_mm" if drive == "displacement_mm" else "force_N"
+    press = tomlkit.table()
+    press.add(depth, _rounded(shape.deep, 3))
+    times = {"rise_s": shape.rise_s, "hold_s": shape.hold_s, "fall_s": shape.fall_s}
+    press.add("waveform", _inline({"shape": "trapezoid", **_rounded(times, 3)}))
+    press.add(tomlkit.nl())
+    return press
+
+
+def _inline(values: Mapping[str, Any]) -> InlineTable:
+    table = tomlkit.inline_table()
+    table.update(_rounded(dict(values), 6))
+    return table
+
+
+def _rounded(value: Any, digits: int) -> Any:
+    """Floats, also within lists and tables, with so many significant digits."""
+    if isinstance(value, float):
+        return float(f"{value:.{digits}g}")
+    if isinstance(value, list | tuple):
+        return [_rounded(item, digits) for item in value]
+    return {key: _rounded(item, digits) for key, item in value.items()} if isinstance(value, dict) else value

@@ -1,0 +1,270 @@
+"""What is wrong with a configuration, in sentences: the dotted key, its value, what is allowed; all mistakes at once.
+
+Each check of a run stops at the first mistake. Here that mistake is noted, its key set aside, and the rest checked
+again, until nothing is refused: every sentence is the one that a run would say.
+"""
+
+import copy
+import json
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from typing import Any, TypeVar, get_args
+
+from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
+
+from geometry.base import InputError, nearest
+from softdot.config.toml import parsed
+
+BOUNDS = {
+    "greater_than": ("gt", "above"),
+    "greater_than_equal": ("ge", "at least"),
+    "less_than": ("lt", "below"),
+    "less_than_equal": ("le", "at most"),
+}
+LENGTHS = {"too_short": ("min_length", "at least"), "too_long": ("max_length", "at most")}
+KINDS = {
+    "float_type": "must be a plain number; its unit is part of the key",
+    "float_parsing": "must be a plain number; its unit is part of the key",
+    "int_type": "must be a whole number",
+    "int_parsing": "must be a whole number",
+    "int_from_float": "must be a whole number",
+    "finite_number": "must be a finite number",
+    "string_type": "must be a text in quotes",
+    "tuple_type": "must be a list in square brackets",
+    "dict_type": "must be a table",
+    "model_type": "must be a table",
+    "model_attributes_type": "must be a table",
+}
+
+
+def sentence(error: ValidationError, tables: Mapping[str, Any], model: type[BaseModel]) -> str:
+    """One sentence on the most telling problem: a mistyped key first, a missing one last."""
+    rank = {"extra_forbidden": 0, "missing": 2}
+    problems = sorted(error.errors(include_url=False), key=lambda p: rank.get(p["type"], 1))
+    choices = [p["ctx"]["expected"] for p in problems if p["type"] == "literal_error" and _same_value(p, problems[0])]
+    return _explain(problems[0], tables, model, choices)
+
+
+def _same_value(one: ErrorDetails, other: ErrorDetails) -> bool:
+    """Whether both are members of one union that refuse the same value."""
+    return one["loc"][:-1] == other["loc"][:-1] and one["input"] == other["input"]
+
+
+def _explain(problem: ErrorDetails, tables: Mapping[str, Any], model: type[BaseModel], choices: Sequence[str]) -> str:
+    kind, context = problem["type"], problem.get("ctx", {})
+    path = _existing(problem["loc"], tables, kind)
+    key = dotted(path)
+    if kind == "extra_forbidden":
+        known = {name for table in _tables_at(problem["loc"][:-1], model) for name in table.model_fields}
+        return f"{key} is not a key; {_meant(path, known, model)}"
+    if kind == "missing":
+        return f"{key} is missing{_described(problem['loc'], model)}"
+    if kind == "value_error":
+        return _own_message(key, problem, model)
+    if kind == "union_tag_invalid":
+        tag = str(context["tag"])
+        known = {name.strip(" '") for name in str(context["expected_tags"]).split(",")}
+        return f"{key}.model = '{tag}': {nearest(tag, known)}"
+    if kind == "literal_error":
+        return f"{key} = {shown(problem['input'])}: must be {_either(choices)}"
+    if kind in BOUNDS:
+        name, word = BOUNDS[kind]
+        return f"{key} = {shown(problem['input'])}: must be {word} {context[name]:g}"
+    if kind in LENGTHS:
+        name, word = LENGTHS[kind]
+        return f"{key} = {shown(problem['input'])}: must have {word} {_values(context[name])}"
+    text = KINDS.get(kind, problem["msg"][:1].lower() + problem["msg"][1:])
+    return f"{key} = {shown(problem['input'])}: {text}"
+
+
+def _meant(path: Sequence[str | int], known: set[str], model: type[BaseModel]) -> str:
+    """What an unknown key was probably meant to be; a table of the segment may stand outside it by mistake."""
+    name = str(path[-1])
+    inner = {key for table in _tables_at(("segment",), model) for key in table.model_fields}
+    if len(path) == 1 and name in inner:
+        return f"did you mean 'segment.{name}'?"
+    text = nearest(name, known)
+    same = next((key for key in known if f"'{key}'" in text and _unitless(key) == _unitless(name)), name)
+    return text if same == name or _unitless(name) == name else f"{text} (mind the other unit)"
+
+
+def _unitless(key: str) -> str:
+    """thickness_um -> thickness."""
+    return re.sub(r"_(mm|um|deg|pF|MOhm|Hz|MPa|kPa|GPa|Pa|m|cm|V|mV|N|mN|s|ms)$", "", key)
+
+
+def _own_message(key: str, problem: ErrorDetails, model: type[BaseModel]) -> str:
+    """A message of our own validators: about a value, about a key in a table, or about the whole."""
+    text = str(problem["ctx"]["error"])
+    if not isinstance(problem["input"], dict):
+        return f"{key} = {shown(problem['input'])}: {text}"
+    if not key:
+        return text
+    names = {name for table in _tables_at(problem["loc"], model) for name in table.model_fields}
+    first = re.split(r"[\s.:\[]", text, maxsplit=1)[0]
+    return f"{key}.{text}" if first in names else f"{key}: {text}"
+
+
+def _values(count: int) -> str:
+    """1 -> '1 value', 2 -> '2 values'."""
+    return f"{count} value" if count == 1 else f"{count} values"
+
+
+def _either(choices: Sequence[str]) -> str:
+    """["'a' or 'b'", "'c'"] -> "'a', 'b' or 'c'"."""
+    words = [word for choice in choices for word in re.split(r", | or ", choice)]
+    return " or ".join([*([", ".join(words[:-1])] if words[:-1] else []), words[-1]])
+
+
+def dotted(path: Sequence[str | int]) -> str:
+    """('dot', 'offset_mm', 1) -> 'dot.offset_mm[1]'."""
+    text = "".join(f"[{part}]" if isinstance(part, int) else f".{cut(str(part))}" for part in path)
+    return text.removeprefix(".")
+
+
+def _existing(loc: Sequence[str | int], tables: Any, kind: str) -> list[str | int]:
+    """The location without the names of union members, which pydantic puts between the keys."""
+    path: list[str | int] = []
+    for number, part in enumerate(loc):
+        last = number == len(loc) - 1
+        try:
+            tables = tables[part]
+        except (KeyError, IndexError, TypeError):
+            if not (last and kind == "missing"):
+                continue
+        path.append(part)
+    return path
+
+
+def _tables_at(loc: Sequence[str | int], model: type[BaseModel]) -> list[type[BaseModel]]:
+    """The models that may stand at a location of the configuration."""
+    here = [model]
+    for part in loc:
+        fields = [table.model_fields[part] for table in here if part in table.model_fields]
+        tagged = [
+            table for table in here if "model" in table.model_fields and table.model_fields["model"].default == part
+        ]
+        if fields:
+            here = [found for field in fields for found in _models_in(field.annotation)]
+        elif tagged:
+            here = tagged
+    return here
+
+
+def _models_in(annotation: Any) -> list[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    return [found for inner in get_args(annotation) for found in _models_in(inner)]
+
+
+def _described(loc: Sequence[str | int], model: type[BaseModel]) -> str:
+    """': ' and the description of the missing key."""
+    for table in _tables_at(loc[:-1], model):
+        field = table.model_fields.get(str(loc[-1]))
+        if field is not None and field.description:
+            return f": {field.description}"
+    return ""
+
+
+def shown(value: Any) -> str:
+    """A value much as TOML writes it, cut when long."""
+    if isinstance(value, str):
+        text = f"'{value}'"
+    elif isinstance(value, float):
+        text = f"{value:g}"
+    else:
+        text = json.dumps(value, default=str)
+    return cut(text)
+
+
+def cut(text: str) -> str:
+    """At most 60 characters, for a message."""
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+LARGEST = 1e12
+
+
+def refuse_absurd_numbers(tables: Any) -> None:
+    """InputError for a finite number above 1e12 in size."""
+    for path, number in _numbers(tables, ()):
+        if LARGEST < abs(number) < float("inf"):
+            raise InputError(f"{dotted(path)} = {shown(number)}: must be at most {LARGEST:.0e} in size")
+
+
+def without_round_off(value: Any) -> Any:
+    """The same tables with zero for every number below 1e-12 in size: a script that subtracts leaves -1.1e-16."""
+    if isinstance(value, dict):
+        return {key: without_round_off(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [without_round_off(item) for item in value]
+    return 0.0 if isinstance(value, float) and abs(value) < 1.0 / LARGEST else value
+
+
+def _numbers(value: Any, path: tuple[str | int, ...]) -> Iterator[tuple[tuple[str | int, ...], float]]:
+    """Every number of the tables with its path."""
+    if isinstance(value, dict):
+        for key, item in value.items():
+            yield from _numbers(item, (*path, str(key)))
+    elif isinstance(value, list | tuple):
+        for index, item in enumerate(value):
+            yield from _numbers(item, (*path, index))
+    elif isinstance(value, int | float) and not isinstance(value, bool):
+        yield path, value
+
+
+MOST = 100
+DECIDES = {"shape", "model", "mode", "name", "component"}
+"""What these say decides what else a table may hold: without it the table cannot be judged."""
+KEY = re.compile(r'(?:[\w-]+|"[^"]+")(?:\.[\w-]+|\."[^"]+"|\[\d+\])*')
+Checked = TypeVar("Checked")
+
+
+def mistakes(
+    tables: Mapping[str, Any], check: Callable[[Mapping[str, Any]], Checked]
+) -> tuple[list[str], Checked | None]:
+    """Every sentence with which check refuses the tables, and what it returns when there is none."""
+    found: list[str] = []
+    rest: dict[str, Any] = copy.deepcopy(dict(tables))
+    while len(found) < MOST:
+        try:
+            checked = check(rest)
+        except InputError as error:
+            if str(error) not in found:
+                found.append(str(error))
+            if not _set_aside(rest, str(error)):
+                return found, None
+        else:
+            return found, None if found else checked
+    return found, None
+
+
+def _set_aside(tables: dict[str, Any], sentence: str) -> bool:
+    """Remove the key that a sentence begins with, or the nearest table above it; whether there was one."""
+    match = KEY.match(sentence)
+    if match is None:
+        return False
+    with suppress(ValueError):
+        way = list(parsed(match[0]))
+        if way[-1] in DECIDES and len(way) > 1:
+            way.pop()
+        while way:
+            if _removed(tables, way):
+                return True
+            way.pop()
+    return False
+
+
+def _removed(tables: Any, way: list[str | int]) -> bool:
+    for part in way[:-1]:
+        try:
+            tables = tables[part]
+        except (KeyError, IndexError, TypeError):
+            return False
+    try:
+        del tables[way[-1]]
+    except (KeyError, IndexError, TypeError):
+        return False
+    return True

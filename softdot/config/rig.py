@@ -1,0 +1,132 @@
+"""rig.toml: the configuration that a laboratory believes in, and the runs it recorded."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pydantic import Field, ValidationError, model_validator
+
+from diagnose.signals.reading import read_recording
+from diagnose.signals.recording import Recording, Run
+from diagnose.signals.tables import RigTables, RunTable
+from geometry.base import InputError
+from geometry.parameters import Table
+from softdot.config import Config, config_from, with_built_in_constants
+from softdot.config.errors import refuse_absurd_numbers, sentence, without_round_off
+from softdot.config.toml import read_toml
+from solve.materials.parameters import AnyMaterial, Material, find_material
+from solve.parameters import Readout
+
+RIG_FILE = "rig.toml"
+OWN = frozenset(RigTables.model_fields)
+"""Keys of rig.toml that are no configuration."""
+Kind = TypeVar("Kind", bound=Table)
+
+
+class Bench(Table):
+    """What is left of a configuration where there is no segment: a coupon test, or a geometry that is not known."""
+
+    materials: dict[str, AnyMaterial] = Field({}, description="materials beside or instead of the built-in ones")
+    readout: Readout | None = Field(None, description="the amplifier; leave out for open circuit")
+    seed: int = Field(0, ge=0, description="seed of everything random")
+
+    @model_validator(mode="after")
+    def _charge_mode(self) -> "Bench":
+        if self.readout is not None and self.readout.mode == "charge" and self.readout.feedback_pF is None:
+            raise ValueError("readout.feedback_pF is missing: mode = 'charge' needs a feedback capacitance")
+        return self
+
+
+@dataclass(frozen=True)
+class Rig:
+    """rig.toml and the samples it names. config : None where there is no segment; then bench says the rest.
+
+    tables : rig.toml as read. materials : the user's own.
+    """
+
+    folder: Path
+    tables: Mapping[str, Any]
+    config: Config | None
+    bench: Bench
+    recording: Recording
+
+    @property
+    def materials(self) -> Mapping[str, Material]:
+        """The user's own materials by name."""
+        return self.config.materials if self.config is not None else self.bench.materials
+
+
+def load_rig(folder: Path | str) -> Rig:
+    """Read a folder of rig.toml and CSV files. InputError with one sentence naming file, key or row and column."""
+    folder = Path(folder)
+    if not folder.is_dir():
+        what = "this is a file, a folder is needed" if folder.exists() else "there is no such folder"
+        raise InputError(f"recording '{folder}': {what}")
+    if not (folder / RIG_FILE).exists():
+        raise InputError(f"recording '{folder}': has no {RIG_FILE}, which states what was built and measured")
+    tables = read_toml(folder / RIG_FILE)
+    try:
+        own, config, bench, readouts = _believed(tables)
+    except InputError as error:
+        raise InputError(f"recording '{folder / RIG_FILE}': {error}") from None
+    recording = read_recording(folder, own.runs, readouts, own.specimen)
+    if config is not None:
+        for run in recording.runs:
+            _refuse_other_channels(run, config, folder)
+    return Rig(folder, tables, config, bench, recording)
+
+
+def _believed(tables: Mapping[str, Any]) -> tuple[RigTables, Config | None, Bench, list[Readout | None]]:
+    """The two halves of rig.toml, and the amplifier of each run."""
+    own = _checked(RigTables, {key: tables[key] for key in OWN & tables.keys()})
+    rest = {key: value for key, value in tables.items() if key not in OWN}
+    if own.specimen is None and own.geometry == "known":
+        config = config_from(rest)
+        bench = Bench(materials=config.materials, readout=config.readout, seed=config.seed)
+    else:
+        config, bench = None, _bench(rest, own)
+    return own, config, bench, [_readout(run, number, rest, bench) for number, run in enumerate(own.runs)]
+
+
+def _bench(rest: Mapping[str, Any], own: RigTables) -> Bench:
+    if "segment" in rest:
+        key = "specimen" if own.specimen is not None else "geometry = 'unknown'"
+        raise InputError(f"segment and {key} exclude each other: leave one of them out")
+    bench = _checked(Bench, with_built_in_constants(rest))
+    if own.specimen is not None:
+        find_material(own.specimen.material, bench.materials, "specimen.material")
+    return bench
+
+
+def _readout(run: RunTable, number: int, rest: Mapping[str, Any], bench: Bench) -> Readout | None:
+    """[readout] with the keys that this run overrides."""
+    if not run.readout:
+        return bench.readout
+    given = rest.get("readout", {})
+    try:
+        return _checked(Bench, {"readout": {**given, **run.readout}}).readout
+    except InputError as error:
+        raise InputError(f"runs[{number}].{error}") from None
+
+
+def _checked(kind: type[Kind], tables: Mapping[str, Any]) -> Kind:
+    """Tables as one kind of table. InputError with one sentence."""
+    tables = without_round_off(tables)
+    try:
+        checked = kind.model_validate_json(json.dumps(tables, default=str), strict=True)
+    except ValidationError as error:
+        raise InputError(sentence(error, tables, kind)) from None
+    refuse_absurd_numbers(tables)
+    return checked
+
+
+def _refuse_other_channels(run: Run, config: Config, folder: Path) -> None:
+    """Voltage columns are electrodes."""
+    columns, electrodes = len(run.voltages), max(1, len(config.segment.film.electrodes))
+    if columns not in (0, electrodes):
+        raise InputError(
+            f"recording '{folder / run.file}' row 1: has {columns} columns of voltage, but segment.film.electrodes of "
+            f"{RIG_FILE} makes {electrodes} of them"
+        )

@@ -1,0 +1,76 @@
+"""Write a recording: rig.toml with the lines of each run, and its CSV files, whole or not at all."""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from geometry.arrays import Floats
+from geometry.base import InputError
+from softdot.config.rig import RIG_FILE, load_rig
+
+
+def write_recording(out: Path | str, rig: str, files: Mapping[str, Mapping[str, Floats]]) -> None:
+    """A new folder with rig.toml and one CSV per item, file name -> column -> samples (t,).
+
+    It is read back by the rules of softdot diagnose before it takes its place. InputError when out exists and holds
+    anything, or when what was written is no recording.
+    """
+    out = Path(out)
+    if out.exists() and (not out.is_dir() or any(out.iterdir())):
+        raise InputError(f"output '{out}': exists already; name a new or empty folder")
+    try:
+        out.parent.mkdir(parents=True, exist_ok=True)
+        with TemporaryDirectory(prefix=f".{out.name}.", dir=out.parent) as beside:  # of this process alone
+            staging = Path(beside) / out.name
+            staging.mkdir()
+            (staging / RIG_FILE).write_text(rig, "utf-8")
+            for name, columns in files.items():
+                _write_columns(staging / name, columns)
+            load_rig(staging)
+            staging.replace(out)
+    except OSError as error:
+        raise InputError(f"output '{out}': cannot be written ({error.strerror})") from None
+
+
+def _write_columns(file: Path, columns: Mapping[str, Floats]) -> None:
+    """A header and one row per sample, with nine digits: more than any converter has."""
+    np.savetxt(file, np.column_stack(list(columns.values())), "%.9g", ",", header=",".join(columns), comments="")
+
+
+def run_text(
+    file: str,
+    label: str,
+    drive: str,
+    *,
+    temperature_C: float | None = None,
+    nuisance: Mapping[str, float] | None = None,
+    noise: Mapping[str, float] | None = None,
+) -> str:
+    """A table [[runs]] with its sub-tables."""
+    lines = ["[[runs]]", f"file = {_quoted(file)}", f"label = {_quoted(label)}", f"drive = {_quoted(drive)}"]
+    if temperature_C is not None:
+        lines.append(f"temperature_C = {temperature_C}")
+    for name, table in (("nuisance", nuisance), ("noise", noise)):
+        if table:
+            lines += [f"[runs.{name}]", *(f"{_key(key)} = {value:.3g}" for key, value in table.items())]
+    return "\n".join(lines) + "\n"
+
+
+def _quoted(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False)
+
+
+def _key(name: str) -> str:
+    return f'"{name}"' if "." in name else name
+
+
+def white_noise(values: Floats) -> float:
+    """One sigma from third differences of (t,), which a curve that is smooth over four samples hardly has.
+
+    von Neumann, Annals of Mathematical Statistics 12 (1941) 367, for the first difference; the third has the weights
+    1, -3, 3, -1 and 20 times the variance. It knows nothing of slow noise.
+    """
+    return float(np.sqrt(np.mean(np.diff(values, 3) ** 2) / 20.0))

@@ -1,0 +1,1 @@
+"""softdot plate: a printable Braille plate from a text."""

@@ -1,0 +1,160 @@
+"""Force and voltage at the deepest step, their derivatives, and their values at the ends of a shift.
+
+Where the path of a press does not matter and its voltage is open-circuit, its full load is all that is solved.
+"""
+
+from collections.abc import Callable, Sequence
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from geometry.base import InputError
+from geometry.cache import data_hash, recall, remember, source_hash
+from mesh.interfaces import morphed
+from mesh.types import TetMesh
+from softdot import stages
+from softdot.actual import actual
+from softdot.config import Config, config_hash, input_hash
+from softdot.differentiate import model_of, press_with_derivatives, variations_of
+from softdot.numbers import plain
+from softdot.summary import history
+from softdot.tolerances.tolerances import with_factors
+from solve.result import PressResult
+from solve.solution.sensitivity import FullLoad, StoppedShortError
+
+LOAD_STEPS = 3
+"""Enough for the march; what is asked for is the deepest step alone."""
+
+
+class Response(NamedTuple):
+    """Force in N and voltage in V at the deepest step, or their derivatives."""
+
+    force: float
+    voltage: float
+
+
+def coarser(config: Config, factor: float) -> Config:
+    """The same press in fewer steps on elements that are larger by the factor."""
+    options = config.mesh
+    sizes = {
+        name: factor * size
+        for name in ("element_size_mm", "contact_element_size_mm", "film_element_size_mm")
+        if (size := getattr(options, name)) is not None
+    }
+    press = config.press.model_copy(update={"load_steps": min(config.press.load_steps, LOAD_STEPS)})
+    return config.model_copy(update={"mesh": options.model_copy(update=sizes), "press": press})
+
+
+def mesh_of(config: Config) -> TetMesh:
+    """The mesh of a configuration. InputError, MeshingError."""
+    changed, _ = actual(config)
+    return stages.build_mesh(changed, stages.check(changed)[0])
+
+
+class KitPress:
+    """A configuration, pressed on one mesh when first asked for; every answer is kept on disk."""
+
+    def __init__(self, config: Config) -> None:
+        self.config = config
+
+    def slopes(self, keys: Sequence[str]) -> tuple[Response, dict[str, Response]]:
+        """The response and its derivative by each key of the configuration with factors. InputError, MeshingError,
+        LinearSolveError, StoppedShortError.
+        """
+        found = remembered(with_factors(self.config), f"slopes {keys}", lambda: self._slopes(keys))
+        return Response(*found[0]), {key: Response(*pair) for key, pair in found[1].items()}
+
+    def full_load_slopes(self, keys: Sequence[str]) -> tuple[Response, dict[str, Response]]:
+        """The same of force and open-circuit voltage at full load, before any slide, whatever stands behind the film.
+
+        InputError also where the path of the press matters; else as for slopes.
+        """
+        changed = with_factors(self.config)
+        found = remembered(changed, f"full-load slopes {keys}", lambda: self._full_load_slopes(keys))
+        return Response(*found[0]), {key: Response(*pair) for key, pair in found[1].items()}
+
+    def value(self, moved: Config) -> Response:
+        """The response of a changed configuration, on the mesh of the unchanged one so that the mesh does not blur the
+        difference. Errors as for slopes.
+        """
+        asked = f"on the mesh of {config_hash(self.config)}"
+        return Response(*remembered(moved, asked, lambda: self._value(moved)))
+
+    @cached_property
+    def _mesh(self) -> TetMesh:
+        return mesh_of(self.config)
+
+    @cached_property
+    def _full_load(self) -> FullLoad:
+        return FullLoad(model_of(with_factors(self.config)), self._mesh)
+
+    def _slopes(self, keys: Sequence[str]) -> tuple[Response, dict[str, Response]]:
+        changed = with_factors(self.config)
+        if path_matters(changed):
+            return slopes_along(changed, keys, self._mesh)
+        return self._full_load_slopes(keys)
+
+    def _full_load_slopes(self, keys: Sequence[str]) -> tuple[Response, dict[str, Response]]:
+        changed = with_factors(self.config)
+        try:
+            found = self._full_load.derivatives(variations_of(changed, keys))
+        except ValueError as error:
+            raise InputError(str(error)) from None
+        return Response(*self._full_load.answer), {key: Response(*answer) for key, answer in found.items()}
+
+    def _value(self, moved: Config) -> Response:
+        if path_matters(moved):
+            return value_along(moved, morphed(self._mesh, self.config.segment, moved.segment))
+        return Response(*self._full_load.beside(model_of(moved)))
+
+
+def path_matters(config: Config) -> bool:
+    """Whether the response at full load depends on how the load came to be there."""
+    model = model_of(config)
+    return model.follows_time or stages.is_amplified(config, model.physics)
+
+
+def slopes_along(config: Config, keys: Sequence[str], tet_mesh: TetMesh) -> tuple[Response, dict[str, Response]]:
+    """The response and its derivative by each key, along the whole press. InputError, StoppedShortError."""
+    result, found = press_with_derivatives(config, keys, tet_mesh)
+    response, step = _response(config, result), _deepest(result)
+    at = int(np.argmin(np.abs(found[0].time_s - result.steps[step].time_s)))
+    by_key = {}
+    for one in found:
+        voltage = one.open_circuit_voltage_V if one.readout_voltage_V is None else one.readout_voltage_V
+        by_key[one.key] = Response(float(one.reaction_force_N[at]), float(voltage[at]))
+    return response, by_key
+
+
+def value_along(config: Config, tet_mesh: TetMesh) -> Response:
+    """The response of a whole press on a given mesh. InputError, StoppedShortError."""
+    changed, physics = actual(config)
+    dot_shape, _ = stages.check(changed)
+    result = stages.press(changed, physics, dot_shape, tet_mesh, lambda *_: None)
+    return _response(config, result)
+
+
+def remembered(config: Config, what: str, make: Callable[[], Any]) -> Any:
+    """Plain numbers kept on disk under the hash of a configuration, of the program and of what was asked."""
+    name = f"response-{data_hash([what, input_hash(config), source_hash(__name__)])}"
+    known = recall(name)
+    if known is None:
+        known = make()
+        remember(name, plain(known))
+    return known
+
+
+def _response(config: Config, result: PressResult) -> Response:
+    if not result.converged:
+        raise StoppedShortError(result.failure)
+    _, physics = actual(config)
+    amplified = stages.readout_voltage(config, physics, result)
+    voltage = history(result).open_circuit_voltage_V if amplified is None else amplified[0]
+    step = _deepest(result)
+    return Response(result.steps[step].reaction_force_N, float(voltage[step]))
+
+
+def _deepest(result: PressResult) -> int:
+    """Of equally deep steps the first."""
+    return int(np.argmax(np.round([step.indentation_m for step in result.steps], 12)))

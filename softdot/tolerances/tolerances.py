@@ -1,0 +1,296 @@
+"""What may be off by how much: one row for each quantity of a segment, and configurations with such an error."""
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+from geometry.braille import dot_size, dot_standard, from_base
+from geometry.fabrication.recipes import cast_components, sheet_components
+from geometry.parameters import Dot, Segment
+from geometry.stack import Layer, layers
+from softdot.config import Config
+from solve.mechanisms import Mechanism
+
+MEDIUM = ("modulus_factor", "thickness_factor")
+FACTORS: dict[str, tuple[str, ...]] = {
+    "effector": MEDIUM,
+    "medium1": MEDIUM,
+    "film": (*MEDIUM, "d31_factor"),
+    "medium2": MEDIUM,
+    "dot": ("radius_factor",),
+}
+
+
+def with_factors(config: Config) -> Config:
+    """The same configuration with a property error of every component, all factors one, behind its mechanisms.
+
+    Layers that share a material so get errors of their own.
+    """
+    added = (
+        Mechanism(name="property-error", component=component, parameters=dict.fromkeys(FACTORS[component], 1.0))
+        for component in _components(config)
+    )
+    return config.model_copy(update={"mechanisms": (*config.mechanisms, *added)})
+
+
+def factor_key(config: Config, component: str, factor: str) -> str:
+    """The key of a factor in the configuration that with_factors makes."""
+    return f"mechanisms[{len(config.mechanisms) + _components(config).index(component)}].parameters.{factor}"
+
+
+def _components(config: Config) -> list[str]:
+    absent = {"effector"} if config.segment.effector is None else set()
+    absent |= {"dot"} if config.dot.shape == "plate" else set()
+    return [name for name in FACTORS if name not in absent]
+
+
+NAMES = {"medium1": "medium 1", "medium2": "medium 2"}
+SMALL = 1e-6
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """A quantity and how far it may be off.
+
+    nominal, plus_minus : in unit; unit "%" is of the nominal value, which is then None.
+    slopes : key of the configuration -> change of that key per unit of the quantity.
+    counted : False where another row holds the same error; note : what else is to be known.
+    """
+
+    label: str
+    nominal: float | None
+    plus_minus: float
+    unit: str
+    source: str
+    confidence: str
+    slopes: Mapping[str, float] = field(default_factory=dict)
+    counted: bool = True
+    note: str = ""
+
+
+def tolerances(config: Config) -> list[Tolerance]:
+    """All quantities that change the press to first order."""
+    return [
+        *_thicknesses(config),
+        *_moduli(config, _poured(config)),
+        *_film(config),
+        *_dot(config),
+        *([] if config.segment.film.electrodes else _footprint(config.segment)),
+        _press(config),
+        *_interfaces(config),
+    ]
+
+
+def material_tolerances(config: Config) -> list[Tolerance]:
+    """What the constants of the stated materials are known to."""
+    return [*_moduli(config, {}), *_film(config)]
+
+
+def shifts(config: Config) -> list[tuple[Tolerance, Config, Config]]:
+    """Quantities whose effect has no useful derivative, each with the configuration at its upper and lower end.
+
+    By symmetry it vanishes to first order, or electrodes of their own have edges that pass whole points of the mesh.
+    """
+    offset, angle = table()["dot"]["offset"], table()["film"]["draw_angle"]
+    axes = (0,) if config.segment.section == "plane-strain" else (0, 1)
+    found = []
+    for axis in () if config.dot.shape == "plate" else axes:
+        nominal = config.dot.offset_mm[axis]
+        row = _row(f"dot offset in {'xy'[axis]}", nominal, offset["mm"], "mm", offset)
+        found.append((row, _offset(config, axis, offset["mm"]), _offset(config, axis, -offset["mm"])))
+    film = config.segment.film
+    row = _row("draw direction of the film", film.draw_angle_deg, angle["deg"], "°", angle)
+    found.append((row, _turned(config, angle["deg"]), _turned(config, -angle["deg"])))
+    for row in _footprint(config.segment) if film.electrodes else []:
+        ((key, _),) = row.slopes.items()
+        found.append((row, _resized(config, key, row.plus_minus), _resized(config, key, -row.plus_minus)))
+    return found
+
+
+@cache
+def table() -> dict[str, Any]:
+    """The table of tolerances."""
+    return tomllib.loads(files(__package__).joinpath("tolerances.toml").read_text("utf-8"))
+
+
+def _row(
+    label: str,
+    nominal: float | None,
+    plus_minus: float,
+    unit: str,
+    entry: Mapping[str, Any],
+    slopes: Mapping[str, float] | None = None,
+    **more: Any,
+) -> Tolerance:
+    source = table()["sources"].get(entry["source"], entry["source"])
+    return Tolerance(label, nominal, plus_minus, unit, source, entry["confidence"], slopes or {}, **more)
+
+
+def _share(label: str, entry: Mapping[str, Any], key: str, value: float = 1.0) -> Tolerance:
+    """A share of the nominal value of a key, in percent."""
+    return _row(label, None, 100 * entry["share"], "%", entry, {key: value / 100})
+
+
+def _thicknesses(config: Config) -> list[Tolerance]:
+    found = []
+    for layer in reversed(layers(config.segment)):
+        entry = table()["thickness"][_process(layer.name, config)]
+        unit, scale = ("µm", 1e3) if layer.name == "film" else ("mm", 1.0)
+        nominal = scale * layer.thickness_mm
+        plus_minus = scale * entry["mm"] if "mm" in entry else entry["share"] * nominal
+        key = factor_key(config, layer.name, "thickness_factor")
+        found.append(_row(f"thickness of {_name(layer)}", nominal, plus_minus, unit, entry, {key: 1.0 / nominal}))
+    return found
+
+
+def _process(layer: str, config: Config) -> str:
+    if layer == "film":
+        return "film"
+    cut = layer in sheet_components(config.segment, config.fabrication)
+    return "sheet" if cut else f"cast-{config.fabrication.printer}"
+
+
+def _poured(config: Config) -> dict[str, str]:
+    return {one.name: one.recipe.name for one in cast_components(config.segment, config.fabrication)}
+
+
+def _moduli(config: Config, poured: Mapping[str, str]) -> list[Tolerance]:
+    """Of the materials of the layers. poured : layer -> what is cast in place of the material of the configuration."""
+    found = []
+    for layer in reversed(layers(config.segment)):
+        material = poured.get(layer.name, layer.material)
+        entry = table()["film"]["modulus"] if layer.name == "film" else _modulus_entry(material)
+        found.append(_share(f"modulus of {_name(layer)}", entry, factor_key(config, layer.name, "modulus_factor")))
+    return found
+
+
+def _modulus_entry(material: str) -> Mapping[str, Any]:
+    rows: list[Mapping[str, Any]] = table()["modulus"]
+    return next(row for row in rows if material in row.get("materials", [material]))
+
+
+def _film(config: Config) -> list[Tolerance]:
+    segment, rows = config.segment, table()["film"]
+    permittivity = f"materials.{segment.film.material}.relative_permittivity"
+    nominal = config.layer_materials()["film"].relative_permittivity  # type: ignore[union-attr]
+    raised = {
+        factor_key(config, layer, "thickness_factor"): sign / getattr(segment, layer).thickness_mm
+        for layer, sign in (("medium1", -1.0), ("medium2", 1.0))
+    }
+    note = "medium 2 thicker and medium 1 thinner by the same; already in the two thicknesses"
+    height = _row(
+        "height of the film in the stack", segment.medium2.thickness_mm, rows["height"]["mm"], "mm", rows["height"],
+        raised, counted=False, note=note,
+    )  # fmt: skip
+    return [
+        _share("piezoelectric constants of the film", rows["d31"], factor_key(config, "film", "d31_factor")),
+        _share("permittivity of the film", rows["permittivity"], permittivity, nominal),
+        height,
+    ]
+
+
+def _dot(config: Config) -> list[Tolerance]:
+    """A dot that is higher by h on a plate that stops at the same place is pressed in deeper by h."""
+    dot = config.dot
+    if dot.shape == "plate":
+        return []
+    size = dot_size(dot)
+    deeper = {"press.indentation_mm": 1.0} if config.press.force_N is None else {}
+    height, base = _dot_entry(dot, "height_mm", "height"), _dot_entry(dot, "base_diameter_mm", "base_diameter")
+    key = factor_key(config, "dot", "radius_factor")
+    if dot.radius_mm is not None:
+        slope = {key: 1.0 / size.radius_mm}
+        across = _row("radius of the dot", size.radius_mm, base["mm"] / 2, "mm", base, slope)
+        return [_row("height of the dot", size.height_mm, height["mm"], "mm", height, deeper), across]
+    diameter = _base_diameter(dot)
+    by_height, by_base = (
+        (from_base(diameter + d, size.height_mm + h).radius_mm - from_base(diameter - d, size.height_mm - h).radius_mm)
+        / (2 * SMALL * size.radius_mm)
+        for d, h in ((0.0, SMALL), (SMALL, 0.0))
+    )
+    note = "its plate stops at the same height, so that a higher dot also goes in deeper" if deeper else ""
+    return [
+        _row("height of the dot", size.height_mm, height["mm"], "mm", height, {key: by_height, **deeper}, note=note),
+        _row("base diameter of the dot", diameter, base["mm"], "mm", base, {key: by_base}),
+    ]
+
+
+def _base_diameter(dot: Dot) -> float:
+    chosen = dot_standard(dot)
+    if chosen is not None:
+        return chosen.nominal_mm("base_diameter_mm")
+    assert dot.base_diameter_mm is not None
+    return dot.base_diameter_mm
+
+
+def _dot_entry(dot: Dot, quantity: Any, name: str) -> Mapping[str, Any]:
+    """Half the range that the dot's standard allows, or the table's own number."""
+    chosen = dot_standard(dot)
+    size = None if chosen is None else chosen.quantities[quantity]
+    if size is None or size.minimum_mm is None or size.maximum_mm is None or size.minimum_mm == size.maximum_mm:
+        entry: Mapping[str, Any] = table()["dot"][name]
+        return entry
+    source = f"half the range of {chosen.title} ({size.source})"  # type: ignore[union-attr]
+    return {"mm": (size.maximum_mm - size.minimum_mm) / 2, "source": source, "confidence": size.confidence}
+
+
+def _footprint(segment: Segment) -> list[Tolerance]:
+    entry = table()["footprint"]
+    sides = (("length", segment.length_mm), ("width", segment.width_mm))
+    rows = ((f"{side} of the segment", size, {f"segment.{side}_mm": 1.0}) for side, size in sides)
+    return [_row(label, size, entry["mm"], "mm", entry, slopes) for label, size, slopes in rows]
+
+
+def _press(config: Config) -> Tolerance:
+    press, rows = config.press, table()["press"]
+    if press.force_N is not None:
+        return _share("force of the press", rows["force"], "press.force_N", press.force_N)
+    depth = rows["depth"]
+    return _row("depth of the press", press.depth_mm, depth["mm"], "mm", depth, {"press.indentation_mm": 1.0})
+
+
+def _interfaces(config: Config) -> list[Tolerance]:
+    """Bonds, elastic sides and the cable, where the configuration has them."""
+    segment, rows, found = config.segment, table()["interfaces"], []
+    for number, bond in enumerate(segment.bonds):
+        for way in ("normal", "shear"):
+            name = f"{way}_stiffness_N_per_mm3"
+            label = f"{way} stiffness of the bond {bond.between[0]}–{bond.between[1]}"
+            found.append(_share(label, rows["bonds"], f"segment.bonds[{number}].{name}", getattr(bond, name)))
+    if segment.boundary == "elastic" and segment.side_stiffness_N_per_mm3 > 0.0:
+        key = "segment.side_stiffness_N_per_mm3"
+        found.append(_share("stiffness of the sides", rows["sides"], key, segment.side_stiffness_N_per_mm3))
+    readout = config.readout
+    if readout is not None and readout.mode == "voltage" and readout.input_capacitance_pF > 0.0:
+        key, entry = "readout.input_capacitance_pF", rows["cable_capacitance"]
+        found.append(_share("capacitance of cable and amplifier", entry, key, readout.input_capacitance_pF))
+    return found
+
+
+def _name(layer: Layer) -> str:
+    return NAMES.get(layer.name, f"the {layer.name}")
+
+
+def _offset(config: Config, axis: int, by_mm: float) -> Config:
+    place = list(config.dot.offset_mm)
+    place[axis] += by_mm
+    return config.model_copy(update={"dot": _copy(config.dot, offset_mm=tuple(place))})
+
+
+def _turned(config: Config, by_deg: float) -> Config:
+    film = config.segment.film
+    film = _copy(film, draw_angle_deg=film.draw_angle_deg + by_deg)
+    return config.model_copy(update={"segment": _copy(config.segment, film=film)})
+
+
+def _resized(config: Config, key: str, by_mm: float) -> Config:
+    name = key.removeprefix("segment.")
+    segment = _copy(config.segment, **{name: getattr(config.segment, name) + by_mm})
+    return config.model_copy(update={"segment": segment})
+
+
+def _copy(model: Any, **changes: Any) -> Any:
+    return model.model_copy(update=changes)

@@ -1,0 +1,133 @@
+"""The mesh of a diagnosis: the user's own, or as much coarser as hundreds of presses ask for.
+
+Nodes crowded towards held sides, where the stress of the film is singular and much of its charge arises.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from geometry.arrays import Floats
+from geometry.dot import DotShape, resolve_dot
+from geometry.parameters import Segment
+from mesh.build import build
+from mesh.interfaces import morphed
+from mesh.outline import outline
+from mesh.parameters import MeshOptions
+from mesh.types import TET_EDGES, MeshingError, TetMesh
+from solve.model import Model
+
+FROM, ROOM = 0.6, 0.05
+"""Share of half the footprint up to which nodes stay; least share that must be left beyond the foot of an effector."""
+POWER = 3.0
+"""Distances from the side become this power of themselves: evenly spaced nodes resolve a singularity again."""
+
+
+def crowded(tet_mesh: TetMesh, segment: Segment) -> TetMesh:
+    """The mesh of an extruded solid with its nodes moved towards x and y sides, of a slice towards x sides.
+
+    It stays as it was where no side is held. A block, cylinder or dome keeps its foot, and nothing moves where it
+    leaves no room.
+    """
+    if segment.boundary == "free":
+        return tet_mesh
+    stack, shift = outline(segment), np.zeros_like(tet_mesh.points_mm)
+    ends = (stack.half_x, stack.effector_half_x), (stack.half_y, stack.effector_half_y)
+    for axis, (side, foot) in enumerate(ends[:1] if segment.section == "plane-strain" else ends):
+        first = FROM if stack.shape in ("none", "layer") else max(FROM, foot / side)
+        place = tet_mesh.points_mm[:, axis]
+        if first < 1.0 - ROOM:
+            shift[:, axis] = side * _towards_one(place / side, first) - place
+    corners, middles = tet_mesh.tets[:, :4], tet_mesh.tets[:, 4:]
+    shift[middles] = shift[corners[:, TET_EDGES]].mean(axis=2)  # edges stay straight, or as curved as they were
+    return replace(tet_mesh, points_mm=tet_mesh.points_mm + shift)
+
+
+def _towards_one(place: Floats, first: float) -> Floats:
+    """Places (n,) from -1 to 1; between first and 1 nearer to 1, and alike on the other side."""
+    left = np.clip((1.0 - np.abs(place)) / (1.0 - first), 0.0, 1.0)
+    return np.asarray(np.where(left < 1.0, np.sign(place) * (1.0 - (1.0 - first) * left**POWER), place))
+
+
+LARGEST = 3000  # nodes: some 8,000 unknowns, and 2 s a press on one core
+COARSER = 1.06
+SAVES = 0.9  # of the nodes: what a coarser mesh has at most, or it is not worth its sizes
+NODES_PER_CUBE = 8  # of an element's size: one corner and seven mid-sides
+
+
+def rig_mesh(
+    model: Model, options: MeshOptions, largest: int = LARGEST, coarsen: bool = True
+) -> tuple[TetMesh, MeshOptions]:
+    """The mesh with as many nodes at most, and its sizes, which grow together until it is small enough.
+
+    Layered wherever that mesher can, as it is repeatable and takes no time. Under a dome it cannot, and a round skin
+    may need more nodes whatever the sizes: there the search ends where coarser elements save no more. InputError,
+    MeshingError.
+    """
+    options = options.model_copy(update={"film_layers": 1})
+    if model.segment.effector is not None and model.segment.effector.shape == "dome":
+        return _under_a_dome(model, options.model_copy(update={"coarsen": coarsen}), largest)
+    options = options.model_copy(update={"mesher": "layered"})
+    while True:
+        made, count = _made(model, options)
+        if count <= largest or options.contact_element_size_mm > model.segment.length_mm:
+            return made, options
+        options = scaled(options, max(COARSER, 0.7 * (count / largest) ** (1.0 / 3.0)))
+
+
+def _under_a_dome(model: Model, options: MeshOptions, largest: int) -> tuple[TetMesh, MeshOptions]:
+    """The same by the user's mesher, in few attempts, as each takes seconds."""
+    made, count = _made(model, options)
+    while count > largest:
+        coarser = scaled(options, max(COARSER, (count / largest) ** 0.6))  # nodes grow with size to about -1.7
+        other, fewer = _made(model, coarser)
+        if fewer > SAVES * count:
+            break
+        made, count, options = other, fewer, coarser
+    return made, options
+
+
+def _made(model: Model, options: MeshOptions) -> tuple[TetMesh, int]:
+    """The mesh and its nodes, those on both sides of an interface counted once."""
+    try:
+        made = build(model.segment, _resting(model), options)
+    except MeshingError:
+        if not options.coarsen:
+            raise
+        return _made(model, options.model_copy(update={"coarsen": False}))  # coarsening may leave flat elements
+    return made, len(np.unique(made.twin))
+
+
+def finer_mesh(model: Model, options: MeshOptions, factor: float, largest: int) -> tuple[TetMesh, MeshOptions]:
+    """A mesh with elements smaller by a factor, more so at held sides, if it has few enough nodes, and its sizes.
+
+    Not coarsened, which saves little there and costs shape.
+    """
+    made, options = rig_mesh(model, scaled(options, factor), largest, coarsen=False)
+    return (crowded(made, model.segment) if options.mesher == "layered" else made), options
+
+
+def mesh_of(model: Model, known: Model, tet_mesh: TetMesh, options: MeshOptions) -> TetMesh:
+    """The mesh of a changed model: the known one's, moved with its layers, unless it is of another dimension."""
+    if model.segment.section != known.segment.section:  # the sizes of a slice would make half a million nodes
+        volume_mm3 = sum(outline(model.segment).volumes().values())
+        even_mm = (NODES_PER_CUBE * volume_mm3 / LARGEST) ** (1.0 / 3.0)
+        return rig_mesh(model, scaled(options, max(1.0, even_mm / options.element_size_mm)))[0]
+    return morphed(tet_mesh, known.segment, model.segment)
+
+
+def scaled(options: MeshOptions, factor: float) -> MeshOptions:
+    """All sizes times a factor."""
+    film = options.film_element_size_mm
+    sizes = {
+        "element_size_mm": factor * options.element_size_mm,
+        "contact_element_size_mm": factor * options.contact_element_size_mm,
+        "film_element_size_mm": None if film is None else factor * film,
+    }
+    return options.model_copy(update=sizes)
+
+
+def _resting(model: Model) -> DotShape:
+    """The dot as it touches: a gap makes no other mesh."""
+    dot = resolve_dot(model.dot, model.segment)
+    return replace(dot, origin_mm=dot.origin_mm - [0.0, 0.0, model.dot.gap_mm])

@@ -1,0 +1,156 @@
+"""Presses that are not on disk yet, on all cores: one process a core, fed one press at a time.
+
+A process that presses the 3D model: jobs come in on standard input, answers go out on standard output.
+
+Started with one argument: the process number of its parent.
+"""
+
+import os
+import pickle
+import subprocess
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from queue import Empty, SimpleQueue
+from threading import Event, Thread
+from typing import Any
+
+import numpy as np
+
+from geometry.arrays import Floats
+from geometry.base import Report
+from geometry.processes import ONE_THREAD, end_with_parent
+from solve.solution.newton import NoEquilibriumError
+from solve.tables import store
+from solve.tables.job import RETURN, Job, Reduction
+
+
+def answer(job: Job | Reduction) -> Floats | Exception:
+    """Outputs, or the error that can be sent."""
+    try:
+        return job.run() if isinstance(job, Reduction) else _outputs_of(job)
+    except (NoEquilibriumError, ValueError) as error:
+        return RuntimeError(str(error))
+
+
+def _outputs_of(job: Job) -> Floats:
+    """Outputs; equilibria are left where other presses find them."""
+    outputs, found = job.run(store.equilibria(job.guided_by) if job.guided_by else None)
+    if found is not None:
+        store.keep_equilibria(store.key(job), found)
+    return outputs
+
+
+def work() -> None:
+    """Answer jobs on standard input until it ends. What libraries print goes to standard error."""
+    end_with_parent(int(sys.argv[1]))
+    answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
+    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
+    while True:
+        try:
+            job = pickle.load(sys.stdin.buffer)
+        except EOFError:
+            return
+        pickle.dump(answer(job), answers)
+        answers.flush()
+
+
+if __name__ == "__main__":
+    work()
+
+
+WORTH_A_PROCESS = 4  # presses: a process takes seconds to start
+LARGE = 3000  # nodes: one such press is worth a process, as are the many of a reduction
+WHAT = "pressing the 3D model"
+
+
+def run_all(jobs: Sequence[Job], report: Report, first: Sequence[Reduction] = ()) -> list[Floats]:
+    """Outputs of all jobs in order, each kept as soon as it is there; empty (0,) for a press without equilibrium.
+
+    first : what takes longest, and is kept where it is made. NoEquilibriumError for one of these.
+    """
+    names = [store.key(job) for job in jobs]
+    found = {name: table for name in names if (table := store.recall(name)) is not None}
+    left = sorted(
+        ((name, job) for name, job in zip(names, jobs, strict=True) if name not in found),
+        key=lambda one: -_effort(one[1]),  # the longest last would keep one core only
+    )
+    missing: dict[str, Job | Reduction] = {f"reduction {n}": job for n, job in enumerate(first)}
+    missing |= dict(left)
+    if missing:
+        report(WHAT, 0, len(missing))
+    for number, (name, table) in enumerate(_pressed(missing), start=1):
+        if isinstance(missing[name], Job):
+            found[name] = np.zeros(0) if isinstance(table, Exception) else table
+            store.keep(name, found[name])
+        elif isinstance(table, Exception):
+            raise NoEquilibriumError(str(table), np.zeros(0), None) from table
+        report(WHAT, number, len(missing))
+    return [found[name] for name in names]
+
+
+def _effort(job: Job) -> float:
+    """What a press takes, roughly: steps down and back, of which slip takes as many more, by nodes."""
+    return len(job.tet_mesh.points_mm) * job.parts * (len(job.shares) + len(job.back) * len(RETURN))
+
+
+def _pressed(jobs: dict[str, Job | Reduction]) -> Iterator[tuple[str, Any]]:
+    """Name and outputs, or the error, of each job as it is done."""
+    large = sum(isinstance(job, Reduction) or len(job.tet_mesh.points_mm) > LARGE for job in jobs.values())
+    count = min(os.cpu_count() or 1, max(large, len(jobs) // WORTH_A_PROCESS))
+    if count < 2:
+        for name, job in jobs.items():
+            yield name, answer(job)
+        return
+    waiting: SimpleQueue[tuple[str, Job | Reduction]] = SimpleQueue()
+    done: SimpleQueue[tuple[str, Any]] = SimpleQueue()
+    for item in jobs.items():
+        waiting.put(item)
+    over = Event()
+    with _processes(count) as processes:
+        try:
+            for process in processes:
+                Thread(target=_feed, args=(process, waiting, done, over), daemon=True).start()
+            for _ in jobs:
+                yield done.get()
+        finally:
+            over.set()
+
+
+@contextmanager
+def _processes(count: int) -> Iterator[list["subprocess.Popen[bytes]"]]:
+    """Workers that end with the block, also when it is interrupted."""
+    command = [sys.executable, "-m", __name__, str(os.getpid())]
+    own = {**os.environ, **ONE_THREAD, "PYTHONPATH": os.pathsep.join(sys.path)}
+    pipe = subprocess.PIPE
+    started = [  # in sessions of their own: Ctrl-C in the terminal reaches this process alone, which ends them
+        subprocess.Popen(command, env=own, stdin=pipe, stdout=pipe, start_new_session=True) for _ in range(count)
+    ]
+    try:
+        yield started
+    finally:
+        for process in started:
+            process.kill()
+            process.wait()
+
+
+def _feed(
+    process: "subprocess.Popen[bytes]", waiting: "SimpleQueue[Any]", done: "SimpleQueue[Any]", over: Event
+) -> None:
+    """One worker's share of the jobs. What a worker that dies leaves undone is done here."""
+    assert process.stdin is not None
+    assert process.stdout is not None
+    while not over.is_set():
+        try:
+            name, job = waiting.get_nowait()
+        except Empty:
+            return
+        try:
+            pickle.dump(job, process.stdin)
+            process.stdin.flush()
+            answer = pickle.load(process.stdout)
+        except (OSError, EOFError, pickle.UnpicklingError):
+            if over.is_set():
+                return
+            answer = answer(job)
+        done.put((name, answer))
