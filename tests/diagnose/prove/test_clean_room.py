@@ -182,7 +182,7 @@ def test_a_record_with_a_changed_digit_is_told_of_and_not_used(tmp_path, caplog)
 
 def test_the_generator_shares_no_code_with_what_it_tests():
     text = (
-        "import sys, diagnose.prove.world.cases, diagnose.prove.room;"
+        "import sys, diagnose.prove.world.cases, diagnose.prove.folder;"
         "print(*(n for n in sys.modules if n.split('.')[0] in ('solve','mesh','geometry','export','softdot')"
         " or (n.startswith('diagnose.') and not n.startswith('diagnose.prove'))))"
     )
