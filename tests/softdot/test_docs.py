@@ -23,7 +23,7 @@ from softdot.summary import heading, mesh_part, press_part
 from tests.softdot.stand_ins import result_of
 
 ROOT = Path(__file__).parents[2]
-DOCUMENTS = sorted([*(ROOT / "docs").glob("*.md"), ROOT / "README.md", ROOT / "CHANGELOG.md"])
+DOCUMENTS = sorted([*(ROOT / "docs").glob("*.md"), *ROOT.glob("*.md"), ROOT / "examples" / "README.md"])
 HOMES = (
     geometry.parameters, geometry.fabrication.parameters, mesh.parameters, solve.parameters, solve.mechanisms,
     solve.materials.parameters,
@@ -83,7 +83,7 @@ def test_every_key_of_the_summary_is_explained():
     assert [key for key in flat if f"`{key}" not in text] == []
 
 
-@pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.name)
+@pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.relative_to(ROOT).as_posix())
 def test_relative_links_resolve(path):
     targets = re.findall(r"\]\(([^)\s]+)\)", path.read_text("utf-8"))
     broken = [target for target in targets if not _resolves(path, target)]
@@ -104,14 +104,14 @@ def _anchors(path):
     return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
 
 
-@pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.name)
+@pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.relative_to(ROOT).as_posix())
 def test_named_source_files_exist(path):
     named = re.findall(r"`((?:geometry|mesh|solve|export|softdot|docs|tests)/[\w./]+\.\w+)`", path.read_text("utf-8"))
     to_be_measured = {"docs/verification.md"}
     assert [name for name in named if name not in to_be_measured and not (ROOT / name).exists()] == []
 
 
-@pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.name)
+@pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.relative_to(ROOT).as_posix())
 def test_math_survives_markdown(path):
     text = re.sub(r"```.*?```|`[^`\n]*`", "", path.read_text("utf-8"), flags=re.DOTALL)
     assert text.count("$$") % 2 == 0
