@@ -20,6 +20,7 @@ from solve.materials.inelastic import Prony
 from solve.materials.parameters import NeoHookean, PiezoelectricFilm
 from solve.model import Physics
 from solve.parameters import Readout
+from solve.readout.stages import Hum
 from solve.reduced.build import build_reduced
 from solve.reduced.model import ReducedModel
 
@@ -28,7 +29,7 @@ DEPTH_MM, ANSWERS = 0.3, 21
 READOUT = Readout(input_resistance_MOhm=100.0, input_capacitance_pF=100.0, low_pass_Hz=200.0, high_pass_Hz=0.1)
 VISCOUS = Physics(
     viscosity={"medium2": Prony((0.1, 0.1, 0.1), (0.01, 0.2, 3.0)), "medium1": Prony((0.1, 0.1), (0.05, 1.0))},
-    hum=((50.0, 0.01),),
+    electronics=(Hum(50.0, 0.01),),
 )
 CASES = {
     "rate-independent": (Physics(), False),

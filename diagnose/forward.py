@@ -12,7 +12,7 @@ from diagnose.figures import figure
 from diagnose.signals.recording import Recording, Run
 from geometry.arrays import Floats
 from geometry.base import Report
-from solve.mechanisms import Mechanism
+from solve.mechanisms import Mechanism, Traits, traits_of
 
 Signals = Mapping[str, Floats]
 """Channel -> samples (t,) of one run, named as in the recording."""
@@ -42,6 +42,9 @@ class Candidate:
 
     parameters : values of the coordinates -> parameters as in [[mechanisms]]; only for values that are not all off.
     derived : the same -> quantities that are comparable between laws (relaxed_fraction, force_ratio, loss_ratio).
+    compared : which of these, "force_ratio" or "loss_ratio", a press of the 3D model tells; "" for none.
+    together : how its coordinates go together in presses of the 3D model: "sum", "jointly", "fading" or "glue" (see
+    diagnose.engines.segment.interpolation).
     units : name of a parameter or derived quantity -> unit in the verdict.
     """
 
@@ -51,6 +54,13 @@ class Candidate:
     parameters: Callable[[Sequence[float]], dict[str, Any]]
     derived: Callable[[Sequence[float]], dict[str, float]] = lambda _: {}
     units: Mapping[str, str] = field(default_factory=dict)
+    compared: str = ""
+    together: str = "sum"
+
+    @property
+    def traits(self) -> Traits:
+        """Of its mechanism."""
+        return traits_of(self.mechanism)
 
     @property
     def name(self) -> tuple[str, str]:

@@ -27,7 +27,6 @@ from softdot.config import Config, load_config
 from solve.materials.parameters import Hyperfoam, Material, NeoHookean, PiezoelectricFilm
 from solve.parameters import Readout
 from solve.readout.recording import channel_voltages, record
-from solve.switch_on import shear_modulus_MPa
 
 BLUE, ORANGE = "#2a6db0", "#d1600a"
 
@@ -81,7 +80,7 @@ def baseline(config: Config) -> Config:
 def _neo_hookean(material: Material) -> Material:
     if isinstance(material, NeoHookean | PiezoelectricFilm):
         return material
-    shear = shear_modulus_MPa(material)
+    shear = material.shear_modulus_MPa
     ratio = material.poisson_ratio[0] if isinstance(material, Hyperfoam) else material.poisson_ratio
     return NeoHookean(youngs_modulus_MPa=2.0 * shear * (1.0 + ratio), poisson_ratio=ratio)
 

@@ -8,9 +8,8 @@ from geometry.part_checks import check_patch
 from geometry.stack import layers
 from softdot.config import Config
 from softdot.config.errors import sentence
-from solve.mechanisms import Mechanism
+from solve.mechanisms import Mechanism, with_mechanisms
 from solve.model import Model, Physics, declared_bonds
-from solve.switch_on import with_mechanisms
 
 STIFFEST_BOND_N_PER_MM3 = 1e6  # as in segment.bonds
 
@@ -20,6 +19,12 @@ def actual(config: Config) -> tuple[Config, Physics]:
 
     InputError with one sentence for a mechanism that this segment cannot have.
     """
+    model = model_of(config)
+    return _as_config(config, model), model.physics
+
+
+def model_of(config: Config) -> Model:
+    """What the solver is told by a configuration, mechanisms switched on. InputError as actual."""
     physics = Physics(bonds=declared_bonds(config.segment))
     model = Model(config.segment, config.layer_materials(), config.dot, config.press, config.readout, physics)
     for number, mechanism in enumerate(config.mechanisms):
@@ -35,7 +40,7 @@ def actual(config: Config) -> tuple[Config, Physics]:
     _refuse_viscous_perfect_bonds(model)
     _refuse_patches_outside(model)
     _refuse_missing_channels(model)
-    return _as_config(config, model), model.physics
+    return model
 
 
 def _refuse_missing_layer(key: str, component: str, model: Model) -> None:

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 from geometry.arrays import Floats
 from geometry.base import InputError
 from mesh.types import TetMesh
-from softdot.actual import actual
+from softdot.actual import actual, model_of
 from softdot.config import Config, config_from
-from solve.model import Model
 from solve.result import PressResult
 
 if TYPE_CHECKING:
@@ -121,9 +120,3 @@ def _varied(config: Config, key: str, change: float) -> Config:
         table = table[part]
     table[last] += change
     return config_from(tables)
-
-
-def model_of(config: Config) -> Model:
-    """What the solver is told by a configuration, mechanisms switched on."""
-    changed, physics = actual(config)
-    return Model(changed.segment, changed.layer_materials(), changed.dot, changed.press, changed.readout, physics)

@@ -112,7 +112,7 @@ def press_key(config: Config, physics: Physics, tet_mesh: TetMesh) -> str:
 
 def is_amplified(config: Config, physics: Physics) -> bool:
     """Whether something stands between the film and what is read."""
-    return bool(config.readout or physics.low_pass or physics.hum or physics.saturation or physics.crosstalk)
+    return bool(config.readout or physics.electronics or physics.crosstalk)
 
 
 def readout_voltage(config: Config, physics: Physics, result: PressResult) -> tuple[Floats, Floats] | None:

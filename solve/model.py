@@ -5,12 +5,16 @@ Physics beyond the baseline, as the solver needs it. Every default is off and re
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from geometry.parameters import Dot, Segment
 from solve.materials.inelastic import Prony, Softening
 from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.parameters import Press, Readout
-from solve.readout.filters import Filter, Saturation
+from solve.readout.stages import Stage
+
+if TYPE_CHECKING:
+    from solve.mechanisms import Mechanism
 
 
 @dataclass(frozen=True)
@@ -54,8 +58,8 @@ class Physics:
     bonds : bond -> stiffness. friction : Coulomb coefficient between dot and surface.
     rig_compliance_mm_per_N lies between the displacement sensor and the dot, moving_mass_g between the force sensor
     and the dot. prestretch : nominal strain of the film in x and y. contact_charge_pC : charge that the dot leaves on
-    the electrodes, in proportion to the contact area, all of it at the largest area. hum : frequency (Hz) and amplitude
-    (V). saturation : limits in a row. crosstalk : channel (from 1) -> share of the other channels' voltage.
+    the electrodes, in proportion to the contact area, all of it at the largest area. electronics : stages of the
+    amplifier beside those of the read-out. crosstalk : channel (from 1) -> share of the other channels' voltage.
     """
 
     viscosity: Mapping[str, Prony] = field(default_factory=dict)
@@ -69,9 +73,7 @@ class Physics:
     prestretch: tuple[float, float] = (0.0, 0.0)
     pyroelectric: Pyroelectric = Pyroelectric()
     contact_charge_pC: float = 0.0
-    low_pass: tuple[Filter, ...] = ()
-    hum: tuple[tuple[float, float], ...] = ()
-    saturation: tuple[Saturation, ...] = ()
+    electronics: tuple[Stage, ...] = ()
     crosstalk: Mapping[int, float] = field(default_factory=dict)
 
     @property
@@ -89,7 +91,7 @@ class Physics:
 
 @dataclass(frozen=True)
 class Model:
-    """Everything the solver is told. materials : layer -> material."""
+    """Everything the solver is told. materials : layer -> material. mechanisms : those that were switched on."""
 
     segment: Segment
     materials: Mapping[str, Material]
@@ -97,6 +99,7 @@ class Model:
     press: Press = field(default_factory=Press)
     readout: Readout | None = None
     physics: Physics = field(default_factory=Physics)
+    mechanisms: tuple["Mechanism", ...] = ()
 
     @property
     def follows_time(self) -> bool:

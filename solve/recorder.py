@@ -19,6 +19,7 @@ from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.model import Physics
 from solve.parameters import Press, Waveform
 from solve.problem import scale_of_section
+from solve.readout.charge import other_charge_C
 from solve.result import PressResult, Record, Step, Trace
 from solve.solution.march import SMALLEST_IN_TIME, TIME_TOLERANCE
 from solve.solution.schedule import fraction
@@ -264,13 +265,8 @@ class Recorder:
         return replace(trace, reaction_force_N=force)
 
     def _other_charge(self, trace: Trace) -> Floats:
-        """Pyroelectric charge p A dT(t), and charge left by the touch, (t, e) in C."""
+        """Charge of heat and of the touch, (t, e) in C."""
         assert isinstance(self.film, PiezoelectricFilm)
         area = self.system.film.area() * self.system.units.length**2 * self.charge_scale
-        heat = self.physics.pyroelectric
-        elapsed = np.maximum(trace.time_s, 0.0)
-        temperature = -heat.temperature_step_K * np.expm1(-elapsed / heat.time_constant_s)
-        pyroelectric = 1e-6 * self.film.pyroelectric_uC_per_m2_K * temperature[:, None] * area
-        touched = trace.contact_area_m2 / max(float(trace.contact_area_m2.max()), 1e-300)
-        deposited = 1e-12 * self.physics.contact_charge_pC * touched[:, None] * area / area.sum()
-        return np.asarray(pyroelectric + deposited)
+        constant = self.film.pyroelectric_uC_per_m2_K
+        return other_charge_C(trace.time_s, trace.contact_area_m2, area, constant, self.physics)

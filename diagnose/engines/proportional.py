@@ -14,35 +14,32 @@ free sensitivities, crosstalk cannot be found, and are no candidates. What acts 
 strains the film.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import sinh
 
 import numpy as np
 
-from diagnose.engines.coupon.candidates import LAYER, one_layer, stress_softening, switched, with_factors_last
 from diagnose.engines.coupon.kinematics import SimpleShear
-from diagnose.engines.coupon.laws import Stiffening, relaxation_times, viscoelasticity
+from diagnose.engines.coupon.laws import LARGEST_STRAIN, MEDIUM
+from diagnose.engines.coupon.layer import LAYER, one_layer, switched, with_factors_last
 from diagnose.engines.coupon.point import NO_SERIES, MaterialPoint, Relaxation
 from diagnose.forward import Candidate, Coordinate, Setting, Signals
 from diagnose.signals.phases import Segmentation, rest_of, segmented
 from diagnose.signals.recording import Recording, Run
-from diagnose.vocabulary.electric import electric, hard_limit
-from diagnose.vocabulary.rig import around
+from diagnose.vocabulary.base import candidates_of_unknown_geometry
 from diagnose.vocabulary.scene import Scene, film_capacitance_pF, growing
 from geometry.arrays import Floats
 from geometry.base import InputError, Report
 from solve.materials.laws import medium_law
-from solve.materials.parameters import PiezoelectricFilm, Yeoh
+from solve.materials.parameters import PiezoelectricFilm
 from solve.mechanisms import Mechanism
 from solve.model import Model
 from solve.parameters import Readout
 from solve.readout.amplifier import amplify
+from solve.readout.charge import warming_K
 from solve.solution.newton import NoEquilibriumError
 
-MEDIUM = Yeoh(c10_MPa=0.5, poisson_ratio=0.495)
-"""Of shear modulus 1, the unit of stress here."""
-LARGEST_STRAIN = 0.1
 HERTZ = 2.0 / 3.0
 
 
@@ -81,8 +78,7 @@ def other_charge(model: Model, loading: Loading) -> Floats:
     assert isinstance(film, PiezoelectricFilm)
     touch = 1e-12 * physics.contact_charge_pC * np.maximum(loading.force, 0.0) ** HERTZ
     area_m2 = 1e-6 * model.segment.length_mm * model.segment.width_mm
-    since = np.maximum(loading.time_s - loading.touch_s, 0.0)
-    warming = -np.expm1(-since / physics.pyroelectric.time_constant_s) * physics.pyroelectric.temperature_step_K
+    warming = warming_K(loading.time_s - loading.touch_s, physics.pyroelectric)
     return np.asarray(touch + 1e-6 * film.pyroelectric_uC_per_m2_K * area_m2 * warming)
 
 
@@ -94,52 +90,9 @@ def voltage(model: Model, loading: Loading, charge_C: Floats) -> Floats:
     return amplify(time, charge, capacitance, model.readout or Readout(), model.physics)[1:]
 
 
-ELECTRIC = ("charge-leakage", "low-pass", "mains-hum")
-AROUND = ("pyroelectric-drift", "contact-electrification")
 SENSITIVITY, CAPACITANCE = "sensitivity", "film-capacitance"
-MOST = 1.0  # modulus of one branch, in terms of what never relaxes
 MOST_CAPACITANCE = 1e4  # of the assumed film
 ANY_FACTOR = 1e6
-
-
-def proportional_candidates(recording: Recording, scene: Scene) -> Iterator[Candidate]:
-    """Every mechanism that shows whatever the geometry."""
-    yield from (_with_time_constant(scene, one) for one in electric(scene) if one.mechanism in ELECTRIC)
-    yield hard_limit(scene)  # a soft knee looks like any sensor that is not quite linear
-    yield from (one for one in around(scene) if one.mechanism in AROUND)
-    times = relaxation_times(recording)
-    yield from (viscoelasticity(Candidate, component, times, MOST) for component in (LAYER, "film"))
-    yield _stiffening()
-    yield stress_softening(Candidate, LAYER)
-
-
-def _with_time_constant(scene: Scene, one: Candidate) -> Candidate:
-    """What a leak shows is its time constant; its resistance is that for the assumed capacitance.
-
-    A charge that is gone within a sample leaves the derivative of the force, whose size the free sensitivity takes.
-    """
-    if one.mechanism != "charge-leakage":
-        return one
-
-    def derived(values: Sequence[float]) -> dict[str, float]:
-        resistance_MOhm = float(one.parameters(values)["resistance_MOhm"])
-        return {"time_constant_s": 1e-6 * scene.capacitance_pF * resistance_MOhm}
-
-    coordinates = tuple(replace(coordinate, levels_off=(True, True)) for coordinate in one.coordinates)
-    return replace(one, coordinates=coordinates, derived=derived, units={**one.units, "time_constant_s": "s"})
-
-
-def _stiffening() -> Candidate:
-    """force_ratio is that at the strain of the largest force without: the force that it takes with."""
-    stretch = SimpleShear(1.0, 1.0).principal_stretch(np.array([LARGEST_STRAIN]))
-    law = Stiffening(MEDIUM, stretch, SimpleShear.lateral, by_force=True)
-
-    def derived(values: Sequence[float]) -> dict[str, float]:
-        return {"force_ratio": 1.0 + sum(values)}
-
-    unit = "of twice the shear modulus"
-    units = {"c10_MPa": unit, "c20_MPa": unit, "c30_MPa": unit, "force_ratio": ""}
-    return Candidate("hyperelastic-stiffening", LAYER, law.coordinates, law.parameters, derived, units)
 
 
 def sensitivity(channel: int) -> Candidate:
@@ -152,9 +105,6 @@ def film_capacitance() -> Candidate:
     """What the film has more than the assumed one, in terms of that; no mechanism."""
     coordinate = growing(CAPACITANCE, 1.0, MOST_CAPACITANCE, (1.0, 30.0, 1000.0))
     return Candidate(CAPACITANCE, "film", (coordinate,), lambda values: {"coordinate": values[0]})
-
-
-HUM = "mains-hum"
 
 
 @dataclass(frozen=True)
@@ -186,7 +136,7 @@ class ProportionalEngine:
 
     def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
         """Voltages of a run. ValueError beyond the bounds of a value, or where a law turns over."""
-        hum = [s.values for s in settings if s.candidate.mechanism == HUM]
+        hum = [s.values for s in settings if s.candidate.traits.free_phase]
         signals = self._answer(self.recording.runs[run], self.loadings[run], settings)
         return {name: values + sum(self._hum(run, one) for one in hum) for name, values in signals.items()}
 
@@ -197,7 +147,11 @@ class ProportionalEngine:
 
     def _answer(self, run: Run, loading: Loading, settings: Sequence[Setting]) -> Signals:
         own = {s.candidate.name: s.values[0] for s in settings if s.candidate.mechanism in (SENSITIVITY, CAPACITANCE)}
-        rest = [s for s in settings if s.candidate.mechanism not in (SENSITIVITY, CAPACITANCE, HUM)]
+        rest = [
+            s
+            for s in settings
+            if s.candidate.mechanism not in (SENSITIVITY, CAPACITANCE) and not s.candidate.traits.free_phase
+        ]
         more = sinh(own.get((CAPACITANCE, "film"), 0.0))
         factors = [1.0 + own.get((SENSITIVITY, f"channel-{n + 1}"), 0.0) for n in range(len(self.sensitivity_C))]
         try:
@@ -255,7 +209,7 @@ def proportional_engine(recording: Recording, report: Report) -> ProportionalEng
         free.append(film_capacitance())
     engine = ProportionalEngine(
         recording, largest_N, scene, loadings, np.ones(scene.channels),
-        tuple(proportional_candidates(recording, scene)), tuple(free),
+        candidates_of_unknown_geometry(scene, recording), tuple(free),
     )  # fmt: skip
     report("charge proportional to force", 1, 1)
     return replace(engine, sensitivity_C=_start(engine))
@@ -311,6 +265,3 @@ def _start(engine: ProportionalEngine) -> Floats:
             predicted[n] = max(predicted[n], float(np.abs(unit).max()))
             product[n] += float((given - given.mean()) @ (unit - unit.mean()))
     return np.asarray(np.where(product < 0.0, -1.0, 1.0) * recorded / predicted)
-
-
-__all__ = ["ProportionalEngine", "proportional_engine"]

@@ -110,7 +110,7 @@ def diagnose(recording: Recording, engine: Engine, seed: int, report: Report) ->
     rng = np.random.default_rng(seed)
     noise = noise_models(recording)
     loud = hum.loud_lines(recording, noise)
-    if any(candidate.mechanism == "mains-hum" for candidate in engine.candidates):
+    if any(candidate.traits.free_phase for candidate in engine.candidates):
         engine = hum.HumEngine(engine, recording, loud)
         noise = hum.without(noise, loud)
     model = ObservedModel(Samples(recording, noise), engine)
@@ -233,9 +233,6 @@ def _information(choice: Choice) -> Floats:
     return total
 
 
-HUM = "mains-hum"
-
-
 def diagnose_and_score(
     recording: Recording, engine: Engine, held: Sequence[int], seed: int, report: Report
 ) -> Findings:
@@ -258,7 +255,7 @@ def _model_of(recording: Recording, engine: Engine, numbers: Sequence[int]) -> O
 def _scored(findings: Findings, train: ObservedModel, held: ObservedModel) -> Findings:
     """Findings whose errors, signals and noise speak of the held-out runs too."""
     best: Model | None = findings.models[0] if findings.models else None
-    settings = tuple(one for one in best.settings if one.candidate.mechanism != HUM) if best else ()
+    settings = tuple(one for one in best.settings if not one.candidate.traits.free_phase) if best else ()
     starts = [believed(model, fitted_baseline(model)).values for model in (train, held)]
     before, after = (_transferred((train, held), starts, chosen) for chosen in ((), settings))
     gains = _log_scores(held, after, settings) - _log_scores(held, before, ())

@@ -61,9 +61,9 @@ class HumEngine(PassingOn):
         self._recording = recording
         self._places = [(n, c) for n, run in enumerate(recording.runs) for c in run.voltages if (run.label, c) in loud]
         self._lines = [loud[recording.runs[n].label, c] for n, c in self._places]
-        given = next((c for c in engine.candidates if c.mechanism == "mains-hum"), None)
+        given = next((c for c in engine.candidates if c.traits.free_phase), None)
         self._hum = self._candidate(given) if given is not None and loud else None
-        others = tuple(c for c in engine.candidates if c.mechanism != "mains-hum")
+        others = tuple(c for c in engine.candidates if not c.traits.free_phase)
         self.candidates = others if self._hum is None else (*others, self._hum)
 
     def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:

@@ -26,12 +26,10 @@ from diagnose.signals.recording import Recording, Run
 from diagnose.statistics.separation import best_press, least_separation, remaining_spread
 from geometry.arrays import Floats
 
-FREE_PHASE = "mains-hum"
-
 
 def without_phase(settings: Sequence[Setting]) -> tuple[Setting, ...]:
     """Settings without hum: its phase is that of one run, and means nothing to another model or another press."""
-    return tuple(setting for setting in settings if setting.candidate.mechanism != FREE_PHASE)
+    return tuple(setting for setting in settings if not setting.candidate.traits.free_phase)
 
 
 class ImaginedEngine:

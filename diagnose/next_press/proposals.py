@@ -14,6 +14,7 @@ import numpy as np
 
 from diagnose.signals.phases import Press, rest_of
 from diagnose.signals.recording import Recording, Run
+from diagnose.vocabulary.base import vocabulary
 from geometry.arrays import Floats
 from solve.parameters import Readout
 
@@ -214,11 +215,12 @@ def _rewired(setup: Setup, words: str, **keys: float) -> Setup:
 
 
 def _placed(setup: Setup) -> Iterator[Setup]:
-    """The dot elsewhere, or as warm as the film."""
+    """The dot elsewhere, or what keeps a mechanism away."""
     x, y = setup.run.dot_offset_mm
     for offset in OFFSETS_MM:
         run = replace(setup.run, dot_offset_mm=(x + offset, y))
         yield setup.changed(f"with the dot {offset:g} mm further along x", {"dot_offset_mm": [x + offset, y]}, run=run)
-    yield setup.changed(
-        "with the dot as warm as the film", {"dot_temperature": "of the film"}, removes="pyroelectric-drift"
-    )
+    for name, entry in vocabulary().items():
+        if entry.undone_by is not None:
+            words, keys = entry.undone_by
+            yield setup.changed(words, dict(keys), removes=name)

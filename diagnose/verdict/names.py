@@ -6,33 +6,8 @@ from math import ceil, isfinite, log10
 from diagnose.figures import figure
 from diagnose.findings import Interval, Model
 from diagnose.forward import Candidate
+from diagnose.vocabulary.base import vocabulary
 
-WHAT = {
-    "charge-leakage": "charge leaks through {}",
-    "parasitic-capacitance": "a capacitance across {} takes its share of the charge",
-    "low-pass": "{} filters out fast changes",
-    "saturation": "{} saturates",
-    "mains-hum": "there is mains hum on {}",
-    "pyroelectric-drift": "{} changes temperature on contact",
-    "contact-electrification": "contact leaves charge on {}",
-    "viscoelasticity": "{} relaxes (viscoelasticity)",
-    "hyperelastic-stiffening": "{} stiffens at large strain",
-    "foam-densification": "{} is a foam, which collapses and then densifies",
-    "stress-softening": "{} is softer once it has been strained (stress softening)",
-    "film-yield": "{} yields",
-    "adhesive-compliance": "{} is compliant",
-    "delamination": "{} has come apart in one place",
-    "friction": "{} rubs against the surface",
-    "elastic-sides": "{} are compliant",
-    "dot-offset": "{} is not where rig.toml places it",
-    "contact-gap": "there is a gap before {} touches",
-    "rig-compliance": "{} deflects, which the displacement sensor does not see",
-    "film-prestretch": "{} was stretched before it was bonded",
-    "inertia": "the inertia of a moving mass in {} adds to the force",
-    "crosstalk": "other channels couple into {}",
-    "property-error": "a property of {} differs from rig.toml",
-    "dimension-reduction": "{} is round but was modelled as a ridge, or the reverse",
-}
 WHERE = {
     "effector": "the effector",
     "medium1": "medium 1",
@@ -59,7 +34,9 @@ def component_words(component: str) -> str:
 
 def mechanism_words(mechanism: str, component: str) -> str:
     """What happens where, as half a sentence."""
-    return WHAT.get(mechanism, mechanism.replace("-", " ") + " of {}").format(component_words(component))
+    known = vocabulary().get(mechanism)
+    words = mechanism.replace("-", " ") + " of {}" if known is None else known.words
+    return words.format(component_words(component))
 
 
 def model_words(model: Model) -> str:

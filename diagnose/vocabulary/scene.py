@@ -2,11 +2,19 @@
 
 from dataclasses import dataclass
 from math import asinh
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from diagnose.forward import Coordinate
-from solve.materials.parameters import PiezoelectricFilm
+from diagnose.signals.recording import Recording
+from solve.materials.parameters import Material, PiezoelectricFilm
+from solve.mechanisms.base import BONDS
 from solve.model import Model
 from solve.parameters import Readout
+
+if TYPE_CHECKING:
+    from diagnose.engines.coupon.point import MaterialPoint
 
 VACUUM_PF_PER_MM = 8.8541878128e-3
 OFF = 1e-9  # of a coordinate
@@ -31,6 +39,12 @@ class Scene:
     mains_Hz: float = 50.0
 
     @property
+    def bonds(self) -> tuple[str, ...]:
+        """Bonds that the stack has."""
+        absent = self.model.segment.effector is None
+        return tuple(bond for bond in BONDS if not (absent and "effector" in bond))
+
+    @property
     def runs(self) -> int:
         """How many there are."""
         return len(self.readouts)
@@ -51,6 +65,28 @@ class Scene:
         """Of the input, the least of the runs, and what discharges film and input within a run, together."""
         given = [1.0 / r.input_resistance_MOhm if r.input_resistance_MOhm else 0.0 for r in self.readouts]
         return min(given) + 1e-6 * self.capacitance_pF / self.duration_s
+
+
+@dataclass(frozen=True)
+class CouponScene:
+    """What the candidates of a coupon depend on: point, the baseline, gives the scales."""
+
+    recording: Recording
+    material: Material
+    point: "MaterialPoint"
+
+    @property
+    def travel_mm(self) -> float:
+        """The largest recorded."""
+        return self._largest("displacement_mm")
+
+    @property
+    def force_N(self) -> float:
+        """The largest recorded."""
+        return self._largest("force_N")
+
+    def _largest(self, channel: str) -> float:
+        return max(float(np.nanmax(np.abs(run.channels[channel]))) for run in self.recording.runs)
 
 
 def film_capacitance_pF(model: Model) -> float:

@@ -34,7 +34,6 @@ NEXT_PRESS = "next-press.csv"
 DIAGNOSIS = Product(
     FORMAT, "verdict.json", frozenset({"verdict.json", "report.html", "plots", "improved.toml", NEXT_PRESS})
 )
-ACTS_UP_TO = {"mains-hum": "frequency_Hz", "low-pass": "cutoff_Hz"}
 UNCHECKED = "The result was not checked with the full 3D model, because --fast-model-only was given."
 FULL_MODEL_S = 240.0  # for presses by the full model, of the ten minutes that a first diagnosis may take
 
@@ -87,8 +86,8 @@ def _refuse_what_sampling_misses(rig: Rig) -> None:
     """InputError for a run that is too slow for a mechanism of rig.toml that acts up to a frequency."""
     asked = rig.config.mechanisms if rig.config is not None else ()
     for mechanism, run in product(asked, rig.recording.runs):
-        if mechanism.name in ACTS_UP_TO:
-            frequency_Hz = getattr(mechanism.values(), ACTS_UP_TO[mechanism.name])
+        if mechanism.traits.acts_up_to:
+            frequency_Hz = getattr(mechanism.values(), mechanism.traits.acts_up_to)
             refuse_slow_sampling(run, frequency_Hz, mechanism.name)
 
 
@@ -228,10 +227,6 @@ def engine_for(rig: Rig, report: Report) -> Engine:
 
 def _of_segment(rig: Rig, config: Config, report: Report) -> Engine:
     from diagnose.engines.segment import segment_engine
-    from softdot.actual import actual
-    from solve.model import Model
+    from softdot.actual import model_of
 
-    changed, physics = actual(config)
-    materials = changed.layer_materials()
-    model = Model(changed.segment, materials, changed.dot, changed.press, changed.readout, physics)
-    return segment_engine(model, changed.mesh, rig.recording, report)
+    return segment_engine(model_of(config), config.mesh, rig.recording, report)

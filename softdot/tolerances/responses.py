@@ -14,9 +14,9 @@ from geometry.cache import data_hash, recall, remember, source_hash
 from mesh.interfaces import morphed
 from mesh.types import TetMesh
 from softdot import stages
-from softdot.actual import actual
+from softdot.actual import actual, model_of
 from softdot.config import Config, config_hash, input_hash
-from softdot.differentiate import model_of, press_with_derivatives, variations_of
+from softdot.differentiate import press_with_derivatives, variations_of
 from softdot.numbers import plain
 from softdot.summary import history
 from softdot.tolerances.tolerances import with_factors

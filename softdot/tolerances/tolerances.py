@@ -13,6 +13,7 @@ from geometry.parameters import Dot, Segment
 from geometry.stack import Layer, layers
 from softdot.config import Config
 from solve.mechanisms import Mechanism
+from solve.mechanisms.layers.property_error import PROPERTY_ERROR
 
 MEDIUM = ("modulus_factor", "thickness_factor")
 FACTORS: dict[str, tuple[str, ...]] = {
@@ -30,7 +31,7 @@ def with_factors(config: Config) -> Config:
     Layers that share a material so get errors of their own.
     """
     added = (
-        Mechanism(name="property-error", component=component, parameters=dict.fromkeys(FACTORS[component], 1.0))
+        Mechanism(name=PROPERTY_ERROR.name, component=component, parameters=dict.fromkeys(FACTORS[component], 1.0))
         for component in _components(config)
     )
     return config.model_copy(update={"mechanisms": (*config.mechanisms, *added)})

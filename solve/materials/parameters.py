@@ -4,7 +4,7 @@ import tomllib
 from collections.abc import Mapping
 from functools import cache
 from importlib.resources import files
-from typing import Annotated, Any, Literal, Self, TypeVar
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, Field, TypeAdapter, model_validator
 
@@ -48,6 +48,11 @@ class NeoHookean(MaterialTable):
     youngs_modulus_MPa: Positive = Field(description="small-strain Young's modulus")
     poisson_ratio: PoissonRatio = Field(0.495, description="small-strain Poisson's ratio")
 
+    @property
+    def shear_modulus_MPa(self) -> float:
+        """Small-strain shear modulus G = E / (2 (1 + nu))."""
+        return self.youngs_modulus_MPa / (2.0 * (1.0 + self.poisson_ratio))
+
 
 class Linear(MaterialTable):
     """Hooke's law between Green-Lagrange strain and second Piola-Kirchhoff stress."""
@@ -55,6 +60,11 @@ class Linear(MaterialTable):
     model: Literal["linear"] = Field("linear", description="linear elastic solid")
     youngs_modulus_MPa: Positive = Field(description="Young's modulus")
     poisson_ratio: PoissonRatio = Field(0.495, description="Poisson's ratio")
+
+    @property
+    def shear_modulus_MPa(self) -> float:
+        """Small-strain shear modulus G = E / (2 (1 + nu))."""
+        return self.youngs_modulus_MPa / (2.0 * (1.0 + self.poisson_ratio))
 
 
 class MooneyRivlin(MaterialTable):
@@ -67,7 +77,13 @@ class MooneyRivlin(MaterialTable):
 
     @model_validator(mode="after")
     def _stiff(self) -> Self:
-        return _require_shear_modulus(self, 2.0 * (self.c10_MPa + self.c01_MPa), "2 (c10_MPa + c01_MPa)")
+        _require_shear_modulus(self.shear_modulus_MPa, "2 (c10_MPa + c01_MPa)")
+        return self
+
+    @property
+    def shear_modulus_MPa(self) -> float:
+        """Small-strain shear modulus G = 2 (c10 + c01)."""
+        return 2.0 * (self.c10_MPa + self.c01_MPa)
 
 
 class Yeoh(MaterialTable):
@@ -78,6 +94,11 @@ class Yeoh(MaterialTable):
     c20_MPa: Finite = Field(0.0, description="quadratic constant")
     c30_MPa: Finite = Field(0.0, description="cubic constant")
     poisson_ratio: PoissonRatio = Field(0.495, description="small-strain Poisson's ratio")
+
+    @property
+    def shear_modulus_MPa(self) -> float:
+        """Small-strain shear modulus G = 2 c10."""
+        return 2.0 * self.c10_MPa
 
 
 class Ogden(MaterialTable):
@@ -91,8 +112,13 @@ class Ogden(MaterialTable):
     @model_validator(mode="after")
     def _stiff(self) -> Self:
         _require_terms("alpha", self.alpha, self.mu_MPa)
-        shear = 0.5 * sum(m * a for m, a in zip(self.mu_MPa, self.alpha, strict=True))
-        return _require_shear_modulus(self, shear, "half the sum of mu_MPa times alpha")
+        _require_shear_modulus(self.shear_modulus_MPa, "half the sum of mu_MPa times alpha")
+        return self
+
+    @property
+    def shear_modulus_MPa(self) -> float:
+        """Small-strain shear modulus G = half the sum of mu alpha."""
+        return 0.5 * sum(m * a for m, a in zip(self.mu_MPa, self.alpha, strict=True))
 
 
 class Hyperfoam(MaterialTable):
@@ -119,7 +145,13 @@ class Hyperfoam(MaterialTable):
         bulk_MPa = 2.0 / 3.0 * sum(m * r for m, r in zip(self.mu_MPa, ratios, strict=True))
         if not bulk_MPa > 0.0:
             raise ValueError(f"small-strain bulk modulus = {bulk_MPa:g} MPa: must be above 0")
-        return _require_shear_modulus(self, sum(self.mu_MPa), "the sum of mu_MPa")
+        _require_shear_modulus(self.shear_modulus_MPa, "the sum of mu_MPa")
+        return self
+
+    @property
+    def shear_modulus_MPa(self) -> float:
+        """Small-strain shear modulus G = the sum of mu."""
+        return sum(self.mu_MPa)
 
 
 class PiezoelectricFilm(MaterialTable):
@@ -152,8 +184,10 @@ class PiezoelectricFilm(MaterialTable):
             raise ValueError(f"youngs_modulus_2_MPa = {e2:g}: must be below {limit:.4g} for this poisson_ratio")
         return self
 
-
-M = TypeVar("M", bound=MaterialTable)
+    @property
+    def shear_modulus_MPa(self) -> float:
+        """A film is no medium: ValueError."""
+        raise ValueError(f"{self.model} is not a medium")
 
 
 def _require_terms(name: str, values: tuple[float, ...], mu: tuple[float, ...]) -> None:
@@ -161,10 +195,9 @@ def _require_terms(name: str, values: tuple[float, ...], mu: tuple[float, ...]) 
         raise ValueError(f"{name} has {len(values)} values but mu_MPa has {len(mu)}: one of each per term")
 
 
-def _require_shear_modulus(material: M, shear_MPa: float, formula: str) -> M:
+def _require_shear_modulus(shear_MPa: float, formula: str) -> None:
     if not shear_MPa > 0.0:
         raise ValueError(f"small-strain shear modulus = {shear_MPa:g} MPa: {formula} must be above 0")
-    return material
 
 
 Medium = NeoHookean | Linear | MooneyRivlin | Yeoh | Ogden | Hyperfoam

@@ -12,21 +12,16 @@ import numpy as np
 from geometry.arrays import Floats
 from solve.model import Physics
 from solve.parameters import Readout
-from solve.readout.filters import Filter, Saturation
+from solve.readout.filters import Filter
+from solve.readout.stages import Saturation, Stage
 
 
 def amplify(time_s: Floats, charge_C: Floats, capacitance_F: float, readout: Readout, physics: Physics) -> Floats:
     """Voltage (t,) from the film's short-circuit charge (t,) at times (t,), from rest."""
     capacitance, resistance = input_of(readout, capacitance_F)
     voltage = leaky_integral(time_s, charge_C, capacitance, resistance)
-    for frequency_Hz, amplitude_V in physics.hum:
-        voltage += amplitude_V * np.sin(2.0 * np.pi * frequency_Hz * time_s)
-    if readout.limit_V is not None:
-        voltage = Saturation(readout.limit_V).applied(voltage)
-    for limit in physics.saturation:
-        voltage = limit.applied(voltage)
-    for one in filters(readout, physics):
-        voltage = one.applied(time_s, voltage)
+    for stage in stages(readout, physics):
+        voltage = stage.applied(time_s, voltage)
     return np.asarray(readout.polarity * voltage)
 
 
@@ -38,12 +33,13 @@ def input_of(readout: Readout, film_capacitance_F: float) -> tuple[float, float]
     return capacitance, 1e6 * (readout.input_resistance_MOhm or np.inf)
 
 
-def filters(readout: Readout, physics: Physics) -> list[Filter]:
-    """Every filter behind the input, in order."""
+def stages(readout: Readout, physics: Physics) -> list[Stage]:
+    """Everything behind the input, in order; of one place those of the read-out come first."""
     order = readout.filter_order
+    limit = [] if readout.limit_V is None else [Saturation(readout.limit_V)]
     low = [] if readout.low_pass_Hz is None else [Filter(readout.low_pass_Hz, order)]
     high = [] if readout.high_pass_Hz is None else [Filter(readout.high_pass_Hz, order, "high")]
-    return [*low, *high, *physics.low_pass]
+    return sorted([*limit, *low, *high, *physics.electronics], key=lambda stage: stage.place)
 
 
 @nb.njit(cache=True)

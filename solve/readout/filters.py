@@ -7,17 +7,12 @@ Synthesis, 1967, section 2). Q is 1/2 for two equal RC stages, 1/sqrt(3) for Bes
 Dead time delays what leaves the filter: that of a converter, or what a filter of higher order adds to one of order two.
 Integrated exactly for what is linear between the samples: a first-order hold (Franklin, Powell and Workman, Digital
 Control of Dynamic Systems, 1998, section 6.3).
-
-An amplifier at its limit: hard, or with a rounded knee.
-
-V -> V / (1 + |V / V_max|^p)^(1 / p) (Rapp, Effects of HPA-nonlinearity on a 4-DPSK/OFDM-signal, ESA SP-332, 1991,
-pp. 179-184), a hard clip for an infinite sharpness p. p = 2.5 is close to a hyperbolic tangent.
 """
 
 from dataclasses import dataclass
 from functools import lru_cache
 from math import hypot, sqrt
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numba as nb
 import numpy as np
@@ -25,6 +20,7 @@ from scipy.linalg import expm
 from scipy.signal import butter, impulse, tf2ss
 
 from geometry.arrays import Floats
+from solve.readout.stages import FILTER
 
 SAMPLES = 4001  # of the even grid of a filter, at least
 
@@ -41,6 +37,7 @@ class Filter:
     kind: Literal["low", "high"] = "low"
     quality: float | None = None
     delay_s: float = 0.0
+    place: ClassVar[int] = FILTER
 
     def transfer(self) -> tuple[Floats, Floats]:
         """Numerator and denominator of H(s) but for the dead time, highest power first."""
@@ -51,14 +48,16 @@ class Filter:
         natural = corner / corner_over_natural(self.quality)
         return np.array([natural**2]), np.array([1.0, natural / self.quality, natural**2])
 
-    def applied(self, time: Floats, voltage: Floats) -> Floats:
+    def applied(self, time_s: Floats, voltage_V: Floats) -> Floats:
         """Filtered voltage (n,) at times (n,), on an even grid as fine as the samples' mean."""
-        even = np.linspace(time[0], time[-1], max(len(time), SAMPLES))
+        even = np.linspace(time_s[0], time_s[-1], max(len(time_s), SAMPLES))
         step = float(even[1] - even[0])
         recurrence = _discrete(self, step)
-        if self.delay_s == 0.0 and len(even) == len(time) and np.abs(even - time).max() < 1e-9 * step:
-            return np.asarray(_march(*recurrence, voltage))
-        return np.asarray(np.interp(time - self.delay_s, even, _march(*recurrence, np.interp(even, time, voltage))))
+        if self.delay_s == 0.0 and len(even) == len(time_s) and np.abs(even - time_s).max() < 1e-9 * step:
+            return np.asarray(_march(*recurrence, voltage_V))
+        return np.asarray(
+            np.interp(time_s - self.delay_s, even, _march(*recurrence, np.interp(even, time_s, voltage_V)))
+        )
 
     def largest_gain(self) -> float:
         """Integral of |impulse response|: by how much it can enlarge the largest value, at any corner."""
@@ -112,20 +111,3 @@ def _march(a: Floats, first: Floats, second: Floats, c: Floats, d: float, given:
         for i in range(order):
             answer[n] += c[i] * state[i]
     return answer
-
-
-@dataclass(frozen=True)
-class Saturation:
-    """limit_V : what is never exceeded. sharpness : p of the knee, infinite for none."""
-
-    limit_V: float
-    sharpness: float = np.inf
-
-    def applied(self, voltage: Floats) -> Floats:
-        """Voltage (t,) behind it."""
-        hard = np.clip(voltage, -self.limit_V, self.limit_V)
-        if np.isinf(self.sharpness):
-            return np.asarray(hard)
-        ratio = np.abs(voltage) / self.limit_V
-        inside = np.minimum(ratio, 1.0 / np.maximum(ratio, 1e-300))  # no power of what is above 1: no overflow
-        return np.asarray(hard * (1.0 + inside**self.sharpness) ** (-1.0 / self.sharpness))

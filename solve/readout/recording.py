@@ -13,6 +13,7 @@ from geometry.arrays import Floats
 from solve.model import Physics
 from solve.parameters import Press, Readout, Waveform
 from solve.readout.amplifier import amplify
+from solve.readout.charge import mixed_channels
 from solve.readout.filters import SAMPLES
 from solve.result import PressResult
 from solve.solution.schedule import corners_s, duration_s, fraction
@@ -40,8 +41,7 @@ def channel_voltages(result: PressResult, press: Press, readout: Readout, physic
     physics = physics or Physics()
     alone = [record(result, press, readout, share, physics) for share in np.eye(len(result.capacitance_F))]
     voltage = np.array([_at_steps(result, recording) for recording in alone])
-    coupling = np.array([physics.crosstalk.get(channel + 1, 0.0) for channel in range(len(voltage))])
-    return np.asarray(voltage + coupling[:, None] * (voltage.sum(axis=0) - voltage))
+    return mixed_channels(voltage, physics)
 
 
 def record(

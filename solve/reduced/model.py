@@ -14,7 +14,8 @@ from geometry.arrays import Floats, Ints
 from solve.materials.inelastic import Prony
 from solve.model import Physics
 from solve.parameters import Readout
-from solve.readout.amplifier import amplify, filters, input_of
+from solve.readout.amplifier import amplify, input_of, stages
+from solve.readout.charge import other_charge_C
 from solve.reduced.fit import CELLS, Fit
 from solve.reduced.kernels import BY_DEPTH, BY_FORCE, TOO_DEEP, follow
 
@@ -155,7 +156,8 @@ class ReducedModel:
         time, drive, kind = given(time_s, depth_mm, force_N, gap_mm)
         path, outputs = self._follow(time, drive, kind, physics)
         force = sensed(time, drive, kind, path, outputs[:, 0], physics)
-        each = outputs[:, 2:] + self._other_charge(time, outputs[:, 1], physics)
+        area, constant = self.film[:, 1], self.pyroelectric_uC_per_m2_K
+        each = outputs[:, 2:] + other_charge_C(time, outputs[:, 1], area, constant, physics)
         wired = np.ones(len(self.film)) if wired is None else np.asarray(wired, dtype=np.float64)
         charge, capacitance = each @ wired, float(self.film[:, 0] @ wired)
         voltage = amplify(time, charge, capacitance, readout, physics)
@@ -187,23 +189,11 @@ class ReducedModel:
             raise ValueError(f"the dot goes deeper than {self.depth_mm:g} mm, for which the reduced model was made")
         return path, outputs
 
-    def _other_charge(self, time: Floats, contact_area: Floats, physics: Physics) -> Floats:
-        """Charge of heat and of touch (t, e), as solve.recorder adds it."""
-        area, heat = self.film[:, 1], physics.pyroelectric
-        charge = np.zeros((1, len(area)))
-        if heat.temperature_step_K != 0.0:
-            temperature = -heat.temperature_step_K * np.expm1((time[0] - time) / heat.time_constant_s)
-            charge = 1e-6 * self.pyroelectric_uC_per_m2_K * temperature[:, None] * area
-        if physics.contact_charge_pC != 0.0:
-            touched = contact_area / max(float(contact_area.max()), 1e-300)
-            charge = charge + 1e-12 * physics.contact_charge_pC * touched[:, None] * area / area.sum()
-        return charge
-
     def _bound(self, answer: Raw, wired: Floats, capacitance: float, readout: Readout, physics: Physics) -> ErrorBound:
         """Of C V' = e' - V / R with an error e of the charge: |V| <= 2 max|e| / C and |V| <= R max|e'|.
 
-        Shallow and slow presses get the error that the model has at full depth. A filter behind the input multiplies
-        by at most the integral of its |impulse response|.
+        Shallow and slow presses get the error that the model has at full depth. A stage behind the input multiplies
+        by at most its largest gain.
         """
         force, charge, rate = self._largest(answer, wired)
         charge *= MARGIN * self.accuracy.charge
@@ -211,7 +201,7 @@ class ReducedModel:
         voltage = (1.0 if np.isinf(resistance) else 2.0) * charge / abs(capacitance)
         if np.isfinite(resistance):
             voltage = min(voltage, abs(resistance) * MARGIN * self.accuracy.charge_rate * rate)
-        for one in filters(readout, physics):
+        for one in stages(readout, physics):
             voltage *= one.largest_gain()
         return ErrorBound(MARGIN * self.accuracy.force * force, charge, voltage)
 

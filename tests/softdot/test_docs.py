@@ -107,7 +107,7 @@ def _anchors(path):
 @pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.relative_to(ROOT).as_posix())
 def test_named_source_files_exist(path):
     named = re.findall(r"`((?:geometry|mesh|solve|export|softdot|docs|tests)/[\w./]+\.\w+)`", path.read_text("utf-8"))
-    to_be_measured = {"docs/verification.md"}
+    to_be_measured = {"docs/verification.md", "docs/_site/index.html"}  # the last one is built
     assert [name for name in named if name not in to_be_measured and not (ROOT / name).exists()] == []
 
 

@@ -10,8 +10,8 @@ from geometry.base import InputError
 from solve.model import Physics
 from solve.parameters import Press, Readout, Waveform
 from solve.readout.amplifier import leaky_integral
-from solve.readout.filters import Saturation
 from solve.readout.recording import readout_voltage
+from solve.readout.stages import Saturation
 from solve.solution.schedule import fraction
 
 FILM_F = 971e-12  # 16 x 16 mm, 28 um
@@ -60,7 +60,7 @@ def test_saturation_and_polarity():
 @pytest.mark.parametrize(("limit_V", "shown_V"), [(0.5, 0.3), (0.2, 0.2)])
 def test_of_two_limits_in_a_row_the_lower_one_counts(limit_V, shown_V):
     readout = Readout(mode="charge", feedback_pF=1000.0, limit_V=0.3)
-    physics = Physics(saturation=(Saturation(limit_V),))
+    physics = Physics(electronics=(Saturation(limit_V),))
     assert readout_voltage(LINEAR, Press(), readout, physics)[-1] == pytest.approx(-shown_V)
 
 

@@ -10,11 +10,10 @@ from geometry.dot import resolve_dot
 from geometry.parameters import Dot
 from mesh.build import build
 from mesh.parameters import MeshOptions
-from solve.mechanisms import Mechanism
+from solve.mechanisms import Mechanism, with_mechanisms
 from solve.model import Model
 from solve.parameters import Press, Waveform
 from solve.solution.sensitivity import Variation, press_with_sensitivities
-from solve.switch_on import with_mechanisms
 from tests.solve.segments import materials, segment
 
 COARSE = MeshOptions(element_size_mm=1.2, contact_element_size_mm=0.8, mesher="layered")

@@ -5,12 +5,11 @@ import pytest
 
 from geometry.dot import resolve_dot
 from geometry.parameters import Dot
-from solve.mechanisms import Mechanism
+from solve.mechanisms import Mechanism, with_mechanisms
 from solve.model import Model
 from solve.parameters import Press, Readout
 from solve.press import press_segment
 from solve.readout.recording import readout_voltage
-from solve.switch_on import with_mechanisms
 from tests.solve.segments import COARSE, coarse_mesh, materials
 from tests.verification.slices import STACK, mesh_of, waved
 

@@ -9,21 +9,23 @@ from typing import Any
 
 import numpy as np
 
-from diagnose.engines.coupon.candidates import (
+from diagnose.engines.coupon.kinematics import kinematics_of
+from diagnose.engines.coupon.layer import (
     LAYER,
     SPECIMEN,
-    coupon_candidates,
+    PartOfLayer,
     drive_error,
     one_layer,
-    relative_error,
     switched,
     with_factors_last,
 )
-from diagnose.engines.coupon.kinematics import kinematics_of
 from diagnose.engines.coupon.point import NO_SERIES, MaterialPoint
 from diagnose.forward import Candidate, Setting, Signals
 from diagnose.signals.recording import Recording, Run
 from diagnose.signals.tables import Drive, Specimen
+from diagnose.vocabulary.base import candidates_of_coupon
+from diagnose.vocabulary.layers.property_error import relative_error
+from diagnose.vocabulary.scene import CouponScene
 from geometry.base import InputError, Report
 from solve.materials.laws import medium_law
 from solve.materials.parameters import Material, PiezoelectricFilm, find_material
@@ -56,7 +58,7 @@ class CouponEngine:
     def nuisance(self, name: str) -> Candidate | None:
         """Relative error of modulus.specimen or thickness.specimen, or an error of the column that drives."""
         if name in FACTORS:
-            return relative_error(name, FACTORS[name])
+            return relative_error(PartOfLayer, name, FACTORS[name])
         return drive_error(name) if name in DRIVE_ERRORS else None
 
     def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
@@ -121,8 +123,9 @@ def coupon_engine(recording: Recording, materials: Mapping[str, Material], repor
     if isinstance(material, PiezoelectricFilm):
         raise InputError(f"specimen.material = '{specimen.material}': a film cannot be a coupon; name a medium")
     _refuse_unfit(recording, specimen)
-    candidates = coupon_candidates(recording, material, point_of(specimen, one_layer(material, specimen.thickness_mm)))
-    engine = CouponEngine(recording, specimen, material, tuple(candidates))
+    point = point_of(specimen, one_layer(material, specimen.thickness_mm))
+    candidates = candidates_of_coupon(CouponScene(recording, material, point))
+    engine = CouponEngine(recording, specimen, material, candidates)
     report("material point", 1, 1)
     return engine
 
@@ -143,9 +146,6 @@ def _refuse_unfit(recording: Recording, specimen: Specimen) -> None:
             )
 
 
-OF_MATERIAL = ("viscoelasticity", "stress-softening")
-
-
 @dataclass(frozen=True)
 class ImprovedMaterial:
     """name : as in rig.toml. table : [materials.NAME], its law with the fitted constants.
@@ -162,11 +162,11 @@ def improved_material(engine: CouponEngine, settings: Sequence[Setting], compone
     """The material with fitted settings, nuisances of its modulus among them; component : the layer made of it."""
     of_material = [s for s in settings if s.candidate.component not in ("drive", "rig")]
     mechanisms = switched(of_material)
-    law = engine.model([one for one in mechanisms if one.name not in OF_MATERIAL]).materials[LAYER]
+    law = engine.model([one for one in mechanisms if not one.traits.memory]).materials[LAYER]
     table = law.model_dump(mode="json", exclude_none=True, exclude={"source", "confidence", "max_fitted_strain"})
     kept = tuple(
         {"name": one.name, "component": component, "parameters": dict(one.parameters)}
         for one in mechanisms
-        if one.name in OF_MATERIAL
+        if one.traits.memory
     )
     return ImprovedMaterial(engine.specimen.material, table, kept)

@@ -22,12 +22,14 @@ from typing import Any
 
 import numpy as np
 
-from diagnose.forward import Candidate, Coordinate
+from diagnose.forward import Coordinate
 from diagnose.signals.recording import Recording
-from diagnose.vocabulary.memory import relaxed_fraction
 from solve.materials.parameters import Material, MooneyRivlin, Ogden, Yeoh
-from solve.switch_on import shear_modulus_MPa
 
+MEDIUM = Yeoh(c10_MPa=0.5, poisson_ratio=0.495)
+"""Whatever strains the film of a sensor of unknown geometry: of shear modulus 1, the unit of stress there."""
+LARGEST_STRAIN = 0.1
+"""Of it, at the largest force: small enough that relaxation is linear."""
 MOST_OF_COUPON = 20.0  # of E_i / E_inf: a tape or a gel may relax by 95 % within a decade
 
 
@@ -48,28 +50,6 @@ def _quickest(recording: Recording) -> list[float]:
         for press in phases.presses
     ]
     return [time for time in found if time > 0.0] or [float(recording.runs[0].step_s)]
-
-
-def viscoelasticity(make: type[Candidate], component: str, times_s: Sequence[float], most: float) -> Candidate:
-    """The candidate at a component, one coordinate a branch; most : of each E_i / E_inf."""
-
-    def parameters(values: Sequence[float]) -> dict[str, Any]:
-        moduli, times = _series(values, times_s)
-        return {"relative_moduli": moduli, "relaxation_times_s": times}
-
-    def derived(values: Sequence[float]) -> dict[str, float]:
-        return {"relaxed_fraction": relaxed_fraction(*_series(values, times_s))}
-
-    coordinates = tuple(Coordinate(f"modulus_at_{time:.3g}_s", 0.0, most, (0.1, 0.5)) for time in times_s)
-    units = {"relative_moduli": "", "relaxation_times_s": "s", "relaxed_fraction": ""}
-    return make("viscoelasticity", component, coordinates, parameters, derived, units)
-
-
-def _series(values: Sequence[float], times_s: Sequence[float]) -> tuple[list[float], list[float]]:
-    """g_i and times of the branches that relax at all, of the values E_i / E_inf."""
-    whole = 1.0 + sum(values)
-    kept = [(value / whole, time) for value, time in zip(values, times_s, strict=True) if value > 0.0]
-    return [g for g, _ in kept], [time for _, time in kept]
 
 
 EXPONENTS = (4.0, 8.0, -2.0)
@@ -149,4 +129,4 @@ def _terms(material: Material) -> tuple[tuple[float, ...], tuple[float, ...]]:
         return (2.0 * material.c10_MPa, -2.0 * material.c01_MPa), (2.0, -2.0)
     if isinstance(material, Ogden):
         return tuple(material.mu_MPa), tuple(material.alpha)
-    return (shear_modulus_MPa(material),), (2.0,)
+    return (material.shear_modulus_MPa,), (2.0,)

@@ -11,9 +11,10 @@ import numpy as np
 from diagnose.signals.phases import Segmentation
 from diagnose.signals.recording import Run
 from geometry.arrays import Bools, Floats
-from solve.model import Model
+from solve.model import Model, Physics
 from solve.parameters import Readout
 from solve.readout.amplifier import amplify
+from solve.readout.charge import mixed_channels, other_charge_C
 from solve.reduced.fit import Fit
 from solve.reduced.kernels import BY_DEPTH, BY_FORCE, TOO_DEEP, follow
 from solve.reduced.model import branches, sensed
@@ -56,6 +57,10 @@ class FilmPlate:
     def thinner(self, factor: float) -> "FilmPlate":
         """A film whose capacitance is larger by a factor."""
         return replace(self, electrodes=self.electrodes * [factor, 1.0])
+
+    def other_charge_C(self, time_s: Floats, area_m2: Floats, physics: Physics) -> Floats:
+        """Charge (t, e) of heat and of the touch; time (t,) from the first touch, contact area (t,)."""
+        return other_charge_C(time_s, area_m2, self.electrodes[:, 1], self.pyroelectric_uC_per_m2_K, physics)
 
 
 @dataclass(frozen=True)
@@ -116,31 +121,16 @@ def amplified(
 
     names : in the order of the electrodes.
     """
-    charge = found.charge_C + other_charge(time_s, found.area_m2, film, on)
+    charge = found.charge_C + film.other_charge_C(time_s, found.area_m2, on.physics)
     time_s = time_s + ahead_s  # the amplifier itself knows differences of time only
     readout = on.readout or Readout()
     if len(names) == 1:
         told = (time_s, charge.sum(axis=1), float(film.electrodes[:, 0].sum()), readout, on.physics)
         return {names[0]: amplify(*told)}
-    alone = [
-        amplify(time_s, np.ascontiguousarray(own), float(capacitance), readout, on.physics)
-        for own, capacitance in zip(charge.T, film.electrodes[:, 0], strict=True)
-    ]
-    total = np.sum(alone, axis=0)
-    coupling = on.physics.crosstalk
-    mixed = [own + coupling.get(number, 0.0) * (total - own) for number, own in enumerate(alone, start=1)]
-    return dict(zip(names, mixed, strict=True))
-
-
-def other_charge(time_s: Floats, area_m2: Floats, film: FilmPlate, on: Model) -> Floats:
-    """Charge of heat and of touch (t, e), as solve.recorder adds it; the heat comes with the first touch."""
-    area, heat = film.electrodes[:, 1], on.physics.pyroelectric
-    charge = np.zeros((len(time_s), len(area)))
-    if heat.temperature_step_K != 0.0:
-        elapsed = np.maximum(time_s, 0.0)
-        temperature = -heat.temperature_step_K * np.expm1(-elapsed / heat.time_constant_s)
-        charge += 1e-6 * film.pyroelectric_uC_per_m2_K * temperature[:, None] * area
-    if on.physics.contact_charge_pC != 0.0:
-        touched = area_m2 / max(float(area_m2.max()), 1e-300)
-        charge += 1e-12 * on.physics.contact_charge_pC * touched[:, None] * area / area.sum()
-    return charge
+    alone = np.array(
+        [
+            amplify(time_s, np.ascontiguousarray(own), float(capacitance), readout, on.physics)
+            for own, capacitance in zip(charge.T, film.electrodes[:, 0], strict=True)
+        ]
+    )
+    return dict(zip(names, mixed_channels(alone, on.physics), strict=True))

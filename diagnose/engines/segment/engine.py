@@ -17,18 +17,18 @@ from diagnose.engines.segment.path import with_history
 from diagnose.engines.segment.prepared import ZERO, Prepared, nuisance
 from diagnose.forward import Candidate, Setting, Signals
 from diagnose.signals.recording import Recording, Run
-from diagnose.vocabulary.candidates import candidates
+from diagnose.vocabulary.base import candidates_of_segment
 from diagnose.vocabulary.scene import Scene
 from geometry.arrays import Floats
 from geometry.base import InputError, Report
 from geometry.checks import check_press_depth
 from mesh.parameters import MeshOptions
 from solve.materials.parameters import PiezoelectricFilm
-from solve.mechanisms import Mechanism
+from solve.mechanisms import Mechanism, with_mechanisms
 from solve.model import Model
 from solve.parameters import Readout
+from solve.readout.stages import Hum
 from solve.reduced.fit import Fit
-from solve.switch_on import with_mechanisms
 from solve.tables.rig_mesh import mesh_of
 from solve.tables.smooth import changed
 
@@ -38,10 +38,11 @@ def refuse(model: Model, recording: Recording) -> None:
     film, physics = model.materials["film"], model.physics
     if isinstance(film, PiezoelectricFilm) and film.coupling == "two-way":
         raise InputError("coupling = 'two-way': a diagnosis needs a film whose voltage does not act back")
-    declared = {"friction": physics.friction, "stress-softening": physics.softening, "film-yield": physics.film_yield}
-    for name, value in declared.items():
-        if value:
-            raise InputError(f"mechanisms: '{name}' is a candidate of a diagnosis and cannot be declared; leave it out")
+    for one in model.mechanisms:
+        if one.traits.path_dependent and not one.is_off:
+            raise InputError(
+                f"mechanisms: '{one.name}' is a candidate of a diagnosis and cannot be declared; leave it out"
+            )
     if physics.viscosity and physics.prestretch != (0.0, 0.0):
         raise InputError("mechanisms: a diagnosis accepts declared viscoelasticity or film-prestretch, but not both")
     for run in recording.runs:
@@ -52,7 +53,6 @@ def refuse(model: Model, recording: Recording) -> None:
                 raise InputError(f"run '{run.label}' goes too deep (are these micrometres?): {error}") from None
 
 
-FORCE_RATIO = frozenset({"hyperelastic-stiffening", "foam-densification"})
 COMPARED = 0.5
 """Of the deepest press, where the second cycle is set against the first: near the deepest both are the same."""
 Derived = Callable[[Sequence[float]], dict[str, float]]
@@ -63,10 +63,8 @@ def with_derived(candidate: Candidate, prepared: Prepared) -> Candidate:
 
     They are told once the candidate is prepared.
     """
-    if candidate.mechanism in FORCE_RATIO:
-        return replace(candidate, derived=_force_ratio(candidate, prepared))
-    if candidate.mechanism == "stress-softening":
-        return replace(candidate, derived=_loss_ratio(candidate, prepared))
+    if candidate.compared:
+        return replace(candidate, derived=COMPARISONS[candidate.compared](candidate, prepared))
     return candidate
 
 
@@ -91,14 +89,11 @@ def _loss_ratio(candidate: Candidate, prepared: Prepared) -> Derived:
     return derived
 
 
-DIRECT = frozenset({
-    "charge-leakage", "parasitic-capacitance", "low-pass", "saturation", "pyroelectric-drift", "crosstalk",
-    "contact-electrification", "viscoelasticity", "contact-gap", "rig-compliance", "inertia", "property-error",
-})  # fmt: skip
-"""Mechanisms, or parts of one, that act on the table as they do on the 3D model."""
+COMPARISONS = {"force_ratio": _force_ratio, "loss_ratio": _loss_ratio}
+
+
 ROUNDS = 40
 SETTLED = 1e-6  # of the largest force
-Hum = tuple[tuple[float, float], ...]
 Asked = tuple[tuple[float, float], list[Setting], float]
 
 
@@ -121,7 +116,9 @@ class SegmentEngine:
         self.prepared.add((), [run.dot_offset_mm for run in recording.runs], report)
         self.accuracy = self.prepared.accuracy
         self._last: tuple[Asked, Fit] | None = None
-        self.candidates: tuple[Candidate, ...] = tuple(with_derived(c, self.prepared) for c in candidates(self.scene))
+        self.candidates: tuple[Candidate, ...] = tuple(
+            with_derived(c, self.prepared) for c in candidates_of_segment(self.scene)
+        )
 
     @cached_property
     def scene(self) -> Scene:
@@ -165,15 +162,21 @@ class SegmentEngine:
         return self._answer(run, drive_of(run, Recording((run,)).phases[0]), tuple(names), settings, (), 0.0)
 
     def _answer(
-        self, run: Run, drive: Drive, names: Sequence[str], settings: Sequence[Setting], hum: Hum, ahead_s: float
+        self,
+        run: Run,
+        drive: Drive,
+        names: Sequence[str],
+        settings: Sequence[Setting],
+        hum: Sequence[Hum],
+        ahead_s: float,
     ) -> Signals:
         """Named channels of a run."""
         settings = [setting for setting in settings if any(setting.values)]
-        direct = [s.candidate.switched_on(s.values) for s in settings if s.candidate.mechanism in DIRECT]
+        direct = [s.candidate.switched_on(s.values) for s in settings if s.candidate.traits.acts_on_tables]
         on = with_mechanisms(replace(self.model, readout=self._readout(run)), direct)
         values = self._driven(drive, on, settings)
         found = self._mechanics(run, drive, values, on, settings)
-        on = replace(on, physics=replace(on.physics, hum=(*on.physics.hum, *hum)))
+        on = replace(on, physics=replace(on.physics, electronics=(*on.physics.electronics, *hum)))
         return shown(run, names, drive, values, found, self._film(on), on, ahead_s)
 
     def solve(self, run: int, mechanisms: Sequence[Mechanism], report: Report) -> Signals:
@@ -234,13 +237,13 @@ class SegmentEngine:
         """A thinner film has more capacitance."""
         return self.prepared.film.thinner(self.model.segment.film.thickness_um / on.segment.film.thickness_um)
 
-    def _hum(self, run: int, settings: Sequence[Setting]) -> tuple[float, Hum]:
+    def _hum(self, run: int, settings: Sequence[Setting]) -> tuple[float, tuple[Hum, ...]]:
         """By how much the mains are ahead of the touch in a run, and their hum."""
         for setting in settings:
-            if setting.candidate.mechanism == "mains-hum":
+            if setting.candidate.traits.free_phase:
                 sine, cosine = setting.values[2 * run : 2 * run + 2]
                 ahead_s = float(np.arctan2(cosine, sine)) / (2.0 * np.pi * self.scene.mains_Hz)
-                return ahead_s, ((self.scene.mains_Hz, float(np.hypot(sine, cosine))),)
+                return ahead_s, (Hum(self.scene.mains_Hz, float(np.hypot(sine, cosine))),)
         return 0.0, ()
 
 

@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from diagnose.engines.segment.answer import Drive, FilmPlate, Mechanics, other_charge, shown
+from diagnose.engines.segment.answer import Drive, FilmPlate, Mechanics, shown
 from diagnose.engines.segment.prepared import ungapped
 from diagnose.forward import Signals
 from diagnose.signals.recording import Run
@@ -167,5 +167,5 @@ def _of(found: Mechanics) -> Floats:
 
 def _columns(trace: Trace, task: Task) -> Floats:
     """The same of a press, without the charge of heat and touch that the recorder has added."""
-    charge = trace.film_charge_C - other_charge(trace.time_s, trace.contact_area_m2, task.film, task.model)
+    charge = trace.film_charge_C - task.film.other_charge_C(trace.time_s, trace.contact_area_m2, task.model.physics)
     return np.column_stack([1e3 * trace.dot_path_m, trace.contact_force_N[:, 2], trace.contact_area_m2, charge])

@@ -41,11 +41,11 @@ class Effect:
 
 
 @lru_cache(maxsize=512)
-def effect(mechanism: str, coordinates: tuple[Coordinate, ...]) -> Effect:
-    """How a candidate is pressed and read."""
+def effect(together: str, coordinates: tuple[Coordinate, ...]) -> Effect:
+    """How a candidate is pressed and read; together : see diagnose.forward.Candidate."""
     pressed = tuple(n for n, coordinate in enumerate(coordinates) if coordinate.nodes)
     splines = [_spline(coordinates[n]) for n in pressed]
-    points, functions = _LAYOUTS.get(mechanism, _alone)(coordinates, pressed, splines)
+    points, functions = _LAYOUTS[together](coordinates, pressed, splines)
     whole = np.array([functions(point) for point in points])
     inverse = np.linalg.inv(whole) if points else np.zeros((0, 0))
     return Effect(tuple(points), pressed, functions, coordinates, inverse)
@@ -53,7 +53,7 @@ def effect(mechanism: str, coordinates: tuple[Coordinate, ...]) -> Effect:
 
 def effect_of(candidate: Candidate) -> Effect:
     """The same of a candidate."""
-    return effect(candidate.mechanism, candidate.coordinates)
+    return effect(candidate.together, candidate.coordinates)
 
 
 def _spline(coordinate: Coordinate) -> BSpline:
@@ -116,7 +116,8 @@ def _at(coordinates: tuple[Coordinate, ...], values: dict[int, float]) -> tuple[
 
 
 _LAYOUTS: dict[str, Callable[[tuple[Coordinate, ...], tuple[int, ...], list[BSpline]], Layout]] = {
-    "adhesive-compliance": _glue,
-    "hyperelastic-stiffening": _jointly,
-    "foam-densification": _fading,
+    "sum": _alone,
+    "glue": _glue,
+    "jointly": _jointly,
+    "fading": _fading,
 }

@@ -19,7 +19,6 @@ from geometry.arrays import Floats
 from solve.reduced.fit import CELLS, Fit
 from solve.tables.job import RETURN
 
-MECHANISMS = frozenset({"stress-softening", "film-yield"})
 BACK = 2, 4
 """Which of the shares of the depth are turned at."""
 ROWS = np.linspace(0.0, 1.0, CELLS + 1)

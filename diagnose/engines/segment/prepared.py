@@ -16,20 +16,21 @@ from diagnose.engines.segment.answer import FilmPlate
 from diagnose.engines.segment.interpolation import effect_of
 from diagnose.forward import Candidate, Coordinate, Setting
 from diagnose.signals.recording import Recording
-from diagnose.vocabulary.memory import LARGEST_SHARE, relaxable
+from diagnose.vocabulary.layers.property_error import nuisance as wrong_number
+from diagnose.vocabulary.layers.viscoelasticity import LARGEST_SHARE, relaxable
 from diagnose.vocabulary.scene import Scene
-from diagnose.vocabulary.wrong_numbers import nuisance as wrong_number
 from geometry.arrays import Floats
 from geometry.base import Report
 from geometry.dot import resolve_dot
 from mesh.parameters import MeshOptions
 from mesh.types import TetMesh
+from solve.mechanisms import with_mechanisms
+from solve.mechanisms.layers.viscoelasticity import VISCOELASTICITY
 from solve.model import Model, Physics
 from solve.parameters import Press
 from solve.press import press_segment
 from solve.reduced.fit import CELLS, Fit
 from solve.solution.newton import NoEquilibriumError
-from solve.switch_on import with_mechanisms
 from solve.tables import store
 from solve.tables.job import Job, Reduction
 from solve.tables.rig_mesh import finer_mesh, mesh_of, rig_mesh
@@ -103,8 +104,6 @@ MARGIN = 1.02  # of the depth of the table over the deepest press
 FINEST, MIDDLE = 0.4, 0.7
 """Element sizes of the finer meshes, in terms of the diagnosis mesh."""
 MOST_NODES = 20_000  # 2 s of one core for each Newton step
-ON_THE_MIDDLE_MESH = frozenset({"dot-offset", "property-error", "dimension-reduction"})
-"""What moves the contact, which a coarse mesh feels node by node, and numbers that are asked for to some percent."""
 ROUND_OFF = 1e-12  # of a weight
 TOUCH = 1e-6  # of the depth: there is no logarithm of 0
 SLIPS = 3  # steps between two of them under friction
@@ -161,8 +160,8 @@ class Prepared:
                 return reduction, _all_there(outputs)
             told = f"No equilibrium with the full memory of {', '.join(layers)}"
             dropped = layers.pop()
-            left_out = f"viscoelasticity of {dropped} is left out of the candidates"
-            self.shortfalls["viscoelasticity", dropped] = f"{told}: {left_out}."
+            left_out = f"{VISCOELASTICITY.name} of {dropped} is left out of the candidates"
+            self.shortfalls[VISCOELASTICITY.name, dropped] = f"{told}: {left_out}."
 
     @property
     def nothing(self) -> Floats:
@@ -182,7 +181,7 @@ class Prepared:
 
     @cached_property
     def _middle_mesh(self) -> Sizes:
-        """See ON_THE_MIDDLE_MESH; a dot elsewhere is pressed on it too."""
+        """See Traits.on_middle_mesh; a dot elsewhere is pressed on it too."""
         return finer_mesh(self.model, self.options, MIDDLE, MOST_NODES)
 
     def add(self, candidates: Sequence[Candidate], places: Sequence[Place], report: Report) -> None:
@@ -239,8 +238,8 @@ class Prepared:
 
     def _jobs(self, candidate: Candidate) -> Iterator[tuple[Name, tuple[Job, int]]]:
         """Presses by name, each with the number of its mesh: 0 for the diagnosis mesh, 1 for the middle one."""
-        back = path.BACK if candidate.mechanism in path.MECHANISMS else ()
-        finer = candidate.mechanism in ON_THE_MIDDLE_MESH
+        back = path.BACK if candidate.traits.shows_on_return else ()
+        finer = candidate.traits.on_middle_mesh
         for point in effect_of(candidate).points:
             changed = with_mechanisms(self.model, [candidate.switched_on(point)])
             job = self.job(changed, self._middle_mesh if finer else None)
@@ -257,7 +256,7 @@ class Prepared:
     def change(self, place: Place, settings: Sequence[Setting]) -> Floats | None:
         """The sum (n, 2 + e) of what elastic settings and the dot's place change; None for nothing. ValueError."""
         parts = [] if not any(place) else [self._known(_at(place), f"a dot at {place} mm")]
-        elastic = [setting for setting in settings if setting.candidate.mechanism not in path.MECHANISMS]
+        elastic = [setting for setting in settings if not setting.candidate.traits.shows_on_return]
         parts += [values for values in map(self._values, elastic) if values is not None]
         return np.sum(parts, axis=0) if parts else None
 
@@ -265,7 +264,7 @@ class Prepared:
         """Of the settings that depend on the path. ValueError."""
         found = []
         for setting in settings:
-            if setting.candidate.mechanism in path.MECHANISMS:
+            if setting.candidate.traits.shows_on_return:
                 values = self._values(setting)
                 found += [path.History(values, SHARES)] if values is not None else []
         return found

@@ -29,6 +29,7 @@ from softdot.paper.calibration.rig import (
     rig_config,
 )
 from softdot.paper.section import NotSolvedError
+from solve.mechanisms.boundaries.adhesive_compliance import ADHESIVE_COMPLIANCE
 
 
 @dataclass(frozen=True)
@@ -94,7 +95,7 @@ VARIED = {
 """Model -> input -> values at which it is pressed too, beside the assumed one."""
 GLUE = tuple(
     {
-        "name": "adhesive-compliance",
+        "name": ADHESIVE_COMPLIANCE.name,
         "component": bond,
         "parameters": {"thickness_um": 30.0, "youngs_modulus_MPa": 0.3},
     }

@@ -5,7 +5,7 @@ import numpy as np
 from diagnose.engines.segment import segment_engine
 from diagnose.signals.recording import Recording, Run
 from mesh.parameters import MeshOptions
-from softdot.actual import actual
+from softdot.actual import model_of
 from softdot.config import config_from
 from solve.model import Model
 from solve.parameters import Readout
@@ -25,8 +25,7 @@ DEPTH_MM = 0.25
 
 def model(**tables) -> Model:
     """The paper's segment as a slice, with changes to the tables of its configuration."""
-    config, physics = actual(config_from({**TABLES, **tables}))
-    return Model(config.segment, config.layer_materials(), config.dot, config.press, config.readout, physics)
+    return model_of(config_from({**TABLES, **tables}))
 
 
 def press(time_s, depth_mm=DEPTH_MM, touch_s=0.3, rise_s=0.2, hold_s=0.4, clear_mm=-0.05):

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
-from diagnose.vocabulary.candidates import candidates
-from diagnose.vocabulary.memory import relaxed_fraction
+from diagnose.vocabulary.base import candidates_of_segment as candidates
+from diagnose.vocabulary.layers.property_error import nuisance
+from diagnose.vocabulary.layers.viscoelasticity import relaxed_fraction
 from diagnose.vocabulary.scene import Scene
-from diagnose.vocabulary.wrong_numbers import nuisance
-from solve.mechanisms import BONDS, MECHANISMS, MEDIA
+from solve.mechanisms import MECHANISMS, with_mechanisms
+from solve.mechanisms.base import BONDS, MEDIA
 from solve.parameters import Readout
-from solve.readout.filters import Saturation
-from solve.switch_on import with_mechanisms
+from solve.readout.stages import Saturation
 from tests.diagnose.segment.rigs import LEAKY, model
 
 ELECTRODES = [{"name": name, "center_mm": [x, 0.0], "size_mm": [1.0, 2.5]} for name, x in (("a", -0.6), ("b", 0.6))]
@@ -109,7 +109,7 @@ def test_a_fit_finds_a_limit_from_every_start_of_it(limited, largest_error):
     voltage = np.linspace(-0.2, 1.0, 400)
 
     def left(values):
-        return Saturation(**candidate.parameters(values)).applied(voltage) - limited(voltage)
+        return Saturation(**candidate.parameters(values)).applied(voltage, voltage) - limited(voltage)
 
     bounds = np.array([(c.low, c.high) for c in candidate.coordinates]).T
     for start in (0.1, *candidate.coordinates[0].starts):

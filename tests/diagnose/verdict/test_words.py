@@ -11,8 +11,9 @@ from diagnose.findings import Fit, Interval, Place
 from diagnose.forward import Candidate, Coordinate, Setting
 from diagnose.next_press.choose import next_press
 from diagnose.verdict.content import verdict, where_words
-from diagnose.verdict.names import WHAT, WHERE, interval_words, listed, mechanism_words
+from diagnose.verdict.names import WHERE, interval_words, listed, mechanism_words
 from diagnose.verdict.words import sentences
+from diagnose.vocabulary.base import vocabulary
 from solve.mechanisms import MECHANISMS
 from tests.diagnose.verdict.toy import LEAK, RELAXING, ToyEngine, fitted, found, toy_recording
 
@@ -118,7 +119,7 @@ def test_high_and_low_are_meant_along_the_signal(recording, factor, side):
 
 
 def test_every_mechanism_and_component_has_words():
-    assert WHAT.keys() == MECHANISMS.keys()
+    assert vocabulary().keys() == MECHANISMS.keys()
     components = {part for kind in MECHANISMS.values() for part in kind.components if not part.startswith("channel")}
     assert components <= WHERE.keys()
     assert mechanism_words("crosstalk", "channel-2") == "other channels couple into channel 2"

@@ -1,4 +1,4 @@
-"""Viscoelasticity of a layer or a declared compliant bond."""
+"""Viscoelasticity of a layer or a declared compliant bond: Prony branches at fixed times, shifted together."""
 
 from collections.abc import Iterator, Sequence
 from math import exp, log, log10
@@ -6,9 +6,14 @@ from typing import Any
 
 import numpy as np
 
+from diagnose.engines.coupon.laws import MOST_OF_COUPON, relaxation_times
+from diagnose.engines.coupon.layer import LAYER, SPECIMEN, PartOfLayer
 from diagnose.forward import Candidate, Coordinate
-from diagnose.vocabulary.scene import Scene
+from diagnose.signals.recording import Recording
+from diagnose.vocabulary.base import Vocabulary, register
+from diagnose.vocabulary.scene import CouponScene, Scene
 from solve.materials.inelastic import Prony
+from solve.mechanisms.layers.viscoelasticity import VISCOELASTICITY
 from solve.model import Model
 
 BRANCHES = 4
@@ -17,6 +22,24 @@ LARGEST_SHARE = 0.75
 MOST = LARGEST_SHARE / (1.0 - LARGEST_SHARE) / BRANCHES  # modulus of one branch, in terms of what never relaxes
 EARLY_S, LATE_S = 0.1, 10.0
 FEWEST_SAMPLES = 5.0  # within the shortest time of relaxation that is looked for
+MOST_OF_SENSOR = 1.0  # modulus of one branch of an unknown sensor, in terms of what never relaxes
+
+
+def of_segment(scene: Scene) -> Iterator[Candidate]:
+    """All that can relax."""
+    for component in relaxable(scene.model):
+        yield _candidate(scene, component, scene.model.physics.viscosity.get(component, Prony((), ())))
+
+
+def of_coupon(scene: CouponScene) -> Iterator[Candidate]:
+    """The specimen, one branch a decade."""
+    yield spectrum(PartOfLayer, SPECIMEN, relaxation_times(scene.recording), MOST_OF_COUPON)
+
+
+def of_unknown_geometry(scene: Scene, recording: Recording) -> Iterator[Candidate]:
+    """Whatever medium strains the film, and the film."""
+    times = relaxation_times(recording)
+    yield from (spectrum(Candidate, component, times, MOST_OF_SENSOR) for component in (LAYER, "film"))
 
 
 def relaxable(model: Model) -> tuple[str, ...]:
@@ -27,12 +50,6 @@ def relaxable(model: Model) -> tuple[str, ...]:
     return (*model.materials, *model.physics.bonds) if model.physics.prestretch == (0.0, 0.0) else ()
 
 
-def viscoelastic(scene: Scene) -> Iterator[Candidate]:
-    """All that can relax."""
-    for component in relaxable(scene.model):
-        yield _candidate(scene, component, scene.model.physics.viscosity.get(component, Prony((), ())))
-
-
 def _candidate(scene: Scene, component: str, declared: Prony) -> Candidate:
     """BRANCHES branches by their moduli over what never relaxes, and one shift of all their times.
 
@@ -40,7 +57,7 @@ def _candidate(scene: Scene, component: str, declared: Prony) -> Candidate:
     alone have any time; several together take the form of any spectrum. What relaxes faster than all of them shows
     about as the fastest does. What rig.toml declares stays beside them.
     """
-    times, reach = relaxation_times(scene.step_s, scene.duration_s)
+    times, reach = _branch_times(scene.step_s, scene.duration_s)
     free = 1.0 - sum(declared.relative_moduli)
     moduli = tuple(Coordinate(f"modulus_{n + 1}", 0.0, MOST, (0.1, 0.5)) for n in range(BRANCHES))
     shift = Coordinate("log_time", -reach, reach, (-0.5 * reach, 0.5 * reach), levels_off=(True, False))
@@ -59,10 +76,10 @@ def _candidate(scene: Scene, component: str, declared: Prony) -> Candidate:
         return {"relaxed_fraction": relaxed_fraction(*series(values))}
 
     units = {"relative_moduli": "", "relaxation_times_s": "s", "relaxed_fraction": ""}
-    return Candidate("viscoelasticity", component, (*moduli, shift), parameters, derived, units)
+    return Candidate(VISCOELASTICITY.name, component, (*moduli, shift), parameters, derived, units)
 
 
-def relaxation_times(step_s: float, duration_s: float) -> tuple[list[float], float]:
+def _branch_times(step_s: float, duration_s: float) -> tuple[list[float], float]:
     """Times of the branches, evenly in the logarithm, and half their spacing.
 
     Together they span what a run shows, and LATE_S: without a branch that slow, the relaxed fraction of a material that
@@ -80,3 +97,36 @@ def relaxed_fraction(relative_moduli: Sequence[float], relaxation_times_s: Seque
     g, tau = np.array(relative_moduli), np.array(relaxation_times_s)
     early, late = (1.0 - float((g * -np.expm1(-t / tau)).sum()) for t in (EARLY_S, LATE_S))
     return 1.0 - late / early
+
+
+def spectrum(make: type[Candidate], component: str, times_s: Sequence[float], most: float) -> Candidate:
+    """The candidate at a component, one coordinate a branch; most : of each E_i / E_inf. make : its class."""
+
+    def parameters(values: Sequence[float]) -> dict[str, Any]:
+        moduli, times = _branches(values, times_s)
+        return {"relative_moduli": moduli, "relaxation_times_s": times}
+
+    def derived(values: Sequence[float]) -> dict[str, float]:
+        return {"relaxed_fraction": relaxed_fraction(*_branches(values, times_s))}
+
+    coordinates = tuple(Coordinate(f"modulus_at_{time:.3g}_s", 0.0, most, (0.1, 0.5)) for time in times_s)
+    units = {"relative_moduli": "", "relaxation_times_s": "s", "relaxed_fraction": ""}
+    return make(VISCOELASTICITY.name, component, coordinates, parameters, derived, units)
+
+
+def _branches(values: Sequence[float], times_s: Sequence[float]) -> tuple[list[float], list[float]]:
+    """g_i and times of the branches that relax at all, of the values E_i / E_inf."""
+    whole = 1.0 + sum(values)
+    kept = [(value / whole, time) for value, time in zip(values, times_s, strict=True) if value > 0.0]
+    return [g for g, _ in kept], [time for _, time in kept]
+
+
+register(
+    Vocabulary(
+        VISCOELASTICITY,
+        "{} relaxes (viscoelasticity)",
+        of_segment=of_segment,
+        of_coupon=of_coupon,
+        of_unknown_geometry=of_unknown_geometry,
+    )
+)

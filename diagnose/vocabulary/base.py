@@ -1,0 +1,73 @@
+"""What only a diagnosis knows of a mechanism: its candidates, and how it is said. The registry of all of them."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import cache
+from importlib import import_module
+from pkgutil import walk_packages
+
+from diagnose.forward import Candidate
+from diagnose.signals.recording import Recording
+from diagnose.vocabulary.scene import CouponScene, Scene
+from solve.mechanisms.base import MechanismType
+
+
+def _none(*_: object) -> Iterable[Candidate]:
+    return ()
+
+
+@dataclass(frozen=True)
+class Vocabulary:
+    """words : half a sentence on what happens, with {} for where.
+
+    of_segment, of_coupon, of_unknown_geometry : its candidates in a rig, in a coupon test and for a sensor that nobody
+    can mesh; none where it cannot be told there.
+    undone_by : what a bench can change so that it does not act: words and keys; None where nothing is known.
+    """
+
+    mechanism: MechanismType
+    words: str
+    of_segment: Callable[[Scene], Iterable[Candidate]]
+    of_coupon: Callable[[CouponScene], Iterable[Candidate]] = _none
+    of_unknown_geometry: Callable[[Scene, Recording], Iterable[Candidate]] = _none
+    undone_by: tuple[str, dict[str, str]] | None = None
+
+
+VOCABULARY: dict[str, Vocabulary] = {}
+
+
+def register(entry: Vocabulary) -> Vocabulary:
+    """Make a mechanism a candidate of every diagnosis; returns it. ValueError where it is one already."""
+    if entry.mechanism.name in VOCABULARY:
+        raise ValueError(f"name = '{entry.mechanism.name}': a diagnosis knows it already")
+    VOCABULARY[entry.mechanism.name] = entry
+    return entry
+
+
+def vocabulary() -> dict[str, Vocabulary]:
+    """Mechanism -> what a diagnosis knows of it."""
+    _discover()
+    return VOCABULARY
+
+
+@cache
+def _discover() -> None:
+    """Import every module beside this one: each registers its mechanism."""
+    package = __name__.rpartition(".")[0]
+    for module in sorted(found.name for found in walk_packages(import_module(package).__path__, f"{package}.")):
+        import_module(module)
+
+
+def candidates_of_segment(scene: Scene) -> tuple[Candidate, ...]:
+    """Every mechanism and component that the rig admits."""
+    return tuple(one for entry in vocabulary().values() for one in entry.of_segment(scene))
+
+
+def candidates_of_coupon(scene: CouponScene) -> tuple[Candidate, ...]:
+    """Every mechanism that a homogeneous coupon admits."""
+    return tuple(one for entry in vocabulary().values() for one in entry.of_coupon(scene))
+
+
+def candidates_of_unknown_geometry(scene: Scene, recording: Recording) -> tuple[Candidate, ...]:
+    """Every mechanism that shows whatever the geometry."""
+    return tuple(one for entry in vocabulary().values() for one in entry.of_unknown_geometry(scene, recording))

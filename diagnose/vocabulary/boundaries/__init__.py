@@ -1,0 +1,1 @@
+"""Candidates at bonds, sides, dot and rig."""

@@ -1,0 +1,28 @@
+"""Lost motion before the touch: up to half the deepest press."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from diagnose.forward import Candidate, Coordinate
+from diagnose.vocabulary.base import Vocabulary, register
+from diagnose.vocabulary.scene import Scene
+from solve.mechanisms.boundaries.contact_gap import CONTACT_GAP
+
+
+def of_segment(scene: Scene) -> Iterator[Candidate]:
+    """Of any dot."""
+    yield _gap(scene)
+
+
+def _gap(scene: Scene) -> Candidate:
+    """Up to half the deepest press."""
+    deepest = scene.depth_mm
+    coordinate = Coordinate("gap_mm", 0.0, 0.5 * deepest, (0.03 * deepest, 0.15 * deepest))
+
+    def parameters(values: Sequence[float]) -> dict[str, Any]:
+        return {"gap_mm": values[0]}
+
+    return Candidate(CONTACT_GAP.name, "dot", (coordinate,), parameters, units={"gap_mm": "mm"})
+
+
+register(Vocabulary(CONTACT_GAP, "there is a gap before {} touches", of_segment=of_segment))

@@ -1,0 +1,49 @@
+"""A mass that moves with the dot, or between load cell and specimen."""
+
+from collections.abc import Iterator, Sequence
+from math import sinh
+from typing import Any
+
+from diagnose.forward import Candidate
+from diagnose.vocabulary.base import Vocabulary, register
+from diagnose.vocabulary.scene import CouponScene, Scene, growing
+from solve.mechanisms.boundaries.inertia import INERTIA
+
+MASS_G = 5.0
+HEAVIEST_G = 500.0
+GRIP_G, HEAVIEST_GRIP_G = 50.0, 20_000.0  # from a clip to the grips of a large tester
+
+
+def of_segment(scene: Scene) -> Iterator[Candidate]:
+    """Of any rig."""
+    yield _mass(scene)
+
+
+def of_coupon(scene: CouponScene) -> Iterator[Candidate]:
+    """Where the load cell moves."""
+    if any(run.drive != "displacement_mm" for run in scene.recording.runs):
+        return
+    coordinate = growing("mass", GRIP_G, HEAVIEST_GRIP_G, (GRIP_G, 10.0 * GRIP_G))
+
+    def parameters(values: Sequence[float]) -> dict[str, Any]:
+        return {"moving_mass_g": GRIP_G * sinh(values[0])}
+
+    yield Candidate(INERTIA.name, "rig", (coordinate,), parameters, units={"moving_mass_g": "g"})
+
+
+def _mass(scene: Scene) -> Candidate:
+    """The dot, its holder and half of the beam: grams."""
+    have = scene.model.physics.moving_mass_g
+    coordinate = growing("mass", MASS_G, HEAVIEST_G, (MASS_G, 10.0 * MASS_G))
+
+    def parameters(values: Sequence[float]) -> dict[str, Any]:
+        return {"moving_mass_g": have + MASS_G * sinh(values[0])}
+
+    return Candidate(INERTIA.name, "rig", (coordinate,), parameters, units={"moving_mass_g": "g"})
+
+
+register(
+    Vocabulary(
+        INERTIA, "the inertia of a moving mass in {} adds to the force", of_segment=of_segment, of_coupon=of_coupon
+    )
+)

@@ -1,0 +1,44 @@
+"""Charge that the touch leaves, in terms of the largest that was recorded."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from diagnose.forward import Candidate, Coordinate
+from diagnose.signals.recording import Recording
+from diagnose.vocabulary.base import Vocabulary, register
+from diagnose.vocabulary.scene import Scene
+from solve.mechanisms.circuit.contact_electrification import CONTACT_ELECTRIFICATION
+
+TOUCH_CHARGE = 10.0  # of the largest charge that was recorded
+
+
+def of_segment(scene: Scene) -> Iterator[Candidate]:
+    """Of any film."""
+    yield _touch(scene)
+
+
+def of_unknown_geometry(scene: Scene, recording: Recording) -> Iterator[Candidate]:
+    """As of a segment."""
+    yield _touch(scene)
+
+
+def _touch(scene: Scene) -> Candidate:
+    """In terms of the charge that makes the largest voltage recorded."""
+    scale = scene.capacitance_pF * (scene.voltage_V or 1.0)
+    declared = scene.model.physics.contact_charge_pC
+    coordinate = Coordinate("charge", -TOUCH_CHARGE, TOUCH_CHARGE, (0.1, -0.1))
+
+    def parameters(values: Sequence[float]) -> dict[str, Any]:
+        return {"charge_pC": declared + scale * values[0]}
+
+    return Candidate(CONTACT_ELECTRIFICATION.name, "film", (coordinate,), parameters, units={"charge_pC": "pC"})
+
+
+register(
+    Vocabulary(
+        CONTACT_ELECTRIFICATION,
+        "contact leaves charge on {}",
+        of_segment=of_segment,
+        of_unknown_geometry=of_unknown_geometry,
+    )
+)

@@ -1,0 +1,1 @@
+"""Candidates of the layers: how media and film answer to strain."""

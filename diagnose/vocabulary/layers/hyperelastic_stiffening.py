@@ -1,0 +1,137 @@
+"""A law that stiffens at large strain, of a medium, a coupon or whatever strains an unknown sensor."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from diagnose.engines.coupon.kinematics import SimpleShear
+from diagnose.engines.coupon.laws import LARGEST_STRAIN, MEDIUM, Stiffening
+from diagnose.engines.coupon.layer import LAYER, SPECIMEN, PartOfLayer, one_layer
+from diagnose.engines.coupon.point import MaterialPoint
+from diagnose.forward import Candidate, Coordinate
+from diagnose.signals.recording import Recording
+from diagnose.vocabulary.base import Vocabulary, register
+from diagnose.vocabulary.scene import CouponScene, Scene
+from solve.materials.laws import medium_law
+from solve.materials.parameters import Hyperfoam, Material, MooneyRivlin, NeoHookean, Ogden, Yeoh
+from solve.mechanisms import Mechanism, with_mechanisms
+from solve.mechanisms.base import MEDIA
+from solve.mechanisms.layers.hyperelastic_stiffening import HYPERELASTIC_STIFFENING
+
+STEEP = 8.0  # exponent of the Ogden term that stiffens
+
+
+def of_segment(scene: Scene) -> Iterator[Candidate]:
+    """Of the media that this rig has: a law that goes over into the declared one, with constants 0 where it is off."""
+    for component in MEDIA:
+        material = scene.model.materials.get(component)
+        if isinstance(material, NeoHookean | Yeoh):
+            yield _yeoh(component, material)
+        elif isinstance(material, MooneyRivlin | Ogden):
+            yield _ogden(component, material)
+
+
+def of_coupon(scene: CouponScene) -> Iterator[Candidate]:
+    """Of all but foams."""
+    if not isinstance(scene.material, Hyperfoam):
+        by_force = any(run.drive == "force_N" for run in scene.recording.runs)
+        yield _of_specimen(scene.material, scene.point, scene.travel_mm, by_force)
+
+
+def of_unknown_geometry(scene: Scene, recording: Recording) -> Iterator[Candidate]:
+    """Of whatever medium strains the film."""
+    yield _of_sensor()
+
+
+def _of_sensor() -> Candidate:
+    """force_ratio is that at the strain of the largest force without: the force that it takes with."""
+    stretch = SimpleShear(1.0, 1.0).principal_stretch(np.array([LARGEST_STRAIN]))
+    law = Stiffening(MEDIUM, stretch, SimpleShear.lateral, by_force=True)
+
+    def derived(values: Sequence[float]) -> dict[str, float]:
+        return {"force_ratio": 1.0 + sum(values)}
+
+    unit = "of twice the shear modulus"
+    units = {"c10_MPa": unit, "c20_MPa": unit, "c30_MPa": unit, "force_ratio": ""}
+    return Candidate(HYPERELASTIC_STIFFENING.name, LAYER, law.coordinates, law.parameters, derived, units)
+
+
+def _yeoh(component: str, material: NeoHookean | Yeoh) -> Candidate:
+    """c20 and c30 over c10. Gent's law with the limit J of I1 - 3 has 1 / 2J and 1 / 3J^2: up to J = 0.4 and 0.33."""
+    c10 = 0.5 * material.shear_modulus_MPa
+    c20, c30 = (material.c20_MPa, material.c30_MPa) if isinstance(material, Yeoh) else (0.0, 0.0)
+    coordinates = (
+        Coordinate("c20_over_c10", 0.0, 1.25, (0.1, 0.5), (0.4, 1.25)),
+        Coordinate("c30_over_c10", 0.0, 3.0, (0.1, 1.0), (0.75, 3.0)),
+    )
+
+    def parameters(values: Sequence[float]) -> dict[str, Any]:
+        return {"c10_MPa": c10, "c20_MPa": c20 + c10 * values[0], "c30_MPa": c30 + c10 * values[1]}
+
+    units = {"c10_MPa": "MPa", "c20_MPa": "MPa", "c30_MPa": "MPa", "force_ratio": ""}
+    return Candidate(
+        HYPERELASTIC_STIFFENING.name,
+        component,
+        coordinates,
+        parameters,
+        units=units,
+        compared="force_ratio",
+        together="jointly",
+    )
+
+
+def _ogden(component: str, material: MooneyRivlin | Ogden) -> Candidate:
+    """One more term with a large exponent, by its share of the shear modulus. Mooney-Rivlin is Ogden's 2 and -2."""
+    if isinstance(material, Ogden):
+        mu, alpha = material.mu_MPa, material.alpha
+    else:
+        mu, alpha = (2.0 * material.c10_MPa, -2.0 * material.c01_MPa), (2.0, -2.0)
+    shear = material.shear_modulus_MPa
+    coordinate = Coordinate("share", 0.0, 3.0, (0.1, 1.0), (0.3, 1.0, 3.0))
+
+    def parameters(values: Sequence[float]) -> dict[str, Any]:
+        return {"mu_MPa": (*mu, 2.0 * shear * values[0] / STEEP), "alpha": (*alpha, STEEP)}
+
+    units = {"mu_MPa": "MPa", "alpha": "", "force_ratio": ""}
+    return Candidate(
+        HYPERELASTIC_STIFFENING.name,
+        component,
+        (coordinate,),
+        parameters,
+        units=units,
+        compared="force_ratio",
+        together="jointly",
+    )
+
+
+def _of_specimen(material: Material, point: MaterialPoint, travel_mm: float, by_force: bool) -> Candidate:
+    """force_ratio is that at the largest travel, with over without."""
+    unknown = point.kinematics.start(np.array([travel_mm]), point.poisson_ratio)
+    law = Stiffening(material, point.kinematics.principal_stretch(unknown[0]), point.kinematics.lateral, by_force)
+    without = _force(point, travel_mm)
+
+    def derived(values: Sequence[float]) -> dict[str, float]:
+        mechanism = Mechanism(name=HYPERELASTIC_STIFFENING.name, component=LAYER, parameters=law.parameters(values))
+        stiff = with_mechanisms(one_layer(material, 1.0), [mechanism]).materials[LAYER]
+        return {"force_ratio": _force(replace(point, law=medium_law(stiff).scaled(1e-6)), travel_mm) / without}
+
+    units = {"c10_MPa": "MPa", "c20_MPa": "MPa", "c30_MPa": "MPa", "mu_MPa": "MPa", "alpha": "", "force_ratio": ""}
+    return PartOfLayer(HYPERELASTIC_STIFFENING.name, SPECIMEN, law.coordinates, law.parameters, derived, units)
+
+
+def _force(point: MaterialPoint, travel_mm: float) -> float:
+    """Of the elastic coupon at a travel, from rest."""
+    return float(point.answer(np.array([0.0, 1.0]), np.array([0.0, travel_mm]), "displacement_mm")[1])
+
+
+register(
+    Vocabulary(
+        HYPERELASTIC_STIFFENING,
+        "{} stiffens at large strain",
+        of_segment=of_segment,
+        of_coupon=of_coupon,
+        of_unknown_geometry=of_unknown_geometry,
+    )
+)

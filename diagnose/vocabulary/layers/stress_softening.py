@@ -1,0 +1,67 @@
+"""A medium that is softer once it has been strained: by its largest loss of stress."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from diagnose.engines.coupon.layer import LAYER, SPECIMEN, PartOfLayer
+from diagnose.forward import Candidate, Coordinate
+from diagnose.signals.recording import Recording
+from diagnose.vocabulary.base import Vocabulary, register
+from diagnose.vocabulary.scene import CouponScene, Scene
+from solve.materials.inelastic import Softening
+from solve.mechanisms.base import MEDIA
+from solve.mechanisms.layers.stress_softening import STRESS_SOFTENING
+
+LOSS = 0.7  # filled rubber loses up to 40 % on the first press, soft tough ones more
+LARGEST_LOSS = 0.9  # of a coupon
+
+
+def of_segment(scene: Scene) -> Iterator[Candidate]:
+    """Of the media that this rig has."""
+    for component in MEDIA:
+        if component in scene.model.materials:
+            yield _softening(scene, component)
+
+
+def of_coupon(scene: CouponScene) -> Iterator[Candidate]:
+    """The specimen."""
+    yield _of(PartOfLayer, SPECIMEN)
+
+
+def of_unknown_geometry(scene: Scene, recording: Recording) -> Iterator[Candidate]:
+    """Whatever medium strains the film."""
+    yield _of(Candidate, LAYER)
+
+
+def _softening(scene: Scene, component: str) -> Candidate:
+    """The largest loss of stress."""
+    declared = scene.model.physics.softening.get(component, Softening(0.0))
+    coordinate = Coordinate("loss", 0.0, LOSS, (0.1, 0.4), (0.35, LOSS))
+
+    def parameters(values: Sequence[float]) -> dict[str, Any]:
+        loss = declared.loss + (1.0 - declared.loss) * values[0]
+        return {"loss_ratio": loss, "energy_MPa": declared.energy, "beta": declared.beta}
+
+    units = {"loss_ratio": "", "energy_MPa": "MPa", "beta": ""}
+    return Candidate(STRESS_SOFTENING.name, component, (coordinate,), parameters, units=units, compared="loss_ratio")
+
+
+def _of(make: type[Candidate], component: str) -> Candidate:
+    """The candidate at a component."""
+    coordinate = Coordinate("loss_ratio", 0.0, LARGEST_LOSS, (0.1, 0.4))
+
+    def parameters(values: Sequence[float]) -> dict[str, Any]:
+        return {"loss_ratio": values[0]}
+
+    return make(STRESS_SOFTENING.name, component, (coordinate,), parameters, units={"loss_ratio": ""})
+
+
+register(
+    Vocabulary(
+        STRESS_SOFTENING,
+        "{} is softer once it has been strained (stress softening)",
+        of_segment=of_segment,
+        of_coupon=of_coupon,
+        of_unknown_geometry=of_unknown_geometry,
+    )
+)

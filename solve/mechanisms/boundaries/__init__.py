@@ -1,0 +1,1 @@
+"""Mechanisms at bonds, sides, dot and rig."""

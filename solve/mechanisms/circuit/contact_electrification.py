@@ -1,0 +1,36 @@
+"""Charge that the touch leaves on the electrodes.
+
+Equation, source and typical values: docs/mechanisms.md#contact-electrification.
+"""
+
+from pydantic import Field
+
+from geometry.parameters import Finite
+from solve.mechanisms.base import MechanismType, Parameters, Traits, register, with_physics
+from solve.model import Model
+
+
+class ContactElectrification(Parameters):
+    """Charge that the touch leaves on the electrodes."""
+
+    charge_pC: Finite = Field(description="charge at the largest contact area; proportional to the area before that")
+
+
+def switch_on(model: Model, component: str, values: ContactElectrification) -> Model:
+    """The model with this physics at a component."""
+    return with_physics(model, contact_charge_pC=values.charge_pC)
+
+
+CONTACT_ELECTRIFICATION = register(
+    MechanismType(
+        name="contact-electrification",
+        components=("film",),
+        parameters=ContactElectrification,
+        switch_on=switch_on,
+        off={"charge_pC": 0.0},
+        typical={
+            "charge_pC": "0.1 to 10 times the signal with an input of gigaohms (rule of thumb); either sign",
+        },
+        traits=Traits(acts_on_tables=True),
+    )
+)

@@ -1,0 +1,1 @@
+"""Mechanisms of the layers: how media and film answer to strain."""

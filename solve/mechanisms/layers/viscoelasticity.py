@@ -1,0 +1,57 @@
+"""A Prony series.
+
+Equation, source and typical values: docs/mechanisms.md#viscoelasticity.
+"""
+
+from typing import Self
+
+from pydantic import Field, model_validator
+
+from geometry.parameters import Positive
+from solve.materials.inelastic import Prony
+from solve.mechanisms.base import BONDS, MEDIA, MechanismType, Moduli, Parameters, Traits, register, with_physics
+from solve.model import Model
+
+
+class Viscoelasticity(Parameters):
+    """A Prony series."""
+
+    relative_moduli: Moduli = Field(description="share of the instantaneous stress that each term relaxes")
+    relaxation_times_s: tuple[Positive, ...] = Field(description="one for each modulus")
+
+    @model_validator(mode="after")
+    def _series(self) -> Self:
+        if len(self.relative_moduli) != len(self.relaxation_times_s):
+            raise ValueError(
+                f"relaxation_times_s has {len(self.relaxation_times_s)} values but relative_moduli has "
+                f"{len(self.relative_moduli)}: one of each per term"
+            )
+        if sum(self.relative_moduli) >= 1.0:
+            raise ValueError(f"relative_moduli = {list(self.relative_moduli)}: their sum must be below 1")
+        return self
+
+
+def switch_on(model: Model, component: str, values: Viscoelasticity) -> Model:
+    """The model with this physics at a component."""
+    series = Prony(values.relative_moduli, values.relaxation_times_s)
+    on = {component: series} if sum(series.relative_moduli) > 0.0 else {}
+    return with_physics(model, viscosity={**model.physics.viscosity, **on})
+
+
+VISCOELASTICITY = register(
+    MechanismType(
+        name="viscoelasticity",
+        components=(*MEDIA, "film", *BONDS),
+        parameters=Viscoelasticity,
+        switch_on=switch_on,
+        off={"relative_moduli": [], "relaxation_times_s": []},
+        typical={
+            "relative_moduli": (
+                "silicones: 0.05, 0.03, 0.02; unfilled natural rubber 2 to 3 % per decade of time, filled 5 to 10 % "
+                "(rules of thumb)"
+            ),
+            "relaxation_times_s": "0.1, 1, 10 with the above",
+        },
+        traits=Traits(memory=True, acts_on_tables=True),
+    )
+)

@@ -1,0 +1,67 @@
+"""What stands behind the input of an amplifier, in order: what adds to the voltage, what limits it, what filters it.
+
+A limit, hard or with a rounded knee: V -> V / (1 + |V / V_max|^p)^(1 / p) (Rapp, Effects of HPA-nonlinearity on a
+4-DPSK/OFDM-signal, ESA SP-332, 1991, pp. 179-184), a hard clip for an infinite sharpness p. p = 2.5 is close to a
+hyperbolic tangent.
+"""
+
+from dataclasses import dataclass
+from typing import ClassVar, Protocol
+
+import numpy as np
+
+from geometry.arrays import Floats
+
+INPUT, LIMIT, FILTER = 0, 1, 2
+"""Where a stage stands: at the input, at the limit of the amplifier, behind it."""
+
+
+class Stage(Protocol):
+    """A part of the amplifier. Stages of one place stand in the order in which they were switched on."""
+
+    place: ClassVar[int]
+
+    def applied(self, time_s: Floats, voltage_V: Floats) -> Floats:
+        """Voltage (t,) behind it at times (t,)."""
+
+    def largest_gain(self) -> float:
+        """By how much it can enlarge the largest error of the voltage before it."""
+
+
+@dataclass(frozen=True)
+class Hum:
+    """A sine that adds to the voltage; its phase is zero at time zero."""
+
+    frequency_Hz: float
+    amplitude_V: float
+    place: ClassVar[int] = INPUT
+
+    def applied(self, time_s: Floats, voltage_V: Floats) -> Floats:
+        """Voltage (t,) with the sine."""
+        return np.asarray(voltage_V + self.amplitude_V * np.sin(2.0 * np.pi * self.frequency_Hz * time_s))
+
+    def largest_gain(self) -> float:
+        """An error passes unchanged."""
+        return 1.0
+
+
+@dataclass(frozen=True)
+class Saturation:
+    """limit_V : what is never exceeded. sharpness : p of the knee, infinite for none."""
+
+    limit_V: float
+    sharpness: float = np.inf
+    place: ClassVar[int] = LIMIT
+
+    def applied(self, time_s: Floats, voltage_V: Floats) -> Floats:
+        """Voltage (t,) behind it, whatever the times."""
+        hard = np.clip(voltage_V, -self.limit_V, self.limit_V)
+        if np.isinf(self.sharpness):
+            return np.asarray(hard)
+        ratio = np.abs(voltage_V) / self.limit_V
+        inside = np.minimum(ratio, 1.0 / np.maximum(ratio, 1e-300))  # no power of what is above 1: no overflow
+        return np.asarray(hard * (1.0 + inside**self.sharpness) ** (-1.0 / self.sharpness))
+
+    def largest_gain(self) -> float:
+        """It enlarges nothing."""
+        return 1.0
