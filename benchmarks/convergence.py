@@ -17,6 +17,7 @@ import mesh
 from benchmarks.timing import file_argument
 from geometry.dot import resolve_dot
 from softdot.config import load_config
+from solve.model import Model
 from solve.press import press_segment
 
 FACTORS = (2.0, 1.4, 1.0, 0.7)
@@ -29,7 +30,7 @@ def measure(factor: float) -> dict:
     sizes = {name: factor * getattr(config.mesh, name) for name in ("element_size_mm", "contact_element_size_mm")}
     tet_mesh = mesh.build(config.segment, dot, config.mesh.model_copy(update=sizes))
     press = config.press.model_copy(update={"load_steps": 3})  # elastic and frictionless: the path does not matter
-    result = press_segment(config.segment, config.layer_materials(), dot, press, tet_mesh)
+    result = press_segment(Model(config.segment, config.layer_materials(), config.dot, press), tet_mesh)
     if not result.converged:
         raise SystemExit(result.failure)
     return {

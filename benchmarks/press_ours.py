@@ -10,9 +10,9 @@ import time
 from pathlib import Path
 
 from benchmarks.press_case import DEPTH_MM, save, segment_mesh
-from geometry.dot import resolve_dot
 from mesh.types import TetMesh
 from softdot.config import Config, load_config
+from solve.model import Model
 from solve.press import press_segment
 from solve.result import PressResult
 
@@ -20,8 +20,7 @@ from solve.result import PressResult
 def press(config: Config, tet_mesh: TetMesh) -> PressResult:
     """To 0.3 mm in one step: elastic and frictionless, so that the path does not matter."""
     path = config.press.model_copy(update={"indentation_mm": DEPTH_MM, "load_steps": 1})
-    dot = resolve_dot(config.dot, config.segment)
-    result = press_segment(config.segment, config.layer_materials(), dot, path, tet_mesh)
+    result = press_segment(Model(config.segment, config.layer_materials(), config.dot, path), tet_mesh)
     if not result.converged:
         raise SystemExit(result.failure)
     return result

@@ -21,8 +21,7 @@ from matplotlib.axes import Axes
 from scipy.interpolate import PchipInterpolator
 
 from geometry.arrays import Floats
-from softdot import stages
-from softdot.actual import actual
+from softdot.case import Case
 from softdot.config import Config, load_config
 from solve.materials.parameters import Hyperfoam, Material, NeoHookean, PiezoelectricFilm
 from solve.parameters import Readout
@@ -44,9 +43,8 @@ class Curves(NamedTuple):
 
 def solve(config: Config) -> Curves:
     """Press the segment of a configuration. SystemExit where it does not converge."""
-    told, physics = actual(config)
-    dot_shape, _ = stages.check(told)
-    result = stages.press(told, physics, dot_shape, stages.build_mesh(told, dot_shape), lambda *_: None)
+    case = Case(config)
+    told, physics, result = case.model, case.model.physics, case.solve()
     if not result.converged:
         raise SystemExit(result.failure)
     electrodes, amplifier = len(result.capacitance_F), told.readout or Readout()

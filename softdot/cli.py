@@ -98,7 +98,7 @@ def _refuse_unprintable(chosen: argparse.Namespace) -> None:
 
 def _command(chosen: argparse.Namespace) -> int:
     if chosen.command == "schema":
-        from softdot.commands.new import config_schema
+        from softdot.config import config_schema
         from softdot.numbers import json_text
 
         sys.stdout.write(json_text(config_schema()))

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 from geometry.arrays import Floats
 from geometry.base import InputError
 from mesh.types import TetMesh
-from softdot.actual import actual, model_of
 from softdot.config import Config, config_from
+from softdot.config.model import model_of
 from solve.result import PressResult
 
 if TYPE_CHECKING:
@@ -40,11 +40,9 @@ def derivatives(config: Config, keys: Sequence[str]) -> list[Derivative]:
 
     InputError for a key that is absent, no number, zero or decides which parts there are.
     """
-    from softdot import stages
+    from softdot.case import Case
 
-    changed, _ = actual(config)
-    dot_shape, _ = stages.check(changed)
-    result, found = press_with_derivatives(config, keys, stages.build_mesh(changed, dot_shape))
+    result, found = press_with_derivatives(config, keys, Case(config).mesh)
     if not result.converged:
         raise InputError(f"the press stopped early: {result.failure}")
     return found

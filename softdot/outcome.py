@@ -4,15 +4,14 @@ from typing import Any
 
 from geometry.cache import data_hash, recall, remember, source_hash
 from mesh.types import MeshingError
-from softdot import stages
-from softdot.actual import actual
+from softdot.case import Case, OnStep
 from softdot.config import Config, input_hash
 from softdot.numbers import plain
 from softdot.summary import mesh_part, press_part, stopped_solver
 from softdot.warnings import design_warnings, result_warnings
 
 
-def outcome(config: Config, on_step: stages.OnStep | None = None) -> dict[str, Any]:
+def outcome(config: Config, on_step: OnStep | None = None) -> dict[str, Any]:
     """The summary of a press as `softdot run` gives it, without configuration and times. InputError.
 
     Remembered under the hash of configuration and program, so that asking again costs nothing.
@@ -22,7 +21,7 @@ def outcome(config: Config, on_step: stages.OnStep | None = None) -> dict[str, A
     known = remembered(config)
     if known is not None:
         return known
-    numbers = solved(config, on_step or _silent)
+    numbers = solved(config, on_step)
     if "mesh" in numbers:
         remember(_name(config), numbers)
     return numbers
@@ -43,22 +42,17 @@ def _name(config: Config) -> str:
     return f"outcome-{outcome_key(config)}"
 
 
-def solved(config: Config, on_step: stages.OnStep) -> dict[str, Any]:
+def solved(config: Config, on_step: OnStep | None = None) -> dict[str, Any]:
     """Check, mesh and press one configuration, numbers only. InputError for what cannot be built."""
-    changed, physics = actual(config)
-    dot_shape, warnings = stages.check(changed)
-    numbers: dict[str, Any] = {"warnings": [*warnings, *design_warnings(changed)]}
+    case = Case(config)
+    model = case.model
+    numbers: dict[str, Any] = {"warnings": [*case.checked[1], *design_warnings(model)]}
     try:
-        tet_mesh = stages.build_mesh(changed, dot_shape)
-        quality = stages.mesh_quality(changed, tet_mesh)
+        quality = case.mesh_quality
     except MeshingError as error:
         return {**numbers, "solver": stopped_solver(f"meshing: {error}")}
-    result = stages.press(changed, physics, dot_shape, tet_mesh, on_step)
-    readout, channels = stages.readout_voltage(changed, physics, result) or (None, None)
-    numbers |= {"mesh": mesh_part(quality, result.unknowns), **press_part(changed, result, readout, channels)}
-    numbers["warnings"] += result_warnings(changed, dot_shape, result.tet_mesh, result, physics.film_yield is not None)
+    result = case.solve(on_step)
+    readout, channels = case.amplified(result) or (None, None)
+    numbers |= {"mesh": mesh_part(quality, result.unknowns), **press_part(model.readout, result, readout, channels)}
+    numbers["warnings"] += result_warnings(model, case.dot, result)
     return dict(plain(numbers))
-
-
-def _silent(*_args: Any) -> None:
-    """No progress."""

@@ -17,13 +17,13 @@ from solve.result import PressResult
 
 
 def sensitivity(
-    indentation_mm: Floats, force_N: Floats, charge_pC: Floats, voltage_V: Floats, config: Config
+    indentation_mm: Floats, force_N: Floats, charge_pC: Floats, voltage_V: Floats, readout: Readout | None
 ) -> dict[str, float | None]:
     """Secants at the deepest step and the least detectable indentation. All histories of shape (s,).
 
     voltage_V : at the amplifier where there is one, else open circuit.
     """
-    noise = (config.readout or Readout()).noise_V
+    noise = (readout or Readout()).noise_V
     deepest = int(np.argmax(indentation_mm))
     least = least_detectable(indentation_mm, voltage_V, noise)
     return {
@@ -105,7 +105,7 @@ def heading(config: Config) -> dict[str, Any]:
 
 
 def press_part(
-    config: Config, result: PressResult, readout_voltage_V: Floats | None, channels_V: Floats | None = None
+    readout: Readout | None, result: PressResult, readout_voltage_V: Floats | None, channels_V: Floats | None = None
 ) -> dict[str, Any]:
     """The part of the summary that the press gives.
 
@@ -127,7 +127,7 @@ def press_part(
         **part,
         "film": film(result),
         "electrodes": electrodes(result, channels_V),
-        "sensitivity": sensitivity(past.indentation_mm, past.reaction_force_N, past.film_charge_pC, voltage, config),
+        "sensitivity": sensitivity(past.indentation_mm, past.reaction_force_N, past.film_charge_pC, voltage, readout),
     }
     return {**found, "solver": _solver_of(found, result)}
 

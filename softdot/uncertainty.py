@@ -12,8 +12,8 @@ from typing import Any
 
 from geometry.base import InputError
 from mesh.types import MeshingError
-from softdot.actual import model_of
 from softdot.config import Config
+from softdot.config.model import model_of
 from softdot.tolerances.responses import KitPress, Response, coarser
 from softdot.tolerances.tolerances import Tolerance, material_tolerances
 from solve.solution.linear import LinearSolveError

@@ -8,35 +8,32 @@ from geometry.dot import DotShape
 from geometry.parameters import Segment
 from geometry.part_checks import covers_footprint
 from geometry.stack import layers
-from mesh.types import TetMesh
-from softdot.config import Config
 from solve.materials.parameters import Material, PiezoelectricFilm
+from solve.model import Model
 from solve.result import PressResult
 from solve.terms.contact import RigidDot
 
 NEARLY_INCOMPRESSIBLE = 0.49
 
 
-def result_warnings(
-    config: Config, dot_shape: DotShape, tet_mesh: TetMesh, result: PressResult, yields: bool = False
-) -> list[str]:
-    """Warnings that a solution gives: the solver's own, yield of the film, strain beyond the data.
-
-    yields : the film's yield is part of the solution.
+def result_warnings(model: Model, dot_shape: DotShape, result: PressResult) -> list[str]:
+    """Warnings that a solution gives: the solver's own, yield of the film where it is no part of it, strain beyond the
+    data.
     """
-    warnings = [*result.warnings, *([] if yields else _yield(config, result))]
-    for layer, material in config.layer_materials().items():
-        warnings += _beyond_fit(layer, material, tet_mesh, result)
-    if config.press.indentation_mm is None:
+    yields = model.physics.film_yield is not None
+    warnings = [*result.warnings, *([] if yields else _yield(model, result))]
+    for layer, material in model.materials.items():
+        warnings += _beyond_fit(layer, material, result)
+    if model.press.indentation_mm is None:
         deepest_mm = 1e3 * max(step.indentation_m for step in result.steps)
-        warnings += press_warnings(dot_shape, config.segment, deepest_mm)
+        warnings += press_warnings(dot_shape, model.segment, deepest_mm)
     return warnings
 
 
-def design_warnings(config: Config) -> list[str]:
+def design_warnings(model: Model) -> list[str]:
     """Warnings that need no solution: holding medium 2 closes a cavity."""
-    segment = config.segment
-    material = config.layer_materials()["medium2"]
+    segment = model.segment
+    material = model.materials["medium2"]
     held = segment.boundary == "clamped" and "medium2" in segment.held_layers
     nu = getattr(material, "poisson_ratio", 0.0)
     if not held or isinstance(nu, tuple) or nu < NEARLY_INCOMPRESSIBLE:
@@ -47,8 +44,8 @@ def design_warnings(config: Config) -> list[str]:
     ]
 
 
-def _yield(config: Config, result: PressResult) -> list[str]:
-    film = config.layer_materials()["film"]
+def _yield(model: Model, result: PressResult) -> list[str]:
+    film = model.materials["film"]
     stress = 1e-6 * result.film_peak.stress_Pa
     if not isinstance(film, PiezoelectricFilm) or film.yield_stress_MPa is None or stress <= film.yield_stress_MPa:
         return []
@@ -58,9 +55,9 @@ def _yield(config: Config, result: PressResult) -> list[str]:
     ]
 
 
-def _beyond_fit(layer: str, material: Material, tet_mesh: TetMesh, result: PressResult) -> list[str]:
+def _beyond_fit(layer: str, material: Material, result: PressResult) -> list[str]:
     """Largest principal stretch of the layer over all steps against the range of the data."""
-    limit = material.max_fitted_strain
+    limit, tet_mesh = material.max_fitted_strain, result.tet_mesh
     if limit is None or layer not in tet_mesh.region_names:
         return []
     tets = tet_mesh.region_tets(layer)

@@ -3,17 +3,14 @@
 From a model and a mesh to what the march needs: the system and the recorder of its history.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 
-from geometry.dot import DotShape
-from geometry.parameters import Dot, Segment
+from geometry.dot import DotShape, resolve_dot
 from mesh.types import TetMesh
 from solve.interfaces import OpenInterface, open_interfaces
-from solve.materials.parameters import Material
-from solve.model import Model, Physics
-from solve.parameters import Press, Readout
+from solve.model import Model
 from solve.problem import build_system, refuse_unresolved, scale_of_section
 from solve.recorder import Recorder
 from solve.result import PressResult, Step
@@ -67,34 +64,29 @@ OnStep = Callable[[Step, int, int], None]
 
 
 def press_segment(
-    segment: Segment,
-    materials: Mapping[str, Material],
-    dot: DotShape,
-    press: Press,
+    model: Model,
     tet_mesh: TetMesh,
     on_step: OnStep | None = None,
-    physics: Physics | None = None,
-    readout: Readout | None = None,
     checkpoint: Checkpoint | None = None,
+    dot: DotShape | None = None,
 ) -> PressResult:
-    """Solve a press; materials : region name -> material. on_step(step, number, count) follows the progress.
+    """Solve the press of a model on a mesh of its segment. on_step(step, number, count) follows the progress.
 
-    readout matters only where the film's voltage acts back on it (coupling = "two-way").
+    The read-out matters only where the film's voltage acts back on it (coupling = "two-way").
     checkpoint : where a long press leaves its state, and goes on from one that was killed.
+    dot : at rest, where it is not the one that the model's table describes.
     Want of convergence raises nothing: the result then holds what converged and says where and why it ended.
     InputError for a delaminated patch outside its interface.
     """
-    physics = physics or Physics()
-    plane_strain = segment.section == "plane-strain"
+    physics, plane_strain = model.physics, model.segment.section == "plane-strain"
     opened_mesh, opened = open_interfaces(tet_mesh, physics.bonds, physics.delaminations, plane_strain)
-    model = Model(segment, materials, Dot(), press, readout, physics)
-    setup = set_up(model, dot, opened_mesh, opened)
+    setup = set_up(model, dot or resolve_dot(model.dot, model.segment), opened_mesh, opened)
     linear = LinearSolver(setup.system.factorisation_shift)
     failure = _follow(setup, linear, on_step, checkpoint)
     linear.close()
     if checkpoint is not None:
         checkpoint.discard()
-    return setup.recorder.result(failure, linear.name, press, model.follows_time)
+    return setup.recorder.result(failure, linear.name, model.press, model.follows_time)
 
 
 def _follow(setup: Setup, linear: LinearSolver, on_step: OnStep | None, checkpoint: Checkpoint | None) -> str | None:

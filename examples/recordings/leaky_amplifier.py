@@ -15,8 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from geometry.arrays import Floats
-from softdot import stages
-from softdot.actual import actual
+from softdot.case import Case
 from softdot.config import config_from
 from softdot.config.toml import parse_toml
 from softdot.convert import run_text, write_recording
@@ -107,9 +106,7 @@ def pressed(rig: str, depth_mm: float, sizes_mm: tuple[float, float]) -> tuple[F
         "mesh": {"element_size_mm": sizes_mm[0], "contact_element_size_mm": sizes_mm[1]},
     }
     del tables["format"]
-    config, physics = actual(config_from(tables))
-    dot, _ = stages.check(config)
-    result = stages.press(config, physics, dot, stages.build_mesh(config, dot), lambda *_: None)
+    result = Case(config_from(tables)).solve()
     columns = [(1e3 * step.indentation_m, step.reaction_force_N, step.film_charge_C.sum()) for step in result.steps]
     depth, force, charge = np.array(columns).T
     return depth, force, charge, float(result.capacitance_F.sum())

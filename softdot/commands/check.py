@@ -34,22 +34,20 @@ def check_file(path: Path, settings: list[str]) -> dict[str, Any]:
     from softdot.warnings import design_warnings
 
     def check(tables: Mapping[str, Any]) -> tuple[Any, ...]:
-        from softdot import stages
-        from softdot.actual import actual
+        from softdot.case import Case
 
-        config = config_from(completed(tables))
-        changed, _ = actual(config)
-        return (config, *stages.check(changed))
+        case = Case(config_from(completed(tables)))
+        return (case, *case.checked)
 
     stated = with_settings(read_toml(path), settings)
     found, checked = mistakes(stated, check)
     summary: dict[str, Any] = {"format": FORMAT, "config": str(path), "mistakes": found}
     if checked is None:
         return summary
-    config, dot_shape, warnings = checked
-    cost = expected_cost(config, dot_shape)
-    told: dict[str, Any] = plain({"warnings": [*warnings, *design_warnings(config)], "expected": vars(cost)})
-    return {**summary, **told, "from_default": list(from_default(stated, config.model_dump(mode="json")))}
+    case, dot_shape, warnings = checked
+    cost = expected_cost(case.config, dot_shape)
+    told: dict[str, Any] = plain({"warnings": [*warnings, *design_warnings(case.model)], "expected": vars(cost)})
+    return {**summary, **told, "from_default": list(from_default(stated, case.config.model_dump(mode="json")))}
 
 
 def short_text(summary: dict[str, Any]) -> str:

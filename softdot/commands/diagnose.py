@@ -227,6 +227,6 @@ def engine_for(rig: Rig, report: Report) -> Engine:
 
 def _of_segment(rig: Rig, config: Config, report: Report) -> Engine:
     from diagnose.engines.segment import segment_engine
-    from softdot.actual import model_of
+    from softdot.config.model import model_of
 
     return segment_engine(model_of(config), config.mesh, rig.recording, report)

@@ -20,7 +20,7 @@ from geometry.fabrication.part import FabricationPart
 from geometry.flat.pattern import FlatPattern, compensated
 from geometry.flat.patterns import flat_kit
 from mesh.types import MeshingError
-from softdot import stages
+from softdot.case import Case
 from softdot.config import Config, config_hash
 from softdot.console import (
     GOOD,
@@ -167,10 +167,11 @@ def make_kit(config: Config, out: Path, progress: Progress | None = None) -> dic
     """
     progress = progress or Logged()
     with named_when_missing():
-        _, warnings = stages.check(config)
+        case = Case(config)
+        _, warnings = case.checked
         ensure_rendering()
         with staged_folder(out, KIT) as folder:
-            contents = contents_of(config, [*warnings, *design_warnings(config)])
+            contents = contents_of(config, [*warnings, *design_warnings(case.model)])
             warn(list(contents.warnings))
             progress.stage("export")
             _write_parts(contents, folder)

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from importlib.resources import files
 from typing import Any
 
-from softdot.config import Config
+from softdot.config import config_schema
 from softdot.console import GOOD
 
 Json = dict[str, Any]
@@ -187,8 +187,3 @@ def _is_table(value: Json) -> bool:
 
 def _comment(text: str) -> list[str]:
     return textwrap.wrap(text, WIDTH, initial_indent="# ", subsequent_indent="#   ")
-
-
-def config_schema() -> dict[str, Any]:
-    """JSON Schema (draft 2020-12): description, unit, bounds and default of every key."""
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **Config.model_json_schema()}

@@ -144,8 +144,8 @@ def _tried(
     if not missing:
         return
     from geometry.cache import folder
-    from softdot.sweep.cluster import existing_cluster, local_cluster
-    from softdot.sweep.points import all_ended
+    from softdot.sweeps.cluster import existing_cluster, local_cluster
+    from softdot.sweeps.points import all_ended
 
     terms = Terms(folder().resolve(), request.limit_s)
     arguments = {case.name: (case, terms, place.resolve(), program) for case in missing}
@@ -162,7 +162,7 @@ def _finished(request: Request, place: Path, records: Sequence[Mapping[str, Any]
     from diagnose.prove.score import tally
     from softdot.numbers import installed_version
     from softdot.proof import draw, rival_rates, text
-    from softdot.sweep.cluster import hardware
+    from softdot.sweeps.cluster import hardware
 
     scores = [score_from(record["score"]) for record in records if record["score"] is not None]
     summary: dict[str, Any] = plain({

@@ -3,7 +3,7 @@
 import logging
 import time
 from argparse import Namespace
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -11,9 +11,9 @@ from typing import Any
 from export.headless import ensure_rendering
 from geometry.arrays import Floats
 from geometry.dot import DotShape
-from mesh.types import MeshingError, TetMesh
-from softdot import stages
-from softdot.actual import actual
+from geometry.solids import Part
+from mesh.types import MeshingError
+from softdot.case import Case, OnStep
 from softdot.config import Config
 from softdot.config.defaults import told
 from softdot.console import (
@@ -32,7 +32,6 @@ from softdot.numbers import plain, write_json
 from softdot.output import RUN, staged_folder
 from softdot.summary import heading, mesh_part, press_part, stopped_solver
 from softdot.warnings import design_warnings, result_warnings
-from solve.model import Physics
 from solve.result import PressResult, Step
 
 LOG = logging.getLogger(__name__)
@@ -55,86 +54,86 @@ class Clock:
 
 
 def run_config(config: Config, out: Path, progress: Progress | None = None) -> dict[str, Any]:
-    """Run the whole pipeline into the folder out and return its summary.
+    """As run_case, of a configuration."""
+    return run_case(Case(config), out, progress)
+
+
+def run_case(case: Case, out: Path, progress: Progress | None = None) -> dict[str, Any]:
+    """Run the whole pipeline of a case into the folder out and return its summary.
 
     InputError before any work for what cannot be built or written. Where a computation does not converge
     nothing is raised: solver.converged is False, solver.failure says why and what converged is written.
     """
     progress = progress or Logged()
     with named_when_missing(), lines_when_interactive():
-        changed, physics = actual(config)
-        dot_shape, warnings = stages.check(changed)
+        _ = case.checked
         ensure_rendering()
         with staged_folder(out, RUN) as folder:
-            summary: dict[str, Any] = heading(config) | plain(
-                _fill(config, changed, physics, dot_shape, warnings, folder, progress)
-            )
+            summary: dict[str, Any] = heading(case.config) | plain(_fill(case, folder, progress))
             write_json(folder / RUN.summary, summary)
     return summary
 
 
-def _fill(
-    stated: Config,
-    config: Config,
-    physics: Physics,
-    dot_shape: DotShape,
-    warnings: list[str],
-    folder: Path,
-    progress: Progress,
-) -> dict[str, Any]:
-    """Everything but summary.json; returns the summary. config : as stated, with its mechanisms switched on."""
-    clock = Clock()
-    summary = {**heading(config), "warnings": [*warnings, *design_warnings(config)]}
+def _fill(case: Case, folder: Path, progress: Progress) -> dict[str, Any]:
+    """Everything but summary.json; returns the summary."""
+    clock, config, model = Clock(), case.config, case.model
+    summary = {**heading(config), "warnings": [*case.checked[1], *design_warnings(model)]}
     warn(summary["warnings"])
     if config.from_default:
         LOG.info("%s", told(config.from_default, config.model_dump(mode="json")))
     progress.stage("geometry")
     with clock("geometry"):
-        parts = stages.build_parts(config, dot_shape)
+        parts = case.parts
     with clock("export"):
-        stages.write_cad(parts, folder / "cad")
+        write_cad(parts, folder / "cad")
     progress.stage("mesh")
     try:
         with clock("mesh"):
-            tet_mesh = stages.build_mesh(config, dot_shape)
-            quality = stages.mesh_quality(config, tet_mesh)
+            quality = case.mesh_quality
     except MeshingError as error:
         return {**summary, "solver": stopped_solver(f"meshing: {error}"), "timing_s": clock.seconds}
     progress.stage("solve")
     with clock("solve"):
-        result = stages.press(config, physics, dot_shape, tet_mesh, _reporting(progress))
-        amplified = stages.readout_voltage(config, physics, result)
-        readout, channels = amplified if amplified is not None else (None, None)
-    tet_mesh = result.tet_mesh
-    summary |= {"mesh": mesh_part(quality, result.unknowns), **press_part(config, result, readout, channels)}
-    late = result_warnings(config, dot_shape, tet_mesh, result, physics.film_yield is not None)
+        result = case.press(_reporting(progress)).result
+        readout, channels = case.amplified(result) or (None, None)
+    summary |= {"mesh": mesh_part(quality, result.unknowns), **press_part(model.readout, result, readout, channels)}
+    late = result_warnings(model, case.dot, result)
     warn(late)
     summary["warnings"] += late
     if result.converged:
         progress.stage("uncertainty")
         with clock("uncertainty"):
-            summary |= stages.uncertainty(stated, summary)
+            summary |= case.uncertainty(summary)
     progress.stage("export")
     with clock("export"):
         so_far = {"timing_s": dict(clock.seconds)}
-        _export(dot_shape, tet_mesh, result, readout, plain(summary | so_far), folder)
+        write_outputs(case.dot, result, readout, plain(summary | so_far), folder)
     return {**summary, "timing_s": clock.seconds}
 
 
-def _export(
-    dot_shape: DotShape,
-    tet_mesh: TetMesh,
-    result: PressResult,
-    readout_voltage_V: Floats | None,
-    summary: dict[str, Any],
-    folder: Path,
+def write_cad(parts: Sequence[Part], folder: Path) -> None:
+    """STEP, 3MF and STL files of the parts."""
+    from export import cad
+
+    cad.write_cad(parts, folder)
+
+
+def write_outputs(
+    dot_shape: DotShape, result: PressResult, readout_voltage_V: Floats | None, summary: dict[str, Any], folder: Path
 ) -> None:
-    stages.write_results(tet_mesh, result, dot_shape, folder / "results")
-    pictures = stages.write_pictures(tet_mesh, result, dot_shape, folder / "pictures", readout_voltage_V)
-    stages.write_report(summary, pictures, tet_mesh, result, dot_shape, folder / "report.html")
+    """ParaView files, pictures and the report of what converged."""
+    from export.pictures import write_pictures
+    from export.report import write_report
+    from export.viewer_data import viewer_data
+    from export.vtu import write_results
+
+    tet_mesh = result.tet_mesh
+    write_results(tet_mesh, result, dot_shape, folder / "results")
+    pictures = write_pictures(tet_mesh, result, dot_shape, folder / "pictures", readout_voltage_V)
+    write_report(summary, pictures, viewer_data(tet_mesh, result, dot_shape), folder / "report.html")
 
 
-def _reporting(progress: Progress) -> stages.OnStep:
+def _reporting(progress: Progress) -> OnStep:
     """Pass the solver's steps on as text."""
 
     def on_step(step: Step, number: int, count: int) -> None:

@@ -24,11 +24,11 @@ from softdot.console import (
     only_the_summary_on_stdout,
     show,
 )
-from softdot.sweep import store
-from softdot.sweep.cluster import existing_cluster, hardware, local_cluster
-from softdot.sweep.points import REFUSED, STATUSES, Record, failed, solve_all
-from softdot.sweep.space import Point, Space, sampling_warnings
-from softdot.sweep.table import row
+from softdot.sweeps import store
+from softdot.sweeps.cluster import existing_cluster, hardware, local_cluster
+from softdot.sweeps.points import REFUSED, STATUSES, Record, failed, solve_all
+from softdot.sweeps.space import Point, Space, sampling_warnings
+from softdot.sweeps.table import row
 
 if TYPE_CHECKING:
     from rich.progress import Progress as Bars
@@ -129,8 +129,8 @@ def _heading(space: Space, ends: list[Record]) -> dict[str, Any]:
 
 def command(chosen: Namespace) -> int:
     """Sweep chosen.space into chosen.output; 0, or 3 when not one point could be solved, or 130. InputError."""
-    from softdot.sweep.space import load_space
-    from softdot.sweep.store import POINTS
+    from softdot.sweeps.space import load_space
+    from softdot.sweeps.store import POINTS
 
     space = load_space(chosen.space, chosen.set)
     try:

@@ -152,3 +152,8 @@ def input_hash(config: Config) -> str:
     file = Path(waveform.file) if waveform is not None and waveform.file is not None else None
     content = file.read_bytes() if file is not None and file.is_file() else b""
     return hashlib.sha256(config_hash(config).encode() + content).hexdigest()
+
+
+def config_schema() -> dict[str, Any]:
+    """JSON Schema (draft 2020-12): description, unit, bounds and default of every key."""
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **Config.model_json_schema()}

@@ -145,7 +145,7 @@ class NotSolvedError(Exception):
 
 def solve_named(configs: Mapping[Name, Config], progress: Progress) -> dict[Name, dict[str, Any]]:
     """Name -> outcome of every press, solved on all cores or remembered. NotSolvedError when one has none."""
-    from softdot.sweep import solve_points
+    from softdot.sweeps import solve_points
 
     records = dict(zip(configs, solve_points(list(configs.values()), progress), strict=True))
     for name, record in records.items():

@@ -13,9 +13,9 @@ from geometry.base import InputError
 from geometry.cache import data_hash, recall, remember, source_hash
 from mesh.interfaces import morphed
 from mesh.types import TetMesh
-from softdot import stages
-from softdot.actual import actual, model_of
+from softdot.case import Case
 from softdot.config import Config, config_hash, input_hash
+from softdot.config.model import model_of
 from softdot.differentiate import press_with_derivatives, variations_of
 from softdot.numbers import plain
 from softdot.summary import history
@@ -48,8 +48,7 @@ def coarser(config: Config, factor: float) -> Config:
 
 def mesh_of(config: Config) -> TetMesh:
     """The mesh of a configuration. InputError, MeshingError."""
-    changed, _ = actual(config)
-    return stages.build_mesh(changed, stages.check(changed)[0])
+    return Case(config).mesh
 
 
 class KitPress:
@@ -111,8 +110,8 @@ class KitPress:
 
 def path_matters(config: Config) -> bool:
     """Whether the response at full load depends on how the load came to be there."""
-    model = model_of(config)
-    return model.follows_time or stages.is_amplified(config, model.physics)
+    case = Case(config)
+    return case.model.follows_time or case.is_amplified
 
 
 def slopes_along(config: Config, keys: Sequence[str], tet_mesh: TetMesh) -> tuple[Response, dict[str, Response]]:
@@ -129,10 +128,7 @@ def slopes_along(config: Config, keys: Sequence[str], tet_mesh: TetMesh) -> tupl
 
 def value_along(config: Config, tet_mesh: TetMesh) -> Response:
     """The response of a whole press on a given mesh. InputError, StoppedShortError."""
-    changed, physics = actual(config)
-    dot_shape, _ = stages.check(changed)
-    result = stages.press(changed, physics, dot_shape, tet_mesh, lambda *_: None)
-    return _response(config, result)
+    return _response(config, Case(config).solve(tet_mesh=tet_mesh))
 
 
 def remembered(config: Config, what: str, make: Callable[[], Any]) -> Any:
@@ -148,8 +144,7 @@ def remembered(config: Config, what: str, make: Callable[[], Any]) -> Any:
 def _response(config: Config, result: PressResult) -> Response:
     if not result.converged:
         raise StoppedShortError(result.failure)
-    _, physics = actual(config)
-    amplified = stages.readout_voltage(config, physics, result)
+    amplified = Case(config).amplified(result)
     voltage = history(result).open_circuit_voltage_V if amplified is None else amplified[0]
     step = _deepest(result)
     return Response(result.steps[step].reaction_force_N, float(voltage[step]))

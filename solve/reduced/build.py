@@ -52,7 +52,7 @@ def measured(
             viscosity=viscosity,
         )  # fmt: skip
         press = Press(indentation_mm=depth * model.depth_mm, load_steps=8, waveform=waveform)
-        result = press_segment(segment, materials, dot, press, tet_mesh, physics=tested)
+        result = press_segment(Model(segment, materials, Dot(), press, None, tested), tet_mesh, dot=dot)
         if result.failure is not None:
             raise NoEquilibriumError(f"a press to check the reduced model: {result.failure}", np.zeros(0), None)
         found.append(compare(model, result.trace, tested))

@@ -7,7 +7,6 @@ from contextlib import contextmanager
 
 import pytest
 
-from softdot import stages
 from softdot.cli import main
 from tests.diagnose.rigs import HEAD, RUN, SEGMENT, csv_text, samples
 
@@ -72,14 +71,13 @@ def attempt(monkeypatch, tmp_path, capfd):
     def reached(*_args, **_kwargs):
         raise ReachedError
 
-    import softdot.diagnosis.engines
-    import softdot.plate.make
-    import softdot.sweep.run
+    from softdot.case import Case
+    from softdot.commands import diagnose, plate, sweep
 
-    monkeypatch.setattr(stages, "build_parts", reached)
-    monkeypatch.setattr(softdot.diagnosis.engines, "engine_for", reached)
-    monkeypatch.setattr(softdot.sweep.run, "run_sweep", reached)
-    monkeypatch.setattr(softdot.plate.make, "staged_folder", reached)
+    monkeypatch.setattr(Case, "parts", property(reached))
+    monkeypatch.setattr(diagnose, "engine_for", reached)
+    monkeypatch.setattr(sweep, "run_sweep", reached)
+    monkeypatch.setattr(plate, "staged_folder", reached)
     monkeypatch.chdir(tmp_path)
 
     def run(*arguments):

@@ -6,7 +6,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from softdot import stages
+from softdot.case import Case
+from softdot.commands import run
 from tests.softdot.stand_ins import cap_of_height, one_tetrahedron, result_of
 
 MINIMAL = """
@@ -33,7 +34,7 @@ def write_config(tmp_path: Path) -> Callable[[str], Path]:
 
 @pytest.fixture
 def rooms(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
-    """Stand-ins for all rooms; tests set .press or .build_mesh to what they need."""
+    """Stand-ins for all rooms; tests set .solve or .mesh to what they need."""
 
     def file_writer(name: str) -> Callable[..., list[Path]]:
         def write(*args: object, **_: object) -> list[Path]:
@@ -44,20 +45,32 @@ def rooms(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
 
         return write
 
+    def written(*args: object) -> None:
+        folder = args[-1]
+        assert isinstance(folder, Path)
+        file_writer("segment.pvd")(folder / "results")
+        file_writer("force.png")(folder / "pictures")
+        (folder / "report.html").write_text("stand-in")
+
     fakes = SimpleNamespace(
-        check=lambda *_: (cap_of_height(0.5), []),
-        build_parts=lambda *_: [],
+        checked=lambda *_: (cap_of_height(0.5), []),
+        parts=lambda *_: [],
         write_cad=file_writer("segment.step"),
-        build_mesh=lambda *_: one_tetrahedron(),
-        mesh_quality=lambda *_: {"tetrahedra": 1},
-        press=lambda *_: result_of([0.0, 0.15, 0.3]),
-        readout_voltage=lambda *_: None,
+        mesh=lambda *_: one_tetrahedron(),
+        mesh_quality=lambda case: {"tetrahedra": len(case.mesh.tets)},
+        solve=lambda *_: result_of([0.0, 0.15, 0.3]),
+        amplified=lambda *_: None,
         uncertainty=lambda *_: {},
-        write_results=file_writer("segment.pvd"),
-        write_pictures=file_writer("force.png"),
-        write_report=lambda *args: args[-1].write_text("stand-in"),
+        write_outputs=written,
     )
-    for name in vars(fakes):
-        # looked up at each call, so that a test can exchange one
-        monkeypatch.setattr(stages, name, lambda *args, _name=name: getattr(fakes, _name)(*args), raising=False)
+
+    def called(name: str) -> Callable[..., object]:
+        return lambda *args, **_: getattr(fakes, name)(*args)  # looked up each time: a test can exchange one
+
+    for name in ("checked", "parts", "mesh", "mesh_quality"):
+        monkeypatch.setattr(Case, name, property(called(name)))
+    for name in ("solve", "amplified", "uncertainty"):
+        monkeypatch.setattr(Case, name, called(name))
+    for name in ("write_cad", "write_outputs"):
+        monkeypatch.setattr(run, name, called(name))
     return fakes

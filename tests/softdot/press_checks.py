@@ -9,8 +9,7 @@ from unittest.mock import patch
 
 import numpy as np
 
-from softdot import stages
-from softdot.actual import actual
+from softdot.case import Case
 from softdot.config import config_from
 from solve import press as press_module
 from solve.fem.kinematics import deformation_gradient
@@ -27,8 +26,7 @@ SMALLEST_FORCE = 1e-3  # solver units; of less than this round-off leaves too mu
 class Pressed:
     """What a press gave, and the discrete problem behind it."""
 
-    config: object
-    physics: object
+    model: object
     dot: object
     result: object
     voltage: object
@@ -38,14 +36,13 @@ class Pressed:
 
 def solved(tables) -> Pressed:
     """From tables to the result as softdot run goes, without its files. InputError, MeshingError."""
-    config, physics = actual(config_from(tables))
-    dot = stages.check(config)[0]
+    case = Case(config_from(tables))
     kept = []
     set_up = press_module.set_up
     with patch.object(press_module, "set_up", lambda *given: kept.append(set_up(*given)) or kept[0]):
-        result = stages.press(config, physics, dot, stages.build_mesh(config, dot), lambda *_: None)
-    voltage = stages.readout_voltage(config, physics, result)
-    return Pressed(config, physics, dot, result, voltage, kept[0].system, kept[0].recorder._last)
+        result = case.solve()
+    voltage = case.amplified(result)
+    return Pressed(case.model, case.dot, result, voltage, kept[0].system, kept[0].recorder._last)
 
 
 def wrong(pressed) -> list[str]:
@@ -66,7 +63,7 @@ def numbers(pressed):
 
 def target(pressed):
     """The last depth or force is the one asked for."""
-    press, last = pressed.config.press, pressed.result.trace
+    press, last = pressed.model.press, pressed.result.trace
     shape = press.waveform.shape if press.waveform is not None else "ramp"
     asked = 0.0 if pressed.result.follows_time and shape in ("half-sine", "trapezoid") else 1.0
     if press.force_N is not None and not np.isclose(last.reaction_force_N[-1], asked * press.force_N, atol=1e-9):
@@ -143,7 +140,7 @@ def equilibrium(pressed):
     inner = np.setdiff1d(np.arange(len(force)), mesh.twin[mesh.facets["contact"]])
     if not _opened(pressed) and np.linalg.norm(force[inner]) > scale:
         yield f"a force of {np.linalg.norm(force[inner]):.1e} at nodes where nothing acts"
-    if _opened(pressed) and pressed.config.segment.boundary != "free":  # a held face of a bond carries a part unseen
+    if _opened(pressed) and pressed.model.segment.boundary != "free":  # a held face of a bond carries a part unseen
         return
     dot = system.dot_force(system.trial(state.x, state.load, state.time, pressed.last[1]))
     if not _edge_pressed(pressed, ~free[:, 2]) and abs(force.sum(axis=0)[2] - dot[2]) > np.sqrt(len(force)) * scale:
@@ -160,7 +157,7 @@ def _edge_pressed(pressed, outer):
 
 def _on_springs(pressed):
     """Nodes of elastic sides, and of the base with what is bonded there."""
-    mesh, segment = pressed.result.tet_mesh, pressed.config.segment
+    mesh, segment = pressed.result.tet_mesh, pressed.model.segment
     names = [f"side-{name}" for name in segment.held_layers] if segment.boundary == "elastic" else []
     nodes = [mesh.facets[name].ravel() for name in names if name in mesh.facets]
     nodes.append(np.flatnonzero(mesh.points_mm[:, 2] < 1e-9))
@@ -168,7 +165,7 @@ def _on_springs(pressed):
 
 
 def _opened(pressed):
-    return [patch.bond for patch in pressed.physics.delaminations] + list(pressed.physics.bonds)
+    return [patch.bond for patch in pressed.model.physics.delaminations] + list(pressed.model.physics.bonds)
 
 
 def nodal_forces(pressed):
@@ -205,11 +202,11 @@ def work(pressed):
 
     The work is a sum over sub-steps: it is judged where the result does not call them too coarse.
     """
-    trace, press = pressed.result.trace, pressed.config.press
+    trace, press = pressed.result.trace, pressed.model.press
     force, path = trace.contact_force_N[:, 2], trace.dot_path_m
     if press.path_xy_mm:
         return
-    if pressed.physics.friction == 0.0 and force.min() < -1e-6 * max(force.max(), 1e-9):
+    if pressed.model.physics.friction == 0.0 and force.min() < -1e-6 * max(force.max(), 1e-9):
         yield f"the dot is pulled with {force.min():g} N"
     done = np.concatenate([[0.0], np.cumsum(0.5 * (force[1:] + force[:-1]) * np.diff(path))])
     if any("time integration" in said for said in pressed.result.warnings):  # a rebound within one sub-step

@@ -4,7 +4,7 @@ import copy
 from contextlib import contextmanager
 from types import SimpleNamespace
 
-from softdot.sweep.points import TINY, solve_point
+from softdot.sweeps.points import TINY, solve_point
 
 DEPTHS = "press.indentation_mm"
 

@@ -14,7 +14,7 @@ def refused(rooms, capfd):
     def no_work(*_):
         raise AssertionError("work began")
 
-    rooms.build_parts = no_work
+    rooms.parts = no_work
 
     def run_into(out):
         assert main(["run", "-o", str(out)]) == 2

@@ -7,8 +7,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from geometry.base import InputError
-from softdot import stages
-from softdot.actual import actual
+from softdot.case import Case
 from softdot.cli import main
 from softdot.config import config_from, load_config
 from softdot.config.defaults import completed
@@ -81,12 +80,11 @@ def test_a_random_mistake_is_among_those_told(example):
 
 
 def _check(tables):
-    config, _ = actual(config_from(completed(tables)))
-    return stages.check(config)
+    return Case(config_from(completed(tables))).checked
 
 
 def test_a_good_file_is_told_its_mesh_time_and_memory(checked, monkeypatch):
-    monkeypatch.setattr(stages, "build_mesh", lambda *_: pytest.fail("something was meshed"))
+    monkeypatch.setattr(Case, "mesh", property(lambda _: pytest.fail("something was meshed")))
     status, out, err = checked('[dot]\nstandard = "ada"')
     assert (status, err) == (0, "")
     assert "tetrahedra" in out
@@ -100,7 +98,7 @@ def test_a_good_file_is_told_its_mesh_time_and_memory(checked, monkeypatch):
 def test_the_expected_size_of_the_default_is_that_of_its_mesh():
     """The default design has 15,400 tetrahedra and 68,000 unknowns, whatever the mesher's scatter."""
     config = load_config()
-    cost = expected_cost(config, stages.check(config)[0])
+    cost = expected_cost(config, Case(config).dot)
     assert 15_400 / 2 < cost.tetrahedra < 15_400 * 2
     assert 68_000 / 2 < cost.unknowns < 68_000 * 2
 

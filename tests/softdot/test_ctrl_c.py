@@ -12,15 +12,16 @@ from tests.softdot.interrupts import heard
 SLOW_RUN = """
 import sys, time
 from pathlib import Path
-from softdot import stages
-stages.check = lambda config: (None, [])
-stages.build_parts = lambda *_: []
+from softdot.case import Case
+from softdot.commands import run
+Case.checked = property(lambda self: (None, []))
+Case.parts = property(lambda self: [])
 def slow(parts, folder):
     folder.mkdir()
     (folder / "half").write_text("half")
     Path("begun").touch()
     time.sleep(60)
-stages.write_cad = slow
+run.write_cad = slow
 from softdot.cli import main
 sys.exit(main(["run", "-o", "out"]))
 """

@@ -3,7 +3,7 @@
 import pytest
 
 from geometry.base import InputError
-from softdot import stages
+from softdot.case import Case
 from softdot.config import config_hash, load_config
 from softdot.config.rig import load_rig
 
@@ -51,12 +51,12 @@ def test_a_file_that_states_the_whole_stack_gets_no_effector(loaded):
 def test_a_dome_needs_its_diameter(loaded):
     config = loaded('[segment.effector]\nshape = "dome"')
     with pytest.raises(InputError, match=r"segment.effector.diameter_mm is missing: shape = 'dome' needs it"):
-        stages.check(config)
+        _ = Case(config).checked
 
 
 def test_an_explicit_dot_does_not_meet_the_standard_of_the_default(loaded):
     config = loaded("[dot]\nradius_mm = 1.0")
-    stages.check(config)
+    _ = Case(config).checked
     assert config.dot.standard is None
     assert "dot.standard" not in config.from_default
 
@@ -69,7 +69,7 @@ def test_a_force_takes_the_place_of_the_depth(loaded):
 
 def test_a_slice_is_pressed_by_a_ridge(loaded):
     config = loaded('[segment]\nsection = "plane-strain"')
-    stages.check(config)
+    _ = Case(config).checked
     assert config.dot.shape == "ridge"
 
 

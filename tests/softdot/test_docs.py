@@ -73,7 +73,7 @@ def test_every_key_of_the_summary_is_explained():
     config = config_from(completed(tomllib.loads(toml_blocks()[0])))
     history = result_of([0.0, 0.15, 0.3])
     voltage = np.zeros(3)
-    summary = {**heading(config), **press_part(config, history, voltage), "mesh": mesh_part({}, 1)}
+    summary = {**heading(config), **press_part(config.readout, history, voltage), "mesh": mesh_part({}, 1)}
     flat = [
         f"{key}.{inner}" if isinstance(value, dict) and key != "config" else key
         for key, value in summary.items()

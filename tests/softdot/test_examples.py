@@ -14,15 +14,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from geometry.dot import resolve_dot
 from mesh.parameters import MeshOptions
-from softdot import stages
-from softdot.actual import actual
+from softdot.case import Case
 from softdot.commands.run import run_config
 from softdot.config import Config, config_hash, load_config
+from softdot.config.model import model_of
 from softdot.summary import history
 from solve.mechanisms import MECHANISMS
-from solve.model import Physics
 from solve.parameters import Readout
 from solve.readout.recording import record
 from solve.result import PressResult
@@ -149,9 +147,7 @@ def test_neighbours_never_reach_a_segment_as_wide_as_the_pitch():
     cell = changed(load_config(FOLDER / "braille-cell.toml"), mesher="layered")
     lone = cell.model_copy(update={"dot": cell.dot.model_copy(update={"cell": None, "cell_dot": 1})})
     found = summary_of("braille-cell", mesher="layered")
-    dot_shape = resolve_dot(cell.dot, cell.segment)
-    tet_mesh = stages.build_mesh(cell, dot_shape)
-    alone = history(stages.press(lone, Physics(), resolve_dot(lone.dot, lone.segment), tet_mesh, lambda *_: None))
+    alone = history(Case(lone).solve(tet_mesh=Case(cell).mesh))
     assert found["reaction_force_N"] == pytest.approx(alone.reaction_force_N, rel=1e-6)
     assert found["open_circuit_voltage_V"] == pytest.approx(alone.open_circuit_voltage_V, rel=1e-6)
 
@@ -162,9 +158,7 @@ def test_a_wider_segment_feels_all_six_dots():
     config = load_config(FOLDER / "braille-cell-wide.toml")
     depth, radius, nu = 0.1, 0.8125, 0.495
     press = config.press.model_copy(update={"indentation_mm": depth, "load_steps": 1})
-    dot_shape = resolve_dot(config.dot, config.segment)
-    shallow = config.model_copy(update={"press": press})
-    result = stages.press(shallow, Physics(), dot_shape, stages.build_mesh(shallow, dot_shape), lambda *_: None)
+    result = Case(config.model_copy(update={"press": press})).solve()
     per_modulus = 6.0 * 4.0 / 3.0 / (1.0 - nu**2) * radius**0.5 * depth**1.5
     assert result.converged
     assert 1.0 * per_modulus < result.steps[-1].reaction_force_N < 5.0 * per_modulus
@@ -180,8 +174,7 @@ def test_no_example_is_left_out():
 
 @pytest.mark.parametrize("path", RUNS, ids=lambda path: path.stem)
 def test_every_example_passes_the_checks_of_a_run(path):
-    config, _ = actual(load_config(path))
-    stages.check(config)
+    _ = Case.load(path).checked
 
 
 @pytest.mark.parametrize("name", MECHANISMS)
@@ -213,10 +206,8 @@ def test_every_short_example_has_its_line_and_its_picture():
 def press_of(name: str, with_mechanisms: bool = True) -> PressResult:
     """The press of a short example, with or without what it shows, on the mesh of the baseline."""
     config = load_config(SHORT / f"{name}.toml")
-    plain, _ = actual(config.model_copy(update={"mechanisms": ()}))
-    tet_mesh = stages.build_mesh(plain, stages.check(plain)[0])
-    told, physics = actual(config if with_mechanisms else plain)
-    result = stages.press(told, physics, stages.check(told)[0], tet_mesh, lambda *_: None)
+    plain = Case(config.model_copy(update={"mechanisms": ()}))
+    result = (Case(config) if with_mechanisms else plain).solve(tet_mesh=plain.mesh)
     assert result.converged, result.failure
     return result
 
@@ -224,9 +215,9 @@ def press_of(name: str, with_mechanisms: bool = True) -> PressResult:
 @pytest.mark.slow
 def test_a_leaking_film_decays_with_its_time_constant():
     """At depth V = V0 exp(-t / (R C)), with C the film's alone."""
-    told, physics = actual(load_config(SHORT / "charge-leakage.toml"))
+    told = model_of(load_config(SHORT / "charge-leakage.toml"))
     result = press_of("charge-leakage")
-    recording = record(result, told.press, told.readout or Readout(), np.ones(1), physics)
+    recording = record(result, told.press, told.readout or Readout(), np.ones(1), told.physics)
     v = np.interp([0.25, 0.55], recording.time_s, recording.voltage_V)
     tau = 1e9 * float(result.capacitance_F[0])
     assert v[1] / v[0] == pytest.approx(np.exp(-0.3 / tau), rel=1e-4)
@@ -234,9 +225,9 @@ def test_a_leaking_film_decays_with_its_time_constant():
 
 def test_a_cable_divides_the_voltage_of_the_open_film():
     """Q / (C_f + C) at every depth."""
-    told, physics = actual(load_config(SHORT / "parasitic-capacitance.toml"))
+    told = model_of(load_config(SHORT / "parasitic-capacitance.toml"))
     result = press_of("parasitic-capacitance")
-    recording = record(result, told.press, told.readout or Readout(), np.ones(1), physics)
+    recording = record(result, told.press, told.readout or Readout(), np.ones(1), told.physics)
     expected = result.steps[-1].film_charge_C[0] / (result.capacitance_F[0] + 100e-12)
     assert recording.voltage_V[-1] == pytest.approx(expected, rel=1e-6)
 

@@ -5,9 +5,8 @@ import tomllib
 
 import pytest
 
-from softdot import stages
-from softdot.actual import actual
 from softdot.arguments import TEMPLATES
+from softdot.case import Case
 from softdot.cli import main
 from softdot.commands.new import TABLES, config_schema, template_text
 from softdot.config import config_from, config_hash, load_config
@@ -18,8 +17,7 @@ def test_what_is_printed_passes_the_checks_of_a_run(name, tmp_path, capfd):
     assert main(["new", "--template", name]) == 0
     path = tmp_path / "mine.toml"
     path.write_text(capfd.readouterr().out, "utf-8")
-    changed, _ = actual(load_config(path))
-    stages.check(changed)
+    _ = Case.load(path).checked
     assert main(["check", str(path), "--quiet"]) == 0
 
 

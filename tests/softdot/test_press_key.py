@@ -5,9 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from softdot.case import Case, press_key
 from softdot.config import Config, config_from
-from softdot.stages import press_key
-from solve.model import Physics
 from tests.softdot.stand_ins import one_tetrahedron
 
 SLOW, FAST = "time_s,fraction\n0,0\n2,1\n", "time_s,fraction\n0,0\n1,1\n"
@@ -22,10 +21,10 @@ def test_a_waveform_that_was_edited_is_another_press(tmp_path):
     wave = tmp_path / "wave.csv"
     config = configured(str(wave))
     wave.write_text(SLOW)
-    key = press_key(config, Physics(), one_tetrahedron())
-    assert press_key(config, Physics(), one_tetrahedron()) == key
+    key = press_key(Case(config), one_tetrahedron())
+    assert press_key(Case(config), one_tetrahedron()) == key
     wave.write_text(FAST)
-    assert press_key(config, Physics(), one_tetrahedron()) != key
+    assert press_key(Case(config), one_tetrahedron()) != key
 
 
 TOP = {"contact": np.array([[0, 1, 2, 3, 4, 5]])}
@@ -34,4 +33,4 @@ TOP = {"contact": np.array([[0, 1, 2, 3, 4, 5]])}
 @pytest.mark.parametrize("change", [{"facets": TOP}, {"thickness_mm": 2.0}, {"twin": np.zeros(10, int)}])
 def test_other_contact_facets_thickness_or_twins_are_another_press(change):
     config, same = configured("none.csv"), one_tetrahedron()
-    assert press_key(config, Physics(), replace(same, **change)) != press_key(config, Physics(), same)
+    assert press_key(Case(config), replace(same, **change)) != press_key(Case(config), same)

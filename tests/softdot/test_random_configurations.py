@@ -12,7 +12,7 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, note, seed, settings
 
 from geometry.base import InputError
-from softdot import stages
+from softdot.case import Case
 from softdot.commands.run import run_config
 from softdot.config import load_config
 from tests.softdot.press_checks import solved, wrong
@@ -111,7 +111,7 @@ def refused(tmp_path):
 
 def refusal_of(path, out):
     """What a run says before it builds anything."""
-    with no_longer_than(LIMIT_S), patch.object(stages, "build_parts", _accepted), pytest.raises(InputError) as error:
+    with no_longer_than(LIMIT_S), patch.object(Case, "parts", property(_accepted)), pytest.raises(InputError) as error:
         run_config(load_config(path), out)
     return str(error.value)
 

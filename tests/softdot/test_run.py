@@ -66,7 +66,7 @@ def test_json_is_not_spoilt_by_a_library_that_prints(tmp_path, capfd, rooms):
         os.write(1, b"library chatter\n")
         return result_of([0.0, 0.3])
 
-    rooms.press = noisy
+    rooms.solve = noisy
     main(["run", "-o", str(tmp_path / "out"), "--json"])
     json.loads(capfd.readouterr().out)
 
@@ -78,7 +78,7 @@ def test_a_quiet_run_in_a_pipe_says_nothing(tmp_path, capfd):
 
 
 def test_a_press_that_stops_keeps_what_converged_and_exits_3(tmp_path, capfd, rooms):
-    rooms.press = lambda *_: result_of([0.0, 0.1], failure="step 2 of 3 stopped at 0.100 mm")
+    rooms.solve = lambda *_: result_of([0.0, 0.1], failure="step 2 of 3 stopped at 0.100 mm")
     assert main(["run", "-o", str(tmp_path / "out")]) == 3
     summary = json.loads((tmp_path / "out/summary.json").read_text())
     assert summary["solver"]["converged"] is False
@@ -91,7 +91,7 @@ def test_a_press_that_stops_keeps_what_converged_and_exits_3(tmp_path, capfd, ro
 
 
 def test_a_press_that_never_starts_gives_null_sensitivities(tmp_path, rooms):
-    rooms.press = lambda *_: result_of([0.0], failure="step 1 of 3 stopped at 0 mm")
+    rooms.solve = lambda *_: result_of([0.0], failure="step 1 of 3 stopped at 0 mm")
     assert main(["run", "-o", str(tmp_path / "out")]) == 3
     summary = json.loads((tmp_path / "out/summary.json").read_text())
     assert summary["sensitivity"]["voltage_per_mm"] is None
@@ -103,7 +103,7 @@ def test_a_mesh_that_fails_keeps_the_cad_files_and_exits_3(tmp_path, capfd, room
     def fail(*_):
         raise MeshingError("the mesher took longer than 300 s")
 
-    rooms.build_mesh = fail
+    rooms.mesh = fail
     assert main(["run", "-o", str(tmp_path / "out")]) == 3
     assert entries(tmp_path / "out") == {"summary.json", "log.txt", "cad/segment.step"}
     summary = json.loads((tmp_path / "out/summary.json").read_text())
@@ -132,14 +132,14 @@ def test_an_earlier_run_survives_a_failure(tmp_path, rooms):
     def fail(*_):
         raise ZeroDivisionError
 
-    rooms.press = fail
+    rooms.solve = fail
     with pytest.raises(ZeroDivisionError):
         main(["run", "-o", str(out)])
     assert (out / "summary.json").read_text() == before
     assert entries(tmp_path) == {f"out/{name}" for name in EVERYTHING}
 
 
-@pytest.mark.parametrize("stage", ["build_parts", "build_mesh", "press", "write_report"])
+@pytest.mark.parametrize("stage", ["parts", "mesh", "solve", "write_outputs"])
 def test_ctrl_c_leaves_nothing(tmp_path, capfd, rooms, stage):
     def interrupted(*_):
         raise KeyboardInterrupt

@@ -6,9 +6,9 @@ import json
 import numpy as np
 import pytest
 
-from softdot.config import config_from
 from softdot.numbers import json_text
 from softdot.summary import history, press_part
+from solve.parameters import Readout
 from tests.softdot.stand_ins import result_of
 
 LAYERS = {"medium1": {"thickness_mm": 0.5}, "film": {"thickness_um": 28}, "medium2": {"thickness_mm": 2}}
@@ -33,16 +33,15 @@ def test_electrodes_are_read_in_parallel():
 
 
 def test_each_electrode_is_also_listed_by_itself():
-    part = press_part(config_from({"segment": LAYERS}), two_electrodes(), None)
+    part = press_part(None, two_electrodes(), None)
     assert [electrode["name"] for electrode in part["electrodes"]] == ["left", "right"]
     assert [electrode["capacitance_pF"] for electrode in part["electrodes"]] == pytest.approx([10.0, 30.0])
     assert part["electrodes"][1]["open_circuit_voltage_V"] == pytest.approx([0.0, 1.0])
 
 
 def test_sensitivity_is_that_of_the_amplifier_and_its_noise():
-    config = config_from({"segment": LAYERS, "readout": {"noise_V": 0.01}})
     behind_amplifier = np.array([0.0, 0.15, 0.3])  # 1 V per mm
-    part = press_part(config, result_of([0.0, 0.15, 0.3]), behind_amplifier)
+    part = press_part(Readout(noise_V=0.01), result_of([0.0, 0.15, 0.3]), behind_amplifier)
     assert part["readout_voltage_V"] == pytest.approx(behind_amplifier)
     assert part["sensitivity"]["voltage_per_mm"] == pytest.approx(1.0)
     assert part["sensitivity"]["least_detectable_indentation_um"] == pytest.approx(10.0)
@@ -57,6 +56,6 @@ def test_json_has_no_nan():
 @pytest.mark.parametrize("nonsense", [np.nan, np.inf, -np.inf])
 def test_a_number_that_is_none_is_no_converged_result(nonsense):
     voltage = np.array([0.0, nonsense])
-    solver = press_part(config_from({"segment": LAYERS}), two_electrodes(), voltage)["solver"]
+    solver = press_part(None, two_electrodes(), voltage)["solver"]
     assert not solver["converged"]
     assert solver["failure"] == "readout_voltage_V[1] is not a finite number"

@@ -19,10 +19,10 @@ from softdot.cli import main
 from softdot.config import Config, config_from
 from softdot.console import Logged
 from softdot.outcome import outcome
-from softdot.sweep import cluster as scheduler_module
-from softdot.sweep import read_table, run_sweep, solve_points, space_from
-from softdot.sweep.cluster import NO_DASHBOARD, local_cluster
-from softdot.sweep.points import TINY, solve_all
+from softdot.sweeps import cluster as scheduler_module
+from softdot.sweeps import read_table, run_sweep, solve_points, space_from
+from softdot.sweeps.cluster import NO_DASHBOARD, local_cluster
+from softdot.sweeps.points import TINY, solve_all
 from tests.softdot.complaints import complaints
 from tests.softdot.interrupts import heard
 from tests.softdot.sweep_spaces import DEPTHS, depths, space_of

@@ -10,9 +10,9 @@ from geometry.base import InputError
 from softdot import outcome as outcome_module
 from softdot.cli import main
 from softdot.commands import sweep as run_module
-from softdot.sweep import read_table, run_sweep, space_from, store
-from softdot.sweep.points import CRASHED, LOST, NOT_CONVERGED, REFUSED, failed, solve_point
-from softdot.sweep.table import write_table
+from softdot.sweeps import read_table, run_sweep, space_from, store
+from softdot.sweeps.points import CRASHED, LOST, NOT_CONVERGED, REFUSED, failed, solve_point
+from softdot.sweeps.table import write_table
 from tests.softdot.complaints import complaints
 from tests.softdot.stand_ins import result_of
 from tests.softdot.sweep_spaces import DEPTHS, depths, no_cluster, solved_here, space_of
@@ -28,8 +28,8 @@ class Presses:
         self.depths = []
         self.failures = {}
 
-    def __call__(self, config, *_):
-        depth = config.press.indentation_mm
+    def __call__(self, case, *_):
+        depth = case.config.press.indentation_mm
         self.depths.append(depth)
         failure = self.failures.get(depth)
         if isinstance(failure, BaseException):
@@ -42,8 +42,8 @@ def presses(rooms, monkeypatch, tmp_path):
     monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path / "cache"))
     monkeypatch.setattr(run_module, "local_cluster", no_cluster)
     monkeypatch.setattr(run_module, "solve_all", solved_here)
-    rooms.press = Presses()
-    return rooms.press
+    rooms.solve = Presses()
+    return rooms.solve
 
 
 @pytest.fixture
@@ -96,21 +96,21 @@ def test_the_summary_is_printed_and_kept(tmp_path, out, capfd):
 
 
 def test_the_peak_is_the_largest_magnitude_with_its_sign(rooms, out):
-    rooms.press = lambda *_: result_of([0.0, -0.4, 0.3])
+    rooms.solve = lambda *_: result_of([0.0, -0.4, 0.3])
     run_sweep(space_from(space_of(depths(0.1))), out)
     assert rows(out)[0]["peak.open_circuit_voltage_V"] == pytest.approx(-0.8)
 
 
 def test_a_point_that_fails_is_a_row_with_its_reason(presses, rooms, tmp_path, out):
     presses.failures = {0.2: "Newton's method found no state\nat 0.1 mm", 0.3: RuntimeError("a bug")}
-    check = rooms.check
+    check = rooms.checked
 
-    def refuse_deep(config, *_):
-        if config.press.indentation_mm > 0.35:
+    def refuse_deep(case, *_):
+        if case.config.press.indentation_mm > 0.35:
             raise InputError("press.indentation_mm = 0.4: too deep")
-        return check(config)
+        return check(case)
 
-    rooms.check = refuse_deep
+    rooms.checked = refuse_deep
     assert sweep(tmp_path, out, depths(0.1, 0.2, 0.3, 0.4)) == 0
     assert [(row["status"], row["reason"]) for row in rows(out)] == [
         ("solved", None),

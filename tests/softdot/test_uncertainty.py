@@ -2,8 +2,7 @@
 
 import pytest
 
-from softdot import stages
-from softdot.actual import actual
+from softdot.case import Case
 from softdot.config import config_from
 from softdot.tolerances.responses import KitPress
 from softdot.uncertainty import uncertainty
@@ -24,10 +23,7 @@ SLICE = {
 def pressed(*mechanisms, mesh=None):
     """Final force and open-circuit voltage."""
     config = config_from({**SLICE, "mechanisms": list(mechanisms), "mesh": {**SLICE["mesh"], **(mesh or {})}})
-    changed, physics = actual(config)
-    dot, _ = stages.check(changed)
-    result = stages.press(changed, physics, dot, stages.build_mesh(changed, dot), lambda *_: None)
-    step = result.steps[-1]
+    step = Case(config).solve().steps[-1]
     return step.reaction_force_N, float(step.open_circuit_voltage_V[0])
 
 

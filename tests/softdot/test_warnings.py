@@ -6,14 +6,15 @@ import pytest
 
 from geometry.dot import resolve_dot
 from softdot.config import config_from, load_config
+from softdot.config.model import model_of
 from softdot.warnings import design_warnings, held_rim_warnings, result_warnings
-from tests.softdot.stand_ins import cap_of_height, one_tetrahedron, result_of, step_at
+from tests.softdot.stand_ins import cap_of_height, result_of, step_at
 
 LAYERS = {"medium1": {"thickness_mm": 0.5}, "film": {"thickness_um": 28}, "medium2": {"thickness_mm": 2}}
 
 
 def warn(**segment):
-    return design_warnings(config_from({"segment": {**LAYERS, **segment}}))
+    return design_warnings(model_of(config_from({"segment": {**LAYERS, **segment}})))
 
 
 def test_holding_medium2_closes_a_cavity():
@@ -27,26 +28,26 @@ def test_holding_medium2_closes_a_cavity():
 
 
 def test_film_beyond_yield():
-    config, dot = load_config(), cap_of_height(0.5)
-    assert result_warnings(config, dot, one_tetrahedron(), result_of([0.0, 0.3], stress_MPa=49.0)) == []
-    (warning,) = result_warnings(config, dot, one_tetrahedron(), result_of([0.0, 0.3], stress_MPa=58.0))
+    model, dot = model_of(load_config()), cap_of_height(0.5)
+    assert result_warnings(model, dot, result_of([0.0, 0.3], stress_MPa=49.0)) == []
+    (warning,) = result_warnings(model, dot, result_of([0.0, 0.3], stress_MPa=58.0))
     assert "58 MPa exceeds its yield stress of 50 MPa" in warning
 
 
 def test_strain_beyond_the_fitted_range():
-    config = config_from({"segment": LAYERS, "materials": {"pvdf": {"max_fitted_strain": 0.02}}})
-    dot, tet_mesh = cap_of_height(0.5), one_tetrahedron()
+    model = model_of(config_from({"segment": LAYERS, "materials": {"pvdf": {"max_fitted_strain": 0.02}}}))
+    dot = cap_of_height(0.5)
     within = dataclasses.replace(result_of([0.0]), steps=(step_at(0.0), step_at(0.3, stretch=1.019)))
     beyond = dataclasses.replace(result_of([0.0]), steps=(step_at(0.0), step_at(0.3, stretch=1.029)))
-    assert result_warnings(config, dot, tet_mesh, within) == []
-    assert result_warnings(config, dot, tet_mesh, beyond) == [
+    assert result_warnings(model, dot, within) == []
+    assert result_warnings(model, dot, beyond) == [
         "the strain of 2.9 % in film is beyond the fitted range of its material (2 %)"
     ]
 
 
 def test_a_force_can_press_deeper_than_the_dot():
-    config = config_from({"segment": LAYERS, "press": {"force_N": 2.0}})
-    warnings = result_warnings(config, cap_of_height(0.2), one_tetrahedron(), result_of([0.0, 0.3]))
+    model = model_of(config_from({"segment": LAYERS, "press": {"force_N": 2.0}}))
+    warnings = result_warnings(model, cap_of_height(0.2), result_of([0.0, 0.3]))
     assert any("exceeds the dot's height of 0.2 mm" in warning for warning in warnings)
 
 

@@ -7,8 +7,8 @@ import solve.solution.checkpoint
 from solve.materials.inelastic import Prony
 from solve.model import Physics
 from solve.parameters import Press, Waveform
-from solve.press import press_segment
 from solve.solution.checkpoint import Checkpoint, read_archive, write_archive
+from tests.pressing import press_segment
 from tests.solve.segments import cap, coarse_mesh, materials, segment
 
 PRESS = Press(indentation_mm=0.1, load_steps=2, waveform=Waveform(shape="trapezoid", hold_s=0.2))

@@ -14,9 +14,9 @@ from mesh.build import build
 from mesh.parameters import MeshOptions
 from solve.materials.parameters import Linear, NeoHookean, PiezoelectricFilm
 from solve.parameters import Press
-from solve.press import press_segment
 from solve.solution import march as marching
 from solve.solution import newton
+from tests.pressing import press_segment
 
 SLICE = MeshOptions(element_size_mm=0.8, contact_element_size_mm=0.4, mesher="layered")
 FILM = PiezoelectricFilm()

@@ -10,8 +10,8 @@ from mesh.parameters import MeshOptions
 from mesh.types import TetMesh
 from solve.fields import RIM_THICKNESSES, film_columns, film_peak
 from solve.parameters import Press
-from solve.press import press_segment
 from tests.export.pressed_box import box_mesh, made_up_press
+from tests.pressing import press_segment
 from tests.solve import segments
 
 THICKNESS_MM = 0.028

@@ -8,11 +8,12 @@ from geometry.parameters import Dot, Film
 from mesh.parameters import MeshOptions
 from solve.model import Model, Physics
 from solve.parameters import Press
-from solve.press import press_segment, set_up
+from solve.press import set_up
 from solve.problem import build_system
 from solve.solution.linear import LinearSolver
 from solve.solution.march import march
 from solve.system import Load
+from tests.pressing import press_segment
 from tests.solve.segments import cap, coarse_mesh, materials, ridge, segment
 
 SHALLOW = Press(indentation_mm=0.2, load_steps=2)

@@ -12,8 +12,9 @@ from solve.interfaces import open_interfaces
 from solve.materials.parameters import Hyperfoam, PiezoelectricFilm
 from solve.model import Model, Physics
 from solve.parameters import Press, Readout, Waveform
-from solve.press import Setup, press_segment, set_up
+from solve.press import Setup, set_up
 from solve.result import PressResult
+from tests.pressing import press_segment
 from tests.solve.segments import coarse_mesh, materials, ridge, segment
 
 STACK = segment(section="plane-strain")

@@ -15,7 +15,7 @@ import pytest
 
 from mesh.parameters import MeshOptions
 from solve.parameters import Press
-from solve.press import press_segment
+from tests.pressing import press_segment
 from tests.solve.segments import cap, materials, segment
 from tests.verification.quarter import mirrored, quarter, save_case
 from tests.verification.row import agrees

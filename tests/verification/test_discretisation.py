@@ -7,7 +7,7 @@ import pytest
 from mesh.build import build
 from mesh.parameters import MeshOptions
 from solve.parameters import Press
-from solve.press import press_segment
+from tests.pressing import press_segment
 from tests.solve.segments import cap, materials, segment
 
 pytestmark = pytest.mark.slow

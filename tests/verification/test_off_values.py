@@ -8,8 +8,8 @@ from geometry.parameters import Dot
 from solve.mechanisms import Mechanism, with_mechanisms
 from solve.model import Model
 from solve.parameters import Press, Readout
-from solve.press import press_segment
 from solve.readout.recording import readout_voltage
+from tests.pressing import press_segment
 from tests.solve.segments import COARSE, coarse_mesh, materials
 from tests.verification.slices import STACK, mesh_of, waved
 

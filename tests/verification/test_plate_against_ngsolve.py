@@ -19,7 +19,7 @@ from mesh.build import build
 from mesh.parameters import MeshOptions
 from solve.fem.quadrature import tetrahedron
 from solve.parameters import Press
-from solve.press import press_segment
+from tests.pressing import press_segment
 from tests.solve.segments import materials, segment
 
 pytestmark = [

@@ -11,9 +11,9 @@ import pytest
 from solve.materials.inelastic import Prony
 from solve.model import BondLine, Physics
 from solve.parameters import Press, Readout, Waveform
-from solve.press import press_segment
 from solve.readout.amplifier import amplify
 from solve.reduced.build import BETWEEN, build_reduced, refined, relative_error
+from tests.pressing import press_segment
 from tests.solve.segments import cap, coarse_mesh, materials, segment
 
 STACK = segment()

@@ -7,7 +7,7 @@ import pytest
 
 from solve.model import Physics
 from solve.parameters import Press
-from solve.press import press_segment
+from tests.pressing import press_segment
 from tests.solve.segments import materials, ridge
 from tests.verification.slices import BLOCK, STACK, charge, foams, force, mesh_of, plate, pressed, waved
 

@@ -9,7 +9,7 @@ from geometry.parameters import Film, Medium
 from solve.materials.inelastic import Prony
 from solve.model import Physics
 from solve.parameters import Press, Waveform
-from solve.press import press_segment
+from tests.pressing import press_segment
 from tests.solve.segments import materials, ridge, segment
 from tests.verification.slices import mesh_of
 

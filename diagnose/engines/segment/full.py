@@ -5,7 +5,7 @@ The fewest times at which the 3D model must be solved to follow a drive.
 
 import csv
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -17,7 +17,6 @@ from diagnose.forward import Signals
 from diagnose.signals.recording import Run
 from geometry.arrays import Bools, Floats, Ints
 from geometry.base import Report
-from geometry.dot import resolve_dot
 from geometry.processes import scratch_folder
 from mesh.types import TetMesh
 from solve.model import Model
@@ -111,11 +110,10 @@ def solve(task: Task, report: Report) -> Signals:
 
 def _press(task: Task, press: Press, report: Report) -> PressResult:
     """NoEquilibriumError where it stops short."""
-    model, dot = task.model, resolve_dot(ungapped(task.model).dot, task.model.segment)
+    model = replace(ungapped(task.model), press=press, readout=None)
     result = press_segment(
-        model.segment, model.materials, dot, press, task.tet_mesh,
-        lambda _, number, count: report(f"3D press of {task.run.label}", number, count), model.physics,
-    )  # fmt: skip
+        model, task.tet_mesh, lambda _, number, count: report(f"3D press of {task.run.label}", number, count)
+    )
     if result.failure is not None:
         raise NoEquilibriumError(f"the 3D press of {task.run.label}: {result.failure}", np.zeros(0), None)
     return result

@@ -21,7 +21,6 @@ from diagnose.vocabulary.layers.viscoelasticity import LARGEST_SHARE, relaxable
 from diagnose.vocabulary.scene import Scene
 from geometry.arrays import Floats
 from geometry.base import Report
-from geometry.dot import resolve_dot
 from mesh.parameters import MeshOptions
 from mesh.types import TetMesh
 from solve.mechanisms import with_mechanisms
@@ -67,8 +66,7 @@ def reached(model: Model, tet_mesh: TetMesh, force_N: float) -> float:
 
 
 def _press(model: Model, tet_mesh: TetMesh) -> float:
-    dot = resolve_dot(model.dot.model_copy(update={"gap_mm": 0.0}), model.segment)
-    result = press_segment(model.segment, model.materials, dot, model.press, tet_mesh, physics=model.physics)
+    result = press_segment(ungapped(model), tet_mesh)
     if result.failure is not None:
         raise NoEquilibriumError(f"the baseline under {model.press.force_N:.3g} N: {result.failure}", np.zeros(0), None)
     return 1e3 * float(result.trace.dot_path_m[-1])

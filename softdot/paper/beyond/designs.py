@@ -131,7 +131,7 @@ def solve_trials(
     designs: Sequence[Design], reading: Reading, mesh: Mapping[str, Any], progress: Progress
 ) -> list[Trial]:
     """Press every design with both boundaries; a design of which one press does not converge is left out."""
-    from softdot.sweep import solve_points
+    from softdot.sweeps import solve_points
 
     configs = [design_config(design, boundary, reading, mesh) for design in designs for boundary in BOUNDARIES]
     records = solve_points(configs, progress)

@@ -141,7 +141,7 @@ class Solved:
 
 def solve_rig(progress: Progress) -> dict[str, Solved]:
     """Case -> its presses, as far as they are not remembered. NotSolvedError."""
-    from softdot.sweep import solve_points
+    from softdot.sweeps import solve_points
 
     configs = dict(_configs())
     records = dict(zip(configs, solve_points(list(configs.values()), progress), strict=True))

@@ -5,9 +5,9 @@ from types import SimpleNamespace
 import pytest
 
 from diagnose.forward import Setting
-from softdot.actual import actual
 from softdot.commands.verdict_page import improved_text
 from softdot.config import load_config
+from softdot.config.model import model_of
 from tests.diagnose.coupon.coupons import candidate, engine, specimen
 from tests.diagnose.verdict.toy import LEAK, fitted
 
@@ -36,7 +36,7 @@ def test_relaxation_becomes_a_mechanism_of_medium_2(tmp_path):
     assert config.materials["mine"].youngs_modulus_MPa == pytest.approx(1.2)
     (relaxing,) = config.mechanisms
     assert (relaxing.name, relaxing.component) == ("viscoelasticity", "medium2")
-    assert "medium2" in actual(config)[1].viscosity
+    assert "medium2" in model_of(config).physics.viscosity
 
 
 def test_a_coupon_that_teaches_nothing_and_a_sensor_nobody_knows_leave_no_configuration():

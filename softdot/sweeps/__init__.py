@@ -9,18 +9,18 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from softdot.commands.sweep import run_sweep
-    from softdot.sweep.cluster import solve_points
-    from softdot.sweep.space import Space, load_space, space_from
-    from softdot.sweep.table import read_table
+    from softdot.sweeps.cluster import solve_points
+    from softdot.sweeps.space import Space, load_space, space_from
+    from softdot.sweeps.table import read_table
 
 __all__ = ["Space", "load_space", "read_table", "run_sweep", "solve_points", "space_from"]
 _HOMES = {
-    "Space": "softdot.sweep.space",
-    "load_space": "softdot.sweep.space",
-    "read_table": "softdot.sweep.table",
+    "Space": "softdot.sweeps.space",
+    "load_space": "softdot.sweeps.space",
+    "read_table": "softdot.sweeps.table",
     "run_sweep": "softdot.commands.sweep",
-    "solve_points": "softdot.sweep.cluster",
-    "space_from": "softdot.sweep.space",
+    "solve_points": "softdot.sweeps.cluster",
+    "space_from": "softdot.sweeps.space",
 }
 
 
@@ -28,4 +28,4 @@ def __getattr__(name: str) -> Any:
     """Import a public name from its home."""
     if name in _HOMES:
         return getattr(import_module(_HOMES[name]), name)
-    raise AttributeError(f"module 'softdot.sweep' has no attribute '{name}'")
+    raise AttributeError(f"module 'softdot.sweeps' has no attribute '{name}'")

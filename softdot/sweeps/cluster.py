@@ -17,7 +17,7 @@ from geometry.processes import ONE_THREAD, scratch_folder
 from softdot.config import Config
 from softdot.console import Logged, Progress
 from softdot.outcome import outcome, outcome_key, remembered
-from softdot.sweep.points import Record, solve_all, solve_point, warm_up_config
+from softdot.sweeps.points import Record, solve_all, solve_point, warm_up_config
 
 SILENT = 60  # above every level of Python's logging
 DEATHS = 1

@@ -1,11 +1,10 @@
-"""What a configuration really asks for, once its bonds and mechanisms are switched on."""
+"""What the solver is told by a configuration: bonds declared, mechanisms switched on, nothing impossible."""
 
 from pydantic import ValidationError
 
 from geometry.base import InputError
 from geometry.parameters import Table
 from geometry.part_checks import check_patch
-from geometry.stack import layers
 from softdot.config import Config
 from softdot.config.errors import sentence
 from solve.mechanisms import Mechanism, with_mechanisms
@@ -14,17 +13,8 @@ from solve.model import Model, Physics, declared_bonds
 STIFFEST_BOND_N_PER_MM3 = 1e6  # as in segment.bonds
 
 
-def actual(config: Config) -> tuple[Config, Physics]:
-    """The configuration with every change that mechanisms make to it, and the physics beyond the baseline.
-
-    InputError with one sentence for a mechanism that this segment cannot have.
-    """
-    model = model_of(config)
-    return _as_config(config, model), model.physics
-
-
 def model_of(config: Config) -> Model:
-    """What the solver is told by a configuration, mechanisms switched on. InputError as actual."""
+    """The model of a configuration. InputError with one sentence for a mechanism that this segment cannot have."""
     physics = Physics(bonds=declared_bonds(config.segment))
     model = Model(config.segment, config.layer_materials(), config.dot, config.press, config.readout, physics)
     for number, mechanism in enumerate(config.mechanisms):
@@ -91,16 +81,3 @@ def _refuse_missing_channels(model: Model) -> None:
                 f"mechanisms: crosstalk into 'channel-{channel}' needs that electrode and another one; "
                 f"segment.film.electrodes has {len(model.segment.film.electrodes)}"
             )
-
-
-def _as_config(config: Config, model: Model) -> Config:
-    """The changes as a configuration; a changed material gets a name of its own."""
-    segment, materials = model.segment, dict(config.materials)
-    for layer in layers(segment):
-        if model.materials[layer.name] is not config.layer_materials().get(layer.name):
-            name = f"{layer.material} of {layer.name}"
-            table = getattr(segment, layer.name).model_copy(update={"material": name})
-            segment = segment.model_copy(update={layer.name: table})
-            materials[name] = model.materials[layer.name]
-    changes = {"segment": segment, "materials": materials, "dot": model.dot, "readout": model.readout}
-    return config.model_copy(update=changes)

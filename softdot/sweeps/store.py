@@ -18,7 +18,7 @@ from softdot.config import Config, config_hash
 from softdot.numbers import plain, write_json
 from softdot.outcome import outcome_key
 from softdot.output import Product, check_output
-from softdot.sweep.points import ACCIDENTS, Record
+from softdot.sweeps.points import ACCIDENTS, Record
 
 POINTS, TABLE, SPACE_COPY = "points", "sweep.parquet", "space.toml"
 CSV_TABLE, PICTURE, PAGE = "sweep.csv", "sweep.png", "report.html"
@@ -94,7 +94,7 @@ def finish(
     place: Path, rows: list[dict[str, Any]], axes: Sequence[str], text: str | None, summary: Mapping[str, Any]
 ) -> None:
     """Replace tables, picture, page, space and, last, the summary. axes : the columns that the sweep has varied."""
-    from softdot.sweep.table import draw, write_csv, write_report, write_table
+    from softdot.sweeps.table import draw, write_csv, write_report, write_table
 
     write_table(place / TABLE, rows)
     write_csv(place / CSV_TABLE, rows)
