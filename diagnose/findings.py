@@ -23,7 +23,7 @@ class Detection:
 
 
 @dataclass(frozen=True)
-class Place:
+class LocatedExcess:
     """A cell of the residual of the baseline. score : nearly standard normal; p_value : family-wise.
 
     share : of all excess. component : whose sensitivities explain most of it here, "" for none.
@@ -63,7 +63,7 @@ class Interval:
 
 
 @dataclass(frozen=True)
-class Model:
+class FittedModel:
     """One or two mechanisms fitted to all runs, with how it predicts presses that it was not fitted to.
 
     gain, gain_lower : nats per press over the baseline, and the lower bound of its mean. probability : among all
@@ -107,14 +107,14 @@ class Findings:
 
     engine: str
     detection: Detection
-    places: tuple[Place, ...]
+    places: tuple[LocatedExcess, ...]
     shares: Mapping[str, float]
     screened: Mapping[tuple[str, str], float]
     mismatch: bool
     unexplained: bool
     reasons: tuple[str, ...]
-    models: tuple[Model, ...]
-    best: Model | None
+    models: tuple[FittedModel, ...]
+    best: FittedModel | None
     groups: tuple[tuple[int, ...], ...]
     train: Fit | None
     held_out: Fit | None

@@ -10,7 +10,7 @@ import numpy as np
 from export.dot_surface import placed_dot, triangle_surface
 from export.nodal_fields import MM_PER_M
 from export.skin import Skin, nearby_plane, nodal_steps, outer_skin, section
-from export.view import COLOUR_MAP, INK, Body, View, colour_bar, frame, name_parts, page, render, ruler, save
+from export.view import COLOUR_MAP, INK, DrawnBody, View, colour_bar, frame, name_parts, page, render, ruler, save
 from geometry.arrays import Floats
 from geometry.dot import DotShape
 from geometry.solids import PART_COLOURS
@@ -25,7 +25,7 @@ FAR_APART = 30.0
 
 
 @dataclass(frozen=True)
-class Scene:
+class CutawayScene:
     """One step, ready to be drawn.
 
     parts : name -> undeformed pyvista surface with point arrays displacement_mm and von_mises_MPa.
@@ -43,25 +43,25 @@ def is_slice(tet_mesh: TetMesh) -> bool:
     return bool(np.any(tet_mesh.twin != np.arange(len(tet_mesh.twin))))
 
 
-def open_scene(tet_mesh: TetMesh, step: Step, dot_shape: DotShape) -> Scene:
+def open_scene(tet_mesh: TetMesh, step: Step, dot_shape: DotShape) -> CutawayScene:
     """Cut a solid segment along the dot; a plane-strain slice is seen whole from the front."""
     nodes = nodal_steps(tet_mesh, [step])
     origin = step.dot_position_m * MM_PER_M
     dots = placed_dot(dot_shape, tet_mesh, origin, facets=96)
     outer = outer_skin(nodes, 2)
     if is_slice(tet_mesh):
-        return Scene(_by_part(tet_mesh, [outer]), dots, 0.0, FRONT)
+        return CutawayScene(_by_part(tet_mesh, [outer]), dots, 0.0, FRONT)
     plane = nearby_plane(tet_mesh, float(origin[1]))
     cut = _by_part(tet_mesh, [outer], lambda s: s.clip("y", origin=(0.0, plane, 0.0), invert=False))
     faces = _by_part(tet_mesh, [section(nodes, plane, 2)])
     parts = {name: cut[name].merge(faces[name]).extract_surface(algorithm="dataset_surface") for name in cut}
     dots = [dot.clip_closed_surface("y", origin=(0.0, plane, 0.0)) for dot in dots]
-    return Scene(parts, [dot for dot in dots if dot.n_cells], plane, OPEN)
+    return CutawayScene(parts, [dot for dot in dots if dot.n_cells], plane, OPEN)
 
 
-def draw_parts(scene: Scene, title: str, path: Path) -> None:
+def draw_parts(scene: CutawayScene, title: str, path: Path) -> None:
     """The parts in their colours, named, with rulers in mm."""
-    bodies = [Body(_deformed(part), PART_COLOURS[name]) for name, part in scene.parts.items()]
+    bodies = [DrawnBody(_deformed(part), PART_COLOURS[name]) for name, part in scene.parts.items()]
     figure, axes = _draw(scene, bodies, title)
     anchors, names = _anchors(scene)
     colours = [PART_COLOURS[name] for name in [*scene.parts, "dot"]]
@@ -70,7 +70,7 @@ def draw_parts(scene: Scene, title: str, path: Path) -> None:
     save(figure, path)
 
 
-def draw_von_mises(scene: Scene, title: str, path: Path) -> None:
+def draw_von_mises(scene: CutawayScene, title: str, path: Path) -> None:
     """The soft parts by von Mises stress; the film, a thousand times stiffer, in its own colour.
 
     On one scale, or each part on its own where the stresses of the parts are far apart.
@@ -80,7 +80,7 @@ def draw_von_mises(scene: Scene, title: str, path: Path) -> None:
     apart = max(own.values()) > FAR_APART * min(own.values())
     together = float(np.percentile(np.concatenate(list(stresses.values())), 99)) or 1.0
     tops = own if apart else dict.fromkeys(own, together)
-    bodies = [_by_stress(part, tops[name]) if name in tops else Body(_deformed(part), PART_COLOURS[name])
+    bodies = [_by_stress(part, tops[name]) if name in tops else DrawnBody(_deformed(part), PART_COLOURS[name])
               for name, part in scene.parts.items()]  # fmt: skip
     figure, _ = _draw(scene, bodies, title)
     if apart:
@@ -93,20 +93,20 @@ def draw_von_mises(scene: Scene, title: str, path: Path) -> None:
     save(figure, path)
 
 
-def _by_stress(part: Any, top: float) -> Body:
+def _by_stress(part: Any, top: float) -> DrawnBody:
     """Colours straight into the surface, so that the light shades them like the parts' own."""
     import matplotlib
 
     surface = _deformed(part)
     shade = np.clip(surface["von_mises_MPa"] / top, 0, 1)
     surface["rgb"] = (matplotlib.colormaps[COLOUR_MAP](shade)[:, :3] * 255).astype(np.uint8)
-    return Body(surface, None)
+    return DrawnBody(surface, None)
 
 
-def _draw(scene: Scene, bodies: list[Body], title: str) -> tuple[Any, Any]:
+def _draw(scene: CutawayScene, bodies: list[DrawnBody], title: str) -> tuple[Any, Any]:
     """Bodies, outlines, dot and rulers on a page."""
     bodies += [_outline(part, scene.view) for part in scene.parts.values()]
-    bodies += [Body(_smooth(dot), PART_COLOURS["dot"]) for dot in scene.dots]
+    bodies += [DrawnBody(_smooth(dot), PART_COLOURS["dot"]) for dot in scene.dots]
     flat = np.vstack([scene.view.flat(np.asarray(b.surface.points)) for b in bodies if b.surface.n_points])
     box = frame(flat)
     figure, axes, pixels_per_mm = page(box, title)
@@ -119,7 +119,7 @@ def _draw(scene: Scene, bodies: list[Body], title: str) -> tuple[Any, Any]:
     return figure, axes
 
 
-def _rulers(axes: Any, scene: Scene) -> None:
+def _rulers(axes: Any, scene: CutawayScene) -> None:
     """x along the foot of the section, z up its left edge and, where it shows, y along the right foot."""
     points = np.vstack([part.points for part in scene.parts.values()])
     (x0, y0, z0), (x1, y1, z1) = points.min(axis=0), points.max(axis=0)
@@ -131,7 +131,7 @@ def _rulers(axes: Any, scene: Scene) -> None:
         ruler(axes, scene.view, corner, np.array([x1, y1, z0]), "y", away_y)
 
 
-def _anchors(scene: Scene) -> tuple[list[Floats], list[str]]:
+def _anchors(scene: CutawayScene) -> tuple[list[Floats], list[str]]:
     """Where the naming lines start (on the right flank at half height), and the names with thicknesses."""
     anchors, names = [], []
     for name, part in scene.parts.items():
@@ -169,7 +169,7 @@ def _deformed(surface: Any) -> Any:
     return moved
 
 
-def _outline(part: Any, view: View) -> Body:
+def _outline(part: Any, view: View) -> DrawnBody:
     """Edges of a part, found on the undeformed shape and lifted a little towards the viewer."""
     edges = part.clean(tolerance=1e-6).extract_feature_edges(
         feature_angle=40, manifold_edges=False, non_manifold_edges=False, clear_data=False
@@ -177,7 +177,7 @@ def _outline(part: Any, view: View) -> Body:
     if edges.n_points:
         edges = _deformed(edges)
         edges.points = np.asarray(edges.points) + 0.01 * view.axes[2]
-    return Body(edges, INK, 2.5)
+    return DrawnBody(edges, INK, 2.5)
 
 
 def _smooth(surface: Any) -> Any:

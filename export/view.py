@@ -37,7 +37,7 @@ class View:
 
 
 @dataclass(frozen=True)
-class Body:
+class DrawnBody:
     """Something to draw: a pyvista surface, its colour (None: its "rgb" array), line width (0: filled)."""
 
     surface: Any
@@ -52,7 +52,7 @@ def frame(flat_mm: Floats, pad: float = 0.02) -> tuple[float, float, float, floa
     return low[0] - extra, high[0] + extra, low[1] - extra, high[1] + extra
 
 
-def render(bodies: list[Body], view: View, box: tuple[float, float, float, float], pixels_per_mm: float) -> Any:
+def render(bodies: list[DrawnBody], view: View, box: tuple[float, float, float, float], pixels_per_mm: float) -> Any:
     """Image (h, w, 3) uint8 of what lies inside box (mm on the picture). InputError without OpenGL."""
     from export.headless import ensure_rendering
 
@@ -73,7 +73,7 @@ def render(bodies: list[Body], view: View, box: tuple[float, float, float, float
     return image
 
 
-def _add(plotter: Any, body: Body, flat_light: bool) -> None:
+def _add(plotter: Any, body: DrawnBody, flat_light: bool) -> None:
     """Filled surfaces in soft light (none at all in a straight front view), lines in ink."""
     if body.surface.n_points == 0:
         return

@@ -6,13 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.arrays import Floats, Ints
-from mesh.outline import Outline
+from mesh.outline import StackOutline
 from mesh.sizing import Sizing, graded_through
 from mesh.types import TET_FACES, LinearMesh, face_neighbours, oriented, split_prisms
 
 
 @dataclass(frozen=True)
-class Section:
+class MeshedSection:
     """points_mm : (n, 2) x and z; triangles : (m, 3); region : (m,) index into region_names."""
 
     points_mm: Floats
@@ -21,7 +21,9 @@ class Section:
     region_names: tuple[str, ...]
 
 
-def structured(stack: Outline, field: Sizing, heights: Floats, layer_region: Ints, names: tuple[str, ...]) -> Section:
+def structured(
+    stack: StackOutline, field: Sizing, heights: Floats, layer_region: Ints, names: tuple[str, ...]
+) -> MeshedSection:
     """A graded grid of x columns and z layers, every rectangle cut by a diagonal that mirrors about x = 0."""
     x = _columns(stack, field)
     points = np.column_stack([np.tile(x, len(heights)), np.repeat(heights, len(x))])
@@ -35,10 +37,10 @@ def structured(stack: Outline, field: Sizing, heights: Floats, layer_region: Int
     one = np.stack([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)], axis=1)
     other = np.stack([np.stack([a, b, d], axis=1), np.stack([b, c, d], axis=1)], axis=1)
     triangles = np.where(rising, one, other).reshape(-1, 3)
-    return Section(points, triangles, np.repeat(layer_region[layer], 2), names)
+    return MeshedSection(points, triangles, np.repeat(layer_region[layer], 2), names)
 
 
-def _columns(stack: Outline, field: Sizing) -> Floats:
+def _columns(stack: StackOutline, field: Sizing) -> Floats:
     """x lines through the sides of the effector, as fine as the finest of skin and film at each x."""
 
     def size(x: Floats) -> Floats:
@@ -68,7 +70,7 @@ def with_film(bare: LinearMesh, thickness_mm: float, film_layers: int) -> Linear
     return LinearMesh(points, oriented(points, tets), region, _names(bare.region))
 
 
-def section_with_film(bare: Section, thickness_mm: float, film_layers: int) -> Section:
+def section_with_film(bare: MeshedSection, thickness_mm: float, film_layers: int) -> MeshedSection:
     """The same in the x-z section: interface edges become rectangles cut in two, mirrored about x = 0."""
     lower = bare.region == 0
     edges = _interface_edges(bare)
@@ -82,7 +84,7 @@ def section_with_film(bare: Section, thickness_mm: float, film_layers: int) -> S
         cells.append(np.where(rising, one, other).reshape(-1, 3))
     triangles = np.concatenate([np.where(lower[:, None], bare.triangles, moved[bare.triangles]), *cells])
     region = _regions(bare.region, 2 * len(edges) * film_layers)
-    return Section(points, triangles, region, _names(bare.region))
+    return MeshedSection(points, triangles, region, _names(bare.region))
 
 
 def _levels(
@@ -104,7 +106,7 @@ def _levels(
     return np.concatenate(added), levels, levels[-1]
 
 
-def _interface_edges(bare: Section) -> Ints:
+def _interface_edges(bare: MeshedSection) -> Ints:
     """Edges (k, 2) between medium 2 and medium 1, from smaller to larger x."""
     pairs = np.sort(bare.triangles[:, [[0, 1], [1, 2], [2, 0]]], axis=2)
     low = np.unique(pairs[bare.region == 0].reshape(-1, 2), axis=0)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from geometry.arrays import Floats, Ints
 from geometry.base import InputError
-from mesh.outline import Outline
+from mesh.outline import StackOutline
 
 Bools = NDArray[np.bool_]
 
@@ -98,7 +98,7 @@ def _halve(triangles: Ints, part: Ints, of_triangle: Ints, middle: Ints) -> tupl
     )
 
 
-def start_triangulation(outline: Outline, coarse_mm: float) -> Triangulation:
+def start_triangulation(outline: StackOutline, coarse_mm: float) -> Triangulation:
     """Triangles of about coarse_mm; part 1 inside the effector's foot, part 0 outside.
 
     Raises InputError when a cylinder leaves no room for triangles beside it.
@@ -122,7 +122,7 @@ def start_triangulation(outline: Outline, coarse_mm: float) -> Triangulation:
     return _joined(triangles, part)
 
 
-def _patch(outline: Outline) -> tuple[float, float]:
+def _patch(outline: StackOutline) -> tuple[float, float]:
     """Half sizes of the rectangle around a round foot."""
     radius = outline.effector_half_x
     room = min(outline.half_x, outline.half_y)

@@ -9,9 +9,9 @@ from geometry.arrays import Floats, Ints
 from geometry.base import InputError
 from geometry.dot import DotShape
 from geometry.parameters import Segment
-from mesh.film import Section, section_with_film, structured
+from mesh.film import MeshedSection, section_with_film, structured
 from mesh.footprint import Triangulation, refine, start_triangulation
-from mesh.outline import Outline, outline
+from mesh.outline import StackOutline, outline
 from mesh.parameters import MeshOptions
 from mesh.sizing import Sizing, graded, sizing
 from mesh.tetwild import bare_stack
@@ -34,7 +34,7 @@ def refuse_dome(segment: Segment) -> None:
         raise InputError("mesh.mesher = layered cannot mesh segment.effector.shape = dome: use pytetwild")
 
 
-def levels(stack: Outline, field: Sizing, film_layers: int) -> tuple[Floats, Ints, tuple[str, ...]]:
+def levels(stack: StackOutline, field: Sizing, film_layers: int) -> tuple[Floats, Ints, tuple[str, ...]]:
     """Heights (k + 1,), the part of each of the k layers, and the names of the parts."""
     x, y = field.centers_mm[0] if len(field.centers_mm) else (0.0, 0.0)
     x, y = np.clip(x, -stack.half_x, stack.half_x), np.clip(y, -stack.half_y, stack.half_y)
@@ -58,7 +58,7 @@ def levels(stack: Outline, field: Sizing, film_layers: int) -> tuple[Floats, Int
     return heights, part, tuple(name for name, _ in pieces)
 
 
-def _triangulate(stack: Outline, field: Sizing) -> Triangulation:
+def _triangulate(stack: StackOutline, field: Sizing) -> Triangulation:
     """The footprint, as fine at each place as the finest of skin and film above it."""
 
     def size(xy: Floats) -> Floats:
@@ -103,7 +103,7 @@ def tetwild_slice(segment: Segment, dot: DotShape, options: MeshOptions) -> Line
     return extruded(section, thickness_mm)
 
 
-def y_face(slab: LinearMesh, stack: Outline) -> Section:
+def y_face(slab: LinearMesh, stack: StackOutline) -> MeshedSection:
     """The triangulation of a slab's face at the smallest y."""
     owner, face = boundary_faces(slab.tets)
     facets = slab.tets[owner[:, None], TET_FACES[face, :3]]
@@ -111,10 +111,10 @@ def y_face(slab: LinearMesh, stack: Outline) -> Section:
     used, number = np.unique(facets[chosen], return_inverse=True)
     region = slab.region[owner[chosen]]
     triangles = number.reshape(-1, 3).astype(np.int64)
-    return Section(slab.points_mm[used][:, [0, 2]], triangles, region, slab.region_names)
+    return MeshedSection(slab.points_mm[used][:, [0, 2]], triangles, region, slab.region_names)
 
 
-def extruded(section: Section, thickness_mm: float) -> LinearMesh:
+def extruded(section: MeshedSection, thickness_mm: float) -> LinearMesh:
     """One layer of prisms from y = -thickness/2 to +thickness/2, each split into three tetrahedra."""
     count = len(section.points_mm)
     x, z = np.tile(section.points_mm, (2, 1)).T

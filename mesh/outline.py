@@ -14,7 +14,7 @@ Shape = Literal["none", "layer", "block", "cylinder", "dome"]
 
 
 @dataclass(frozen=True)
-class Outline:
+class StackOutline:
     """The stack in mm; the film may be given another (also zero) thickness than the segment's.
 
     half_x, half_y : half the footprint (half_y of a slice: half the slice's thickness).
@@ -78,7 +78,7 @@ class Outline:
         return 4 * a * self.effector_half_y * height
 
 
-def outline(segment: Segment, film_thickness_mm: float | None = None, slice_mm: float = 0.0) -> Outline:
+def outline(segment: Segment, film_thickness_mm: float | None = None, slice_mm: float = 0.0) -> StackOutline:
     """The outline of a segment.
 
     film_thickness_mm : overrides the film's thickness; slice_mm : size in y of a plane-strain slice.
@@ -90,7 +90,7 @@ def outline(segment: Segment, film_thickness_mm: float | None = None, slice_mm: 
     medium1_top = bottom + film + segment.medium1.thickness_mm
     shape, foot_x, foot_y, height = _effector(segment, half_x, half_y)
     heights = (bottom, bottom + film, medium1_top, medium1_top + height)
-    return Outline(half_x, half_y, *heights, shape, foot_x, foot_y, is_slice)
+    return StackOutline(half_x, half_y, *heights, shape, foot_x, foot_y, is_slice)
 
 
 def _effector(segment: Segment, half_x: float, half_y: float) -> tuple[Shape, float, float, float]:
@@ -150,7 +150,7 @@ class RoundSurface:
         return np.asarray(away / np.linalg.norm(away, axis=1, keepdims=True))
 
 
-def curved_surface(stack: Outline) -> RoundSurface | None:
+def curved_surface(stack: StackOutline) -> RoundSurface | None:
     """The curved part of the effector's skin, or None."""
     if stack.shape == "cylinder" and not stack.is_slice:
         return RoundSurface(np.zeros(3), stack.effector_half_x, np.array([1.0, 1.0, 0.0]), stack.medium1_top)

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from geometry.arrays import Floats, Ints
 from geometry.parameters import Segment
 from mesh.layered import twins
-from mesh.outline import Outline, RoundSurface, curved_surface, outline
+from mesh.outline import RoundSurface, StackOutline, curved_surface, outline
 from mesh.parameters import MeshOptions
 from mesh.quality import refuse_inverted, smallest_determinant_ratio
 from mesh.types import TET_FACES, LinearMesh, TetMesh, boundary_faces, face_neighbours, unique_edges
@@ -64,7 +64,7 @@ TOLERANCE_MM = 1e-6
 
 
 def named_facets(
-    points_mm: Floats, tets: Ints, region: Ints, names: tuple[str, ...], stack: Outline
+    points_mm: Floats, tets: Ints, region: Ints, names: tuple[str, ...], stack: StackOutline
 ) -> dict[str, Ints]:
     """The facets of mesh.types.TetMesh by name, each (k, 6)."""
     neighbour = face_neighbours(tets[:, :4])
@@ -77,7 +77,7 @@ def named_facets(
 
 
 def _outer_facets(
-    points: Floats, tets: Ints, region: Ints, names: tuple[str, ...], stack: Outline, neighbour: Ints
+    points: Floats, tets: Ints, region: Ints, names: tuple[str, ...], stack: StackOutline, neighbour: Ints
 ) -> dict[str, Ints]:
     """Base, sides of each region and the contact skin."""
     owner, face = np.nonzero(neighbour < 0)

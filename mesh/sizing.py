@@ -9,7 +9,7 @@ import numpy as np
 
 from geometry.arrays import Floats, Ints
 from geometry.dot import DotShape
-from mesh.outline import Outline
+from mesh.outline import StackOutline
 from mesh.parameters import MeshOptions
 
 GROWTH = 0.4  # mm of edge length per mm of distance: neighbouring edges differ by about a factor 1.4
@@ -27,7 +27,7 @@ class Sizing:
     kind : shape of the dot; a ridge reaches along y, a plate everywhere.
     """
 
-    outline: Outline
+    outline: StackOutline
     coarse_mm: float
     contact_mm: float
     film_mm: float
@@ -71,7 +71,7 @@ class Sizing:
         return self.outline.dome_centre_z + np.sqrt(self.outline.dome_radius**2 - radial**2)
 
 
-def sizing(outline: Outline, dot: DotShape, options: MeshOptions) -> Sizing:
+def sizing(outline: StackOutline, dot: DotShape, options: MeshOptions) -> Sizing:
     """The sizing field for a dot at its rest position.
 
     The contact zone is where the undeformed skin and the dot overlap, sqrt(2 R u) at a depth u, with 1/R the
@@ -94,7 +94,7 @@ STEP_MM = 0.12
 MOST_POINTS = 300_000
 
 
-def background(stack: Outline, field: Sizing) -> tuple[Floats, Ints, Floats]:
+def background(stack: StackOutline, field: Sizing) -> tuple[Floats, Ints, Floats]:
     """Vertices (n, 3), tetrahedra (m, 4) and edge lengths (n,) over the bounding box and a little beyond."""
     low, high = (-stack.half_x, -stack.half_y, 0.0), (stack.half_x, stack.half_y, stack.top)
     volume = float(np.prod(np.subtract(high, low)))

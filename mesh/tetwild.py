@@ -10,7 +10,7 @@ from geometry.dot import DotShape
 from geometry.parameters import Segment
 from geometry.stack import layers
 from mesh.film import with_film
-from mesh.outline import Outline, curved_surface, outline
+from mesh.outline import StackOutline, curved_surface, outline
 from mesh.parameters import MeshOptions
 from mesh.sizing import background, sizing
 from mesh.tetwild_process import tetrahedralize
@@ -21,7 +21,7 @@ DEFLECTION = 0.02  # of the smallest detail, where that is more
 TURN_RAD = 0.5  # of neighbouring facets
 
 
-def merged_surface(segment: Segment, stack: Outline, detail_mm: float) -> tuple[Floats, Ints]:
+def merged_surface(segment: Segment, stack: StackOutline, detail_mm: float) -> tuple[Floats, Ints]:
     """Vertices (n, 3) and faces (m, 3) of the parts; vertices merged, double and flat faces dropped.
 
     detail_mm : size of the smallest elements or parts; round surfaces get facets that suit it.
@@ -47,7 +47,7 @@ def _merged(vertices: Floats, faces: Ints) -> tuple[Floats, Ints]:
     return points, triangles[np.sort(kept)]
 
 
-def _solids(segment: Segment, stack: Outline) -> list[Any]:
+def _solids(segment: Segment, stack: StackOutline) -> list[Any]:
     """build123d solids of the stack without its film."""
     if stack.is_slice:
         return _slab(stack)
@@ -56,7 +56,7 @@ def _solids(segment: Segment, stack: Outline) -> list[Any]:
     return list(layer_solids(segment, film_thickness_mm=0.0).values())
 
 
-def _slab(stack: Outline) -> list[Any]:
+def _slab(stack: StackOutline) -> list[Any]:
     """The x-z section as a slab: a cylinder is a box then, a dome a circular segment along y."""
     from build123d import Box, Cylinder, Pos, Rot
 
@@ -79,7 +79,7 @@ def _slab(stack: Outline) -> list[Any]:
 EFFECTOR = 2  # its region in a stack without film
 
 
-def snapped(points: Floats, tets: Ints, region: Ints, stack: Outline) -> Floats:
+def snapped(points: Floats, tets: Ints, region: Ints, stack: StackOutline) -> Floats:
     """Points (n, 3) with those of facets between different regions (or outside) moved onto their surfaces.
 
     Each such facet belongs to the surface it lies nearest to; a node gets the surfaces of all its facets.
@@ -109,7 +109,7 @@ def snapped(points: Floats, tets: Ints, region: Ints, stack: Outline) -> Floats:
     return result
 
 
-def _planes(stack: Outline) -> list[tuple[int, float]]:
+def _planes(stack: StackOutline) -> list[tuple[int, float]]:
     """Axis and position of every plane of the stack."""
     planes = [(0, -stack.half_x), (0, stack.half_x), (1, -stack.half_y), (1, stack.half_y)]
     planes += [(2, 0.0), (2, stack.film_bottom), (2, stack.medium1_top)]
@@ -139,7 +139,7 @@ def tetwild(segment: Segment, dot: DotShape, options: MeshOptions) -> LinearMesh
     return with_film(bare, segment.film.thickness_um * 1e-3, options.film_layers)
 
 
-def bare_stack(segment: Segment, stack: Outline, dot: DotShape, options: MeshOptions) -> LinearMesh:
+def bare_stack(segment: Segment, stack: StackOutline, dot: DotShape, options: MeshOptions) -> LinearMesh:
     """The stack without its film: regions 0 medium2, 1 medium1, 2 effector."""
     thicknesses_mm = (layer.thickness_mm for layer in layers(segment) if layer.name != "film")
     detail_mm = min(options.contact_element_size_mm, *thicknesses_mm)
@@ -170,7 +170,7 @@ def bare_stack(segment: Segment, stack: Outline, dot: DotShape, options: MeshOpt
     )
 
 
-def stop_energy(stack: Outline, options: MeshOptions) -> float:
+def stop_energy(stack: StackOutline, options: MeshOptions) -> float:
     """The distortion at which pytetwild stops: low, but not where the shape itself has a narrow wedge.
 
     A flat dome meets medium 1 at a small angle, and a round foot may touch the side of the segment: there no
@@ -184,7 +184,7 @@ def stop_energy(stack: Outline, options: MeshOptions) -> float:
     return WEDGE_ENERGY if (narrow and not stack.is_slice) or shallow else STOP_ENERGY
 
 
-def _labelled(points: Floats, tets: Ints, stack: Outline) -> LinearMesh:
+def _labelled(points: Floats, tets: Ints, stack: StackOutline) -> LinearMesh:
     """Keep the tetrahedra inside the parts, label them and put nodes onto exact surfaces."""
     region = region_of(points[tets].mean(axis=1), stack)
     inside = region >= 0
@@ -194,7 +194,7 @@ def _labelled(points: Floats, tets: Ints, stack: Outline) -> LinearMesh:
     return LinearMesh(exact, kept.tets, kept.region, kept.region_names)
 
 
-def region_of(points: Floats, stack: Outline) -> Ints:
+def region_of(points: Floats, stack: StackOutline) -> Ints:
     """Part of each point (n, 3): 0 medium2, 1 medium1, 2 effector, -1 outside."""
     x, y, z = np.abs(points[:, 0]), np.abs(points[:, 1]), points[:, 2]
     foot = (x < stack.half_x) & (y < stack.half_y)

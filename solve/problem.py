@@ -27,7 +27,7 @@ from solve.terms.contact import RigidDot, contact_facets
 from solve.terms.delamination import opening_nodes, unilateral_interface
 from solve.terms.film import FilmRegion, film_region
 from solve.terms.friction import FrictionalContact
-from solve.terms.rig import Circuit, Rig
+from solve.terms.rig import Circuit, RigTerm
 from solve.terms.solid import SolidRegion, solid_region
 from solve.terms.springs import bond, side_springs
 
@@ -256,4 +256,4 @@ def _rig(make: Builder, force_driven: bool) -> Iterator[Term]:
     share = make.tet_mesh.thickness_mm / make.segment.width_mm if make.segment.section == "plane-strain" else 1.0
     compliance = 1e-3 * physics.rig_compliance_mm_per_N * units.force / units.length / share
     mass = 1e-3 * physics.moving_mass_g / units.mass * share
-    yield Rig(make.unknowns.approach, mass, None if force_driven else compliance)
+    yield RigTerm(make.unknowns.approach, mass, None if force_driven else compliance)

@@ -24,12 +24,12 @@ from solve.result import PressResult, Record, Step, Trace
 from solve.solution.march import SMALLEST_IN_TIME, TIME_TOLERANCE
 from solve.solution.schedule import fraction
 from solve.system import State, System
-from solve.terms.rig import Rig
+from solve.terms.rig import RigTerm
 
 PENETRATION_LIMIT = 0.05  # of the depth; contact holds in weighted means, so a coarse surface can overlap at points
 
 
-def doubts(steps: Sequence[Step], records: Sequence[Record]) -> tuple[str, ...]:
+def doubtful_results(steps: Sequence[Step], records: Sequence[Record]) -> tuple[str, ...]:
     """Warnings, one sentence each."""
     deepest = max(steps, key=lambda step: step.indentation_m)
     return (*_untouched(records), *_penetration(deepest), *_snaps(records), *_unresolved(records))
@@ -211,7 +211,7 @@ class Recorder:
             linear_solver=linear_solver,
             max_relative_residual=max(step.relative_residual for step in steps),
             film_peak=film_peak(steps, self.tet_mesh, self.segment),
-            warnings=doubts(steps, self.records),
+            warnings=doubtful_results(steps, self.records),
         )
 
     @property
@@ -221,8 +221,8 @@ class Recorder:
         return self.system.film.capacitance() * (units.charge / units.voltage) * self.charge_scale
 
     @property
-    def _rig(self) -> Rig | None:
-        return next((term for term in self.system.terms if isinstance(term, Rig)), None)
+    def _rig(self) -> RigTerm | None:
+        return next((term for term in self.system.terms if isinstance(term, RigTerm)), None)
 
     @property
     def _force_driven(self) -> bool:

@@ -16,7 +16,7 @@ from solve.fem.term import History, Term, Trial, Unknowns
 from solve.terms.contact import ContactFacets
 from solve.terms.film import FilmRegion
 from solve.terms.friction import FrictionalContact
-from solve.terms.rig import Rig
+from solve.terms.rig import RigTerm
 from solve.terms.solid import SolidRegion
 
 CONTACT_SPRING = 1e4  # only steers the preconditioner of the linear solver
@@ -122,7 +122,7 @@ class System:
     @property
     def force_driven(self) -> bool:
         """Whether a force drives the dot."""
-        return any(isinstance(term, Rig) and term.compliance is None for term in self.terms)
+        return any(isinstance(term, RigTerm) and term.compliance is None for term in self.terms)
 
     @cached_property
     def mechanical(self) -> Ints:
@@ -197,7 +197,7 @@ class System:
             if isinstance(term, ContactFacets | FrictionalContact):
                 load_norm = max(load_norm, float(np.linalg.norm((residual - before)[self.mechanical])))
                 touching = bool(status[-1][: len(self.contact.pressure_dofs)].any())  # nodes in contact come first
-            elif isinstance(term, Rig):
+            elif isinstance(term, RigTerm):
                 load_norm = max(load_norm, abs(term.drive_force(trial)))
         upper = self.pattern.matrix(data)
         lower = None if excess is None else self.pattern.matrix(excess)

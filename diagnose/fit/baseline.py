@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from diagnose.fit.observed_model import ObservedModel, by_name, late
-from diagnose.fit.system import Quadratic, System, linearised
+from diagnose.fit.system import LinearisedSystem, Quadratic, linearised
 from geometry.arrays import Bools, Floats
 
 ROUNDS = 12
@@ -15,13 +15,13 @@ HALVINGS = 5
 PLAUSIBLE = 2.0  # deviations of a prior
 
 
-def fitted_baseline(model: ObservedModel) -> System:
+def fitted_baseline(model: ObservedModel) -> LinearisedSystem:
     """Linear about the best nuisances that were found from 0, from aligned lags and from the starts of free ones."""
     systems = [_descended(model, start) for start in _starts(model)]
     return min(systems, key=lambda system: _misfit(model, system.values, system))
 
 
-def believed(model: ObservedModel, system: System) -> System:
+def believed(model: ObservedModel, system: LinearisedSystem) -> LinearisedSystem:
     """The same about nuisances that their priors find plausible: far out they stand in for what is missing."""
     values = plausible(system.values, model.sigma)
     return system if np.array_equal(values, system.values) else linearised(model, values)
@@ -32,7 +32,7 @@ def plausible(values: Floats, sigma: Floats) -> Floats:
     return np.asarray(np.clip(values, -PLAUSIBLE * sigma, PLAUSIBLE * sigma))
 
 
-def within_priors(system: System, fitted: System) -> System:
+def within_priors(system: LinearisedSystem, fitted: LinearisedSystem) -> LinearisedSystem:
     """A system about plausible nuisances, with those that the fit strains held there: what the experimenter declared.
 
     Otherwise a modulus that is ten deviations off, once learnt from one press, predicts all others.
@@ -40,7 +40,7 @@ def within_priors(system: System, fitted: System) -> System:
     count = len(fitted.values)
     strained = np.flatnonzero(np.abs(fitted.values) > PLAUSIBLE * system.sigma[:count])
     residual, sigma = system.residual.copy(), system.sigma_of_one.copy()
-    residual[system.live] -= system.excused[:, strained] @ system.values[strained]
+    residual[system.informative] -= system.nuisance_design[:, strained] @ system.values[strained]
     sigma[strained] = 0.0
     return replace(system, residual=residual, sigma_of_one=sigma)
 
@@ -88,7 +88,7 @@ def _best_lag(model: ObservedModel, number: int, sigma: float, values: Floats) -
     return float(max(grid, key=likeness))
 
 
-def _descended(model: ObservedModel, values: Floats) -> System:
+def _descended(model: ObservedModel, values: Floats) -> LinearisedSystem:
     """Gauss-Newton with halved steps where a step does not help."""
     system = linearised(model, values)
     for _ in range(ROUNDS if len(values) else 0):
@@ -108,16 +108,16 @@ def _descended(model: ObservedModel, values: Floats) -> System:
     return system
 
 
-def _misfit(model: ObservedModel, values: Floats, system: System) -> float:
+def _misfit(model: ObservedModel, values: Floats, system: LinearisedSystem) -> float:
     """Twice the negative log posterior of nuisances, but for a constant; discrepancies integrated out by the system."""
     count = len(values)
-    others: Bools = np.arange(system.excused.shape[1]) >= count
+    others: Bools = np.arange(system.nuisance_design.shape[1]) >= count
     left = model.samples.recorded - model.vector(values)
-    columns, sigma = system.weighted(system.excused[:, others]), system.sigma[others]
+    columns, sigma = system.weighted(system.nuisance_design[:, others]), system.sigma[others]
     return Quadratic(columns, sigma).square(system.weighted(left)) + float(((values / model.sigma) ** 2).sum())
 
 
-def _length(system: System, step: Floats) -> float:
+def _length(system: LinearisedSystem, step: Floats) -> float:
     """How far a step is in posterior standard deviations, about."""
-    change = system.weighted(system.excused[:, : len(step)] @ step)
+    change = system.weighted(system.nuisance_design[:, : len(step)] @ step)
     return float(np.sqrt(system.quadratic.square(change)))

@@ -1,4 +1,4 @@
-"""Bounded Levenberg-Marquardt over the coordinates of mechanisms, with all that is excused integrated out.
+"""Bounded Levenberg-Marquardt over the coordinates of mechanisms, with all nuisance parameters integrated out.
 
 What is linear leaves only inner products (variable projection; Golub and Pereyra, SIAM J. Numer. Anal. 10 (1973) 413).
 
@@ -16,7 +16,7 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from diagnose.fit.observed_model import STEP, Nuisance, ObservedModel
-from diagnose.fit.system import Quadratic, System
+from diagnose.fit.system import LinearisedSystem, Quadratic
 from diagnose.forward import Candidate, Coordinate, Setting
 from geometry.arrays import Floats
 
@@ -45,7 +45,7 @@ class Descent:
     """
 
     model: ObservedModel
-    system: System
+    system: LinearisedSystem
     candidates: tuple[Candidate, ...]
     origin: Floats
 
@@ -58,7 +58,7 @@ class Descent:
         try:
             predicted = self.vector(values)
         except ValueError:
-            return Place(values, self.origin, np.zeros(int(self.system.live.sum())), np.inf)
+            return Place(values, self.origin, np.zeros(int(self.system.informative.sum())), np.inf)
         left = self.system.weighted(self.origin - predicted)
         return Place(values, predicted, left, 0.5 * self.system.quadratic.square(left))
 
@@ -81,7 +81,9 @@ class Descent:
         return np.zeros_like(place.predicted)
 
 
-def descent(model: ObservedModel, system: System, candidates: Sequence[Candidate], about: Sequence[Setting]) -> Descent:
+def descent(
+    model: ObservedModel, system: LinearisedSystem, candidates: Sequence[Candidate], about: Sequence[Setting]
+) -> Descent:
     """about : the mechanisms about which the system is linear."""
     return Descent(model, system, tuple(candidates), model.vector(system.values, about) + system.residual)
 
@@ -179,11 +181,11 @@ class Joint:
 
 
 class _Problem:
-    def __init__(self, model: ObservedModel, system: System, candidates: Sequence[Candidate]) -> None:
+    def __init__(self, model: ObservedModel, system: LinearisedSystem, candidates: Sequence[Candidate]) -> None:
         self.model, self.system, self.candidates = model, system, tuple(candidates)
         self.count = len(bounds(candidates))
-        self.excused = Quadratic(
-            system.weighted(system.excused[:, len(system.values) :]), system.sigma[len(system.values) :]
+        self.nuisance_design = Quadratic(
+            system.weighted(system.nuisance_design[:, len(system.values) :]), system.sigma[len(system.values) :]
         )
         self.precision = np.concatenate([np.zeros(self.count), 1.0 / model.sigma**2])
         own = np.array([_limits(nuisance) for nuisance in model.nuisances]).reshape(-1, 2)
@@ -194,9 +196,9 @@ class _Problem:
         try:
             predicted = self.model.vector(point[self.count :], settings(self.candidates, point[: self.count]))
         except ValueError:
-            return np.zeros(int(self.system.live.sum())), np.inf
+            return np.zeros(int(self.system.informative.sum())), np.inf
         left = self.system.weighted(self.model.samples.recorded - predicted)
-        return left, 0.5 * self.excused.square(left) + 0.5 * float(self.precision @ point**2)
+        return left, 0.5 * self.nuisance_design.square(left) + 0.5 * float(self.precision @ point**2)
 
     def columns(self, point: Floats) -> Floats:
         """Weighted slopes (l, q + p)."""
@@ -208,7 +210,7 @@ class _Problem:
         return self.system.weighted(np.column_stack([slopes, self.model.tangents(nuisances, on)]))
 
 
-def _at(system: System, nuisances: Floats) -> System:
+def _at(system: LinearisedSystem, nuisances: Floats) -> LinearisedSystem:
     return replace(system, values=nuisances)
 
 
@@ -219,7 +221,9 @@ def _limits(nuisance: Nuisance) -> tuple[float, float]:
     return coordinate.low, coordinate.high
 
 
-def fitted_jointly(model: ObservedModel, system: System, candidates: Sequence[Candidate], start: Floats) -> Joint:
+def fitted_jointly(
+    model: ObservedModel, system: LinearisedSystem, candidates: Sequence[Candidate], start: Floats
+) -> Joint:
     """From values (q,) and the system's own nuisances."""
     problem = _Problem(model, system, candidates)
     point = np.clip(np.concatenate([start, system.values]), *problem.limits.T)
@@ -227,7 +231,7 @@ def fitted_jointly(model: ObservedModel, system: System, candidates: Sequence[Ca
     damping = 1e-3
     for _ in range(JOINT_ITERATIONS if np.isfinite(cost) else 0):
         columns = problem.columns(point)
-        cleared = problem.excused.cleared(columns)
+        cleared = problem.nuisance_design.cleared(columns)
         hessian = columns.T @ cleared + np.diag(problem.precision)
         gradient = cleared.T @ left - problem.precision * point
         gain, still = 0.0, False

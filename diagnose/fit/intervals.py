@@ -54,7 +54,7 @@ def _model_may_err(model: ObservedModel, fit: Fitted) -> Fitted:
     """With an error over depth that no further run averages out, as all have it. A name needs no such allowance."""
     shown = model.signals(fit.system.values, fit.settings)
     columns, sigma = discrepancy.repeated(model.samples, shown, relative(model))
-    return replace(fit, system=fit.system.excusing(columns, sigma))
+    return replace(fit, system=fit.system.with_nuisance_columns(columns, sigma))
 
 
 def _of_mechanism(model: ObservedModel, fit: Fitted, number: int) -> Mapping[str, Interval]:

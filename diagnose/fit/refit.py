@@ -10,7 +10,7 @@ from diagnose.fit.descent import Place, descended, descent, fitted_jointly, sett
 from diagnose.fit.discrepancy import FORM
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.samples import Samples
-from diagnose.fit.system import System, linearised
+from diagnose.fit.system import LinearisedSystem, linearised
 from diagnose.forward import Candidate, Setting
 from diagnose.statistics.abstain import LARGEST_FORM
 from geometry.arrays import Floats
@@ -30,7 +30,7 @@ class Fitted:
 
     candidates: tuple[Candidate, ...]
     values: Floats
-    system: System
+    system: LinearisedSystem
     slopes: Floats
     largest_form: float
     evidence: float
@@ -41,14 +41,14 @@ class Fitted:
         return settings(self.candidates, self.values)
 
 
-def common_metric(samples: Samples, baseline: System) -> System:
+def common_metric(samples: Samples, baseline: LinearisedSystem) -> LinearisedSystem:
     """The baseline with the same variance for every candidate's error of form: as if its residual were the effect."""
     excess = discrepancy.allowance(samples, baseline.residual, [1.0] * len(samples.channels))
     return replace(baseline, formal=excess, form=FORM)
 
 
 def fitted(
-    model: ObservedModel, system: System, candidates: Sequence[Candidate], start: Floats, excess: float
+    model: ObservedModel, system: LinearisedSystem, candidates: Sequence[Candidate], start: Floats, excess: float
 ) -> Fitted:
     """system : from where nuisances start, with the rows that are looked at. excess : see largest_form.
 
@@ -56,7 +56,7 @@ def fitted(
     """
     values, nuisances = start, system.values
     for _ in range(ROUNDS):
-        system = linearised(model, nuisances, settings(candidates, values), FORM, system.live)
+        system = linearised(model, nuisances, settings(candidates, values), FORM, system.informative)
         system = replace(system, form=largest_form(system, excess))
         found = fitted_jointly(model, system, candidates, values)
         change = model.vector(found.nuisances, settings(candidates, found.values)) - model.vector(
@@ -65,22 +65,24 @@ def fitted(
         values, nuisances = found.values, found.nuisances
         if np.linalg.norm(system.weighted(change)) < NEAR:
             break
-    system = linearised(model, nuisances, settings(candidates, values), FORM, system.live)
+    system = linearised(model, nuisances, settings(candidates, values), FORM, system.informative)
     largest = largest_form(system, excess)
     system = replace(system, form=max(largest * FORMS, key=lambda form: _evidence(replace(system, form=form))))
     system, place, slopes = _moved(model, system, candidates, values)
     return Fitted(tuple(candidates), place.values, system, slopes, largest, _evidence(system))
 
 
-def largest_form(system: System, excess: float) -> float:
+def largest_form(system: LinearisedSystem, excess: float) -> float:
     """FORM, or less where that would excuse more than LARGEST_FORM of the excess (a sum of squares above noise)."""
-    excused = float((system.formal / system.numerical)[system.live].sum())
-    return min(FORM, float(np.sqrt(LARGEST_FORM * max(excess, 0.0) / excused))) if excused > 0.0 else FORM
+    nuisance_design = float((system.formal / system.numerical)[system.informative].sum())
+    return (
+        min(FORM, float(np.sqrt(LARGEST_FORM * max(excess, 0.0) / nuisance_design))) if nuisance_design > 0.0 else FORM
+    )
 
 
 def _moved(
-    model: ObservedModel, system: System, candidates: Sequence[Candidate], values: Floats
-) -> tuple[System, Place, Floats]:
+    model: ObservedModel, system: LinearisedSystem, candidates: Sequence[Candidate], values: Floats
+) -> tuple[LinearisedSystem, Place, Floats]:
     """The best place in the metric of a system about values (q,); the system with the residual there; the slopes."""
     problem = descent(model, system, candidates, settings(candidates, values))
     place, slopes = descended(problem, values)
@@ -88,7 +90,7 @@ def _moved(
     return replace(system, residual=system.residual - change, effect=system.effect + change), place, slopes
 
 
-def _evidence(system: System) -> float:
+def _evidence(system: LinearisedSystem) -> float:
     """Logarithm of the marginal likelihood, but for a constant."""
     square = system.quadratic.square(system.weighted(system.residual))
-    return -0.5 * square - system.quadratic.log_scale + float(np.log(system.weight[system.live]).sum())
+    return -0.5 * square - system.quadratic.log_scale + float(np.log(system.weight[system.informative]).sum())

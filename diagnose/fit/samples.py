@@ -15,7 +15,7 @@ from scipy.fft import dct
 from diagnose.forward import Signals
 from diagnose.noise.model import NoiseModel, Whitening
 from diagnose.signals.recording import Recording, Run
-from diagnose.statistics.cells import FilterBank, Hypotheses, Segment, octave_edges, segments, with_pools
+from diagnose.statistics.cells import FilterBank, Hypotheses, TimeSegment, octave_edges, segments, with_pools
 from geometry.arrays import Bools, Floats, Ints
 
 POOLS: tuple[frozenset[str], ...] = tuple(
@@ -27,7 +27,7 @@ POOLS: tuple[frozenset[str], ...] = tuple(
 
 
 @dataclass(frozen=True)
-class Block:
+class SampleBlock:
     """One channel of one run. rows : its part of the vector."""
 
     run: int
@@ -72,7 +72,7 @@ class Samples:
         white = np.concatenate([b.whitening(signals[b.run][b.channel]) for b in self.blocks])
         return self.bank.coefficients(white)
 
-    def of_block(self, block: Block, white: Floats) -> Floats:
+    def of_block(self, block: SampleBlock, white: Floats) -> Floats:
         """The transform (n, ...) of whitened samples (m, ...) of one block, zero elsewhere."""
         out = np.zeros((len(self), *white.shape[1:]))
         first = block.rows.start
@@ -81,7 +81,7 @@ class Samples:
             out[piece.samples] = dct(own, type=2, norm="ortho", axis=0)
         return out
 
-    def pieces_of(self, block: Block) -> tuple[Segment, ...]:
+    def pieces_of(self, block: SampleBlock) -> tuple[TimeSegment, ...]:
         """The pieces of one block."""
         rows = block.rows
         return tuple(piece for piece in self.bank.pieces if rows.start <= piece.samples.start < rows.stop)
@@ -169,19 +169,21 @@ def used(run: Run, channel: str) -> Bools:
     return run.usable(channel) if stated else run.valid[channel]
 
 
-def _blocks(recording: Recording, noise: Mapping[tuple[str, str], NoiseModel]) -> list[Block]:
-    found: list[Block] = []
+def _blocks(recording: Recording, noise: Mapping[tuple[str, str], NoiseModel]) -> list[SampleBlock]:
+    found: list[SampleBlock] = []
     first = 0
     for number, run in enumerate(recording.runs):
         for channel in run.answers:
             whitening = noise[run.label, channel].whitening(used(run, channel), run.time_s)
             last = first + int(whitening.observed.sum())
-            found.append(Block(number, channel, whitening, slice(first, last)))
+            found.append(SampleBlock(number, channel, whitening, slice(first, last)))
             first = last
     return found
 
 
-def _labels(recording: Recording, blocks: Sequence[Block], channels: Sequence[str]) -> tuple[dict[str, Ints], Floats]:
+def _labels(
+    recording: Recording, blocks: Sequence[SampleBlock], channels: Sequence[str]
+) -> tuple[dict[str, Ints], Floats]:
     """Labels (n,) of every sample and the nominal step (n,) of its even piece."""
     columns: dict[str, list[Ints]] = {name: [] for name in ("run", "channel", "phase", "press", "piece")}
     steps = []

@@ -1,11 +1,12 @@
-"""The recording linearised about nuisances and mechanisms: a residual, its variance, and all that is excused.
+"""The recording linearised about nuisances and mechanisms: a residual, its variance, a design matrix.
 
 The log-likelihood of whitened residuals once nuisances are integrated out, as inner products.
 
 With columns T and prior deviations P the covariance is S = 1 + T P^2 T'. S^-1 = 1 - T A^-1 T', A = T'T + P^-2
 (Rasmussen and Williams 2006, appendix A.3), so that only the small A is factorised.
 
-Where the sensitivities live: fits leave the other coefficients alone, which hold noise and nothing to fit.
+The informative mask says where sensitivities have energy. Fits leave the other coefficients alone, which hold noise and
+nothing to fit.
 """
 
 from collections.abc import Sequence
@@ -65,25 +66,25 @@ class Quadratic:
 
 
 @dataclass(frozen=True)
-class System:
-    """residual = excused @ parameters + noise, each coefficient with its own variance.
+class LinearisedSystem:
+    """residual = nuisance_design @ parameters + noise, each coefficient with its own variance.
 
     values : (p,) nuisances about which it is linear; the first p columns are their tangents, so that their prior stays
     centred at 0. residual : (n,) recorded - predicted + tangents @ values. variance : (n,) 1 plus what the model may be
-    wrong by. excused : (n, k). sigma : (k,) prior deviations. effect : (n,) of the mechanisms, whitened.
-    live : (n,) where fits look; elsewhere no sensitivity has any energy.
+    wrong by. nuisance_design : (n, k). sigma : (k,) prior deviations. effect : (n,) of the mechanisms, whitened.
+    informative : (n,) where fits look; elsewhere no sensitivity has any energy.
     """
 
     values: Floats
     residual: Floats
     numerical: Floats
     formal: Floats
-    excused: Floats
+    nuisance_design: Floats
     sigma_of_one: Floats
     laws: int
     effect: Floats
     form: float
-    live: Bools
+    informative: Bools
 
     @property
     def variance(self) -> Floats:
@@ -92,7 +93,7 @@ class System:
 
     @property
     def sigma(self) -> Floats:
-        """Prior deviations (k,) of what is excused."""
+        """Prior deviations (k,) of the nuisance parameters."""
         sigma = self.sigma_of_one.copy()
         sigma[len(sigma) - self.laws :] *= self.form
         return sigma
@@ -103,25 +104,29 @@ class System:
         return np.asarray(1.0 / np.sqrt(self.variance))
 
     def weighted(self, vectors: Floats) -> Floats:
-        """Live rows of (n, ...), or live rows themselves, in units of their standard deviation."""
-        rows = vectors[self.live] if len(vectors) == len(self.live) else vectors
-        weight = self.weight[self.live]
+        """Informative rows of (n, ...), or these themselves, in units of their standard deviation."""
+        rows = vectors[self.informative] if len(vectors) == len(self.informative) else vectors
+        weight = self.weight[self.informative]
         return np.asarray(rows * (weight if rows.ndim == 1 else weight[:, None]))
 
-    def reached(self, live: Bools) -> "System":
-        """The same where only some of its live rows are looked at."""
-        return replace(self, excused=self.excused[live[self.live]], live=live)
+    def reached(self, informative: Bools) -> "LinearisedSystem":
+        """The same where only some of its informative rows are looked at."""
+        return replace(
+            self, nuisance_design=self.nuisance_design[informative[self.informative]], informative=informative
+        )
 
-    def excusing(self, columns: Floats, sigma: Floats) -> "System":
-        """The same with more columns (n, k) excused, of prior deviations (k,)."""
+    def with_nuisance_columns(self, columns: Floats, sigma: Floats) -> "LinearisedSystem":
+        """The same with more nuisance columns (n, k), of prior deviations (k,)."""
         place = len(self.sigma_of_one) - self.laws
-        excused = np.hstack([self.excused[:, :place], columns[self.live], self.excused[:, place:]])
-        return replace(self, excused=excused, sigma_of_one=np.insert(self.sigma_of_one, place, sigma))
+        nuisance_design = np.hstack(
+            [self.nuisance_design[:, :place], columns[self.informative], self.nuisance_design[:, place:]]
+        )
+        return replace(self, nuisance_design=nuisance_design, sigma_of_one=np.insert(self.sigma_of_one, place, sigma))
 
     @cached_property
     def quadratic(self) -> Quadratic:
-        """Inner products with all that is excused integrated out."""
-        return Quadratic(self.weighted(self.excused), self.sigma)
+        """Inner products with all nuisance parameters integrated out."""
+        return Quadratic(self.weighted(self.nuisance_design), self.sigma)
 
     def nuisances(self, residual: Floats) -> Floats:
         """Best values (p,) for another residual (n,) of the same system."""
@@ -133,7 +138,9 @@ class System:
         What a prediction is made with: beside its stated errors, which predict nothing, gains would be shrunk.
         """
         own = slice(len(self.values))
-        return Quadratic(self.weighted(self.excused[:, own]), self.sigma[own]).mean(self.weighted(self.residual))
+        return Quadratic(self.weighted(self.nuisance_design[:, own]), self.sigma[own]).mean(
+            self.weighted(self.residual)
+        )
 
 
 def relative(model: ObservedModel) -> list[float]:
@@ -144,15 +151,19 @@ def relative(model: ObservedModel) -> list[float]:
 
 
 def linearised(
-    model: ObservedModel, values: Floats, settings: Sequence[Setting] = (), form: float = 0.0, live: Bools | None = None
-) -> System:
+    model: ObservedModel,
+    values: Floats,
+    settings: Sequence[Setting] = (),
+    form: float = 0.0,
+    informative: Bools | None = None,
+) -> LinearisedSystem:
     """About nuisances (p,) and mechanisms; form : relative error of their effect."""
     samples, own = model.samples, relative(model)
     shown = model.signals(values, settings)
     predicted = samples.coefficients(shown)
     tangents = model.tangents(values, settings)
     numerical, numerical_sigma = discrepancy.columns(samples, shown, own)
-    excused, sigma = [tangents, numerical], [model.sigma, numerical_sigma]
+    nuisance_design, sigma = [tangents, numerical], [model.sigma, numerical_sigma]
     effect, formal, laws = np.zeros(len(samples)), np.zeros(len(samples)), 0
     if settings:
         without = model.signals(values)
@@ -160,35 +171,39 @@ def linearised(
         ones = [1.0] * len(samples.channels)
         change = [{name: a[name] - b[name] for name in a} for a, b in zip(shown, without, strict=True)]
         columns, deviations = discrepancy.columns(samples, change, ones)
-        excused, sigma, laws = [*excused, columns], [*sigma, deviations], len(deviations)
+        nuisance_design, sigma, laws = [*nuisance_design, columns], [*sigma, deviations], len(deviations)
         formal = discrepancy.allowance(samples, effect, ones)
-    return System(
+    return LinearisedSystem(
         values,
         samples.recorded - predicted + tangents @ values,
         1.0 + discrepancy.allowance(samples, predicted, own) + drive_noise(samples, shown),
         formal,
-        np.column_stack([columns if live is None else columns[live] for columns in excused]),
+        np.column_stack([columns if informative is None else columns[informative] for columns in nuisance_design]),
         np.concatenate(sigma),
         laws,
         effect,
         form,
-        np.ones(len(samples), dtype=bool) if live is None else live,
+        np.ones(len(samples), dtype=bool) if informative is None else informative,
     )
 
 
 SEEN = 0.3  # standard deviations: what no sensitivity, as large as all the residual, can make is not looked at
 
 
-def live_rows(samples: Samples, system: System, sensitivities: Sequence[Floats]) -> Bools:
+def informative_rows(samples: Samples, system: LinearisedSystem, sensitivities: Sequence[Floats]) -> Bools:
     """Coefficients (n,) in which a column of the (n, k), scaled to the length of the residual, shows at all.
 
-    What is excused is scaled to its prior where that is less. Only the length of the residual counts, not its shape, so
+    A nuisance parameter is scaled to its prior where that is less. Only the length of the residual counts, not its
+    shape, so
     that no test is biased.
     """
     weight = system.weight
     length = float(np.linalg.norm(system.residual * weight))
     largest = np.zeros(len(samples))
-    for columns, sigma in [(system.excused, system.sigma), *((c, np.full(c.shape[1], np.inf)) for c in sensitivities)]:
+    for columns, sigma in [
+        (system.nuisance_design, system.sigma),
+        *((c, np.full(c.shape[1], np.inf)) for c in sensitivities),
+    ]:
         shown = np.abs(columns) * weight[:, None]
         size = np.linalg.norm(shown, axis=0)
         scale = np.minimum(sigma, np.divide(length, size, out=np.zeros(len(size)), where=size > 0.0))

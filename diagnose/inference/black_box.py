@@ -13,8 +13,8 @@ from itertools import pairwise
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from diagnose.fit.samples import Block, Samples
-from diagnose.fit.system import System
+from diagnose.fit.samples import SampleBlock, Samples
+from diagnose.fit.system import LinearisedSystem
 from diagnose.statistics.held_out import Forecast, Sums, forecast
 from geometry.arrays import Bools, Floats, Ints
 
@@ -83,7 +83,7 @@ def memory(samples: Samples) -> Floats:
     return np.column_stack(by_channel)
 
 
-def _of_block(samples: Samples, block: Block, edges_s: Floats) -> Floats:
+def _of_block(samples: Samples, block: SampleBlock, edges_s: Floats) -> Floats:
     run = samples.recording.runs[block.run]
     depth = run.drive_values
     if run.drive == "displacement_mm" and samples.recording.specimen is None:
@@ -93,21 +93,21 @@ def _of_block(samples: Samples, block: Block, edges_s: Floats) -> Floats:
     return samples.of_block(block, block.whitening(past))
 
 
-def box_scores(samples: Samples, baseline: System, metric: System, past: Floats) -> Floats:
+def box_scores(samples: Samples, baseline: LinearisedSystem, metric: LinearisedSystem, past: Floats) -> Floats:
     """Held-out log-scores (presses,) of the baseline with nuisances plus the black box, in another system's metric."""
-    live = metric.live
-    columns = metric.weighted(baseline.excused)
+    informative = metric.informative
+    columns = metric.weighted(baseline.nuisance_design)
     kept = baseline.sigma > 0.0
-    fold = samples.fold[live]
+    fold = samples.fold[informative]
     found = black_box_forecast(
         metric.weighted(baseline.residual), columns[:, kept], baseline.sigma[kept], metric.weighted(past), fold
     )
     _, place = np.unique(fold, return_inverse=True)
-    return np.asarray(found.log_scores + np.bincount(place, np.log(metric.weight[live])))
+    return np.asarray(found.log_scores + np.bincount(place, np.log(metric.weight[informative])))
 
 
-def worth_of_form(samples: Samples, metric: System) -> float:
+def worth_of_form(samples: Samples, metric: LinearisedSystem) -> float:
     """Nats per press that it is worth to know the error of form: half its share of the variance, summed."""
     share = (metric.variance - metric.numerical) / metric.variance
-    folds = len(np.unique(samples.fold[metric.live]))
-    return 0.5 * float(share[metric.live].sum()) / folds
+    folds = len(np.unique(samples.fold[metric.informative]))
+    return 0.5 * float(share[metric.informative].sum()) / folds

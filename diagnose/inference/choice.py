@@ -13,7 +13,7 @@ from diagnose.fit.refit import Fitted
 from diagnose.forward import Candidate
 from diagnose.inference.black_box import box_scores, memory, worth_of_form
 from diagnose.inference.forecasts import Forecasted, alike, forecasted, grouped, separation, separations, share_left
-from diagnose.inference.residual_test import DRAWS, checked, strain_of
+from diagnose.inference.residual_test import DRAWS, checked, nuisance_pull
 from diagnose.inference.search import Screening, paired, pairs, singles
 from diagnose.statistics.abstain import FIRSTS, LEFT, RATES, Decision, Evidence, decide
 from diagnose.statistics.held_out import Gain, bic, gain_over_noise, held_out_probabilities
@@ -60,7 +60,7 @@ class Judge:
         self.model, self.found, self.rng = model, found, rng
         self.declared = within_priors(found.start, found.baseline)
         self.base = forecasted(model.samples, self.declared)
-        self.strain = strain_of(found.baseline)
+        self.strain = nuisance_pull(found.baseline)
 
     def judged(self, fit: Fitted, draws: int = FEWER_DRAWS) -> Judged:
         """Forecast, gain and what is left."""
@@ -72,7 +72,7 @@ class Judge:
             found = checked(samples, system, self.rng, fit.slopes, draws)
             p_left, strain = found.p_value, found.strain
         else:
-            strain = strain_of(system, fit.slopes)
+            strain = nuisance_pull(system, fit.slopes)
         p_strained = strain.p_value if strain.excess > LEFT * self.strain.excess else 1.0
         return Judged(fit, forecast, self.gained(forecast, self.base), left, p_left, p_strained)
 
@@ -200,7 +200,9 @@ def contradicted(models: Sequence[Judged]) -> Bools:
 
 def criteria(models: Sequence[Judged]) -> Floats:
     """Schwarz's criterion (m,) of each fit to all presses: less is better."""
-    return np.array([bic(one.fit.evidence, len(one.fit.values), int(one.fit.system.live.sum())) for one in models])
+    return np.array(
+        [bic(one.fit.evidence, len(one.fit.values), int(one.fit.system.informative.sum())) for one in models]
+    )
 
 
 def _same(judge: Judge, one: Judged, other: Judged) -> bool:

@@ -11,13 +11,13 @@ from dataclasses import replace
 import numpy as np
 
 from diagnose.figures import figure, p_equals, part
-from diagnose.findings import Detection, Findings, Model
+from diagnose.findings import Detection, Findings, FittedModel
 from diagnose.fit.baseline import believed, fitted_baseline
 from diagnose.fit.intervals import intervals, points
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.refit import Fitted
 from diagnose.fit.samples import Samples
-from diagnose.fit.system import System, linearised
+from diagnose.fit.system import LinearisedSystem, linearised
 from diagnose.forward import Engine, Setting, Signals, SomeRuns, all_but, some_runs
 from diagnose.inference import hum
 from diagnose.inference.choice import Choice, Judged, choose, criteria
@@ -64,7 +64,7 @@ def _alternatives(choice: Choice) -> tuple[str, ...]:
     return (f"These recordings cannot tell it from {' or from '.join(others)}.",) if others else ()
 
 
-def warnings_of(model: ObservedModel, baseline: System, choice: Choice | None) -> tuple[str, ...]:
+def warnings_of(model: ObservedModel, baseline: LinearisedSystem, choice: Choice | None) -> tuple[str, ...]:
     """What makes the findings less sure than they look."""
     said = _strained(model, baseline)
     folds = len(np.unique(model.samples.fold))
@@ -77,7 +77,7 @@ def warnings_of(model: ObservedModel, baseline: System, choice: Choice | None) -
     return tuple(said)
 
 
-def _strained(model: ObservedModel, baseline: System) -> list[str]:
+def _strained(model: ObservedModel, baseline: LinearisedSystem) -> list[str]:
     """Nuisances that lie farther from 0 than rig.toml says, a sentence for each name."""
     far: dict[str, list[tuple[float, float, str]]] = {}
     for nuisance, value in zip(model.nuisances, baseline.values, strict=True):
@@ -126,7 +126,7 @@ def diagnose(recording: Recording, engine: Engine, seed: int, report: Report) ->
     return _findings(model, screening, found, choice)
 
 
-def _quiet(model: ObservedModel, baseline: System, found: Checked) -> Findings:
+def _quiet(model: ObservedModel, baseline: LinearisedSystem, found: Checked) -> Findings:
     """No mismatch: a good result."""
     return Findings(
         engine=model.engine.name,
@@ -188,9 +188,9 @@ def _findings(model: ObservedModel, screening: Screening, found: Checked, choice
     )
 
 
-def _model(model: ObservedModel, choice: Choice, number: int, detailed: bool) -> Model:
+def _model(model: ObservedModel, choice: Choice, number: int, detailed: bool) -> FittedModel:
     one = choice.models[number]
-    return Model(
+    return FittedModel(
         settings=one.fit.settings,
         parameters=intervals(model, one.fit) if detailed else points(one.fit),
         gain=one.gain.mean,
@@ -254,7 +254,7 @@ def _model_of(recording: Recording, engine: Engine, numbers: Sequence[int]) -> O
 
 def _scored(findings: Findings, train: ObservedModel, held: ObservedModel) -> Findings:
     """Findings whose errors, signals and noise speak of the held-out runs too."""
-    best: Model | None = findings.models[0] if findings.models else None
+    best: FittedModel | None = findings.models[0] if findings.models else None
     settings = tuple(one for one in best.settings if not one.candidate.traits.free_phase) if best else ()
     starts = [believed(model, fitted_baseline(model)).values for model in (train, held)]
     before, after = (_transferred((train, held), starts, chosen) for chosen in ((), settings))
@@ -295,7 +295,7 @@ def _log_scores(model: ObservedModel, values: Floats, settings: Sequence[Setting
     system, samples = linearised(model, values, settings), model.samples
     shared = np.flatnonzero([one.run is None for one in model.nuisances])
     kept = np.setdiff1d(np.arange(len(system.sigma)), shared)
-    columns = system.weighted(system.excused)
+    columns = system.weighted(system.nuisance_design)
     white = system.weighted(system.residual) - columns[:, shared] @ values[shared]
     scale = np.log(system.weight)
     rows = [samples.press == number for number in range(len(samples.presses))]

@@ -15,7 +15,7 @@ import numpy as np
 from diagnose.fit.descent import coordinates
 from diagnose.fit.refit import Fitted
 from diagnose.fit.samples import Samples
-from diagnose.fit.system import Quadratic, System
+from diagnose.fit.system import LinearisedSystem, Quadratic
 from diagnose.statistics.abstain import ALIKE, RATES
 from diagnose.statistics.held_out import Sums, leave_press_out
 from diagnose.statistics.separation import ambiguity_groups, least_separation
@@ -33,20 +33,20 @@ class Forecasted:
 
     log_scores: Floats
     predicted: Floats
-    system: System
+    system: LinearisedSystem
     spread: tuple[Floats, ...]
 
 
-def forecasted(samples: Samples, system: System, fit: Fitted | None = None) -> Forecasted:
+def forecasted(samples: Samples, system: LinearisedSystem, fit: Fitted | None = None) -> Forecasted:
     """Leave one press out, linear about the fit to all; parameters with a normal prior as wide as their range.
 
     Where there is one press only its phases take the place of presses. Where there is one phase only nothing can be
     left out, and the score is the evidence under the priors: what Bayes' theorem expects of the model beforehand.
     """
-    columns, sigma, residual = system.excused, system.sigma, system.residual
+    columns, sigma, residual = system.nuisance_design, system.sigma, system.residual
     if fit is not None:
         width = np.array([c.high - c.low for c in coordinates(fit.candidates)])
-        columns, sigma = np.column_stack([columns, fit.slopes[system.live]]), np.concatenate([sigma, width])
+        columns, sigma = np.column_stack([columns, fit.slopes[system.informative]]), np.concatenate([sigma, width])
         residual = residual + fit.slopes @ fit.values
     return _left_out(samples, system, system.weighted(columns), sigma, residual)
 
@@ -55,18 +55,20 @@ def separation(samples: Samples, one: Forecasted, other: Forecasted) -> Floats:
     """Sigma (presses,) between two forecasts, in the predictive covariance of the first."""
     system = one.system
     apart = system.weighted(one.predicted - other.predicted)
-    folds = leave_press_out(samples.fold[system.live])
+    folds = leave_press_out(samples.fold[system.informative])
     return np.array([
         np.sqrt(max(Quadratic(spread, np.ones(spread.shape[1])).square(apart[held]), 0.0))
         for spread, (_, held) in zip(one.spread, folds, strict=True)
     ])  # fmt: skip
 
 
-def _left_out(samples: Samples, system: System, columns: Floats, sigma: Floats, residual: Floats) -> Forecasted:
+def _left_out(
+    samples: Samples, system: LinearisedSystem, columns: Floats, sigma: Floats, residual: Floats
+) -> Forecasted:
     kept = sigma > 0.0
     columns, sigma = columns[:, kept], sigma[kept]
-    white, live = system.weighted(residual), np.flatnonzero(system.live)
-    folds = leave_press_out(samples.fold[live])
+    white, informative = system.weighted(residual), np.flatnonzero(system.informative)
+    folds = leave_press_out(samples.fold[informative])
     sums = [Sums.of(columns[held], white[held]) for _, held in folds]
     nothing = Sums(np.zeros((len(sigma), len(sigma))), np.zeros(len(sigma)), 0.0, 0)
     if len(folds) < 2:
@@ -74,7 +76,7 @@ def _left_out(samples: Samples, system: System, columns: Floats, sigma: Floats, 
     scores, spread, predicted = np.empty(len(folds)), [], np.zeros(len(residual))
     for n, (_, held) in enumerate(folds):
         others = reduce(add, sums[:n] + sums[n + 1 :], nothing)
-        rows = live[held]
+        rows = informative[held]
         scale = float(np.log(system.weight[rows]).sum())
         scores[n] = (others + sums[n]).log_evidence(sigma) - others.log_evidence(sigma) + scale
         precision = others.gram + np.diag(1.0 / sigma**2)
@@ -124,19 +126,19 @@ def _modelled(samples: Samples, fit: Fitted) -> Floats:
     system = fit.system
     nuisances = system.nuisances(system.residual)
     moved = np.zeros(len(samples))
-    moved[system.live] = system.excused[:, : len(nuisances)] @ nuisances
+    moved[system.informative] = system.nuisance_design[:, : len(nuisances)] @ nuisances
     return np.asarray(samples.recorded - system.residual + moved)
 
 
-def excess(system: System) -> float:
+def excess(system: LinearisedSystem) -> float:
     """Sum of squares above what noise and the engine's own errors make, nuisances integrated out; at least 0."""
-    return max(system.quadratic.square(system.weighted(system.residual)) - float(system.live.sum()), 0.0)
+    return max(system.quadratic.square(system.weighted(system.residual)) - float(system.informative.sum()), 0.0)
 
 
 def share_left(fit: Fitted, before: float) -> float:
-    """Share of an excess that a fitted model leaves, its error of form not excused."""
+    """Share of an excess that a fitted model leaves, its model discrepancy not integrated out."""
     system = replace(fit.system, form=0.0)
-    columns = np.column_stack([system.excused, fit.slopes[system.live]])
+    columns = np.column_stack([system.nuisance_design, fit.slopes[system.informative]])
     sigma = np.concatenate([system.sigma, np.full(fit.slopes.shape[1], np.inf)])
     square = Quadratic(system.weighted(columns), sigma).square(system.weighted(system.residual))
-    return max(square - float(system.live.sum()), 0.0) / before if before > 0.0 else 0.0
+    return max(square - float(system.informative.sum()), 0.0) / before if before > 0.0 else 0.0

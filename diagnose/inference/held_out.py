@@ -32,8 +32,8 @@ def trained_and_held(
     """
     samples = model.samples
     training, held = split(len(samples.presses))
-    live = found.baseline.live
-    seen = live & np.isin(samples.press, training)
+    informative = found.baseline.informative
+    seen = informative & np.isin(samples.press, training)
     settings: tuple[Setting, ...] = ()
     after = before = relaxed(model, found.start.values, (), seen, np.zeros(len(model.nuisances), dtype=bool))
     if fit is not None:
@@ -42,7 +42,7 @@ def trained_and_held(
         after = model.possible(own.system.closest())
     runs = {samples.presses[n][0] for n in training}
     frozen = np.array([nuisance.run is None or nuisance.run in runs for nuisance in model.nuisances], dtype=bool)
-    unseen = live & np.isin(samples.press, held)
+    unseen = informative & np.isin(samples.press, held)
     if held and not frozen.all():
         before = relaxed(model, before, (), unseen, frozen)
         after = relaxed(model, after, settings, unseen, frozen) if fit is not None else before
@@ -58,10 +58,10 @@ def unimproved(fit: Fit) -> Fit:
 def relaxed(model: ObservedModel, values: Floats, settings: Sequence[Setting], rows: Bools, frozen: Bools) -> Floats:
     """Nuisances fitted to some rows within what is plausible, but for those that are frozen."""
     for _ in range(ROUNDS if len(values) else 0):
-        system = linearised(model, values, settings, live=rows)
-        fixed = system.excused[:, : len(values)][:, frozen] @ values[frozen]
+        system = linearised(model, values, settings, informative=rows)
+        fixed = system.nuisance_design[:, : len(values)][:, frozen] @ values[frozen]
         free = np.flatnonzero(~frozen)
-        quadratic = Quadratic(system.weighted(system.excused[:, free]), system.sigma[free])
+        quadratic = Quadratic(system.weighted(system.nuisance_design[:, free]), system.sigma[free])
         values = values.copy()
         values[free] = quadratic.mean(system.weighted(system.residual[rows] - fixed))
         values = model.possible(plausible(values, model.sigma))

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.linalg import qr
 from scipy.optimize import nnls
 
-from diagnose.findings import Place
+from diagnose.findings import LocatedExcess
 from diagnose.fit.refit import Fitted
 from diagnose.fit.samples import Samples
 from diagnose.inference.residual_test import Checked
@@ -112,7 +112,7 @@ def shares(found: Screening, explained: dict[str, tuple[Floats, Bools]]) -> dict
 
 def places(
     samples: Samples, checked: Checked, found: Screening, explained: dict[str, tuple[Floats, Bools]]
-) -> tuple[Place, ...]:
+) -> tuple[LocatedExcess, ...]:
     """Cells with an excess that stands out, the largest first; the strongest one where only sums of cells do."""
     cells = samples.bank.cells
     share = shares_of_excess(checked.energies, samples.bank.degrees)
@@ -120,7 +120,7 @@ def places(
     kept = kept or [int(np.argmax(checked.scores[: len(cells)]))]
     owner = _owners(samples, found, explained) if explained else {}
     return tuple(
-        Place(
+        LocatedExcess(
             samples.recording.runs[cells[n].labels["run"]].label,
             samples.channels[cells[n].labels["channel"]],
             PHASES[cells[n].labels["phase"]],
@@ -139,7 +139,7 @@ def _owners(samples: Samples, found: Screening, explained: dict[str, tuple[Float
     """Cell -> the component whose best fit takes most of its excess away."""
     marginal, start = _marginal(found), found.start
     white = marginal(start.weighted(start.residual))
-    cell, count = samples.bank.cell[start.live], len(samples.bank.cells)
+    cell, count = samples.bank.cell[start.informative], len(samples.bank.cells)
     before = np.bincount(cell, white**2, count)
     degrees = np.bincount(cell, minlength=count)
     taken = []
@@ -154,4 +154,4 @@ def _owners(samples: Samples, found: Screening, explained: dict[str, tuple[Float
 
 
 def _marginal(found: Screening) -> Marginal:
-    return Marginal(found.start.weighted(found.start.excused), found.start.sigma)
+    return Marginal(found.start.weighted(found.start.nuisance_design), found.start.sigma)

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.stats import norm
 
 from diagnose.fit.samples import Samples
-from diagnose.fit.system import Quadratic, System
+from diagnose.fit.system import LinearisedSystem, Quadratic
 from diagnose.statistics.cells import null_energies, step_down
 from diagnose.statistics.score_test import Marginal
 from geometry.arrays import Floats
@@ -25,7 +25,7 @@ class Checked:
     scores: Floats
     p_values: Floats
     energies: Floats
-    strain: "Strain"
+    strain: "NuisancePull"
     draws: int
 
     @property
@@ -40,24 +40,28 @@ class Checked:
 
 
 def checked(
-    samples: Samples, system: System, rng: np.random.Generator, fitted: Floats | None = None, draws: int = DRAWS
+    samples: Samples,
+    system: LinearisedSystem,
+    rng: np.random.Generator,
+    fitted: Floats | None = None,
+    draws: int = DRAWS,
 ) -> Checked:
     """fitted : (n, q) sensitivities of parameters that were fitted without a prior."""
     weighted, sigma = _floating(system, fitted)
     marginal = Marginal(weighted, sigma)
     white = system.residual * system.weight
-    white[system.live] = marginal(white[system.live])
+    white[system.informative] = marginal(white[system.informative])
     free = np.zeros((len(white), marginal.free.shape[1]))
-    free[system.live] = marginal.free
+    free[system.informative] = marginal.free
     family, cell = samples.hypotheses, samples.bank.cell
     null = family.scores(null_energies(family, cell, free, draws, rng))
     energies = np.asarray(np.bincount(cell, white**2, len(samples.bank.cells)), dtype=np.float64)
     scores = family.scores(energies)
-    return Checked(scores, step_down(scores, null), energies, strain_of(system, fitted), draws)
+    return Checked(scores, step_down(scores, null), energies, nuisance_pull(system, fitted), draws)
 
 
 @dataclass(frozen=True)
-class Strain:
+class NuisancePull:
     """Of what floats against its priors. excess : sum of squared distances above what chance makes.
 
     p_value : of the parameter that lies farthest off, Bonferroni over all that have a prior.
@@ -67,7 +71,7 @@ class Strain:
     p_value: float
 
 
-def strain_of(system: System, fitted: Floats | None = None) -> Strain:
+def nuisance_pull(system: LinearisedSystem, fitted: Floats | None = None) -> NuisancePull:
     """fitted : as in checked. Before the data, a posterior mean has the prior's variance less the posterior's."""
     columns, sigma = _floating(system, fitted)
     quadratic = Quadratic(columns, sigma)
@@ -76,12 +80,12 @@ def strain_of(system: System, fitted: Floats | None = None) -> Strain:
     distances = quadratic.mean(system.weighted(system.residual))[judged] / np.sqrt(learnt[judged])
     farthest = float(np.max(np.abs(distances), initial=0.0))
     p_value = min(1.0, 2.0 * float(norm.sf(farthest)) * max(len(distances), 1))
-    return Strain(max(float(distances @ distances) - len(distances), 0.0), p_value)
+    return NuisancePull(max(float(distances @ distances) - len(distances), 0.0), p_value)
 
 
-def _floating(system: System, fitted: Floats | None) -> tuple[Floats, Floats]:
+def _floating(system: LinearisedSystem, fitted: Floats | None) -> tuple[Floats, Floats]:
     """Columns (n, k) of all that floats, whitened, and its prior deviations (k,)."""
     if fitted is None:
-        return system.weighted(system.excused), system.sigma
-    columns = np.column_stack([system.excused, fitted[system.live]])
+        return system.weighted(system.nuisance_design), system.sigma
+    columns = np.column_stack([system.nuisance_design, fitted[system.informative]])
     return system.weighted(columns), np.concatenate([system.sigma, np.full(fitted.shape[1], np.inf)])

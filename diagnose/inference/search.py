@@ -15,7 +15,7 @@ from diagnose.fit.descent import LEAST_GAIN, descent, lowest
 from diagnose.fit.observed_model import STEP, ObservedModel
 from diagnose.fit.refit import Fitted, common_metric, fitted
 from diagnose.fit.samples import noise_degrees
-from diagnose.fit.system import System, live_rows
+from diagnose.fit.system import LinearisedSystem, informative_rows
 from diagnose.forward import Candidate, Coordinate, Setting
 from diagnose.inference.forecasts import excess
 from diagnose.statistics.abstain import FINALISTS, PAIRS, RATES
@@ -99,9 +99,9 @@ class Screened:
     estimates: tuple[tuple[Floats, ...], ...]
 
 
-def screened(system: System, sensitivities: Sequence[Sensitivity], noise_degrees: float) -> Screened:
+def screened(system: LinearisedSystem, sensitivities: Sequence[Sensitivity], noise_degrees: float) -> Screened:
     """By the score test along the tangent, and along each finite change, whichever shows more (Bonferroni)."""
-    marginal = Marginal(system.weighted(system.excused), system.sigma)
+    marginal = Marginal(system.weighted(system.nuisance_design), system.sigma)
     white = marginal(system.weighted(system.residual))
     p_values, explained, estimates = [], [], []
     for one in sensitivities:
@@ -132,14 +132,16 @@ ROUGH = 1e-3  # of the excess: what a last step of a first fit may gain, which o
 
 @dataclass(frozen=True)
 class Screening:
-    """baseline : fitted, with its live rows. start : about what the priors find plausible. each, tests : candidates.
+    """baseline : fitted, with its informative rows. start : about what the priors find plausible.
+
+    each, tests : candidates.
 
     excess : of the baseline.
     """
 
     candidates: tuple[Candidate, ...]
-    baseline: System
-    start: System
+    baseline: LinearisedSystem
+    start: LinearisedSystem
     each: tuple[Sensitivity, ...]
     tests: Screened
     excess: float
@@ -151,7 +153,7 @@ class Screening:
         return [int(n) for n in order if self.tests.p_values[n] <= RATES.level]
 
 
-def screen(model: ObservedModel, baseline: System, report: Report) -> Screening:
+def screen(model: ObservedModel, baseline: LinearisedSystem, report: Report) -> Screening:
     """Every candidate of the engine."""
     candidates = model.engine.candidates
     start = believed(model, baseline)
@@ -159,8 +161,8 @@ def screen(model: ObservedModel, baseline: System, report: Report) -> Screening:
     for number, candidate in enumerate(candidates):
         report("screening", number, len(candidates))
         each.append(sensitivity(model, start.values, candidate))
-    live = live_rows(model.samples, baseline, [*(s.columns for s in each), *(s.finite for s in each)])
-    baseline, start = baseline.reached(live), start.reached(live)
+    informative = informative_rows(model.samples, baseline, [*(s.columns for s in each), *(s.finite for s in each)])
+    baseline, start = baseline.reached(informative), start.reached(informative)
     tests = screened(start, each, least_degrees(model))
     return Screening(candidates, baseline, start, tuple(each), tests, excess(baseline))
 
@@ -198,7 +200,7 @@ def pairs(
     each = [sensitivity(model, first.system.values, other, first.settings) for other in others]
     beside = replace(
         first.system,
-        excused=np.column_stack([first.slopes[first.system.live], first.system.excused]),
+        nuisance_design=np.column_stack([first.slopes[first.system.informative], first.system.nuisance_design]),
         sigma_of_one=np.concatenate([np.full(first.slopes.shape[1], np.inf), first.system.sigma_of_one]),
     )
     tests = screened(beside, each, least_degrees(model))

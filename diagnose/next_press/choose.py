@@ -14,11 +14,11 @@ from typing import Any, cast
 
 import numpy as np
 
-from diagnose.findings import Findings, Model
+from diagnose.findings import Findings, FittedModel
 from diagnose.fit.discrepancy import FORM
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.samples import Samples
-from diagnose.fit.system import Quadratic, System, linearised
+from diagnose.fit.system import LinearisedSystem, Quadratic, linearised
 from diagnose.forward import Candidate, Engine, Setting, Signals
 from diagnose.next_press.proposals import Proposal, base_setup, repeats, variations
 from diagnose.noise.estimate import noise_models
@@ -58,19 +58,19 @@ STEP = 1e-3  # of a coordinate, for its slope
 
 
 @dataclass(frozen=True)
-class Answer:
+class ImaginedAnswer:
     """What one rival says of a press. prediction : (n,) whitened. slopes : (n, q) by its coordinates."""
 
-    system: System
+    system: LinearisedSystem
     prediction: Floats
     slopes: Floats
 
 
-class Judge:
+class PressJudge:
     """Rivals, and spreads (q, q): for each a root of the covariance that the recording leaves to its coordinates."""
 
     def __init__(
-        self, recording: Recording, engine: Engine, rivals: Sequence[Model], fitted: Mapping[str, float]
+        self, recording: Recording, engine: Engine, rivals: Sequence[FittedModel], fitted: Mapping[str, float]
     ) -> None:
         """fitted : nuisance that all runs share -> value. ValueError as the engine's."""
         self.engine, self.fitted = engine, fitted
@@ -85,7 +85,7 @@ class Judge:
         pairs = combinations(range(len(answers)), 2)
         return np.array([self._separation(answers[i], answers[j], self.spreads[i], self.spreads[j]) for i, j in pairs])
 
-    def answers(self, proposal: Proposal) -> list[Answer]:
+    def answers(self, proposal: Proposal) -> list[ImaginedAnswer]:
         """What each rival says of a press. ValueError where the engine cannot tell."""
         run = proposal.run
         noise = {(run.label, name): self.noise[run.label, name] for name in run.answers}
@@ -93,28 +93,28 @@ class Judge:
         model = ObservedModel(samples, cast(Engine, ImaginedEngine(self.engine, proposal)))
         return [self._answer(model, rival) for rival in self.rivals]
 
-    def _answer(self, model: ObservedModel, settings: tuple[Setting, ...]) -> Answer:
+    def _answer(self, model: ObservedModel, settings: tuple[Setting, ...]) -> ImaginedAnswer:
         values = np.array([0.0 if n.run is not None else self.fitted.get(n.name, 0.0) for n in model.nuisances])
         prediction = model.vector(values, settings)
         slopes = [(model.vector(values, moved) - prediction) / step for moved, step in _moved(settings)]
-        return Answer(
+        return ImaginedAnswer(
             linearised(model, values, settings, FORM),
             prediction,
             np.column_stack([np.zeros((len(prediction), 0)), *slopes]),
         )
 
-    def _spread(self, answer: Answer, settings: Sequence[Setting]) -> Floats:
+    def _spread(self, answer: ImaginedAnswer, settings: Sequence[Setting]) -> Floats:
         """From what the recording tells of the coordinates, and what is plausible without it."""
         widths = [c.high - c.low for setting in settings for c in setting.candidate.coordinates]
         slopes = answer.system.weighted(answer.slopes)
         told = answer.system.quadratic.product(slopes, slopes)
         return remaining_spread(told + np.diag(np.square(1.0 / np.array(widths))))
 
-    def _separation(self, one: Answer, other: Answer, *spreads: Floats) -> float:
+    def _separation(self, one: ImaginedAnswer, other: ImaginedAnswer, *spreads: Floats) -> float:
         """The expected separation of statistics/design.py, by inner products: presses may have many samples."""
         weight = 1.0 / np.sqrt(np.maximum(one.system.variance, other.system.variance))[:, None]
         open_still = np.column_stack([one.slopes @ spreads[0], other.slopes @ spreads[1]])
-        columns = np.column_stack([open_still, one.system.excused, other.system.excused])
+        columns = np.column_stack([open_still, one.system.nuisance_design, other.system.nuisance_design])
         sigma = np.concatenate([np.ones(open_still.shape[1]), one.system.sigma, other.system.sigma])
         difference = weight[:, 0] * (one.prediction - other.prediction)
         return float(np.sqrt(max(Quadratic(weight * columns, sigma).square(difference), 0.0)))
@@ -146,7 +146,7 @@ class NextPress:
 
     text: str
     changes: Mapping[str, Any]
-    rivals: tuple[Model, ...]
+    rivals: tuple[FittedModel, ...]
     separation: float
     run: Run
 
@@ -158,9 +158,11 @@ def next_press(recording: Recording, engine: Engine, findings: Findings) -> Next
     return found if found is not None and found.separation >= LEAST else None
 
 
-def _found(recording: Recording, engine: Engine, findings: Findings, rivals: tuple[Model, ...]) -> NextPress | None:
+def _found(
+    recording: Recording, engine: Engine, findings: Findings, rivals: tuple[FittedModel, ...]
+) -> NextPress | None:
     """The best press, with one change or, where that does not settle it, with two."""
-    judge = Judge(recording, engine, rivals, {name: value for name, (value, _) in findings.nuisances.items()})
+    judge = PressJudge(recording, engine, rivals, {name: value for name, (value, _) in findings.nuisances.items()})
     setup = base_setup(recording)
     if setup is None:
         return _best(judge, rivals, repeats(recording))
@@ -172,7 +174,7 @@ def _found(recording: Recording, engine: Engine, findings: Findings, rivals: tup
     return second if second is not None and second.separation > first.separation else first
 
 
-def surviving(findings: Findings) -> tuple[Model, ...]:
+def surviving(findings: Findings) -> tuple[FittedModel, ...]:
     """What is left to tell apart: the group of the best model, else the best model and its rivals."""
     if not findings.mismatch:
         return ()
@@ -183,7 +185,7 @@ def surviving(findings: Findings) -> tuple[Model, ...]:
     return tuple(chosen[:MOST_RIVALS])
 
 
-def _best(judge: Judge, rivals: tuple[Model, ...], presses: Sequence[Proposal]) -> NextPress | None:
+def _best(judge: PressJudge, rivals: tuple[FittedModel, ...], presses: Sequence[Proposal]) -> NextPress | None:
     """The press whose least separated rivals are farthest apart; None where the engine can tell of none."""
     told = []
     for press in presses:

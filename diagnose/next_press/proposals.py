@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from diagnose.signals.phases import Press, rest_of
+from diagnose.signals.phases import PressPhases, rest_of
 from diagnose.signals.recording import Recording, Run
 from diagnose.vocabulary.base import vocabulary
 from geometry.arrays import Floats
@@ -67,11 +67,11 @@ def recorded_shape(recording: Recording, number: int) -> Shape | None:
     return max(pressed, key=lambda shape: shape.deep, default=None)
 
 
-def _complete(press: Press, run: Run) -> bool:
+def _complete(press: PressPhases, run: Run) -> bool:
     return press.touch < press.held and press.released < press.clear < len(run.time_s)
 
 
-def _shape(run: Run, press: Press) -> Shape:
+def _shape(run: Run, press: PressPhases) -> Shape:
     time, drive = run.time_s, run.drive_values
     at_depth = drive[press.held : press.released] if press.released > press.held else drive[press.held - 1 : press.held]
     level = min(rest_of(drive)[0], 0.0) if run.drive == "displacement_mm" else 0.0
@@ -104,7 +104,7 @@ class Proposal:
 
 
 @dataclass(frozen=True)
-class Setup:
+class PressSetup:
     """A shape of press at a run of the recording. words, changes : against the press as it was."""
 
     run: Run
@@ -113,7 +113,7 @@ class Setup:
     changes: Mapping[str, Any] = field(default_factory=dict)
     removes: str = ""
 
-    def changed(self, words: str, changes: Mapping[str, Any], **parts: Any) -> "Setup":
+    def changed(self, words: str, changes: Mapping[str, Any], **parts: Any) -> "PressSetup":
         """The same with another run, shape or removal, said and noted."""
         return replace(self, words=(*self.words, words), changes={**self.changes, **changes}, **parts)
 
@@ -146,10 +146,10 @@ class Setup:
         )
 
 
-def base_setup(recording: Recording) -> Setup | None:
+def base_setup(recording: Recording) -> PressSetup | None:
     """The deepest whole press of the recording, if it can one driven by a displacement; None where there is none."""
     found = [(run, recorded_shape(recording, number)) for number, run in enumerate(recording.runs)]
-    setups = [Setup(run, shape) for run, shape in found if shape is not None]
+    setups = [PressSetup(run, shape) for run, shape in found if shape is not None]
     return max(setups, key=lambda setup: (setup.run.drive == "displacement_mm", setup.shape.deep), default=None)
 
 
@@ -168,14 +168,14 @@ CYCLES = 3
 ALIKE = 1.5  # a resistor within this factor is no change
 
 
-def variations(setup: Setup) -> Iterator[Setup]:
+def variations(setup: PressSetup) -> Iterator[PressSetup]:
     """Every single change of a press that a bench can make and sample."""
     for changed in (*_shaped(setup), *_wired(setup), *_placed(setup)):
         if changed.feasible and not changed.changes.keys() <= setup.changes.keys():
             yield changed
 
 
-def _shaped(setup: Setup) -> Iterator[Setup]:
+def _shaped(setup: PressSetup) -> Iterator[PressSetup]:
     shape = setup.shape
     for factor in SPEEDS:
         other = replace(shape, rise_s=shape.rise_s / factor, fall_s=shape.fall_s / factor)
@@ -195,7 +195,7 @@ def _shaped(setup: Setup) -> Iterator[Setup]:
     yield setup.changed(f"{CYCLES} times in a row", {"cycles": CYCLES}, shape=replace(shape, cycles=CYCLES))
 
 
-def _wired(setup: Setup) -> Iterator[Setup]:
+def _wired(setup: PressSetup) -> Iterator[PressSetup]:
     """Another load resistor, or a capacitor across the input, where there is a voltage amplifier to load."""
     readout = setup.run.readout or Readout()
     if not setup.run.voltages or readout.mode != "voltage":
@@ -209,12 +209,12 @@ def _wired(setup: Setup) -> Iterator[Setup]:
         yield _rewired(setup, f"with {extra:g} pF more across the input", input_capacitance_pF=capacitance)
 
 
-def _rewired(setup: Setup, words: str, **keys: float) -> Setup:
+def _rewired(setup: PressSetup, words: str, **keys: float) -> PressSetup:
     readout = (setup.run.readout or Readout()).model_copy(update=keys)
     return setup.changed(words, keys, run=replace(setup.run, readout=readout))
 
 
-def _placed(setup: Setup) -> Iterator[Setup]:
+def _placed(setup: PressSetup) -> Iterator[PressSetup]:
     """The dot elsewhere, or what keeps a mechanism away."""
     x, y = setup.run.dot_offset_mm
     for offset in OFFSETS_MM:

@@ -19,7 +19,7 @@ BRIEF = 0.05  # of the longest: what is shorter is a spike or a rebound
 
 
 @dataclass(frozen=True)
-class Press:
+class PressPhases:
     """Samples that bound the phases of one press; each phase is [this, next).
 
     start : of the approach. touch, held, released, clear : of loading, hold, unloading and after. end : of after.
@@ -46,7 +46,7 @@ class Segmentation:
     press : (t,) number of the press to which a sample belongs.
     """
 
-    presses: tuple[Press, ...]
+    presses: tuple[PressPhases, ...]
     phase: Ints
     press: Ints
 
@@ -105,7 +105,7 @@ def _spans(depth: Floats, noise: float) -> list[tuple[int, int]]:
     return [(a, b) for a, b in deep if b - a > BRIEF * longest]
 
 
-def _press(time_s: Floats, depth: Floats, span: tuple[int, int], start: int, end: int) -> Press:
+def _press(time_s: Floats, depth: Floats, span: tuple[int, int], start: int, end: int) -> PressPhases:
     """Bounds of the phases within one press."""
     touch, clear = span
     time, course = time_s[touch:clear], depth[touch:clear]
@@ -118,7 +118,7 @@ def _press(time_s: Floats, depth: Floats, span: tuple[int, int], start: int, end
     released = down - _first(slow[: down + 1][::-1]) + 1 if down < len(smooth) else len(smooth)
     if released - held < max(3.0, SHORTEST_HOLD * len(course)):
         held = released = min(int(np.argmax(smooth)) + 1, len(smooth))
-    return Press(start, touch, touch + held, touch + released, clear, end)
+    return PressPhases(start, touch, touch + held, touch + released, clear, end)
 
 
 def _smoothed(course: Floats) -> Floats:

@@ -31,7 +31,7 @@ from geometry.arrays import Floats, Ints
 
 
 @dataclass(frozen=True)
-class Segment:
+class TimeSegment:
     """Samples in a row that share all labels. step_s : their sampling step."""
 
     labels: Mapping[str, int]
@@ -47,7 +47,7 @@ class Cell:
     band_Hz: tuple[float, float]
 
 
-def segments(labels: Mapping[str, Ints], step_s: Floats) -> tuple[Segment, ...]:
+def segments(labels: Mapping[str, Ints], step_s: Floats) -> tuple[TimeSegment, ...]:
     """Cut n samples wherever one of the labels (n,) or the sampling step (n,) changes.
 
     Steps must be the nominal ones of each even stretch: their jitter would cut everywhere.
@@ -56,7 +56,7 @@ def segments(labels: Mapping[str, Ints], step_s: Floats) -> tuple[Segment, ...]:
     changes = np.any([np.diff(column) != 0 for column in columns], axis=0)
     edges = [0, *(np.flatnonzero(changes) + 1).tolist(), len(step_s)]
     return tuple(
-        Segment({name: int(values[a]) for name, values in labels.items()}, slice(a, b), float(step_s[a]))
+        TimeSegment({name: int(values[a]) for name, values in labels.items()}, slice(a, b), float(step_s[a]))
         for a, b in pairwise(edges)
     )
 
@@ -74,7 +74,7 @@ class FilterBank:
     cells : in order. cell : (n,) the cell of each coefficient. degrees : (c,) coefficients in each cell.
     """
 
-    def __init__(self, pieces: Sequence[Segment], edges_Hz: Floats) -> None:
+    def __init__(self, pieces: Sequence[TimeSegment], edges_Hz: Floats) -> None:
         """edges_Hz : (k,) ascending from 0; what lies above the last one joins the highest band."""
         self.pieces = tuple(pieces)
         cells: list[Cell] = []
@@ -97,7 +97,7 @@ class FilterBank:
         return np.asarray(np.bincount(self.cell, self.coefficients(values) ** 2, len(self.cells)), dtype=np.float64)
 
 
-def _bands(piece: Segment, edges_Hz: Floats) -> Ints:
+def _bands(piece: TimeSegment, edges_Hz: Floats) -> Ints:
     """The band of each coefficient of a segment: coefficient k of n has frequency k / (2 n step)."""
     count = piece.samples.stop - piece.samples.start
     frequency = np.arange(count) / (2.0 * count * piece.step_s)

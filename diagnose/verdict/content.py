@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from diagnose.figures import figure
-from diagnose.findings import Findings, Fit, Interval, Model, Place
+from diagnose.findings import Findings, Fit, FittedModel, Interval, LocatedExcess
 from diagnose.next_press.choose import NextPress, surviving
 from diagnose.signals.phases import PHASES
 from diagnose.signals.recording import Recording
@@ -26,7 +26,7 @@ IN_WORDS = {
 QUANTITIES = {"V": "voltage", "N": "force", "mm": "displacement"}
 
 
-def significant(findings: Findings) -> list[Place]:
+def significant(findings: Findings) -> list[LocatedExcess]:
     """Places where the excess is beyond the level, the largest share first; the strongest where none is alone."""
     found = [place for place in findings.places if place.p_value <= findings.detection.level]
     found = found or sorted(findings.places, key=lambda place: -place.score)[:1]
@@ -44,7 +44,7 @@ def where_words(recording: Recording, findings: Findings) -> str:
     return f"Your simulation of the {quantity} is {', '.join(part for part in parts if part)}."
 
 
-def _most(places: Sequence[Place]) -> list[Place]:
+def _most(places: Sequence[LocatedExcess]) -> list[LocatedExcess]:
     """The first places that together hold MOST of the excess of all of them."""
     shares = np.cumsum([max(place.share, 0.0) for place in places])
     count = int(np.searchsorted(shares, MOST * shares[-1])) + 1 if len(places) else 0
@@ -57,7 +57,7 @@ def _quantity(channel: str) -> str:
     return f"{name} of channel {number}" if number.isdigit() else name
 
 
-def _side(recording: Recording, findings: Findings, places: Sequence[Place]) -> str:
+def _side(recording: Recording, findings: Findings, places: Sequence[LocatedExcess]) -> str:
     """Too high or too low against the recording, in the direction in which the signal goes; else off."""
     sides = [_excess(recording, findings, place) for place in places]
     weights = np.array([max(place.share, 1e-9) for place in places])
@@ -65,7 +65,7 @@ def _side(recording: Recording, findings: Findings, places: Sequence[Place]) -> 
     return "too high" if mean > ONE_SIDED else "too low" if mean < -ONE_SIDED else "off"
 
 
-def _excess(recording: Recording, findings: Findings, place: Place) -> float:
+def _excess(recording: Recording, findings: Findings, place: LocatedExcess) -> float:
     """Mean over root mean square of simulated less recorded, positive where the simulated signal is the larger."""
     run, simulated = recording.run(place.run), findings.baseline[place.run][place.channel]
     inside = _inside(recording, place) & run.usable(place.channel)
@@ -75,7 +75,7 @@ def _excess(recording: Recording, findings: Findings, place: Place) -> float:
     return float(sign * error.mean() / size) if size else 0.0
 
 
-def _inside(recording: Recording, place: Place) -> Bools:
+def _inside(recording: Recording, place: LocatedExcess) -> Bools:
     """Samples (t,) of the place's phase and press; every press where the place has none of its own."""
     number = [run.label for run in recording.runs].index(place.run)
     found = recording.phases[number]
@@ -85,7 +85,7 @@ def _inside(recording: Recording, place: Place) -> Bools:
     return np.asarray(inside)
 
 
-def _band(recording: Recording, places: Sequence[Place]) -> str:
+def _band(recording: Recording, places: Sequence[LocatedExcess]) -> str:
     """Below, above or between frequencies; nothing where all bands are meant."""
     low = min(place.band_Hz[0] for place in places)
     high = max(max(place.band_Hz[1], 0.5 / _lasts_s(recording, place)) for place in places)
@@ -99,13 +99,13 @@ def _band(recording: Recording, places: Sequence[Place]) -> str:
     return f"above {figure(low)} Hz" if to_top else f"between {figure(low)} and {figure(high)} Hz"
 
 
-def _lasts_s(recording: Recording, place: Place) -> float:
+def _lasts_s(recording: Recording, place: LocatedExcess) -> float:
     """How long its phase lasts: half a turn in it is the slowest change that it shows."""
     run = recording.run(place.run)
     return float(np.count_nonzero(_inside(recording, place)) * run.step_s) or run.step_s
 
 
-def _runs(recording: Recording, places: Sequence[Place]) -> str:
+def _runs(recording: Recording, places: Sequence[LocatedExcess]) -> str:
     hit = [run.label for run in recording.runs if run.label in {place.run for place in places}]
     if len(hit) == len(recording.runs):
         return "in all runs" if len(hit) > 1 else ""
@@ -190,7 +190,7 @@ def _where(findings: Findings) -> list[dict[str, Any]]:
     ]
 
 
-def _missing(model: Model) -> list[dict[str, Any]]:
+def _missing(model: FittedModel) -> list[dict[str, Any]]:
     return [
         {
             "mechanism": setting.candidate.mechanism,
@@ -216,7 +216,7 @@ def _interval(interval: Interval) -> dict[str, Any]:
     }
 
 
-def _alternative(model: Model) -> dict[str, Any]:
+def _alternative(model: FittedModel) -> dict[str, Any]:
     names = _names(model)
     return {
         "mechanism": " + ".join(each["mechanism"] for each in names),
@@ -229,7 +229,7 @@ def _alternative(model: Model) -> dict[str, Any]:
     }
 
 
-def _names(model: Model) -> list[dict[str, str]]:
+def _names(model: FittedModel) -> list[dict[str, str]]:
     pairs = (setting.candidate.name for setting in model.settings)
     return [{"mechanism": mechanism, "component": component} for mechanism, component in pairs]
 
@@ -240,7 +240,7 @@ def ambiguous(findings: Findings) -> list[list[dict[str, Any]]]:
     return [[_member(model) for model in group] for group in groups]
 
 
-def _member(model: Model) -> dict[str, str]:
+def _member(model: FittedModel) -> dict[str, str]:
     names = _names(model)
     return {key: " + ".join(each[key] for each in names) for key in ("mechanism", "component")}
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from math import ceil, isfinite, log10
 
 from diagnose.figures import figure
-from diagnose.findings import Interval, Model
+from diagnose.findings import FittedModel, Interval
 from diagnose.forward import Candidate
 from diagnose.vocabulary.base import vocabulary
 
@@ -39,7 +39,7 @@ def mechanism_words(mechanism: str, component: str) -> str:
     return words.format(component_words(component))
 
 
-def model_words(model: Model) -> str:
+def model_words(model: FittedModel) -> str:
     """All mechanisms of a model, as half a sentence."""
     return " and ".join(mechanism_words(*setting.candidate.name) for setting in model.settings)
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from diagnose.figures import figure
-from diagnose.findings import Findings, Model, Place
+from diagnose.findings import Findings, FittedModel, LocatedExcess
 from diagnose.forward import Signals
 from diagnose.signals.phases import PHASES
 from diagnose.signals.recording import Recording, Run
@@ -78,7 +78,9 @@ def draw_overview(recording: Recording, findings: Findings, path: Path) -> Path 
     return save(figure, path)
 
 
-def shares(places: Sequence[Place], rows: Sequence[tuple[str, str]], phase: str, bands: Sequence[int]) -> Floats:
+def shares(
+    places: Sequence[LocatedExcess], rows: Sequence[tuple[str, str]], phase: str, bands: Sequence[int]
+) -> Floats:
     """Per cent, (rows, bands), summed over presses; NaN where nothing stands out."""
     table = np.full((len(rows), len(bands)), np.nan)
     for place in places:
@@ -88,7 +90,7 @@ def shares(places: Sequence[Place], rows: Sequence[tuple[str, str]], phase: str,
     return table
 
 
-def band_of(place: Place) -> int:
+def band_of(place: LocatedExcess) -> int:
     """Number of the column that holds the (logarithmic) middle of a band."""
     low, high = place.band_Hz
     middle = float(np.sqrt(max(low, 0.25 * high) * high)) if np.isfinite(high) else low
@@ -206,7 +208,7 @@ def draw_gains(findings: Findings, path: Path) -> Path | None:
     return save(drawing, path)
 
 
-def _colour(model: Model, findings: Findings) -> str:
+def _colour(model: FittedModel, findings: Findings) -> str:
     return AFTER if model is findings.best else "#b9cfe0"
 
 

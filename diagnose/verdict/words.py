@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from diagnose.figures import figure, p_equals, percent
-from diagnose.findings import Findings, Fit, Model
+from diagnose.findings import Findings, Fit, FittedModel
 from diagnose.next_press.choose import NextPress, surviving
 from diagnose.signals.recording import Recording
 from diagnose.verdict.content import where_words, without_press
@@ -54,7 +54,7 @@ def detected(findings: Findings) -> str:
     return p_equals(findings.detection.p_value, findings.detection.least_p_value)
 
 
-def _named(findings: Findings, best: Model) -> Iterator[Sentence]:
+def _named(findings: Findings, best: FittedModel) -> Iterator[Sentence]:
     yield Sentence("Left out", f"{model_words(best)}{_numbers(best)}.")
     fit = findings.held_out
     if fit is not None:
@@ -73,7 +73,7 @@ def _errors(fit: Fit) -> str:
     return f"from {before} to {after} of the recorded signal ({floor})"
 
 
-def _numbers(model: Model) -> str:
+def _numbers(model: FittedModel) -> str:
     """Of a law with many constants, only the quantities derived from them."""
     words = []
     for setting, intervals in zip(model.settings, model.parameters, strict=True):

@@ -11,7 +11,7 @@ from export.build_sheet.contents import Contents, spoken
 from export.cut_files import draw_cut_file
 from export.printability import draw_findings
 from export.printability.surface import surface_of
-from export.view import DPI, INK, Body, View, frame, name_parts, page, render
+from export.view import DPI, INK, DrawnBody, View, frame, name_parts, page, render
 from geometry.fabrication.kit import stacked_tops
 from geometry.flat.pattern import Outline
 from geometry.solids import PART_COLOURS, layer_solids
@@ -64,8 +64,8 @@ def draw_things(things: Sequence[Thing], title: str, path: Path, view: View = AB
     shown = [thing for thing in things if thing.surface.n_points]
     box = frame(np.vstack([view.flat(np.asarray(thing.surface.points)) for thing in shown]))
     figure, axes, pixels_per_mm = page(box, title)
-    bodies = [Body(_shaded(thing.surface), thing.colour) for thing in shown]
-    bodies += [Body(_edges(thing.surface, view), INK, 2.0) for thing in shown]
+    bodies = [DrawnBody(_shaded(thing.surface), thing.colour) for thing in shown]
+    bodies += [DrawnBody(_edges(thing.surface, view), INK, 2.0) for thing in shown]
     limits = axes.get_xlim(), axes.get_ylim()
     image = render(bodies, view, box, SHARPNESS * pixels_per_mm)
     axes.imshow(image, extent=box, interpolation="antialiased", aspect="auto")

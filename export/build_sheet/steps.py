@@ -11,7 +11,7 @@ from geometry.flat.pattern import FlatPattern
 
 
 @dataclass(frozen=True)
-class Step:
+class WorkStep:
     """title; actions : sentences in order; pictures : names without their ending."""
 
     title: str
@@ -19,7 +19,7 @@ class Step:
     pictures: tuple[str, ...] = ()
 
 
-def steps(contents: Contents) -> list[Step]:
+def steps(contents: Contents) -> list[WorkStep]:
     """From printing to the first press."""
     return [
         _print(contents),
@@ -32,7 +32,7 @@ def steps(contents: Contents) -> list[Step]:
     ]
 
 
-def _print(contents: Contents) -> Step:
+def _print(contents: Contents) -> WorkStep:
     actions = ["Print each part of the table above as often as it says there. The unit of all files is the millimetre."]
     if contents.solid.pours:
         actions.append("Print the moulds with their cavities up; no support may touch a cavity.")
@@ -42,10 +42,10 @@ def _print(contents: Contents) -> Step:
         actions.append("Wash the parts, dry them, cure them under UV light, then heat them for 2 h at 60 °C.")
     if contents.solid.pours:
         actions.append("Try the pins in their holes and the lids on their moulds before you pour anything.")
-    return Step("Print the parts", tuple(actions))
+    return WorkStep("Print the parts", tuple(actions))
 
 
-def _cast(pour: Pour, contents: Contents) -> Step:
+def _cast(pour: Pour, contents: Contents) -> WorkStep:
     gauge, name = gauging(contents, pour.component), in_words(pour.component)
     mix = " and ".join(f"{mass:.2f} g of component {one}" for one, mass in pour.mixed_masses_g)
     used = (
@@ -60,7 +60,7 @@ def _cast(pour: Pour, contents: Contents) -> Step:
     cavities = "the cavity" if pour.cavities == 1 else f"each of the {pour.cavities} cavities"
     bars = [] if not _split(pour, contents) else ["Set the bars onto the pins of the floor and push them together."]
     opened = "take off the lid" if not bars else "take off the lid, draw the bars off sideways"
-    return Step(
+    return WorkStep(
         f"Cast {name}",
         (
             f"Prepare the mould. {pour.release}",
@@ -86,10 +86,10 @@ def _split(pour: Pour, contents: Contents) -> bool:
     return any(one.component == pour.component and one.style == "split" for one in contents.solid.cavity_checks)
 
 
-def _sheets(contents: Contents) -> list[Step]:
+def _sheets(contents: Contents) -> list[WorkStep]:
     """Components that are cut from sheet."""
     return [
-        Step(
+        WorkStep(
             f"Cut {in_words(name)} from sheet",
             (
                 f"Measure the sheet: it should be {pattern.thickness_mm:.4g} mm thick. {GAUGE}",
@@ -102,11 +102,11 @@ def _sheets(contents: Contents) -> list[Step]:
     ]
 
 
-def _film(contents: Contents) -> Step:
+def _film(contents: Contents) -> WorkStep:
     patterns = {pattern.name: pattern for pattern in contents.flat.patterns}
     angle, count = contents.segment.film.draw_angle_deg, len(contents.flat.metals)
     width = lead_width(contents.flat.layout, count)
-    return Step(
+    return WorkStep(
         "Make the film and the adhesive sheets",
         (
             "Find the draw direction of the film: it is marked on the roll, and the film tears easily along it. The "
@@ -134,7 +134,7 @@ def _list(contents: Contents, start: str) -> str:
     return ", ".join(pattern.name for pattern in contents.flat.patterns if pattern.name.startswith(start))
 
 
-def _jig(contents: Contents) -> Step:
+def _jig(contents: Contents) -> WorkStep:
     """What is bonded in the corner of the jig; a narrow effector goes on through the locator."""
     tops = stacked_tops(contents.segment, contents.fabrication)
     locator = contents.part("jig-locator") is not None
@@ -166,10 +166,10 @@ def _jig(contents: Contents) -> Step:
     if contents.copies > 1:
         actions.append(f"Repeat this for each of the {contents.copies} segments.")
     title = "Stack the layers in the jig" if len(tops) > 1 else "Check the layer in the jig"
-    return Step(title, tuple(actions), ("jig",))
+    return WorkStep(title, tuple(actions), ("jig",))
 
 
-def _assembly(contents: Contents) -> list[Step]:
+def _assembly(contents: Contents) -> list[WorkStep]:
     stacked = stacked_tops(contents.segment, contents.fabrication)
     if contents.part("base") is not None:
         return [_onto_base()]
@@ -178,15 +178,15 @@ def _assembly(contents: Contents) -> list[Step]:
     return _one_by_one(contents)
 
 
-def _onto_base() -> Step:
+def _onto_base() -> WorkStep:
     actions = (
         "Lay adhesive-base-medium2 inside the groove of the base and peel off its liner.",
         "Set the stack on it, its tab towards the shelf, and press it down for a minute.",
     )
-    return Step("Glue the stack onto its base", actions, ("section",))
+    return WorkStep("Glue the stack onto its base", actions, ("section",))
 
 
-def _whole_into_frame(contents: Contents) -> Step:
+def _whole_into_frame(contents: Contents) -> WorkStep:
     actions = [
         "Lay adhesive-base-medium2 into the middle of the opening of frame-body and peel off its liner.",
         *_glue_medium2(contents),
@@ -198,10 +198,10 @@ def _whole_into_frame(contents: Contents) -> Step:
             "frame-ring over it.",
             "Put in both screws, tighten them in turn until the ring lies flat, and wipe off what is pressed out.",
         ]
-    return Step("Set the stack into the frame", tuple(actions), ("section",))
+    return WorkStep("Set the stack into the frame", tuple(actions), ("section",))
 
 
-def _one_by_one(contents: Contents) -> list[Step]:
+def _one_by_one(contents: Contents) -> list[WorkStep]:
     """The flange of the film is clamped between body and ring, so that the upper layers come last."""
     gap = contents.fabrication.side_clearance_mm if contents.frame.body is None else contents.frame.body.gap
     rings = {one.name.rpartition("-")[2] for one in _rings(contents)}
@@ -215,7 +215,7 @@ def _one_by_one(contents: Contents) -> list[Step]:
     glue = contents.fabrication.adhesive_thickness_mm
     paper = "" if "medium2" in held_names(contents.segment) else "; strips of paper of that thickness help"
     return [
-        Step(
+        WorkStep(
             "Set medium 2 into the frame",
             (
                 "Lay adhesive-base-medium2 into the middle of the opening of frame-body and peel off its liner.",
@@ -226,7 +226,7 @@ def _one_by_one(contents: Contents) -> list[Step]:
             ),
             ("assembly-1",),
         ),
-        Step(
+        WorkStep(
             "Lay the film onto medium 2",
             (
                 f"{lower}Lay adhesive-medium2-film on medium 2 and peel off all liners.",
@@ -236,7 +236,7 @@ def _one_by_one(contents: Contents) -> list[Step]:
             ),
             ("assembly-2",),
         ),
-        Step(
+        WorkStep(
             "Screw the ring onto the film",
             (
                 f"{upper}Peel off its liner and lower frame-ring so that its holes meet those of the body."
@@ -259,7 +259,7 @@ def _glue_medium2(contents: Contents) -> list[str]:
     return [f"Wet the walls of the opening thinly with flexible adhesive: {fills}."]
 
 
-def _upper_layers(contents: Contents) -> Step:
+def _upper_layers(contents: Contents) -> WorkStep:
     """Into the ring, bonded to the film, and to the walls of the ring where these hold them."""
     stacked, held = stacked_tops(contents.segment, contents.fabrication), _held(contents)
     what = "the stack from the jig" if len(stacked) > 1 else in_words(next(iter(stacked)))
@@ -275,7 +275,7 @@ def _upper_layers(contents: Contents) -> Step:
             f"{contents.fabrication.glue_gap_mm:g} mm there.",
         )
         actions.append("Wipe off what rises between wall and layers and let it cure as its maker says.")
-    return Step("Set the upper layers into the ring", tuple(actions), ("assembly-4", "section"))
+    return WorkStep("Set the upper layers into the ring", tuple(actions), ("assembly-4", "section"))
 
 
 def _held(contents: Contents) -> str:
@@ -284,10 +284,10 @@ def _held(contents: Contents) -> str:
     return " and ".join(in_words(layer.name) for layer in contents.layers if layer.name in names)
 
 
-def _connect(contents: Contents) -> Step:
+def _connect(contents: Contents) -> WorkStep:
     tops = [metal.name for metal in contents.flat.metals if metal.face == "top"]
     pads = ", ".join(f"'{name}' on the top face" for name in tops)
-    return Step(
+    return WorkStep(
         "Connect and test",
         (
             f"The pads lie at the end of the tab, {PAD_PITCH_MM:g} mm apart: {pads}, and the common electrode on the "

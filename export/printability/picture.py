@@ -8,7 +8,7 @@ import numpy as np
 
 from export.printability.findings import Finding, Printability
 from export.printability.surface import Floats, Rays, surface_of
-from export.view import INK, WIDTH_IN, Body, View, frame, page, render, save
+from export.view import INK, WIDTH_IN, DrawnBody, View, frame, page, render, save
 
 VIEWS = tuple(View(azimuth, elevation) for elevation in (40.0, -30.0) for azimuth in (20.0, 110.0, 200.0, 290.0))
 HIDDEN = 0.03
@@ -35,7 +35,7 @@ def draw_findings(body: Any, printability: Printability, path: Path) -> Path:
     box = frame(view.flat(np.asarray(surface.vertices)))
     result = "cannot be printed" if not printability.printable else "needs care" if findings else "can be printed"
     figure, axes, pixels_per_mm = page(box, f"{printability.label} by {printability.process.upper()}: {result}")
-    axes.imshow(render([Body(pyvista.wrap(surface), PART)], view, box, pixels_per_mm), extent=box, aspect="equal")
+    axes.imshow(render([DrawnBody(pyvista.wrap(surface), PART)], view, box, pixels_per_mm), extent=box, aspect="equal")
     hidden = buried_mm(surface, places, view) > HIDDEN * max(surface.extents)
     for number, finding in enumerate(findings, 1):
         _mark(axes, view, finding, number, "--" if hidden[number - 1] else "-")

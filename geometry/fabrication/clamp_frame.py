@@ -7,7 +7,7 @@ from geometry.fabrication.frame_layout import (
     TAB_CLEARANCE_MM,
     TIE_MM,
     FrameLayout,
-    Run,
+    WallRun,
     frame_layout,
     held_names,
     widest_gap,
@@ -132,7 +132,7 @@ def frame_parts(segment: Segment, fabrication: Fabrication) -> tuple[Fabrication
     return tuple(parts)
 
 
-def _body(layout: FrameLayout, opening: Run, fabrication: Fabrication) -> Any:
+def _body(layout: FrameLayout, opening: WallRun, fabrication: Fabrication) -> Any:
     top = layout.film_bottom
     block = _block(layout, (-fabrication.floor_mm, top))
     shelf = _shelf(layout, (-fabrication.floor_mm, top - fabrication.tab_slot_mm), fabrication)
@@ -174,7 +174,7 @@ def _around(x: float, y: float, half_x: float, half_y: float, tall: tuple[float,
     return box((x - half_x, x + half_x), (y - half_y, y + half_y), tall)
 
 
-def _openings(layout: FrameLayout, run: Run, beyond: float) -> list[Any]:
+def _openings(layout: FrameLayout, run: WallRun, beyond: float) -> list[Any]:
     """One for each segment; cut beyond an open top, so that no skin is left there."""
     half_x, half_y = layout.frame.along / 2 + run.gap, layout.frame.across / 2 + run.gap
     return [_around(x, y, half_x, half_y, (run.bottom, run.top + beyond)) for x, y in layout.centers]

@@ -49,7 +49,7 @@ LUG_MARGIN_MM = 1.5
 
 
 @dataclass(frozen=True)
-class Run:
+class WallRun:
     """Heights between which the opening is wider than the footprint by the gap on each side, in mm."""
 
     bottom: float
@@ -69,8 +69,8 @@ class FrameLayout:
     frame: ExitFrame
     film_bottom: float
     film_top: float
-    body: Run | None
-    ring: tuple[Run, ...]
+    body: WallRun | None
+    ring: tuple[WallRun, ...]
     half_along: float
     half_across: float
     pitch: float
@@ -96,7 +96,7 @@ def frame_layout(segment: Segment, fabrication: Fabrication) -> FrameLayout:
     frame, stack = exit_frame(segment, fabrication), {layer.name: layer for layer in layers(segment)}
     held = held_names(segment)
     ring = _ring(segment, held, fabrication)
-    body = Run(0.0, stack["film"].bottom_mm, _gap("medium2", held, fabrication)) if held else None
+    body = WallRun(0.0, stack["film"].bottom_mm, _gap("medium2", held, fabrication)) if held else None
     pitch = fabrication.pitch_mm or 0.0
     widest = widest_gap(body, ring)
     half_along = ((frame.count_along - 1) * pitch + frame.along) / 2 + widest + fabrication.wall_mm
@@ -115,7 +115,7 @@ def frame_layout(segment: Segment, fabrication: Fabrication) -> FrameLayout:
     )
 
 
-def widest_gap(body: Run | None, ring: tuple[Run, ...]) -> float:
+def widest_gap(body: WallRun | None, ring: tuple[WallRun, ...]) -> float:
     """The widest gap beside a segment in mm, at any height; 0 without walls."""
     return max((run.gap for run in (body, *ring) if run is not None), default=0.0)
 
@@ -128,7 +128,7 @@ def held_names(segment: Segment) -> set[str]:
     return names if covers_footprint(segment) else names - {"effector"}
 
 
-def _ring(segment: Segment, held: set[str], fabrication: Fabrication) -> tuple[Run, ...]:
+def _ring(segment: Segment, held: set[str], fabrication: Fabrication) -> tuple[WallRun, ...]:
     """Openings above the film up to the highest held layer, or around medium 1 where only the film is held."""
     above = [layer for layer in layers(segment) if layer.name in ("medium1", "effector")]
     kept = [layer for layer in above if layer.name in held]
@@ -141,13 +141,13 @@ def _ring(segment: Segment, held: set[str], fabrication: Fabrication) -> tuple[R
     return _merged([(layer, _gap(layer.name, held, fabrication)) for layer in above])
 
 
-def _merged(openings: list[tuple[Layer, float]]) -> tuple[Run, ...]:
-    runs: list[Run] = []
+def _merged(openings: list[tuple[Layer, float]]) -> tuple[WallRun, ...]:
+    runs: list[WallRun] = []
     for layer, gap in openings:
         if runs and runs[-1].gap == gap:
-            runs[-1] = Run(runs[-1].bottom, layer.top_mm, gap)
+            runs[-1] = WallRun(runs[-1].bottom, layer.top_mm, gap)
         else:
-            runs.append(Run(layer.bottom_mm, layer.top_mm, gap))
+            runs.append(WallRun(layer.bottom_mm, layer.top_mm, gap))
     return tuple(runs)
 
 

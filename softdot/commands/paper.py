@@ -16,7 +16,7 @@ from softdot.console import GOOD, NOT_CONVERGED, Logged, Progress, complain, onl
 from softdot.numbers import installed_version, plain, write_json
 from softdot.output import Product, staged_folder
 from softdot.paper.published import Published, inconsistencies, published
-from softdot.paper.section import Answer, Block, Cell, Figure, Heading, Section, Table
+from softdot.paper.section import Answer, Block, Cell, Figure, Heading, PaperTable, Section
 
 
 def command(chosen: Namespace) -> int:
@@ -61,9 +61,9 @@ def comparisons(sections: Sequence[Section]) -> list[dict[str, Any]]:
     ]  # fmt: skip
 
 
-def numbers_table(sections: Sequence[Section], kinds: Sequence[str], name: str, title: str) -> Table:
+def numbers_table(sections: Sequence[Section], kinds: Sequence[str], name: str, title: str) -> PaperTable:
     """The published numbers of some kinds."""
-    return Table(
+    return PaperTable(
         name,
         title,
         ["place", "quantity", "unit", "paper", "ours", "ours / paper", "remark"],
@@ -71,9 +71,9 @@ def numbers_table(sections: Sequence[Section], kinds: Sequence[str], name: str, 
     )
 
 
-def claims_table(sections: Sequence[Section]) -> Table:
+def claims_table(sections: Sequence[Section]) -> PaperTable:
     """Every statement that was tested."""
-    return Table(
+    return PaperTable(
         "claims",
         "Statements of the paper, put to the test",
         ["statement", "reading", "holds", "evidence"],
@@ -81,9 +81,9 @@ def claims_table(sections: Sequence[Section]) -> Table:
     )
 
 
-def inconsistencies_table() -> Table:
+def inconsistencies_table() -> PaperTable:
     """Slips and gaps of the paper."""
-    return Table(
+    return PaperTable(
         "misprints",
         "Misprints and gaps",
         ["place", "in the paper", "comment"],
@@ -136,7 +136,7 @@ def cell(value: Any) -> str:
     return number(value) if value != "" else ""
 
 
-def _without_repeats(table: Table) -> Table:
+def _without_repeats(table: PaperTable) -> PaperTable:
     """A first cell that repeats the one above is left empty."""
     firsts = [None, *(row[0] for row in table.rows)]
     rows = [["" if row[0] == above else row[0], *row[1:]] for above, row in zip(firsts, table.rows, strict=False)]
@@ -149,7 +149,7 @@ def _section(section: Section) -> dict[str, Any]:
 
 def _block(block: Block) -> dict[str, Any]:
     """A block with its kind, as the template wants it."""
-    if isinstance(block, Table):
+    if isinstance(block, PaperTable):
         return {"kind": "table", "table": block}
     if isinstance(block, Heading):
         return {"kind": "heading", "text": block.text}
@@ -193,7 +193,7 @@ def content(sections: Sequence[Section]) -> dict[str, Any]:
     }
 
 
-def all_tables(sections: Sequence[Section]) -> list[Table]:
+def all_tables(sections: Sequence[Section]) -> list[PaperTable]:
     """Every table of the page."""
     return [
         *(table for section in sections for table in section.tables),
@@ -208,7 +208,7 @@ def _part(name: str) -> Callable[[Progress, Path], Section]:
     return found
 
 
-def _write_tables(tables: Sequence[Table], folder: Path) -> None:
+def _write_tables(tables: Sequence[PaperTable], folder: Path) -> None:
     """One CSV a table."""
     folder.mkdir()
     for table in tables:

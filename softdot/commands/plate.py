@@ -14,7 +14,7 @@ from export.headless import ensure_rendering
 from export.printability import CriticalSize, Printability, draw_findings, printer_names, printer_profile
 from export.printability.check import check_on_printers
 from export.printability.surface import surface_of
-from export.view import INK, Body, View, frame, page, render, save
+from export.view import INK, DrawnBody, View, frame, page, render, save
 from geometry.base import InputError
 from geometry.braille import QUANTITIES, QuantityName
 from softdot.console import GOOD, Logged, Progress, only_the_summary_on_stdout, show
@@ -77,7 +77,7 @@ def draw_plate(built: BuiltPlate, path: Path) -> None:
     surface = surface_of(built.plate.part.solid)
     box = frame(VIEW.flat(np.asarray(surface.vertices)))
     red, green, blue = (round(255 * value) for value in built.plate.part.colour)
-    body = Body(pyvista.wrap(surface), f"#{red:02x}{green:02x}{blue:02x}")
+    body = DrawnBody(pyvista.wrap(surface), f"#{red:02x}{green:02x}{blue:02x}")
     figure, axes, pixels_per_mm = page(box, _title(built))
     axes.imshow(render([body], VIEW, box, pixels_per_mm), extent=box, aspect="equal")
     if built.translation is not None:

@@ -37,7 +37,7 @@ from solve.result import PressResult, Step
 LOG = logging.getLogger(__name__)
 
 
-class Clock:
+class StageClock:
     """Wall-clock seconds by stage."""
 
     def __init__(self) -> None:
@@ -76,7 +76,7 @@ def run_case(case: Case, out: Path, progress: Progress | None = None) -> dict[st
 
 def _fill(case: Case, folder: Path, progress: Progress) -> dict[str, Any]:
     """Everything but summary.json; returns the summary."""
-    clock, config, model = Clock(), case.config, case.model
+    clock, config, model = StageClock(), case.config, case.model
     summary = {**heading(config), "warnings": [*case.checked[1], *design_warnings(model)]}
     warn(summary["warnings"])
     if config.from_default:

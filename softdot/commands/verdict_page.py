@@ -12,7 +12,7 @@ from tomlkit.items import InlineTable, Table
 
 from diagnose.engines.coupon import CouponEngine, improved_material
 from diagnose.figures import figure, p_alone, percent, probability
-from diagnose.findings import Findings, Model
+from diagnose.findings import Findings, FittedModel
 from diagnose.forward import Engine
 from diagnose.next_press.proposals import Shape, base_setup
 from diagnose.signals.recording import Recording
@@ -85,7 +85,7 @@ def page_text(
     )
 
 
-def _parameter_rows(best: Model) -> Iterator[list[str]]:
+def _parameter_rows(best: FittedModel) -> Iterator[list[str]]:
     """Mechanism, quantity, value, low, high, unit and remark."""
     for setting, intervals in zip(best.settings, best.parameters, strict=True):
         what = mechanism_words(*setting.candidate.name)
@@ -99,7 +99,7 @@ def _parameter_rows(best: Model) -> Iterator[list[str]]:
             yield [what, "–", "–", "–", "–", "", "has no parameter"]
 
 
-def _explanation_rows(findings: Findings) -> list[tuple[bool, str, Model]]:
+def _explanation_rows(findings: Findings) -> list[tuple[bool, str, FittedModel]]:
     """Whether it is the named one, its words, and the model."""
     named = findings.best if findings.mismatch and not findings.unexplained else None
     return [(model is named, model_words(model), model) for model in findings.models]
@@ -197,7 +197,7 @@ def _segment(rig: Rig, findings: Findings) -> tuple[tomlkit.TOMLDocument, str]:
     return document, WITH.format(RIG_FILE, model_words(findings.best))
 
 
-def _coupon(engine: CouponEngine, best: Model) -> tuple[tomlkit.TOMLDocument, str]:
+def _coupon(engine: CouponEngine, best: FittedModel) -> tuple[tomlkit.TOMLDocument, str]:
     layer = "medium2"
     found = improved_material(engine, best.settings, layer)
     document = tomlkit.parse(files("softdot.config").joinpath("default.toml").read_text("utf-8"))

@@ -19,7 +19,7 @@ class Heading:
 
 
 @dataclass(frozen=True)
-class Table:
+class PaperTable:
     """A table of the page, written as tables/<name>.csv too. Units stand in the headers."""
 
     name: str
@@ -63,7 +63,7 @@ class Answer:
     remark: str = ""
 
 
-Block = str | Heading | Table | Figure
+Block = str | Heading | PaperTable | Figure
 
 
 @dataclass(frozen=True)
@@ -83,9 +83,9 @@ class Section:
     """Key of published.toml -> our value, for the table of every published number."""
 
     @property
-    def tables(self) -> list[Table]:
+    def tables(self) -> list[PaperTable]:
         """The tables among the blocks."""
-        return [block for block in self.blocks if isinstance(block, Table)]
+        return [block for block in self.blocks if isinstance(block, PaperTable)]
 
     @property
     def figures(self) -> list[Figure]:

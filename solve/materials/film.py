@@ -30,7 +30,7 @@ import numpy as np
 import scipy.linalg
 
 from geometry.arrays import Floats
-from solve.materials.inelastic import Memory, Response
+from solve.materials.inelastic import Memory, StressResponse
 from solve.materials.isochoric import strain_rotation
 from solve.materials.parameters import PiezoelectricFilm
 
@@ -202,9 +202,9 @@ class FilmPlasticity:
         """Plastic strain (n, 6) and equivalent plastic strain (n,)."""
         return np.zeros((points, 6)), np.zeros(points)
 
-    def update(self, elastic: Response, memory: Memory, time_step: float) -> tuple[Response, Memory]:
+    def update(self, elastic: StressResponse, memory: Memory, time_step: float) -> tuple[StressResponse, Memory]:
         """Admissible response to a stress that ignores the plastic strain."""
         plastic, kappa = memory
         trial = np.linalg.solve(self.law.stiffness, elastic.stress.T).T - plastic
         result = self.law.project(trial, kappa)
-        return Response(result.stress, result.tangent), (plastic + result.plastic_strain, result.kappa)
+        return StressResponse(result.stress, result.tangent), (plastic + result.plastic_strain, result.kappa)

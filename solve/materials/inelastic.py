@@ -30,7 +30,7 @@ Memory = tuple[Floats, ...]  # arrays whose first axis counts the quadrature poi
 
 
 @dataclass(frozen=True)
-class Response:
+class StressResponse:
     """Second Piola-Kirchhoff stress (n, 6), tangent (n, 6, 6) and strain energy (n,) at n quadrature points.
 
     energy is None where no law asks for it.
@@ -51,7 +51,7 @@ class Inelastic(Protocol):
     def start(self, points: int) -> Memory:
         """Memory of n quadrature points at rest."""
 
-    def update(self, elastic: Response, memory: Memory, time_step: float) -> tuple[Response, Memory]:
+    def update(self, elastic: StressResponse, memory: Memory, time_step: float) -> tuple[StressResponse, Memory]:
         """Response and memory at the end of a time step (s)."""
 
     def scaled(self, factor: float) -> "Inelastic":
@@ -80,7 +80,7 @@ class Prony:
         a = time_step / np.array(self.relaxation_times)
         return np.exp(-a), -np.expm1(-a) / np.where(a > 0.0, a, 1.0) + (a == 0.0)
 
-    def update(self, elastic: Response, memory: Memory, time_step: float) -> tuple[Response, Memory]:
+    def update(self, elastic: StressResponse, memory: Memory, time_step: float) -> tuple[StressResponse, Memory]:
         """Relaxed response and the new memory."""
         old, _, branches = memory
         moduli = np.array(self.relative_moduli)
@@ -90,7 +90,7 @@ class Prony:
         stress = (1.0 - moduli.sum()) * elastic.stress + branches.sum(axis=1)
         instant = 1.0 - moduli.sum() + float(moduli @ gain)
         rate = change / time_step if time_step > 0.0 else np.full_like(change, np.nan)
-        return Response(stress, instant * elastic.tangent), (elastic.stress, rate, branches)
+        return StressResponse(stress, instant * elastic.tangent), (elastic.stress, rate, branches)
 
     def time_error(self, memory: Memory, new: Memory, time_step: float, after_kink: bool) -> float:
         """Largest error of the branch stresses in this step, relative to the largest elastic stress.
@@ -127,7 +127,7 @@ class Softening:
         """The largest energy so far (n,)."""
         return (np.zeros(points),)
 
-    def update(self, elastic: Response, memory: Memory, time_step: float) -> tuple[Response, Memory]:
+    def update(self, elastic: StressResponse, memory: Memory, time_step: float) -> tuple[StressResponse, Memory]:
         """Softened response and the new largest energy."""
         assert elastic.energy is not None
         largest = np.maximum(memory[0], elastic.energy)
@@ -135,7 +135,7 @@ class Softening:
         stress = factor[:, None] * elastic.stress
         rank_one = elastic.stress[:, :, None] * elastic.stress[:, None, :]
         tangent = factor[:, None, None] * elastic.tangent + slope[:, None, None] * rank_one
-        return Response(stress, tangent, elastic.energy), (largest,)
+        return StressResponse(stress, tangent, elastic.energy), (largest,)
 
     def _factor(self, energy: Floats, largest: Floats, rounding: Floats) -> tuple[Floats, Floats]:
         """eta and d eta/dW, (n,) each. rounding : the least energy that differs from that of the undeformed point."""

@@ -22,7 +22,7 @@ ROUND_OFF_S = 1e-12
 
 
 @dataclass(frozen=True)
-class Recording:
+class ReadoutRecording:
     """What one amplifier gives over time: time_s (t,), voltage_V (t,); progress (t,) load steps done."""
 
     time_s: Floats
@@ -46,7 +46,7 @@ def channel_voltages(result: PressResult, press: Press, readout: Readout, physic
 
 def record(
     result: PressResult, press: Press, readout: Readout, wired: Floats, physics: Physics | None = None
-) -> Recording:
+) -> ReadoutRecording:
     """The whole recording of a press; wired : (e,) 1 for the electrodes on this amplifier, else 0."""
     time, progress = _timetable(press)
     if result.follows_time:
@@ -59,10 +59,10 @@ def record(
         steps = np.array([step.film_charge_C @ wired for step in result.steps])
         charge = _interpolated(np.arange(len(steps), dtype=float), steps, progress)
     capacitance = float(result.capacitance_F @ wired)
-    return Recording(time, amplify(time, charge, capacitance, readout, physics or Physics()), progress)
+    return ReadoutRecording(time, amplify(time, charge, capacitance, readout, physics or Physics()), progress)
 
 
-def _at_steps(result: PressResult, recording: Recording) -> Floats:
+def _at_steps(result: PressResult, recording: ReadoutRecording) -> Floats:
     progress = recording.progress
     first = [int(np.argmax(progress >= number - 1e-9)) for number in range(len(result.steps))]
     return np.array([_at(progress, recording.voltage_V, index, number) for number, index in enumerate(first)])

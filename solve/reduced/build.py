@@ -27,7 +27,7 @@ from solve.press import press_segment, set_up
 from solve.reduced import store
 from solve.reduced.fit import FINER, fit
 from solve.reduced.model import Accuracy, ReducedModel, structure
-from solve.reduced.sampling import Frozen, Pressed, Sample, Sampler
+from solve.reduced.sampling import Frozen, Sample, SampledPress, Sampler
 from solve.result import Trace
 from solve.solution.near import combined
 from solve.solution.newton import NoEquilibriumError
@@ -98,7 +98,7 @@ UNKNOWN = Accuracy(np.inf, np.inf, np.inf)
 
 
 @dataclass(frozen=True)
-class Case:
+class ReductionTask:
     """What is reduced: a segment on its mesh, the dot, the deepest press, what may relax, and the other physics."""
 
     segment: Segment
@@ -131,14 +131,16 @@ def build_reduced(
     cache : keep the model on disk by what it depends on. ValueError with one sentence for what it cannot describe;
     NoEquilibriumError where the 3D model has no answer.
     """
-    asked = Case(segment, materials, dot, tet_mesh, depth_mm, dict(relaxing or {}), physics or Physics(), depth_nodes)
+    asked = ReductionTask(
+        segment, materials, dot, tet_mesh, depth_mm, dict(relaxing or {}), physics or Physics(), depth_nodes
+    )
     _refuse(asked)
     if not cache:
         return _build(asked, check)
     return store.remembered(store.key(asked, check), lambda: _build(asked, check))
 
 
-def _refuse(case: Case) -> None:
+def _refuse(case: ReductionTask) -> None:
     """What the reduction does not describe."""
     film = case.materials["film"]
     if isinstance(film, PiezoelectricFilm) and film.coupling == "two-way":
@@ -154,7 +156,7 @@ def _refuse(case: Case) -> None:
         raise ValueError(f"depth_mm = {case.depth_mm:g}: must be above 0")
 
 
-def _build(case: Case, check: bool) -> ReducedModel:
+def _build(case: ReductionTask, check: bool) -> ReducedModel:
     layers = tuple(case.relaxing)
     sampler = _sampler(case, layers)
     samples = list(_samples(sampler, case.relaxing))
@@ -174,7 +176,7 @@ def _build(case: Case, check: bool) -> ReducedModel:
     return replace(model, accuracy=measured(model, *told))
 
 
-def _sampler(case: Case, layers: tuple[str, ...]) -> Sampler:
+def _sampler(case: ReductionTask, layers: tuple[str, ...]) -> Sampler:
     kept = Physics(
         bonds=case.physics.bonds, delaminations=case.physics.delaminations, prestretch=case.physics.prestretch,
         viscosity={layer: Frozen(layer=layer) for layer in layers},
@@ -196,7 +198,7 @@ def _samples(sampler: Sampler, relaxing: Mapping[str, float]) -> Iterator[Sample
     yield elastic.sample
     fields, plain = elastic.fields, elastic.course
     middle = round(len(fields) * 0.6)
-    held: dict[str, Pressed] = {}
+    held: dict[str, SampledPress] = {}
     memories: dict[str, Floats] = {}
     for layer, share in relaxing.items():
         first = sampler.press({layer: share * fields[-1][layer]}, near=plain)

@@ -24,7 +24,7 @@ MODES = 3  # of each layer at most: more would be directions that the samples do
 
 
 @dataclass(frozen=True)
-class Fit:
+class ResponseTable:
     """table (cells + 1, f, o) and touch (f,) as solve.reduced.kernels.follow takes them.
 
     start (k + 1,) first amplitude of each layer; pairs (p, 2) of amplitudes; missing : largest share of a layer's
@@ -38,7 +38,7 @@ class Fit:
     missing: float
 
 
-def fit(samples: Sequence[Sample], layers: Sequence[str]) -> Fit:
+def fit(samples: Sequence[Sample], layers: Sequence[str]) -> ResponseTable:
     """The table; samples[0] is the elastic press, all others have a memory."""
     stress, memory, start, missing = [], [], [0], 0.0
     for name in layers:
@@ -59,7 +59,7 @@ def fit(samples: Sequence[Sample], layers: Sequence[str]) -> Fit:
     if layers:
         parts.append(_table(_slopes(features[1:], np.array(changes))))
         moved = np.append(moved, _slopes(features[1:], (touch[1:] - touch[0])[:, None, None]))
-    return Fit(np.concatenate(parts, axis=1), moved, np.array(start, dtype=np.int64), pairs, missing)
+    return ResponseTable(np.concatenate(parts, axis=1), moved, np.array(start, dtype=np.int64), pairs, missing)
 
 
 def _coordinates(samples: Sequence[Sample], layer: str) -> tuple[Floats, Floats]:

@@ -16,7 +16,7 @@ from solve.model import Physics
 from solve.parameters import Readout
 from solve.readout.amplifier import amplify, input_of, stages
 from solve.readout.charge import other_charge_C
-from solve.reduced.fit import CELLS, Fit
+from solve.reduced.fit import CELLS, ResponseTable
 from solve.reduced.kernels import BY_DEPTH, BY_FORCE, TOO_DEEP, follow
 
 
@@ -51,7 +51,7 @@ class ErrorBound:
 
 
 @dataclass(frozen=True)
-class Response:
+class ReducedResponse:
     """Over time (t,): the dot's path, the force sensor's reading, the charge and the amplifier's voltage.
 
     charge_C is that of the electrodes on this amplifier together, electrode_charge_C (t, e) of each.
@@ -126,7 +126,7 @@ class ReducedModel:
     structure : the parts of the physics that are in the samples.
     """
 
-    fit: Fit
+    fit: ResponseTable
     depth_mm: float
     relaxing: Mapping[str, float]
     film: Floats
@@ -144,7 +144,7 @@ class ReducedModel:
         force_N: Floats | None = None,
         gap_mm: float = 0.0,
         wired: Floats | None = None,
-    ) -> Response:
+    ) -> ReducedResponse:
         """The answer to a sensor displacement depth_mm (t,), negative while clear, or else to a force_N (t,).
 
         The segment is at rest before the first sample, whose depth or force it takes at once. wired : (e,) 1 for the
@@ -162,7 +162,7 @@ class ReducedModel:
         charge, capacitance = each @ wired, float(self.film[:, 0] @ wired)
         voltage = amplify(time, charge, capacitance, readout, physics)
         bound = self._bound(Raw(time, path, outputs), wired, capacitance, readout, physics)
-        return Response(time, path + gap_mm, force, charge, each, voltage, bound)
+        return ReducedResponse(time, path + gap_mm, force, charge, each, voltage, bound)
 
     def _refuse(self, physics: Physics) -> None:
         if physics.friction > 0.0 or physics.softening or physics.film_yield is not None:

@@ -18,7 +18,7 @@ from geometry.arrays import Floats
 from solve.fem.term import History, Term
 from solve.solution.linear import LinearSolver
 from solve.system import State, System
-from solve.terms.springs import Bond
+from solve.terms.springs import BondSprings
 
 NEW_DIRECTION = 1e-3  # of the largest load: what is left of a smaller one is dropped
 WORTH_A_MODE = 0.02  # of the first mode's size
@@ -63,10 +63,10 @@ ACCURATE = 1e-8
 
 def held(term: Term, elastic: Floats, memory: Floats) -> History:
     """The history of a term with a Frozen law."""
-    return (elastic, memory) if isinstance(term, Bond) else ((elastic, memory),)
+    return (elastic, memory) if isinstance(term, BondSprings) else ((elastic, memory),)
 
 
-class Yardstick:
+class StressMetric:
     """Measures fields at one state, by the compliance of the segment in it (see solve.reduced.modes)."""
 
     def __init__(self, system: System, state: State, terms: Mapping[str, Term]) -> None:

@@ -15,9 +15,9 @@ from scipy.optimize import brentq
 
 from geometry.arrays import Floats
 from solve.fem.term import History, Term
-from solve.materials.inelastic import Memory, Prony, Response
+from solve.materials.inelastic import Memory, Prony, StressResponse
 from solve.press import Setup
-from solve.reduced.modes import Yardstick, held
+from solve.reduced.modes import StressMetric, held
 from solve.solution.linear import LinearSolver
 from solve.solution.march import rest_state
 from solve.solution.near import Course, reach
@@ -26,7 +26,7 @@ from solve.solution.schedule import Target
 from solve.system import Load, State
 from solve.terms.film import FilmRegion
 from solve.terms.solid import SolidRegion
-from solve.terms.springs import Bond
+from solve.terms.springs import BondSprings
 
 
 @dataclass(frozen=True)
@@ -44,9 +44,9 @@ class Frozen(Prony):
         """Nothing remembered."""
         return np.zeros((points, 6)), np.zeros((points, 6))
 
-    def update(self, elastic: Response, memory: Memory, time_step: float) -> tuple[Response, Memory]:
+    def update(self, elastic: StressResponse, memory: Memory, time_step: float) -> tuple[StressResponse, Memory]:
         """Response with the memory M, which stays."""
-        return Response(elastic.stress - memory[1], elastic.tangent), (elastic.stress, memory[1])
+        return StressResponse(elastic.stress - memory[1], elastic.tangent), (elastic.stress, memory[1])
 
     def time_error(self, memory: Memory, new: Memory, time_step: float, after_kink: bool) -> float:
         """No time passes."""
@@ -79,7 +79,7 @@ Fields = dict[str, Floats]  # layer -> stress at its quadrature points (n, 6), o
 
 
 @dataclass(frozen=True)
-class Pressed:
+class SampledPress:
     """A sample; at every depth node the elastic stress, and the unknowns."""
 
     sample: Sample
@@ -99,15 +99,15 @@ class Sampler:
         self.rest = rest_state(self.system, self.linear, start)
         self.recorder.start(self.rest)
         self.force_scale = self.rest.force_scale
-        self.yardstick: Yardstick | None = None
+        self.metric: StressMetric | None = None
 
     def close(self) -> None:
         """Give the solvers' memory back."""
         self.linear.close()
-        if self.yardstick is not None:
-            self.yardstick.close()
+        if self.metric is not None:
+            self.metric.close()
 
-    def press(self, memory: Fields, finer: int = 1, near: Course | None = None) -> Pressed:
+    def press(self, memory: Fields, finer: int = 1, near: Course | None = None) -> SampledPress:
         """Press with overstress fields. NoEquilibriumError.
 
         finer : so many depth nodes to one. near : a similar press, to start from.
@@ -125,14 +125,14 @@ class Sampler:
             outputs.append(self._outputs(past[-1]))
             fields.append(self._elastic(past[-1]))
             found.append((share, past[-1].x))
-        if self.yardstick is None:
-            self.yardstick = Yardstick(self.system, past[-1], self.terms)
+        if self.metric is None:
+            self.metric = StressMetric(self.system, past[-1], self.terms)
         self.force_scale = max(self.force_scale, past[-1].force_scale)
-        measure = self.yardstick.coordinates
+        measure = self.metric.coordinates
         stress = {name: [measure(name, now[name]) for now in fields] for name in self.terms}
         remembered = {name: measure(name, field) for name, field in memory.items()}
         sample = Sample(1e3 * self.system.units.length * touch, np.array(outputs), stress, remembered)
-        return Pressed(sample, fields, Course.of(found))
+        return SampledPress(sample, fields, Course.of(found))
 
     def _free(self, memory: Fields) -> tuple[State, float]:
         """The segment clear of the dot, and the approach at which they touch."""
@@ -166,7 +166,7 @@ class Sampler:
 
     def _elastic(self, state: State) -> Fields:
         histories = {name: self.system.history_of(term, state) for name, term in self.terms.items()}
-        return {name: h[0] if isinstance(self.terms[name], Bond) else h[0][0] for name, h in histories.items()}
+        return {name: h[0] if isinstance(self.terms[name], BondSprings) else h[0][0] for name, h in histories.items()}
 
 
 def _term(setup: Setup, layer: str) -> Term:

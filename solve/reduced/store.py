@@ -11,14 +11,14 @@ import numpy as np
 
 from geometry.cache import data_hash, folder, read_arrays, source_hash, write_arrays
 from mesh.types import mesh_hash
-from solve.reduced.fit import Fit
+from solve.reduced.fit import ResponseTable
 from solve.reduced.model import Accuracy, ReducedModel, structure
 
 if TYPE_CHECKING:
-    from solve.reduced.build import Case
+    from solve.reduced.build import ReductionTask
 
 
-def key(case: "Case", check: bool) -> str:
+def key(case: "ReductionTask", check: bool) -> str:
     """Hash of mesh, segment, materials, dot, depth, relaxing layers, physics and the solver's own source."""
     dot = case.dot
     places = (np.asarray(array).tolist() for array in (dot.centers_xy_mm, dot.origin_mm, dot.rotation))
@@ -52,7 +52,7 @@ def read(path: Path) -> ReducedModel | None:
 def _decoded(data: Mapping[str, Any]) -> ReducedModel:
     """The model in a file; ValueError when its arrays do not fit together."""
     told = json.loads(str(data["told"]))
-    fit = Fit(data["table"], data["touch"], data["start"], data["pairs"], told["missing"])
+    fit = ResponseTable(data["table"], data["touch"], data["start"], data["pairs"], told["missing"])
     if fit.table.shape[1] != len(fit.touch) or fit.table.shape[2] != 2 + len(data["film"]) + fit.start[-1]:
         raise ValueError("array shapes")
     rest = (data["film"], told["pyroelectric"], told["structure"], Accuracy(**told["accuracy"]))

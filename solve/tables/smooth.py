@@ -22,7 +22,7 @@ from numpy.polynomial import Polynomial, chebyshev
 from scipy.interpolate import make_interp_spline
 
 from geometry.arrays import Floats
-from solve.reduced.fit import CELLS, Fit
+from solve.reduced.fit import CELLS, ResponseTable
 
 PRESSED = tuple(float(k / 16) ** 1.5 for k in range(2, 17))
 """Of the depth, at which a press is seen that is to be smoothed: closer where the contact is small."""
@@ -123,7 +123,7 @@ class Depths:
         self.to_rows: Floats = make_interp_spline(knots, unit, min(3, len(shares)))(np.linspace(0.0, 1.0, CELLS + 1))
 
 
-def changed(fit: Fit, depths: Depths, change: Floats, charge_factor: float) -> Fit:
+def changed(fit: ResponseTable, depths: Depths, change: Floats, charge_factor: float) -> ResponseTable:
     """The table with the summed changes (n, 2 + e), and every charge times a factor."""
     rows = depths.to_rows @ change
     elastic = fit.table[:, 0, : change.shape[1]]
@@ -132,14 +132,14 @@ def changed(fit: Fit, depths: Depths, change: Floats, charge_factor: float) -> F
     return _with_elastic(fit, found, factors, charge_factor)
 
 
-def replaced(fit: Fit, outputs: Floats) -> Fit:
+def replaced(fit: ResponseTable, outputs: Floats) -> ResponseTable:
     """The table with other elastic outputs (cells + 1, 2 + e), of a dot that touches at once."""
     own = fit.table[:, 0, :2]
     factors = np.clip(np.divide(outputs[:, :2], own, out=np.ones_like(own), where=own > 0.0), *TRUSTED)
     return _with_elastic(replace(fit, touch=np.array([0.0, *fit.touch[1:]])), outputs, factors, 1.0)
 
 
-def _with_elastic(fit: Fit, outputs: Floats, factors: Floats, charge_factor: float) -> Fit:
+def _with_elastic(fit: ResponseTable, outputs: Floats, factors: Floats, charge_factor: float) -> ResponseTable:
     """What layers remember of force and area goes by factors (cells + 1, 2), of charges in proportion on the whole."""
     table, charges = fit.table.copy(), slice(2, outputs.shape[1])
     own = table[:, 0, charges]

@@ -11,7 +11,7 @@ from solve.fem.kinematics import deformation_gradient, green_lagrange
 from solve.fem.quadrature import physical_gradients, quadratic, tetrahedron
 from solve.fem.term import Block, History, Term, Trial
 from solve.materials.film import FilmLaw
-from solve.materials.inelastic import Inelastic, Prony, Response
+from solve.materials.inelastic import Inelastic, Prony, StressResponse
 from solve.terms.solid import refuse_inversion
 
 
@@ -96,12 +96,12 @@ class FilmRegion(Term):
     def _strain(self, displacement: Floats) -> Floats:
         return green_lagrange(self.gradient, displacement[self.tets]) + self.prestrain
 
-    def _respond(self, trial: Trial, history: History) -> tuple[Response, History]:
+    def _respond(self, trial: Trial, history: History) -> tuple[StressResponse, History]:
         """Response at the quadrature points (m q) in order, and the new memory."""
         elastic = self._strain(trial.displacement).reshape(-1, 6)
         elastic = elastic - self._field(trial).reshape(-1, 1) * self.law.coupling
         tangent = np.broadcast_to(self.law.stiffness, (len(elastic), 6, 6))
-        response, new = Response(elastic @ self.law.stiffness, tangent), []
+        response, new = StressResponse(elastic @ self.law.stiffness, tangent), []
         for law, old in zip(self.inelastic, history, strict=True):
             response, now = law.update(response, old, trial.time_step)
             new.append(now)

@@ -37,7 +37,7 @@ BETA, GAMMA = 0.25 * (1.0 - ALPHA) ** 2, 0.5 - ALPHA
 
 
 @dataclass(frozen=True)
-class Rig(Term):
+class RigTerm(Term):
     """approach_dof : unknown number; mass, compliance : solver units, None where a force drives."""
 
     approach_dof: int

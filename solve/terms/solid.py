@@ -13,7 +13,7 @@ from solve.fem.kernels import compressible_solid, mixed_solid
 from solve.fem.kinematics import cauchy_green, deformation_gradient, smallest_jacobian
 from solve.fem.quadrature import linear, physical_gradients, quadratic, tetrahedron
 from solve.fem.term import Block, History, Term, Trial
-from solve.materials.inelastic import Inelastic, Memory, Prony, Response
+from solve.materials.inelastic import Inelastic, Memory, Prony, StressResponse
 from solve.materials.laws import MediumLaw
 
 CHUNK = 4096  # elements assembled at a time: bounds the memory of the element matrices
@@ -82,11 +82,13 @@ class SolidRegion(Term):
         ]
         return max(errors, default=0.0)
 
-    def respond(self, f: Floats, memory: tuple[Memory, ...], time_step: float) -> tuple[Response, tuple[Memory, ...]]:
+    def respond(
+        self, f: Floats, memory: tuple[Memory, ...], time_step: float
+    ) -> tuple[StressResponse, tuple[Memory, ...]]:
         """Isochoric (of a foam: whole) response at F (s, q, 3, 3) in points in order, and the new memory."""
         c = cauchy_green(f)
         energy = self.law.energy(c) if any(law.needs_energy for law in self.inelastic) else None
-        response, new = Response(*self.law.stress(c), energy), []
+        response, new = StressResponse(*self.law.stress(c), energy), []
         for law, old in zip(self.inelastic, memory, strict=True):
             response, now = law.update(response, old, time_step)
             new.append(now)
@@ -99,7 +101,7 @@ class SolidRegion(Term):
             refuse_inversion(f, self.name, self.tets[part])
             yield part, f
 
-    def _integrate(self, part: slice, f: Floats, response: Response, x: Floats) -> tuple[Floats, Floats]:
+    def _integrate(self, part: slice, f: Floats, response: StressResponse, x: Floats) -> tuple[Floats, Floats]:
         stress = response.stress.reshape(*f.shape[:2], 6)
         tangent = np.ascontiguousarray(response.tangent).reshape(*f.shape[:2], 6, 6)
         ke, re = np.empty((len(f), *2 * self.dofs.shape[1:])), np.empty((len(f), self.dofs.shape[1]))

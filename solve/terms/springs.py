@@ -19,13 +19,13 @@ import numpy as np
 from geometry.arrays import Floats, Ints
 from solve.fem.quadrature import triangle
 from solve.fem.term import Block, History, Term, Trial
-from solve.materials.inelastic import Prony, Response
+from solve.materials.inelastic import Prony, StressResponse
 from solve.terms.contact import SHAPES, facet_area
 from solve.terms.jump import Jump, MatchedFacets, matched_facets
 
 
 @dataclass(frozen=True)
-class Bond(Term):
+class BondSprings(Term):
     """normal, shear : traction per jump in the solver's units; prony : None for an elastic bond."""
 
     facets: MatchedFacets
@@ -72,7 +72,7 @@ class Bond(Term):
         jumps = np.concatenate([jump.d, jump.opening[..., None]], axis=-1)
         if self.prony is None:
             return jumps, 1.0, history
-        response, memory = self.prony.update(Response(jumps.reshape(-1, 4), np.ones(1)), history, time_step)
+        response, memory = self.prony.update(StressResponse(jumps.reshape(-1, 4), np.ones(1)), history, time_step)
         return response.stress.reshape(jumps.shape), float(response.tangent[0]), memory
 
 
@@ -84,14 +84,14 @@ def bond(
     normal: float,
     shear: float,
     prony: Prony | None = None,
-) -> Bond:
+) -> BondSprings:
     """Bond the facets lower and upper (k, 6) of mesh.interfaces.split_interface; lower -1 is the rigid ground.
 
     points (n, 3) and the stiffnesses per area, normal and shear, in the solver's units. The rule of degree 4 is
     exact for the elastic bond of straight facets.
     """
     facets = matched_facets(points, lower, upper, displacement_dofs, triangle())
-    return Bond(facets, normal, shear, prony)
+    return BondSprings(facets, normal, shear, prony)
 
 
 def layer_stiffness(thickness_um: float, youngs_modulus_MPa: float, poisson_ratio: float) -> tuple[float, float]:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from solve.materials.inelastic import Prony, Response
+from solve.materials.inelastic import Prony, StressResponse
 
 G, TAU = (0.3, 0.2), (0.05, 0.7)
 SERIES = Prony(G, TAU)
@@ -13,7 +13,7 @@ def answer(series, stress, time):
     """Relaxed stress (t,) of a history (t,) of the elastic one, from rest."""
     memory, relaxed = series.start(1), [0.0]
     for value, dt in zip(stress[1:], np.diff(time), strict=True):
-        elastic = Response(np.full((1, 6), value), np.eye(6)[None])
+        elastic = StressResponse(np.full((1, 6), value), np.eye(6)[None])
         response, memory = series.update(elastic, memory, dt)
         relaxed.append(response.stress[0, 0])
     return np.array(relaxed)
@@ -84,10 +84,10 @@ def test_without_relaxing_share_it_is_elastic(series):
 
 def test_the_tangent_is_the_derivative_of_the_relaxed_stress():
     law, memory = np.diag(np.arange(1.0, 7.0)), SERIES.start(1)
-    _, memory = SERIES.update(Response(np.ones((1, 6)), law[None]), memory, 0.1)
+    _, memory = SERIES.update(StressResponse(np.ones((1, 6)), law[None]), memory, 0.1)
     strain, change = np.linspace(0.1, 0.6, 6), 1e-3
     at = [
-        SERIES.update(Response((s @ law)[None], law[None]), memory, 0.2)[0]
+        SERIES.update(StressResponse((s @ law)[None], law[None]), memory, 0.2)[0]
         for s in (strain, *(strain + change * e for e in np.eye(6)))
     ]
     slope = np.stack([(r.stress - at[0].stress)[0] / change for r in at[1:]], axis=1)
@@ -100,7 +100,7 @@ def test_the_estimated_error_of_a_step_is_its_error():
     memory = series.start(1)
     for end, step in ((1.0 - 2.0 * dt, 1.0), (1.0 - dt, dt), (1.0, dt)):
         old = memory
-        _, memory = series.update(Response(np.full((1, 6), end**2), np.eye(6)[None]), old, step)
+        _, memory = series.update(StressResponse(np.full((1, 6), end**2), np.eye(6)[None]), old, step)
     s = np.linspace(1.0 - dt, 1.0, 20_001)
     exact = np.trapezoid(0.4 * np.exp(-(1.0 - s) / tau) * 2.0 * s, s)
     ours = memory[2][0, 0, 0] - np.exp(-dt / tau) * old[2][0, 0, 0]

@@ -14,7 +14,7 @@ from solve.materials.inelastic import Prony
 from solve.model import Physics
 from solve.parameters import Readout
 from solve.reduced import store
-from solve.reduced.fit import CELLS, Fit
+from solve.reduced.fit import CELLS, ResponseTable
 from solve.reduced.model import Accuracy, ReducedModel
 
 STIFFNESS, FULL, SHARE, TAU = 2.0, 0.5, 0.3, 0.2
@@ -28,7 +28,7 @@ def solid(share=0.6) -> ReducedModel:
     table[:, 0] = np.column_stack([STIFFNESS * w, w > 0.0, 1e-9 * w, w])
     rise = 1.0 - w / FULL  # of u = M + w (1 - M / full) with M
     table[:, 1] = np.column_stack([STIFFNESS * (rise - 1.0), 0.0 * w, 1e-9 * rise, rise])
-    fit = Fit(table, np.array([0.0, 1.0, 0.0]), np.array([0, 1]), np.array([[0, 0]]), 0.0)
+    fit = ResponseTable(table, np.array([0.0, 1.0, 0.0]), np.array([0, 1]), np.array([[0, 0]]), 0.0)
     film, accuracy = np.array([[1e-9, 1e-4]]), Accuracy(0.01, 0.02, 0.03)
     return ReducedModel(fit, FULL, {"medium2": share}, film, 30.0, store.structure(Physics()), accuracy)
 

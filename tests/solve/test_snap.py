@@ -14,7 +14,7 @@ import scipy.sparse as sp
 
 import solve.solution.march as marching
 from solve.fem.sparsity import Tangent
-from solve.recorder import doubts
+from solve.recorder import doubtful_results
 from solve.solution.linear import LinearSolver
 from solve.solution.newton import NoEquilibriumError
 from solve.solution.schedule import Target
@@ -102,9 +102,9 @@ def test_a_press_that_snapped_says_at_which_depths():
         )
         for depth, snap in ((1e-4, False), (2e-4, True), (3e-4, True))
     ]
-    (said,) = doubts([step], records)
+    (said,) = doubtful_results([step], records)
     assert said.startswith("at 0.200, 0.300 mm something snapped: ")
-    assert doubts([step], records[:1]) == ()
+    assert doubtful_results([step], records[:1]) == ()
 
 
 def test_a_press_may_snap_and_a_table_over_depth_may_not(monkeypatch):

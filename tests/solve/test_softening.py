@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.special import erf
 
-from solve.materials.inelastic import Response, Softening
+from solve.materials.inelastic import Softening, StressResponse
 
 STIFFNESS = 3.0
 LAW = Softening(0.4, 0.01, 0.2)
@@ -16,7 +16,7 @@ def cycle(law, strains):
     for e in strains:
         s, w = np.zeros((1, 6)), np.array([0.5 * STIFFNESS * e**2])
         s[0, 0] = STIFFNESS * e
-        response, memory = law.update(Response(s, STIFFNESS * np.eye(6)[None], w), memory, 0.1)
+        response, memory = law.update(StressResponse(s, STIFFNESS * np.eye(6)[None], w), memory, 0.1)
         stress.append(response.stress[0, 0])
         energy.append(w[0])
     return np.array(stress), np.array(energy)
@@ -62,7 +62,7 @@ def test_no_loss_is_elastic():
 @pytest.mark.parametrize("energy", [-5e-17, 0.0, 2e-16])
 @pytest.mark.parametrize("largest", [0.0, 1e-16])
 def test_rounding_of_the_energy_at_rest_softens_nothing(energy, largest):
-    elastic = Response(np.zeros((1, 6)), STIFFNESS * np.eye(6)[None], np.array([energy]))
+    elastic = StressResponse(np.zeros((1, 6)), STIFFNESS * np.eye(6)[None], np.array([energy]))
     softened, _ = Softening(0.4, 0.0, 0.2).update(elastic, (np.array([largest]),), 0.1)
     np.testing.assert_allclose(softened.tangent, elastic.tangent, rtol=0.01)
 
@@ -72,7 +72,9 @@ def test_the_tangent_below_the_largest_energy_is_consistent():
 
     def response(strain):
         energy = 0.5 * np.array([strain @ stiffness @ strain])
-        return law.update(Response((strain @ stiffness)[None], stiffness[None], energy), (np.array([0.5]),), 1.0)[0]
+        return law.update(StressResponse((strain @ stiffness)[None], stiffness[None], energy), (np.array([0.5]),), 1.0)[
+            0
+        ]
 
     strain, change = np.linspace(0.05, 0.2, 6), 1e-6
     slope = [(response(strain + change * e).stress - response(strain - change * e).stress)[0] for e in np.eye(6)]

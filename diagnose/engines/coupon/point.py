@@ -19,7 +19,7 @@ import numpy as np
 from diagnose.engines.coupon.kinematics import Kinematics, Reading, SimpleShear
 from diagnose.signals.tables import Drive
 from geometry.arrays import Floats
-from solve.materials.inelastic import Prony, Response, Softening
+from solve.materials.inelastic import Prony, Softening, StressResponse
 from solve.materials.laws import MediumLaw
 from solve.solution.newton import NoEquilibriumError
 
@@ -67,7 +67,7 @@ def earlier_peaks(energy: Floats) -> Floats:
     return np.concatenate([[0.0], np.maximum.accumulate(energy)[:-1]])
 
 
-def softened(law: Softening, elastic: Response, peaks: Floats) -> Response:
+def softened(law: Softening, elastic: StressResponse, peaks: Floats) -> StressResponse:
     """The response (t points) where every sample remembers a largest energy (t,)."""
     return replace(law.update(elastic, (peaks,), 0.0)[0], energy=None)
 
@@ -155,10 +155,10 @@ class MaterialPoint:
         """Strain energy (t,) without softening."""
         return self.law.energy(self.kinematics.cauchy_green(unknown))
 
-    def elastic(self, unknown: Floats, peaks: Floats | None) -> Response:
+    def elastic(self, unknown: Floats, peaks: Floats | None) -> StressResponse:
         """Stress and tangent without relaxation; softened from the largest energies before (t,), where given."""
         c = self.kinematics.cauchy_green(unknown)
-        response = Response(*self.law.stress(c))
+        response = StressResponse(*self.law.stress(c))
         if self.softening is None or peaks is None:
             return response
         return softened(self.softening, replace(response, energy=self.law.energy(c)), peaks)
@@ -211,7 +211,7 @@ class _Test:
                 return unknown
         raise self._nowhere()
 
-    def _step(self, unknown: Floats, elastic: Response) -> Floats:
+    def _step(self, unknown: Floats, elastic: StressResponse) -> Floats:
         """Newton's correction (t, m)."""
         now = self.point.reading(unknown, self.relaxation.relaxed(elastic.stress))
         weight = self.point.compliance_mm_per_N if self.by_travel else 1.0

@@ -15,7 +15,7 @@ from solve.model import Model, Physics
 from solve.parameters import Readout
 from solve.readout.amplifier import amplify
 from solve.readout.charge import mixed_channels, other_charge_C
-from solve.reduced.fit import Fit
+from solve.reduced.fit import ResponseTable
 from solve.reduced.kernels import BY_DEPTH, BY_FORCE, TOO_DEEP, follow
 from solve.reduced.model import branches, sensed
 
@@ -73,7 +73,9 @@ class Mechanics:
     charge_C: Floats
 
 
-def mechanics(fit: Fit, depth_mm: float, layers: tuple[str, ...], drive: Drive, values: Floats, on: Model) -> Mechanics:
+def mechanics(
+    fit: ResponseTable, depth_mm: float, layers: tuple[str, ...], drive: Drive, values: Floats, on: Model
+) -> Mechanics:
     """The dot and the segment under a drive of these values (t,). ValueError where it goes deeper than the table."""
     physics, modes = on.physics, int(fit.start[-1])
     observed = fit.table.shape[2] - modes

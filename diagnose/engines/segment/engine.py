@@ -28,7 +28,7 @@ from solve.mechanisms import Mechanism, with_mechanisms
 from solve.model import Model
 from solve.parameters import Readout
 from solve.readout.stages import Hum
-from solve.reduced.fit import Fit
+from solve.reduced.fit import ResponseTable
 from solve.tables.rig_mesh import mesh_of
 from solve.tables.smooth import changed
 
@@ -115,7 +115,7 @@ class SegmentEngine:
         self.prepared: Prepared = Prepared(model, mesh_settings, recording, report)
         self.prepared.add((), [run.dot_offset_mm for run in recording.runs], report)
         self.accuracy = self.prepared.accuracy
-        self._last: tuple[Asked, Fit] | None = None
+        self._last: tuple[Asked, ResponseTable] | None = None
         self.candidates: tuple[Candidate, ...] = tuple(
             with_derived(c, self.prepared) for c in candidates_of_segment(self.scene)
         )
@@ -186,7 +186,7 @@ class SegmentEngine:
         on = with_mechanisms(believed, mechanisms)
         elastic, values = replace(on, physics=replace(on.physics, viscosity={})), self._driven(drive, on, ())
 
-        def shape(fit: Fit) -> full.Shape:
+        def shape(fit: ResponseTable) -> full.Shape:
             return lambda of, values: mechanics(fit, base.depth_mm, base.relaxing, of, values, elastic)
 
         tet_mesh = mesh_of(on, self.model, base.tet_mesh, base.options)
@@ -221,7 +221,7 @@ class SegmentEngine:
             found = mechanics(fit, base.depth_mm, base.relaxing, drive, values - give * added, on)
         return whole
 
-    def _fit(self, run: Run, on: Model, settings: Sequence[Setting]) -> Fit:
+    def _fit(self, run: Run, on: Model, settings: Sequence[Setting]) -> ResponseTable:
         """The table with all that changes it; kept, as runs share it."""
         base = self.prepared
         factor = _d31(on) / _d31(self.model)

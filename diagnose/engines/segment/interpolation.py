@@ -22,7 +22,7 @@ Functions = Callable[[Values], Floats]
 
 
 @dataclass(frozen=True)
-class Effect:
+class PressedEffect:
     """points (p, q) : where the 3D model is pressed. pressed : numbers of the coordinates that need presses."""
 
     points: tuple[tuple[float, ...], ...]
@@ -41,17 +41,17 @@ class Effect:
 
 
 @lru_cache(maxsize=512)
-def effect(together: str, coordinates: tuple[Coordinate, ...]) -> Effect:
+def effect(together: str, coordinates: tuple[Coordinate, ...]) -> PressedEffect:
     """How a candidate is pressed and read; together : see diagnose.forward.Candidate."""
     pressed = tuple(n for n, coordinate in enumerate(coordinates) if coordinate.nodes)
     splines = [_spline(coordinates[n]) for n in pressed]
     points, functions = _LAYOUTS[together](coordinates, pressed, splines)
     whole = np.array([functions(point) for point in points])
     inverse = np.linalg.inv(whole) if points else np.zeros((0, 0))
-    return Effect(tuple(points), pressed, functions, coordinates, inverse)
+    return PressedEffect(tuple(points), pressed, functions, coordinates, inverse)
 
 
-def effect_of(candidate: Candidate) -> Effect:
+def effect_of(candidate: Candidate) -> PressedEffect:
     """The same of a candidate."""
     return effect(candidate.together, candidate.coordinates)
 

@@ -16,7 +16,7 @@ from scipy.interpolate import PchipInterpolator
 
 from diagnose.engines.segment.answer import Mechanics
 from geometry.arrays import Floats
-from solve.reduced.fit import CELLS, Fit
+from solve.reduced.fit import CELLS, ResponseTable
 from solve.tables.job import RETURN
 
 BACK = 2, 4
@@ -25,7 +25,7 @@ ROWS = np.linspace(0.0, 1.0, CELLS + 1)
 
 
 @dataclass(frozen=True)
-class History:
+class PathHistory:
     """values (n + b r, 2 + e) : changes on the way down and on the ways back: of force and area relative to the
     baseline's, of charges per force of the baseline.
 
@@ -53,7 +53,7 @@ class History:
         return _curve(np.array([*RETURN[::-1], 1.0]), values, inside)
 
 
-def changes(outputs: Floats, base: Floats, shares: Sequence[float], fit: Fit) -> Floats:
+def changes(outputs: Floats, base: Floats, shares: Sequence[float], fit: ResponseTable) -> Floats:
     """Changes (n + b r, 2 + e) from outputs of a press down and up; base (n, 2 + e) : of the baseline down.
 
     The baseline's way back is its way down; charges on a way back are per force at the depth where it began.
@@ -88,7 +88,7 @@ def _between(turned: Floats, curves: Sequence[Floats], largest: Floats) -> Float
     return np.asarray((1.0 - mix) * stack[low, rows] + mix * stack[low + 1, rows])
 
 
-def with_history(found: Mechanics, histories: Sequence[History], fit: Fit, depth_mm: float) -> Mechanics:
+def with_history(found: Mechanics, histories: Sequence[PathHistory], fit: ResponseTable, depth_mm: float) -> Mechanics:
     """The same path with force, area and charge as its history makes them."""
     share, force = found.path_mm / depth_mm, fit.table[:, 0, 0]
     factors, charge = np.ones((len(share), 2)), found.charge_C

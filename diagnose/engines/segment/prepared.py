@@ -28,7 +28,7 @@ from solve.mechanisms.layers.viscoelasticity import VISCOELASTICITY
 from solve.model import Model, Physics
 from solve.parameters import Press
 from solve.press import press_segment
-from solve.reduced.fit import CELLS, Fit
+from solve.reduced.fit import CELLS, ResponseTable
 from solve.solution.newton import NoEquilibriumError
 from solve.tables import store
 from solve.tables.job import Job, Reduction
@@ -49,7 +49,7 @@ def deepest(model: Model, tet_mesh: TetMesh, recording: Recording) -> float:
     return max(depths)
 
 
-def rung(value: float) -> float:
+def rounded_up(value: float) -> float:
     """The next number up of a ladder in steps of RUNG, so that noise of the drive does not ask for presses anew."""
     return float(RUNG ** np.ceil(np.log(value) / np.log(RUNG)))
 
@@ -122,7 +122,7 @@ class Prepared:
     def __init__(self, model: Model, options: MeshOptions, recording: Recording, report: Report) -> None:
         self.model = model
         self.tet_mesh, self.options = rig_mesh(model, options)
-        self.pressed_mm = rung(deepest(model, self.tet_mesh, recording))
+        self.pressed_mm = rounded_up(deepest(model, self.tet_mesh, recording))
         self.depth_mm = MARGIN * self.pressed_mm + offset_reach_mm(recording)
         self.depths = Depths(SHARES)
         self._changes: dict[Name, Floats] = {}
@@ -136,7 +136,7 @@ class Prepared:
         made = reduction.made()
         self.relaxing, self.raw = reduction.relaxing, made.fit
         self.film = FilmPlate(made.film, made.pyroelectric_uC_per_m2_K)
-        self.fit: Fit = replaced(self.raw, self._smooth)
+        self.fit: ResponseTable = replaced(self.raw, self._smooth)
         fine_mm, middle_mm = (options.element_size_mm for _, options in meshes)
         self.accuracy = accuracy(middle, fine, fine_mm / middle_mm)
 
@@ -258,13 +258,13 @@ class Prepared:
         parts += [values for values in map(self._values, elastic) if values is not None]
         return np.sum(parts, axis=0) if parts else None
 
-    def histories(self, settings: Sequence[Setting]) -> list[path.History]:
+    def histories(self, settings: Sequence[Setting]) -> list[path.PathHistory]:
         """Of the settings that depend on the path. ValueError."""
         found = []
         for setting in settings:
             if setting.candidate.traits.shows_on_return:
                 values = self._values(setting)
-                found += [path.History(values, SHARES)] if values is not None else []
+                found += [path.PathHistory(values, SHARES)] if values is not None else []
         return found
 
     def _values(self, setting: Setting) -> Floats | None:

@@ -38,7 +38,7 @@ from softdot.paper.section import (
     SOFT,
     Answer,
     Cell,
-    Table,
+    PaperTable,
     bars,
     label,
     new_figure,
@@ -96,13 +96,13 @@ def answers(table: str) -> dict[str, Answer]:
     }
 
 
-def comparison(table: str) -> Table:
+def comparison(table: str) -> PaperTable:
     """One row a case; a printed value that the formula does not give is marked beside ours."""
     rows = table_rows(table)
     columns = [column for column in next(iter(rows.values())) if column in FORMULAS]
     ours = recomputed(table)
     given = ["h1_mm", "E2_MPa"]
-    return Table(
+    return PaperTable(
         f"paper-{table}",
         f"Table {table[-1]} of the paper, from its formulas",
         ["case", "h₁ (mm)", "E₂ (MPa)", *(HEADS.get(column, column) for column in columns)],
@@ -115,14 +115,14 @@ def comparison(table: str) -> Table:
     )
 
 
-def regime_table() -> Table:
+def regime_table() -> PaperTable:
     """Eq. (8) for the free cases, with both unknown factors taken as 1."""
     words = {"medium1": "S₂ ≫ S₁: medium 1 alone", "both": "S₂ ≈ S₁: both", "medium2": "S₁ ≫ S₂: medium 2 alone"}
     rows: list[list[Cell]] = []
     for case, row in recomputed("table3").items():
         pair = row["S1"], row["S2"]
         rows.append([case, row["S2/S1"], words[regime(*pair)], float(f"{output_m(1.0, *pair):.4g}")])
-    return Table(
+    return PaperTable(
         "free-regimes",
         "Which line of Eq. (8) holds for the free cases",
         ["case", HEADS["S2/S1"], "line of Eq. (8)", "predicted output / (α u₂)"],
@@ -169,9 +169,9 @@ def _composite(h1_mm: float) -> dict[str, float | None]:
     }
 
 
-def composite_table() -> Table:
+def composite_table() -> PaperTable:
     """What the film does to the beam."""
-    return Table(
+    return PaperTable(
         "composite-beam",
         "Medium 1 and film as one beam",
         [

@@ -10,7 +10,7 @@ import numpy as np
 
 from softdot.config import Config
 from softdot.console import Progress
-from softdot.paper.beyond.designs import Press, Trial, press_of
+from softdot.paper.beyond.designs import DesignPress, DesignTrial, press_of
 from softdot.paper.beyond.ranking import Ranking, rank
 from softdot.paper.beyond.search import GOALS, Search, compare, search
 from softdot.paper.published import segment_config
@@ -31,12 +31,12 @@ WALLS = {
 class Curve:
     """One segment from free to clamped; between[i] belongs to STIFFNESS_N_PER_MM3[i]."""
 
-    free: Press
-    between: Sequence[Press]
-    clamped: Press
+    free: DesignPress
+    between: Sequence[DesignPress]
+    clamped: DesignPress
 
     @property
-    def presses(self) -> list[Press]:
+    def presses(self) -> list[DesignPress]:
         """All, from stiffness 0 to infinity."""
         return [self.free, *self.between, self.clamped]
 
@@ -86,7 +86,7 @@ class Beyond:
     curves: Mapping[str, Curve]
     ranking: Ranking
     search: Search
-    compared: Mapping[str, Sequence[Trial]]
+    compared: Mapping[str, Sequence[DesignTrial]]
 
 
 def solve_beyond(progress: Progress) -> Beyond:

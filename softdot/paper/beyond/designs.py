@@ -83,7 +83,7 @@ BOUNDARIES: tuple[Boundary, Boundary] = ("free", "clamped")
 
 
 @dataclass(frozen=True)
-class Press:
+class DesignPress:
     """One press at its full depth."""
 
     force_N: float
@@ -100,15 +100,15 @@ class Press:
 
 
 @dataclass(frozen=True)
-class Trial:
+class DesignTrial:
     """One design with both boundaries."""
 
     design: Design
-    free: Press
-    clamped: Press
+    free: DesignPress
+    clamped: DesignPress
 
     @property
-    def presses(self) -> tuple[Press, Press]:
+    def presses(self) -> tuple[DesignPress, DesignPress]:
         """Free, clamped."""
         return self.free, self.clamped
 
@@ -129,23 +129,23 @@ class Trial:
 
 def solve_trials(
     designs: Sequence[Design], reading: Reading, mesh: Mapping[str, Any], progress: Progress
-) -> list[Trial]:
+) -> list[DesignTrial]:
     """Press every design with both boundaries; a design of which one press does not converge is left out."""
     from softdot.sweeps import solve_points
 
     configs = [design_config(design, boundary, reading, mesh) for design in designs for boundary in BOUNDARIES]
     records = solve_points(configs, progress)
     pairs = zip(designs, records[::2], records[1::2], strict=True)
-    return [Trial(design, press_of(free), press_of(held)) for design, free, held in pairs if _solved(free, held)]
+    return [DesignTrial(design, press_of(free), press_of(held)) for design, free, held in pairs if _solved(free, held)]
 
 
 def _solved(*records: Mapping[str, Any]) -> bool:
     return all(record["status"] == "solved" for record in records)
 
 
-def press_of(outcome: Mapping[str, Any]) -> Press:
+def press_of(outcome: Mapping[str, Any]) -> DesignPress:
     """The numbers that count here from the outcome of a press."""
-    return Press(
+    return DesignPress(
         force_N=outcome["reaction_force_N"][-1],
         voltage_V=outcome["open_circuit_voltage_V"][-1],
         charge_pC=outcome["film_charge_pC"][-1],

@@ -15,8 +15,8 @@ from softdot.console import Progress
 from softdot.paper.beyond.designs import (
     BOUNDARIES,
     Design,
-    Press,
-    Trial,
+    DesignPress,
+    DesignTrial,
     coordinates,
     papers_variables,
     sample,
@@ -38,8 +38,8 @@ START = {"tension_share": 0.2, "give": 0.5, "rest": 0.3}
 class Halves:
     """A sample, cut in two: what the constants are fitted to, and what never touched a fit."""
 
-    fitted: Sequence[Trial]
-    held_out: Sequence[Trial]
+    fitted: Sequence[DesignTrial]
+    held_out: Sequence[DesignTrial]
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ def rank(progress: Progress) -> Ranking:
     return Ranking(samples, sum(map(len, designs.values())), fit(training, 1.0), fit(training, 0.0))
 
 
-def fit(trials: Sequence[Trial], film_stiffness: float) -> dict[str, float]:
+def fit(trials: Sequence[DesignTrial], film_stiffness: float) -> dict[str, float]:
     """Constants with the least squares of the logarithm of predicted over solved voltage."""
     from scipy.optimize import least_squares
 
@@ -87,13 +87,15 @@ def fit(trials: Sequence[Trial], film_stiffness: float) -> dict[str, float]:
     return dict(zip(START, map(float, best), strict=True))
 
 
-def voltages(trials: Sequence[Trial], boundary: Boundary) -> Floats:
+def voltages(trials: Sequence[DesignTrial], boundary: Boundary) -> Floats:
     """Open-circuit voltages (n,)."""
     presses = [trial.presses[BOUNDARIES.index(boundary)] for trial in trials]
     return np.array([press.voltage_V for press in presses])
 
 
-def predicted_V(trials: Sequence[Trial], boundary: Boundary, ranking: Ranking, film_stiffness: float = 1.0) -> Floats:
+def predicted_V(
+    trials: Sequence[DesignTrial], boundary: Boundary, ranking: Ranking, film_stiffness: float = 1.0
+) -> Floats:
     """Voltages (n,) by the corrected parameters."""
     c = columns([trial.design for trial in trials])
     constants = ranking.constants if film_stiffness else ranking.constants_without_film
@@ -132,7 +134,7 @@ def interval(first: Floats, second: Floats) -> list[float]:
     return [float(value) for value in np.quantile(correlation, [0.025, 0.975])]
 
 
-def scatter(trials: Sequence[Trial], boundary: Boundary, ranking: Ranking, film_stiffness: float = 1.0) -> float:
+def scatter(trials: Sequence[DesignTrial], boundary: Boundary, ranking: Ranking, film_stiffness: float = 1.0) -> float:
     """Typical factor between predicted and solved voltage: exp of the rms of the logarithm of their ratio."""
     ratio = np.log(predicted_V(trials, boundary, ranking, film_stiffness) / voltages(trials, boundary))
     return float(np.exp(np.sqrt(np.mean(ratio**2))))
@@ -161,7 +163,7 @@ class Surrogate:
     there are few designs yet, those parameters carry the trend.
     """
 
-    def __init__(self, trials: Sequence[Trial], constants: dict[str, float]) -> None:
+    def __init__(self, trials: Sequence[DesignTrial], constants: dict[str, float]) -> None:
         self.constants = constants
         features = self._features([trial.design for trial in trials])
         self.middle, self.spread = features.mean(axis=0), features.std(axis=0)
@@ -198,7 +200,7 @@ class Surrogate:
             return process.fit((features - self.middle) / self.spread, target)
 
 
-def _numbers(presses: Sequence[Press]) -> Floats:
+def _numbers(presses: Sequence[DesignPress]) -> Floats:
     """Charge, force and film stress (n, 3)."""
     least = [LEAST_V * press.capacitance_pF for press in presses]
     return np.array(

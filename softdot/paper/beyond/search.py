@@ -13,7 +13,16 @@ import numpy as np
 
 from geometry.arrays import Floats
 from softdot.console import Progress
-from softdot.paper.beyond.designs import FILMS_UM, PAPERS, Design, Trial, coordinates, design_at, sample, solve_trials
+from softdot.paper.beyond.designs import (
+    FILMS_UM,
+    PAPERS,
+    Design,
+    DesignTrial,
+    coordinates,
+    design_at,
+    sample,
+    solve_trials,
+)
 from softdot.paper.beyond.predictors import film
 from softdot.paper.beyond.ranking import SLICE_MESH, Surrogate
 from softdot.paper.published import LENGTH_MM, Reading
@@ -39,11 +48,11 @@ class Limits:
     force_N: float
     film_stress_MPa: float
 
-    def allow(self, trial: Trial) -> bool:
+    def allow(self, trial: DesignTrial) -> bool:
         """Whether a design keeps them."""
         return trial.force_N <= self.force_N and trial.film_stress_MPa <= self.film_stress_MPa
 
-    def share(self, trial: Trial) -> float:
+    def share(self, trial: DesignTrial) -> float:
         """What is left of a design's voltage when all of it is softened, in proportion, until it keeps them."""
         return min(1.0, self.force_N / trial.force_N, self.film_stress_MPa / trial.film_stress_MPa)
 
@@ -52,13 +61,13 @@ class Limits:
 class Search:
     """What was tried, in order: the paper's final design, FIRST designs that fill the space, then the rounds."""
 
-    papers: Trial
-    trials: Sequence[Trial]
+    papers: DesignTrial
+    trials: Sequence[DesignTrial]
     limits: Limits
     surrogate: Surrogate
     """Of all trials."""
 
-    def best(self, goal: str) -> Trial:
+    def best(self, goal: str) -> DesignTrial:
         """The best design within the limits; the paper's own when none is better."""
         return to_beat([self.papers, *self.trials], self.limits, GOALS[goal])
 
@@ -74,19 +83,19 @@ def search(progress: Progress, constants: dict[str, float], seed: int = 2) -> Se
     return Search(papers, trials, limits, Surrogate([papers, *trials], constants))
 
 
-def limits_of(papers: Trial) -> Limits:
+def limits_of(papers: DesignTrial) -> Limits:
     """Not more than the paper's final design, with the margin for the mesh, and never yield."""
     stress = min(papers.film_stress_MPa, film().yield_stress_MPa or np.inf)
     return Limits(FORCE_MARGIN * papers.force_N, STRESS_MARGIN * stress)
 
 
-def to_beat(trials: Sequence[Trial], limits: Limits, cable_pF: float) -> Trial:
+def to_beat(trials: Sequence[DesignTrial], limits: Limits, cable_pF: float) -> DesignTrial:
     """The best design within the limits, or the paper's, the first of trials, which stands at the bare limits."""
     inside = [trial for trial in trials[1:] if limits.allow(trial)]
     return max([trials[0], *inside], key=lambda trial: trial.worse_V(cable_pF))
 
 
-def propose(surrogate: Surrogate, trials: Sequence[Trial], limits: Limits, number: int) -> list[Design]:
+def propose(surrogate: Surrogate, trials: Sequence[DesignTrial], limits: Limits, number: int) -> list[Design]:
     """EACH designs for every goal with the largest expected improvement on the best so far."""
     pool = candidates(trials, limits, number)
     known = [trial.design for trial in trials]
@@ -98,7 +107,7 @@ def propose(surrogate: Surrogate, trials: Sequence[Trial], limits: Limits, numbe
     return known[len(trials) :]
 
 
-def candidates(trials: Sequence[Trial], limits: Limits, number: int) -> list[Design]:
+def candidates(trials: Sequence[DesignTrial], limits: Limits, number: int) -> list[Design]:
     """Designs all over the space, and near the most promising ones so far; to two digits, as one would make them.
 
     Promising: much voltage when everything is softened until the limits are kept.
@@ -122,7 +131,7 @@ def rounded(design: Design) -> Design:
 
 
 def expected_gain(
-    surrogate: Surrogate, designs: Sequence[Design], trials: Sequence[Trial], limits: Limits, cable_pF: float
+    surrogate: Surrogate, designs: Sequence[Design], trials: Sequence[DesignTrial], limits: Limits, cable_pF: float
 ) -> Floats:
     """Mean gain (n,) over the best so far, relative to it; draws that break a limit gain nothing."""
     guess = surrogate.draw(designs, DRAWS, seed=0)
@@ -156,7 +165,7 @@ MODELS: Mapping[str, tuple[Reading, Mapping[str, Any]]] = {
 MESHERS = ("pytetwild", "layered")
 
 
-def compare(optima: Sequence[Design], progress: Progress) -> dict[str, list[Trial]]:
+def compare(optima: Sequence[Design], progress: Progress) -> dict[str, list[DesignTrial]]:
     """Model -> the paper's final design and the optima, in this order. NotSolvedError."""
     designs = [PAPERS, *optima]
     found = {}
@@ -167,7 +176,7 @@ def compare(optima: Sequence[Design], progress: Progress) -> dict[str, list[Tria
     return found
 
 
-def beats(optimum: Trial, papers: Trial, cable_pF: float = 0.0) -> bool:
+def beats(optimum: DesignTrial, papers: DesignTrial, cable_pF: float = 0.0) -> bool:
     """More voltage in the worse boundary, with no more film stress and no more force."""
     return (
         optimum.worse_V(cable_pF) > papers.worse_V(cable_pF)

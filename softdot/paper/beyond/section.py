@@ -9,7 +9,7 @@ from softdot.console import Progress
 from softdot.paper.beyond import tables
 from softdot.paper.beyond import tables as figures
 from softdot.paper.beyond.continuum import STIFFNESS_N_PER_MM3, WALLS, Beyond, Curve, solve_beyond
-from softdot.paper.beyond.designs import BOUNDARIES, HIGH, LOW, PAPERS, Trial
+from softdot.paper.beyond.designs import BOUNDARIES, HIGH, LOW, PAPERS, DesignTrial
 from softdot.paper.beyond.ranking import CORRECTED, FOUR, SEVEN, correlations, scatter
 from softdot.paper.beyond.search import (
     CABLE_PF,
@@ -201,7 +201,7 @@ def _uncertainty(study: Beyond) -> str:
     )
 
 
-def _best(study: Beyond) -> Trial:
+def _best(study: Beyond) -> DesignTrial:
     return study.search.best("open circuit")
 
 

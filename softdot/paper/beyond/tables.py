@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from softdot.paper.beyond.continuum import STIFFNESS_N_PER_MM3, WALLS, Beyond, Curve
-from softdot.paper.beyond.designs import BOUNDARIES, PAPERS, Design, Press, Trial
+from softdot.paper.beyond.designs import BOUNDARIES, PAPERS, Design, DesignPress, DesignTrial
 from softdot.paper.beyond.ranking import (
     CORRECTED,
     WITHOUT_FILM,
@@ -25,16 +25,16 @@ from softdot.paper.beyond.ranking import (
 )
 from softdot.paper.beyond.search import CABLE_PF, FIRST, GOALS, MESHERS, MODELS, Search, beats
 from softdot.paper.published import Boundary
-from softdot.paper.section import CLAMPED, FREE, PAPER, SOFT, Cell, Claim, Table, label, new_figure, save
+from softdot.paper.section import CLAMPED, FREE, PAPER, SOFT, Cell, Claim, PaperTable, label, new_figure, save
 
 
-def sides(curves: Mapping[str, Curve]) -> Table:
+def sides(curves: Mapping[str, Curve]) -> PaperTable:
     """What cases of different materials would give."""
     rows: list[list[Cell]] = []
     for name, curve in curves.items():
         between = [_digits(curve.voltage_at_V(stiffness)) for stiffness in WALLS.values()]
         rows.append([name, _digits(curve.free.voltage_V), *between, _digits(curve.clamped.voltage_V)])
-    return Table(
+    return PaperTable(
         "sides",
         "Voltage (V) between free and clamped, cross-section, open circuit",
         ["segment", "free", *(f"{words} ({stiffness:.3g} N/mm³)" for words, stiffness in WALLS.items()), "clamped"],
@@ -43,12 +43,12 @@ def sides(curves: Mapping[str, Curve]) -> Table:
     )
 
 
-def ranks(ranking: Ranking) -> Table:
+def ranks(ranking: Ranking) -> PaperTable:
     """Rank correlations on the held-out halves."""
     columns = [(sample, side) for sample in ranking.samples for side in BOUNDARIES]
     found = [correlations(ranking, *column) for column in columns]
     names = [*(name for name in found[0] if name != CORRECTED), WITHOUT_FILM, CORRECTED]
-    return Table(
+    return PaperTable(
         "rank-correlations",
         "Spearman's rank correlation with the solved voltage, on designs that no constant was fitted to",
         ["parameter", *(f"{side}, {sample}" for sample, side in columns)],
@@ -59,17 +59,17 @@ def ranks(ranking: Ranking) -> Table:
     )
 
 
-def designs(named: Mapping[str, Design]) -> Table:
+def designs(named: Mapping[str, Design]) -> PaperTable:
     """The designs that are compared."""
     rows: list[list[Cell]] = [
         [name, d.h1_mm, d.e1_MPa, d.h2_mm, d.e2_MPa, d.effector_height_mm, d.effector_MPa, d.film_um]
         for name, d in named.items()
     ]
     heads = ["h₁ (mm)", "E₁ (MPa)", "h₂ (mm)", "E₂ (MPa)", "effector height (mm)", "effector E (MPa)", "film (µm)"]
-    return Table("designs", "Designs", ["design", *heads], rows)
+    return PaperTable("designs", "Designs", ["design", *heads], rows)
 
 
-def final(compared: Mapping[str, Sequence[Trial]], names: Sequence[str]) -> Table:
+def final(compared: Mapping[str, Sequence[DesignTrial]], names: Sequence[str]) -> PaperTable:
     """Every press of the comparison."""
     rows: list[list[Cell]] = []
     for model in MODELS:
@@ -80,7 +80,7 @@ def final(compared: Mapping[str, Sequence[Trial]], names: Sequence[str]) -> Tabl
                     press.film_stress_MPa,
                 )  # fmt: skip
                 rows.append([model, name, side, *map(_digits, numbers)])
-    return Table(
+    return PaperTable(
         "design-comparison",
         "The designs at 0.3 mm on finer meshes",
         [
@@ -208,7 +208,7 @@ def _plane(panel: Any, search: Search) -> None:
     panel.legend(frameon=False, fontsize=9, loc="upper left")
 
 
-def draw_final(compared: Mapping[str, Sequence[Trial]], names: Sequence[str], folder: Path) -> Path:
+def draw_final(compared: Mapping[str, Sequence[DesignTrial]], names: Sequence[str], folder: Path) -> Path:
     """Voltage, force and film stress of the compared designs, by both meshers."""
     figure, panels = new_figure(3, height_in=3.8, width_in=9.5)
     for panel, (name, words) in zip(
@@ -229,7 +229,7 @@ def draw_final(compared: Mapping[str, Sequence[Trial]], names: Sequence[str], fo
     return save(figure, folder, "design-comparison")
 
 
-def _number(press: Press, name: str) -> float:
+def _number(press: DesignPress, name: str) -> float:
     return float(getattr(press, name))
 
 
@@ -309,7 +309,7 @@ def _better(study: Beyond, mesher: str) -> Claim:
     )
 
 
-def _numbers(trial: Trial) -> str:
+def _numbers(trial: DesignTrial) -> str:
     return (
         f"{trial.worse_V():.3g} V ({trial.worse_V(CABLE_PF):.3g} V behind {CABLE_PF:g} pF), "
         f"{trial.film_stress_MPa:.3g} MPa, {trial.force_N:.3g} N"

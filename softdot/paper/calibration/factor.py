@@ -22,7 +22,7 @@ from scipy.stats import qmc, rankdata
 
 from geometry.arrays import Floats
 from softdot.paper.calibration.rig import INPUTS, Values, dot_depth_mm
-from softdot.paper.calibration.solved import FOAM, ROUND, SIMULATED, Curve, Solved
+from softdot.paper.calibration.solved import FOAM, ROUND, SIMULATED, PressCurve, Solved
 from solve.parameters import Waveform
 from solve.solution.schedule import fraction
 
@@ -127,7 +127,7 @@ def factors(rig: Mapping[str, Solved], values: Values) -> dict[str, Factor]:
     return {name: factor(solved, values) for name, solved in rig.items()}
 
 
-def dot_depth(curve: Curve, read_mm: float, values: Values) -> float:
+def dot_depth(curve: PressCurve, read_mm: float, values: Values) -> float:
     """Depth of the dot in mm when the gauge reads read_mm."""
 
     def force(depth_mm: float) -> float:
@@ -136,7 +136,7 @@ def dot_depth(curve: Curve, read_mm: float, values: Values) -> float:
     return dot_depth_mm(read_mm, force, values["beam_length_mm"], values["push_offset_mm"])
 
 
-def charge_pC(curve: Curve, depth_mm: float, press_time_s: float) -> Floats:
+def charge_pC(curve: PressCurve, depth_mm: float, press_time_s: float) -> Floats:
     """Short-circuit charge of the film over one period, (chain.SAMPLES,)."""
     return curve.capacitance_pF * curve.voltage_at(depth_mm * pressed(press_time_s))
 

@@ -26,7 +26,7 @@ from softdot.paper.calibration.factor import (
     times_s,
 )
 from softdot.paper.calibration.rig import INPUTS, Values, assumed
-from softdot.paper.calibration.solved import FOAM, SIMULATED, Curve, Solved
+from softdot.paper.calibration.solved import FOAM, SIMULATED, PressCurve, Solved
 from softdot.paper.published import published
 from softdot.paper.section import CLAMPED, FREE, PAPER, SOFT, label, new_figure, save
 
@@ -40,7 +40,7 @@ class Rest:
     """What R and T do not change: ideal voltage, press of the real sensor, depth of its dot in mm."""
 
     ideal_V: float
-    curve: Curve
+    curve: PressCurve
     depth_mm: float
 
     def p(self, resistance_MOhm: float, press_time_s: float) -> float:

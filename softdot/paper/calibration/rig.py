@@ -36,7 +36,7 @@ FINENESS = 0.7
 
 
 @dataclass(frozen=True)
-class Case:
+class RigCase:
     """One row of Table 1."""
 
     name: str
@@ -49,8 +49,8 @@ class Case:
 OHP_SHEET = {"model": "linear", "youngs_modulus_MPa": 3000.0, "poisson_ratio": OHP_POISSON_RATIO}
 RUBBER = {"model": "neo-hookean", "youngs_modulus_MPa": 1.0, "poisson_ratio": RUBBER_POISSON_RATIO}
 CASES = {
-    "I": Case("I", "OHP sheet", 0.3, OHP_SHEET, 0.831),
-    "II": Case("II", "rubber", 1.0, RUBBER, 1.57),
+    "I": RigCase("I", "OHP sheet", 0.3, OHP_SHEET, 0.831),
+    "II": RigCase("II", "rubber", 1.0, RUBBER, 1.57),
 }
 
 
@@ -66,7 +66,7 @@ def foam(exponent: float, poisson_ratio: float) -> dict[str, Any]:
 
 
 def rig_config(
-    case: Case,
+    case: RigCase,
     section: Section,
     sponge: Mapping[str, Any],
     dot_radius_mm: float,

@@ -20,7 +20,7 @@ from softdot.paper.calibration.rig import (
     CASES,
     INPUTS,
     TABLE_SPONGE_MPA,
-    Case,
+    RigCase,
     Section,
     Values,
     assumed,
@@ -33,7 +33,7 @@ from solve.mechanisms.boundaries.adhesive_compliance import ADHESIVE_COMPLIANCE
 
 
 @dataclass(frozen=True)
-class Curve:
+class PressCurve:
     """Load steps (s,) from rest: depth, force and open-circuit voltage; capacitance of the film."""
 
     depth_mm: Floats
@@ -49,7 +49,7 @@ class Curve:
         """Open-circuit voltage in V at depths of any shape."""
         return _extended(self._voltage, self.depth_mm[-1], np.asarray(depth_mm))
 
-    def scaled(self, force: float, voltage: float) -> "Curve":
+    def scaled(self, force: float, voltage: float) -> "PressCurve":
         """The same shape with other values."""
         return replace(self, force_N=force * self.force_N, voltage_V=voltage * self.voltage_V)
 
@@ -69,7 +69,7 @@ def _extended(curve: CubicSpline, last_mm: float, asked: Floats) -> Floats:
 
 
 @dataclass(frozen=True)
-class Response:
+class RigResponse:
     """values (k,) of an input, ascending; ratios (k, 2) of force and voltage at full depth against the assumed one."""
 
     values: Floats
@@ -117,22 +117,22 @@ class Name(NamedTuple):
 class Solved:
     """All presses of one case."""
 
-    case: Case
-    curves: Mapping[str, Curve]
+    case: RigCase
+    curves: Mapping[str, PressCurve]
     """Model -> press with the assumed inputs."""
-    responses: Mapping[str, Mapping[str, Response]]
+    responses: Mapping[str, Mapping[str, RigResponse]]
     """Model -> input -> how it changes force and voltage."""
-    finer: Mapping[str, Curve]
+    finer: Mapping[str, PressCurve]
     """SIMULATED and ROUND on finer meshes."""
-    glued: Curve
+    glued: PressCurve
     """SIMULATED with glue on both faces of the film."""
-    soft: Curve
+    soft: PressCurve
     """SIMULATED with the sponge of Table 1, ten times softer than that of the text."""
     unknowns: Mapping[str, int]
     stopped_mm: Mapping[str, float]
     """Presses that ended before full depth: name -> the last depth that converged."""
 
-    def curve(self, model: str, values: Values) -> Curve:
+    def curve(self, model: str, values: Values) -> PressCurve:
         """The press of a model at given inputs: each changes the assumed one by a factor of its own."""
         factors = np.array([response.at(values[name]) for name, response in self.responses[model].items()])
         force, voltage = factors.prod(axis=0)
@@ -165,18 +165,18 @@ def _configs() -> Iterator[tuple[Name, Config]]:
         yield Name(name, SIMULATED, "soft"), rig_config(case, "plane-strain", sponge, radius)
 
 
-def _config(case: Case, model: str, values: Values, **changes: Any) -> Config:
+def _config(case: RigCase, model: str, values: Values, **changes: Any) -> Config:
     section: Section = "plane-strain" if model == SIMULATED else "solid"
     constant = constant_sponge(values["poisson_ratio"])
     sponge = foam(values["foam_exponent"], values["foam_poisson_ratio"]) if model == FOAM else constant
     return rig_config(case, section, sponge, values["dot_radius_mm"], **changes)
 
 
-def _solved(case: Case, records: Mapping[Name, Mapping[str, Any]]) -> Solved:
+def _solved(case: RigCase, records: Mapping[Name, Mapping[str, Any]]) -> Solved:
     own = {name: record for name, record in records.items() if name.case == case.name}
     curves = {name: _curve(name, record) for name, record in own.items()}
 
-    def of(model: str, change: str = "nothing") -> Curve:
+    def of(model: str, change: str = "nothing") -> PressCurve:
         return curves[Name(case.name, model, change)]
 
     return Solved(
@@ -191,7 +191,7 @@ def _solved(case: Case, records: Mapping[Name, Mapping[str, Any]]) -> Solved:
     )
 
 
-def _responses(case: Case, model: str, curves: Mapping[Name, Curve]) -> dict[str, Response]:
+def _responses(case: RigCase, model: str, curves: Mapping[Name, PressCurve]) -> dict[str, RigResponse]:
     found = {}
     for entry, values in VARIED[model].items():
         at = {INPUTS[entry].assumed: curves[Name(case.name, model)]}
@@ -200,19 +200,19 @@ def _responses(case: Case, model: str, curves: Mapping[Name, Curve]) -> dict[str
     return found
 
 
-def _response(depth_mm: float, at: Mapping[float, Curve], reference: float) -> Response:
+def _response(depth_mm: float, at: Mapping[float, PressCurve], reference: float) -> RigResponse:
     """From the presses at the values of one input, to those at the reference value."""
     order = sorted(at)
     reached = np.array([[at[value].force_at(depth_mm), at[value].voltage_at(depth_mm)] for value in order])
-    return Response(np.array(order), reached / reached[order.index(reference)])
+    return RigResponse(np.array(order), reached / reached[order.index(reference)])
 
 
-def _curve(name: Name, record: Mapping[str, Any]) -> Curve:
+def _curve(name: Name, record: Mapping[str, Any]) -> PressCurve:
     """The press of a record; one that stopped early may do, if it got half-way. NotSolvedError."""
     depth = record.get("indentation_mm") or [0.0]
     if record["status"] != "solved" and depth[-1] < 0.5 * CASES[name.case].depth_mm:
         raise NotSolvedError(f"calibration rig, {_text(name)}: {record['status']}, {record['reason']}")
-    return Curve(
+    return PressCurve(
         np.array(depth),
         np.array(record["reaction_force_N"]),
         np.array(record["open_circuit_voltage_V"]),

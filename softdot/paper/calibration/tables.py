@@ -12,7 +12,7 @@ from softdot.paper.calibration.factor import PIECES, Factor, Ranges, chain, char
 from softdot.paper.calibration.figures import printed
 from softdot.paper.calibration.rig import CASES, FILM_MM, INPUTS, SPONGE_MM, SPONGE_MPA, assumed
 from softdot.paper.calibration.solved import FOAM, MODELS, ROUND, SIMULATED, Solved
-from softdot.paper.section import Answer, Cell, Claim, Table
+from softdot.paper.section import Answer, Cell, Claim, PaperTable
 
 Rig = Mapping[str, Solved]
 TIMES_S = (0.1, 0.2, 0.3, 0.4, 0.5)
@@ -41,7 +41,7 @@ def span(low: float, high: float) -> str:
     return f"{low:.3g} to {high:.3g}"
 
 
-def pieces(rig: Rig, spread: Ranges) -> Table:
+def pieces(rig: Rig, spread: Ranges) -> PaperTable:
     """Both cases piece by piece: factor, its range, its share."""
     found = factors(rig, assumed())
     rows: list[list[Cell]] = [["ideal output (V/mm)", *_outputs(found, 0)]]
@@ -56,7 +56,7 @@ def pieces(rig: Rig, spread: Ranges) -> Table:
     rows.append(["p printed", *(cell for name in found for cell in (printed(name), "", "", ""))])
     words = ("factor", "5 to 95 %", "share of ln p", "D left (V/mm)")
     headers = [f"{name}: {word}" for name in found for word in words]
-    return Table(
+    return PaperTable(
         "calibration-pieces",
         "p of both cases as a product",
         ["switched on in turn", *headers],
@@ -78,10 +78,10 @@ def _products(found: Mapping[str, Factor], spread: Ranges) -> list[Cell]:
     return cells
 
 
-def inputs(spread: Ranges) -> Table:
+def inputs(spread: Ranges) -> PaperTable:
     """What is not in the paper, its range, and how much of the spread of p it makes."""
     drivers = {name: spread.drivers(name) for name in spread.factors}
-    return Table(
+    return PaperTable(
         "calibration-inputs",
         "What the paper does not say of its rig",
         ["input", "low", "assumed", "high", "why", *(f"share in the spread of p, case {name}" for name in drivers)],
@@ -101,10 +101,10 @@ def inputs(spread: Ranges) -> Table:
     )
 
 
-def exact(rig: Rig) -> Table:
+def exact(rig: Rig) -> PaperTable:
     """Pairs of press time and input resistance that give exactly what is printed."""
     found = {name: [contours.resistance_for(solved, printed(name), t) for t in TIMES_S] for name, solved in rig.items()}
-    return Table(
+    return PaperTable(
         "calibration-exact",
         "Input resistance that gives exactly the printed p",
         ["press time T (s)", *(f"R for p = {printed(name):g}, case {name} (MΩ)" for name in found)],
@@ -116,7 +116,7 @@ def exact(rig: Rig) -> Table:
     )
 
 
-def mesh_errors(rig: Rig) -> Table:
+def mesh_errors(rig: Rig) -> PaperTable:
     """What finer meshes change, glue, and the softer sponge of Table 1."""
     rows: list[list[Cell]] = []
     for name, solved in rig.items():
@@ -127,7 +127,7 @@ def mesh_errors(rig: Rig) -> Table:
             finer = solved.finer.get(model)
             change = "" if finer is None else f"{100 * (float(finer.voltage_at(depth)) / voltage - 1):+.1f} %"
             rows.append([f"{name}, {model}", digits(voltage), digits(force), solved.unknowns[model], change])
-    return Table(
+    return PaperTable(
         "calibration-presses",
         "The presses with the assumed inputs, at the depths of Table 1",
         ["press", "open-circuit voltage (V)", "force (N)", "unknowns", "voltage on a finer mesh"],

@@ -22,7 +22,7 @@ SOFT_MPA, RUBBER_MPA, HARD_MPA = 0.05, 1.0, 5.0
 
 
 @dataclass(frozen=True)
-class Case:
+class PaperCase:
     """One press: sides, thickness of medium 1 and Young's modulus of medium 2."""
 
     name: str
@@ -34,22 +34,22 @@ class Case:
 CASES = {
     case.name: case
     for case in (
-        Case("F1", "free", 0.8, HARD_MPA),
-        Case("F2", "free", 2.0, HARD_MPA),
-        Case("F3", "free", 4.0, HARD_MPA),
-        Case("F4", "free", 0.8, SOFT_MPA),
-        Case("F5", "free", 2.0, SOFT_MPA),
-        Case("F6", "free", 4.0, SOFT_MPA),
-        Case("C1", "clamped", 0.8, SOFT_MPA),
-        Case("C2", "clamped", 0.8, HARD_MPA),
-        Case("C3", "clamped", 2.0, SOFT_MPA),
-        Case("C4", "clamped", 2.0, HARD_MPA),
-        Case("C5", "clamped", 4.0, SOFT_MPA),
-        Case("C6", "clamped", 4.0, HARD_MPA),
-        Case("F4-E2-1", "free", 0.8, RUBBER_MPA),
-        Case("C1-E2-1", "clamped", 0.8, RUBBER_MPA),
-        Case("final-free", "free", 0.5, RUBBER_MPA),
-        Case("final-clamped", "clamped", 0.5, RUBBER_MPA),
+        PaperCase("F1", "free", 0.8, HARD_MPA),
+        PaperCase("F2", "free", 2.0, HARD_MPA),
+        PaperCase("F3", "free", 4.0, HARD_MPA),
+        PaperCase("F4", "free", 0.8, SOFT_MPA),
+        PaperCase("F5", "free", 2.0, SOFT_MPA),
+        PaperCase("F6", "free", 4.0, SOFT_MPA),
+        PaperCase("C1", "clamped", 0.8, SOFT_MPA),
+        PaperCase("C2", "clamped", 0.8, HARD_MPA),
+        PaperCase("C3", "clamped", 2.0, SOFT_MPA),
+        PaperCase("C4", "clamped", 2.0, HARD_MPA),
+        PaperCase("C5", "clamped", 4.0, SOFT_MPA),
+        PaperCase("C6", "clamped", 4.0, HARD_MPA),
+        PaperCase("F4-E2-1", "free", 0.8, RUBBER_MPA),
+        PaperCase("C1-E2-1", "clamped", 0.8, RUBBER_MPA),
+        PaperCase("final-free", "free", 0.5, RUBBER_MPA),
+        PaperCase("final-clamped", "clamped", 0.5, RUBBER_MPA),
     )
 }
 FREE, CLAMPED = ("F1", "F2", "F3", "F4", "F5", "F6"), ("C1", "C2", "C3", "C4", "C5", "C6")
@@ -96,7 +96,7 @@ VARIED = ("C1", "C4", "final-free", "final-clamped")
 
 
 @dataclass(frozen=True)
-class Press:
+class SolvedPress:
     """What one press gave. Histories are of shape (s,), index 0 unloaded."""
 
     depth_mm: tuple[float, ...]
@@ -139,10 +139,10 @@ class Press:
 class Study:
     """Every press of the segment studies."""
 
-    readings: Mapping[Reading, Mapping[str, Press]]
-    refined: Mapping[Reading, Press]
+    readings: Mapping[Reading, Mapping[str, SolvedPress]]
+    refined: Mapping[Reading, SolvedPress]
     """CHECKED on a finer mesh."""
-    variants: Mapping[str, Mapping[str, Press]]
+    variants: Mapping[str, Mapping[str, SolvedPress]]
     """Name of VARIANTS -> case of VARIED -> press, plane strain."""
 
 
@@ -175,13 +175,13 @@ def _configs() -> dict[tuple[str, str], Config]:
     return configs
 
 
-def _config(case: Case, reading: Reading, **changes: Any) -> Config:
+def _config(case: PaperCase, reading: Reading, **changes: Any) -> Config:
     return segment_config(case.boundary, case.h1_mm, case.e2_MPa, reading, **changes)
 
 
-def press_of(outcome: Mapping[str, Any]) -> Press:
+def press_of(outcome: Mapping[str, Any]) -> SolvedPress:
     """The numbers of the study from an outcome."""
-    return Press(
+    return SolvedPress(
         depth_mm=tuple(outcome["indentation_mm"]),
         force_history_N=tuple(outcome["reaction_force_N"]),
         voltage_history_V=tuple(outcome["open_circuit_voltage_V"]),
@@ -205,12 +205,12 @@ def answers(study: Study) -> dict[str, Answer]:
     return {**_forces(presses), **_voltages(presses), **_inputs(), **_materials()}
 
 
-def _forces(presses: Mapping[str, Press]) -> dict[str, Answer]:
+def _forces(presses: Mapping[str, SolvedPress]) -> dict[str, Answer]:
     remarks = {"final-clamped": FALLS}
     return {f"section4.force.{name}": Answer(presses[name].force_N, remarks.get(name, "")) for name in FORCE_CASES}
 
 
-def _voltages(presses: Mapping[str, Press]) -> dict[str, Answer]:
+def _voltages(presses: Mapping[str, SolvedPress]) -> dict[str, Answer]:
     found: dict[str, Answer] = {}
     for pair in ADDED_PAIRS:
         key = f"section4.sum.{'+'.join(pair)}"

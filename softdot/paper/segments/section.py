@@ -19,7 +19,7 @@ from softdot.paper.segments.cases import (
     FREE,
     LATER_PAIRS,
     PAIRS,
-    Press,
+    SolvedPress,
     Study,
     answers,
     solve_study,
@@ -84,7 +84,7 @@ def yielding(study: Study) -> str:
     )
 
 
-def _stated_forces(study: Study) -> list[tuple[str, Press]]:
+def _stated_forces(study: Study) -> list[tuple[str, SolvedPress]]:
     return [(name, study.readings["plane-strain"][name]) for name in FORCE_CASES]
 
 
@@ -123,7 +123,7 @@ def _clamped_below_free(study: Study) -> str:
     return f"held sides give less voltage than free ones in {below} of them"
 
 
-def _span(study: Study, quantity: Callable[[Press], float]) -> str:
+def _span(study: Study, quantity: Callable[[SolvedPress], float]) -> str:
     """Smallest and largest ratio of cross-section over true segment."""
     slab, solid = study.readings.values()
     ratios = [quantity(slab[name]) / quantity(solid[name]) for name in CASES]
@@ -158,11 +158,11 @@ def numbers(study: Study) -> dict[str, object]:
     }
 
 
-def _plain(presses: Mapping[str, Press]) -> dict[str, object]:
+def _plain(presses: Mapping[str, SolvedPress]) -> dict[str, object]:
     return {name: press_numbers(press) for name, press in presses.items()}
 
 
-def press_numbers(press: Press) -> dict[str, object]:
+def press_numbers(press: SolvedPress) -> dict[str, object]:
     """One press as plain numbers."""
     derived = ("force_N", "voltage_V", "calibrated_mV", "calibrated_V_per_mm", "exponent")
     return {**asdict(press), **{name: getattr(press, name) for name in derived}}

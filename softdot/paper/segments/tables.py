@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from softdot.paper.published import Reading, published
-from softdot.paper.section import CLAMPED, FREE, PAPER, Cell, Table, bars, label, new_figure, save
+from softdot.paper.section import CLAMPED, FREE, PAPER, Cell, PaperTable, bars, label, new_figure, save
 from softdot.paper.segments.cases import (
     ADDED_PAIRS,
     CASES,
@@ -17,7 +17,7 @@ from softdot.paper.segments.cases import (
     LATER_PAIRS,
     PAIRS,
     VARIED,
-    Press,
+    SolvedPress,
     Study,
     title,
     together,
@@ -25,9 +25,9 @@ from softdot.paper.segments.cases import (
 from softdot.paper.segments.trends import READING_NAMES, SHORT_NAMES
 
 
-def presses(study: Study, reading: Reading, name: str, words: str) -> Table:
+def presses(study: Study, reading: Reading, name: str, words: str) -> PaperTable:
     """Force, voltage and film strain of every case."""
-    return Table(
+    return PaperTable(
         name,
         words,
         [
@@ -49,7 +49,7 @@ def presses(study: Study, reading: Reading, name: str, words: str) -> Table:
     )
 
 
-def _row(name: str, press: Press) -> list[Cell]:
+def _row(name: str, press: SolvedPress) -> list[Cell]:
     case = CASES[name]
     numbers = (
         press.force_N,
@@ -63,14 +63,14 @@ def _row(name: str, press: Press) -> list[Cell]:
     return [title(name), case.boundary, case.h1_mm, case.e2_MPa, *map(digits, numbers)]
 
 
-def criterion(study: Study) -> Table:
+def criterion(study: Study) -> PaperTable:
     """The sum of free and clamped voltage against 50 mV, in both readings."""
     limit = published()["section4.criterion"].value
     rows: list[list[Cell]] = []
     for pair in (*PAIRS, *LATER_PAIRS):
         slab, solid = (sum(each[name].calibrated_mV for name in pair) for each in study.readings.values())
         rows.append([together(pair), _printed_sum(pair), digits(slab), slab >= limit, digits(solid), solid >= limit])
-    return Table(
+    return PaperTable(
         "criterion",
         "The 50 mV criterion: free plus clamped voltage over 337",
         [
@@ -95,7 +95,7 @@ def _printed_sum(pair: tuple[str, str]) -> float | None:
     return None
 
 
-def readings(study: Study) -> Table:
+def readings(study: Study) -> PaperTable:
     """Both readings side by side."""
     slab, solid = study.readings["plane-strain"], study.readings["solid"]
     rows: list[list[Cell]] = []
@@ -113,7 +113,7 @@ def readings(study: Study) -> Table:
                 digits(slab[name].calibrated_mV / solid[name].calibrated_mV),
             ]
         )
-    return Table(
+    return PaperTable(
         "both-readings",
         "Both readings side by side",
         [
@@ -130,7 +130,7 @@ def readings(study: Study) -> Table:
     )
 
 
-def errors(study: Study) -> Table:
+def errors(study: Study) -> PaperTable:
     """The same press on a finer mesh."""
     rows: list[list[Cell]] = []
     for reading, words in SHORT_NAMES.items():
@@ -146,7 +146,7 @@ def errors(study: Study) -> Table:
             ],
             [words, "unknowns", coarse.unknowns, fine.unknowns, ""],
         ]
-    return Table(
+    return PaperTable(
         "discretisation",
         "Influence of the mesh: the final design, clamped",
         ["reading", "quantity", "mesh of this study", "a finer mesh", "difference"],
@@ -154,7 +154,7 @@ def errors(study: Study) -> Table:
     )
 
 
-def variants(study: Study) -> Table:
+def variants(study: Study) -> PaperTable:
     """What the paper leaves open, changed one at a time."""
     base = study.readings["plane-strain"]
     groups = {"as used here": {name: base[name] for name in VARIED}, **study.variants}
@@ -162,7 +162,7 @@ def variants(study: Study) -> Table:
         [printed.value if (printed := published().get(f"{place}.{name}")) else None for name in VARIED]
         for place in ("section4.force", "fig10")
     )
-    return Table(
+    return PaperTable(
         "open-questions",
         "What the paper leaves open, changed one at a time (cross-section)",
         ["change", *(f"force {title(n)} (N)" for n in VARIED), *(f"voltage {title(n)} (mV)" for n in VARIED)],
@@ -171,7 +171,7 @@ def variants(study: Study) -> Table:
     )
 
 
-def _variant_row(words: str, group: Mapping[str, Press]) -> list[Cell]:
+def _variant_row(words: str, group: Mapping[str, SolvedPress]) -> list[Cell]:
     presses = [group[name] for name in VARIED]
     return [words, *(digits(p.force_N) for p in presses), *(digits(p.calibrated_mV) for p in presses)]
 
@@ -185,7 +185,7 @@ def _percent(coarse: float, fine: float) -> str:
     return f"{100 * (coarse / fine - 1):+.1f} %"
 
 
-Presses = Mapping[str, Press]
+Presses = Mapping[str, SolvedPress]
 COLOURS = {"free": FREE, "clamped": CLAMPED}
 RATE = "voltage over 337 per depth (V/mm)"
 

@@ -7,9 +7,9 @@ from softdot.paper.analytical.formulas import output_m
 from softdot.paper.analytical.tables import recomputed
 from softdot.paper.published import Reading, published
 from softdot.paper.section import Claim
-from softdot.paper.segments.cases import ADDED_PAIRS, PAIRS, Press, Study, title
+from softdot.paper.segments.cases import ADDED_PAIRS, PAIRS, SolvedPress, Study, title
 
-Presses = Mapping[str, Press]
+Presses = Mapping[str, SolvedPress]
 Verdict = tuple[bool | None, str]
 Test = Callable[[Presses], Verdict]
 SHORT_NAMES: dict[Reading, str] = {"plane-strain": "cross-section", "solid": "true segment"}

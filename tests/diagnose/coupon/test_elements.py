@@ -5,7 +5,7 @@ import pytest
 
 from diagnose.engines.coupon.kinematics import SimpleShear, Uniaxial
 from diagnose.engines.coupon.point import MaterialPoint, Relaxation, earlier_peaks, softened
-from solve.materials.inelastic import Prony, Response, Softening
+from solve.materials.inelastic import Prony, Softening, StressResponse
 from solve.materials.laws import InvariantLaw
 from solve.terms.solid import solid_region
 from tests.solve.box import box
@@ -96,12 +96,12 @@ def test_a_whole_history_is_what_the_law_makes_step_by_step(law):
     time = np.concatenate([[0.0], np.cumsum(rng.uniform(0.0, 1.0, 39))])
     memory, found = law.start(1), []
     for n, step in enumerate(np.diff(time, prepend=0.0)):
-        one = Response(stress[n : n + 1], np.eye(6)[None], energy[n : n + 1])
+        one = StressResponse(stress[n : n + 1], np.eye(6)[None], energy[n : n + 1])
         response, memory = law.update(one, memory, step)
         found.append(response.stress[0])
     if law is SERIES:
         whole = Relaxation.of(law, time).relaxed(stress)
     else:
-        elastic = Response(stress, np.tile(np.eye(6), (40, 1, 1)), energy)
+        elastic = StressResponse(stress, np.tile(np.eye(6), (40, 1, 1)), energy)
         whole = softened(law, elastic, earlier_peaks(energy)).stress
     np.testing.assert_allclose(whole, found, rtol=1e-13, atol=1e-14)

@@ -9,7 +9,7 @@ from diagnose.inference.choice import contradicted, implausible
 
 
 def model(score, evidence, p_left=1.0):
-    system = SimpleNamespace(live=np.ones(100, dtype=bool))
+    system = SimpleNamespace(informative=np.ones(100, dtype=bool))
     fit = SimpleNamespace(candidates=(), values=np.zeros(0), system=system, evidence=evidence)
     forecast = SimpleNamespace(log_scores=np.array([score, score]))
     return SimpleNamespace(fit=fit, forecast=forecast, p_left=p_left, p_strained=1.0)

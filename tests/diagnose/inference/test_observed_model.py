@@ -8,7 +8,7 @@ import pytest
 from diagnose.fit.discrepancy import allowance, columns, drive_noise
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.samples import Samples
-from diagnose.fit.system import linearised, live_rows
+from diagnose.fit.system import informative_rows, linearised
 from diagnose.forward import Setting
 from diagnose.noise.estimate import noise_models
 from tests.diagnose.inference.toy import CANDIDATES, NUISANCE, Sensor, ToyEngine, small
@@ -84,6 +84,6 @@ def test_live_rows_hold_the_sensitivities():
     model = observed()
     zero = np.zeros(len(model.sigma))
     effect = model.vector(zero, [Setting(CANDIDATES[0], (0.5,))]) - model.vector(zero)
-    live = live_rows(model.samples, linearised(model, zero), [effect[:, None]])
+    live = informative_rows(model.samples, linearised(model, zero), [effect[:, None]])
     assert np.abs(effect[~live]).max() < 1.0
     assert live.sum() < 0.9 * len(live)

@@ -7,7 +7,7 @@ import pytest
 from scipy.linalg import block_diag
 
 from diagnose.forward import Setting
-from diagnose.next_press.choose import Judge, next_press, surviving
+from diagnose.next_press.choose import PressJudge, next_press, surviving
 from diagnose.next_press.proposals import Shape, base_setup, recorded_shape, repeats, variations
 from diagnose.signals.phases import segmented
 from diagnose.signals.recording import Recording
@@ -28,7 +28,7 @@ def recording():
 
 
 def separations(recording, proposals, engine=None):
-    judge = Judge(recording, engine or ToyEngine(recording), (LEAKS, RELAXES), {})
+    judge = PressJudge(recording, engine or ToyEngine(recording), (LEAKS, RELAXES), {})
     return [float(judge.separations(each).min()) for each in proposals]
 
 
@@ -46,7 +46,7 @@ def test_the_choice_is_the_best_of_all_presses_that_the_model_can_tell(recording
 
 def test_two_equal_rivals_are_not_parted(recording):
     twin = fitted(LEAK, 0.5)
-    judge = Judge(recording, ToyEngine(recording), (LEAKS, twin), {})
+    judge = PressJudge(recording, ToyEngine(recording), (LEAKS, twin), {})
     assert judge.separations(repeats(recording)[0]) == pytest.approx([0.0], abs=1e-6)
     assert planned(recording, (LEAKS, twin)) is None
 
@@ -59,11 +59,13 @@ def test_an_error_of_the_model_hides_a_difference(recording):
 
 
 def test_the_separation_is_the_one_of_the_statistics(recording):
-    judge = Judge(recording, ToyEngine(recording), (LEAKS, RELAXES), {})
+    judge = PressJudge(recording, ToyEngine(recording), (LEAKS, RELAXES), {})
     press = repeats(recording)[0]
     one, other = judge.answers(press)
     weight = 1.0 / np.sqrt(np.maximum(one.system.variance, other.system.variance))[:, None]
-    columns = weight * np.column_stack([one.slopes, -other.slopes, one.system.excused, other.system.excused])
+    columns = weight * np.column_stack(
+        [one.slopes, -other.slopes, one.system.nuisance_design, other.system.nuisance_design]
+    )
     floating = np.diag(np.concatenate([one.system.sigma, other.system.sigma]))
     dense = expected_separation(
         weight[:, 0] * (one.prediction - other.prediction), columns, block_diag(*judge.spreads, floating)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from diagnose.findings import Place
+from diagnose.findings import LocatedExcess
 from diagnose.forward import Setting
 from diagnose.verdict.pictures import (
     EDGES_HZ,
@@ -30,7 +30,7 @@ def recording():
 
 
 def place(run="slow", phase="hold", press=0, band=(0.0, 2.0), share=0.5, channel="voltage_V"):
-    return Place(run, channel, phase, press, band, 12.0, 1e-4, share, "")
+    return LocatedExcess(run, channel, phase, press, band, 12.0, 1e-4, share, "")
 
 
 def share_of(colour, path):

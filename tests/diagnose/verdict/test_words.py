@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from diagnose.figures import figure
-from diagnose.findings import Fit, Interval, Place
+from diagnose.findings import Fit, Interval, LocatedExcess
 from diagnose.forward import Candidate, Coordinate, Setting
 from diagnose.next_press.choose import next_press
 from diagnose.verdict.content import verdict, where_words
@@ -30,7 +30,7 @@ def told(recording, findings, following=None):
 
 
 def place(run="slow", phase="hold", band=(0.0, 2.0), share=0.9, channel="voltage_V"):
-    return Place(run, channel, phase, 0, band, 12.0, 1e-4, share, "")
+    return LocatedExcess(run, channel, phase, 0, band, 12.0, 1e-4, share, "")
 
 
 def test_from_what_is_off_to_what_to_do(recording):

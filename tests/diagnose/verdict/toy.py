@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnose.findings import Detection, Findings, Fit, Interval, Model, Place
+from diagnose.findings import Detection, Findings, Fit, FittedModel, Interval, LocatedExcess
 from diagnose.forward import Candidate, Coordinate, Setting
 from diagnose.noise.estimate import noise_models
 from diagnose.signals.recording import Recording, Run
@@ -133,7 +133,7 @@ def fitted(candidate, value, probability=0.9, gain=100.0):
     both = {**candidate.parameters([value]), **candidate.derived([value])}
     numbers = {name: v for name, v in both.items() if not isinstance(v, list)}
     intervals = {n: Interval(v, 0.8 * v, 1.2 * v, candidate.units.get(n, "")) for n, v in numbers.items()}
-    return Model((Setting(candidate, (value,)),), (intervals,), gain, 0.5 * gain, probability, 0.4)
+    return FittedModel((Setting(candidate, (value,)),), (intervals,), gain, 0.5 * gain, probability, 0.4)
 
 
 def found(recording, models=(), best=None, groups=(), mismatch=True, unexplained=False, **more):
@@ -142,7 +142,7 @@ def found(recording, models=(), best=None, groups=(), mismatch=True, unexplained
     numbered = list(enumerate(recording.runs))
     settings = best.settings if best is not None else ()
     noise = {key: model.summary() for key, model in noise_models(recording).items()}
-    place = Place(recording.runs[0].label, "voltage_V", "hold", 0, (0.0, 2.0), 12.0, 1e-4, 0.9, "readout")
+    place = LocatedExcess(recording.runs[0].label, "voltage_V", "hold", 0, (0.0, 2.0), 12.0, 1e-4, 0.9, "readout")
     fit = Fit(tuple(f"{run.label}, press 1" for run in recording.runs), 0.84, 0.03, 0.026, 100.0)
     parts = {
         "engine": "toy",

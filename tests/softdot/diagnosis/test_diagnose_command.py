@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnose.findings import Place
+from diagnose.findings import LocatedExcess
 from diagnose.forward import Setting
 from diagnose.inference import diagnose as inference
 from diagnose.verdict import resimulation
@@ -277,7 +277,7 @@ def test_a_short_text_for_a_terminal(tmp_path, diagnosed, finding):
 def test_what_the_full_model_pressed_is_drawn_first():
     """Then what differs most, and not all of many runs."""
     recording = toy_recording(runs=tuple(toy_run(f"run {n}") for n in range(6)))
-    places = [Place(f"run {n}", "voltage_V", "hold", 0, (0.0, 2.0), 9.0, 1e-3, 0.1 * n, "") for n in range(6)]
+    places = [LocatedExcess(f"run {n}", "voltage_V", "hold", 0, (0.0, 2.0), 9.0, 1e-3, 0.1 * n, "") for n in range(6)]
     findings = replace(found(recording, **NAMED), places=tuple(places))
     pressed = Resimulated("run 1", "held-out", "3D FEM", {}, {}, {}, {})
     drawn = page.runs_to_draw(recording, findings, [pressed])

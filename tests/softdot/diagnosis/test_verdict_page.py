@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnose.findings import Fit, Interval, Model
+from diagnose.findings import Fit, FittedModel, Interval
 from diagnose.forward import Candidate, Coordinate, Setting
 from diagnose.next_press.choose import next_press
 from diagnose.verdict.content import verdict
@@ -49,7 +49,7 @@ def model_of(mechanism, component, ends, probability=1.0):
         intervals["order"] = Interval(1.0, 1.0, 1.0, "", high_searched=True, fixed=True)
     values = dict.fromkeys(fields, ends[0])
     candidate = Candidate(mechanism, component, (Coordinate("it", -1.0, 1.0, (0.1,)),), lambda _: values)
-    return Model((Setting(candidate, (0.5,)),), (intervals,), 123.4, 98.7, probability, 0.0)
+    return FittedModel((Setting(candidate, (0.5,)),), (intervals,), 123.4, 98.7, probability, 0.0)
 
 
 @pytest.fixture(scope="module")

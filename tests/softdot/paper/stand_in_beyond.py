@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from softdot.paper.beyond.continuum import PAIRS, STIFFNESS_N_PER_MM3, Beyond, Curve
-from softdot.paper.beyond.designs import PAPERS, Design, Press, Trial, papers_variables, sample
+from softdot.paper.beyond.designs import PAPERS, Design, DesignPress, DesignTrial, papers_variables, sample
 from softdot.paper.beyond.predictors import clamped_deflection, clamped_voltage_V, columns, free_force_N_per_mm
 from softdot.paper.beyond.predictors import free_voltage_V as free_V
 from softdot.paper.beyond.ranking import FOUR, SEVEN, Halves, Ranking, Surrogate, fit
@@ -14,7 +14,7 @@ from softdot.paper.beyond.search import GOALS, MODELS, Search, capacitance_pF, l
 CONSTANTS = {"tension_share": 0.25, "give": 0.4, "rest": 0.35}
 
 
-def trials(designs: Sequence[Design]) -> list[Trial]:
+def trials(designs: Sequence[Design]) -> list[DesignTrial]:
     """What the formulas give, with a film stress of the mean tension."""
     c = columns(designs)
     free, held = free_V(c, CONSTANTS["tension_share"]), clamped_voltage_V(c, CONSTANTS["give"], CONSTANTS["rest"])
@@ -22,18 +22,18 @@ def trials(designs: Sequence[Design]) -> list[Trial]:
     capacitance = capacitance_pF(designs)
     presses = [
         [
-            Press(float(force), float(volts), float(volts * farads), float(farads), float(0.1 * volts / um))
+            DesignPress(float(force), float(volts), float(volts * farads), float(farads), float(0.1 * volts / um))
             for force, volts, farads, um in zip(push, voltages, capacitance, c.film, strict=True)
         ]
         for push, voltages in zip(pushes, (free, held), strict=True)
     ]
-    return [Trial(*parts) for parts in zip(designs, *presses, strict=True)]
+    return [DesignTrial(*parts) for parts in zip(designs, *presses, strict=True)]
 
 
 def curve(free_V: float, clamped_V: float) -> Curve:
     """A voltage that rises evenly with the logarithm of the stiffness."""
     between = np.linspace(free_V, clamped_V, len(STIFFNESS_N_PER_MM3) + 2)
-    presses = [Press(volts / 10.0, volts, 24.0 * volts, 24.0, volts / 2.0) for volts in map(float, between)]
+    presses = [DesignPress(volts / 10.0, volts, 24.0 * volts, 24.0, volts / 2.0) for volts in map(float, between)]
     return Curve(presses[0], presses[1:-1], presses[-1])
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from softdot.paper.calibration.rig import CASES, INPUTS
-from softdot.paper.calibration.solved import FOAM, ROUND, SIMULATED, VARIED, Curve, Response, Solved
+from softdot.paper.calibration.solved import FOAM, ROUND, SIMULATED, VARIED, PressCurve, RigResponse, Solved
 
 FILM_PF = 1000.0
 
@@ -11,7 +11,7 @@ FILM_PF = 1000.0
 def curve(depth_mm, voltage_V, force_N=1.0, exponent=1.0):
     """A press whose voltage is a power of the depth, and whose force is proportional to it."""
     share = np.linspace(0.0, 1.0, 7)
-    return Curve(depth_mm * share, force_N * share, voltage_V * share**exponent, FILM_PF)
+    return PressCurve(depth_mm * share, force_N * share, voltage_V * share**exponent, FILM_PF)
 
 
 def solved(name="I", voltages=(40.0, 20.0, 10.0), response=1.0, exponent=1.0):
@@ -36,7 +36,7 @@ def solved(name="I", voltages=(40.0, 20.0, 10.0), response=1.0, exponent=1.0):
 def _response(name, ratio):
     """From 1 at the assumed value to a ratio at the upper end of the range, for voltage and force."""
     entry = INPUTS[name]
-    return Response(np.array([entry.assumed, entry.high]), np.array([[1.0, 1.0], [ratio, ratio]]))
+    return RigResponse(np.array([entry.assumed, entry.high]), np.array([[1.0, 1.0], [ratio, ratio]]))
 
 
 def rig(**changes):

@@ -3,7 +3,7 @@
 import pytest
 
 from softdot.outcome import outcome
-from softdot.paper.beyond.designs import PAPERS, Design, Trial, design_config, press_of
+from softdot.paper.beyond.designs import PAPERS, Design, DesignTrial, design_config, press_of
 from softdot.paper.beyond.search import beats
 
 FOUND = Design(0.41, 1.1, 1.3, 2.9, 0.41, 0.58, 52.0)
@@ -15,7 +15,7 @@ def pressed(design, mesher):
         press_of(outcome(design_config(design, side, "solid", {**MESH, "mesher": mesher})))
         for side in ("free", "clamped")
     ]
-    return Trial(design, *presses)
+    return DesignTrial(design, *presses)
 
 
 @pytest.mark.slow

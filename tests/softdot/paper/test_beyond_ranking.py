@@ -8,7 +8,7 @@ from softdot.paper.beyond.ranking import CORRECTED, FOUR, WITHOUT_FILM, correlat
 from softdot.paper.beyond.search import MESHERS, beats
 from softdot.paper.beyond.section import section_of
 from softdot.paper.beyond.tables import claims
-from softdot.paper.section import Table
+from softdot.paper.section import PaperTable
 from tests.softdot.paper import stand_in_beyond as stand_in
 
 
@@ -63,7 +63,7 @@ def test_the_section_shows_every_figure_and_no_empty_number(study, tmp_path):
     assert all(figure.path.is_file() for figure in section.figures)
     words = [*section.findings, *(block for block in section.blocks if isinstance(block, str))]
     assert not any("nan" in text.split() or "None" in text for text in words)
-    for table in (block for block in section.blocks if isinstance(block, Table)):
+    for table in (block for block in section.blocks if isinstance(block, PaperTable)):
         assert all(len(row) == len(table.headers) for row in table.rows)
 
 

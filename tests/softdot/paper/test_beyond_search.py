@@ -7,7 +7,7 @@ import pytest
 
 from softdot.console import Logged
 from softdot.paper.beyond import search as searching
-from softdot.paper.beyond.designs import PAPERS, Press, Trial, coordinates, sample
+from softdot.paper.beyond.designs import PAPERS, DesignPress, DesignTrial, coordinates, sample
 from softdot.paper.beyond.ranking import Surrogate
 from softdot.paper.beyond.search import GOALS, beats, capacitance_pF, limits_of, to_beat
 from tests.softdot.paper import stand_in_beyond as stand_in
@@ -15,9 +15,9 @@ from tests.softdot.paper import stand_in_beyond as stand_in
 
 def trial(free_V, clamped_V, force_N=1.0, stress_MPa=10.0, capacitance_pF=25.0):
     free, clamped = (
-        Press(force_N, volts, volts * capacitance_pF, capacitance_pF, stress_MPa) for volts in (free_V, clamped_V)
+        DesignPress(force_N, volts, volts * capacitance_pF, capacitance_pF, stress_MPa) for volts in (free_V, clamped_V)
     )
-    return Trial(PAPERS, free, clamped)
+    return DesignTrial(PAPERS, free, clamped)
 
 
 def test_the_worse_boundary_counts():
