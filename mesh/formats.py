@@ -7,7 +7,6 @@ import re
 from collections.abc import Sequence
 from io import StringIO
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -76,7 +75,7 @@ def _entities(count: int, blocks: Sequence[tuple[str, int, int, Ints]]) -> Ints:
         if not (owner == number).any():
             nodes = np.unique(cells)
             owner[nodes[np.argmax(np.bincount(owner, minlength=len(blocks))[owner[nodes]])]] = number
-    return np.array([(dimension, tag) for _, dimension, tag, _ in blocks])[owner]
+    return np.asarray(np.array([(dimension, tag) for _, dimension, tag, _ in blocks])[owner])
 
 
 def _write_inp(tet_mesh: TetMesh, path: Path) -> None:
@@ -136,15 +135,16 @@ def _write_xdmf(tet_mesh: TetMesh, path: Path) -> None:
 
     meshio cannot read a file that holds quadratic tetrahedra and triangles together, and XDMF has no names.
     """
-    surfaces = _surfaces(tet_mesh)
     region = np.array([REGIONS[name] for name in tet_mesh.region_names])[tet_mesh.region]
-    surface = np.concatenate([np.full(len(facets), SURFACES[name]) for name, facets in surfaces.items()])
     _write_grid(path, tet_mesh, "tetra10", tet_mesh.tets, "region", region)
-    beside = path.with_name(f"{path.stem}_surfaces.xdmf")
-    _write_grid(beside, tet_mesh, "triangle6", np.concatenate(list(surfaces.values())), "surface", surface)
+    surfaces = _surfaces(tet_mesh)
+    if surfaces:
+        surface = np.concatenate([np.full(len(facets), SURFACES[name]) for name, facets in surfaces.items()])
+        beside = path.with_name(f"{path.stem}_surfaces.xdmf")
+        _write_grid(beside, tet_mesh, "triangle6", np.concatenate(list(surfaces.values())), "surface", surface)
 
 
-def _write_grid(path: Path, tet_mesh: TetMesh, kind: str, cells: Ints, field: str, values: Any) -> None:
+def _write_grid(path: Path, tet_mesh: TetMesh, kind: str, cells: Ints, field: str, values: Ints) -> None:
     import meshio
 
     whole = meshio.Mesh(tet_mesh.points_mm, [(kind, cells)], cell_data={field: [values]})

@@ -73,7 +73,7 @@ def _regions(read: FileMesh, names: tuple[str, ...], where: str) -> Ints:
             f"{where}: {wrong_count} of {len(read.tets)} tetrahedra are not in exactly one of the parts "
             f"{', '.join(names)}"
         )
-    return np.argmax(masks, axis=0).astype(np.int64)
+    return np.asarray(np.argmax(masks, axis=0), dtype=np.int64)
 
 
 def _corners_first(read: FileMesh) -> tuple[Floats, Ints, Ints]:
@@ -86,7 +86,7 @@ def _corners_first(read: FileMesh) -> tuple[Floats, Ints, Ints]:
 
 
 def _named_part(derived: Ints | None, corners: Ints, what: str) -> Ints:
-    """Those of the facets found by place, (k, 6), that the file names by their corners (j, 3). InputError for others."""
+    """Those of the facets found by place (k, 6) that the file names by their corners (j, 3). InputError for others."""
     there = np.zeros((0, 6), dtype=np.int64) if derived is None else derived
     named = {tuple(nodes) for nodes in np.sort(corners, axis=1).tolist()}
     chosen = np.array([tuple(nodes) in named for nodes in np.sort(there[:, :3], axis=1).tolist()], dtype=bool)

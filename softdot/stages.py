@@ -74,6 +74,13 @@ def build_mesh(config: Config, dot_shape: DotShape) -> TetMesh:
     return mesh.build(config.segment, touching, config.mesh)
 
 
+def write_mesh(tet_mesh: TetMesh, formats: Sequence[str], folder: Path) -> None:
+    """The mesh for other codes, in each format."""
+    from mesh.formats import write_mesh as write
+
+    write(tet_mesh, formats, folder)
+
+
 def mesh_quality(config: Config, tet_mesh: TetMesh) -> dict[str, Any]:
     """Numbers about the mesh."""
     from mesh.quality import measure
@@ -102,7 +109,7 @@ def press(config: Config, physics: Physics, dot_shape: DotShape, tet_mesh: TetMe
 
 
 def press_key(config: Config, physics: Physics, tet_mesh: TetMesh) -> str:
-    """Hash of all that a press depends on: configuration, the file of its waveform, physics, mesh and version."""
+    """Hash of all that a press depends on: configuration, the files it names, physics, mesh and version."""
     from geometry.cache import data_hash
     from mesh.types import mesh_hash
     from softdot.numbers import installed_version

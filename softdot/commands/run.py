@@ -3,7 +3,7 @@
 import logging
 import time
 from argparse import Namespace
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -54,9 +54,12 @@ class Clock:
             self.seconds[stage] += time.perf_counter() - start
 
 
-def run_config(config: Config, out: Path, progress: Progress | None = None) -> dict[str, Any]:
+def run_config(
+    config: Config, out: Path, progress: Progress | None = None, mesh_formats: Sequence[str] = ()
+) -> dict[str, Any]:
     """Run the whole pipeline into the folder out and return its summary.
 
+    mesh_formats : of "msh", "inp" and "xdmf", in which the mesh is written for other codes.
     InputError before any work for what cannot be built or written. Where a computation does not converge
     nothing is raised: solver.converged is False, solver.failure says why and what converged is written.
     """
@@ -67,7 +70,7 @@ def run_config(config: Config, out: Path, progress: Progress | None = None) -> d
         ensure_rendering()
         with staged_folder(out, RUN) as folder:
             summary: dict[str, Any] = heading(config) | plain(
-                _fill(config, changed, physics, dot_shape, warnings, folder, progress)
+                _fill(config, changed, physics, dot_shape, warnings, folder, progress, mesh_formats)
             )
             write_json(folder / RUN.summary, summary)
     return summary
@@ -81,6 +84,7 @@ def _fill(
     warnings: list[str],
     folder: Path,
     progress: Progress,
+    mesh_formats: Sequence[str],
 ) -> dict[str, Any]:
     """Everything but summary.json; returns the summary. config : as stated, with its mechanisms switched on."""
     clock = Clock()
@@ -100,6 +104,9 @@ def _fill(
             quality = stages.mesh_quality(config, tet_mesh)
     except MeshingError as error:
         return {**summary, "solver": stopped_solver(f"meshing: {error}"), "timing_s": clock.seconds}
+    if mesh_formats:
+        with clock("export"):
+            stages.write_mesh(tet_mesh, mesh_formats, folder / "mesh")
     progress.stage("solve")
     with clock("solve"):
         result = stages.press(config, physics, dot_shape, tet_mesh, _reporting(progress))
@@ -150,7 +157,7 @@ def command(chosen: Namespace) -> int:
 
     config = load_config(chosen.config, chosen.set)
     with only_the_summary_on_stdout(), progress_of(chosen) as progress:
-        summary = run_config(config, Path(chosen.output), progress)
+        summary = run_config(config, Path(chosen.output), progress, chosen.mesh_format)
     show(summary, chosen, short_text)
     if summary["solver"]["converged"]:
         return GOOD
