@@ -12,7 +12,7 @@ from geometry.stack import layers
 from mesh.formats import REGIONS
 from mesh.layered import twins
 from mesh.outline import curved_surface, outline
-from mesh.own_checks import of_one_layer, refuse_inverted_elements, refuse_open_interfaces, refuse_other_outline
+from mesh.own_checks import refuse_inverted_elements, refuse_open_interfaces, refuse_other_outline, refuse_other_slice
 from mesh.own_file import FileMesh, contents, read_file, told
 from mesh.quadratic import named_facets, quadratic
 from mesh.types import LinearMesh, MeshingError, TetMesh
@@ -41,11 +41,10 @@ def _own_mesh(file: str, _content: str, segment: Segment) -> TetMesh:
         refuse_inverted_elements(points, tets, where)
         points, tets = quadratic(LinearMesh(points, tets, region, names), curved_surface(stack))
     refuse_inverted_elements(points, tets, where)
-    refuse_other_outline(points, tets, region, names, stack, where)
-    twin = np.arange(len(points), dtype=np.int64)
     if stack.is_slice:
-        of_one_layer(points, tets, stack, where)
-        twin = twins(points)
+        refuse_other_slice(points, tets, stack, where)
+    refuse_other_outline(points, tets, region, names, stack, where)
+    twin = twins(points) if stack.is_slice else np.arange(len(points), dtype=np.int64)
     try:
         refuse_open_interfaces(points, tets, region, names, stack, where)
         facets = named_facets(points, tets, region, names, stack)

@@ -105,13 +105,13 @@ def refuse_open_interfaces(
         )
 
 
-def of_one_layer(points: Floats, tets: Ints, stack: Outline, where: str) -> None:
-    """InputError unless a plane-strain slice is one layer of elements with the same x and z on both faces."""
+def refuse_other_slice(points: Floats, tets: Ints, stack: Outline, where: str) -> None:
+    """InputError unless a plane-strain slice is one layer of elements with the same x and z on both of its faces."""
     corners = points[np.unique(tets[:, :4])]
     low, high = (np.abs(corners[:, 1] - y) < TOLERANCE_MM for y in (-stack.half_y, stack.half_y))
     one, other = (np.unique(np.round(corners[on][:, [0, 2]] / TOLERANCE_MM), axis=0) for on in (low, high))
     if not (low | high).all() or not np.array_equal(one, other):
         raise InputError(
-            f"{where}: segment.section = 'plane-strain' needs one layer of elements in y, with corners of the same "
-            "x and z on both of its faces"
+            f"{where}: segment.section = 'plane-strain' needs one layer of elements in y, centred at y = 0, with "
+            "corners of the same x and z on both of its faces"
         )
