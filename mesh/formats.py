@@ -20,6 +20,8 @@ SURFACES = {"contact": 11, "base": 12, "film-bottom": 13, "film-top": 14} | {
 }
 """Number of each named surface: of its physical group, and in the field "surface" of XDMF."""
 STEM = "segment"
+INP_NUMBER = ".14g"
+"""At most 20 characters: neither Abaqus nor CalculiX reads longer numbers."""
 
 
 def write_mesh(tet_mesh: TetMesh, formats: Sequence[str], folder: Path) -> list[Path]:
@@ -90,7 +92,7 @@ def _write_inp(tet_mesh: TetMesh, path: Path) -> None:
     nodes["all"] = np.arange(len(tet_mesh.points_mm))
     whole = meshio.Mesh(tet_mesh.points_mm, [("tetra10", tet_mesh.tets)], cell_sets=sets, point_sets=nodes)
     text = StringIO()
-    meshio.abaqus.write(text, whole)
+    meshio.abaqus.write(text, whole, float_fmt=INP_NUMBER)
     mesh_text = re.sub(r"(\*ELEMENT, TYPE=)\w+", r"\1C3D10", text.getvalue())  # meshio takes the hybrid C3D10MH
     head = ["** softdot: lengths in mm; with forces in N, stresses are in MPa.", *_slice_note(tet_mesh)]
     surfaces = [line for name, facets in _surfaces(tet_mesh).items() for line in _surface(tet_mesh, name, facets)]

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from softdot.config import Config, config_from
+from softdot.config import Config, config_from, input_hash
 from softdot.stages import press_key
 from solve.model import Physics
 from tests.softdot.stand_ins import one_tetrahedron
@@ -26,6 +26,17 @@ def test_a_waveform_that_was_edited_is_another_press(tmp_path):
     assert press_key(config, Physics(), one_tetrahedron()) == key
     wave.write_text(FAST)
     assert press_key(config, Physics(), one_tetrahedron()) != key
+
+
+def test_an_own_mesh_that_was_edited_is_another_input(tmp_path):
+    file = tmp_path / "mine.inp"
+    config = configured("none.csv")
+    config = config.model_copy(update={"mesh": config.mesh.model_copy(update={"file": str(file)})})
+    file.write_text("*NODE\n")
+    before = input_hash(config)
+    assert input_hash(config) == before
+    file.write_text("*NODE\n1, 0, 0, 0\n")
+    assert input_hash(config) != before
 
 
 TOP = {"contact": np.array([[0, 1, 2, 3, 4, 5]])}
