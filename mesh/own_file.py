@@ -62,6 +62,8 @@ def read_file(file: str) -> FileMesh:
         found = getattr(meshio, kind).read(path)
     except Exception as error:  # meshio raises what a wrong file happens to lead to
         said = " ".join(str(error).split()) or type(error).__name__
+        if "gmsh:physical" in said:
+            said = "it holds elements of no physical group; save only those of physical groups"
         raise InputError(f"{where}: meshio cannot read it as a mesh of this format ({said})") from None
     return _file_mesh(found, where)
 
