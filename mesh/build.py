@@ -22,10 +22,15 @@ def build(segment: Segment, dot: DotShape, options: MeshOptions) -> TetMesh:
     """Mesh a segment, film included, as curved ten-node tetrahedra with named facets.
 
     dot : where and how round the dot is, which is where the mesh is fine.
-    Raises InputError when the mesher cannot mesh the shape, MeshingError when it fails or takes too long.
+    Raises InputError when the mesher cannot mesh the shape or options.file is no mesh of it, MeshingError when the
+    mesher fails or takes too long.
     """
     from mesh.quadratic import finished
 
+    if options.file is not None:
+        from mesh.own import own_mesh
+
+        return own_mesh(options.file, segment)
     return finished(_linear(segment, dot, options), segment, options)
 
 
@@ -55,7 +60,7 @@ def key(segment: Segment, dot: DotShape, options: MeshOptions) -> str:
         "layers": [segment.medium1.thickness_mm, segment.medium2.thickness_mm],
         "effector": effector and effector.model_dump(exclude={"material"}),
         "dot": [dot.kind, dot.radius_mm, *(np.round(a, 9).tolist() for a in _places(dot))],
-        "options": options.model_dump(exclude={"timeout_s"}),
+        "options": options.model_dump(exclude={"timeout_s", "file"}),
     }
     return data_hash(content)
 

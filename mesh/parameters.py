@@ -16,6 +16,9 @@ class MeshOptions(Table):
         None, description="edge length on the film; none: geometric mean of the two"
     )
     mesher: Literal["pytetwild", "layered"] = Field("pytetwild", description="layered: extruded, deterministic")
+    file: str | None = Field(
+        None, description="your own mesh instead: .msh, .inp or .xdmf in mm, with the names of the parts"
+    )
     film_layers: Annotated[int, Field(ge=1, le=8)] = Field(1, description="quadratic elements through the film")
     coarsen: bool = Field(
         False, description="pytetwild: merge elements smaller than requested; half as many where sizes are large"

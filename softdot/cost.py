@@ -11,6 +11,7 @@ import numpy as np
 from geometry.base import InputError
 from geometry.dot import DotShape
 from geometry.parameters import Segment
+from mesh.build import build
 from mesh.outline import outline
 from mesh.parameters import MeshOptions
 from mesh.sizing import sizing
@@ -25,8 +26,16 @@ PRISMS = 12.0 / np.sqrt(3.0)
 
 
 def refuse_huge_mesh(segment: Segment, dot_shape: DotShape, options: MeshOptions) -> None:
-    """InputError when the wished edge lengths mean more than a million elements, or more than fit into memory."""
+    """InputError when the wished edge lengths mean more than a million elements, or more than fit into memory.
+
+    Of mesh.file the elements are counted; InputError too when it is no mesh of the segment.
+    """
     count = expected_tetrahedra(segment, dot_shape, options)
+    if options.file is not None:
+        if count > TOO_MANY:
+            raise InputError(f"mesh.file = '{options.file}': has {count:.0f} elements, at most {TOO_MANY} are allowed")
+        refuse_too_little_memory(count, segment.section == "plane-strain", "file", options.file)
+        return
     sizes = {name: value for name, value in options if name.endswith("size_mm") and value is not None}
     name = min(sizes, key=lambda one: float(sizes[one]))
     if count > TOO_MANY:
@@ -40,8 +49,10 @@ def refuse_huge_mesh(segment: Segment, dot_shape: DotShape, options: MeshOptions
 def expected_tetrahedra(segment: Segment, dot_shape: DotShape, options: MeshOptions) -> float:
     """Rough number of elements of the soft layers: the mean of 6 sqrt 2 / h^3 over points in the stack.
 
-    A slice is one layer of triangles of area sqrt 3 / 4 h^2, each of three tetrahedra.
+    A slice is one layer of triangles of area sqrt 3 / 4 h^2, each of three tetrahedra. Of mesh.file their number.
     """
+    if options.file is not None:
+        return float(len(build(segment, dot_shape, options).tets))
     sliced = segment.section == "plane-strain"
     shape = outline(segment, slice_mm=options.contact_element_size_mm) if sliced else outline(segment)
     field = sizing(shape, dot_shape, options)

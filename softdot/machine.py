@@ -96,14 +96,18 @@ def needed_GB(elements: float, sliced: bool) -> float:
     return BASE_GB + factor
 
 
-def refuse_too_little_memory(elements: float, sliced: bool, key: str, size_mm: float) -> None:
-    """InputError where a run would need more memory than this process may have. key : the element size to enlarge."""
+def refuse_too_little_memory(elements: float, sliced: bool, key: str, value: float | str) -> None:
+    """InputError where a run would need more memory than this process may have.
+
+    key, value : the element size to enlarge, or "file" and its name.
+    """
+    told, larger = (f"'{value}'", "larger elements") if isinstance(value, str) else (f"{value:g}", "a larger size")
     need = needed_GB(elements, sliced)
     for what, limit, extra in _limits():
         if need + extra > limit:
             raise InputError(
-                f"mesh.{key} = {size_mm:g}: about {elements:.2g} elements need some {need + extra:.2g} GB of memory, "
-                f"and {what} leaves {limit:.2g} GB; use a larger size or allow more memory"
+                f"mesh.{key} = {told}: about {elements:.2g} elements need some {need + extra:.2g} GB of memory, "
+                f"and {what} leaves {limit:.2g} GB; use {larger} or allow more memory"
             )
 
 

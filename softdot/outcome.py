@@ -34,7 +34,7 @@ def remembered(config: Config) -> dict[str, Any] | None:
 
 
 def outcome_key(config: Config) -> str:
-    """Hash of all that an outcome depends on: configuration, the file of its waveform, the program."""
+    """Hash of all that an outcome depends on: configuration, the files it names, the program."""
     return data_hash([input_hash(config), source_hash(__name__)])
 
 

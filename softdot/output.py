@@ -28,7 +28,11 @@ class Product:
         return self.entries | {LOG_FILE}
 
 
-RUN = Product("softdot-run/1", "summary.json", frozenset({"summary.json", "report.html", "cad", "results", "pictures"}))
+RUN = Product(
+    "softdot-run/1",
+    "summary.json",
+    frozenset({"summary.json", "report.html", "cad", "mesh", "results", "pictures"}),
+)
 
 
 @contextmanager

@@ -60,7 +60,8 @@ def uncertainty(config: Config, force_N: float, voltage_V: float) -> dict[str, A
                 mesh_error, mesh_source = own, "a third of the change from elements twice as large"
     parts.sort(key=lambda part: -part["voltage_percent"])
     parts += [_named("mesh", mesh_source, mesh_error)]
-    if config.mesh.mesher == "pytetwild" and config.segment.section == "solid":
+    made = config.mesh.file is None and config.mesh.mesher == "pytetwild"
+    if made and config.segment.section == "solid":
         scatter = _known_force(SCATTER, given)
         parts += [_named("repeatability of the mesher", "repeated meshes of the same segments", scatter)]
     return {

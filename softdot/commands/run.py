@@ -58,9 +58,12 @@ def run_config(config: Config, out: Path, progress: Progress | None = None) -> d
     return run_case(Case(config), out, progress)
 
 
-def run_case(case: Case, out: Path, progress: Progress | None = None) -> dict[str, Any]:
+def run_case(
+    case: Case, out: Path, progress: Progress | None = None, mesh_formats: Sequence[str] = ()
+) -> dict[str, Any]:
     """Run the whole pipeline of a case into the folder out and return its summary.
 
+    mesh_formats : of "msh", "inp" and "xdmf", in which the mesh is written for other codes.
     InputError before any work for what cannot be built or written. Where a computation does not converge
     nothing is raised: solver.converged is False, solver.failure says why and what converged is written.
     """
@@ -69,12 +72,12 @@ def run_case(case: Case, out: Path, progress: Progress | None = None) -> dict[st
         _ = case.checked
         ensure_rendering()
         with staged_folder(out, RUN) as folder:
-            summary: dict[str, Any] = heading(case.config) | plain(_fill(case, folder, progress))
+            summary: dict[str, Any] = heading(case.config) | plain(_fill(case, folder, progress, mesh_formats))
             write_json(folder / RUN.summary, summary)
     return summary
 
 
-def _fill(case: Case, folder: Path, progress: Progress) -> dict[str, Any]:
+def _fill(case: Case, folder: Path, progress: Progress, mesh_formats: Sequence[str]) -> dict[str, Any]:
     """Everything but summary.json; returns the summary."""
     clock, config, model = StageClock(), case.config, case.model
     summary = {**heading(config), "warnings": [*case.checked[1], *design_warnings(model)]}
@@ -92,6 +95,11 @@ def _fill(case: Case, folder: Path, progress: Progress) -> dict[str, Any]:
             quality = case.mesh_quality
     except MeshingError as error:
         return {**summary, "solver": stopped_solver(f"meshing: {error}"), "timing_s": clock.seconds}
+    if mesh_formats:
+        from mesh.formats import write_mesh
+
+        with clock("export"):
+            write_mesh(case.mesh, mesh_formats, folder / "mesh")
     progress.stage("solve")
     with clock("solve"):
         result = case.press(_reporting(progress)).result
@@ -149,7 +157,7 @@ def command(chosen: Namespace) -> int:
 
     config = load_config(chosen.config, chosen.set)
     with only_the_summary_on_stdout(), progress_of(chosen) as progress:
-        summary = run_config(config, Path(chosen.output), progress)
+        summary = run_case(Case(config), Path(chosen.output), progress, chosen.mesh_format)
     show(summary, chosen, short_text)
     if summary["solver"]["converged"]:
         return GOOD

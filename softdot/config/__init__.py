@@ -147,10 +147,16 @@ def config_hash(config: Config) -> str:
 
 
 def input_hash(config: Config) -> str:
-    """SHA-256 of configuration and file of its waveform, where it names one: all that a user states of a press."""
+    """SHA-256 of configuration and of the files of its waveform and mesh, where it names them: all that a user states
+    of a press.
+    """
     waveform = config.press.waveform
     file = Path(waveform.file) if waveform is not None and waveform.file is not None else None
     content = file.read_bytes() if file is not None and file.is_file() else b""
+    if config.mesh.file is not None:
+        from mesh.own_file import contents
+
+        content += contents(config.mesh.file)
     return hashlib.sha256(config_hash(config).encode() + content).hexdigest()
 
 

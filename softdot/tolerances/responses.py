@@ -35,7 +35,7 @@ class Response(NamedTuple):
 
 
 def coarser(config: Config, factor: float) -> Config:
-    """The same press in fewer steps on elements that are larger by the factor."""
+    """The same press in fewer steps on elements that are larger by the factor; never on the mesh of a file."""
     options = config.mesh
     sizes = {
         name: factor * size
@@ -43,7 +43,7 @@ def coarser(config: Config, factor: float) -> Config:
         if (size := getattr(options, name)) is not None
     }
     press = config.press.model_copy(update={"load_steps": min(config.press.load_steps, LOAD_STEPS)})
-    return config.model_copy(update={"mesh": options.model_copy(update=sizes), "press": press})
+    return config.model_copy(update={"mesh": options.model_copy(update={**sizes, "file": None}), "press": press})
 
 
 def mesh_of(config: Config) -> TetMesh:

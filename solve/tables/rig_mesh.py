@@ -64,7 +64,7 @@ def rig_mesh(
     may need more nodes whatever the sizes: there the search ends where coarser elements save no more. InputError,
     MeshingError.
     """
-    options = options.model_copy(update={"film_layers": 1})
+    options = options.model_copy(update={"film_layers": 1, "file": None})
     if model.segment.effector is not None and model.segment.effector.shape == "dome":
         return _under_a_dome(model, options.model_copy(update={"coarsen": coarsen}), largest)
     options = options.model_copy(update={"mesher": "layered"})

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from softdot.case import Case, press_key
-from softdot.config import Config, config_from
+from softdot.config import Config, config_from, input_hash
 from tests.softdot.stand_ins import one_tetrahedron
 
 SLOW, FAST = "time_s,fraction\n0,0\n2,1\n", "time_s,fraction\n0,0\n1,1\n"
@@ -25,6 +25,17 @@ def test_a_waveform_that_was_edited_is_another_press(tmp_path):
     assert press_key(Case(config), one_tetrahedron()) == key
     wave.write_text(FAST)
     assert press_key(Case(config), one_tetrahedron()) != key
+
+
+def test_an_own_mesh_that_was_edited_is_another_input(tmp_path):
+    file = tmp_path / "mine.inp"
+    config = configured("none.csv")
+    config = config.model_copy(update={"mesh": config.mesh.model_copy(update={"file": str(file)})})
+    file.write_text("*NODE\n")
+    before = input_hash(config)
+    assert input_hash(config) == before
+    file.write_text("*NODE\n1, 0, 0, 0\n")
+    assert input_hash(config) != before
 
 
 TOP = {"contact": np.array([[0, 1, 2, 3, 4, 5]])}

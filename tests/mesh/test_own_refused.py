@@ -1,0 +1,130 @@
+"""A mesh file that is not one of the configured segment is refused, each time in one sentence."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+from mesh_samples import built, segment, segment_of
+from own_files import linear, written
+
+from geometry.base import InputError
+from mesh.formats import write_mesh
+from mesh.outline import curved_surface, outline
+from mesh.own import own_mesh
+from mesh.types import TetMesh
+
+BLOCK, SLICE = "block solid layered", "block plane-strain layered"
+Change = Callable[[TetMesh, Path], str]
+
+
+def moved(shift: tuple[float, float, float], factor: float = 1.0) -> Change:
+    return lambda of, path: written(factor * of.points_mm + shift, of.tets, of.region, of.region_names, path)
+
+
+def inverted(of: TetMesh, path: Path) -> str:
+    tets = of.tets[:, :4].copy()
+    tets[:3] = tets[:3, [0, 1, 3, 2]]
+    return written(of.points_mm, tets, of.region, of.region_names, path)
+
+
+def doubled(of: TetMesh, path: Path) -> str:
+    """Medium 1 and effector with nodes of their own."""
+    above = of.region > 1
+    return written(
+        np.vstack([of.points_mm, of.points_mm]),
+        np.where(above[:, None], of.tets + len(of.points_mm), of.tets),
+        of.region,
+        of.region_names,
+        path,
+    )
+
+
+def with_a_hole(of: TetMesh, path: Path) -> str:
+    kept = np.arange(len(of.tets)) != of.region_tets("medium2")[0]
+    return written(of.points_mm, of.tets[kept], of.region[kept], of.region_names, path)
+
+
+def half_named(of: TetMesh, path: Path) -> str:
+    region = of.region.copy()
+    region[:7] = 99
+    return written(of.points_mm, of.tets, region, of.region_names, path)
+
+
+def twice(of: TetMesh, path: Path) -> str:
+    return written(of.points_mm, np.vstack([of.tets, of.tets]), np.tile(of.region, 2), of.region_names, path)
+
+
+def of_hexahedra(of: TetMesh, path: Path) -> str:
+    meshio.abaqus.write(path, meshio.Mesh(of.points_mm, [("hexahedron", of.tets[:, :8])]))
+    return str(path)
+
+
+BAD: list[tuple[Change, str]] = [
+    (lambda of, path: linear(of, path, ("medium2", "foil", "medium1", "effector")), "has no film; its parts must be"),
+    (inverted, "3 of 7200 elements are inverted or flat; every element must have a positive volume"),
+    (moved((0.0, 0.0, 0.5)), "medium2 reaches from 0.5 to 2 mm in z, it must as in the configuration reach from 0 to"),
+    (moved((0.0, 0.0, 0.0), 1e-3), "medium2 reaches from -0.00125 to 0.00125 mm in x, it must as in the configuration"),
+    (doubled, "belong to one element only; neighbouring parts must share the nodes of their interface"),
+    (with_a_hole, "medium2 has a volume of"),
+    (half_named, "7 of 7200 tetrahedra are not in exactly one of the parts medium2, film, medium1, effector"),
+    (twice, "medium2 has a volume of 15 mm³, it must as in the configuration have 7.5 mm³"),
+    (of_hexahedra, "holds hexahedron; all must be tetrahedra with 4 nodes, or all with 10"),
+]
+
+
+@pytest.mark.parametrize(("change", "said"), BAD)
+def test_a_mesh_that_is_not_of_the_segment_is_refused(change: Change, said: str, tmp_path: Path) -> None:
+    file = change(built(BLOCK), tmp_path / "mine.inp")
+    with pytest.raises(InputError) as caught:
+        own_mesh(file, segment_of(BLOCK))
+    assert str(caught.value).startswith(f"mesh.file = '{file}': ")
+    assert said in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_part_that_the_segment_does_not_have_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="has effector, which the segment has not; its parts must be medium2, film, "):
+        own_mesh(linear(built(BLOCK), tmp_path / "mine.inp"), segment("none"))
+
+
+def test_a_bulging_skin_and_a_thick_slice_are_refused(tmp_path: Path) -> None:
+    of, stack = built("cylinder solid layered"), outline(segment("cylinder"))
+    surface = curved_surface(stack)
+    assert surface is not None
+    points = of.points_mm.copy()
+    on_skin = np.flatnonzero(surface.holds(points) & (np.abs(points[:, 0]) > 0.3) & (np.abs(points[:, 1]) > 0.3))
+    points[on_skin, :2] *= 1.01
+    file = written(points, of.tets[:, :4], of.region, of.region_names, tmp_path / "bulge.inp")
+    with pytest.raises(InputError, match="outside the round skin of the configuration"):
+        own_mesh(file, segment("cylinder"))
+    with pytest.raises(InputError, match="needs one layer of elements in y"):
+        own_mesh(linear(built(BLOCK), tmp_path / "solid.inp"), segment("block", "plane-strain"))
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "said"),
+    [
+        ("none.msh", None, "there is no such file"),
+        ("mine.vtk", "# vtk", r"must end with \.msh \(Gmsh\), \.inp \(Abaqus, CalculiX\) or \.xdmf"),
+        ("mine.msh", "$MeshFormat\n9.9 0 8\n$EndMeshFormat\n", "meshio cannot read it as a mesh of this format"),
+        ("mine.msh", "nonsense", "meshio cannot read it as a mesh of this format"),
+        ("mine.inp", "", "meshio cannot read it|holds no solid elements"),
+        ("mine.inp", "*NODE\n1, 0, 0\n*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n", "meshio cannot read it"),
+        ("mine.xdmf", "<Xdmf Version='3.0'><Domain>", "meshio cannot read it as a mesh of this format"),
+        ("mine.xdmf", "<html/>", "meshio cannot read it as a mesh of this format"),
+    ],
+)
+def test_what_is_no_mesh_is_refused(name: str, text: str | None, said: str, tmp_path: Path) -> None:
+    if text is not None:
+        (tmp_path / name).write_text(text)
+    with pytest.raises(InputError, match=rf"^mesh\.file = '.*{name}': .*({said})"):
+        own_mesh(str(tmp_path / name), segment())
+
+
+def test_a_gmsh_file_with_elements_of_no_group_says_how_to_save_it(tmp_path: Path) -> None:
+    (path,) = write_mesh(built(SLICE), ["msh"], tmp_path)
+    path.write_text(path.read_text().replace("\n11 0 0 0 0 0 0 1 11 0\n", "\n11 0 0 0 0 0 0 0 0\n"))
+    with pytest.raises(InputError, match="elements of no physical group; save only those of physical groups"):
+        own_mesh(str(path), segment_of(SLICE))
