@@ -28,7 +28,7 @@ def build(segment: Segment, dot: DotShape, options: MeshOptions) -> TetMesh:
     from mesh.quadratic import finished
 
     if options.file is not None:
-        from mesh.own import own_mesh
+        from mesh.files.own import own_mesh
 
         return own_mesh(options.file, segment)
     return finished(_linear(segment, dot, options), segment, options)

@@ -96,7 +96,7 @@ def _fill(case: Case, folder: Path, progress: Progress, mesh_formats: Sequence[s
     except MeshingError as error:
         return {**summary, "solver": stopped_solver(f"meshing: {error}"), "timing_s": clock.seconds}
     if mesh_formats:
-        from mesh.formats import write_mesh
+        from mesh.files.formats import write_mesh
 
         with clock("export"):
             write_mesh(case.mesh, mesh_formats, folder / "mesh")

@@ -9,8 +9,8 @@ import pytest
 from mesh_samples import built, segment_of
 from scipy.spatial import cKDTree
 
-from mesh.formats import REGIONS, SURFACES, owners, write_mesh
-from mesh.own import own_mesh
+from mesh.files.formats import REGIONS, SURFACES, owners, write_mesh
+from mesh.files.own import own_mesh
 from mesh.types import TET_FACES, TetMesh
 
 ALL = ("msh", "inp", "xdmf")

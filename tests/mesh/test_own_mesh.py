@@ -9,9 +9,8 @@ from own_files import gmsh_22, linear, written
 
 import mesh
 from geometry.base import InputError
-from mesh.formats import REGIONS, write_mesh
-from mesh.own import own_mesh
-from mesh.own_file import contents
+from mesh.files.formats import REGIONS, write_mesh
+from mesh.files.own import contents, own_mesh
 from mesh.quality import measure
 
 BLOCK, SLICE = "block solid layered", "block plane-strain layered"

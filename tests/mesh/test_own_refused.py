@@ -10,9 +10,9 @@ from mesh_samples import built, segment, segment_of
 from own_files import linear, written
 
 from geometry.base import InputError
-from mesh.formats import write_mesh
+from mesh.files.formats import write_mesh
+from mesh.files.own import own_mesh
 from mesh.outline import curved_surface, outline
-from mesh.own import own_mesh
 from mesh.types import TetMesh
 
 BLOCK, SLICE = "block solid layered", "block plane-strain layered"

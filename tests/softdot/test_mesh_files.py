@@ -39,7 +39,7 @@ def test_an_own_mesh_that_is_missing_is_refused_before_any_work(tmp_path, capfd)
 
 def test_check_counts_the_elements_of_an_own_mesh_and_tells_its_mistakes(tmp_path, write_config, capsys):
     config = write_config('[mesh]\nmesher = "layered"\nelement_size_mm = 1.0\ncontact_element_size_mm = 1.0\n')
-    from mesh.formats import write_mesh
+    from mesh.files.formats import write_mesh
     from softdot.case import Case
 
     tet_mesh = Case.load(config).mesh

@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 from skfem import Basis, ElementTetP2, FacetBasis, Functional, Mesh
 
 from geometry.parameters import Effector, Film
-from mesh.formats import write_mesh
+from mesh.files.formats import write_mesh
 from mesh.parameters import MeshOptions
 from mesh.quality import volumes
 from softdot.case import Case
