@@ -13,8 +13,7 @@ from benchmarks.cube import BULK, SHEAR, Cube, cube, state
 from benchmarks.displacement_law import DisplacementLaw
 from benchmarks.timing import REPEATS, Phases
 from solve.fem.kernels import scatter
-from solve.fem.sparsity import Tangent, build_pattern
-from solve.fem.term import Trial, along_x
+from solve.fem.sparsity import Tangent, Trial, along_x, build_pattern
 from solve.materials.laws import InvariantLaw
 from solve.solution.linear import Pardiso
 from solve.terms.solid import solid_region
@@ -28,7 +27,7 @@ def law_of(name: str) -> InvariantLaw:
 
 
 def numbering(case: Cube, name: str) -> np.ndarray:
-    """Our number of each of the case's unknowns, as solve.fem.term numbers those of a segment."""
+    """Our number of each of the case's unknowns, as solve.fem.sparsity numbers those of a segment."""
     nodes = np.nonzero(case.displacement_dofs >= 0)[0]
     if name == "mixed":
         nodes = np.append(nodes, case.corners)

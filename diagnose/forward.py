@@ -44,7 +44,7 @@ class Candidate:
     derived : the same -> quantities that are comparable between laws (relaxed_fraction, force_ratio, loss_ratio).
     compared : which of these, "force_ratio" or "loss_ratio", a press of the 3D model tells; "" for none.
     together : how its coordinates go together in presses of the 3D model: "sum", "jointly", "fading" or "glue" (see
-    diagnose.engines.segment.interpolation).
+    diagnose.engines.segment.path).
     units : name of a parameter or derived quantity -> unit in the verdict.
     """
 

@@ -15,8 +15,11 @@ DOCS = Path(__file__).resolve().parent
 sys.path.insert(0, str(DOCS.parent))  # the rooms of this repository, whatever is installed
 
 from geometry.braille import QUANTITIES, Quantity, standard, standard_names  # noqa: E402
-from geometry.fabrication.parameters import Fabrication  # noqa: E402
-from geometry.fabrication.recipes import castable_materials, recipe_for  # noqa: E402
+from geometry.fabrication.parameters import (  # noqa: E402
+    Fabrication,
+    castable_materials,
+    recipe_for,
+)
 from softdot.commands.new import (  # noqa: E402
     allowed,
     config_schema,

@@ -24,7 +24,7 @@ from geometry.arrays import Floats
 from softdot.case import Case
 from softdot.config import Config, load_config
 from solve.materials.parameters import Hyperfoam, Material, NeoHookean, PiezoelectricFilm
-from solve.parameters import Readout
+from solve.model import Readout
 from solve.readout.recording import channel_voltages, record
 
 BLUE, ORANGE = "#2a6db0", "#d1600a"

@@ -5,9 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from export.cutaway import draw_parts, draw_von_mises, is_slice, open_scene
-from export.film_map import draw_film
-from export.nodal_fields import MM_PER_M
+from export.cutaway import draw_film, draw_parts, draw_von_mises, is_slice, open_scene
+from export.skin import MM_PER_M
 from export.view import DPI, HEIGHT_IN, INK, WIDTH_IN, save
 from geometry.arrays import Floats
 from geometry.dot import DotShape

@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 
 from export.cutaway import is_slice
 from export.dot_surface import placed_dot
-from export.nodal_fields import MM_PER_M
-from export.skin import NodalSteps, Skin, film_top, nearby_plane, nodal_steps, outer_skin, section
+from export.skin import MM_PER_M, NodalSteps, Skin, film_top, nearby_plane, nodal_steps, outer_skin, section
 from export.view import COLOUR_MAP
 from geometry.dot import DotShape
 from geometry.solids import PART_COLOURS

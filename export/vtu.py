@@ -11,7 +11,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from export.dot_surface import placed_dot
-from export.nodal_fields import MM_PER_M, MPA_PER_PA, PC_PER_MM2_PER_C_PER_M2, film_at_nodes, split_nodes, spread
+from export.skin import MM_PER_M, MPA_PER_PA, PC_PER_MM2_PER_C_PER_M2, film_at_nodes, split_nodes, spread
 from geometry.arrays import Floats, Ints
 from geometry.dot import DotShape
 from geometry.files import whole_folder

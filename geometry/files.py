@@ -1,12 +1,20 @@
-"""Files: written whole or not at all, and read whole where a user names one (regular, of a bounded size, UTF-8)."""
+"""Files written whole or not at all, text files read whole, and child processes that end with their parent.
+
+A process holds a scratch folder by an advisory lock on it (flock), which the kernel gives up when the process ends,
+however it ends. Where a system has no such locks nothing is held and nothing is swept.
+"""
 
 import os
 import shutil
 import stat
+import sys
 import tempfile
+import threading
+import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from tempfile import gettempdir
 
 from geometry.base import InputError
 
@@ -88,3 +96,107 @@ def write_whole_text(path: Path, text: str) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     with whole_file(path, shared=True) as beside:
         beside.write_text(text, "utf-8")
+
+
+try:
+    import fcntl
+except ImportError:  # not on Windows
+    fcntl = None  # type: ignore[assignment]
+
+PREFIX = "softdot-scratch-"
+
+
+def hold(folder: Path) -> int | None:
+    """Lock an existing folder until release; a file descriptor, or None while another process holds it.
+
+    -1 where the file system has no locks. FileNotFoundError when the folder has been swept away.
+    """
+    if fcntl is None:
+        return -1
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(descriptor)
+        return None
+    except OSError:
+        os.close(descriptor)
+        return -1
+    try:
+        there = folder.stat()
+        if (there.st_ino, there.st_dev) == (os.fstat(descriptor).st_ino, os.fstat(descriptor).st_dev):
+            return descriptor
+    except FileNotFoundError:
+        pass
+    os.close(descriptor)  # it was swept between opening and locking
+    raise FileNotFoundError(folder)
+
+
+def release(held: int | None) -> None:
+    """Give up what hold has returned."""
+    if held is not None and held >= 0:
+        os.close(held)
+
+
+def sweep(folder: Path) -> None:
+    """Remove a folder that no process holds."""
+    with suppress(OSError):
+        held = hold(folder)
+        if held is not None and held >= 0:
+            shutil.rmtree(folder, ignore_errors=True)
+        release(held)
+
+
+@contextmanager
+def scratch_folder() -> Iterator[Path]:
+    """A temporary folder of this process alone; those of processes that were killed are removed first."""
+    for left in Path(gettempdir()).glob(f"{PREFIX}*"):
+        sweep(left)
+    folder, held = _made()
+    try:
+        yield folder
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+        release(held)
+
+
+def _made() -> tuple[Path, int | None]:
+    """A new folder and the lock on it; made again where another process swept it before the lock."""
+    while True:
+        folder = Path(gettempdir()) / f"{PREFIX}{os.urandom(6).hex()}"
+        folder.mkdir(mode=0o700)
+        with suppress(FileNotFoundError):
+            return folder, hold(folder)
+
+
+PR_SET_PDEATHSIG, SIGKILL = 1, 9  # linux/prctl.h
+EVERY_S = 1.0
+
+
+def end_with_parent(parent: int) -> None:
+    """Called by a child: have it killed when its parent ends, however that ends.
+
+    parent : process number, told by the parent itself: it may have ended while the child was starting, and who asks
+    then is told of another process.
+
+    On Linux by the kernel, since a mesher that holds Python's lock could not see to it; elsewhere by a thread.
+    """
+    if sys.platform == "linux":
+        import ctypes
+
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, SIGKILL)
+        if os.getppid() != parent:  # it ended before
+            os._exit(1)
+    else:
+        threading.Thread(target=_watch, args=(parent,), daemon=True).start()
+
+
+def _watch(parent: int) -> None:
+    """End this process once it belongs to another one."""
+    while os.getppid() == parent:
+        time.sleep(EVERY_S)
+    os._exit(1)
+
+
+ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
+"""One thread each for OpenMP, MKL, numba and OpenBLAS, which read it once, when they are loaded."""

@@ -1,21 +1,197 @@
 """The deterministic mesher: triangulate the footprint, extrude it layer by layer, split the prisms.
 
 A plane-strain slice: the x-z section extruded once in y and split into tetrahedra.
+
+The symmetric start triangulation of the footprint, with the effector's foot resolved.
+
+Newest-vertex bisection of a triangulation, with one boundary circle that new vertices are put on.
 """
 
+from collections.abc import Callable
+from dataclasses import dataclass
+
 import numpy as np
+from numpy.typing import NDArray
 
 from geometry.arrays import Floats, Ints
 from geometry.base import InputError
 from geometry.dot import DotShape
 from geometry.parameters import Segment
-from mesh.film import MeshedSection, section_with_film, structured
-from mesh.footprint import Triangulation, refine, start_triangulation
+from mesh.build import MeshOptions
+from mesh.interfaces import MeshedSection, section_with_film, structured
 from mesh.outline import StackOutline, outline
-from mesh.parameters import MeshOptions
 from mesh.sizing import Sizing, graded, sizing
 from mesh.tetwild import bare_stack
 from mesh.types import TET_FACES, LinearMesh, boundary_faces, oriented, split_prisms, without_unused
+
+Bools = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Triangulation:
+    """points : (n, 2); triangles : (m, 3), newest vertex first (its opposite edge is next); part : (m,)."""
+
+    points: Floats
+    triangles: Ints
+    part: Ints
+
+
+def refine(start: Triangulation, size: Callable[[Floats], Floats], circle_radius: float | None) -> Triangulation:
+    """Bisect until the longest edge of each triangle is at most the size at its centroid.
+
+    circle_radius : the edges between different parts are arcs of this circle about the origin.
+    """
+    current = start
+    while True:
+        corner = current.points[current.triangles]
+        longest = np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2).max(axis=1)
+        marked = longest > size(corner.mean(axis=1)) * (1 + 1e-9)
+        if not marked.any():
+            return current
+        current = _bisect(current, marked, circle_radius)
+
+
+def _bisect(old: Triangulation, marked: Bools, circle_radius: float | None) -> Triangulation:
+    """Cut every marked triangle at least once and close the triangulation (L. Chen, iFEM, 2009)."""
+    edges, of_triangle = _edges(old.triangles)
+    cut = np.zeros(len(edges), dtype=bool)
+    cut[of_triangle[marked, 0]] = True
+    while True:
+        open_ones = cut[of_triangle].any(axis=1) & ~cut[of_triangle[:, 0]]
+        if not open_ones.any():
+            break
+        cut[of_triangle[open_ones, 0]] = True
+    points, middle = _cut_edges(old, edges, of_triangle, cut, circle_radius)
+    triangles, part = old.triangles, old.part
+    for _ in range(2):  # the children's cut edges are edges of the old triangle, so twice is enough
+        triangles, part, of_triangle = _halve(triangles, part, of_triangle, middle)
+    return Triangulation(points, triangles, part)
+
+
+def _edges(triangles: Ints) -> tuple[Ints, Ints]:
+    """Unique edges (e, 2) and, per triangle, the edges opposite to its three vertices (m, 3)."""
+    pairs = np.sort(triangles[:, [[1, 2], [2, 0], [0, 1]]], axis=2)
+    edges, number = np.unique(pairs.reshape(-1, 2), axis=0, return_inverse=True)
+    return edges, number.reshape(-1, 3)
+
+
+def _cut_edges(
+    old: Triangulation, edges: Ints, of_triangle: Ints, cut: Bools, circle_radius: float | None
+) -> tuple[Floats, Ints]:
+    """All points with the new mid-points, and the number of each edge's mid-point (-1: not cut)."""
+    middle = np.full(len(edges), -1, dtype=np.int64)
+    middle[cut] = len(old.points) + np.arange(cut.sum())
+    new = old.points[edges[cut]].mean(axis=1)
+    if circle_radius is not None:
+        low, high = np.full(len(edges), np.iinfo(np.int64).max), np.full(len(edges), -1, dtype=np.int64)
+        for side in range(3):
+            np.minimum.at(low, of_triangle[:, side], old.part)
+            np.maximum.at(high, of_triangle[:, side], old.part)
+        on_circle = (low != high)[cut]
+        new[on_circle] *= circle_radius / np.linalg.norm(new[on_circle], axis=1, keepdims=True)
+    return np.vstack([old.points, new]), middle
+
+
+def _halve(triangles: Ints, part: Ints, of_triangle: Ints, middle: Ints) -> tuple[Ints, Ints, Ints]:
+    """Cut triangles whose first edge is cut. Halves know the old edges they keep; new ones are not cut."""
+    first = of_triangle[:, 0]
+    new = np.where(first >= 0, middle[first], -1)
+    keep, cut = new < 0, new >= 0
+    a, b, c = triangles[cut].T
+    _, edge_b, edge_c = of_triangle[cut].T
+    none = np.full(len(a), -1, dtype=np.int64)
+    left, right = np.stack([new[cut], a, b], axis=1), np.stack([new[cut], c, a], axis=1)
+    left_edges, right_edges = np.stack([edge_c, none, none], axis=1), np.stack([edge_b, none, none], axis=1)
+    return (
+        np.vstack([triangles[keep], left, right]),
+        np.concatenate([part[keep], part[cut], part[cut]]),
+        np.vstack([of_triangle[keep], left_edges, right_edges]),
+    )
+
+
+def start_triangulation(outline: StackOutline, coarse_mm: float) -> Triangulation:
+    """Triangles of about coarse_mm; part 1 inside the effector's foot, part 0 outside.
+
+    Raises InputError when a cylinder leaves no room for triangles beside it.
+    """
+    round_foot = outline.shape == "cylinder"
+    patch = _patch(outline) if round_foot else (outline.effector_half_x, outline.effector_half_y)
+    x = _lines(outline.half_x, patch[0], coarse_mm, round_foot)
+    y = _lines(outline.half_y, patch[1], coarse_mm, round_foot)
+    cells = [(i, j) for j in range(len(y) - 1) for i in range(len(x) - 1)]
+    if round_foot:
+        cells = [c for c in cells if not _within(x, c[0], patch[0]) or not _within(y, c[1], patch[1])]
+    around = ((0, 0), (1, 0), (1, 1), (0, 1))
+    quads = np.array([[[x[i + di], y[j + dj]] for di, dj in around] for i, j in cells]).reshape(-1, 4, 2)
+    triangles = _crossed(quads)
+    part = outline.inside_effector(triangles.mean(axis=1)).astype(np.int64)
+    if round_foot:
+        rim, disc = _round_patch(patch, outline.effector_half_x)
+        ring = _crossed(rim)
+        triangles = np.concatenate([triangles, ring, disc])
+        part = np.concatenate([part, np.zeros(len(ring), dtype=np.int64), np.ones(len(disc), dtype=np.int64)])
+    return _joined(triangles, part)
+
+
+def _patch(outline: StackOutline) -> tuple[float, float]:
+    """Half sizes of the rectangle around a round foot."""
+    radius = outline.effector_half_x
+    room = min(outline.half_x, outline.half_y)
+    if radius > 0.97 * room:
+        raise InputError(
+            f"segment.effector.diameter_mm = {2 * radius:g} leaves no rim for mesher layered on a footprint "
+            f"of {2 * outline.half_x:g} x {2 * outline.half_y:g} mm: use mesher pytetwild"
+        )
+    wish = 1.3 * radius
+    half_x, half_y = (half if half < 1.2 * wish else wish for half in (outline.half_x, outline.half_y))
+    return half_x, half_y
+
+
+def _lines(half: float, patch: float, coarse: float, round_foot: bool) -> Floats:
+    """Symmetric grid lines through the edges of the patch; four cells over a patch around a round foot."""
+    inner = 4 if round_foot else 2 * max(1, round(patch / coarse)) if 0 < patch < half else 0
+    pieces = [np.linspace(-patch, patch, inner + 1)] if inner else []
+    if inner and patch < half:
+        outer = np.linspace(patch, half, 1 + max(1, round((half - patch) / coarse)))
+        pieces = [-outer[:0:-1], *pieces, outer[1:]]
+    elif not inner:
+        pieces = [np.linspace(-half, half, 1 + 2 * max(1, round(half / coarse)))]
+    return np.concatenate(pieces)
+
+
+def _within(lines: Floats, cell: int, patch: float) -> bool:
+    """Whether a cell of the grid lies in the patch."""
+    return bool(abs(lines[cell] + lines[cell + 1]) / 2 < patch)
+
+
+def _crossed(quads: Floats) -> Floats:
+    """Four triangles (4 k, 3, 2) of each quadrilateral (k, 4, 2), counter-clockwise, its centre first."""
+    centre = quads.mean(axis=1)
+    sides = [np.stack([centre, quads[:, i], quads[:, (i + 1) % 4]], axis=1) for i in range(4)]
+    return np.concatenate(sides)
+
+
+def _round_patch(patch: tuple[float, float], radius: float) -> tuple[Floats, Floats]:
+    """Quadrilaterals between circle and rectangle, and the triangles of the disc around a square core."""
+    t = np.array([-1.0, -0.5, 0.0, 0.5])
+    one = np.ones(4)
+    unit = np.concatenate([np.stack(s, axis=1) for s in ((t, -one), (one, t), (-t, one), (-one, -t))])
+    outer = unit * np.array(patch)
+    circle = radius * unit / np.linalg.norm(unit, axis=1, keepdims=True)
+    next_outer, next_circle = np.roll(outer, -1, axis=0), np.roll(circle, -1, axis=0)
+    rim = np.stack([circle, outer, next_outer, next_circle], axis=1)
+    inner, next_inner = 0.45 * radius * unit, 0.45 * radius * np.roll(unit, -1, axis=0)
+    band = np.stack([inner, circle, next_circle, next_inner], axis=1)
+    cell = 0.225 * radius * np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
+    core = np.array([cell + 0.225 * radius * np.array([i, j]) for i in range(-2, 2) for j in range(-2, 2)])
+    return rim, _crossed(np.concatenate([band, core]))
+
+
+def _joined(triangles: Floats, part: Ints) -> Triangulation:
+    """Number the corners of loose triangles (m, 3, 2); corners closer than a nanometre are one."""
+    flat = triangles.reshape(-1, 2)
+    _, first, number = np.unique(np.round(flat * 1e6), axis=0, return_index=True, return_inverse=True)
+    return Triangulation(flat[first], number.reshape(-1, 3).astype(np.int64), part)
 
 
 def layered(segment: Segment, dot: DotShape, options: MeshOptions) -> LinearMesh:

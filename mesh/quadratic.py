@@ -5,9 +5,9 @@ from numpy.typing import NDArray
 
 from geometry.arrays import Floats, Ints
 from geometry.parameters import Segment
+from mesh.build import MeshOptions
 from mesh.layered import twins
 from mesh.outline import RoundSurface, StackOutline, curved_surface, outline
-from mesh.parameters import MeshOptions
 from mesh.quality import refuse_inverted, smallest_determinant_ratio
 from mesh.types import TET_FACES, LinearMesh, TetMesh, boundary_faces, face_neighbours, unique_edges
 

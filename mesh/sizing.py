@@ -9,8 +9,8 @@ import numpy as np
 
 from geometry.arrays import Floats, Ints
 from geometry.dot import DotShape
+from mesh.build import MeshOptions
 from mesh.outline import StackOutline
-from mesh.parameters import MeshOptions
 
 GROWTH = 0.4  # mm of edge length per mm of distance: neighbouring edges differ by about a factor 1.4
 DEPTH_MM = 0.3  # the contact zone is refined for a press this deep

@@ -9,9 +9,9 @@ from geometry.arrays import Floats, Ints
 from geometry.dot import DotShape
 from geometry.parameters import Segment
 from geometry.stack import layers
-from mesh.film import with_film
+from mesh.build import MeshOptions
+from mesh.interfaces import with_film
 from mesh.outline import StackOutline, curved_surface, outline
-from mesh.parameters import MeshOptions
 from mesh.sizing import background, sizing
 from mesh.tetwild_process import tetrahedralize
 from mesh.types import TET_FACES, LinearMesh, MeshingError, face_neighbours, oriented, shape, without_unused

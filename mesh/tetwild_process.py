@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from geometry.arrays import Floats, Ints
-from geometry.processes import end_with_parent, scratch_folder
+from geometry.files import end_with_parent, scratch_folder
 from mesh.types import MeshingError
 
 

@@ -15,13 +15,11 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from geometry.base import InputError
     from mesh.types import MeshingError
-    from softdot.case import Case
+    from softdot.case import Case, Pressed
     from softdot.commands.run import run_config
     from softdot.config import Config, config_hash, config_schema, load_config
-    from softdot.differentiate import derivatives
-    from softdot.pressed import Pressed
-    from softdot.studies import diagnose, sweep
-    from softdot.verdict import Verdict
+    from softdot.outcome import derivatives
+    from softdot.studies import Verdict, diagnose, sweep
 
     __version__: str
 
@@ -46,11 +44,11 @@ _HOMES = {
     "Config": "softdot.config",
     "InputError": "geometry.base",
     "MeshingError": "mesh.types",
-    "Pressed": "softdot.pressed",
-    "Verdict": "softdot.verdict",
+    "Pressed": "softdot.case",
+    "Verdict": "softdot.studies",
     "config_hash": "softdot.config",
     "config_schema": "softdot.config",
-    "derivatives": "softdot.differentiate",
+    "derivatives": "softdot.outcome",
     "diagnose": "softdot.studies",
     "load_config": "softdot.config",
     "run_config": "softdot.commands.run",
@@ -85,7 +83,7 @@ _refuse_foreign_packages()
 def __getattr__(name: str) -> Any:
     """Import a public name from its home."""
     if name == "__version__":
-        from softdot.numbers import installed_version
+        from softdot.console import installed_version
 
         return installed_version()
     if name in _HOMES:

@@ -23,7 +23,7 @@ class _Version(argparse.Action):
     """Looks the version up only when asked."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_args: Any) -> None:
-        from softdot.numbers import installed_version
+        from softdot.console import installed_version
 
         print(f"softdot {installed_version()}")
         parser.exit(GOOD)

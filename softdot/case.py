@@ -4,27 +4,36 @@
     case.press().plot()
 
 Heavy libraries are imported inside the methods, so that a configuration that is refused is refused at once.
+
+A press as people read it: arrays with units in their names, tables, plots and ParaView's meshes.
 """
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cached_property
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from geometry.arrays import Floats
 from geometry.dot import DotShape
 from mesh.types import TetMesh
 from softdot.config import Config, config_from, input_hash, load_config
-from softdot.config.defaults import completed
 from softdot.config.model import model_of
+from softdot.config.toml import completed
+from softdot.summary import history
 from solve.model import Model
 from solve.result import PressResult, Step
 
 if TYPE_CHECKING:
+    import pandas as pd
+    import pyvista as pv
+    from matplotlib.figure import Figure
+
     from geometry.solids import Part
-    from softdot.differentiate import Derivative
-    from softdot.pressed import Pressed
+    from softdot.outcome import Derivative
 
 OnStep = Callable[[Step, int, int], None]
 
@@ -58,7 +67,7 @@ class Case:
     @cached_property
     def checked(self) -> tuple[DotShape, list[str]]:
         """The dot at rest and what a user should know about this design. InputError for what cannot be solved."""
-        from softdot.checks import check_case
+        from softdot.warnings import check_case
 
         return check_case(self.model, self.config.mesh)
 
@@ -91,7 +100,6 @@ class Case:
 
     def press(self, on_step: OnStep | None = None) -> "Pressed":
         """The press, as far as it converged: .converged says whether, .failure why not. InputError, MeshingError."""
-        from softdot.pressed import Pressed
 
         if "_pressed" not in self.__dict__:
             self.__dict__["_pressed"] = Pressed(self, self.solve(on_step))
@@ -116,7 +124,7 @@ class Case:
         """Voltage in V at each step: electrodes in parallel (s,), each alone (e, s); None without an amplifier."""
         if not self.is_amplified:
             return None
-        from solve.parameters import Readout
+        from solve.model import Readout
         from solve.readout.recording import channel_voltages, readout_voltage
 
         told = (result, self.model.press, self.model.readout or Readout(), self.model.physics)
@@ -130,7 +138,7 @@ class Case:
 
     def derivatives(self, keys: Sequence[str]) -> "list[Derivative]":
         """Of force, charge and voltage along the press by keys such as "segment.film.thickness_um". InputError."""
-        from softdot.differentiate import derivatives
+        from softdot.outcome import derivatives
 
         return derivatives(self.config, keys)
 
@@ -153,3 +161,140 @@ def press_key(case: Case, tet_mesh: TetMesh) -> str:
     from mesh.types import mesh_hash
 
     return data_hash([source_hash("solve.press"), input_hash(case.config), mesh_hash(tet_mesh)])
+
+
+LAST = -1
+FIGURE_SIZE_IN = 8.0, 3.2
+
+
+class Pressed:
+    """What Case.press gives. All arrays have one value for each reported step (s,); index 0 is the unloaded state.
+
+    result : the solver's own result with its fields, in SI units. Electrodes are taken in parallel.
+    """
+
+    def __init__(self, case: "Case", result: PressResult) -> None:
+        self.case, self.result = case, result
+        past = history(result)
+        self.indentation_mm, self.reaction_force_N = past.indentation_mm, past.reaction_force_N
+        self.film_charge_pC, self.open_circuit_voltage_V = past.film_charge_pC, past.open_circuit_voltage_V
+        self.time_s: Floats = np.array([step.time_s for step in result.steps])
+
+    @property
+    def converged(self) -> bool:
+        """Whether the last asked depth or force was reached."""
+        return self.result.converged
+
+    @property
+    def failure(self) -> str | None:
+        """Where and why the press stopped short; None where it did not."""
+        return self.result.failure
+
+    @property
+    def warnings(self) -> list[str]:
+        """What a user should know, before and after the solution."""
+        from softdot.warnings import design_warnings, result_warnings
+
+        model = self.case.model
+        return [*self.case.checked[1], *design_warnings(model), *result_warnings(model, self.case.dot, self.result)]
+
+    @cached_property
+    def readout_voltage_V(self) -> Floats | None:
+        """Behind the amplifier (s,); None without one."""
+        amplified = self.case.amplified(self.result)
+        return None if amplified is None else amplified[0]
+
+    @cached_property
+    def channel_voltages_V(self) -> Floats | None:
+        """Of each electrode behind an amplifier of its own, (e, s); None without one."""
+        amplified = self.case.amplified(self.result)
+        return None if amplified is None else amplified[1]
+
+    @property
+    def film_capacitance_pF(self) -> float:
+        """Of the undeformed film under all electrodes."""
+        return 1e12 * float(self.result.capacitance_F.sum())
+
+    @property
+    def max_film_strain(self) -> float:
+        """Largest principal strain of the film, a mean through its thickness, away from held rims."""
+        return self.result.film_peak.strain
+
+    def to_dataframe(self) -> "pd.DataFrame":
+        """One row a step; columns as the arrays are called."""
+        import pandas as pd
+
+        return pd.DataFrame(self._columns())
+
+    def _columns(self) -> dict[str, Floats]:
+        columns = {
+            "time_s": self.time_s,
+            "indentation_mm": self.indentation_mm,
+            "reaction_force_N": self.reaction_force_N,
+            "film_charge_pC": self.film_charge_pC,
+            "open_circuit_voltage_V": self.open_circuit_voltage_V,
+        }
+        if self.readout_voltage_V is not None:
+            columns["readout_voltage_V"] = self.readout_voltage_V
+        return columns
+
+    def to_pyvista(self, step: int = LAST) -> "pv.UnstructuredGrid":
+        """The deformed mesh of a step in mm, with displacement, stresses and strains; film arrays are NaN elsewhere.
+
+        Quadratic tetrahedra (VTK type 24). Units stand in the names of the arrays.
+        """
+        import pyvista as pv
+
+        fields, tet_mesh = self.result.steps[step].fields, self.result.tet_mesh
+        moved = 1e3 * fields.displacement_m
+        grid = pv.UnstructuredGrid({pv.CellType.QUADRATIC_TETRA: tet_mesh.tets}, tet_mesh.points_mm + moved)
+        grid.point_data["displacement_mm"] = moved
+        grid.cell_data["region"] = tet_mesh.region
+        grid.cell_data["cauchy_stress_MPa"] = 1e-6 * fields.cauchy_stress_Pa
+        grid.cell_data["von_mises_MPa"] = 1e-6 * fields.von_mises_Pa
+        grid.cell_data["pressure_MPa"] = 1e-6 * fields.pressure_Pa
+        grid.cell_data["max_stretch"] = fields.max_stretch
+        film = {
+            "film_strain": fields.film_strain,
+            "film_stress_MPa": 1e-6 * fields.film_stress_Pa,
+            "charge_density_pC_per_mm2": 1e6 * fields.charge_density_C_per_m2,
+        }
+        for name, values in film.items():
+            everywhere = np.full((len(tet_mesh.tets), *values.shape[1:]), np.nan)
+            everywhere[fields.film_tets] = values
+            grid.cell_data[name] = everywhere
+        return grid
+
+    def plot(self) -> "Figure":
+        """Force, and voltage behind the amplifier or of the open circuit, against depth, or time where that counts."""
+        from matplotlib.figure import Figure
+
+        figure = Figure(figsize=FIGURE_SIZE_IN, layout="constrained")
+        by_time = self.result.follows_time
+        abscissa, label = (self.time_s, "time (s)") if by_time else (self.indentation_mm, "indentation (mm)")
+        open_circuit = self.readout_voltage_V is None
+        voltage = self.open_circuit_voltage_V if self.readout_voltage_V is None else self.readout_voltage_V
+        shown = {"reaction force (N)": self.reaction_force_N}
+        shown["open-circuit voltage (V)" if open_circuit else "voltage at the amplifier (V)"] = voltage
+        for axes, (name, values) in zip(figure.subplots(1, 2), shown.items(), strict=True):
+            axes.plot(abscissa, values, "o-", markersize=3)
+            axes.set(xlabel=label, ylabel=name)
+            axes.grid(alpha=0.3)
+        return figure
+
+    def _repr_html_(self) -> str:
+        """For notebooks: how it ended, and a table of the steps."""
+        columns = self._columns()
+        head = "".join(f"<th>{escape(name)}</th>" for name in columns)
+        rows = "".join(
+            "<tr>" + "".join(f"<td>{value:.4g}</td>" for value in row) + "</tr>"
+            for row in zip(*columns.values(), strict=True)
+        )
+        ended = "converged" if self.converged else f"not converged: {escape(str(self.failure))}"
+        return f"<p>Press, {ended}.</p><table><tr>{head}</tr>{rows}</table>"
+
+    def __repr__(self) -> str:
+        """The deepest step in a line."""
+        state = "" if self.converged else f", not converged: {self.failure}"
+        values: dict[str, Any] = {name: array[LAST] for name, array in self._columns().items()}
+        return "Pressed(" + ", ".join(f"{name}={value:.4g}" for name, value in values.items()) + f"{state})"

@@ -99,7 +99,7 @@ def _refuse_unprintable(chosen: argparse.Namespace) -> None:
 def _command(chosen: argparse.Namespace) -> int:
     if chosen.command == "schema":
         from softdot.config import config_schema
-        from softdot.numbers import json_text
+        from softdot.console import json_text
 
         sys.stdout.write(json_text(config_schema()))
         return GOOD

@@ -1,24 +1,60 @@
-"""What commands print: summaries, warnings, lines on standard error, progress bars; nothing from compiled libraries.
+"""What commands print: summaries, warnings, lines on standard error, progress bars; numbers as JSON knows them.
 
 Every package logs by Python's logging under its own name: INFO what goes on, DEBUG its details (Newton iterations,
 attempts of the mesher), WARNING what a user has to know. Nothing but this module attaches handlers.
 """
 
+import json
 import logging
+import math
 import os
 import sys
 import time
 from argparse import Namespace
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
-from softdot.numbers import json_text
+from geometry.files import whole_file
 
 if TYPE_CHECKING:
     from rich.progress import Progress as Bars
     from rich.progress import TaskID
+
+
+def plain(value: Any) -> Any:
+    """The same data in Python's own types; NaN and infinity, which JSON lacks, become None."""
+    if isinstance(value, dict):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple | set | frozenset):
+        return [plain(item) for item in value]
+    if hasattr(value, "tolist"):  # numpy arrays and scalars
+        return plain(value.tolist())
+    if isinstance(value, float):
+        return float(f"{value:.12g}") + 0.0 if math.isfinite(value) else None  # -0.0 + 0.0 = 0.0
+    return value
+
+
+def json_text(value: Any) -> str:
+    """Indented, valid JSON with a final newline."""
+    return json.dumps(plain(value), indent=2, allow_nan=False, ensure_ascii=False) + "\n"
+
+
+def write_json(path: Path, value: Any) -> None:
+    """Write JSON that never exists half-written."""
+    with whole_file(path) as beside:
+        beside.write_text(json_text(value), "utf-8")
+
+
+def installed_version() -> str:
+    """Version of the installed distribution, "unknown" for a bare copy of the sources."""
+    try:
+        return version("softdot")
+    except PackageNotFoundError:
+        return "unknown"
+
 
 LOG_FILE = "log.txt"
 PACKAGES = ("geometry", "mesh", "solve", "export", "diagnose", "softdot")

@@ -11,9 +11,8 @@ import numpy as np
 from geometry.base import InputError
 from geometry.dot import DotShape
 from geometry.parameters import Segment
-from mesh.build import build
+from mesh.build import MeshOptions, build
 from mesh.outline import outline
-from mesh.parameters import MeshOptions
 from mesh.sizing import sizing
 from softdot.config import Config
 from softdot.machine import needed_GB, refuse_too_little_memory

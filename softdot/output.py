@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from geometry.base import InputError
-from geometry.processes import hold, release, sweep
+from geometry.files import hold, release, sweep
 from softdot.console import LOG_FILE, log_file
 from softdot.machine import refuse_cut_files, refuse_full_disk
 

@@ -12,7 +12,7 @@ import numpy as np
 from geometry.arrays import Floats
 from softdot.config import Config, config_hash
 from softdot.output import RUN
-from solve.parameters import Readout
+from solve.model import Readout
 from solve.result import PressResult
 
 
@@ -92,7 +92,7 @@ def history(result: PressResult) -> History:
 
 def heading(config: Config) -> dict[str, Any]:
     """What is known before any work."""
-    from softdot.numbers import installed_version
+    from softdot.console import installed_version
 
     return {
         "format": RUN.format,

@@ -1,16 +1,20 @@
-"""What a user should know about a design or a result that is otherwise good."""
+"""What is refused before any work, and what a user should know about a design or a result that is otherwise good."""
 
 import numpy as np
 
 from geometry.arrays import Floats
-from geometry.checks import press_warnings
-from geometry.dot import DotShape
+from geometry.cache import check_folder
+from geometry.checks import check_press_depth, check_pushed_dot, check_segment, press_warnings
+from geometry.dot import DotShape, resolve_dot
 from geometry.parameters import Segment
 from geometry.part_checks import covers_footprint
 from geometry.stack import layers
+from mesh.build import MeshOptions
+from softdot.cost import refuse_huge_mesh
 from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.model import Model
 from solve.result import PressResult
+from solve.solution.schedule import duration_s
 from solve.terms.contact import RigidDot
 
 NEARLY_INCOMPRESSIBLE = 0.49
@@ -113,3 +117,23 @@ def _rim(segment: Segment, top_mm: float) -> Floats:
     sides = [np.column_stack([sign * x * np.ones(SAMPLES), y * share]) for sign in (-1.0, 1.0)]
     sides += [np.column_stack([x * share, sign * y * np.ones(SAMPLES)]) for sign in (-1.0, 1.0)]
     return np.column_stack([np.concatenate(sides), np.full(4 * SAMPLES, top_mm)])
+
+
+def check_case(model: Model, options: MeshOptions) -> tuple[DotShape, list[str]]:
+    """The dot at rest and what a user should know about this design. InputError."""
+    check_folder()
+    segment, press = model.segment, model.press
+    if press.waveform is not None:
+        duration_s(press.waveform)  # reads the file of shape = "file"
+    warnings = check_segment(segment)
+    depth = press.indentation_mm
+    if depth is not None:
+        check_press_depth(segment, depth)
+    else:
+        check_pushed_dot(model.dot, segment, press.path_xy_mm)
+    dot_shape = resolve_dot(model.dot, segment)
+    refuse_huge_mesh(segment, dot_shape, options)
+    if depth is not None:
+        warnings += press_warnings(dot_shape, segment, depth)
+        warnings += held_rim_warnings(segment, dot_shape, depth)
+    return dot_shape, warnings

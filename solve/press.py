@@ -9,16 +9,14 @@ from itertools import pairwise
 
 from geometry.dot import DotShape, resolve_dot
 from mesh.types import TetMesh
-from solve.interfaces import OpenInterface, open_interfaces
 from solve.model import Model
-from solve.problem import build_system, refuse_unresolved, scale_of_section
+from solve.problem import OpenInterface, build_system, open_interfaces, refuse_unresolved, scale_of_section
 from solve.recorder import Recorder
 from solve.result import PressResult, Step
 from solve.solution.checkpoint import Checkpoint
-from solve.solution.failure import explained
 from solve.solution.linear import LinearSolver
 from solve.solution.march import march, rest_state
-from solve.solution.newton import NoEquilibriumError
+from solve.solution.newton import NoEquilibriumError, explained
 from solve.solution.schedule import Target, schedule
 from solve.system import System, Units
 

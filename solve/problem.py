@@ -1,6 +1,10 @@
 """From parameters and a mesh to the discrete problem in solver units.
 
 Where the electrodes lie, and what a plane-strain slice stands for.
+
+Which interfaces of the mesh open: those with a compliant bond, and delaminated patches of the others.
+
+Where a bond is delaminated: the facets of an interface within a disc, or within a strip of a slice.
 """
 
 from collections.abc import Iterator, Mapping
@@ -8,28 +12,97 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Floats
+from geometry.arrays import Bools, Floats, Ints
 from geometry.base import InputError
 from geometry.dot import DotShape
 from geometry.parameters import Segment
+from mesh.interfaces import inner_nodes, interface_facets, split_interface
 from mesh.types import TetMesh
-from solve.fem.sparsity import build_pattern
-from solve.fem.term import Numbers, Term, Unknowns, number
-from solve.interfaces import OpenInterface
+from solve.fem.sparsity import Numbers, Term, Unknowns, build_pattern, number
 from solve.materials.film import FilmLaw, FilmPlasticity, YieldLaw, film_law
 from solve.materials.inelastic import Inelastic
 from solve.materials.laws import MediumLaw, medium_law
 from solve.materials.parameters import Material, PiezoelectricFilm
-from solve.model import Physics
-from solve.parameters import Readout
+from solve.model import BondLine, Delamination, Physics, Readout
 from solve.system import System, Units
 from solve.terms.contact import RigidDot, contact_facets
-from solve.terms.delamination import opening_nodes, unilateral_interface
 from solve.terms.film import FilmRegion, film_region
 from solve.terms.friction import FrictionalContact
+from solve.terms.jump import opening_nodes, unilateral_interface
 from solve.terms.rig import Circuit, RigTerm
 from solve.terms.solid import SolidRegion, solid_region
 from solve.terms.springs import bond, side_springs
+
+ROUND_OFF_MM = 1e-9
+
+
+def delaminated_facets(
+    tet_mesh: TetMesh, name: str, center_mm: tuple[float, float], diameter_mm: float, plane_strain: bool
+) -> Bools:
+    """Facets (k,) of interface_facets whose middle lies in the disc (plane strain: |x - x_c| <= diameter / 2).
+
+    A diameter of 0 selects none. InputError when the disc reaches outside the interface, or is so small that the
+    mesh has no node inside which could open.
+    """
+    facets = interface_facets(tet_mesh, name)
+    if diameter_mm == 0.0:
+        return np.zeros(len(facets), bool)
+    given = f"mechanisms.delamination at {name}: center_mm = {list(center_mm)}, diameter_mm = {diameter_mm:g}"
+    corners = tet_mesh.points_mm[facets[:, :3], :2]
+    axes = slice(0, 1) if plane_strain else slice(0, 2)
+    center = np.array(center_mm)
+    _refuse_outside(corners[..., axes].reshape(-1, center[axes].size), center[axes], diameter_mm, given)
+    # the two triangles of a slice's rectangle share their middle in x, not their centroid
+    middle = (corners.min(axis=1) + corners.max(axis=1)) / 2 if plane_strain else corners.mean(axis=1)
+    inside = np.linalg.norm((middle - center)[:, axes], axis=1) <= diameter_mm / 2 + ROUND_OFF_MM
+    if not len(inner_nodes(tet_mesh, facets, ~inside)):
+        raise InputError(f"{given}: must span several facets, which are too large there (mesh.element_size_mm)")
+    return np.asarray(inside)
+
+
+def _refuse_outside(corners: Floats, center: Floats, diameter: float, given: str) -> None:
+    """InputError when the disc leaves the box around the interface's corners (k, d)."""
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    reach = diameter / 2 - ROUND_OFF_MM
+    if diameter < 0.0 or (center - reach < low).any() or (center + reach > high).any():
+        box = ", ".join(f"{axis} from {a:g} to {b:g} mm" for axis, a, b in zip("xy", low, high, strict=False))
+        raise InputError(f"{given}: the patch must lie within the interface, {box}, and its diameter be 0 or more")
+
+
+BONDS = (  # from the base up: the part below an interface keeps its nodes, so that earlier facets stay right
+    "bond-base",
+    "bond-film-medium2",
+    "bond-medium1-film",
+    "bond-effector-medium1",
+)
+
+
+@dataclass(frozen=True)
+class OpenInterface:
+    """Matched facets (k, 6) below and above an interface, and which of them are delaminated (k,)."""
+
+    name: str
+    lower: Ints
+    upper: Ints
+    delaminated: Bools
+
+
+def open_interfaces(
+    tet_mesh: TetMesh, bonds: Mapping[str, BondLine], delaminations: tuple[Delamination, ...], plane_strain: bool
+) -> tuple[TetMesh, tuple[OpenInterface, ...]]:
+    """The mesh with its nodes doubled there. InputError for a patch outside its interface or a missing layer."""
+    opened = []
+    for name in BONDS:
+        patches = [patch for patch in delaminations if patch.bond == name]
+        if name not in bonds and not patches:
+            continue
+        bare = np.zeros(len(interface_facets(tet_mesh, name)), bool)
+        for patch in patches:
+            bare |= delaminated_facets(tet_mesh, name, patch.center_mm, patch.diameter_mm, plane_strain)
+        joined = np.zeros_like(bare) if name in bonds else ~bare
+        tet_mesh, lower, upper = split_interface(tet_mesh, name, joined)
+        opened.append(OpenInterface(name, lower, upper, bare))
+    return tet_mesh, tuple(opened)
 
 
 def electrode_rectangles(segment: Segment) -> Floats:
@@ -110,7 +183,7 @@ def build_system(
 ) -> System:
     """Discretise a press. materials : region name -> material, one for each region of the mesh.
 
-    tet_mesh and opened as solve.interfaces.open_interfaces gives them; units : to share them with another system.
+    tet_mesh and opened as solve.problem.open_interfaces gives them; units : to share them with another system.
     """
     physics = physics or Physics()
     laws = {name: medium_law(materials[name]) for name in tet_mesh.region_names if name != "film"}

@@ -14,13 +14,11 @@ import numpy as np
 from geometry.arrays import Floats
 from geometry.parameters import Segment
 from mesh.types import TetMesh
-from solve.fields import fields, film_peak
 from solve.materials.parameters import Material, PiezoelectricFilm
-from solve.model import Physics
-from solve.parameters import Press, Waveform
+from solve.model import Physics, Press, Waveform
 from solve.problem import scale_of_section
-from solve.readout.charge import other_charge_C
-from solve.result import PressResult, Record, Step, Trace
+from solve.readout.amplifier import other_charge_C
+from solve.result import PressResult, Record, Step, Trace, fields, film_peak
 from solve.solution.march import SMALLEST_IN_TIME, TIME_TOLERANCE
 from solve.solution.schedule import fraction
 from solve.system import State, System

@@ -11,8 +11,7 @@ import numpy as np
 
 from geometry.arrays import Bools, Floats, Ints
 from solve.fem.kernels import scatter
-from solve.fem.sparsity import Pattern, Tangent, scatter_unsymmetric
-from solve.fem.term import History, Term, Trial, Unknowns
+from solve.fem.sparsity import History, Pattern, Tangent, Term, Trial, Unknowns, scatter_unsymmetric
 from solve.terms.contact import ContactFacets
 from solve.terms.film import FilmRegion
 from solve.terms.friction import FrictionalContact
@@ -59,8 +58,8 @@ class State:
     """A converged state: time in s, load, unknowns, memory of each term, largest norm of contact forces so far.
 
     time_error : of the step to it, where it exceeds the tolerance (see System.time_error), else zero.
-    snapped : Newton found no equilibrium near the one before it (see solve.solution.snap).
-    work, most_work : what the dot has put into the segment, now and at most so far (see solve.solution.snap).
+    snapped : Newton found no equilibrium near the one before it (see solve.solution.march).
+    work, most_work : what the dot has put into the segment, now and at most so far (see solve.solution.march).
     """
 
     time: float

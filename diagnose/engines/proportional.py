@@ -21,23 +21,19 @@ from math import sinh
 import numpy as np
 
 from diagnose.engines.coupon.kinematics import SimpleShear
-from diagnose.engines.coupon.laws import LARGEST_STRAIN, MEDIUM
-from diagnose.engines.coupon.layer import LAYER, one_layer, switched, with_factors_last
+from diagnose.engines.coupon.laws import LARGEST_STRAIN, LAYER, MEDIUM, one_layer, switched, with_factors_last
 from diagnose.engines.coupon.point import NO_SERIES, MaterialPoint, Relaxation
 from diagnose.forward import Candidate, Coordinate, Setting, Signals
 from diagnose.signals.phases import Segmentation, rest_of, segmented
 from diagnose.signals.recording import Recording, Run
-from diagnose.vocabulary.base import candidates_of_unknown_geometry
-from diagnose.vocabulary.scene import Scene, film_capacitance_pF, growing
+from diagnose.vocabulary.base import Scene, candidates_of_unknown_geometry, film_capacitance_pF, growing
 from geometry.arrays import Floats
 from geometry.base import InputError, Report
 from solve.materials.laws import medium_law
 from solve.materials.parameters import PiezoelectricFilm
 from solve.mechanisms import Mechanism
-from solve.model import Model
-from solve.parameters import Readout
-from solve.readout.amplifier import amplify
-from solve.readout.charge import warming_K
+from solve.model import Model, Readout
+from solve.readout.amplifier import amplify, warming_K
 from solve.solution.newton import NoEquilibriumError
 
 HERTZ = 2.0 / 3.0

@@ -6,10 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnose.figures import figure
-from diagnose.fit.baseline import within_priors
 from diagnose.fit.descent import coordinates
 from diagnose.fit.observed_model import ObservedModel
-from diagnose.fit.refit import Fitted
+from diagnose.fit.refit import Fitted, within_priors
 from diagnose.forward import Candidate
 from diagnose.inference.black_box import box_scores, memory, worth_of_form
 from diagnose.inference.forecasts import Forecasted, alike, forecasted, grouped, separation, separations, share_left

@@ -12,16 +12,15 @@ import numpy as np
 
 from diagnose.figures import figure, p_equals, part
 from diagnose.findings import Detection, Findings, FittedModel
-from diagnose.fit.baseline import believed, fitted_baseline
 from diagnose.fit.intervals import intervals, points
 from diagnose.fit.observed_model import ObservedModel
-from diagnose.fit.refit import Fitted
+from diagnose.fit.refit import Fitted, believed, fitted_baseline
 from diagnose.fit.samples import Samples
 from diagnose.fit.system import LinearisedSystem, linearised
 from diagnose.forward import Engine, Setting, Signals, SomeRuns, all_but, some_runs
 from diagnose.inference import hum
+from diagnose.inference.black_box import errors, relaxed, trained_and_held, unimproved
 from diagnose.inference.choice import Choice, Judged, choose, criteria
-from diagnose.inference.held_out import errors, relaxed, trained_and_held, unimproved
 from diagnose.inference.localisation import explanations, places, shares
 from diagnose.inference.residual_test import Checked, checked
 from diagnose.inference.search import Screening, screen

@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 
 from diagnose.forward import Candidate, Coordinate, Engine, PassingOn, Setting, Signals
-from diagnose.noise.lines import Line, basis
-from diagnose.noise.model import NoiseModel
+from diagnose.noise.model import Line, NoiseModel, basis
 from diagnose.signals.recording import Recording, Run
 from geometry.arrays import Floats
 from geometry.base import Report

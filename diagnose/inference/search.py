@@ -10,10 +10,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnose.fit.baseline import believed
 from diagnose.fit.descent import LEAST_GAIN, descent, lowest
 from diagnose.fit.observed_model import STEP, ObservedModel
-from diagnose.fit.refit import Fitted, common_metric, fitted
+from diagnose.fit.refit import Fitted, believed, common_metric, fitted
 from diagnose.fit.samples import noise_degrees
 from diagnose.fit.system import LinearisedSystem, informative_rows
 from diagnose.forward import Candidate, Coordinate, Setting

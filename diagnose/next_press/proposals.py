@@ -16,7 +16,7 @@ from diagnose.signals.phases import PressPhases, rest_of
 from diagnose.signals.recording import Recording, Run
 from diagnose.vocabulary.base import vocabulary
 from geometry.arrays import Floats
-from solve.parameters import Readout
+from solve.model import Readout
 
 REST_S = 1.0  # noise and drift show at rest
 

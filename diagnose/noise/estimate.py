@@ -16,8 +16,7 @@ from math import isclose
 import numpy as np
 
 from diagnose.noise.autoregression import Autoregression, fit_autoregression
-from diagnose.noise.lines import Line, find_lines, quantisation_step, without_lines
-from diagnose.noise.model import NoiseModel
+from diagnose.noise.model import Line, NoiseModel, find_lines, quantisation_step, without_lines
 from diagnose.signals.align import lag_between
 from diagnose.signals.phases import Segmentation
 from diagnose.signals.recording import Recording, Run

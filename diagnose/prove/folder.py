@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from diagnose.prove.world.bench import Bench
-from diagnose.prove.world.made import Film, Layer
+from diagnose.prove.world.laws import Film, Layer
 from diagnose.prove.world.reality import Signals
 
 

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from geometry.processes import end_with_parent
+from geometry.files import end_with_parent
 
 ROOMS = ("geometry", "mesh", "solve", "export", "diagnose", "softdot")
 SYSTEM = ("/dev", "/proc", "/sys", "/etc", "/usr", "/lib", "/lib64", "/opt")

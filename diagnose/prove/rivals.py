@@ -16,9 +16,8 @@ from scipy.ndimage import uniform_filter1d
 from scipy.optimize import minimize_scalar
 
 from diagnose.prove.world.bench import BENCHES, Bench
-from diagnose.prove.world.made import Floats
-from diagnose.prove.world.reality import Reality, Signals, baseline, record
-from diagnose.prove.world.size import channels, noise_of
+from diagnose.prove.world.laws import Floats
+from diagnose.prove.world.reality import Reality, Signals, baseline, channels, noise_of, record
 
 Name = tuple[str, str]
 POINTS = 250

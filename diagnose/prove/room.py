@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from geometry.processes import ONE_THREAD, scratch_folder
+from geometry.files import ONE_THREAD, scratch_folder
 
 KEPT = ("PATH", "LANG", "LC_ALL", "LD_LIBRARY_PATH")
 LINES = 3

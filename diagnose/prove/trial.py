@@ -25,8 +25,7 @@ from diagnose.prove.score import Name, Score, scored
 from diagnose.prove.world.bench import BENCHES, Bench, Run, traced
 from diagnose.prove.world.cases import Case, concealed, pressed_again, rival_family
 from diagnose.prove.world.effects import EFFECTS, fits
-from diagnose.prove.world.reality import Signals
-from diagnose.prove.world.size import Judge
+from diagnose.prove.world.reality import Judge, Signals
 
 SHAPE = frozenset({"speed_factor", "hold_s", "displacement_mm", "cycles"})
 """Changes that the waveform holds already."""

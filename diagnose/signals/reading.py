@@ -11,14 +11,21 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnose.noise.lines import quantisation_step
-from diagnose.signals.checks import LARGEST_STRAIN, refuse_bad_columns, refuse_bad_time, refuse_untouched, suspicions
-from diagnose.signals.columns import read_columns, refuse_by_size, saturated
-from diagnose.signals.recording import Recording, Run
-from diagnose.signals.tables import RunTable, Specimen
+from diagnose.noise.model import quantisation_step
+from diagnose.signals.columns import (
+    LARGEST_STRAIN,
+    read_columns,
+    refuse_bad_columns,
+    refuse_bad_time,
+    refuse_by_size,
+    refuse_untouched,
+    saturated,
+    suspicions,
+)
+from diagnose.signals.recording import Recording, Run, RunTable, Specimen
 from geometry.arrays import Bools, Floats, Ints
 from geometry.base import InputError
-from solve.parameters import Readout
+from solve.model import Readout
 
 COVARIATES = ("dot_x_mm", "dot_y_mm", "temperature_C")
 

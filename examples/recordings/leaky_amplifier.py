@@ -19,8 +19,7 @@ from softdot.case import Case
 from softdot.config import config_from
 from softdot.config.toml import parse_toml
 from softdot.convert import run_text, write_recording
-from solve.model import Physics
-from solve.parameters import Readout
+from solve.model import Physics, Readout
 from solve.readout.amplifier import amplify
 
 RIG = """# Made up by examples/recordings/leaky_amplifier.py; no real sensor was pressed.

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 from export.printability import Printability
-from geometry.fabrication.frame_layout import FrameLayout, frame_layout
+from geometry.fabrication.clamp_frame import FrameLayout, frame_layout
 from geometry.fabrication.kit import SolidKit
 from geometry.fabrication.parameters import Fabrication
 from geometry.fabrication.part import FabricationPart
 from geometry.flat.pattern import FlatPattern
-from geometry.flat.patterns import FlatKit
+from geometry.flat.sheets import FlatKit
 from geometry.parameters import Segment
 from geometry.solids import layer_solids
 from geometry.stack import Box, Disc, Dome, Layer, bodies, layers

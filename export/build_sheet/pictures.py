@@ -10,7 +10,7 @@ import numpy as np
 from export.build_sheet.contents import Contents, spoken
 from export.cut_files import draw_cut_file
 from export.printability import draw_findings
-from export.printability.surface import surface_of
+from export.printability.measure import surface_of
 from export.view import DPI, INK, DrawnBody, View, frame, name_parts, page, render
 from geometry.fabrication.kit import stacked_tops
 from geometry.flat.pattern import Outline

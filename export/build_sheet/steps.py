@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from export.build_sheet.contents import GAUGE, Contents, gauging, in_words
 from geometry.fabrication.casting import Pour
-from geometry.fabrication.frame_layout import held_names
+from geometry.fabrication.clamp_frame import held_names
 from geometry.fabrication.kit import stacked_tops
 from geometry.flat.electrodes import EDGE_MM, GAP_MM, PAD_LENGTH_MM, PAD_PITCH_MM, PAD_WIDTH_MM, lead_width
 from geometry.flat.pattern import FlatPattern

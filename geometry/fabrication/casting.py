@@ -6,10 +6,17 @@ from typing import Any
 from geometry.base import InputError
 from geometry.fabrication.cavity import check_mould_sizes, styled_cavity
 from geometry.fabrication.mould import LID_MM, Mould, mould_of
-from geometry.fabrication.parameters import Fabrication
-from geometry.fabrication.part import PROCESSES, FabricationPart, box, fabrication_part, scaled, volume, without
-from geometry.fabrication.printers import printer_profile
-from geometry.fabrication.recipes import CastComponent, cast_components
+from geometry.fabrication.parameters import CastComponent, Fabrication, cast_components
+from geometry.fabrication.part import (
+    PROCESSES,
+    FabricationPart,
+    box,
+    fabrication_part,
+    printer_profile,
+    scaled,
+    volume,
+    without,
+)
 from geometry.parameters import Segment
 
 

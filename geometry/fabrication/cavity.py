@@ -6,8 +6,7 @@ from typing import Any, Literal
 
 from geometry.base import InputError
 from geometry.fabrication.parameters import Fabrication
-from geometry.fabrication.part import refuse_small_keys, refuse_thin, scaled
-from geometry.fabrication.printers import PrinterProfile, printer_profile
+from geometry.fabrication.part import PrinterProfile, printer_profile, refuse_small_keys, refuse_thin, scaled
 from geometry.parameters import Segment
 from geometry.solids import layer_solids
 from geometry.stack import Box, Disc, Dome, bodies

@@ -6,11 +6,9 @@ from typing import Any
 import numpy as np
 
 from geometry.fabrication.casting import CavityCheck, Pour, casting_kit
-from geometry.fabrication.clamp_frame import frame_parts
-from geometry.fabrication.frame_layout import ExitFrame, exit_frame, held_names
-from geometry.fabrication.parameters import Fabrication
+from geometry.fabrication.clamp_frame import ExitFrame, exit_frame, frame_parts, held_names
+from geometry.fabrication.parameters import Fabrication, sheet_components
 from geometry.fabrication.part import PROCESSES, FabricationPart, box, fabrication_part, joined, pin, post, without
-from geometry.fabrication.recipes import sheet_components
 from geometry.parameters import Segment
 from geometry.part_checks import covers_footprint
 from geometry.stack import Box, bodies, layers

@@ -6,8 +6,7 @@ from typing import Any
 
 from geometry.fabrication.cavity import Cavity, Style
 from geometry.fabrication.parameters import Fabrication
-from geometry.fabrication.part import box, joined, pin, post, refuse_thin, without
-from geometry.fabrication.printers import printer_profile
+from geometry.fabrication.part import box, joined, pin, post, printer_profile, refuse_thin, without
 
 PIN_MARGIN_MM = 1.5
 """Of material around the hole of a pin."""

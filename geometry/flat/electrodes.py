@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from itertools import combinations, pairwise
 
 from geometry.base import InputError
-from geometry.fabrication.frame_layout import ExitFrame, FrameLayout, exit_frame, frame_layout, held_names
+from geometry.fabrication.clamp_frame import ExitFrame, FrameLayout, exit_frame, frame_layout, held_names
 from geometry.fabrication.parameters import Fabrication
 from geometry.fabrication.part import ROUNDING_MM
 from geometry.flat.pattern import LayerName, Outline, Point, gap_mm, rectangle, shared_area_mm2

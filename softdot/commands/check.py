@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from softdot.console import BAD_INPUT, GOOD, complain
-from softdot.numbers import json_text, plain
+from softdot.console import BAD_INPUT, GOOD, complain, json_text, plain
 
 FORMAT = "softdot-check/1"
 
@@ -27,9 +26,8 @@ def command(chosen: Namespace) -> int:
 def check_file(path: Path, settings: list[str]) -> dict[str, Any]:
     """Mistakes, warnings and the expected cost of a configuration."""
     from softdot.config import config_from
-    from softdot.config.defaults import completed, from_default, with_settings
     from softdot.config.errors import mistakes
-    from softdot.config.toml import read_toml
+    from softdot.config.toml import completed, from_default, read_toml, with_settings
     from softdot.cost import expected_cost
     from softdot.warnings import design_warnings
 

@@ -14,7 +14,7 @@ from diagnose.findings import Findings
 from diagnose.forward import Engine, all_but, other_units, some_runs
 from diagnose.next_press.choose import NextPress, next_press
 from diagnose.noise.estimate import noise_models
-from diagnose.signals.checks import refuse_slow_sampling
+from diagnose.signals.columns import refuse_slow_sampling
 from diagnose.signals.reading import thinned
 from diagnose.signals.recording import Recording
 from diagnose.verdict.content import FORMAT, verdict
@@ -24,8 +24,17 @@ from geometry.base import InputError, Report, nearest
 from geometry.cache import check_folder
 from softdot.config import Config
 from softdot.config.rig import Rig, load_rig
-from softdot.console import GOOD, NOT_CONVERGED, Logged, Progress, complain, only_the_summary_on_stdout, show
-from softdot.numbers import plain, write_json
+from softdot.console import (
+    GOOD,
+    NOT_CONVERGED,
+    Logged,
+    Progress,
+    complain,
+    only_the_summary_on_stdout,
+    plain,
+    show,
+    write_json,
+)
 from softdot.output import Product, staged_folder
 from solve.mechanisms import MECHANISMS
 from solve.solution.newton import NoEquilibriumError
@@ -95,7 +104,7 @@ def _fill(rig: Rig, options: Options, progress: Progress, folder: Path) -> dict[
     """Everything but verdict.json; returns the verdict."""
     from diagnose.inference.diagnose import diagnose, diagnose_and_score
     from softdot.commands.verdict_page import write_evidence
-    from softdot.numbers import installed_version
+    from softdot.console import installed_version
 
     report = _reporting(progress)
     seed = rig.bench.seed if options.seed is None else options.seed

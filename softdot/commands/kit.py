@@ -12,13 +12,13 @@ from export.build_sheet.pictures import draw_all
 from export.build_sheet.steps import steps
 from export.cad import write_3mf, write_step, write_stl
 from export.cut_files import write_cut_files
-from export.headless import ensure_rendering
 from export.printability import check_part, printer_profile
+from export.view import ensure_rendering
 from geometry.base import InputError
 from geometry.fabrication.kit import solid_kit
 from geometry.fabrication.part import FabricationPart
 from geometry.flat.pattern import FlatPattern, compensated
-from geometry.flat.patterns import flat_kit
+from geometry.flat.sheets import flat_kit
 from mesh.types import MeshingError
 from softdot.case import Case
 from softdot.config import Config, config_hash
@@ -29,13 +29,16 @@ from softdot.console import (
     Logged,
     Progress,
     complain,
+    installed_version,
+    json_text,
     log_file,
     only_the_summary_on_stdout,
+    plain,
     show,
     warn,
+    write_json,
 )
 from softdot.machine import named_when_missing
-from softdot.numbers import installed_version, json_text, plain, write_json
 from softdot.output import Product, staged_folder
 from softdot.tolerances.budget import UNFINISHED, BudgetOutcome, budget_of, failed
 from softdot.warnings import design_warnings

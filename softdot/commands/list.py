@@ -4,8 +4,7 @@ import sys
 from argparse import Namespace
 from typing import Any
 
-from softdot.console import GOOD
-from softdot.numbers import json_text
+from softdot.console import GOOD, json_text
 
 ABOUT = ("model", "source", "confidence")
 

@@ -115,8 +115,7 @@ def command(chosen: Namespace) -> int:
 
 def template_text(name: str) -> str:
     """A whole configuration file."""
-    from softdot.config.defaults import default_design
-    from softdot.config.toml import parse_toml
+    from softdot.config.toml import default_design, parse_toml
 
     text = files("softdot.templates").joinpath(f"{name}.toml").read_text("utf-8")
     own = parse_toml(text, f"{name}.toml")

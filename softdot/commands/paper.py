@@ -12,8 +12,18 @@ from typing import Any
 from export.page import page_environment
 from export.report import number
 from geometry.files import write_whole_text
-from softdot.console import GOOD, NOT_CONVERGED, Logged, Progress, complain, only_the_summary_on_stdout, show
-from softdot.numbers import installed_version, plain, write_json
+from softdot.console import (
+    GOOD,
+    NOT_CONVERGED,
+    Logged,
+    Progress,
+    complain,
+    installed_version,
+    only_the_summary_on_stdout,
+    plain,
+    show,
+    write_json,
+)
 from softdot.output import Product, staged_folder
 from softdot.paper.published import Published, inconsistencies, published
 from softdot.paper.section import Answer, Block, Cell, Figure, Heading, PaperTable, Section

@@ -10,16 +10,23 @@ from typing import Any
 import numpy as np
 
 from export.cad import write_3mf, write_step, write_stl
-from export.headless import ensure_rendering
 from export.printability import CriticalSize, Printability, draw_findings, printer_names, printer_profile
 from export.printability.check import check_on_printers
-from export.printability.surface import surface_of
-from export.view import INK, DrawnBody, View, frame, page, render, save
+from export.printability.measure import surface_of
+from export.view import INK, DrawnBody, View, ensure_rendering, frame, page, render, save
 from geometry.base import InputError
 from geometry.braille import QUANTITIES, QuantityName
-from softdot.console import GOOD, Logged, Progress, only_the_summary_on_stdout, show
+from softdot.console import (
+    GOOD,
+    Logged,
+    Progress,
+    installed_version,
+    only_the_summary_on_stdout,
+    plain,
+    show,
+    write_json,
+)
 from softdot.machine import named_when_missing
-from softdot.numbers import installed_version, plain, write_json
 from softdot.output import Product, staged_folder
 from softdot.printed_braille.request import BuiltPlate, PlateRequest, build_plate
 

@@ -25,9 +25,10 @@ from softdot.console import (
     complain,
     log_file,
     only_the_summary_on_stdout,
+    plain,
     show,
+    write_json,
 )
-from softdot.numbers import plain, write_json
 
 
 def command(chosen: Namespace) -> int:
@@ -160,7 +161,7 @@ def _tried(
 def _finished(request: Request, place: Path, records: Sequence[Mapping[str, Any]], reused: int) -> dict[str, Any]:
     """Count, draw and write."""
     from diagnose.prove.score import tally
-    from softdot.numbers import installed_version
+    from softdot.console import installed_version
     from softdot.proof import draw, rival_rates, text
     from softdot.sweeps.cluster import hardware
 

@@ -8,14 +8,14 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from export.headless import ensure_rendering
+from export.view import ensure_rendering
 from geometry.arrays import Floats
 from geometry.dot import DotShape
 from geometry.solids import Part
 from mesh.types import MeshingError
 from softdot.case import Case, OnStep
 from softdot.config import Config
-from softdot.config.defaults import told
+from softdot.config.toml import told
 from softdot.console import (
     GOOD,
     NOT_CONVERGED,
@@ -24,11 +24,12 @@ from softdot.console import (
     complain,
     lines_when_interactive,
     only_the_summary_on_stdout,
+    plain,
     show,
     warn,
+    write_json,
 )
 from softdot.machine import named_when_missing
-from softdot.numbers import plain, write_json
 from softdot.output import RUN, staged_folder
 from softdot.summary import heading, mesh_part, press_part, stopped_solver
 from softdot.warnings import design_warnings, result_warnings

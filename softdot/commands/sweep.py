@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from geometry.cache import check_folder
-from geometry.processes import release
+from geometry.files import release
 from softdot.config import Config, config_hash
 from softdot.console import (
     GOOD,
@@ -24,7 +24,7 @@ from softdot.console import (
     only_the_summary_on_stdout,
     show,
 )
-from softdot.sweeps import store
+from softdot.sweeps import points as store
 from softdot.sweeps.cluster import existing_cluster, hardware, local_cluster
 from softdot.sweeps.points import REFUSED, STATUSES, Record, failed, solve_all
 from softdot.sweeps.space import Point, Space, sampling_warnings
@@ -111,7 +111,7 @@ def _record(point: Point, records: Mapping[str, Record]) -> Record:
 
 def _heading(space: Space, ends: list[Record]) -> dict[str, Any]:
     """Format, design and how the points ended."""
-    from softdot.numbers import installed_version
+    from softdot.console import installed_version
 
     ended = Counter(record["status"] for record in ends)
     return {
@@ -129,8 +129,8 @@ def _heading(space: Space, ends: list[Record]) -> dict[str, Any]:
 
 def command(chosen: Namespace) -> int:
     """Sweep chosen.space into chosen.output; 0, or 3 when not one point could be solved, or 130. InputError."""
+    from softdot.sweeps.points import POINTS
     from softdot.sweeps.space import load_space
-    from softdot.sweeps.store import POINTS
 
     space = load_space(chosen.space, chosen.set)
     try:

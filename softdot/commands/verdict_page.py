@@ -31,7 +31,7 @@ from diagnose.verdict.words import Sentence, detected, separation_words
 from export.page import page_environment
 from geometry.files import write_whole_text
 from softdot.config.rig import OWN, RIG_FILE, Rig
-from softdot.numbers import installed_version
+from softdot.console import installed_version
 
 HERE = Path(__file__).parent
 MOST_RUNS = 4

@@ -12,13 +12,12 @@ from geometry.base import InputError
 from geometry.fabrication.parameters import Fabrication
 from geometry.parameters import Dot, Segment, Table
 from geometry.stack import layers
-from mesh.parameters import MeshOptions
-from softdot.config.defaults import completed, default_design, from_default, naming_the_flag, with_settings
+from mesh.build import MeshOptions
 from softdot.config.errors import refuse_absurd_numbers, sentence, without_round_off
-from softdot.config.toml import read_toml
+from softdot.config.toml import completed, default_design, from_default, naming_the_flag, read_toml, with_settings
 from solve.materials.parameters import AnyMaterial, Material, PiezoelectricFilm, find_material, library_tables
 from solve.mechanisms import Mechanism, refuse_repeated
-from solve.parameters import DEFAULT_INDENTATION_MM, Press, Readout
+from solve.model import DEFAULT_INDENTATION_MM, Press, Readout
 
 
 class Config(Table):

@@ -9,15 +9,14 @@ from typing import Any, TypeVar
 from pydantic import Field, ValidationError, model_validator
 
 from diagnose.signals.reading import read_recording
-from diagnose.signals.recording import Recording, Run
-from diagnose.signals.tables import RigTables, RunTable
+from diagnose.signals.recording import Recording, RigTables, Run, RunTable
 from geometry.base import InputError
 from geometry.parameters import Table
 from softdot.config import Config, config_from, with_built_in_constants
 from softdot.config.errors import refuse_absurd_numbers, sentence, without_round_off
 from softdot.config.toml import read_toml
 from solve.materials.parameters import AnyMaterial, Material, find_material
-from solve.parameters import Readout
+from solve.model import Readout
 
 RIG_FILE = "rig.toml"
 OWN = frozenset(RigTables.model_fields)

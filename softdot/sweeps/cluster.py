@@ -13,7 +13,7 @@ from typing import Any
 
 from geometry.base import InputError
 from geometry.cache import source_hash
-from geometry.processes import ONE_THREAD, scratch_folder
+from geometry.files import ONE_THREAD, scratch_folder
 from softdot.config import Config
 from softdot.console import Logged, Progress
 from softdot.outcome import outcome, outcome_key, remembered

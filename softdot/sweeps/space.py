@@ -16,9 +16,8 @@ from geometry.arrays import Floats
 from geometry.base import InputError
 from geometry.parameters import Finite, Table
 from softdot.config import Config, config_from
-from softdot.config.defaults import completed, naming_the_flag, with_settings
 from softdot.config.errors import sentence, shown
-from softdot.config.toml import parsed, read_toml, with_value
+from softdot.config.toml import completed, naming_the_flag, parsed, read_toml, with_settings, with_value
 
 MOST_POINTS = 20_000
 Count = Annotated[int, Field(ge=1, le=MOST_POINTS)]

@@ -12,7 +12,7 @@ from export.report import number
 from export.view import INK
 from geometry.base import InputError
 from geometry.files import whole_file, write_whole_text
-from softdot.numbers import plain
+from softdot.console import plain
 from softdot.sweeps.points import SOLVED, Record
 
 if TYPE_CHECKING:
@@ -73,7 +73,7 @@ def read_table(out: Path | str) -> "pa.Table":
     """The table in the folder of a complete sweep: .to_pylist() gives rows, .to_pandas() a frame. InputError."""
     from pyarrow import ArrowException, parquet
 
-    from softdot.sweeps.store import TABLE
+    from softdot.sweeps.points import TABLE
 
     path = Path(out) / TABLE
     try:

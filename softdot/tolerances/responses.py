@@ -16,8 +16,8 @@ from mesh.types import TetMesh
 from softdot.case import Case
 from softdot.config import Config, config_hash, input_hash
 from softdot.config.model import model_of
-from softdot.differentiate import press_with_derivatives, variations_of
-from softdot.numbers import plain
+from softdot.console import plain
+from softdot.outcome import press_with_derivatives, variations_of
 from softdot.summary import history
 from softdot.tolerances.tolerances import with_factors
 from solve.result import PressResult

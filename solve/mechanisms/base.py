@@ -9,8 +9,7 @@ from pydantic_core import PydanticCustomError
 
 from geometry.parameters import Finite, Table
 from solve.materials.parameters import Material
-from solve.model import Model
-from solve.parameters import Readout
+from solve.model import Model, Readout
 
 MEDIA = ("effector", "medium1", "medium2")
 BONDS = ("bond-effector-medium1", "bond-medium1-film", "bond-film-medium2", "bond-base")

@@ -10,10 +10,8 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from geometry.arrays import Floats
-from solve.model import Physics
-from solve.parameters import Press, Readout, Waveform
-from solve.readout.amplifier import amplify
-from solve.readout.charge import mixed_channels
+from solve.model import Physics, Press, Readout, Waveform
+from solve.readout.amplifier import amplify, mixed_channels
 from solve.readout.filters import SAMPLES
 from solve.result import PressResult
 from solve.solution.schedule import corners_s, duration_s, fraction

@@ -18,13 +18,12 @@ from geometry.arrays import Floats
 from geometry.dot import DotShape
 from geometry.parameters import Dot, Segment
 from mesh.types import TetMesh
-from solve.interfaces import open_interfaces
 from solve.materials.inelastic import Prony
 from solve.materials.parameters import Material, PiezoelectricFilm
-from solve.model import Model, Physics
-from solve.parameters import Press, Waveform
+from solve.model import Model, Physics, Press, Waveform
 from solve.press import press_segment, set_up
-from solve.reduced import store
+from solve.problem import open_interfaces
+from solve.reduced import model as store
 from solve.reduced.fit import FINER, fit
 from solve.reduced.model import Accuracy, ReducedModel, structure
 from solve.reduced.sampling import Frozen, Sample, SampledPress, Sampler

@@ -15,7 +15,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from geometry.arrays import Floats
-from solve.fem.term import History, Term
+from solve.fem.sparsity import History, Term
 from solve.solution.linear import LinearSolver
 from solve.system import State, System
 from solve.terms.springs import BondSprings

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from geometry.arrays import Floats
-from solve.fem.term import History, Term
+from solve.fem.sparsity import History, Term
 from solve.materials.inelastic import Memory, Prony, StressResponse
 from solve.press import Setup
 from solve.reduced.modes import StressMetric, held

@@ -12,7 +12,7 @@ import numpy as np
 from geometry.arrays import Bools, Floats
 from geometry.base import InputError
 from geometry.files import read_text, regular_file
-from solve.parameters import Press, Waveform
+from solve.model import Press, Waveform
 from solve.system import Load
 
 LARGEST_S = 1e12

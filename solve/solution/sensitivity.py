@@ -24,9 +24,9 @@ from geometry.dot import resolve_dot
 from mesh.interfaces import morphed
 from mesh.types import TetMesh
 from solve.fem.sparsity import Tangent
-from solve.interfaces import OpenInterface, open_interfaces
 from solve.model import Model
 from solve.press import Setup, set_up
+from solve.problem import OpenInterface, open_interfaces
 from solve.readout.amplifier import amplify
 from solve.recorder import Recorder
 from solve.result import PressResult, Trace

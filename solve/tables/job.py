@@ -1,21 +1,27 @@
 """Presses of the 3D model that fill the tables: down, and from several depths up again.
 
 The baseline's table with what its layers remember, kept on disk by the reduced model itself.
+
+Tables kept on disk beside the meshes, under a hash of all that they depend on.
 """
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from itertools import pairwise
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from geometry.arrays import Floats
+from geometry.cache import data_hash, folder, read_arrays, source_hash, write_arrays
 from geometry.dot import resolve_dot
-from mesh.types import TetMesh
-from solve.interfaces import open_interfaces
-from solve.model import Model
-from solve.parameters import Press
+from mesh.types import TetMesh, mesh_hash
+from solve.model import Model, Press
 from solve.press import Setup, set_up
+from solve.problem import open_interfaces
 from solve.reduced.build import build_reduced
 from solve.reduced.model import ReducedModel
 from solve.solution.linear import LinearSolver
@@ -36,7 +42,7 @@ class Job:
     back : numbers of the shares from which the dot also returns; seen on the way at RETURN of that depth.
     parts : steps to each share: slip takes several, and what guides it. guides : whether its equilibria are kept for
     others.
-    guided_by : name in solve.tables.store of such a press, to start from; "" for none.
+    guided_by : name in solve.tables.job of such a press, to start from; "" for none.
     """
 
     model: Model
@@ -135,3 +141,46 @@ class Reduction:
         """Make it, so that it can be recalled elsewhere."""
         self.made()
         return np.zeros(0)
+
+
+def key(job: Job) -> str:
+    """Hash of model, mesh, depth, places, and the source of all that presses."""
+    asked = repr((job.depth_mm, job.shares, job.back, job.parts))
+    return data_hash([source_hash(Job.__module__), _told(job.model), mesh_hash(job.tet_mesh), asked])
+
+
+def _told(model: Model) -> dict[str, Any]:
+    """What of the model a press depends on."""
+    return {
+        "segment": model.segment.model_dump(mode="json"),
+        "dot": model.dot.model_dump(mode="json", exclude={"gap_mm"}),
+        "materials": {name: material.model_dump(mode="json") for name, material in model.materials.items()},
+        "physics": repr(model.physics),
+    }
+
+
+def recall(name: str) -> Floats | None:
+    """The table kept under a name, None where there is none or its file is damaged."""
+    return read_arrays(_path(name), lambda data: np.asarray(data["table"], dtype=np.float64))
+
+
+def keep(name: str, table: Floats) -> None:
+    """Write the file whole; a cache that cannot be written is no cache."""
+    with suppress(OSError):
+        write_arrays(_path(name), {"table": table})
+
+
+@lru_cache(maxsize=2)
+def equilibria(name: str) -> Equilibria | None:
+    """Those kept under the name of a press, None where there are none."""
+    return read_arrays(_path(name, "equilibria"), lambda data: Equilibria(**{key: data[key] for key in data}))
+
+
+def keep_equilibria(name: str, found: Equilibria) -> None:
+    """As keep."""
+    with suppress(OSError):
+        write_arrays(_path(name, "equilibria"), vars(found))
+
+
+def _path(name: str, what: str = "table") -> Path:
+    return folder() / f"press-{what}-{name}.npz"

@@ -10,10 +10,9 @@ import numpy as np
 from geometry.arrays import Floats
 from geometry.dot import DotShape, resolve_dot
 from geometry.parameters import Segment
-from mesh.build import build
+from mesh.build import MeshOptions, build
 from mesh.interfaces import morphed
 from mesh.outline import outline
-from mesh.parameters import MeshOptions
 from mesh.types import TET_EDGES, MeshingError, TetMesh
 from solve.model import Model
 

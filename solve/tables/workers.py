@@ -19,9 +19,9 @@ import numpy as np
 
 from geometry.arrays import Floats
 from geometry.base import Report
-from geometry.processes import ONE_THREAD, end_with_parent
+from geometry.files import ONE_THREAD, end_with_parent
 from solve.solution.newton import NoEquilibriumError
-from solve.tables import store
+from solve.tables import job as store
 from solve.tables.job import RETURN, Job, Reduction
 
 

@@ -20,8 +20,8 @@ import numpy as np
 
 from geometry.arrays import Bools, Floats, Ints
 from geometry.dot import DotShape
-from solve.fem.quadrature import linear, quadratic, triangle
-from solve.fem.term import Block, History, Term, Trial, Unknowns
+from solve.fem.kinematics import linear, quadratic, triangle
+from solve.fem.sparsity import Block, History, Term, Trial, Unknowns
 
 
 @dataclass(frozen=True)

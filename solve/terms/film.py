@@ -7,9 +7,8 @@ import numpy as np
 
 from geometry.arrays import Floats, Ints
 from solve.fem.kernels import film_solid
-from solve.fem.kinematics import deformation_gradient, green_lagrange
-from solve.fem.quadrature import physical_gradients, quadratic, tetrahedron
-from solve.fem.term import Block, History, Term, Trial
+from solve.fem.kinematics import deformation_gradient, green_lagrange, physical_gradients, quadratic, tetrahedron
+from solve.fem.sparsity import Block, History, Term, Trial
 from solve.materials.film import FilmLaw
 from solve.materials.inelastic import Inelastic, Prony, StressResponse
 from solve.terms.solid import refuse_inversion

@@ -29,7 +29,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from geometry.arrays import Floats, Ints
-from solve.fem.term import Block, History, Term, Trial
+from solve.fem.sparsity import Block, History, Term, Trial
 
 FADE = 0.5  # spectral radius at infinite frequency
 ALPHA = (FADE - 1.0) / (FADE + 1.0)

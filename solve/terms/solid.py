@@ -10,9 +10,16 @@ import numpy as np
 
 from geometry.arrays import Floats, Ints
 from solve.fem.kernels import compressible_solid, mixed_solid
-from solve.fem.kinematics import cauchy_green, deformation_gradient, smallest_jacobian
-from solve.fem.quadrature import linear, physical_gradients, quadratic, tetrahedron
-from solve.fem.term import Block, History, Term, Trial
+from solve.fem.kinematics import (
+    cauchy_green,
+    deformation_gradient,
+    linear,
+    physical_gradients,
+    quadratic,
+    smallest_jacobian,
+    tetrahedron,
+)
+from solve.fem.sparsity import Block, History, Term, Trial
 from solve.materials.inelastic import Inelastic, Memory, Prony, StressResponse
 from solve.materials.laws import MediumLaw
 

@@ -17,8 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from geometry.arrays import Floats, Ints
-from solve.fem.quadrature import triangle
-from solve.fem.term import Block, History, Term, Trial
+from solve.fem.kinematics import triangle
+from solve.fem.sparsity import Block, History, Term, Trial
 from solve.materials.inelastic import Prony, StressResponse
 from solve.terms.contact import SHAPES, facet_area
 from solve.terms.jump import Jump, MatchedFacets, matched_facets

@@ -10,7 +10,7 @@ from geometry.cache import recall, remember
 from mesh.build import remembered
 from mesh.types import LinearMesh
 from softdot.config import config_from
-from softdot.sweeps import store as points
+from softdot.sweeps import points
 from solve.solution.checkpoint import read_archive, write_archive
 
 DAMAGED = 1000

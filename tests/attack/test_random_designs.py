@@ -16,7 +16,7 @@ import pytest
 
 from geometry.base import InputError
 from softdot.config import Config, config_from
-from softdot.numbers import plain
+from softdot.console import plain
 from softdot.summary import mesh_part, press_part
 from softdot.warnings import design_warnings, held_rim_warnings, result_warnings
 from solve.mechanisms import MECHANISMS

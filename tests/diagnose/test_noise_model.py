@@ -6,8 +6,7 @@ from scipy.linalg import toeplitz
 from scipy.stats import chi2, multivariate_normal
 
 from diagnose.noise.autoregression import Autoregression
-from diagnose.noise.lines import Line, basis, find_lines, quantisation_step
-from diagnose.noise.model import NoiseModel
+from diagnose.noise.model import Line, NoiseModel, basis, find_lines, quantisation_step
 
 AR = Autoregression(np.array([1.2, -0.5, 0.1]), 0.04)
 HUM = Line(50.0, 0.7)

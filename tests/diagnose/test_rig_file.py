@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diagnose.signals.tables import NUISANCES
+from diagnose.signals.recording import NUISANCES
 from softdot.config.rig import load_rig
 from tests.diagnose.rigs import COUPON, HEAD, RUN, SEGMENT, csv_text, samples, write_rig
 

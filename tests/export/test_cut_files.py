@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 from svgpathtools import parse_path
 
-from export.cut_files import draw_cut_file, write_cut_files
-from export.cut_files.drawing import STYLES
+from export.cut_files import STYLES, draw_cut_file, write_cut_files
 from geometry.fabrication.parameters import Fabrication
-from geometry.flat.patterns import flat_kit
+from geometry.flat.sheets import flat_kit
 from geometry.parameters import Film, Medium, Segment
 
 SVG = "{http://www.w3.org/2000/svg}"

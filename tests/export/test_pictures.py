@@ -10,11 +10,9 @@ from matplotlib.colors import to_rgb
 from PIL import Image
 from pressed_box import box_dot, box_mesh, made_up_press
 
-from export.cutaway import draw_von_mises, open_scene
-from export.film_map import film_map
-from export.headless import ADVICE
+from export.cutaway import draw_von_mises, film_map, open_scene
 from export.pictures import FILES, write_pictures
-from export.view import PICTURE_SIZE, View
+from export.view import ADVICE, PICTURE_SIZE, View
 from geometry.dot import DotShape
 from geometry.solids import PART_COLOURS
 from mesh.types import TetMesh
@@ -99,7 +97,7 @@ def test_missing_opengl_is_one_sentence_not_a_crash() -> None:
     """A window class that this machine cannot open stands for a missing library."""
     code = (
         "import subprocess; from types import SimpleNamespace\n"
-        "from export import headless\n"
+        "from export import view as headless\n"
         "headless.subprocess.run = lambda *a, **k: SimpleNamespace(returncode=-11, stdout=b'')\n"
         "headless.ensure_rendering()"
     )

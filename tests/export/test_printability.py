@@ -11,13 +11,11 @@ from build123d import Box, Cylinder, Pos, Rot, Sphere
 from matplotlib.image import imread
 
 from export.printability import CriticalSize, check_part, draw_findings, printer_names, printer_profile
-from export.printability.check import check_on_printers
-from export.printability.measure import measure
-from export.printability.picture import RING_IN, VIEWS, buried_mm, clearest_view
-from export.printability.surface import surface_of
+from export.printability.check import RING_IN, VIEWS, buried_mm, check_on_printers, clearest_view
+from export.printability.measure import measure, surface_of
 from export.view import frame, page
 from geometry.base import InputError
-from geometry.fabrication.printers import LimitName
+from geometry.fabrication.part import LimitName
 
 FDM, SLA = printer_profile("fdm"), printer_profile("sla")
 UP = (0.0, 0.0, 1.0)

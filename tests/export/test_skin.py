@@ -4,8 +4,20 @@ import numpy as np
 import pytest
 from pressed_box import HEIGHT_MM, LENGTH_MM
 
-from export.nodal_fields import largest_principal, split_nodes, spread, tetra_pattern, triangle_pattern
-from export.skin import NodalSteps, Skin, film_top, nearby_plane, nodal_steps, outer_skin, section
+from export.skin import (
+    NodalSteps,
+    Skin,
+    film_top,
+    largest_principal,
+    nearby_plane,
+    nodal_steps,
+    outer_skin,
+    section,
+    split_nodes,
+    spread,
+    tetra_pattern,
+    triangle_pattern,
+)
 from mesh.types import TetMesh
 from solve.result import PressResult
 

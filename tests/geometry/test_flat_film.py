@@ -8,7 +8,7 @@ from geometry.base import InputError
 from geometry.fabrication.parameters import Fabrication
 from geometry.flat.electrodes import stray_area_mm2
 from geometry.flat.pattern import Label, gap_mm, shared_area_mm2
-from geometry.flat.patterns import flat_kit
+from geometry.flat.sheets import flat_kit
 from geometry.parameters import Electrode, Film
 
 EXITS = ("+x", "-x", "+y", "-y")

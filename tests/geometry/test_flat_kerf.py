@@ -17,7 +17,7 @@ from geometry.flat.pattern import (
     shared_area_mm2,
     turned,
 )
-from geometry.flat.patterns import flat_kit
+from geometry.flat.sheets import flat_kit
 from geometry.parameters import Effector
 
 SQUARE = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))

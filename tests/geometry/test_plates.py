@@ -7,7 +7,7 @@ import pytest
 from geometry.base import InputError
 from geometry.braille import standard_names
 from geometry.plates import braille_sizes, height_series, indenter_tip, text_plate
-from geometry.plates.text_plate import lay_out
+from geometry.plates.plate import lay_out
 
 BRAILLE = "⠃⠗⠁⠊⠇⠇⠑"
 MARBURG = braille_sizes("marburg-medium")

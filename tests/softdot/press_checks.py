@@ -12,11 +12,10 @@ import numpy as np
 from softdot.case import Case
 from softdot.config import config_from
 from solve import press as press_module
-from solve.fem.kinematics import deformation_gradient
-from solve.fem.quadrature import linear, quadratic, tetrahedron
+from solve.fem.kinematics import deformation_gradient, linear, quadratic, tetrahedron
 from solve.materials.isochoric import from_voigt
 from solve.terms.contact import HATS, SHAPES, facet_area
-from solve.terms.delamination import UnilateralInterface
+from solve.terms.jump import UnilateralInterface
 
 SMALL = 1e-6  # of the largest force so far; Newton stops at 1e-9
 SMALLEST_FORCE = 1e-3  # solver units; of less than this round-off leaves too much to judge

@@ -6,7 +6,7 @@ import pytest
 import softdot
 from geometry.base import InputError
 from softdot.config import config_from
-from softdot.differentiate import derivatives, value_of
+from softdot.outcome import derivatives, value_of
 
 TABLES = {
     "segment": {

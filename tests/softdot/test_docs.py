@@ -3,6 +3,7 @@
 import json
 import re
 import tomllib
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
@@ -12,20 +13,19 @@ from pydantic import TypeAdapter
 import docs.make_configuration as maker
 import geometry.fabrication.parameters
 import geometry.parameters
-import mesh.parameters
 import solve.materials.parameters
 import solve.mechanisms
-import solve.parameters
+import solve.model
 from softdot.commands.new import config_schema
 from softdot.config import Config, config_from
-from softdot.config.defaults import completed
+from softdot.config.toml import completed
 from softdot.summary import heading, mesh_part, press_part
 from tests.softdot.stand_ins import result_of
 
 ROOT = Path(__file__).parents[2]
 DOCUMENTS = sorted([*(ROOT / "docs").glob("*.md"), *ROOT.glob("*.md"), ROOT / "examples" / "README.md"])
 HOMES = (
-    geometry.parameters, geometry.fabrication.parameters, mesh.parameters, solve.parameters, solve.mechanisms,
+    geometry.parameters, geometry.fabrication.parameters, import_module("mesh.build"), solve.model, solve.mechanisms,
     solve.materials.parameters,
 )  # fmt: skip
 EXAMPLES = tomllib.loads((ROOT / "docs" / "configuration_examples.toml").read_text("utf-8"))

@@ -14,14 +14,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mesh.parameters import MeshOptions
+from mesh.build import MeshOptions
 from softdot.case import Case
 from softdot.commands.run import run_config
 from softdot.config import Config, config_hash, load_config
 from softdot.config.model import model_of
 from softdot.summary import history
 from solve.mechanisms import MECHANISMS
-from solve.parameters import Readout
+from solve.model import Readout
 from solve.readout.recording import record
 from solve.result import PressResult
 

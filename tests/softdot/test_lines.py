@@ -37,7 +37,7 @@ def test_quiet_tells_nothing_and_json_alone_is_on_stdout(tmp_path):
 
 @pytest.mark.parametrize("options", [[], ["--json"], ["--quiet"], ["--json", "--quiet"]])
 def test_warnings_are_on_stderr_whatever_else_is_asked_for(options, monkeypatch, tmp_path, capfd):
-    monkeypatch.setattr(run, "run_config", lambda *_: SOLVED)
+    monkeypatch.setattr(run, "run_case", lambda *_: SOLVED)
     assert main(["run", "-o", str(tmp_path / "out"), *options]) == 0
     assert capfd.readouterr().err == "softdot: warning: segment.held_layers is not what you think\n"
 

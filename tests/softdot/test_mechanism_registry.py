@@ -17,8 +17,7 @@ from geometry.parameters import NonNegative
 from softdot.commands import diagnose as command
 from softdot.commands.run import run_config
 from softdot.config import config_from
-from softdot.differentiate import derivatives
-from softdot.outcome import outcome
+from softdot.outcome import derivatives, outcome
 from solve.mechanisms import MECHANISMS, register
 from solve.mechanisms.base import MechanismType, Parameters, Traits, with_physics
 from solve.readout.stages import INPUT

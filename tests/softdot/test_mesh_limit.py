@@ -4,8 +4,7 @@ import pytest
 
 from geometry.base import InputError
 from geometry.dot import resolve_dot
-from mesh.build import build
-from mesh.parameters import MeshOptions
+from mesh.build import MeshOptions, build
 from softdot.config import load_config
 from softdot.cost import expected_tetrahedra, refuse_huge_mesh
 

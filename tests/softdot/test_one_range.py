@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from export import film_map
-from export.nodal_fields import largest_principal
+from export import cutaway as film_map
+from export.skin import largest_principal
 from export.viewer_data import viewer_data
 from export.vtu import write_results
 from geometry.parameters import Film, Medium, Segment
 from softdot.summary import film
-from solve.fields import film_peak
+from solve.result import film_peak
 from tests.export.pressed_box import box_dot, box_mesh, made_up_press
 
 SEGMENT = Segment(

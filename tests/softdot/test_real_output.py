@@ -13,10 +13,10 @@ from PIL import Image
 
 from geometry.assembly import build_parts
 from geometry.dot import resolve_dot
-from mesh.parameters import MeshOptions
+from mesh.build import MeshOptions
 from softdot.commands.run import run_config
 from softdot.config import Config, load_config
-from solve.parameters import Press
+from solve.model import Press
 
 DEPTH_MM, LOAD_STEPS = 0.2, 2
 SCRIPT = Path(__file__).with_name("paraview_real_output.py")

@@ -6,9 +6,9 @@ import json
 import numpy as np
 import pytest
 
-from softdot.numbers import json_text
+from softdot.console import json_text
 from softdot.summary import history, press_part
-from solve.parameters import Readout
+from solve.model import Readout
 from tests.softdot.stand_ins import result_of
 
 LAYERS = {"medium1": {"thickness_mm": 0.5}, "film": {"thickness_um": 28}, "medium2": {"thickness_mm": 2}}

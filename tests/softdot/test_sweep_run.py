@@ -10,7 +10,8 @@ from geometry.base import InputError
 from softdot import outcome as outcome_module
 from softdot.cli import main
 from softdot.commands import sweep as run_module
-from softdot.sweeps import read_table, run_sweep, space_from, store
+from softdot.sweeps import points as store
+from softdot.sweeps import read_table, run_sweep, space_from
 from softdot.sweeps.points import CRASHED, LOST, NOT_CONVERGED, REFUSED, failed, solve_point
 from softdot.sweeps.table import write_table
 from tests.softdot.complaints import complaints
@@ -290,7 +291,7 @@ def test_a_sweep_is_a_csv_table_a_picture_and_a_page_too(presses, tmp_path, out)
 
 @pytest.mark.usefixtures("presses")
 def test_a_second_sweep_into_a_folder_is_refused_and_the_first_keeps_its_file(tmp_path, out):
-    from geometry.processes import hold, release
+    from geometry.files import hold, release
 
     assert sweep(tmp_path, out, depths(0.1)) == 0
     half = out / "points" / ".half.json.part"

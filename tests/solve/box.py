@@ -8,7 +8,7 @@ from scipy.sparse.linalg import spsolve
 
 from geometry.arrays import Floats, Ints
 from solve.fem.kernels import scatter
-from solve.fem.quadrature import TET_EDGES
+from solve.fem.kinematics import TET_EDGES
 from solve.fem.sparsity import build_pattern
 from solve.materials.laws import MediumLaw
 from solve.terms.solid import SolidRegion, solid_region

@@ -5,8 +5,7 @@ import numpy as np
 from geometry.dot import DotShape
 from geometry.parameters import Effector, Film, Medium, Segment
 from geometry.stack import layers
-from mesh.build import build
-from mesh.parameters import MeshOptions
+from mesh.build import MeshOptions, build
 from solve.materials.parameters import NeoHookean, PiezoelectricFilm
 
 COARSE = MeshOptions(element_size_mm=0.9, contact_element_size_mm=0.45, mesher="layered")

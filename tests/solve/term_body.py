@@ -12,8 +12,7 @@ from geometry.arrays import Bools, Floats, Ints
 from mesh.layered import twins
 from mesh.types import TetMesh
 from solve.fem.kernels import scatter
-from solve.fem.sparsity import build_pattern
-from solve.fem.term import Term, Trial
+from solve.fem.sparsity import Term, Trial, build_pattern
 from solve.materials.laws import MediumLaw
 from solve.terms.solid import solid_region
 from tests.verification.lattice import grid

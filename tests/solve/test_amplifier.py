@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import butter, lsim
 
-from solve.model import Physics
-from solve.parameters import Readout
+from solve.model import Physics, Readout
 from solve.readout.amplifier import amplify
 from solve.readout.filters import Filter
 

@@ -5,8 +5,7 @@ import pytest
 
 import solve.solution.checkpoint
 from solve.materials.inelastic import Prony
-from solve.model import Physics
-from solve.parameters import Press, Waveform
+from solve.model import Physics, Press, Waveform
 from solve.solution.checkpoint import Checkpoint, read_archive, write_archive
 from tests.pressing import press_segment
 from tests.solve.segments import cap, coarse_mesh, materials, segment

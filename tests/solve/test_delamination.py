@@ -5,9 +5,9 @@ import pytest
 
 from geometry.base import InputError
 from mesh.interfaces import interface_facets, split_interface
-from solve.interfaces import delaminated_facets
 from solve.materials.laws import InvariantLaw
-from solve.terms.delamination import opening_nodes, unilateral_interface
+from solve.problem import delaminated_facets
+from solve.terms.jump import opening_nodes, unilateral_interface
 from tests.solve.term_body import TermBody, layers, tangent_error
 
 RUBBER = InvariantLaw(0.5, 0.0, 0.0, 0.0, 20.0)

@@ -10,10 +10,9 @@ from geometry.checks import check_pushed_dot
 from geometry.dot import DotShape
 from geometry.parameters import Dot, Electrode, Film, Medium, Segment
 from geometry.stack import layers
-from mesh.build import build
-from mesh.parameters import MeshOptions
+from mesh.build import MeshOptions, build
 from solve.materials.parameters import Linear, NeoHookean, PiezoelectricFilm
-from solve.parameters import Press
+from solve.model import Press
 from solve.solution import march as marching
 from solve.solution import newton
 from tests.pressing import press_segment

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from geometry.parameters import Film, Medium, Segment
-from mesh.parameters import MeshOptions
+from mesh.build import MeshOptions
 from mesh.types import TetMesh
-from solve.fields import RIM_THICKNESSES, film_columns, film_peak
-from solve.parameters import Press
+from solve.model import Press
+from solve.result import RIM_THICKNESSES, film_columns, film_peak
 from tests.export.pressed_box import box_mesh, made_up_press
 from tests.pressing import press_segment
 from tests.solve import segments

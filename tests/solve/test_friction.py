@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from geometry.dot import DotShape
-from solve.fem.term import Trial, Unknowns
+from solve.fem.sparsity import Trial, Unknowns
 from solve.terms.contact import RigidDot, contact_facets
 from solve.terms.friction import FrictionalContact
 

@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import brentq
 
 from solve.fem.kernels import compressible_solid
-from solve.fem.quadrature import physical_gradients, quadratic, tetrahedron
+from solve.fem.kinematics import physical_gradients, quadratic, tetrahedron
 from solve.materials.isochoric import from_voigt
 from solve.materials.principal_stretches import HyperfoamLaw
 from tests.solve.box import box

@@ -8,10 +8,9 @@ import pytest
 import solve.solution.near
 from geometry.parameters import Dot
 from mesh.types import TetMesh
-from solve.interfaces import open_interfaces
-from solve.model import BondLine, Model, Physics
-from solve.parameters import Press
+from solve.model import BondLine, Model, Physics, Press
 from solve.press import Setup, set_up
+from solve.problem import open_interfaces
 from solve.solution.linear import LinearSolver
 from solve.solution.march import rest_state
 from solve.solution.near import Course, Equilibria, Found, combined, reach

@@ -7,8 +7,7 @@ import pytest
 from pydantic import ValidationError
 
 from geometry.base import InputError
-from solve.model import Physics
-from solve.parameters import Press, Readout, Waveform
+from solve.model import Physics, Press, Readout, Waveform
 from solve.readout.amplifier import leaky_integral
 from solve.readout.recording import readout_voltage
 from solve.readout.stages import Saturation

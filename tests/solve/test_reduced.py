@@ -11,9 +11,8 @@ import numpy as np
 import pytest
 
 from solve.materials.inelastic import Prony
-from solve.model import Physics
-from solve.parameters import Readout
-from solve.reduced import store
+from solve.model import Physics, Readout
+from solve.reduced import model as store
 from solve.reduced.fit import CELLS, ResponseTable
 from solve.reduced.model import Accuracy, ReducedModel
 
@@ -126,6 +125,17 @@ def test_heat_and_touch_add_their_charge():
     answer = solid().respond(time, 0.4 * time, Physics(pyroelectric=heat, contact_charge_pC=5.0))
     expected = 0.4e-9 * time + 30e-6 * 1e-4 * 0.05 * -np.expm1(-time / 0.4) + 5e-12 * (time > 0.0)
     np.testing.assert_allclose(answer.charge_C[2:], expected[2:], rtol=1e-9)
+
+
+def test_heat_begins_with_the_touch_and_not_with_the_first_sample():
+    """The film cannot know that it will be touched: time zero is the first touch, as in the solver."""
+    time = np.linspace(-1.0, 1.0, 201)
+    heat = Physics(pyroelectric=replace(Physics().pyroelectric, temperature_step_K=0.05, time_constant_s=0.4))
+    depth = 0.4 * time  # clear of the segment before
+    added = solid().respond(time, depth, heat).charge_C - solid().respond(time, depth, Physics()).charge_C
+    assert (added[time <= 0.0] == 0.0).all()
+    later = time > 0.0
+    np.testing.assert_allclose(added[later], 30e-6 * 1e-4 * 0.05 * -np.expm1(-time[later] / 0.4), rtol=1e-6)
 
 
 TIME = np.linspace(0.0, 1.0, 11)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from solve.parameters import Press, Waveform
+from solve.model import Press, Waveform
 from solve.solution.schedule import Target, load_between, schedule
 from solve.system import Load
 

@@ -8,11 +8,9 @@ import pytest
 import solve.solution.march
 from geometry.dot import resolve_dot
 from geometry.parameters import Dot
-from mesh.build import build
-from mesh.parameters import MeshOptions
+from mesh.build import MeshOptions, build
 from solve.mechanisms import Mechanism, with_mechanisms
-from solve.model import Model
-from solve.parameters import Press, Waveform
+from solve.model import Model, Press, Waveform
 from solve.solution.sensitivity import Variation, press_with_sensitivities
 from tests.solve.segments import materials, segment
 

@@ -16,9 +16,9 @@ import solve.solution.march as marching
 from solve.fem.sparsity import Tangent
 from solve.recorder import doubtful_results
 from solve.solution.linear import LinearSolver
+from solve.solution.march import snapped
 from solve.solution.newton import NoEquilibriumError
 from solve.solution.schedule import Target
-from solve.solution.snap import snapped
 from solve.system import Evaluation, Load, State, System
 from solve.terms.solid import InvertedElementError
 

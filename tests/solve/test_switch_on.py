@@ -8,8 +8,7 @@ import pytest
 from geometry.parameters import Dot
 from solve.materials.parameters import Hyperfoam, MooneyRivlin, Ogden, Yeoh
 from solve.mechanisms import Mechanism, with_mechanisms
-from solve.model import Model
-from solve.parameters import Readout
+from solve.model import Model, Readout
 from solve.readout.amplifier import amplify
 from tests.solve.segments import materials, segment
 

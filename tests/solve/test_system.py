@@ -5,9 +5,8 @@ import pytest
 
 import solve.solution.newton
 from geometry.parameters import Dot, Film
-from mesh.parameters import MeshOptions
-from solve.model import Model, Physics
-from solve.parameters import Press
+from mesh.build import MeshOptions
+from solve.model import Model, Physics, Press
 from solve.press import set_up
 from solve.problem import build_system
 from solve.solution.linear import LinearSolver

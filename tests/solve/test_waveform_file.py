@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from geometry.base import InputError
-from solve.parameters import Waveform
+from solve.model import Waveform
 from solve.solution.schedule import duration_s, fraction
 
 GOOD = "time_s,fraction\n0,0\n1,0.5\n2,1\n"

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from solve.fem.term import Trial
+from solve.fem.sparsity import Trial
 
 
 def trial(displacement, x=(), time_step=1.0, **others) -> Trial:

@@ -11,8 +11,7 @@ import numpy as np
 
 from geometry.arrays import Floats, Ints
 from solve.fem.kernels import scatter
-from solve.fem.sparsity import Tangent, build_pattern
-from solve.fem.term import Term, Trial
+from solve.fem.sparsity import Tangent, Term, Trial, build_pattern
 from solve.solution.linear import LinearSolver
 from solve.terms.contact import ContactFacets, RigidDot, contact_facets
 from solve.terms.solid import solid_region

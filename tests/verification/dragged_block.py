@@ -9,7 +9,7 @@ from scipy.sparse.linalg import splu
 
 from geometry.arrays import Floats
 from geometry.dot import DotShape
-from solve.fem.term import Term, Trial, Unknowns
+from solve.fem.sparsity import Term, Trial, Unknowns
 from solve.materials.laws import MediumLaw
 from solve.terms.contact import ContactFacets, RigidDot, contact_facets
 from solve.terms.friction import FrictionalContact

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.special import erf
 
 from geometry.arrays import Floats
-from solve.fem.quadrature import linear, tetrahedron
+from solve.fem.kinematics import linear, tetrahedron
 from solve.materials.film import FilmPlasticity
 from solve.materials.inelastic import Prony, Softening
 from solve.press import Setup

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from geometry.arrays import Bools, Floats, Ints
-from solve.fem.quadrature import TET_EDGES
+from solve.fem.kinematics import TET_EDGES
 from tests.solve.box import KUHN
 
 FACES = np.array([[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 3, 2, 7, 9, 6]])  # outward

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from geometry.arrays import Floats, Ints
-from solve.fem.term import Term
+from solve.fem.sparsity import Term
 from solve.terms.contact import SHAPES, SLOPES, WEIGHTS
 
 

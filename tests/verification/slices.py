@@ -8,11 +8,10 @@ from geometry.dot import DotShape
 from geometry.parameters import Dot, Segment
 from geometry.stack import layers
 from mesh.types import TetMesh
-from solve.interfaces import open_interfaces
 from solve.materials.parameters import Hyperfoam, PiezoelectricFilm
-from solve.model import Model, Physics
-from solve.parameters import Press, Readout, Waveform
+from solve.model import Model, Physics, Press, Readout, Waveform
 from solve.press import Setup, set_up
+from solve.problem import open_interfaces
 from solve.result import PressResult
 from tests.pressing import press_segment
 from tests.solve.segments import coarse_mesh, materials, ridge, segment

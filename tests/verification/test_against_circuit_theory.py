@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solve.fem.term import Trial
+from solve.fem.sparsity import Trial
 from solve.materials.film import VACUUM_PERMITTIVITY, film_law
 from solve.materials.parameters import PiezoelectricFilm
 from solve.terms.film import film_region

@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from mesh.parameters import MeshOptions
-from solve.parameters import Press
+from mesh.build import MeshOptions
+from solve.model import Press
 from tests.pressing import press_segment
 from tests.solve.segments import cap, materials, segment
 from tests.verification.quarter import mirrored, quarter, save_case

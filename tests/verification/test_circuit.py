@@ -6,8 +6,7 @@ Two-way coupling: the voltage stiffens the film, so that it differs from the pos
 import numpy as np
 import pytest
 
-from solve.model import Physics, Pyroelectric
-from solve.parameters import Readout
+from solve.model import Physics, Pyroelectric, Readout
 from solve.readout.recording import record
 from tests.verification.slices import charge, force, pressed, waved
 

@@ -4,9 +4,8 @@ import functools
 
 import pytest
 
-from mesh.build import build
-from mesh.parameters import MeshOptions
-from solve.parameters import Press
+from mesh.build import MeshOptions, build
+from solve.model import Press
 from tests.pressing import press_segment
 from tests.solve.segments import cap, materials, segment
 

@@ -10,9 +10,8 @@ from scipy.optimize import brentq
 from scipy.sparse.linalg import splu
 
 from geometry.dot import DotShape
-from solve.fem.kinematics import deformation_gradient
-from solve.fem.quadrature import linear, tetrahedron
-from solve.fem.term import Trial, Unknowns
+from solve.fem.kinematics import deformation_gradient, linear, tetrahedron
+from solve.fem.sparsity import Trial, Unknowns
 from solve.materials.laws import InvariantLaw, bulk_modulus
 from solve.terms.contact import ContactFacets, RigidDot, contact_facets
 from solve.terms.friction import FrictionalContact

@@ -11,12 +11,12 @@ from scipy.spatial import cKDTree
 from skfem import Basis, ElementTetP2, FacetBasis, Functional, Mesh
 
 from geometry.parameters import Effector, Film
+from mesh.build import MeshOptions
 from mesh.files.formats import write_mesh
-from mesh.parameters import MeshOptions
 from mesh.quality import volumes
 from softdot.case import Case
 from softdot.config import config_from
-from softdot.config.defaults import completed
+from softdot.config.toml import completed
 from softdot.outcome import solved
 from solve.materials.laws import LinearLaw, bulk_modulus
 from tests.solve.segments import cap, coarse_mesh, segment

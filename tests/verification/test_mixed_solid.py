@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from solve.fem.kernels import mixed_solid
-from solve.fem.quadrature import linear, physical_gradients, quadratic, tetrahedron
+from solve.fem.kinematics import linear, physical_gradients, quadratic, tetrahedron
 from solve.materials.isochoric import from_voigt
 from solve.materials.laws import InvariantLaw, LinearLaw
 from tests.solve.box import box, mixed_body

@@ -6,8 +6,7 @@ import pytest
 from geometry.dot import resolve_dot
 from geometry.parameters import Dot
 from solve.mechanisms import Mechanism, with_mechanisms
-from solve.model import Model
-from solve.parameters import Press, Readout
+from solve.model import Model, Press, Readout
 from solve.readout.recording import readout_voltage
 from tests.pressing import press_segment
 from tests.solve.segments import COARSE, coarse_mesh, materials

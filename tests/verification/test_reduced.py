@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from solve.materials.inelastic import Prony
-from solve.model import BondLine, Physics
-from solve.parameters import Press, Readout, Waveform
+from solve.model import BondLine, Physics, Press, Readout, Waveform
 from solve.readout.amplifier import amplify
 from solve.reduced.build import BETWEEN, build_reduced, refined, relative_error
 from tests.pressing import press_segment

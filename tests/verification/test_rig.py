@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solve.model import Physics
-from solve.parameters import Press
+from solve.model import Physics, Press
 from tests.pressing import press_segment
 from tests.solve.segments import materials, ridge
 from tests.verification.slices import BLOCK, STACK, charge, foams, force, mesh_of, plate, pressed, waved

@@ -7,8 +7,7 @@ import pytest
 
 from geometry.parameters import Film, Medium
 from solve.materials.inelastic import Prony
-from solve.model import Physics
-from solve.parameters import Press, Waveform
+from solve.model import Physics, Press, Waveform
 from tests.pressing import press_segment
 from tests.solve.segments import materials, ridge, segment
 from tests.verification.slices import mesh_of

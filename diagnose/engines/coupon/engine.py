@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from diagnose.engines.coupon.kinematics import kinematics_of
-from diagnose.engines.coupon.layer import (
+from diagnose.engines.coupon.laws import (
     LAYER,
     SPECIMEN,
     PartOfLayer,
@@ -21,11 +21,9 @@ from diagnose.engines.coupon.layer import (
 )
 from diagnose.engines.coupon.point import NO_SERIES, MaterialPoint
 from diagnose.forward import Candidate, Setting, Signals
-from diagnose.signals.recording import Recording, Run
-from diagnose.signals.tables import Drive, Specimen
-from diagnose.vocabulary.base import candidates_of_coupon
+from diagnose.signals.recording import Drive, Recording, Run, Specimen
+from diagnose.vocabulary.base import CouponScene, candidates_of_coupon
 from diagnose.vocabulary.layers.property_error import relative_error
-from diagnose.vocabulary.scene import CouponScene
 from geometry.base import InputError, Report
 from solve.materials.laws import medium_law
 from solve.materials.parameters import Material, PiezoelectricFilm, find_material

@@ -12,7 +12,7 @@ from typing import ClassVar, Protocol
 
 import numpy as np
 
-from diagnose.signals.tables import Specimen
+from diagnose.signals.recording import Specimen
 from geometry.arrays import Floats
 
 

@@ -17,7 +17,7 @@ import numba as nb
 import numpy as np
 
 from diagnose.engines.coupon.kinematics import Kinematics, Reading, SimpleShear
-from diagnose.signals.tables import Drive
+from diagnose.signals.recording import Drive
 from geometry.arrays import Floats
 from solve.materials.inelastic import Prony, Softening, StressResponse
 from solve.materials.laws import MediumLaw

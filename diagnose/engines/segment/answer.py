@@ -11,10 +11,8 @@ import numpy as np
 from diagnose.signals.phases import Segmentation
 from diagnose.signals.recording import Run
 from geometry.arrays import Bools, Floats
-from solve.model import Model, Physics
-from solve.parameters import Readout
-from solve.readout.amplifier import amplify
-from solve.readout.charge import mixed_channels, other_charge_C
+from solve.model import Model, Physics, Readout
+from solve.readout.amplifier import amplify, mixed_channels, other_charge_C
 from solve.reduced.fit import ResponseTable
 from solve.reduced.kernels import BY_DEPTH, BY_FORCE, TOO_DEEP, follow
 from solve.reduced.model import branches, sensed

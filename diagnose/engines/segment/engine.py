@@ -17,16 +17,14 @@ from diagnose.engines.segment.path import with_history
 from diagnose.engines.segment.prepared import ZERO, Prepared, nuisance
 from diagnose.forward import Candidate, Setting, Signals
 from diagnose.signals.recording import Recording, Run
-from diagnose.vocabulary.base import candidates_of_segment
-from diagnose.vocabulary.scene import Scene
+from diagnose.vocabulary.base import Scene, candidates_of_segment
 from geometry.arrays import Floats
 from geometry.base import InputError, Report
 from geometry.checks import check_press_depth
-from mesh.parameters import MeshOptions
+from mesh.build import MeshOptions
 from solve.materials.parameters import PiezoelectricFilm
 from solve.mechanisms import Mechanism, with_mechanisms
-from solve.model import Model
-from solve.parameters import Readout
+from solve.model import Model, Readout
 from solve.readout.stages import Hum
 from solve.reduced.fit import ResponseTable
 from solve.tables.rig_mesh import mesh_of

@@ -17,10 +17,9 @@ from diagnose.forward import Signals
 from diagnose.signals.recording import Run
 from geometry.arrays import Bools, Floats, Ints
 from geometry.base import Report
-from geometry.processes import scratch_folder
+from geometry.files import scratch_folder
 from mesh.types import TetMesh
-from solve.model import Model
-from solve.parameters import Press, Waveform
+from solve.model import Model, Press, Waveform
 from solve.press import press_segment
 from solve.result import PressResult, Trace
 from solve.solution.newton import NoEquilibriumError

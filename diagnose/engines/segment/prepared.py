@@ -13,24 +13,23 @@ import numpy as np
 
 from diagnose.engines.segment import path
 from diagnose.engines.segment.answer import FilmPlate
-from diagnose.engines.segment.interpolation import effect_of
+from diagnose.engines.segment.path import effect_of
 from diagnose.forward import Candidate, Coordinate, Setting
 from diagnose.signals.recording import Recording
+from diagnose.vocabulary.base import Scene
 from diagnose.vocabulary.layers.property_error import nuisance as wrong_number
 from diagnose.vocabulary.layers.viscoelasticity import LARGEST_SHARE, relaxable
-from diagnose.vocabulary.scene import Scene
 from geometry.arrays import Floats
 from geometry.base import Report
-from mesh.parameters import MeshOptions
+from mesh.build import MeshOptions
 from mesh.types import TetMesh
 from solve.mechanisms import with_mechanisms
 from solve.mechanisms.layers.viscoelasticity import VISCOELASTICITY
-from solve.model import Model, Physics
-from solve.parameters import Press
+from solve.model import Model, Physics, Press
 from solve.press import press_segment
 from solve.reduced.fit import CELLS, ResponseTable
 from solve.solution.newton import NoEquilibriumError
-from solve.tables import store
+from solve.tables import job as store
 from solve.tables.job import Job, Reduction
 from solve.tables.rig_mesh import finer_mesh, mesh_of, rig_mesh
 from solve.tables.smooth import PRESSED, TRUSTED, Depths, accuracy, change, replaced, smooth
@@ -174,7 +173,7 @@ class Prepared:
 
     @cached_property
     def _guides(self) -> list[str]:
-        """Names of the bases in solve.tables.store."""
+        """Names of the bases in solve.tables.job."""
         return [store.key(job) for job in self._bases]
 
     @cached_property

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
-from diagnose.prove.world.made import Film, Floats, Layer, Made
+from diagnose.prove.world.laws import Film, Floats, Layer, Made
 from diagnose.prove.world.noise import Amplifier, Filter
 
 CLEAR_MM = 0.04

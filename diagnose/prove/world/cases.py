@@ -9,10 +9,20 @@ import numpy as np
 
 from diagnose.prove.world.bench import BENCHES, VOLTAGE_ONLY, Bench, Run
 from diagnose.prove.world.effects import EFFECTS, KNOWN, STAGED, UNKNOWN, applied, fits
-from diagnose.prove.world.made import Floats
+from diagnose.prove.world.laws import Floats
 from diagnose.prove.world.noise import noises
-from diagnose.prove.world.reality import Reality, Signals, baseline, record
-from diagnose.prove.world.size import PER_RUN, Judge, channels, judge_of, noise_of, shares
+from diagnose.prove.world.reality import (
+    PER_RUN,
+    Judge,
+    Reality,
+    Signals,
+    baseline,
+    channels,
+    judge_of,
+    noise_of,
+    record,
+    shares,
+)
 
 NONE, SINGLE, PAIR, LEFT_OUT, OUTSIDE, AMBIGUOUS = "none", "single", "pair", "left-out", "outside", "ambiguous"
 KINDS = (NONE, SINGLE, PAIR, LEFT_OUT, OUTSIDE, AMBIGUOUS)

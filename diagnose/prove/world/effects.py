@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 
 from diagnose.prove.world.bench import Bench
-from diagnose.prove.world.laws import relaxation
-from diagnose.prove.world.made import Damage, Film, Glue, Layer, Made, Spectrum
+from diagnose.prove.world.laws import Damage, Film, Glue, Layer, Made, Spectrum, relaxation
 from diagnose.prove.world.noise import Filter
 from diagnose.prove.world.reality import Reality, baseline
 

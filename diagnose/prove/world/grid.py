@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 from skfem import Basis, ElementHex2, ElementQuad2, MeshHex, MeshQuad  # type: ignore[import-untyped]
 
 from diagnose.prove.world import laws
-from diagnose.prove.world.laws import Memory, at_rest, respond
-from diagnose.prove.world.made import Film, Floats, Glue, Layer, Made
+from diagnose.prove.world.laws import Film, Floats, Glue, Layer, Made, Memory, at_rest, respond
 
 AXIAL_MM = 0.04
 """Size of elements along the surface under a ridge, mm."""

@@ -1,14 +1,116 @@
 """Stress P = dW/dF and tangent dP/dF at deformation gradients (n, 3, 3), by derivatives of invariants of F.
 
 Laws with memory at the points of one layer: a fractional spectrum, and softening after the largest energy.
+
+What was really made, as the generator of recordings knows it. Units: mm, N, MPa, s, pC, V.
 """
 
+import hashlib
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
-from diagnose.prove.world.made import Film, Floats, Glue, Layer, Spectrum
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """Fractional Zener relaxation: G(t) / G(0) = 1 - strength (1 - E_alpha(-(t / time)^alpha))."""
+
+    strength: float
+    time_s: float
+    order: float = 0.5
+
+
+@dataclass(frozen=True)
+class Damage:
+    """Pseudo-elastic softening below the largest energy so far, with tanh (Dorfmann and Ogden 2003)."""
+
+    loss: float
+    energy_MPa: float
+
+
+@dataclass(frozen=True)
+class Layer:
+    """Neo-Hookean; with gent_limit the energy of Gent (1996), -mu Jm / 2 log(1 - (I1 - 3) / Jm)."""
+
+    name: str
+    thickness_mm: float
+    modulus_MPa: float
+    poisson_ratio: float = 0.495
+    gent_limit: float | None = None
+    spectrum: Spectrum | None = None
+    damage: Damage | None = None
+    held: bool = False
+
+
+@dataclass(frozen=True)
+class Film:
+    """Linear piezoelectric film, d in pC/N along x, y and z; prestretch : nominal strain along x before bonding."""
+
+    thickness_mm: float = 0.028
+    modulus_MPa: float = 2000.0
+    poisson_ratio: float = 0.29
+    d: tuple[float, float, float] = (23.0, 2.3, -33.0)
+    relative_permittivity: float = 12.0
+    held: bool = False
+    prestretch: float = 0.0
+
+
+@dataclass(frozen=True)
+class Glue:
+    """A resolved layer of soft compressible glue, taken from the lower layer. above : the layer that lies on it."""
+
+    above: str
+    thickness_mm: float
+    modulus_MPa: float
+    poisson_ratio: float = 0.45
+
+
+@dataclass(frozen=True)
+class Made:
+    """A stack from the base up; the film lies among the layers by name "film". spring : sides, N/mm3; None: rigid.
+
+    dot : "ridge" (plane strain, force for width_mm) or "cap" (a quarter in 3D). fine : elements are this much smaller.
+    """
+
+    layers: tuple[Layer | Film | Glue, ...]
+    length_mm: float
+    width_mm: float
+    dot: Literal["ridge", "cap"]
+    radius_mm: float
+    offset_mm: float = 0.0
+    spring_N_per_mm3: float | None = None
+    fine: float = 1.0
+
+    @property
+    def film(self) -> Film:
+        """The film."""
+        return next(layer for layer in self.layers if isinstance(layer, Film))
+
+    @property
+    def height_mm(self) -> float:
+        """Of the whole stack."""
+        return sum(layer.thickness_mm for layer in self.layers)
+
+    @property
+    def capacitance_pF(self) -> float:
+        """Of the undeformed film, electrodes all over it."""
+        film = self.film
+        return 8.8541878128e-3 * film.relative_permittivity * self.length_mm * self.width_mm / film.thickness_mm
+
+    @property
+    def remembers(self) -> bool:
+        """Whether an answer depends on what happened before."""
+        return any(isinstance(layer, Layer) and (layer.spectrum or layer.damage) for layer in self.layers)
+
+    def key(self) -> str:
+        """Hash of all of it."""
+        return hashlib.sha256(repr(self).encode()).hexdigest()[:32]
+
 
 EYE = np.eye(3)
 

@@ -12,7 +12,7 @@ from tempfile import NamedTemporaryFile
 import numpy as np
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
-from diagnose.prove.world.made import Floats, Made
+from diagnose.prove.world.laws import Floats, Made
 from diagnose.prove.world.stack import Answer, Stack, State
 
 POINTS = {"ridge": 24, "cap": 10}

@@ -16,7 +16,7 @@ from scipy.interpolate import CubicSpline
 from scipy.linalg import solve_toeplitz
 from scipy.signal import bessel, butter, lfilter, resample_poly, sosfilt
 
-from diagnose.prove.world.made import Floats
+from diagnose.prove.world.laws import Floats
 
 ORDER = 6
 REST_S, RECORDED_HZ = 0.8, 2000

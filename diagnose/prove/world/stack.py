@@ -9,8 +9,7 @@ from skfem import ElementHex2, ElementQuad2, FacetBasis  # type: ignore[import-u
 
 from diagnose.prove.world import laws
 from diagnose.prove.world.grid import Grid, Indices, grid, parts
-from diagnose.prove.world.laws import Memory
-from diagnose.prove.world.made import Film, Floats, Layer, Made
+from diagnose.prove.world.laws import Film, Floats, Layer, Made, Memory
 
 try:
     from pypardiso import spsolve

@@ -5,8 +5,7 @@ from math import asinh, inf, sinh
 from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
-from diagnose.vocabulary.base import Vocabulary, register
-from diagnose.vocabulary.scene import Scene
+from diagnose.vocabulary.base import Scene, Vocabulary, register
 from solve.mechanisms.boundaries.adhesive_compliance import ADHESIVE_COMPLIANCE
 from solve.model import BondLine
 

@@ -5,8 +5,7 @@ from math import sqrt
 from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
-from diagnose.vocabulary.base import Vocabulary, register
-from diagnose.vocabulary.scene import Scene
+from diagnose.vocabulary.base import Scene, Vocabulary, register
 from solve.mechanisms.boundaries.delamination import DELAMINATION
 
 LARGEST_PATCH = 0.9  # of the width

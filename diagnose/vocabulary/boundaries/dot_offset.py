@@ -4,8 +4,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
-from diagnose.vocabulary.base import Vocabulary, register
-from diagnose.vocabulary.scene import Scene
+from diagnose.vocabulary.base import Scene, Vocabulary, register
 from solve.mechanisms.boundaries.dot_offset import DOT_OFFSET
 
 ASIDE = 0.16  # of the segment's size: 0.4 mm of 2.5, by hand 0.1 to 0.3

@@ -5,8 +5,7 @@ from math import sinh
 from typing import Any
 
 from diagnose.forward import Candidate
-from diagnose.vocabulary.base import Vocabulary, register
-from diagnose.vocabulary.scene import CouponScene, Scene, growing
+from diagnose.vocabulary.base import CouponScene, Scene, Vocabulary, growing, register
 from solve.mechanisms.boundaries.inertia import INERTIA
 
 MASS_G = 5.0

@@ -7,8 +7,7 @@ from typing import Any
 
 from diagnose.forward import Candidate
 from diagnose.signals.recording import Recording
-from diagnose.vocabulary.base import Vocabulary, register
-from diagnose.vocabulary.scene import Scene, growing, shrinking
+from diagnose.vocabulary.base import Scene, Vocabulary, growing, register, shrinking
 from solve.mechanisms.circuit.charge_leakage import CHARGE_LEAKAGE
 
 

@@ -5,8 +5,7 @@ from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
-from diagnose.vocabulary.base import Vocabulary, register
-from diagnose.vocabulary.scene import Scene
+from diagnose.vocabulary.base import Scene, Vocabulary, register
 from solve.mechanisms.circuit.contact_electrification import CONTACT_ELECTRIFICATION
 
 TOUCH_CHARGE = 10.0  # of the largest charge that was recorded

@@ -6,8 +6,7 @@ from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
-from diagnose.vocabulary.base import Vocabulary, register
-from diagnose.vocabulary.scene import Scene, growing, shrinking
+from diagnose.vocabulary.base import Scene, Vocabulary, growing, register, shrinking
 from solve.mechanisms.circuit.low_pass import LOW_PASS
 from solve.readout.filters import corner_over_natural
 

@@ -5,8 +5,7 @@ from math import sinh
 from typing import Any
 
 from diagnose.forward import Candidate
-from diagnose.vocabulary.base import Vocabulary, register
-from diagnose.vocabulary.scene import Scene, growing
+from diagnose.vocabulary.base import Scene, Vocabulary, growing, register
 from solve.mechanisms.circuit.parasitic_capacitance import PARASITIC_CAPACITANCE
 
 

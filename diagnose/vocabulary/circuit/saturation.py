@@ -6,8 +6,7 @@ from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
-from diagnose.vocabulary.base import Vocabulary, register
-from diagnose.vocabulary.scene import Scene, shrinking
+from diagnose.vocabulary.base import Scene, Vocabulary, register, shrinking
 from solve.mechanisms.circuit.saturation import SATURATION
 
 CLIPPED = 20.0  # an amplifier that stops at less than this part of what was recorded gives no signal

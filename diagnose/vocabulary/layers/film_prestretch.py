@@ -4,8 +4,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
-from diagnose.vocabulary.base import Vocabulary, register
-from diagnose.vocabulary.scene import Scene
+from diagnose.vocabulary.base import Scene, Vocabulary, register
 from solve.mechanisms.layers.film_prestretch import FILM_PRESTRETCH
 
 STRETCH = 0.015  # the yield strain is 2 to 3 %

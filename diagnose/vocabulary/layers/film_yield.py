@@ -5,8 +5,7 @@ from math import sinh
 from typing import Any
 
 from diagnose.forward import Candidate
-from diagnose.vocabulary.base import Vocabulary, register
-from diagnose.vocabulary.scene import Scene, growing, shrinking
+from diagnose.vocabulary.base import Scene, Vocabulary, growing, register, shrinking
 from solve.materials.parameters import PiezoelectricFilm
 from solve.mechanisms.layers.film_yield import FILM_YIELD
 

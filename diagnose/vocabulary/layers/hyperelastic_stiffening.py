@@ -7,13 +7,11 @@ from typing import Any
 import numpy as np
 
 from diagnose.engines.coupon.kinematics import SimpleShear
-from diagnose.engines.coupon.laws import LARGEST_STRAIN, MEDIUM, Stiffening
-from diagnose.engines.coupon.layer import LAYER, SPECIMEN, PartOfLayer, one_layer
+from diagnose.engines.coupon.laws import LARGEST_STRAIN, LAYER, MEDIUM, SPECIMEN, PartOfLayer, Stiffening, one_layer
 from diagnose.engines.coupon.point import MaterialPoint
 from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
-from diagnose.vocabulary.base import Vocabulary, register
-from diagnose.vocabulary.scene import CouponScene, Scene
+from diagnose.vocabulary.base import CouponScene, Scene, Vocabulary, register
 from solve.materials.laws import medium_law
 from solve.materials.parameters import Hyperfoam, Material, MooneyRivlin, NeoHookean, Ogden, Yeoh
 from solve.mechanisms import Mechanism, with_mechanisms

@@ -3,11 +3,10 @@
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from diagnose.engines.coupon.layer import LAYER, SPECIMEN, PartOfLayer
+from diagnose.engines.coupon.laws import LAYER, SPECIMEN, PartOfLayer
 from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
-from diagnose.vocabulary.base import Vocabulary, register
-from diagnose.vocabulary.scene import CouponScene, Scene
+from diagnose.vocabulary.base import CouponScene, Scene, Vocabulary, register
 from solve.materials.inelastic import Softening
 from solve.mechanisms.base import MEDIA
 from solve.mechanisms.layers.stress_softening import STRESS_SOFTENING

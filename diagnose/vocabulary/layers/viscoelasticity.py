@@ -6,12 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from diagnose.engines.coupon.laws import MOST_OF_COUPON, relaxation_times
-from diagnose.engines.coupon.layer import LAYER, SPECIMEN, PartOfLayer
+from diagnose.engines.coupon.laws import LAYER, MOST_OF_COUPON, SPECIMEN, PartOfLayer, relaxation_times
 from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
-from diagnose.vocabulary.base import Vocabulary, register
-from diagnose.vocabulary.scene import CouponScene, Scene
+from diagnose.vocabulary.base import CouponScene, Scene, Vocabulary, register
 from solve.materials.inelastic import Prony
 from solve.mechanisms.layers.viscoelasticity import VISCOELASTICITY
 from solve.model import Model

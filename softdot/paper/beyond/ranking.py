@@ -17,12 +17,15 @@ from softdot.paper.beyond.designs import (
     Design,
     DesignPress,
     DesignTrial,
+    clamped_voltage_V,
+    columns,
     coordinates,
+    free_voltage_V,
+    papers_parameters,
     papers_variables,
     sample,
     solve_trials,
 )
-from softdot.paper.beyond.predictors import clamped_voltage_V, columns, free_voltage_V, papers_parameters
 from softdot.paper.published import Boundary
 
 SLICE_MESH = {"element_size_mm": 0.4, "contact_element_size_mm": 0.2, "mesher": "layered"}

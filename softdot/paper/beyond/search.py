@@ -3,6 +3,10 @@
 The search's optima and the paper's final design on finer meshes, in 3D by both meshers, and in cross-section.
 
 What making a segment does to a design: thicknesses and moduli off their nominal values.
+
+Between free and clamped: sides held by springs, from none to rigid, with the paper's cases as end points.
+
+Everything that this part solves.
 """
 
 from collections.abc import Mapping, Sequence
@@ -12,21 +16,24 @@ from typing import Any
 import numpy as np
 
 from geometry.arrays import Floats
+from softdot.config import Config
 from softdot.console import Progress
 from softdot.paper.beyond.designs import (
     FILMS_UM,
     PAPERS,
     Design,
+    DesignPress,
     DesignTrial,
     coordinates,
     design_at,
+    film,
+    press_of,
     sample,
     solve_trials,
 )
-from softdot.paper.beyond.predictors import film
-from softdot.paper.beyond.ranking import SLICE_MESH, Surrogate
-from softdot.paper.published import LENGTH_MM, Reading
-from softdot.paper.section import NotSolvedError
+from softdot.paper.beyond.ranking import SLICE_MESH, Ranking, Surrogate, rank
+from softdot.paper.published import LENGTH_MM, Reading, segment_config
+from softdot.paper.section import NotSolvedError, solve_named
 from solve.materials.film import VACUUM_PERMITTIVITY
 
 MESH = {"element_size_mm": 0.8, "contact_element_size_mm": 0.4, "mesher": "layered"}
@@ -207,3 +214,88 @@ def made_worse_V(surrogate: Surrogate, design: Design, cable_pF: float = 0.0) ->
     worse = (guess.charge_pC / (capacitance_pF(copies) + cable_pF)).min(axis=0)
     one_draw_each: Floats = np.diagonal(worse)
     return one_draw_each
+
+
+STIFFNESS_N_PER_MM3 = tuple(float(f"{k:.2g}") for k in np.geomspace(0.1, 1e4, 11))
+"""Two a decade. A wall of modulus E and thickness t gives about E / t."""
+PAIRS = {"final design": (0.5, 1.0), "C1 and F4": (0.8, 0.05), "C2 and F1": (0.8, 5.0)}
+"""Segments of which the paper gives both ends: h1 in mm, E2 in MPa."""
+WALLS = {
+    "silicone shared with the neighbours, 0.5 mm of 1 MPa": 1.0 / 0.5,
+    "thermoplastic polyurethane frame, 0.4 mm of 30 MPa": 30.0 / 0.4,
+    "printed resin frame, 0.4 mm of 2 GPa": 2000.0 / 0.4,
+}
+
+
+@dataclass(frozen=True)
+class Curve:
+    """One segment from free to clamped; between[i] belongs to STIFFNESS_N_PER_MM3[i]."""
+
+    free: DesignPress
+    between: Sequence[DesignPress]
+    clamped: DesignPress
+
+    @property
+    def presses(self) -> list[DesignPress]:
+        """All, from stiffness 0 to infinity."""
+        return [self.free, *self.between, self.clamped]
+
+    def voltage_at_V(self, stiffness: float) -> float:
+        """Voltage at a stiffness in N/mm³ within the range, linear in its logarithm."""
+        voltages = [press.voltage_V for press in self.between]
+        return float(np.interp(np.log(stiffness), np.log(STIFFNESS_N_PER_MM3), voltages))
+
+    def half_way_N_per_mm3(self) -> float:
+        """Stiffness at which half of the voltage between free and clamped is first reached; nan when never."""
+        half = (self.free.voltage_V + self.clamped.voltage_V) / 2.0
+        gains = np.array([press.voltage_V for press in self.between]) - half
+        k = int(np.argmax(gains >= 0))
+        if k == 0:
+            return float("nan")
+        share = gains[k - 1] / (gains[k - 1] - gains[k])
+        low, high = np.log(STIFFNESS_N_PER_MM3[k - 1]), np.log(STIFFNESS_N_PER_MM3[k])
+        return float(np.exp(low + share * (high - low)))
+
+
+def solve_curves(progress: Progress) -> Mapping[str, Curve]:
+    """The curves of PAIRS in cross-section. NotSolvedError."""
+    configs = {(name, side): config for name in PAIRS for side, config in _sides(name).items()}
+    found = {key: press_of(outcome) for key, outcome in solve_named(configs, progress).items()}
+    return {
+        name: Curve(found[name, "free"], [found[name, str(k)] for k in STIFFNESS_N_PER_MM3], found[name, "clamped"])
+        for name in PAIRS
+    }
+
+
+def _sides(name: str) -> dict[str, Config]:
+    """Name of the sides -> configuration, of one segment."""
+    ends = {"free": segment_config("free", *PAIRS[name]), "clamped": segment_config("clamped", *PAIRS[name])}
+    return {**ends, **{str(k): elastic(ends["clamped"], k) for k in STIFFNESS_N_PER_MM3}}
+
+
+def elastic(config: Config, stiffness: float) -> Config:
+    """The same segment with the sides of its held layers on springs, in N/mm³."""
+    changes = {"boundary": "elastic", "side_stiffness_N_per_mm3": stiffness}
+    return config.model_copy(update={"segment": config.segment.model_copy(update=changes)})
+
+
+@dataclass(frozen=True)
+class Beyond:
+    """What was solved. compared: model -> the paper's final design, then the best one for each of GOALS."""
+
+    curves: Mapping[str, Curve]
+    ranking: Ranking
+    search: Search
+    compared: Mapping[str, Sequence[DesignTrial]]
+
+
+def solve_beyond(progress: Progress) -> Beyond:
+    """Solve what is not remembered. NotSolvedError."""
+    progress.stage("between free and clamped")
+    curves = solve_curves(progress)
+    progress.stage("what predicts the output")
+    ranking = rank(progress)
+    progress.stage("design search")
+    found = search(progress, dict(ranking.constants))
+    progress.stage("designs compared")
+    return Beyond(curves, ranking, found, compare([found.best(goal).design for goal in GOALS], progress))

@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from softdot.paper.beyond.continuum import STIFFNESS_N_PER_MM3, WALLS, Beyond, Curve
 from softdot.paper.beyond.designs import BOUNDARIES, PAPERS, Design, DesignPress, DesignTrial
 from softdot.paper.beyond.ranking import (
     CORRECTED,
@@ -23,7 +22,19 @@ from softdot.paper.beyond.ranking import (
     scatter,
     voltages,
 )
-from softdot.paper.beyond.search import CABLE_PF, FIRST, GOALS, MESHERS, MODELS, Search, beats
+from softdot.paper.beyond.search import (
+    CABLE_PF,
+    FIRST,
+    GOALS,
+    MESHERS,
+    MODELS,
+    STIFFNESS_N_PER_MM3,
+    WALLS,
+    Beyond,
+    Curve,
+    Search,
+    beats,
+)
 from softdot.paper.published import Boundary
 from softdot.paper.section import CLAMPED, FREE, PAPER, SOFT, Cell, Claim, PaperTable, label, new_figure, save
 

@@ -23,7 +23,7 @@ from scipy.stats import qmc, rankdata
 from geometry.arrays import Floats
 from softdot.paper.calibration.rig import INPUTS, Values, dot_depth_mm
 from softdot.paper.calibration.solved import FOAM, ROUND, SIMULATED, PressCurve, Solved
-from solve.parameters import Waveform
+from solve.model import Waveform
 from solve.solution.schedule import fraction
 
 PERIOD_S = 1.0  # ten presses in ten seconds

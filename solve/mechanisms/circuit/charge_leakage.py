@@ -15,8 +15,7 @@ from solve.mechanisms.base import (
     register,
     with_readout,
 )
-from solve.model import Model
-from solve.parameters import Readout
+from solve.model import Model, Readout
 
 
 class ChargeLeakage(Parameters):

@@ -7,8 +7,7 @@ from pydantic import Field
 
 from geometry.parameters import NonNegative
 from solve.mechanisms.base import MechanismType, Parameters, Traits, register, with_readout
-from solve.model import Model
-from solve.parameters import Readout
+from solve.model import Model, Readout
 
 
 class ParasiticCapacitance(Parameters):

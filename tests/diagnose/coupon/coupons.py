@@ -3,8 +3,7 @@
 import numpy as np
 
 from diagnose.engines.coupon import coupon_engine
-from diagnose.signals.recording import Recording, Run
-from diagnose.signals.tables import Specimen
+from diagnose.signals.recording import Recording, Run, Specimen
 from solve.materials.parameters import NeoHookean
 
 TIME = np.linspace(0.0, 20.0, 401)

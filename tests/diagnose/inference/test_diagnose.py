@@ -8,7 +8,7 @@ import pytest
 
 from diagnose.inference.diagnose import diagnose
 from diagnose.signals.recording import Recording
-from solve.parameters import Readout
+from solve.model import Readout
 from tests.diagnose.inference.toy import (
     CANDIDATES,
     CONCEALED,

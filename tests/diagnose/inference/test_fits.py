@@ -6,12 +6,11 @@ from functools import cache
 import numpy as np
 import pytest
 
-from diagnose.fit.baseline import believed, fitted_baseline
 from diagnose.fit.descent import descended, descent
 from diagnose.fit.discrepancy import FORM
 from diagnose.fit.intervals import intervals
 from diagnose.fit.observed_model import ObservedModel
-from diagnose.fit.refit import common_metric, fitted, largest_form
+from diagnose.fit.refit import believed, common_metric, fitted, fitted_baseline, largest_form
 from diagnose.fit.samples import Samples
 from diagnose.fit.system import linearised
 from diagnose.forward import Candidate, Coordinate

@@ -8,7 +8,7 @@ from diagnose.engines.proportional import proportional_engine
 from diagnose.forward import Setting
 from diagnose.signals.recording import Recording, Run
 from geometry.base import InputError
-from solve.parameters import Readout
+from solve.model import Readout
 
 RATE = 200.0
 TIME = np.arange(2400) / RATE

@@ -5,7 +5,7 @@ import pytest
 
 from diagnose.prove.folder import files, rig_text
 from diagnose.prove.world.bench import BENCHES, CLAMPED
-from diagnose.prove.world.size import channels
+from diagnose.prove.world.reality import channels
 from softdot.config.rig import load_rig
 
 

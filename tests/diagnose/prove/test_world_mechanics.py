@@ -7,8 +7,7 @@ import pytest
 
 from diagnose.prove.world import laws
 from diagnose.prove.world.bench import Run
-from diagnose.prove.world.laws import at_rest, branches, relaxation, respond
-from diagnose.prove.world.made import Damage, Film, Layer, Made, Spectrum
+from diagnose.prove.world.laws import Damage, Film, Layer, Made, Spectrum, at_rest, branches, relaxation, respond
 from diagnose.prove.world.march import table, through_time
 from diagnose.prove.world.reality import scaled_memory, with_strength
 from diagnose.prove.world.stack import Stack

@@ -9,8 +9,7 @@ from diagnose.prove.world.bench import CLAMPED, FREE, VOLTAGE_ONLY, Run
 from diagnose.prove.world.effects import EFFECTS, applied, fits
 from diagnose.prove.world.march import Course, Table
 from diagnose.prove.world.noise import Amplifier, Autoregression, Filter, noises, yule_walker
-from diagnose.prove.world.reality import Reality, _path, baseline
-from diagnose.prove.world.size import Judge
+from diagnose.prove.world.reality import Judge, Reality, _path, baseline
 
 TIME = np.arange(0.0, 2.0, 0.004)
 
@@ -94,10 +93,10 @@ def test_a_nuisance_takes_what_lies_along_it_as_far_as_its_width_goes(monkeypatc
     tangent = np.zeros((100, 1))
     tangent[0] = 10.0
     monkeypatch.setattr(Judge, "_tangents", tangent)
-    monkeypatch.setattr("diagnose.prove.world.size.record", lambda reality, _bench: reality)
+    monkeypatch.setattr("diagnose.prove.world.reality.record", lambda reality, _bench: reality)
     effect = np.zeros(100)
     effect[0], effect[1] = 30.0, 4.0
-    monkeypatch.setattr("diagnose.prove.world.size.whitened", lambda signals, _bench: signals)
+    monkeypatch.setattr("diagnose.prove.world.reality.whitened", lambda signals, _bench: signals)
     left = Judge(CLAMPED).left(effect, np.zeros(100))
     assert np.linalg.norm(left) == pytest.approx(np.hypot(30.0 / np.sqrt(101.0), 4.0))
 

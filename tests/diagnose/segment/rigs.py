@@ -4,11 +4,10 @@ import numpy as np
 
 from diagnose.engines.segment import segment_engine
 from diagnose.signals.recording import Recording, Run
-from mesh.parameters import MeshOptions
+from mesh.build import MeshOptions
 from softdot.config import config_from
 from softdot.config.model import model_of
-from solve.model import Model
-from solve.parameters import Readout
+from solve.model import Model, Readout
 
 TABLES = {
     "segment": {

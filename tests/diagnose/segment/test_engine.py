@@ -6,8 +6,8 @@ import pytest
 from diagnose.forward import Setting
 from geometry.base import InputError
 from solve.mechanisms import Mechanism
-from solve.parameters import Readout
-from solve.tables import store
+from solve.model import Readout
+from solve.tables import job as store
 from tests.diagnose.segment.rigs import DEPTH_MM, candidate, engine, press, run, silent
 
 KINKS = 0.01  # of the peak: so coarse a surface touches node by node, which neither table nor press resolves

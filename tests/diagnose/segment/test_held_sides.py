@@ -5,8 +5,7 @@ import pytest
 
 from geometry.dot import resolve_dot
 from geometry.parameters import Dot, Segment
-from mesh.build import build
-from mesh.parameters import MeshOptions
+from mesh.build import MeshOptions, build
 from mesh.quality import measure
 from solve.tables.rig_mesh import crowded
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from diagnose.engines.segment.interpolation import effect
+from diagnose.engines.segment.path import effect
 from diagnose.forward import Coordinate
 
 X = Coordinate("x", 0.0, 1.0, (0.1,), (0.3, 1.0))

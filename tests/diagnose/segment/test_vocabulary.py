@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
+from diagnose.vocabulary.base import Scene
 from diagnose.vocabulary.base import candidates_of_segment as candidates
 from diagnose.vocabulary.layers.property_error import nuisance
 from diagnose.vocabulary.layers.viscoelasticity import relaxed_fraction
-from diagnose.vocabulary.scene import Scene
 from solve.mechanisms import MECHANISMS, with_mechanisms
 from solve.mechanisms.base import BONDS, MEDIA
-from solve.parameters import Readout
+from solve.model import Readout
 from solve.readout.stages import Saturation
 from tests.diagnose.segment.rigs import LEAKY, model
 

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from solve.tables import store, workers
+from solve.tables import job as store
+from solve.tables import workers
 from tests.diagnose.segment.rigs import engine, silent
 
 

@@ -8,8 +8,7 @@ from diagnose.findings import Detection, Findings, Fit, FittedModel, Interval, L
 from diagnose.forward import Candidate, Coordinate, Setting
 from diagnose.noise.estimate import noise_models
 from diagnose.signals.recording import Recording, Run
-from solve.model import Physics
-from solve.parameters import Readout
+from solve.model import Physics, Readout
 from solve.readout.amplifier import amplify
 from tests.diagnose.rigs import trapezoid
 

@@ -10,8 +10,7 @@ from geometry.fabrication.casting import check_cavity
 from geometry.fabrication.cavity import check_mould_sizes, least_draft_deg, styled_cavity
 from geometry.fabrication.mould import mould_of
 from geometry.fabrication.parameters import Fabrication
-from geometry.fabrication.part import box, volume
-from geometry.fabrication.printers import printer_profile
+from geometry.fabrication.part import box, printer_profile, volume
 from geometry.parameters import Effector
 from geometry.stack import layers
 

@@ -5,8 +5,7 @@ from math import pi
 import pytest
 
 from geometry.fabrication.casting import casting_kit
-from geometry.fabrication.parameters import CastingNumbers, Fabrication
-from geometry.fabrication.recipes import castable_materials, recipe_for
+from geometry.fabrication.parameters import CastingNumbers, Fabrication, castable_materials, recipe_for
 from geometry.parameters import Effector, Medium
 
 SHRINKAGE = {"own": 0.04, "vnr": 0.001}

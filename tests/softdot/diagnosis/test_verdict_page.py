@@ -15,7 +15,7 @@ from diagnose.verdict.names import interval_words, mechanism_words
 from diagnose.verdict.resimulation import Resimulated
 from diagnose.verdict.words import sentences
 from softdot.commands.verdict_page import page_text
-from softdot.numbers import plain
+from softdot.console import plain
 from solve.mechanisms import MECHANISMS
 from tests.diagnose.verdict.toy import LEAK, RELAXING, ToyEngine, fitted, found, toy_recording
 

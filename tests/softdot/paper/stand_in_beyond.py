@@ -4,12 +4,31 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from softdot.paper.beyond.continuum import PAIRS, STIFFNESS_N_PER_MM3, Beyond, Curve
-from softdot.paper.beyond.designs import PAPERS, Design, DesignPress, DesignTrial, papers_variables, sample
-from softdot.paper.beyond.predictors import clamped_deflection, clamped_voltage_V, columns, free_force_N_per_mm
-from softdot.paper.beyond.predictors import free_voltage_V as free_V
+from softdot.paper.beyond.designs import (
+    PAPERS,
+    Design,
+    DesignPress,
+    DesignTrial,
+    clamped_deflection,
+    clamped_voltage_V,
+    columns,
+    free_force_N_per_mm,
+    papers_variables,
+    sample,
+)
+from softdot.paper.beyond.designs import free_voltage_V as free_V
 from softdot.paper.beyond.ranking import FOUR, SEVEN, Halves, Ranking, Surrogate, fit
-from softdot.paper.beyond.search import GOALS, MODELS, Search, capacitance_pF, limits_of
+from softdot.paper.beyond.search import (
+    GOALS,
+    MODELS,
+    PAIRS,
+    STIFFNESS_N_PER_MM3,
+    Beyond,
+    Curve,
+    Search,
+    capacitance_pF,
+    limits_of,
+)
 
 CONSTANTS = {"tension_share": 0.25, "give": 0.4, "rest": 0.35}
 

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from softdot.outcome import outcome
-from softdot.paper.beyond.continuum import elastic
 from softdot.paper.beyond.designs import (
     FILMS_UM,
     HIGH,
@@ -17,6 +16,7 @@ from softdot.paper.beyond.designs import (
     papers_variables,
     sample,
 )
+from softdot.paper.beyond.search import elastic
 from softdot.paper.published import segment_config
 
 COARSE = {"element_size_mm": 0.6, "contact_element_size_mm": 0.3, "mesher": "layered"}

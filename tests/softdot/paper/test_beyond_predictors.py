@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from softdot.paper.beyond.designs import PAPERS
-from softdot.paper.beyond.predictors import (
+from softdot.paper.beyond.designs import (
     CONTACT_MM,
+    PAPERS,
     clamped_deflection,
     clamped_voltage_V,
     columns,

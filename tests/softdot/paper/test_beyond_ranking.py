@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from softdot.paper.beyond.continuum import STIFFNESS_N_PER_MM3
+from softdot.paper.beyond import section_of
 from softdot.paper.beyond.ranking import CORRECTED, FOUR, WITHOUT_FILM, correlations, fit, interval, scatter, spearman
-from softdot.paper.beyond.search import MESHERS, beats
-from softdot.paper.beyond.section import section_of
+from softdot.paper.beyond.search import MESHERS, STIFFNESS_N_PER_MM3, beats
 from softdot.paper.beyond.tables import claims
 from softdot.paper.section import PaperTable
 from tests.softdot.paper import stand_in_beyond as stand_in

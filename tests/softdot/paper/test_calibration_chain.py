@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from softdot.paper.calibration.factor import LOW_PASS_HZ, SAMPLES, Chain, pressed, recorded_V, swing_V, times_s
-from solve.model import Physics
-from solve.parameters import Readout
+from solve.model import Physics, Readout
 from solve.readout.amplifier import amplify
 
 CHARGE_PC, FILM_PF = 4000.0, 971.0

@@ -3,8 +3,8 @@
 import pytest
 
 from softdot.outcome import outcome
+from softdot.paper.calibration import section_of
 from softdot.paper.calibration.rig import CASES, constant_sponge, foam, rig_config
-from softdot.paper.calibration.section import section_of
 from softdot.paper.published import published
 from tests.softdot.paper.stand_in_rig import rig
 

@@ -8,10 +8,10 @@ import pytest
 
 from softdot.cli import main
 from softdot.commands import paper as whole
-from softdot.paper.analytical.section import section as analytical
+from softdot.paper.analytical import section as analytical
 from softdot.paper.published import published
 from softdot.paper.section import NotSolvedError
-from softdot.paper.segments.section import section_of
+from softdot.paper.segments import section_of
 from tests.softdot.paper.stand_in_study import study
 
 PARTS = {
