@@ -67,7 +67,7 @@ class Case:
     @cached_property
     def checked(self) -> tuple[DotShape, list[str]]:
         """The dot at rest and what a user should know about this design. InputError for what cannot be solved."""
-        from softdot.warnings import check_case
+        from softdot.checks import check_case
 
         return check_case(self.model, self.config.mesh)
 
@@ -193,7 +193,7 @@ class Pressed:
     @property
     def warnings(self) -> list[str]:
         """What a user should know, before and after the solution."""
-        from softdot.warnings import design_warnings, result_warnings
+        from softdot.checks import design_warnings, result_warnings
 
         model = self.case.model
         return [*self.case.checked[1], *design_warnings(model), *result_warnings(model, self.case.dot, self.result)]

@@ -10,11 +10,11 @@ from geometry.base import InputError
 from geometry.cache import data_hash, recall, remember, source_hash
 from mesh.types import MeshingError, TetMesh
 from softdot.case import Case, OnStep
+from softdot.checks import design_warnings, result_warnings
 from softdot.config import Config, config_from, input_hash
 from softdot.config.model import model_of
 from softdot.console import plain
 from softdot.summary import mesh_part, press_part, stopped_solver
-from softdot.warnings import design_warnings, result_warnings
 from solve.result import PressResult
 
 if TYPE_CHECKING:

@@ -25,11 +25,10 @@ def command(chosen: Namespace) -> int:
 
 def check_file(path: Path, settings: list[str]) -> dict[str, Any]:
     """Mistakes, warnings and the expected cost of a configuration."""
+    from softdot.checks import design_warnings, expected_cost
     from softdot.config import config_from
     from softdot.config.errors import mistakes
     from softdot.config.toml import completed, from_default, read_toml, with_settings
-    from softdot.cost import expected_cost
-    from softdot.warnings import design_warnings
 
     def check(tables: Mapping[str, Any]) -> tuple[Any, ...]:
         from softdot.case import Case

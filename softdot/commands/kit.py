@@ -21,6 +21,7 @@ from geometry.flat.pattern import FlatPattern, compensated
 from geometry.flat.sheets import flat_kit
 from mesh.types import MeshingError
 from softdot.case import Case
+from softdot.checks import design_warnings
 from softdot.config import Config, config_hash
 from softdot.console import (
     GOOD,
@@ -41,7 +42,6 @@ from softdot.console import (
 from softdot.machine import named_when_missing
 from softdot.output import Product, staged_folder
 from softdot.tolerances.budget import UNFINISHED, BudgetOutcome, budget_of, failed
-from softdot.warnings import design_warnings
 from solve.materials.parameters import PiezoelectricFilm
 from solve.solution.linear import LinearSolveError
 from solve.solution.sensitivity import StoppedShortError

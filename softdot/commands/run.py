@@ -14,6 +14,7 @@ from geometry.dot import DotShape
 from geometry.solids import Part
 from mesh.types import MeshingError
 from softdot.case import Case, OnStep
+from softdot.checks import design_warnings, result_warnings
 from softdot.config import Config
 from softdot.config.toml import told
 from softdot.console import (
@@ -32,7 +33,6 @@ from softdot.console import (
 from softdot.machine import named_when_missing
 from softdot.output import RUN, staged_folder
 from softdot.summary import heading, mesh_part, press_part, stopped_solver
-from softdot.warnings import design_warnings, result_warnings
 from solve.result import PressResult, Step
 
 LOG = logging.getLogger(__name__)

@@ -15,10 +15,10 @@ import numpy as np
 import pytest
 
 from geometry.base import InputError
+from softdot.checks import design_warnings, held_rim_warnings, result_warnings
 from softdot.config import Config, config_from
 from softdot.console import plain
 from softdot.summary import mesh_part, press_part
-from softdot.warnings import design_warnings, held_rim_warnings, result_warnings
 from solve.mechanisms import MECHANISMS
 from solve.solution.newton import ROUNDED_TOLERANCE
 from tests.attack.random_designs import design, keys_of_schema, keys_set

@@ -8,11 +8,11 @@ from hypothesis import HealthCheck, given, settings
 
 from geometry.base import InputError
 from softdot.case import Case
+from softdot.checks import expected_cost
 from softdot.cli import main
 from softdot.config import config_from, load_config
 from softdot.config.errors import mistakes
 from softdot.config.toml import completed
-from softdot.cost import expected_cost
 from tests.softdot.random_mistakes import invalid_configurations
 from tests.softdot.toml_text import toml_text
 

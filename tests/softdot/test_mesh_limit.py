@@ -5,8 +5,8 @@ import pytest
 from geometry.base import InputError
 from geometry.dot import resolve_dot
 from mesh.build import MeshOptions, build
+from softdot.checks import expected_tetrahedra, refuse_huge_mesh
 from softdot.config import load_config
-from softdot.cost import expected_tetrahedra, refuse_huge_mesh
 
 SEGMENT = load_config().segment
 DOT = resolve_dot(load_config().dot, SEGMENT)

@@ -5,9 +5,9 @@ import dataclasses
 import pytest
 
 from geometry.dot import resolve_dot
+from softdot.checks import design_warnings, held_rim_warnings, result_warnings
 from softdot.config import config_from, load_config
 from softdot.config.model import model_of
-from softdot.warnings import design_warnings, held_rim_warnings, result_warnings
 from tests.softdot.stand_ins import cap_of_height, result_of, step_at
 
 LAYERS = {"medium1": {"thickness_mm": 0.5}, "film": {"thickness_um": 28}, "medium2": {"thickness_mm": 2}}
