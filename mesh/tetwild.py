@@ -129,7 +129,7 @@ FLAT = 2e-3  # a tetrahedron of this shape or less counts as flat
 ENVELOPE = 1e-3  # of the diagonal: how far pytetwild may leave the surface
 LOOSER = 0.04  # the same of an element under the dot or the thinnest part, where that is more
 LOG = logging.getLogger(__name__)
-ATTEMPTS = 3  # pytetwild is not repeatable: another attempt gives another mesh
+ATTEMPTS = 6  # pytetwild is not repeatable: another attempt gives another mesh, one in ten flat elements
 
 
 def tetwild(segment: Segment, dot: DotShape, options: MeshOptions) -> LinearMesh:

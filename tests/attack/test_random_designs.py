@@ -68,7 +68,7 @@ def outcome(number: int) -> dict:
     if not result.converged:
         named = [] if NAMED.search(result.failure) else ["the stop has no place"]
         return {**told, "kind": "stopped", "said": result.failure, "faults": _sentence(result.failure) + named}
-    rim = held_rim_warnings(pressed.config.segment, pressed.dot, 1e3 * max(step.indentation_m for step in result.steps))
+    rim = held_rim_warnings(pressed.model.segment, pressed.dot, 1e3 * max(step.indentation_m for step in result.steps))
     mechanics = [] if rim else wrong(pressed)  # rigid on rigid: warned of, and what it converges to is no state
     faults = [*mechanics, *_summary(pressed), *_charges(pressed), *_monotone(pressed, tables)]
     kind = "converged" if result.trace.contact_area_m2.max() > 0.0 else "untouched"
@@ -81,11 +81,11 @@ def _sentence(said):
 
 def _summary(pressed):
     """Every number of the summary is finite, none is missing, and the residual is within its bound."""
-    config, result = pressed.config, pressed.result
+    model, result = pressed.model, pressed.result
     readout, channels = pressed.voltage or (None, None)
-    numbers = plain({"mesh": mesh_part({}, result.unknowns), **press_part(config, result, readout, channels)})
+    numbers = plain({"mesh": mesh_part({}, result.unknowns), **press_part(model.readout, result, readout, channels)})
     json.dumps(numbers, allow_nan=False)
-    warnings = [*design_warnings(config), *result_warnings(config, pressed.dot, result.tet_mesh, result)]
+    warnings = [*design_warnings(model), *result_warnings(model, pressed.dot, result)]
     if any("nan" in text.split() or "\n" in text for text in warnings):
         yield f"a warning is no sentence: {warnings}"
     yield from (f"{where} is not a number" for where in _missing(numbers) if where not in ALLOWED_TO_MISS)
@@ -117,12 +117,12 @@ def _charges(pressed):
 
 def _monotone(pressed, tables):
     """Elastic and frictionless, going down only: the force never falls."""
-    press, segment = pressed.config.press, pressed.config.segment
+    press, segment = pressed.model.press, pressed.model.segment
     shape = press.waveform.shape if press.waveform is not None else "ramp"
     elastic = not pressed.result.follows_time and shape in ("ramp", "raised-cosine") and not press.path_xy_mm
     if not elastic or segment.bonds or any(one["name"] not in MONOTONE for one in tables["mechanisms"]):
         return
-    if any(material.model == "linear" for material in pressed.config.layer_materials().values()):
+    if any(material.model == "linear" for material in pressed.model.materials.values()):
         return  # softens in compression
     force = pressed.result.trace.contact_force_N[:, 2]
     if (np.diff(force) < -1e-9 * max(force.max(), 1e-12)).any():
