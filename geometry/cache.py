@@ -129,7 +129,8 @@ def data_hash(content: Any) -> str:
 def source_hash(module: str) -> str:
     """Of the program as far as a module depends on it: its own source, and that of all it imports, however indirectly.
 
-    Imports inside functions and packages' __init__ count too, and data files that a source names beside itself.
+    Imports inside functions and packages' __init__ count too, data files that a source names beside itself, and all
+    modules of a package that finds its modules by walking through itself.
     """
     found: dict[Path, bytes] = {}
     waiting = [module]
@@ -138,7 +139,8 @@ def source_hash(module: str) -> str:
         if path is None or path in found:
             continue
         found[path] = path.read_bytes()
-        waiting += _imported(ast.parse(found[path]))
+        imported = _imported(ast.parse(found[path]))
+        waiting += imported | (_modules_below(path.parent) if "pkgutil.walk_packages" in imported else set())
         for data in path.parent.iterdir():
             if data.suffix in DATA and data.name.encode() in found[path]:
                 found[data] = data.read_bytes()
@@ -149,6 +151,11 @@ def _source_path(module: str) -> Path | None:
     """The file of a module of this program, None for a name that is none."""
     path = PROGRAM.joinpath(*module.split("."))
     return next((one for one in (path.with_suffix(".py"), path / "__init__.py") if one.is_file()), None)
+
+
+def _modules_below(folder: Path) -> set[str]:
+    """Dotted names of all modules in a folder of this program, however deep."""
+    return {".".join(path.relative_to(PROGRAM).with_suffix("").parts) for path in folder.rglob("*.py")}
 
 
 def _imported(tree: ast.AST) -> set[str]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import numpy as np
 from pydantic import Field
 
-from geometry.cache import data_hash, folder, read_arrays, write_arrays
+from geometry.cache import data_hash, folder, read_arrays, source_hash, write_arrays
 from geometry.dot import DotShape
 from geometry.parameters import Positive, Segment, Table
 from mesh.types import LinearMesh
@@ -65,16 +65,13 @@ def _linear(segment: Segment, dot: DotShape, options: MeshOptions) -> LinearMesh
     return remembered(key(segment, dot, options), lambda: make(segment, dot, options))
 
 
-VERSION = 3  # raise it when the mesher changes what it makes
-
-
 def key(segment: Segment, dot: DotShape, options: MeshOptions) -> str:
-    """Hash of the geometry, of the dot's place and size, of the options and of the mesher's version."""
-    import pytetwild
+    """Hash of the geometry, of the dot's place and size, of the options and of the meshers."""
+    from importlib.metadata import version
 
     effector = segment.effector
     content = {
-        "version": [VERSION, getattr(pytetwild, "__version__", "")],
+        "meshers": [source_hash("mesh.tetwild"), source_hash("mesh.layered"), version("pytetwild")],
         "segment": [segment.length_mm, segment.width_mm, segment.section, segment.film.thickness_um],
         "layers": [segment.medium1.thickness_mm, segment.medium2.thickness_mm],
         "effector": effector and effector.model_dump(exclude={"material"}),
