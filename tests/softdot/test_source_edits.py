@@ -1,0 +1,67 @@
+"""What softdot keeps on disk is made anew when the source that it depends on is edited, and only then."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from geometry import cache
+from mesh.build import MeshOptions
+from mesh.build import key as mesh_key
+from softdot.case import Case, press_key
+from softdot.outcome import outcome_key
+
+PROGRAM = cache.PROGRAM
+PACKAGES = ("geometry", "mesh", "solve", "export", "diagnose", "softdot")
+
+
+@pytest.fixture(scope="module")
+def copied(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of the program, to be edited."""
+    folder = tmp_path_factory.mktemp("program")
+    for name in PACKAGES:
+        shutil.copytree(PROGRAM / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
+    return folder
+
+
+@pytest.fixture
+def kept(copied: Path, monkeypatch: pytest.MonkeyPatch):
+    """The names under which a mesh, a press and an outcome are kept, as the copied program now stands."""
+    monkeypatch.setattr(cache, "PROGRAM", copied)
+    case = Case(segment={"section": "plane-strain"}, mesh={"mesher": "layered", "element_size_mm": 1.0})
+    tet_mesh = case.mesh
+
+    def names() -> dict[str, str]:
+        cache.source_hash.cache_clear()
+        return {
+            "mesh": mesh_key(case.model.segment, case.dot, MeshOptions()),
+            "press": press_key(case, tet_mesh),
+            "outcome": outcome_key(case.config),
+        }
+
+    yield names
+    cache.source_hash.cache_clear()
+
+
+@pytest.mark.parametrize(
+    ("edited", "made_anew"),
+    [
+        ("geometry/stack.py", {"mesh", "press", "outcome"}),
+        ("mesh/tetwild.py", {"mesh", "press", "outcome"}),
+        ("solve/terms/contact.py", {"press", "outcome"}),
+        ("solve/mechanisms/boundaries/friction.py", {"press", "outcome"}),
+        ("solve/mechanisms/circuit/saturation.py", {"press", "outcome"}),
+        ("solve/materials/library.toml", {"press", "outcome"}),
+        ("softdot/checks.py", {"outcome"}),
+        ("softdot/uncertainty.py", {"outcome"}),
+        ("diagnose/prove/trial.py", set()),
+    ],
+)
+def test_an_edited_source_makes_anew_what_depends_on_it(edited, made_anew, copied, kept):
+    path, before = copied / edited, kept()
+    text = path.read_text("utf-8")
+    path.write_text(text + "\n# edited\n", "utf-8")
+    after = kept()
+    path.write_text(text, "utf-8")
+    assert {name for name in before if after[name] != before[name]} == made_anew
+    assert kept() == before
