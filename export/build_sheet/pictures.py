@@ -108,7 +108,7 @@ def _edges(surface: Any, view: View) -> Any:
 
 def _anchor(surface: Any, view: View) -> Any:
     """The rightmost corner of its top, which is seldom hidden."""
-    points = np.asarray(surface.points)
+    points = np.asarray(surface.points, np.float64)  # in single precision, the step below vanishes above 16 mm
     flat = view.flat(points[points[:, 2] > points[:, 2].max() - 1e-6])
     return flat[int(np.argmax(flat[:, 0]))]
 

@@ -2,10 +2,13 @@
 
 import re
 
+import numpy as np
 import pytest
+import pyvista
 
 from export.build_sheet.contents import gauging
 from export.build_sheet.page import checks
+from export.build_sheet.pictures import ABOVE, _anchor
 from export.build_sheet.steps import steps
 from geometry.base import InputError
 from softdot.commands.kit import contents_of
@@ -151,3 +154,9 @@ def test_other_sizes_and_other_frames(name):
     refuse_unprintable(found)
     refuse_what_the_shape_has_not(found)
     refuse_parts_that_are_not_there(found)
+
+
+def test_a_name_finds_its_part_however_high_the_part_is_drawn():
+    box = pyvista.Box((0.0, 1.0, 0.0, 1.0, 40.0, 41.0))
+    box.points = box.points.astype(np.float32)
+    assert np.isfinite(_anchor(box, ABOVE)).all()
