@@ -135,10 +135,6 @@ class Skin:
     von_mises_MPa: Floats
     film_strain: Floats
 
-    def deformed_mm(self, step: int) -> Floats:
-        """Corners (v, 3) at one step."""
-        return np.asarray(self.points_mm + self.displacement_mm[step])
-
 
 @dataclass(frozen=True)
 class NodalSteps:

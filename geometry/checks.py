@@ -4,7 +4,7 @@ from itertools import pairwise
 
 from geometry.assembly import case_outside
 from geometry.base import InputError
-from geometry.dot import DotShape, resolve_dot
+from geometry.dot import DotShape
 from geometry.parameters import Dot, Segment
 from geometry.part_checks import check_effector, check_electrodes, covers_footprint
 from geometry.stack import bodies, layers
@@ -16,11 +16,6 @@ def check_segment(segment: Segment) -> list[str]:
     check_electrodes(segment)
     _check_bonds(segment)
     return _check_held_layers(segment)
-
-
-def check_dot(dot: Dot, segment: Segment) -> None:
-    """Raise InputError for a dot that cannot be built or that overlaps the resting segment."""
-    resolve_dot(dot, segment)
 
 
 def check_press_depth(segment: Segment, indentation_mm: float) -> None:

@@ -54,11 +54,6 @@ class Score:
     resolved: bool | None = None
     seconds: float = 0.0
 
-    @property
-    def false_name(self) -> bool:
-        """Something is named that is not there: in a case without effect, or of an effect that the tool cannot know."""
-        return bool(self.named) and self.kind in (NONE, LEFT_OUT, OUTSIDE)
-
     def plain(self) -> dict[str, Any]:
         """As JSON has it."""
         return {**asdict(self), "truth": list(map(list, self.truth)), "named": list(map(list, self.named))}

@@ -31,16 +31,6 @@ class Lag:
     correlation: float
 
 
-@dataclass(frozen=True)
-class Clock:
-    """signal time = lag_s + ratio * reference time, each with its standard error."""
-
-    lag_s: float
-    lag_sigma_s: float
-    ratio: float
-    ratio_sigma: float
-
-
 def lag_between(reference: Floats, signal: Floats, step_s: float, largest_s: float | None = None) -> Lag:
     """Lag of a signal (n,) behind a reference (m,) that start together, both every step_s.
 
@@ -58,45 +48,6 @@ def lag_between(reference: Floats, signal: Floats, step_s: float, largest_s: flo
         if abs(fit.update) < FINEST:
             break
     return Lag(shift * step_s, max(_standard_error(fit), FINEST) * step_s, fit.correlation)
-
-
-def clock_between(reference: Floats, signal: Floats, step_s: float, windows: int = 4) -> Clock:
-    """Lag and rate of the signal's clock against the reference's, from the lags of several windows.
-
-    ValueError where fewer than two windows hold anything.
-    """
-    whole = lag_between(reference, signal, step_s)
-    size = min(len(reference), len(signal)) // windows
-    lags, centres = [], []
-    for n in range(windows):
-        part = slice(n * size, (n + 1) * size)
-        if np.ptp(reference[part]) < 0.1 * np.ptp(reference):
-            continue
-        lags.append(_lag_of_window(reference, signal, part, step_s, whole.lag_s))
-        centres.append(_centre(reference, part) * step_s)
-    if len(lags) < 2:
-        raise ValueError("a clock ratio needs a signal that moves early and late")
-    return _line(np.array(centres), lags)
-
-
-def _lag_of_window(reference: Floats, signal: Floats, part: slice, step_s: float, near_s: float) -> Lag:
-    """Lag of one window, sought around the lag of the whole."""
-    offset = round(near_s / step_s)
-    first, last = max(part.start + offset, 0), min(part.stop + offset, len(signal))
-    found = lag_between(reference[first - offset : last - offset], signal[first:last], step_s)
-    return Lag(found.lag_s + offset * step_s, found.sigma_s, found.correlation)
-
-
-def _line(time_s: Floats, lags: list[Lag]) -> Clock:
-    """Weighted straight line through the lags; its errors widened where they scatter more than they state."""
-    weight = 1.0 / np.array([lag.sigma_s for lag in lags])
-    rows = np.column_stack([np.ones(len(lags)), time_s]) * weight[:, None]
-    values = np.array([lag.lag_s for lag in lags]) * weight
-    solution, *_ = np.linalg.lstsq(rows, values, rcond=None)
-    spare = len(lags) - 2
-    misfit = float(((rows @ solution - values) ** 2).sum()) / spare if spare else 1.0
-    error = np.sqrt(np.diag(np.linalg.inv(rows.T @ rows)) * max(misfit, 1.0))
-    return Clock(float(solution[0]), float(error[0]), 1.0 + float(solution[1]), float(error[1]))
 
 
 def _coarse(reference: Floats, signal: Floats, limit: int) -> int:
@@ -141,9 +92,3 @@ def _standard_error(fit: _Fit) -> float:
     density = 0.5 * fit_autoregression([fit.rest]).density(np.asarray(np.fft.fftfreq(count), dtype=np.float64), 1.0)
     variance = np.mean(np.abs(np.fft.fft(weights, count)) ** 2 * density)
     return float(np.sqrt(variance) / (weights @ weights))
-
-
-def _centre(reference: Floats, part: slice) -> float:
-    """The place of a window that its lag speaks of: where the reference changes, by the square of its slope."""
-    slope = np.asarray(np.gradient(reference[part]) ** 2)
-    return float(part.start + np.average(np.arange(len(slope)), weights=slope))

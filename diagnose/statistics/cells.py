@@ -183,11 +183,6 @@ def step_down(observed: Floats, null: Floats) -> Floats:
     return adjusted
 
 
-def maximum_threshold(null: Floats, level: float) -> float:
-    """The score that the largest of null draws (b, h) exceeds with probability `level`."""
-    return float(np.quantile(null.max(axis=1), 1.0 - level, method="higher"))
-
-
 def _root(rows: Floats) -> Floats:
     """(min(d, f), f) with the same inner products as rows (d, f)."""
     return np.asarray(qr(rows, mode="economic")[1])

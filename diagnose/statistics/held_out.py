@@ -21,7 +21,6 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 from scipy.special import softmax
 from scipy.stats import norm
-from scipy.stats import t as student
 
 from geometry.arrays import Floats, Ints
 
@@ -120,29 +119,6 @@ def forecast(residual: Floats, columns: Floats, press: Ints, prior: Callable[[Su
     return Forecast(scores, predictions)
 
 
-def linear_forecast(residual: Floats, columns: Floats, prior_sigma: Floats, press: Ints) -> Forecast:
-    """The same with given priors (k,)."""
-    return forecast(residual, columns, press, lambda _: prior_sigma)
-
-
-def separation_by_press(one: Floats, other: Floats, press: Ints) -> Floats:
-    """Distance in sigma (presses,) between two predictions (n,) of whitened samples."""
-    return np.array([float(np.linalg.norm((one - other)[held])) for _, held in leave_press_out(press)])
-
-
-def gain_over_presses(gains: Floats, level: float, candidates: int = 1) -> Gain:
-    """The mean of gains (presses,) when presses are a sample of many alike: Student's t, Bonferroni over candidates.
-
-    Leave-one-out scores share their fits; no unbiased variance exists (Bengio and Grandvalet, J. Mach. Learn. Res. 5
-    (2004) 1089). ValueError for fewer than two presses.
-    """
-    if len(gains) < 2:
-        raise ValueError("the scatter of one press is not known: at least two are needed")
-    error = float(gains.std(ddof=1)) / np.sqrt(len(gains))
-    mean = float(gains.mean())
-    return Gain(mean, error, mean - float(student.isf(level / candidates, len(gains) - 1)) * error)
-
-
 def gain_over_noise(gains: Floats, separations: Floats, level: float, candidates: int = 1) -> Gain:
     """The mean of gains (presses,) on just these presses: what could the noise alone have done to it?
 
@@ -155,27 +131,9 @@ def gain_over_noise(gains: Floats, separations: Floats, level: float, candidates
     return Gain(mean, error, mean - float(norm.isf(level / candidates)) * error)
 
 
-def simplest_within_one_error(scores: Floats, parameters: Ints) -> int:
-    """The model with the fewest parameters (m,) whose paired loss to the best is within one standard error.
-
-    scores : (m, presses), at least two presses. The one-standard-error rule (Breiman, Friedman, Olshen and Stone,
-    Classification and Regression Trees, 1984, section 3.4.3), on paired differences. Equal counts: the higher score.
-    """
-    mean = scores.mean(axis=1)
-    loss = scores[np.argmax(mean)] - scores
-    error = loss.std(axis=1, ddof=1) / np.sqrt(scores.shape[1])
-    near = np.flatnonzero(loss.mean(axis=1) <= error)
-    return int(min(near, key=lambda n: (parameters[n], -mean[n])))
-
-
 def bic(log_likelihood: float, parameters: int, samples: int) -> float:
     """q ln n - 2 ln L (Schwarz, Ann. Stat. 6 (1978) 461). samples : whitened ones, which are independent."""
     return parameters * float(np.log(samples)) - 2.0 * log_likelihood
-
-
-def bic_probabilities(criteria: Floats) -> Floats:
-    """Posterior probabilities (m,) of models of equal prior odds (Kass and Raftery, J. Am. Stat. Assoc. 1995)."""
-    return np.asarray(softmax(-0.5 * criteria))
 
 
 def held_out_probabilities(scores: Floats, rng: np.random.Generator, draws: int = 1000) -> Floats:

@@ -14,10 +14,9 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
-from scipy.linalg import subspace_angles
 from scipy.stats import norm
 
-from diagnose.statistics.score_test import Marginal, orthonormal
+from diagnose.statistics.score_test import orthonormal
 from geometry.arrays import Floats
 
 Group = tuple[int, ...]
@@ -34,14 +33,6 @@ class Groups:
 def least_separation(error: float) -> float:
     """Sigma between two predictions at which the wrong one fits better with this probability: 2 z (Fisher 1936)."""
     return 2.0 * float(norm.isf(error))
-
-
-def principal_angles(first: Floats, second: Floats) -> Floats:
-    """Angles (min(q, p),) in rad, descending, between tangent spaces (n, q) and (n, p).
-
-    Bjorck and Golub, Math. Comput. 27 (1973) 579. Zero: some values of one mechanism look like the other.
-    """
-    return np.asarray(subspace_angles(first, second))
 
 
 def distance_to_rival(prediction: Floats, rival: Floats) -> float:
@@ -92,20 +83,6 @@ def remaining_spread(information: Floats) -> Floats:
     return np.linalg.inv(np.linalg.cholesky(information)).T
 
 
-def expected_separation(difference: Floats, tangent: Floats, spread: Floats) -> float:
-    """Sigma between two rivals in a proposed press.
-
-    difference : (n,) of their whitened predictions. tangent : (n, p) whitened sensitivities of what may still move,
-    spread : (p, p) from `remaining_spread`.
-    """
-    return float(np.linalg.norm(Marginal(tangent @ spread, np.ones(spread.shape[1]))(difference)))
-
-
 def best_press(separation: Floats) -> int:
     """The press whose least separated pair of rivals is farthest apart; separation : (presses, pairs) in sigma."""
     return int(max(range(len(separation)), key=lambda n: (separation[n].min(), separation[n].mean())))
-
-
-def chance_of_right_choice(separation: float) -> float:
-    """Probability that the true one of two fixed predictions fits better."""
-    return float(norm.cdf(0.5 * separation))

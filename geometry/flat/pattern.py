@@ -110,11 +110,6 @@ class FlatPattern:
     kerf_mm: float = 0.0
 
     @property
-    def on_panel(self) -> bool:
-        """Whether it is cut within a panel with registration holes."""
-        return sum(isinstance(cut, Circle) and cut.hole for cut in self.cuts) > 1
-
-    @property
     def points(self) -> list[Point]:
         """Points that span the pattern."""
         found: list[Point] = []

@@ -107,12 +107,6 @@ class Projection(NamedTuple):
     plastic_strain: Floats
     kappa: Floats
 
-    @property
-    def plastic_work(self) -> Floats:
-        """S . dEp = q dkappa (n,), per volume; without hardening all of it is dissipated."""
-        work: Floats = np.einsum("nv,nv->n", self.stress, self.plastic_strain)
-        return work
-
 
 @dataclass(frozen=True)
 class YieldLaw:

@@ -121,23 +121,6 @@ class FrictionalContact(Term):
         """Resultant (3,) of the dot on the meshed body; pressure (c,), friction (c, 3); solver units."""
         return self.contact.force(displacement, move, pressure) + self.contact.nodal_area @ friction
 
-    def start(self) -> History:
-        """Friction (c, 3) of the last converged state; only the dissipated work needs it."""
-        return np.zeros(self.friction_dofs.shape)
-
-    def advance(self, trial: Trial, history: History) -> History:
-        """Friction (c, 3) of this converged state."""
-        return trial.x[self.friction_dofs]
-
-    def dissipation(self, trial: Trial, history: History) -> float:
-        """Work lost in slip over a converged step, in solver units.
-
-        -sum_i int tau_i . dd_i by the trapezoidal rule, of second order in the step as the work of the dot is;
-        history : (c, 3) friction before the step.
-        """
-        mean = 0.5 * (history + trial.x[self.friction_dofs])
-        return -float(np.vdot(mean, self._nodal(trial).moved))
-
     @property
     def _free(self) -> Bools:
         """Displacements of the nodes (c, 3) that are unknowns."""

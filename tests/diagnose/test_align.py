@@ -6,7 +6,7 @@ from scipy.stats import chi2
 
 from diagnose.noise.autoregression import Autoregression
 from diagnose.noise.model import NoiseModel
-from diagnose.signals.align import clock_between, lag_between
+from diagnose.signals.align import lag_between
 
 WHITE = Autoregression(np.zeros(0), 1.0)
 SLOW = Autoregression(np.array([0.8]), 0.36)
@@ -44,14 +44,6 @@ def test_the_sign_of_the_answer_does_not_matter():
     lag = lag_between(presses(time), -presses(time + 0.0305), STEP_S)
     assert lag.lag_s == pytest.approx(-0.0305, abs=1e-6)
     assert lag.correlation == pytest.approx(-1.0, abs=1e-6)
-
-
-def test_two_clocks_differ_by_their_ratio():
-    time, rng = STEP_S * np.arange(8000), np.random.default_rng(2)
-    centres = (0.8, 2.9, 5.1, 7.2)
-    signal = presses((time - 0.02) / 1.002, centres) + 0.01 * rng.standard_normal(len(time))
-    clock = clock_between(presses(time, centres), signal, STEP_S)
-    assert abs(clock.ratio - 1.002) < 4.0 * clock.ratio_sigma < 2e-3
 
 
 def test_a_constant_has_no_lag():

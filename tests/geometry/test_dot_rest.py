@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from geometry.base import InputError
-from geometry.checks import check_dot
 from geometry.dot import resolve_dot
 from geometry.parameters import Dot, Effector
 from geometry.stack import Box, Disc, Dome
@@ -30,15 +29,15 @@ def test_the_allowed_tilt_is_where_the_plate_meets_the_edge(segment):
     # the plate's face, 0.5 mm over the tip, meets the edge at x = 1.25: 1.25 sin t - R cos t = h - R
     arm = hypot(1.25, MARBURG_RADIUS)
     limit = degrees(atan2(MARBURG_RADIUS, 1.25) + asin((0.5 - MARBURG_RADIUS) / arm))
-    check_dot(Dot(tilt_deg=(0.0, limit - 0.01)), segment)
-    check_dot(Dot(tilt_deg=(-limit + 0.01, 0.0)), segment)
+    resolve_dot(Dot(tilt_deg=(0.0, limit - 0.01)), segment)
+    resolve_dot(Dot(tilt_deg=(-limit + 0.01, 0.0)), segment)
     with pytest.raises(InputError, match="plate overlaps the segment by"):
-        check_dot(Dot(tilt_deg=(0.0, limit + 0.01)), segment)
+        resolve_dot(Dot(tilt_deg=(0.0, limit + 0.01)), segment)
 
 
 def test_a_refused_tilt_says_overlap_and_limit(segment):
     with pytest.raises(InputError) as error:
-        check_dot(Dot(tilt_deg=(0.0, 40.0)), segment)
+        resolve_dot(Dot(tilt_deg=(0.0, 40.0)), segment)
     # overlap 1.25 sin t - R cos t - h + R at 40 degrees; limit as above
     assert str(error.value) == (
         "dot.tilt_deg = [0, 40]: the plate overlaps the segment by 0.494 mm at rest; "
@@ -49,12 +48,12 @@ def test_a_refused_tilt_says_overlap_and_limit(segment):
 def test_a_tilted_neighbour_over_a_long_segment_is_refused(make_segment):
     # its ball sinks by pitch times sine: 2.5 sin 2 deg = 0.0872
     with pytest.raises(InputError) as error:
-        check_dot(Dot(cell="⠉", tilt_deg=(0.0, 2.0)), make_segment(length_mm=8.0))
+        resolve_dot(Dot(cell="⠉", tilt_deg=(0.0, 2.0)), make_segment(length_mm=8.0))
     assert str(error.value) == (
         "dot.tilt_deg = [0, 2]: the neighbouring dot overlaps the segment by 0.0872 mm at rest; "
         "in this direction at most [0, 0] is allowed"
     )
-    check_dot(Dot(cell="⠉", tilt_deg=(0.0, -2.0)), make_segment(length_mm=8.0))
+    resolve_dot(Dot(cell="⠉", tilt_deg=(0.0, -2.0)), make_segment(length_mm=8.0))
 
 
 @pytest.mark.parametrize("tilt", [(4.0, 2.0), (-3.0, 5.0)])

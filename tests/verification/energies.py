@@ -22,6 +22,7 @@ from solve.solution.schedule import Target
 from solve.system import State, System
 from solve.terms.friction import FrictionalContact
 from solve.terms.solid import SolidRegion, deformation_gradient
+from tests.slip_work import slip_work
 
 SQUARE = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])  # S : S of six components
 
@@ -126,7 +127,7 @@ def lost(system: System, state: State, before: State) -> float:
     total = sum(_lost_in_medium(system, solid, state, before) for solid in system.solids)
     for term in system.terms:
         if isinstance(term, FrictionalContact):
-            total += term.dissipation(trial, system.history_of(term, before))
+            total += slip_work(term, trial, before.x[term.friction_dofs])
     return total + _plastic_work(system, state, before)
 
 

@@ -46,11 +46,6 @@ class Table:
         area = PchipInterpolator(self.depth_mm, self.course.area_mm2)
         return Course(self._force(inside), charge(inside), area(inside))
 
-    def slope_N_per_mm(self, depth_mm: Floats) -> Floats:
-        """dF / d(depth)."""
-        slope = self._force.derivative()
-        return np.where(depth_mm > 0.0, slope(np.clip(depth_mm, 0.0, self.depth_mm[-1])), 0.0)
-
     @property
     def _force(self) -> CubicSpline:
         return _spline(self.depth_mm, self.course.force_N)

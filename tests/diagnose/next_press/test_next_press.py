@@ -11,7 +11,7 @@ from diagnose.next_press.choose import PressJudge, next_press, surviving
 from diagnose.next_press.proposals import Shape, base_setup, recorded_shape, repeats, variations
 from diagnose.signals.phases import segmented
 from diagnose.signals.recording import Recording
-from diagnose.statistics.separation import expected_separation
+from diagnose.statistics.score_test import Marginal
 from tests.diagnose.verdict.toy import LEAK, RELAXING, ToyEngine, fitted, found, toy_recording, toy_run
 
 LEAKS, RELAXES = fitted(LEAK, 0.5), fitted(RELAXING, 0.3, 0.5)
@@ -67,10 +67,9 @@ def test_the_separation_is_the_one_of_the_statistics(recording):
         [one.slopes, -other.slopes, one.system.nuisance_design, other.system.nuisance_design]
     )
     floating = np.diag(np.concatenate([one.system.sigma, other.system.sigma]))
-    dense = expected_separation(
-        weight[:, 0] * (one.prediction - other.prediction), columns, block_diag(*judge.spreads, floating)
-    )
-    assert judge.separations(press) == pytest.approx([dense], rel=1e-6)
+    spread = block_diag(*judge.spreads, floating)
+    left = Marginal(columns @ spread, np.ones(len(spread)))(weight[:, 0] * (one.prediction - other.prediction))
+    assert judge.separations(press) == pytest.approx([np.linalg.norm(left)], rel=1e-6)
 
 
 def test_a_declared_gain_takes_its_part_of_the_difference(recording):

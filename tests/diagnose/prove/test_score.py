@@ -42,7 +42,7 @@ def far(_):
 
 def test_the_right_name_is_exact():
     score = scored(truth(LEAK), verdict(LEAK), far)
-    assert (score.exact, score.grouped, score.component, score.false_name) == (True, True, True, False)
+    assert (score.exact, score.grouped, score.component) == (True, True, True)
     assert score.held_out == pytest.approx(1.1)
 
 
@@ -80,8 +80,8 @@ def test_a_pair_in_a_group_is_written_with_a_plus():
 
 
 def test_a_name_without_effect_is_false_and_abstention_is_not():
-    assert scored(truth(kind=NONE, size=0.0), verdict(LEAK), far).false_name
-    assert not scored(truth(kind=NONE, size=0.0), verdict(), far).false_name
+    assert scored(truth(kind=NONE, size=0.0), verdict(LEAK), far).named
+    assert not scored(truth(kind=NONE, size=0.0), verdict(), far).named
     foreign = truth({"mechanism": "", "component": "film"}, kind="outside")
     assert not scored(foreign, verdict(unexplained=True), far).named
 

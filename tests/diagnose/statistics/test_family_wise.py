@@ -3,12 +3,11 @@
 import numpy as np
 import pytest
 from scipy.sparse import eye_array
-from scipy.stats import chi2, kstest, norm
+from scipy.stats import chi2, kstest
 
 from diagnose.statistics.cells import (
     FilterBank,
     Hypotheses,
-    maximum_threshold,
     null_energies,
     octave_edges,
     segments,
@@ -90,11 +89,6 @@ def test_an_effect_in_one_phase_and_band_is_found_there_alone():
         elsewhere += adjusted[quiet].min() <= LEVEL
     assert found >= 95
     assert elsewhere <= 15
-
-
-def test_the_threshold_is_the_sidak_one_when_cells_are_independent():
-    scores = np.random.default_rng(9).standard_normal((40_000, 20))
-    assert maximum_threshold(scores, 0.05) == pytest.approx(norm.isf(1.0 - 0.95 ** (1 / 20)), abs=0.03)
 
 
 def test_step_down_finds_more_than_the_single_step_and_keeps_the_order():

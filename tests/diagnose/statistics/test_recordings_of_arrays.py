@@ -15,8 +15,9 @@ from diagnose.statistics.cells import (
     step_down,
     with_pools,
 )
-from diagnose.statistics.held_out import gain_over_noise, linear_forecast, separation_by_press
+from diagnose.statistics.held_out import gain_over_noise
 from diagnose.statistics.score_test import Marginal, holm, score_test
+from tests.diagnose.statistics.forecasts import linear_forecast, separation_by_press
 
 PRESSES, LENGTH, CANDIDATES = 8, 60, 20
 PRESS = np.repeat(np.arange(PRESSES), LENGTH)
