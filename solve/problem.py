@@ -21,7 +21,7 @@ from mesh.types import TetMesh
 from solve.fem.sparsity import Numbers, Term, Unknowns, build_pattern, number
 from solve.materials.film import FilmLaw, FilmPlasticity, YieldLaw, film_law
 from solve.materials.inelastic import Inelastic
-from solve.materials.laws import MediumLaw, medium_law
+from solve.materials.laws import MediumLaw
 from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.model import BondLine, Delamination, Physics, Readout
 from solve.system import System, Units
@@ -186,7 +186,7 @@ def build_system(
     tet_mesh and opened as solve.problem.open_interfaces gives them; units : to share them with another system.
     """
     physics = physics or Physics()
-    laws = {name: medium_law(materials[name]) for name in tet_mesh.region_names if name != "film"}
+    laws = {name: materials[name].law.scaled(1e6) for name in tet_mesh.region_names if name != "film"}
     numbers = Numbers()
     unknowns = _number(segment, materials, laws, tet_mesh, physics, readout, force_driven, numbers)
     units = units or _units(segment, laws, materials)

@@ -29,7 +29,6 @@ from diagnose.signals.recording import Recording, Run
 from diagnose.vocabulary.base import Scene, candidates_of_unknown_geometry, film_capacitance_pF, growing
 from geometry.arrays import Floats
 from geometry.base import InputError, Report
-from solve.materials.laws import medium_law
 from solve.materials.parameters import PiezoelectricFilm
 from solve.mechanisms import Mechanism
 from solve.model import Model, Readout
@@ -54,7 +53,7 @@ def strain(model: Model, loading: Loading) -> Floats:
     series, softening = physics.viscosity.get(LAYER, NO_SERIES), physics.softening.get(LAYER)
     if material == MEDIUM and softening is None and series == NO_SERIES:
         return loading.force
-    law = medium_law(material).scaled(1e-6)
+    law = material.law
     point = MaterialPoint(SimpleShear(1.0, 1.0), law, MEDIUM.poisson_ratio, softening, series)
     return point.answer(loading.time_s, LARGEST_STRAIN * loading.force, "force_N") / LARGEST_STRAIN
 

@@ -8,12 +8,10 @@ column 10 k + b, so that rows are long and contiguous; K is symmetric, so only t
 """
 
 import numba as nb
-import numpy as np
+
+from solve.materials.isochoric import I_OF, J_OF, NUMBER_OF
 
 COLUMNS = 32  # 30 filled up to whole registers of eight
-VOIGT = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2]])
-I_OF = np.array([0, 1, 2, 0, 1, 0])
-J_OF = np.array([0, 1, 2, 1, 2, 2])
 MATH = {"contract", "reassoc", "nsz", "arcp"}  # what keeps infinities and not-a-numbers as they are
 
 
@@ -68,7 +66,7 @@ def _fold(f, g, s, cb, t, row, i, width):  # type: ignore[no-untyped-def]
     """T of direction i from the columns of directions k >= i."""
     x, y, z = f[i, 0], f[i, 1], f[i, 2]
     for d in range(3):
-        v0, v1, v2 = VOIGT[0, d], VOIGT[1, d], VOIGT[2, d]
+        v0, v1, v2 = NUMBER_OF[0, d], NUMBER_OF[1, d], NUMBER_OF[2, d]
         for j in range(width):
             t[i, row + d, j] = x * cb[v0, 10 * i + j] + y * cb[v1, 10 * i + j] + z * cb[v2, 10 * i + j]
         for a in range(10):

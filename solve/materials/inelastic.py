@@ -21,6 +21,7 @@ Proc. R. Soc. A 455, 1999, in the form with beta of Abaqus). With dW = S0 : dE t
 from dataclasses import dataclass, replace
 from typing import Protocol
 
+import numba as nb
 import numpy as np
 from scipy.special import erf
 
@@ -58,6 +59,18 @@ class Inelastic(Protocol):
         """The same law in another unit of stress."""
 
 
+@nb.vectorize(cache=True)  # type: ignore[no-untyped-call]
+def mean_decay(a):  # type: ignore[no-untyped-def]
+    """(1 - exp(-a)) / a, the mean of exp(-s) for s from 0 to a >= 0."""
+    return -np.expm1(-a) / a if a > 0.0 else 1.0
+
+
+@nb.vectorize(cache=True)  # type: ignore[no-untyped-call]
+def branch_stress(branch, fade, gain, change):  # type: ignore[no-untyped-def]
+    """Q at the end of a step: fade = exp(-a), gain = g (1 - exp(-a)) / a, change of the elastic stress."""
+    return fade * branch + gain * change
+
+
 @dataclass(frozen=True)
 class Prony:
     """relative_moduli : g_i, sum below 1; relaxation_times : tau_i in s. No terms: elastic."""
@@ -75,10 +88,10 @@ class Prony:
         branches = len(self.relative_moduli)
         return np.zeros((points, 6)), np.full((points, 6), np.nan), np.zeros((points, branches, 6))
 
-    def decay(self, time_step: float) -> tuple[Floats, Floats]:
-        """exp(-a) and (1 - exp(-a)) / a of each branch."""
-        a = time_step / np.array(self.relaxation_times)
-        return np.exp(-a), -np.expm1(-a) / np.where(a > 0.0, a, 1.0) + (a == 0.0)
+    def decay(self, time_step: float | Floats) -> tuple[Floats, Floats]:
+        """exp(-a) and (1 - exp(-a)) / a of each branch, (i,), or (t, i) of steps (t,)."""
+        a = np.asarray(time_step, np.float64)[..., None] / np.array(self.relaxation_times)
+        return np.exp(-a), mean_decay(a)
 
     def update(self, elastic: StressResponse, memory: Memory, time_step: float) -> tuple[StressResponse, Memory]:
         """Relaxed response and the new memory."""
@@ -86,7 +99,7 @@ class Prony:
         moduli = np.array(self.relative_moduli)
         fade, gain = self.decay(time_step)
         change = elastic.stress - old
-        branches = fade[:, None] * branches + (moduli * gain)[:, None] * change[:, None, :]
+        branches = branch_stress(branches, fade[:, None], (moduli * gain)[:, None], change[:, None, :])
         stress = (1.0 - moduli.sum()) * elastic.stress + branches.sum(axis=1)
         instant = 1.0 - moduli.sum() + float(moduli @ gain)
         rate = change / time_step if time_step > 0.0 else np.full_like(change, np.nan)

@@ -14,6 +14,8 @@ from geometry.arrays import Floats
 
 I_OF = np.array([0, 1, 2, 0, 1, 0])
 J_OF = np.array([0, 1, 2, 1, 2, 2])
+NUMBER_OF = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2]])
+"""Which of the six numbers each component is, and back."""
 
 
 @nb.njit(inline="always")
@@ -97,22 +99,17 @@ def isochoric_energy(cauchy_green: Floats, constants: Floats) -> Floats:
     return energy
 
 
-PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))
-
-
 def to_voigt(tensor: Floats, shear: float = 1.0) -> Floats:
     """(..., 3, 3) -> (..., 6); shear = 2 for strains."""
     scale = np.array([1.0, 1.0, 1.0, shear, shear, shear])
-    vector: Floats = np.stack([tensor[..., i, j] for i, j in PAIRS], axis=-1) * scale
+    vector: Floats = tensor[..., I_OF, J_OF] * scale
     return vector
 
 
 def from_voigt(vector: Floats, shear: float = 1.0) -> Floats:
     """(..., 6) -> (..., 3, 3); shear = 2 for strains."""
-    tensor = np.empty((*vector.shape[:-1], 3, 3))
-    for k, (i, j) in enumerate(PAIRS):
-        value = vector[..., k] / (shear if k > 2 else 1.0)
-        tensor[..., i, j] = tensor[..., j, i] = value
+    scale = np.array([1.0, 1.0, 1.0, shear, shear, shear])
+    tensor: Floats = (vector / scale)[..., NUMBER_OF]
     return tensor
 
 

@@ -12,8 +12,7 @@ import numpy as np
 
 from geometry.arrays import Floats
 from solve.materials.isochoric import isochoric_energy, isochoric_stress, to_voigt
-from solve.materials.parameters import Hyperfoam, Linear, Material, MooneyRivlin, NeoHookean, Ogden, Yeoh
-from solve.materials.principal_stretches import HyperfoamLaw, log_stretches, principal_stress
+from solve.materials.principal_stretches import log_stretches, principal_stress
 
 
 class MediumLaw(Protocol):
@@ -151,26 +150,3 @@ class LinearLaw:
 def bulk_modulus(shear_modulus: float, poisson_ratio: float) -> float:
     """K = 2 G (1 + nu) / (3 (1 - 2 nu)), same unit as the shear modulus."""
     return 2.0 * shear_modulus * (1.0 + poisson_ratio) / (3.0 * (1.0 - 2.0 * poisson_ratio))
-
-
-def medium_law(material: Material) -> MediumLaw:
-    """The law of a medium, in Pa. TypeError for a model that is no medium."""
-    if isinstance(material, NeoHookean | Linear):
-        shear = 1e6 * material.youngs_modulus_MPa / (2.0 * (1.0 + material.poisson_ratio))
-        bulk = bulk_modulus(shear, material.poisson_ratio)
-        if isinstance(material, Linear):
-            return LinearLaw(shear, bulk)
-        return InvariantLaw(shear / 2.0, 0.0, 0.0, 0.0, bulk)
-    if isinstance(material, Hyperfoam):
-        beta = tuple(nu / (1.0 - 2.0 * nu) for nu in material.poisson_ratio)
-        return HyperfoamLaw(tuple(1e6 * m for m in material.mu_MPa), material.alpha, beta)
-    law: InvariantLaw | OgdenLaw
-    if isinstance(material, MooneyRivlin):
-        law = InvariantLaw(1e6 * material.c10_MPa, 1e6 * material.c01_MPa, 0.0, 0.0, 0.0)
-    elif isinstance(material, Yeoh):
-        law = InvariantLaw(1e6 * material.c10_MPa, 0.0, 1e6 * material.c20_MPa, 1e6 * material.c30_MPa, 0.0)
-    elif isinstance(material, Ogden):
-        law = OgdenLaw(tuple(1e6 * m for m in material.mu_MPa), material.alpha, 0.0)
-    else:
-        raise TypeError(f"{material.model} is not a medium")
-    return replace(law, bulk_modulus=bulk_modulus(law.shear_modulus, material.poisson_ratio))

@@ -10,6 +10,8 @@ from pydantic import AfterValidator, Field, TypeAdapter, model_validator
 
 from geometry.base import InputError, nearest
 from geometry.parameters import Finite, Positive, Table
+from solve.materials import laws
+from solve.materials.principal_stretches import HyperfoamLaw
 
 
 def _poisson_ratio(value: float) -> float:
@@ -53,6 +55,11 @@ class NeoHookean(MaterialTable):
         """Small-strain shear modulus G = E / (2 (1 + nu))."""
         return self.youngs_modulus_MPa / (2.0 * (1.0 + self.poisson_ratio))
 
+    @property
+    def law(self) -> laws.MediumLaw:
+        """Its law, in MPa."""
+        return laws.InvariantLaw(0.5 * self.shear_modulus_MPa, 0.0, 0.0, 0.0, _bulk_MPa(self))
+
 
 class Linear(MaterialTable):
     """Hooke's law between Green-Lagrange strain and second Piola-Kirchhoff stress."""
@@ -65,6 +72,11 @@ class Linear(MaterialTable):
     def shear_modulus_MPa(self) -> float:
         """Small-strain shear modulus G = E / (2 (1 + nu))."""
         return self.youngs_modulus_MPa / (2.0 * (1.0 + self.poisson_ratio))
+
+    @property
+    def law(self) -> laws.MediumLaw:
+        """Its law, in MPa."""
+        return laws.LinearLaw(self.shear_modulus_MPa, _bulk_MPa(self))
 
 
 class MooneyRivlin(MaterialTable):
@@ -85,6 +97,11 @@ class MooneyRivlin(MaterialTable):
         """Small-strain shear modulus G = 2 (c10 + c01)."""
         return 2.0 * (self.c10_MPa + self.c01_MPa)
 
+    @property
+    def law(self) -> laws.MediumLaw:
+        """Its law, in MPa."""
+        return laws.InvariantLaw(self.c10_MPa, self.c01_MPa, 0.0, 0.0, _bulk_MPa(self))
+
 
 class Yeoh(MaterialTable):
     """W = c10 (I1 - 3) + c20 (I1 - 3)^2 + c30 (I1 - 3)^3, isochoric, + K/2 (J - 1)^2; G = 2 c10."""
@@ -99,6 +116,11 @@ class Yeoh(MaterialTable):
     def shear_modulus_MPa(self) -> float:
         """Small-strain shear modulus G = 2 c10."""
         return 2.0 * self.c10_MPa
+
+    @property
+    def law(self) -> laws.MediumLaw:
+        """Its law, in MPa."""
+        return laws.InvariantLaw(self.c10_MPa, 0.0, self.c20_MPa, self.c30_MPa, _bulk_MPa(self))
 
 
 class Ogden(MaterialTable):
@@ -119,6 +141,11 @@ class Ogden(MaterialTable):
     def shear_modulus_MPa(self) -> float:
         """Small-strain shear modulus G = half the sum of mu alpha."""
         return 0.5 * sum(m * a for m, a in zip(self.mu_MPa, self.alpha, strict=True))
+
+    @property
+    def law(self) -> laws.MediumLaw:
+        """Its law, in MPa."""
+        return laws.OgdenLaw(self.mu_MPa, self.alpha, _bulk_MPa(self))
 
 
 class Hyperfoam(MaterialTable):
@@ -152,6 +179,12 @@ class Hyperfoam(MaterialTable):
     def shear_modulus_MPa(self) -> float:
         """Small-strain shear modulus G = the sum of mu."""
         return sum(self.mu_MPa)
+
+    @property
+    def law(self) -> laws.MediumLaw:
+        """Its law, in MPa."""
+        beta = tuple(nu / (1.0 - 2.0 * nu) for nu in self.poisson_ratio)
+        return HyperfoamLaw(self.mu_MPa, self.alpha, beta)
 
 
 class PiezoelectricFilm(MaterialTable):
@@ -188,6 +221,15 @@ class PiezoelectricFilm(MaterialTable):
     def shear_modulus_MPa(self) -> float:
         """A film is no medium: ValueError."""
         raise ValueError(f"{self.model} is not a medium")
+
+    @property
+    def law(self) -> laws.MediumLaw:
+        """A film is no medium: ValueError."""
+        raise ValueError(f"{self.model} is not a medium")
+
+
+def _bulk_MPa(material: "NeoHookean | Linear | MooneyRivlin | Yeoh | Ogden") -> float:
+    return laws.bulk_modulus(material.shear_modulus_MPa, material.poisson_ratio)
 
 
 def _require_terms(name: str, values: tuple[float, ...], mu: tuple[float, ...]) -> None:

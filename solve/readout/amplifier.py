@@ -10,6 +10,7 @@ import numba as nb
 import numpy as np
 
 from geometry.arrays import Floats
+from solve.materials.inelastic import mean_decay
 from solve.model import Physics, Pyroelectric, Readout
 from solve.readout.filters import Filter
 from solve.readout.stages import Saturation, Stage
@@ -50,7 +51,7 @@ def leaky_integral(time: Floats, charge: Floats, capacitance: float, resistance:
         step = time[n + 1] - time[n]
         if step != last:
             decay = step / (resistance * capacitance)
-            fade, gain, last = np.exp(-decay), -np.expm1(-decay) / decay if decay > 0.0 else 1.0, step
+            fade, gain, last = np.exp(-decay), mean_decay(decay), step
         voltage[n + 1] = fade * voltage[n] + gain * (charge[n + 1] - charge[n]) / capacitance
     return voltage
 

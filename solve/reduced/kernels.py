@@ -15,6 +15,7 @@ import numba as nb
 import numpy as np
 
 from geometry.arrays import Floats, Ints
+from solve.materials.inelastic import branch_stress, mean_decay
 
 STEPS = 60  # of the search for a depth
 CLOSE = 1e-12  # of the full depth
@@ -110,7 +111,7 @@ def _decay(step: float, moduli: Floats, times: Floats, layer: Ints, start: Ints,
     for b in range(len(moduli)):
         a = step / times[b]
         fade[b] = np.exp(-a)
-        gain[b] = moduli[b] * (-np.expm1(-a) / a if a > 0.0 else 1.0)
+        gain[b] = moduli[b] * mean_decay(a)
         for r in range(start[layer[b]], start[layer[b] + 1]):
             instant[r] += moduli[b] - gain[b]
 
@@ -129,7 +130,7 @@ def _remember(layer: Ints, start: Ints, fade: Floats, gain: Floats, memory: Floa
     """Take the step in the branches; old becomes new."""
     for b in range(len(layer)):
         for r in range(start[layer[b]], start[layer[b] + 1]):
-            memory[b, r] = fade[b] * memory[b, r] + gain[b] * (new[r] - old[r])
+            memory[b, r] = branch_stress(memory[b, r], fade[b], gain[b], new[r] - old[r])
     old[:] = new
 
 

@@ -30,6 +30,7 @@ import numpy as np
 
 from geometry.arrays import Floats, Ints
 from solve.fem.sparsity import Block, History, Term, Trial
+from solve.materials.inelastic import mean_decay
 
 FADE = 0.5  # spectral radius at infinite frequency
 ALPHA = (FADE - 1.0) / (FADE + 1.0)
@@ -127,7 +128,7 @@ class Circuit(Term):
         if np.isinf(trial.time_step):  # long at rest: discharged
             return SHORT * capacitance * float(trial.x[self.voltage_dof]), SHORT * capacitance
         a = trial.time_step / (self.resistance * capacitance)
-        phi = -np.expm1(-a) / a if a > 0.0 else 1.0
+        phi = float(mean_decay(a))
         now = float(trial.x[self.voltage_dof])
         return charge + capacitance * (now - np.exp(-a) * voltage) / phi, capacitance / phi
 

@@ -25,7 +25,6 @@ from diagnose.signals.recording import Drive, Recording, Run, Specimen
 from diagnose.vocabulary.base import CouponScene, candidates_of_coupon
 from diagnose.vocabulary.layers.property_error import relative_error
 from geometry.base import InputError, Report
-from solve.materials.laws import medium_law
 from solve.materials.parameters import Material, PiezoelectricFilm, find_material
 from solve.mechanisms import Mechanism
 from solve.model import Model
@@ -102,7 +101,7 @@ def point_of(specimen: Specimen, model: Model) -> MaterialPoint:
     ratio = material.poisson_ratio
     return MaterialPoint(
         kinematics_of(specimen.model_copy(update={"thickness_mm": thickness})),
-        medium_law(material).scaled(1e-6),
+        material.law,
         float(np.mean(ratio)),
         physics.softening.get(LAYER),
         physics.viscosity.get(LAYER, NO_SERIES),

@@ -19,7 +19,7 @@ import numpy as np
 from diagnose.engines.coupon.kinematics import Kinematics, Reading, SimpleShear
 from diagnose.signals.recording import Drive
 from geometry.arrays import Floats
-from solve.materials.inelastic import Prony, Softening, StressResponse
+from solve.materials.inelastic import Prony, Softening, StressResponse, branch_stress
 from solve.materials.laws import MediumLaw
 from solve.solution.newton import NoEquilibriumError
 
@@ -40,9 +40,8 @@ class Relaxation:
     @classmethod
     def of(cls, series: Prony, time_s: Floats) -> "Relaxation":
         """The series at times (t,)."""
-        a = np.diff(time_s, prepend=time_s[0])[:, None] / np.array(series.relaxation_times).reshape(1, -1)
-        gain = -np.expm1(-a) / np.where(a > 0.0, a, 1.0) + (a == 0.0)
-        return cls(np.array(series.relative_moduli, dtype=np.float64), np.exp(-a), gain)
+        fade, gain = series.decay(np.diff(time_s, prepend=time_s[0]))
+        return cls(np.array(series.relative_moduli, dtype=np.float64), fade, gain)
 
     @property
     def instant(self) -> Floats:
@@ -83,7 +82,7 @@ def _relaxed(elastic, moduli, fade, gain):  # type: ignore[no-untyped-def]
             change = elastic[t, c] - (elastic[t - 1, c] if t > 0 else 0.0)
             stress[t, c] = rest * elastic[t, c]
             for b in range(len(moduli)):
-                branches[b, c] = fade[t, b] * branches[b, c] + moduli[b] * gain[t, b] * change
+                branches[b, c] = branch_stress(branches[b, c], fade[t, b], moduli[b] * gain[t, b], change)
                 stress[t, c] += branches[b, c]
     return stress
 
@@ -119,7 +118,7 @@ def _newton_step(residual, by_stress, stress_by, by_unknown, moduli, fade, gain)
             for j in range(size):
                 new[c] += stress_by[t, c, j] * step[t, j]
             for b in range(len(moduli)):
-                branches[b, c] = fade[t, b] * branches[b, c] + moduli[b] * gain[t, b] * (new[c] - old[c])
+                branches[b, c] = branch_stress(branches[b, c], fade[t, b], moduli[b] * gain[t, b], new[c] - old[c])
             old[c] = new[c]
     return step
 

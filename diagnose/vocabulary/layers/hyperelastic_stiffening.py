@@ -12,7 +12,6 @@ from diagnose.engines.coupon.point import MaterialPoint
 from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
 from diagnose.vocabulary.base import CouponScene, Scene, Vocabulary, register
-from solve.materials.laws import medium_law
 from solve.materials.parameters import Hyperfoam, Material, MooneyRivlin, NeoHookean, Ogden, Yeoh
 from solve.mechanisms import Mechanism, with_mechanisms
 from solve.mechanisms.base import MEDIA
@@ -113,7 +112,7 @@ def _of_specimen(material: Material, point: MaterialPoint, travel_mm: float, by_
     def derived(values: Sequence[float]) -> dict[str, float]:
         mechanism = Mechanism(name=HYPERELASTIC_STIFFENING.name, component=LAYER, parameters=law.parameters(values))
         stiff = with_mechanisms(one_layer(material, 1.0), [mechanism]).materials[LAYER]
-        return {"force_ratio": _force(replace(point, law=medium_law(stiff).scaled(1e-6)), travel_mm) / without}
+        return {"force_ratio": _force(replace(point, law=stiff.law), travel_mm) / without}
 
     units = {"c10_MPa": "MPa", "c20_MPa": "MPa", "c30_MPa": "MPa", "mu_MPa": "MPa", "alpha": "", "force_ratio": ""}
     return PartOfLayer(HYPERELASTIC_STIFFENING.name, SPECIMEN, law.coordinates, law.parameters, derived, units)
