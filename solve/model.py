@@ -7,8 +7,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Annotated, Literal, Self
 
-from pydantic import Field, model_validator
+import numpy as np
+from pydantic import Field, PrivateAttr, model_validator
 
+from geometry.arrays import Floats
 from geometry.parameters import Dot, Finite, NonNegative, Positive, Segment, Table
 from solve.materials.inelastic import Prony, Softening
 from solve.materials.parameters import Material, PiezoelectricFilm
@@ -28,6 +30,19 @@ class Waveform(Table):
     hold_s: NonNegative = Field(0.0, description="ramp and trapezoid: time at full depth")
     fall_s: Positive = Field(0.5, description="trapezoid: time of the release")
     file: str | None = Field(None, description="shape = file: the CSV file")
+    _samples: Floats | None = PrivateAttr(None)
+
+    @classmethod
+    def through(cls, time_s: Floats, fraction: Floats) -> Self:
+        """Straight lines through fractions (t,) at increasing times (t,), as a file would state them."""
+        made = cls(shape="file")
+        made._samples = np.column_stack([time_s, fraction])
+        return made
+
+    @property
+    def samples(self) -> Floats | None:
+        """Times and fractions (t, 2) of one that was made through them, else None."""
+        return self._samples
 
 
 DEFAULT_INDENTATION_MM = 0.3

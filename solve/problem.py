@@ -301,8 +301,8 @@ def _bonds(make: Builder, numbers: Numbers) -> Iterator[Term]:
         if line is not None and glued.any():
             normal = make.per_area(line.normal_stiffness_N_per_mm3)
             shear = make.per_area(line.shear_stiffness_N_per_mm3)
-            series = make.physics.viscosity.get(face.name)
-            yield bond(make.points, face.lower[glued], face.upper[glued], dofs, normal, shear, series)
+            series = [make.physics.viscosity[face.name]] if face.name in make.physics.viscosity else []
+            yield bond(make.points, face.lower[glued], face.upper[glued], dofs, normal, shear, tuple(series))
         if face.delaminated.any():
             lower, upper = face.lower[face.delaminated], face.upper[face.delaminated]
             multipliers = numbers.take(opening_nodes(lower, upper, dofs)[1])

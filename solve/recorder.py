@@ -22,7 +22,6 @@ from solve.result import PressResult, Record, Step, Trace, fields, film_peak
 from solve.solution.march import SMALLEST_IN_TIME, TIME_TOLERANCE
 from solve.solution.schedule import fraction
 from solve.system import State, System
-from solve.terms.rig import RigTerm
 
 PENETRATION_LIMIT = 0.05  # of the depth; contact holds in weighted means, so a coarse surface can overlap at points
 
@@ -142,7 +141,7 @@ class Recorder:
         trial = system.trial(state.x, state.load, state.time, before)
         resultant = system.dot_force(trial)
         drive = state.load.drive
-        sensor = -float(trial.move[2]) if system.unknowns.approach < 0 or self._force_driven else drive
+        sensor = -float(trial.move[2]) if system.unknowns.approach < 0 or self.system.force_driven else drive
         touched = system.contact.closed(trial)  # the pressure of open nodes is zero but for round-off
         self.records.append(
             Record(
@@ -218,14 +217,6 @@ class Recorder:
         units = self.system.units
         return self.system.film.capacitance() * (units.charge / units.voltage) * self.charge_scale
 
-    @property
-    def _rig(self) -> RigTerm | None:
-        return next((term for term in self.system.terms if isinstance(term, RigTerm)), None)
-
-    @property
-    def _force_driven(self) -> bool:
-        return self._rig is not None and self._rig.compliance is None
-
     def _mechanical_charge(self, state: State, before: State) -> Floats:
         """Short-circuit charge of each electrode in C, (e,)."""
         film, system = self.system.film, self.system
@@ -235,7 +226,7 @@ class Recorder:
     def _rig_force(self, state: State, before: State) -> float:
         """What the rig's force sensor reads, solver units; positive in compression."""
         trial = self.system.trial(state.x, state.load, state.time, before)
-        rig = self._rig
+        rig = self.system.rig
         return -float(self.system.dot_force(trial)[2]) if rig is None else rig.drive_force(trial)
 
     def trace(self, press: Press) -> Trace:
@@ -256,7 +247,7 @@ class Recorder:
 
     def _with_inertia(self, trace: Trace, press: Press) -> Trace:
         """Where the dot's path is prescribed the force sensor also feels its mass: F = F_contact + m a''."""
-        if self._rig is not None or self.physics.moving_mass_g == 0.0:
+        if self.system.rig is not None or self.physics.moving_mass_g == 0.0:
             return trace
         acceleration = prescribed_acceleration(press, trace)
         force = trace.reaction_force_N + 1e-3 * self.physics.moving_mass_g * acceleration

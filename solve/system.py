@@ -14,7 +14,6 @@ from solve.fem.kernels import scatter
 from solve.fem.sparsity import History, Pattern, Tangent, Term, Trial, Unknowns, scatter_unsymmetric
 from solve.terms.contact import ContactFacets
 from solve.terms.film import FilmRegion
-from solve.terms.friction import FrictionalContact
 from solve.terms.rig import RigTerm
 from solve.terms.solid import SolidRegion
 
@@ -119,9 +118,14 @@ class System:
         return all(term.symmetric for term in self.terms)
 
     @property
+    def rig(self) -> RigTerm | None:
+        """What stands between the rig's sensor and the dot; None where the dot's depth is prescribed."""
+        return next((term for term in self.terms if isinstance(term, RigTerm)), None)
+
+    @property
     def force_driven(self) -> bool:
         """Whether a force drives the dot."""
-        return any(isinstance(term, RigTerm) and term.compliance is None for term in self.terms)
+        return self.rig is not None and self.rig.compliance is None
 
     @cached_property
     def mechanical(self) -> Ints:
@@ -163,11 +167,7 @@ class System:
 
     def dot_force(self, trial: Trial) -> Floats:
         """Resultant of the dot on the meshed body (3,)."""
-        pressure = trial.x[self.contact.pressure_dofs]
-        for term in self.terms:
-            if isinstance(term, FrictionalContact):
-                return term.force(trial.displacement, trial.move, pressure, trial.x[term.friction_dofs])
-        return self.contact.force(trial.displacement, trial.move, pressure)
+        return np.asarray(sum(term.dot_force(trial) for term in self.terms))
 
     @property
     def factorisation_shift(self) -> Floats:
@@ -193,11 +193,8 @@ class System:
                 else:
                     scatter_unsymmetric(block.matrices, block.residuals, dofs, slot, data, excess, residual)
             status.append(term.status(trial, history))
-            if isinstance(term, ContactFacets | FrictionalContact):
-                load_norm = max(load_norm, float(np.linalg.norm((residual - before)[self.mechanical])))
-                touching = bool(status[-1][: len(self.contact.pressure_dofs)].any())  # nodes in contact come first
-            elif isinstance(term, RigTerm):
-                load_norm = max(load_norm, abs(term.drive_force(trial)))
+            load_norm = max(load_norm, term.load_norm(trial, (residual - before)[self.mechanical]))
+            touching = touching or term.touches(status[-1])
         upper = self.pattern.matrix(data)
         lower = None if excess is None else self.pattern.matrix(excess)
         return Evaluation(residual, Tangent(upper, lower), load_norm, np.concatenate(status), touching)

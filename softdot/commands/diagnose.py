@@ -2,7 +2,6 @@
 
 from argparse import Namespace
 from collections.abc import Sequence
-from copy import copy
 from dataclasses import dataclass, field, replace
 from itertools import product
 from pathlib import Path
@@ -11,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from diagnose.findings import Findings
-from diagnose.forward import Engine, all_but, other_units, some_runs
+from diagnose.forward import Engine, PassingOn, all_but, other_units, some_runs
 from diagnose.next_press.choose import NextPress, next_press
 from diagnose.noise.estimate import noise_models
 from diagnose.signals.columns import refuse_slow_sampling
@@ -138,9 +137,8 @@ def narrowed(engine: Engine, without: Sequence[str]) -> Engine:
     for name in without:
         if name not in MECHANISMS:
             raise InputError(f"--without '{name}': {nearest(name, MECHANISMS)}")
-    fewer = copy(engine)
-    kept = tuple(one for one in engine.candidates if one.mechanism not in without)
-    object.__setattr__(fewer, "candidates", kept)  # engines may be frozen
+    fewer = PassingOn(engine)
+    fewer.candidates = tuple(one for one in engine.candidates if one.mechanism not in without)
     return fewer
 
 

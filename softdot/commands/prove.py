@@ -14,7 +14,7 @@ from diagnose.prove.trial import Terms, tried
 from diagnose.prove.world.cases import KINDS, Case, plan
 from geometry.base import InputError
 from geometry.cache import check_folder, data_hash, source_hash
-from softdot import proof as store
+from softdot import proof as proof_files
 from softdot.console import (
     GOOD,
     INTERRUPTED,
@@ -70,12 +70,12 @@ def short_text(summary: dict[str, Any], output: str) -> str:
 def prove_case(case: Case, terms: Terms, place: Path, program: str) -> dict[str, Any]:
     """The record of a case, kept in the folder of the proof. Its digest is there before the diagnosis begins."""
     try:
-        record = tried(case, terms, lambda name, digest: store.commit(place, name, digest))
+        record = tried(case, terms, lambda name, digest: proof_files.commit(place, name, digest))
     except Exception as error:
         reason = f"{type(error).__name__}: {' '.join(str(error).split())}"
         return {"case": {"number": case.number}, "status": "crashed", "reason": reason, "score": None}
     record["program"] = program
-    store.keep(place, case.name, record)
+    proof_files.keep(place, case.name, record)
     return record
 
 
@@ -109,9 +109,9 @@ def run_proof(request: Request, out: Path, progress: Progress | None = None) -> 
     """
     _check(request)
     check_folder()
-    place, program = store.check(out), program_hash()
+    place, program = proof_files.check(out), program_hash()
     cases = plan(request.cases, request.seed, request.rigs, request.staged, request.kinds)
-    found = {case.name: record for case in cases if (record := store.kept(place, case, program)) is not None}
+    found = {case.name: record for case in cases if (record := proof_files.kept(place, case, program)) is not None}
     missing = [case for case in cases if case.name not in found]
     progress = progress or Logged()
     reused = len(found)
@@ -152,7 +152,7 @@ def _tried(
     arguments = {case.name: (case, terms, place.resolve(), program) for case in missing}
     address = request.scheduler
     with local_cluster(request.workers) if address is None else existing_cluster(address) as client:
-        store.begin(place)  # once somebody can work
+        proof_files.begin(place)  # once somebody can work
         with log_file(place / LOG_FILE):
             for name, record in all_ended(client, prove_case, arguments, AWAY):
                 yield name, {"score": None, **record}
@@ -167,18 +167,18 @@ def _finished(request: Request, place: Path, records: Sequence[Mapping[str, Any]
 
     scores = [score_from(record["score"]) for record in records if record["score"] is not None]
     summary: dict[str, Any] = plain({
-        "format": store.FORMAT, "complete": True, "softdot_version": installed_version(),
+        "format": proof_files.FORMAT, "complete": True, "softdot_version": installed_version(),
         "cases": request.cases, "seed": request.seed, "rigs": list(request.rigs), "staged": request.staged,
         "kinds": list(request.kinds),
         "ended": dict(Counter(record["status"] for record in records)), "reused": reused,
         "reasons": sorted({record["reason"] for record in records if record["reason"]}),
         "rates": tally(scores), "rivals": rival_rates(records), "hardware": hardware(),
     })  # fmt: skip
-    (place / store.TABLE).write_text(text(summary), "utf-8")
-    (place / store.CURVE).unlink(missing_ok=True)  # an earlier one may be of other kinds of cases
+    (place / proof_files.TABLE).write_text(text(summary), "utf-8")
+    (place / proof_files.CURVE).unlink(missing_ok=True)  # an earlier one may be of other kinds of cases
     if summary["rates"]["by_size"]:
-        draw(summary["rates"]["by_size"], place / store.CURVE)
-    write_json(place / store.PROOF.summary, summary)
+        draw(summary["rates"]["by_size"], place / proof_files.CURVE)
+    write_json(place / proof_files.PROOF.summary, summary)
     return summary
 
 

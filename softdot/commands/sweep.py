@@ -24,7 +24,7 @@ from softdot.console import (
     only_the_summary_on_stdout,
     show,
 )
-from softdot.sweeps import points as store
+from softdot.sweeps import points as point_files
 from softdot.sweeps.cluster import existing_cluster, hardware, local_cluster
 from softdot.sweeps.points import REFUSED, STATUSES, Record, failed, solve_all
 from softdot.sweeps.space import Point, Space, sampling_warnings
@@ -44,9 +44,11 @@ def run_sweep(
     scheduler that does not answer. After Ctrl-C, or when killed, the points that were finished stay.
     """
     check_folder()
-    place = store.check_folder(Path(out))
+    place = point_files.check_folder(Path(out))
     configs = {config_hash(point.config): point.config for point in space.points if point.config is not None}
-    records = {name: found for name, config in configs.items() if (found := store.kept(place, config)) is not None}
+    records = {
+        name: found for name, config in configs.items() if (found := point_files.kept(place, config)) is not None
+    }
     missing = {name: config for name, config in configs.items() if name not in records}
     cluster = local_cluster(space.sweep.workers) if scheduler is None else existing_cluster(scheduler)
     with ExitStack() as stack:
@@ -56,7 +58,7 @@ def run_sweep(
         ends = [_record(point, records) for point in space.points]
         summary = {**_heading(space, ends), "scheduler": scheduler, **measured, "hardware": hardware()}
         rows = [row(number, space.points[number].values, record) for number, record in enumerate(ends)]
-        store.finish(place, rows, list(space.points[0].values), space.text, summary)
+        point_files.finish(place, rows, list(space.points[0].values), space.text, summary)
     return summary
 
 
@@ -75,17 +77,17 @@ def _solve(
     reused, count = len(records), len(records) + len(missing)
     begun = time.perf_counter()
     with cluster as client:
-        store.begin(place)
-        stack.callback(release, store.take(place))
-        store.sweep_up(place)
-        stack.callback(store.sweep_up, place)
+        point_files.begin(place)
+        stack.callback(release, point_files.take(place))
+        point_files.sweep_up(place)
+        stack.callback(point_files.sweep_up, place)
         workers = len(client.nthreads())
         ready = time.perf_counter()
         with log_file(place / LOG_FILE):
             progress.stage("solve")
             progress.step(reused, count, "")
             for name, record in solve_all(client, missing):
-                records[name] = store.keep(place, missing[name], record)
+                records[name] = point_files.keep(place, missing[name], record)
                 progress.step(len(records), count, record["reason"] or "")
         end = time.perf_counter()
     return _measured(len(missing), reused, workers, ready - begun, end - ready)
@@ -115,7 +117,7 @@ def _heading(space: Space, ends: list[Record]) -> dict[str, Any]:
 
     ended = Counter(record["status"] for record in ends)
     return {
-        "format": store.SWEEP.format,
+        "format": point_files.SWEEP.format,
         "complete": True,
         "softdot_version": installed_version(),
         "sampling": space.sweep.sampling,

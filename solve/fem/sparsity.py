@@ -199,6 +199,7 @@ class Term(ABC):
     """
 
     symmetric = True
+    inelastic: tuple[Any, ...] = ()  # laws with memory, whose memories are the history of the term
 
     @property
     @abstractmethod
@@ -220,6 +221,18 @@ class Term(ABC):
     def status(self, trial: Trial, history: History) -> Bools:
         """Discrete states (open or touching, stick or slip) that must repeat before Newton has converged."""
         return np.zeros(0, bool)
+
+    def touches(self, status: Bools) -> bool:
+        """Whether the dot touches, by the discrete states of this term."""
+        return False
+
+    def load_norm(self, trial: Trial, forces: Floats) -> float:
+        """Norm of the load that this term puts on; forces : its part of the residual at the displacements."""
+        return 0.0
+
+    def dot_force(self, trial: Trial) -> Floats:
+        """Its part (3,) of the dot's force on the meshed body."""
+        return np.zeros(3)
 
     def constraints(self) -> tuple[Ints, Floats]:
         """Lagrange multipliers without a diagonal entry: their unknowns (c,) and nodal areas (c,)."""

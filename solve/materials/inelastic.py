@@ -18,6 +18,7 @@ Proc. R. Soc. A 455, 1999, in the form with beta of Abaqus). With dW = S0 : dE t
     eta CC0 + d eta/dW S0 x S0,      d eta/dW = 2 exp(-z^2) / (sqrt(pi) r (m + beta W_max)).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
@@ -49,14 +50,41 @@ class Inelastic(Protocol):
     def needs_energy(self) -> bool:
         """Whether Response.energy is read."""
 
-    def start(self, points: int) -> Memory:
-        """Memory of n quadrature points at rest."""
+    def start(self, points: int, components: int = 6) -> Memory:
+        """Memory of n quadrature points at rest; components : of a stress, or of a bond's jump."""
 
     def update(self, elastic: StressResponse, memory: Memory, time_step: float) -> tuple[StressResponse, Memory]:
         """Response and memory at the end of a time step (s)."""
 
     def scaled(self, factor: float) -> "Inelastic":
         """The same law in another unit of stress."""
+
+    def time_error(self, memory: Memory, new: Memory, time_step: float, after_kink: bool) -> float:
+        """Error of the time integration in a step, relative to the largest stress; 0 for a law without rates."""
+
+
+def at_rest(laws: Sequence[Inelastic], points: int, components: int = 6) -> tuple[Memory, ...]:
+    """Memories of laws that act one after the other."""
+    return tuple(law.start(points, components) for law in laws)
+
+
+def respond(
+    laws: Sequence[Inelastic], elastic: StressResponse, memories: Sequence[Memory], time_step: float
+) -> tuple[StressResponse, tuple[Memory, ...]]:
+    """Each law on the response of the one before: the last response, and the new memories."""
+    response, new = elastic, []
+    for law, memory in zip(laws, memories, strict=True):
+        response, now = law.update(response, memory, time_step)
+        new.append(now)
+    return response, tuple(new)
+
+
+def time_error(
+    laws: Sequence[Inelastic], old: Sequence[Memory], new: Sequence[Memory], time_step: float, after_kink: bool
+) -> float:
+    """The largest of their errors."""
+    each = zip(laws, old, new, strict=True)
+    return max((law.time_error(before, now, time_step, after_kink) for law, before, now in each), default=0.0)
 
 
 @nb.vectorize(cache=True)  # type: ignore[no-untyped-call]
@@ -83,10 +111,10 @@ class Prony:
         """The same series: its moduli are relative."""
         return self
 
-    def start(self, points: int) -> Memory:
-        """Elastic stress at the last step (n, 6), its rate, and the branch stresses (n, i, 6)."""
-        branches = len(self.relative_moduli)
-        return np.zeros((points, 6)), np.full((points, 6), np.nan), np.zeros((points, branches, 6))
+    def start(self, points: int, components: int = 6) -> Memory:
+        """Elastic stress at the last step (n, c), its rate, and the branch stresses (n, i, c)."""
+        shape, branches = (points, components), len(self.relative_moduli)
+        return np.zeros(shape), np.full(shape, np.nan), np.zeros((points, branches, components))
 
     def decay(self, time_step: float | Floats) -> tuple[Floats, Floats]:
         """exp(-a) and (1 - exp(-a)) / a of each branch, (i,), or (t, i) of steps (t,)."""
@@ -136,7 +164,7 @@ class Softening:
         """The same law in another unit of stress."""
         return replace(self, energy=factor * self.energy)
 
-    def start(self, points: int) -> Memory:
+    def start(self, points: int, components: int = 6) -> Memory:
         """The largest energy so far (n,)."""
         return (np.zeros(points),)
 
@@ -149,6 +177,10 @@ class Softening:
         rank_one = elastic.stress[:, :, None] * elastic.stress[:, None, :]
         tangent = factor[:, None, None] * elastic.tangent + slope[:, None, None] * rank_one
         return StressResponse(stress, tangent, elastic.energy), (largest,)
+
+    def time_error(self, memory: Memory, new: Memory, time_step: float, after_kink: bool) -> float:
+        """No rate enters."""
+        return 0.0
 
     def _factor(self, energy: Floats, largest: Floats, rounding: Floats) -> tuple[Floats, Floats]:
         """eta and d eta/dW, (n,) each. rounding : the least energy that differs from that of the undeformed point."""

@@ -23,7 +23,7 @@ from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.model import Model, Physics, Press, Waveform
 from solve.press import press_segment, set_up
 from solve.problem import open_interfaces
-from solve.reduced import model as store
+from solve.reduced import model as model_files
 from solve.reduced.fit import FINER, fit
 from solve.reduced.model import Accuracy, ReducedModel, structure
 from solve.reduced.sampling import Frozen, Sample, SampledPress, Sampler
@@ -136,7 +136,7 @@ def build_reduced(
     _refuse(asked)
     if not cache:
         return _build(asked, check)
-    return store.remembered(store.key(asked, check), lambda: _build(asked, check))
+    return model_files.remembered(model_files.key(asked, check), lambda: _build(asked, check))
 
 
 def _refuse(case: ReductionTask) -> None:

@@ -15,10 +15,9 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from geometry.arrays import Floats
-from solve.fem.sparsity import History, Term
+from solve.fem.sparsity import Term
 from solve.solution.linear import LinearSolver
 from solve.system import State, System
-from solve.terms.springs import BondSprings
 
 NEW_DIRECTION = 1e-3  # of the largest load: what is left of a smaller one is dropped
 WORTH_A_MODE = 0.02  # of the first mode's size
@@ -61,11 +60,6 @@ def leading_modes(snapshots: Floats, count: int) -> tuple[Floats, float]:
 ACCURATE = 1e-8
 
 
-def held(term: Term, elastic: Floats, memory: Floats) -> History:
-    """The history of a term with a Frozen law."""
-    return (elastic, memory) if isinstance(term, BondSprings) else ((elastic, memory),)
-
-
 class StressMetric:
     """Measures fields at one state, by the compliance of the segment in it (see solve.reduced.modes)."""
 
@@ -89,7 +83,7 @@ class StressMetric:
         """f (count,) = residual without the memory less residual with it."""
         load = np.zeros(self.system.count + 1)  # the last entry takes what belongs to prescribed unknowns
         for memory, sign in ((np.zeros_like(field), 1.0), (field, -1.0)):
-            for block in term.elements(self.trial, held(term, field, memory)):
+            for block in term.elements(self.trial, ((field, memory),)):
                 dofs = term.groups[block.group][block.part]
                 np.add.at(load, dofs, sign * block.residuals)
         return load[:-1]

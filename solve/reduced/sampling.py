@@ -17,16 +17,13 @@ from geometry.arrays import Floats
 from solve.fem.sparsity import History, Term
 from solve.materials.inelastic import Memory, Prony, StressResponse
 from solve.press import Setup
-from solve.reduced.modes import StressMetric, held
+from solve.reduced.modes import StressMetric
 from solve.solution.linear import LinearSolver
 from solve.solution.march import rest_state
 from solve.solution.near import Course, reach
 from solve.solution.newton import NoEquilibriumError, equilibrate
 from solve.solution.schedule import Target
 from solve.system import Load, State
-from solve.terms.film import FilmRegion
-from solve.terms.solid import SolidRegion
-from solve.terms.springs import BondSprings
 
 
 @dataclass(frozen=True)
@@ -40,9 +37,9 @@ class Frozen(Prony):
     relaxation_times: tuple[float, ...] = ()
     layer: str = ""
 
-    def start(self, points: int) -> Memory:
+    def start(self, points: int, components: int = 6) -> Memory:
         """Nothing remembered."""
-        return np.zeros((points, 6)), np.zeros((points, 6))
+        return np.zeros((points, components)), np.zeros((points, components))
 
     def update(self, elastic: StressResponse, memory: Memory, time_step: float) -> tuple[StressResponse, Memory]:
         """Response with the memory M, which stays."""
@@ -151,7 +148,7 @@ class Sampler:
         if name is None:
             return history
         elastic = self._elastic(self.rest)[name]
-        return held(term, elastic, memory.get(name, np.zeros_like(elastic)))
+        return ((elastic, memory.get(name, np.zeros_like(elastic))),)
 
     def _gap(self, state: State, drive: float) -> float:
         """Smallest distance, a mean over a node's surroundings, to the dot at an approach."""
@@ -166,13 +163,12 @@ class Sampler:
 
     def _elastic(self, state: State) -> Fields:
         histories = {name: self.system.history_of(term, state) for name, term in self.terms.items()}
-        return {name: h[0] if isinstance(self.terms[name], BondSprings) else h[0][0] for name, h in histories.items()}
+        return {name: memories[0][0] for name, memories in histories.items()}
 
 
 def _term(setup: Setup, layer: str) -> Term:
     """The term whose law remembers. ValueError where the segment has none of that name."""
     for term in setup.system.terms:
-        laws = term.inelastic if isinstance(term, SolidRegion | FilmRegion) else (getattr(term, "prony", None),)
-        if any(isinstance(law, Frozen) and law.layer == layer for law in laws):
+        if any(isinstance(law, Frozen) and law.layer == layer for law in term.inelastic):
             return term
     raise ValueError(f"relaxing: '{layer}' is no layer or compliant bond of this segment")

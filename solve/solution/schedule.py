@@ -58,7 +58,9 @@ def fraction(waveform: Waveform, time_s: Floats) -> Floats:
 
 
 def _table(waveform: Waveform) -> Floats:
-    """The columns time_s, fraction of a file, (n, 2)."""
+    """The columns time_s, fraction of a file, or what was given in its place, (n, 2)."""
+    if waveform.samples is not None:
+        return waveform.samples
     if waveform.file is None:
         raise InputError("press.waveform.file is missing: shape = 'file' needs a CSV file")
     file = Path(waveform.file)

@@ -4,6 +4,7 @@ Nodes crowded towards held sides, where the stress of the film is singular and m
 """
 
 from dataclasses import replace
+from typing import TypeAlias
 
 import numpy as np
 
@@ -16,7 +17,10 @@ from mesh.outline import outline
 from mesh.types import TET_EDGES, MeshingError, TetMesh
 from solve.model import Model
 
-FROM, ROOM = 0.6, 0.05
+Mesh: TypeAlias = TetMesh
+MeshSettings: TypeAlias = MeshOptions
+"""What a diagnosis holds and hands on without looking into it."""
+FROM, LEFT = 0.6, 0.05
 """Share of half the footprint up to which nodes stay; least share that must be left beyond the foot of an effector."""
 POWER = 3.0
 """Distances from the side become this power of themselves: evenly spaced nodes resolve a singularity again."""
@@ -35,7 +39,7 @@ def crowded(tet_mesh: TetMesh, segment: Segment) -> TetMesh:
     for axis, (side, foot) in enumerate(ends[:1] if segment.section == "plane-strain" else ends):
         first = FROM if stack.shape in ("none", "layer") else max(FROM, foot / side)
         place = tet_mesh.points_mm[:, axis]
-        if first < 1.0 - ROOM:
+        if first < 1.0 - LEFT:
             shift[:, axis] = side * _towards_one(place / side, first) - place
     corners, middles = tet_mesh.tets[:, :4], tet_mesh.tets[:, 4:]
     shift[middles] = shift[corners[:, TET_EDGES]].mean(axis=2)  # edges stay straight, or as curved as they were

@@ -21,7 +21,7 @@ from geometry.arrays import Floats
 from geometry.base import Report
 from geometry.files import ONE_THREAD, end_with_parent
 from solve.solution.newton import NoEquilibriumError
-from solve.tables import job as store
+from solve.tables import job as job_files
 from solve.tables.job import RETURN, Job, Reduction
 
 
@@ -35,9 +35,9 @@ def answer(job: Job | Reduction) -> Floats | Exception:
 
 def _outputs_of(job: Job) -> Floats:
     """Outputs; equilibria are left where other presses find them."""
-    outputs, found = job.run(store.equilibria(job.guided_by) if job.guided_by else None)
+    outputs, found = job.run(job_files.equilibria(job.guided_by) if job.guided_by else None)
     if found is not None:
-        store.keep_equilibria(store.key(job), found)
+        job_files.keep_equilibria(job_files.key(job), found)
     return outputs
 
 
@@ -69,8 +69,8 @@ def run_all(jobs: Sequence[Job], report: Report, first: Sequence[Reduction] = ()
 
     first : what takes longest, and is kept where it is made. NoEquilibriumError for one of these.
     """
-    names = [store.key(job) for job in jobs]
-    found = {name: table for name in names if (table := store.recall(name)) is not None}
+    names = [job_files.key(job) for job in jobs]
+    found = {name: table for name in names if (table := job_files.recall(name)) is not None}
     left = sorted(
         ((name, job) for name, job in zip(names, jobs, strict=True) if name not in found),
         key=lambda one: -_effort(one[1]),  # the longest last would keep one core only
@@ -82,7 +82,7 @@ def run_all(jobs: Sequence[Job], report: Report, first: Sequence[Reduction] = ()
     for number, (name, table) in enumerate(_pressed(missing), start=1):
         if isinstance(missing[name], Job):
             found[name] = np.zeros(0) if isinstance(table, Exception) else table
-            store.keep(name, found[name])
+            job_files.keep(name, found[name])
         elif isinstance(table, Exception):
             raise NoEquilibriumError(str(table), np.zeros(0), None) from table
         report(WHAT, number, len(missing))

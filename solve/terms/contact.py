@@ -143,6 +143,18 @@ class ContactFacets(Term):
         """Nodes in contact (c,)."""
         return self.closed(trial)
 
+    def touches(self, status: Bools) -> bool:
+        """Whether any node is in contact."""
+        return bool(status.any())
+
+    def load_norm(self, trial: Trial, forces: Floats) -> float:
+        """Of the contact forces."""
+        return float(np.linalg.norm(forces))
+
+    def dot_force(self, trial: Trial) -> Floats:
+        """Resultant (3,) of the contact pressures."""
+        return self.force(trial.displacement, trial.move, trial.x[self.pressure_dofs])
+
     def closed(self, trial: Trial) -> Bools:
         """Nodes in contact: lambda_i - c g_i > 0, shape (c,) bool."""
         return self._pressed(trial, self._at_quadrature(trial.displacement, trial.move)[0])

@@ -10,7 +10,7 @@ from solve.fem.kernels import film_solid
 from solve.fem.kinematics import deformation_gradient, green_lagrange, physical_gradients, quadratic, tetrahedron
 from solve.fem.sparsity import Block, History, Term, Trial
 from solve.materials.film import FilmLaw
-from solve.materials.inelastic import Inelastic, Prony, StressResponse
+from solve.materials.inelastic import Inelastic, StressResponse, at_rest, respond, time_error
 from solve.terms.solid import refuse_inversion
 
 
@@ -49,7 +49,7 @@ class FilmRegion(Term):
 
     def start(self) -> History:
         """Memory of every inelastic law at rest."""
-        return tuple(law.start(self.weight.size) for law in self.inelastic)
+        return at_rest(self.inelastic, self.weight.size)
 
     def elements(self, trial: Trial, history: History) -> Iterator[Block]:
         """Element matrices (m, 31, 31), upper triangle, and residuals (m, 31)."""
@@ -80,12 +80,7 @@ class FilmRegion(Term):
 
     def time_error(self, history: History, new: History, time_step: float, after_kink: bool) -> float:
         """Error of the time integration in this step, relative to the largest stress."""
-        errors = [
-            law.time_error(old, now, time_step, after_kink)
-            for law, old, now in zip(self.inelastic, history, new, strict=True)
-            if isinstance(law, Prony)
-        ]
-        return max(errors, default=0.0)
+        return time_error(self.inelastic, history, new, time_step, after_kink)
 
     def _field(self, trial: Trial) -> Floats:
         """Electric field e3 (m, q) of the electrode over each element."""
@@ -100,11 +95,8 @@ class FilmRegion(Term):
         elastic = self._strain(trial.displacement).reshape(-1, 6)
         elastic = elastic - self._field(trial).reshape(-1, 1) * self.law.coupling
         tangent = np.broadcast_to(self.law.stiffness, (len(elastic), 6, 6))
-        response, new = StressResponse(elastic @ self.law.stiffness, tangent), []
-        for law, old in zip(self.inelastic, history, strict=True):
-            response, now = law.update(response, old, trial.time_step)
-            new.append(now)
-        return response, tuple(new)
+        response = StressResponse(elastic @ self.law.stiffness, tangent)
+        return respond(self.inelastic, response, history, trial.time_step)
 
     def strain_and_stress(self, trial: Trial, history: History) -> tuple[Floats, Floats]:
         """Green-Lagrange strain, prestrain included, and second Piola-Kirchhoff stress, (m, q, 6) each.

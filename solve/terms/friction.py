@@ -102,6 +102,19 @@ class FrictionalContact(Term):
         nodal = self._nodal(trial)
         return np.concatenate([nodal.active, nodal.slips])
 
+    def touches(self, status: Bools) -> bool:
+        """Whether any node is in contact; those come first."""
+        return self.contact.touches(status[: len(self.contact.pressure_dofs)])
+
+    def load_norm(self, trial: Trial, forces: Floats) -> float:
+        """Of pressure and friction."""
+        return self.contact.load_norm(trial, forces)
+
+    def dot_force(self, trial: Trial) -> Floats:
+        """Resultant (3,) of pressure and friction."""
+        pressure, friction = trial.x[self.contact.pressure_dofs], trial.x[self.friction_dofs]
+        return self.force(trial.displacement, trial.move, pressure, friction)
+
     def elements(self, trial: Trial, history: History) -> Iterator[Block]:
         """Pressure and friction on the facets, then the rows of the nodes."""
         frictionless, open_rows = self.contact.elements(trial, history)

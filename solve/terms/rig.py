@@ -79,6 +79,10 @@ class RigTerm(Term):
             tangent += self.mass * (1.0 - alpha) / (beta * trial.time_step**2)
         yield Block(0, slice(0, 1), np.array([[[tangent]]]), np.array([[residual]]))
 
+    def load_norm(self, trial: Trial, forces: Floats) -> float:
+        """What drives the dot."""
+        return abs(self.drive_force(trial))
+
     def drive_force(self, trial: Trial) -> float:
         """What the rig's force sensor reads, in solver units."""
         if self.compliance is None:

@@ -20,7 +20,7 @@ from solve.fem.kinematics import (
     tetrahedron,
 )
 from solve.fem.sparsity import Block, History, Term, Trial
-from solve.materials.inelastic import Inelastic, Memory, Prony, StressResponse
+from solve.materials.inelastic import Inelastic, Memory, StressResponse, at_rest, respond, time_error
 from solve.materials.laws import MediumLaw
 
 CHUNK = 4096  # elements assembled at a time: bounds the memory of the element matrices
@@ -63,7 +63,7 @@ class SolidRegion(Term):
 
     def start(self) -> History:
         """Memory of every inelastic law at rest."""
-        return tuple(law.start(self.weight.size) for law in self.inelastic)
+        return at_rest(self.inelastic, self.weight.size)
 
     def elements(self, trial: Trial, history: History) -> Iterator[Block]:
         """Element matrices and residuals, chunk by chunk. InvertedElementError."""
@@ -82,12 +82,7 @@ class SolidRegion(Term):
 
     def time_error(self, history: History, new: History, time_step: float, after_kink: bool) -> float:
         """Error of the time integration in this step, relative to the largest stress."""
-        errors = [
-            law.time_error(old, now, time_step, after_kink)
-            for law, old, now in zip(self.inelastic, history, new, strict=True)
-            if isinstance(law, Prony)
-        ]
-        return max(errors, default=0.0)
+        return time_error(self.inelastic, history, new, time_step, after_kink)
 
     def respond(
         self, f: Floats, memory: tuple[Memory, ...], time_step: float
@@ -95,11 +90,7 @@ class SolidRegion(Term):
         """Isochoric (of a foam: whole) response at F (s, q, 3, 3) in points in order, and the new memory."""
         c = cauchy_green(f)
         energy = self.law.energy(c) if any(law.needs_energy for law in self.inelastic) else None
-        response, new = StressResponse(*self.law.stress(c), energy), []
-        for law, old in zip(self.inelastic, memory, strict=True):
-            response, now = law.update(response, old, time_step)
-            new.append(now)
-        return response, tuple(new)
+        return respond(self.inelastic, StressResponse(*self.law.stress(c), energy), memory, time_step)
 
     def _chunks(self, trial: Trial) -> Iterator[tuple[slice, Floats]]:
         for start in range(0, len(self.tets), CHUNK):

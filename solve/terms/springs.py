@@ -19,19 +19,19 @@ import numpy as np
 from geometry.arrays import Floats, Ints
 from solve.fem.kinematics import triangle
 from solve.fem.sparsity import Block, History, Term, Trial
-from solve.materials.inelastic import Prony, StressResponse
+from solve.materials.inelastic import Inelastic, StressResponse, at_rest, respond, time_error
 from solve.terms.contact import SHAPES, facet_area
 from solve.terms.jump import Jump, MatchedFacets, matched_facets
 
 
 @dataclass(frozen=True)
 class BondSprings(Term):
-    """normal, shear : traction per jump in the solver's units; prony : None for an elastic bond."""
+    """normal, shear : traction per jump in the solver's units; inelastic : laws with memory, none if elastic."""
 
     facets: MatchedFacets
     normal: float
     shear: float
-    prony: Prony | None = None
+    inelastic: tuple[Inelastic, ...] = ()
 
     @property
     def groups(self) -> tuple[Ints, ...]:
@@ -39,11 +39,8 @@ class BondSprings(Term):
         return (self.facets.dofs,)
 
     def start(self) -> History:
-        """Jumps (n, 4), their rates and the branches (n, i, 4) at the n quadrature points."""
-        if self.prony is None:
-            return None
-        points, branches = self.facets.area.size, len(self.prony.relative_moduli)
-        return np.zeros((points, 4)), np.full((points, 4), np.nan), np.zeros((points, branches, 4))
+        """Memory of every inelastic law, of d and d . n at the quadrature points."""
+        return at_rest(self.inelastic, self.facets.area.size, 4)
 
     def elements(self, trial: Trial, history: History) -> Iterator[Block]:
         """Matrices (k, w, w) and residuals (k, w) of the facets."""
@@ -65,14 +62,13 @@ class BondSprings(Term):
 
     def time_error(self, history: History, new: History, time_step: float, after_kink: bool) -> float:
         """Error of the time integration in this step, relative to the largest jump."""
-        return 0.0 if self.prony is None else self.prony.time_error(history, new, time_step, after_kink)
+        return time_error(self.inelastic, history, new, time_step, after_kink)
 
     def _relax(self, jump: Jump, history: History, time_step: float) -> tuple[Floats, float, History]:
         """Relaxed (d, d . n) (k, q, 4), its derivative by the jump, and the new memory."""
         jumps = np.concatenate([jump.d, jump.opening[..., None]], axis=-1)
-        if self.prony is None:
-            return jumps, 1.0, history
-        response, memory = self.prony.update(StressResponse(jumps.reshape(-1, 4), np.ones(1)), history, time_step)
+        instant = StressResponse(jumps.reshape(-1, 4), np.ones(1))
+        response, memory = respond(self.inelastic, instant, history, time_step)
         return response.stress.reshape(jumps.shape), float(response.tangent[0]), memory
 
 
@@ -83,7 +79,7 @@ def bond(
     displacement_dofs: Ints,
     normal: float,
     shear: float,
-    prony: Prony | None = None,
+    inelastic: tuple[Inelastic, ...] = (),
 ) -> BondSprings:
     """Bond the facets lower and upper (k, 6) of mesh.interfaces.split_interface; lower -1 is the rigid ground.
 
@@ -91,7 +87,7 @@ def bond(
     exact for the elastic bond of straight facets.
     """
     facets = matched_facets(points, lower, upper, displacement_dofs, triangle())
-    return BondSprings(facets, normal, shear, prony)
+    return BondSprings(facets, normal, shear, inelastic)
 
 
 def layer_stiffness(thickness_um: float, youngs_modulus_MPa: float, poisson_ratio: float) -> tuple[float, float]:

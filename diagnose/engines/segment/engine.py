@@ -21,13 +21,12 @@ from diagnose.vocabulary.base import Scene, candidates_of_segment
 from geometry.arrays import Floats
 from geometry.base import InputError, Report
 from geometry.checks import check_press_depth
-from mesh.build import MeshOptions
 from solve.materials.parameters import PiezoelectricFilm
 from solve.mechanisms import Mechanism, with_mechanisms
 from solve.model import Model, Readout
 from solve.readout.stages import Hum
 from solve.reduced.fit import ResponseTable
-from solve.tables.rig_mesh import mesh_of
+from solve.tables.rig_mesh import MeshSettings, mesh_of
 from solve.tables.smooth import changed
 
 
@@ -95,7 +94,7 @@ SETTLED = 1e-6  # of the largest force
 Asked = tuple[tuple[float, float], list[Setting], float]
 
 
-def segment_engine(model: Model, mesh_settings: MeshOptions, recording: Recording, report: Report) -> "SegmentEngine":
+def segment_engine(model: Model, mesh_settings: MeshSettings, recording: Recording, report: Report) -> "SegmentEngine":
     """Press the baseline, or recall it. InputError, MeshingError, NoEquilibriumError."""
     return SegmentEngine(model, mesh_settings, recording, report)
 
@@ -106,7 +105,7 @@ class SegmentEngine:
     name = "3D FEM"
     free_nuisances: tuple[Candidate, ...] = ()
 
-    def __init__(self, model: Model, mesh_settings: MeshOptions, recording: Recording, report: Report) -> None:
+    def __init__(self, model: Model, mesh_settings: MeshSettings, recording: Recording, report: Report) -> None:
         refuse(model, recording)
         self.model, self.recording = model, recording
         self.drives = [drive_of(*pair) for pair in zip(recording.runs, recording.phases, strict=True)]

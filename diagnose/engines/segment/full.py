@@ -3,7 +3,6 @@
 The fewest times at which the 3D model must be solved to follow a drive.
 """
 
-import csv
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -17,12 +16,11 @@ from diagnose.forward import Signals
 from diagnose.signals.recording import Run
 from geometry.arrays import Bools, Floats, Ints
 from geometry.base import Report
-from geometry.files import scratch_folder
-from mesh.types import TetMesh
 from solve.model import Model, Press, Waveform
 from solve.press import press_segment
 from solve.result import PressResult, Trace
 from solve.solution.newton import NoEquilibriumError
+from solve.tables.rig_mesh import Mesh
 
 SLOPE = 0.06, 0.2, 0.4, 0.6, 0.8, 0.94  # of a slope: closest where softened rubber leaves its first curve
 STEEP = 0.2  # of the largest drive: a lesser rise needs no point between
@@ -77,7 +75,6 @@ def _farthest(time: Floats, values: Floats, first: int, last: int) -> tuple[floa
 LOAD_STEPS = 8  # of a press in which time does not count
 TOLERANCE = 0.002  # of the largest drive, by which the thinned drive may differ
 MOST_POINTS = 199  # what a waveform file may have
-WAVEFORM = "drive.csv"
 Shape = Callable[[Drive, Floats], Mechanics]
 
 
@@ -94,7 +91,7 @@ class Task:
     drive: Drive
     values: Floats
     model: Model
-    tet_mesh: TetMesh
+    tet_mesh: Mesh
     film: FilmPlate
     shape: Shape
     fine: Shape
@@ -137,12 +134,8 @@ def _through_time(task: Task, report: Report) -> Mechanics:
     time = task.drive.time_s - task.drive.time_s[0]
     share = np.maximum(task.values, 0.0) / task.values.max()
     kept = knots(time, share, TOLERANCE, MOST_POINTS)
-    with scratch_folder() as folder:
-        path = folder / WAVEFORM
-        with path.open("w", encoding="utf-8", newline="") as stream:
-            csv.writer(stream).writerows([("time_s", "fraction"), *zip(time[kept], share[kept], strict=True)])
-        press = Press(**_largest(task), waveform=Waveform(shape="file", file=str(path)))
-        trace = _press(task, press, report).trace
+    press = Press(**_largest(task), waveform=Waveform.through(time[kept], share[kept]))
+    trace = _press(task, press, report).trace
     alike = _of(task.shape(task.drive, task.values))
     known = np.column_stack([np.interp(trace.time_s, time, column) for column in alike.T])
     return _between(_columns(trace, task), trace.time_s, known, time, task)

@@ -21,17 +21,15 @@ from diagnose.vocabulary.layers.property_error import nuisance as wrong_number
 from diagnose.vocabulary.layers.viscoelasticity import LARGEST_SHARE, relaxable
 from geometry.arrays import Floats
 from geometry.base import Report
-from mesh.build import MeshOptions
-from mesh.types import TetMesh
 from solve.mechanisms import with_mechanisms
 from solve.mechanisms.layers.viscoelasticity import VISCOELASTICITY
 from solve.model import Model, Physics, Press
 from solve.press import press_segment
 from solve.reduced.fit import CELLS, ResponseTable
 from solve.solution.newton import NoEquilibriumError
-from solve.tables import job as store
+from solve.tables import job as job_files
 from solve.tables.job import Job, Reduction
-from solve.tables.rig_mesh import finer_mesh, mesh_of, rig_mesh
+from solve.tables.rig_mesh import Mesh, MeshSettings, finer_mesh, mesh_of, rig_mesh
 from solve.tables.smooth import PRESSED, TRUSTED, Depths, accuracy, change, replaced, smooth
 from solve.tables.workers import run_all
 
@@ -39,7 +37,7 @@ RUNG = 1.05  # noise of the drive is far less than a step, and a table 5 % too d
 DEEPER = 1.3  # of the depth that a force reaches: softer candidates go deeper, and layers creep
 
 
-def deepest(model: Model, tet_mesh: TetMesh, recording: Recording) -> float:
+def deepest(model: Model, tet_mesh: Mesh, recording: Recording) -> float:
     """mm: of the displacements that drive, and where forces drive, of those with some way to go."""
     depths = [float(run.drive_values.max()) for run in recording.runs if run.drive == "displacement_mm"]
     forces = [float(run.drive_values.max()) for run in recording.runs if run.drive == "force_N"]
@@ -53,18 +51,18 @@ def rounded_up(value: float) -> float:
     return float(RUNG ** np.ceil(np.log(value) / np.log(RUNG)))
 
 
-def reached(model: Model, tet_mesh: TetMesh, force_N: float) -> float:
+def reached(model: Model, tet_mesh: Mesh, force_N: float) -> float:
     """Depth in mm under a force. NoEquilibriumError."""
     pushed = replace(model, press=Press(force_N=force_N, load_steps=4), readout=None, physics=_elastic(model.physics))
-    name = store.key(Job(pushed, tet_mesh, force_N, ()))
-    found = store.recall(name)
+    name = job_files.key(Job(pushed, tet_mesh, force_N, ()))
+    found = job_files.recall(name)
     if found is None:
         found = np.array([_press(pushed, tet_mesh)])
-        store.keep(name, found)
+        job_files.keep(name, found)
     return float(found[0])
 
 
-def _press(model: Model, tet_mesh: TetMesh) -> float:
+def _press(model: Model, tet_mesh: Mesh) -> float:
     result = press_segment(ungapped(model), tet_mesh)
     if result.failure is not None:
         raise NoEquilibriumError(f"the baseline under {model.press.force_N:.3g} N: {result.failure}", np.zeros(0), None)
@@ -106,7 +104,7 @@ TOUCH = 1e-6  # of the depth: there is no logarithm of 0
 SLIPS = 3  # steps between two of them under friction
 Name = tuple[object, ...]
 Place = tuple[float, float]
-Sizes = tuple[TetMesh, MeshOptions]
+Sizes = tuple[Mesh, MeshSettings]
 
 
 class Prepared:
@@ -118,7 +116,7 @@ class Prepared:
     accuracy, shortfalls : see diagnose.forward.Engine; shortfalls by name of the press.
     """
 
-    def __init__(self, model: Model, options: MeshOptions, recording: Recording, report: Report) -> None:
+    def __init__(self, model: Model, options: MeshSettings, recording: Recording, report: Report) -> None:
         self.model = model
         self.tet_mesh, self.options = rig_mesh(model, options)
         self.pressed_mm = rounded_up(deepest(model, self.tet_mesh, recording))
@@ -174,7 +172,7 @@ class Prepared:
     @cached_property
     def _guides(self) -> list[str]:
         """Names of the bases in solve.tables.job."""
-        return [store.key(job) for job in self._bases]
+        return [job_files.key(job) for job in self._bases]
 
     @cached_property
     def _middle_mesh(self) -> Sizes:
