@@ -1,4 +1,4 @@
-"""What every room shares: the one exception for bad input, and what a mistyped name was probably meant to be."""
+"""What every package shares: the one exception for bad input, and what a mistyped name was probably meant to be."""
 
 import difflib
 from collections.abc import Callable, Iterable

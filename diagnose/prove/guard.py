@@ -1,6 +1,6 @@
-"""Run softdot so that it can open nothing but its program, its cache and one room: python -m diagnose.prove.guard.
+"""Run a module so that it can open nothing but its program, its cache and one folder: python -m diagnose.prove.guard.
 
-    python -m diagnose.prove.guard PARENT ROOM CACHE ARGUMENT ...
+    python -m diagnose.prove.guard PARENT FOLDER CACHE MODULE ARGUMENT ...
 
 Everything that Python opens or lists is checked by an audit hook (PEP 578) before it happens. Compiled libraries that
 open files by themselves are not seen; what they need lies beside them.
@@ -10,26 +10,27 @@ import sys
 import sysconfig
 from collections.abc import Sequence
 from pathlib import Path
+from runpy import run_module
 from typing import Any
 
 from geometry.files import end_with_parent
 
-ROOMS = ("geometry", "mesh", "solve", "export", "diagnose", "softdot")
+PACKAGES = ("geometry", "mesh", "solve", "export", "diagnose", "softdot")
 SYSTEM = ("/dev", "/proc", "/sys", "/etc", "/usr", "/lib", "/lib64", "/opt")
 WATCHED = frozenset({"open", "os.listdir", "os.scandir"})
 
 
-def allowed_roots(room: Path, cache: Path) -> tuple[Path, ...]:
+def allowed_roots(folder: Path, cache: Path) -> tuple[Path, ...]:
     """Folders that the diagnosis may look into."""
     program = Path(__file__).resolve().parents[2]
     python = {sys.prefix, sys.base_prefix, *sysconfig.get_paths().values()}
-    here = (*(program / name for name in ROOMS), *program.glob("*.egg-info"), room, cache)
+    here = (*(program / name for name in PACKAGES), *program.glob("*.egg-info"), folder, cache)
     return tuple(path.resolve() for path in (*here, *map(Path, SYSTEM), *map(Path, python)))
 
 
-def watch(room: Path, cache: Path) -> None:
+def watch(folder: Path, cache: Path) -> None:
     """From now on PermissionError for everything else. There is no way back."""
-    roots = allowed_roots(room, cache)
+    roots = allowed_roots(folder, cache)
     program = Path(__file__).resolve().parents[2]
     open_to_list = {program, *program.parents}
 
@@ -47,15 +48,14 @@ def watch(room: Path, cache: Path) -> None:
     sys.addaudithook(hook)
 
 
-def main(arguments: Sequence[str]) -> int:
-    """Watch, then run the command line, which ends with the process numbered PARENT."""
-    parent, room, cache, *command = arguments
+def main(arguments: Sequence[str]) -> None:
+    """Watch, then run the module as a program, which ends with the process numbered PARENT."""
+    parent, folder, cache, module, *command = arguments
     end_with_parent(int(parent))
-    watch(Path(room), Path(cache))
-    from softdot.cli import main as softdot
-
-    return softdot(command)
+    watch(Path(folder), Path(cache))
+    sys.argv = [module, *command]
+    run_module(module, run_name="__main__")
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    main(sys.argv[1:])

@@ -1,4 +1,4 @@
-"""One case from its seed to its score: conceal, commit, diagnose in the clean room, reveal, verify, compare.
+"""One case from its seed to its score: conceal, commit, diagnose in isolation, reveal, verify, compare.
 
 The press that a verdict asks for, made in the hidden world, and whether the longer recording settles the name.
 
@@ -20,7 +20,7 @@ import numpy as np
 
 from diagnose.prove import rivals
 from diagnose.prove.folder import files
-from diagnose.prove.room import Heard, diagnosed
+from diagnose.prove.isolation import Heard, diagnosed
 from diagnose.prove.score import Name, Score, scored
 from diagnose.prove.world.bench import BENCHES, Bench, Run, traced
 from diagnose.prove.world.cases import Case, concealed, pressed_again, rival_family

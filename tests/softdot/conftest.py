@@ -1,4 +1,4 @@
-"""A pipeline whose rooms are replaced by quick stand-ins, and a way to call the command line."""
+"""A pipeline whose stages are replaced by quick stand-ins, and a way to call the command line."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -33,8 +33,8 @@ def write_config(tmp_path: Path) -> Callable[[str], Path]:
 
 
 @pytest.fixture
-def rooms(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
-    """Stand-ins for all rooms; tests set .solve or .mesh to what they need."""
+def stages(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
+    """Stand-ins for all stages; tests set .solve or .mesh to what they need."""
 
     def file_writer(name: str) -> Callable[..., list[Path]]:
         def write(*args: object, **_: object) -> list[Path]:

@@ -8,13 +8,13 @@ from softdot.cli import main
 
 
 @pytest.fixture
-def refused(rooms, capfd):
+def refused(stages, capfd):
     """Run into a folder that must be refused before the geometry is built; returns the sentence."""
 
     def no_work(*_):
         raise AssertionError("work began")
 
-    rooms.parts = no_work
+    stages.parts = no_work
 
     def run_into(out):
         assert main(["run", "-o", str(out)]) == 2
@@ -50,7 +50,7 @@ def test_a_summary_of_another_program(tmp_path, refused):
     assert "holds 'summary.json', which softdot did not write" in refused(tmp_path)
 
 
-@pytest.mark.usefixtures("rooms")
+@pytest.mark.usefixtures("stages")
 def test_an_earlier_run_to_which_something_was_added(tmp_path, capfd):
     out = tmp_path / "out"
     assert main(["run", "-o", str(out)]) == 0

@@ -103,6 +103,6 @@ def test_a_foreign_module_that_hides_one_of_ours_is_named_at_import(name, tmp_pa
     done = subprocess.run(
         [sys.executable, "-c", "import softdot"], cwd=tmp_path, capture_output=True, text=True, check=False
     )
-    room = name.split("/")[0].removesuffix(".py")
+    package = name.split("/")[0].removesuffix(".py")
     assert done.returncode == 1
-    assert f"the package '{room}' of softdot is hidden by '{tmp_path / name}'" in done.stderr.splitlines()[-1]
+    assert f"the package '{package}' of softdot is hidden by '{tmp_path / name}'" in done.stderr.splitlines()[-1]

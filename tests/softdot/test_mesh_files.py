@@ -9,7 +9,7 @@ from softdot.cli import main
 from tests.softdot.complaints import complaints
 
 
-@pytest.mark.usefixtures("rooms")
+@pytest.mark.usefixtures("stages")
 def test_each_format_that_is_asked_for_is_written(tmp_path):
     out = tmp_path / "out"
     assert main(["run", "-o", str(out), "--mesh-format", "msh", "--mesh-format", "inp", "--mesh-format", "msh"]) == 0
@@ -19,7 +19,7 @@ def test_each_format_that_is_asked_for_is_written(tmp_path):
     assert not (out / "mesh").exists()
 
 
-@pytest.mark.usefixtures("rooms")
+@pytest.mark.usefixtures("stages")
 def test_another_format_is_refused_with_the_ones_there_are(tmp_path, capsys):
     with pytest.raises(SystemExit) as stopped:
         main(["run", "-o", str(tmp_path / "out"), "--mesh-format", "vtk"])

@@ -1,4 +1,4 @@
-"""The real rooms up to a mesher that is given no time."""
+"""The real stages up to a mesher that is given no time."""
 
 import json
 

@@ -18,7 +18,7 @@ def entries(folder: Path) -> set[str]:
 EVERYTHING = {"summary.json", "log.txt", "report.html", "cad/segment.step", "results/segment.pvd", "pictures/force.png"}
 
 
-@pytest.mark.usefixtures("rooms")
+@pytest.mark.usefixtures("stages")
 def test_a_good_run_writes_everything_and_exits_0(tmp_path):
     out = tmp_path / "deep" / "out"
     assert main(["run", "-o", str(out)]) == 0
@@ -26,7 +26,7 @@ def test_a_good_run_writes_everything_and_exits_0(tmp_path):
     assert entries(tmp_path) == {f"deep/out/{name}" for name in EVERYTHING}
 
 
-@pytest.mark.usefixtures("rooms")
+@pytest.mark.usefixtures("stages")
 def test_summary_holds_what_was_solved(tmp_path):
     main(["run", "-o", str(tmp_path / "out")])
     summary = json.loads((tmp_path / "out/summary.json").read_text())
@@ -51,7 +51,7 @@ def test_summary_holds_what_was_solved(tmp_path):
     assert "readout_voltage_V" not in summary
 
 
-@pytest.mark.usefixtures("rooms")
+@pytest.mark.usefixtures("stages")
 def test_json_prints_the_summary_alone(tmp_path, capfd):
     assert main(["run", "-o", str(tmp_path / "out"), "--json"]) == 0
     printed = capfd.readouterr()
@@ -59,26 +59,26 @@ def test_json_prints_the_summary_alone(tmp_path, capfd):
     assert complaints(printed.err) == ""
 
 
-def test_json_is_not_spoilt_by_a_library_that_prints(tmp_path, capfd, rooms):
+def test_json_is_not_spoilt_by_a_library_that_prints(tmp_path, capfd, stages):
     import os
 
     def noisy(*_):
         os.write(1, b"library chatter\n")
         return result_of([0.0, 0.3])
 
-    rooms.solve = noisy
+    stages.solve = noisy
     main(["run", "-o", str(tmp_path / "out"), "--json"])
     json.loads(capfd.readouterr().out)
 
 
-@pytest.mark.usefixtures("rooms")
+@pytest.mark.usefixtures("stages")
 def test_a_quiet_run_in_a_pipe_says_nothing(tmp_path, capfd):
     main(["run", "-o", str(tmp_path / "out"), "--quiet"])
     assert capfd.readouterr() == ("", "")
 
 
-def test_a_press_that_stops_keeps_what_converged_and_exits_3(tmp_path, capfd, rooms):
-    rooms.solve = lambda *_: result_of([0.0, 0.1], failure="step 2 of 3 stopped at 0.100 mm")
+def test_a_press_that_stops_keeps_what_converged_and_exits_3(tmp_path, capfd, stages):
+    stages.solve = lambda *_: result_of([0.0, 0.1], failure="step 2 of 3 stopped at 0.100 mm")
     assert main(["run", "-o", str(tmp_path / "out")]) == 3
     summary = json.loads((tmp_path / "out/summary.json").read_text())
     assert summary["solver"]["converged"] is False
@@ -90,8 +90,8 @@ def test_a_press_that_stops_keeps_what_converged_and_exits_3(tmp_path, capfd, ro
     ]
 
 
-def test_a_press_that_never_starts_gives_null_sensitivities(tmp_path, rooms):
-    rooms.solve = lambda *_: result_of([0.0], failure="step 1 of 3 stopped at 0 mm")
+def test_a_press_that_never_starts_gives_null_sensitivities(tmp_path, stages):
+    stages.solve = lambda *_: result_of([0.0], failure="step 1 of 3 stopped at 0 mm")
     assert main(["run", "-o", str(tmp_path / "out")]) == 3
     summary = json.loads((tmp_path / "out/summary.json").read_text())
     assert summary["sensitivity"]["voltage_per_mm"] is None
@@ -99,11 +99,11 @@ def test_a_press_that_never_starts_gives_null_sensitivities(tmp_path, rooms):
     assert summary["sensitivity"]["least_detectable_indentation_um"] is None
 
 
-def test_a_mesh_that_fails_keeps_the_cad_files_and_exits_3(tmp_path, capfd, rooms):
+def test_a_mesh_that_fails_keeps_the_cad_files_and_exits_3(tmp_path, capfd, stages):
     def fail(*_):
         raise MeshingError("the mesher took longer than 300 s")
 
-    rooms.mesh = fail
+    stages.mesh = fail
     assert main(["run", "-o", str(tmp_path / "out")]) == 3
     assert entries(tmp_path / "out") == {"summary.json", "log.txt", "cad/segment.step"}
     summary = json.loads((tmp_path / "out/summary.json").read_text())
@@ -115,7 +115,7 @@ def test_a_mesh_that_fails_keeps_the_cad_files_and_exits_3(tmp_path, capfd, room
     assert "took longer than 300 s" in capfd.readouterr().err
 
 
-@pytest.mark.usefixtures("rooms")
+@pytest.mark.usefixtures("stages")
 def test_an_earlier_run_is_replaced_whole(tmp_path):
     out = tmp_path / "out"
     main(["run", "-o", str(out)])
@@ -124,7 +124,7 @@ def test_an_earlier_run_is_replaced_whole(tmp_path):
     assert entries(tmp_path) == {f"out/{name}" for name in EVERYTHING}
 
 
-def test_an_earlier_run_survives_a_failure(tmp_path, rooms):
+def test_an_earlier_run_survives_a_failure(tmp_path, stages):
     out = tmp_path / "out"
     main(["run", "-o", str(out)])
     before = (out / "summary.json").read_text()
@@ -132,7 +132,7 @@ def test_an_earlier_run_survives_a_failure(tmp_path, rooms):
     def fail(*_):
         raise ZeroDivisionError
 
-    rooms.solve = fail
+    stages.solve = fail
     with pytest.raises(ZeroDivisionError):
         main(["run", "-o", str(out)])
     assert (out / "summary.json").read_text() == before
@@ -140,17 +140,17 @@ def test_an_earlier_run_survives_a_failure(tmp_path, rooms):
 
 
 @pytest.mark.parametrize("stage", ["parts", "mesh", "solve", "write_outputs"])
-def test_ctrl_c_leaves_nothing(tmp_path, capfd, rooms, stage):
+def test_ctrl_c_leaves_nothing(tmp_path, capfd, stages, stage):
     def interrupted(*_):
         raise KeyboardInterrupt
 
-    setattr(rooms, stage, interrupted)
+    setattr(stages, stage, interrupted)
     assert main(["run", "-o", str(tmp_path / "new" / "out")]) == 130
     assert list(tmp_path.iterdir()) == []
     assert complaints(capfd.readouterr().err) == "softdot: interrupted, nothing was written\n"
 
 
-@pytest.mark.usefixtures("rooms")
+@pytest.mark.usefixtures("stages")
 def test_the_working_folder_can_be_the_output(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert main(["run", "-o", "."]) == 0

@@ -39,12 +39,12 @@ class Presses:
 
 
 @pytest.fixture
-def presses(rooms, monkeypatch, tmp_path):
+def presses(stages, monkeypatch, tmp_path):
     monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path / "cache"))
     monkeypatch.setattr(run_module, "local_cluster", no_cluster)
     monkeypatch.setattr(run_module, "solve_all", solved_here)
-    rooms.solve = Presses()
-    return rooms.solve
+    stages.solve = Presses()
+    return stages.solve
 
 
 @pytest.fixture
@@ -96,22 +96,22 @@ def test_the_summary_is_printed_and_kept(tmp_path, out, capfd):
     ]  # fmt: skip
 
 
-def test_the_peak_is_the_largest_magnitude_with_its_sign(rooms, out):
-    rooms.solve = lambda *_: result_of([0.0, -0.4, 0.3])
+def test_the_peak_is_the_largest_magnitude_with_its_sign(stages, out):
+    stages.solve = lambda *_: result_of([0.0, -0.4, 0.3])
     run_sweep(space_from(space_of(depths(0.1))), out)
     assert rows(out)[0]["peak.open_circuit_voltage_V"] == pytest.approx(-0.8)
 
 
-def test_a_point_that_fails_is_a_row_with_its_reason(presses, rooms, tmp_path, out):
+def test_a_point_that_fails_is_a_row_with_its_reason(presses, stages, tmp_path, out):
     presses.failures = {0.2: "Newton's method found no state\nat 0.1 mm", 0.3: RuntimeError("a bug")}
-    check = rooms.checked
+    check = stages.checked
 
     def refuse_deep(case, *_):
         if case.config.press.indentation_mm > 0.35:
             raise InputError("press.indentation_mm = 0.4: too deep")
         return check(case)
 
-    rooms.checked = refuse_deep
+    stages.checked = refuse_deep
     assert sweep(tmp_path, out, depths(0.1, 0.2, 0.3, 0.4)) == 0
     assert [(row["status"], row["reason"]) for row in rows(out)] == [
         ("solved", None),

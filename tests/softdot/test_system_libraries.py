@@ -7,11 +7,11 @@ from softdot.machine import named_when_missing
 from tests.softdot.complaints import complaints
 
 
-def test_a_missing_library_names_its_package(tmp_path, rooms, capfd):
+def test_a_missing_library_names_its_package(tmp_path, stages, capfd):
     def import_of_a_wheel(*_):
         raise ImportError("libGL.so.1: cannot open shared object file: No such file or directory")
 
-    rooms.parts = import_of_a_wheel
+    stages.parts = import_of_a_wheel
     assert main(["run", "-o", str(tmp_path / "out")]) == 2
     assert complaints(capfd.readouterr().err) == (
         "softdot: system library libGL.so.1 is missing: install libgl1 "

@@ -7,7 +7,7 @@ import pytest
 
 from diagnose.prove import trial
 from diagnose.prove.folder import rig_text
-from diagnose.prove.room import Heard
+from diagnose.prove.isolation import Heard
 from diagnose.prove.score import scored
 from diagnose.prove.trial import Terms, asked_run, with_asked
 from diagnose.prove.world.bench import CLAMPED, VOLTAGE_ONLY

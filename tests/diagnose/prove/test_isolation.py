@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from diagnose.prove import room
+from diagnose.prove import isolation
 from diagnose.prove.guard import allowed_roots
 from diagnose.prove.trial import digest_of, seal, verified
 from geometry.files import ONE_THREAD
@@ -19,11 +19,11 @@ FOREIGN = ("solve", "mesh", "geometry", "export", "softdot", "diagnose.forward",
 
 def run_guarded(where, code):
     """Python code in a process whose hook is on."""
-    begin = "from pathlib import Path; from diagnose.prove.guard import watch; watch(Path('room'), Path('cache'));"
+    begin = "from pathlib import Path; from diagnose.prove.guard import watch; watch(Path('folder'), Path('cache'));"
     return subprocess.run(
         [sys.executable, "-c", begin + code],
         cwd=where,
-        env=room.environment(where / "room", where / "cache"),
+        env=isolation.environment(where / "folder", where / "cache"),
         capture_output=True,
         text=True,
         check=False,
@@ -32,16 +32,16 @@ def run_guarded(where, code):
 
 @pytest.fixture
 def house(tmp_path):
-    """A room with a recording, and the truth next door."""
-    for name in ("room", "cache", "proof"):
+    """A folder with a recording, and the truth beside it."""
+    for name in ("folder", "cache", "proof"):
         (tmp_path / name).mkdir()
-    (tmp_path / "room" / "press.csv").write_text("time_s\n")
+    (tmp_path / "folder" / "press.csv").write_text("time_s\n")
     (tmp_path / "proof" / "truth.json").write_text("{}")
     return tmp_path
 
 
 def test_the_recording_can_be_read(house):
-    assert run_guarded(house, "print(open('room/press.csv').read())").stdout.strip() == "time_s"
+    assert run_guarded(house, "print(open('folder/press.csv').read())").stdout.strip() == "time_s"
 
 
 @pytest.mark.parametrize(
@@ -51,31 +51,31 @@ def test_the_recording_can_be_read(house):
         "Path('proof/truth.json').read_text()",
         "import os; os.listdir('proof')",
         "list(Path('proof').iterdir())",
-        "open('room/../proof/truth.json')",
-        "import os; os.symlink('../proof', 'room/way'); open('room/way/truth.json')",
+        "open('folder/../proof/truth.json')",
+        "import os; os.symlink('../proof', 'folder/way'); open('folder/way/truth.json')",
         "import numpy; numpy.loadtxt('proof/truth.json')",
     ],
 )
-def test_nothing_beside_the_room_can_be_read(house, code):
+def test_nothing_beside_the_folder_can_be_read(house, code):
     ended = run_guarded(house, code)
     assert ended.returncode != 0
     assert "outside the isolated folder" in ended.stderr
 
 
-def test_the_room_is_not_within_reach_of_the_presses_of_the_generator(house, monkeypatch):
+def test_the_folder_is_not_within_reach_of_the_presses_of_the_generator(house, monkeypatch):
     from diagnose.prove.world.march import store
 
     monkeypatch.delenv("SOFTDOT_PROOF_CACHE", raising=False)
-    roots = allowed_roots(house / "room", house / "cache")
+    roots = allowed_roots(house / "folder", house / "cache")
     assert not any(store().resolve().is_relative_to(root) for root in roots)
 
 
 def test_no_variable_gives_a_hint(house, monkeypatch):
     for name in ("SOFTDOT_PROOF_CACHE", "SOFTDOT_RECORDINGS", "CASE", "SEED", "PYTHONSTARTUP"):
         monkeypatch.setenv(name, "charge-leakage")
-    given = room.environment(house / "room", house / "cache")
+    given = isolation.environment(house / "folder", house / "cache")
     assert "charge-leakage" not in given.values()
-    assert set(given) <= {*room.KEPT, *ONE_THREAD, "HOME", "TMPDIR", "PYTHONPATH", "SOFTDOT_CACHE", "MPLCONFIGDIR"}
+    assert set(given) <= {*isolation.KEPT, *ONE_THREAD, "HOME", "TMPDIR", "PYTHONPATH", "SOFTDOT_CACHE", "MPLCONFIGDIR"}
 
 
 def test_the_process_gets_a_folder_with_the_recording_alone(monkeypatch, tmp_path):
@@ -86,8 +86,8 @@ def test_the_process_gets_a_folder_with_the_recording_alone(monkeypatch, tmp_pat
         seen["words"] = " ".join(map(str, command))
         return subprocess.CompletedProcess(command, 2, "", "softdot: no")
 
-    monkeypatch.setattr(room.subprocess, "run", watched)
-    heard = room.diagnosed({"rig.toml": "", "press-01.csv": ""}, tmp_path, 10.0)
+    monkeypatch.setattr(isolation.subprocess, "run", watched)
+    heard = isolation.diagnosed({"rig.toml": "", "press-01.csv": ""}, tmp_path, 10.0)
     assert seen["files"] == ["recording", "recording/press-01.csv", "recording/rig.toml", "tmp"]
     assert "case" not in seen["words"]
     assert heard.verdict is None
@@ -117,7 +117,7 @@ def test_the_truth_is_not_on_disk_while_a_case_is_diagnosed(monkeypatch, tmp_pat
 
     def diagnosed(*_):
         written.update({p: p.read_text() for p in tmp_path.rglob("*") if p.is_file()})
-        return room.Heard(None, "stopped", 0.0)
+        return isolation.Heard(None, "stopped", 0.0)
 
     monkeypatch.setattr(trial, "diagnosed", diagnosed)
     record = work.prove_case(truth.case, trial.Terms(tmp_path / "cache"), place, "program")

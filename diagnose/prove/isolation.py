@@ -1,4 +1,4 @@
-"""The clean room: a diagnosis in a process of its own that is handed nothing but one recording."""
+"""A diagnosis isolated in a process and a folder of its own, which is handed nothing but one recording."""
 
 import json
 import os
@@ -14,11 +14,12 @@ from geometry.files import ONE_THREAD, scratch_folder
 
 KEPT = ("PATH", "LANG", "LC_ALL", "LD_LIBRARY_PATH")
 LINES = 3
+PROGRAM = "softdot.cli"  # by name: what diagnoses stands above this package
 
 
 @dataclass(frozen=True)
 class Heard:
-    """What came out of the room. verdict : None without one; reason : why; next_press : text of its waveform."""
+    """What came out. verdict : None without one; reason : why; next_press : text of its waveform."""
 
     verdict: Mapping[str, Any] | None
     reason: str
@@ -28,20 +29,20 @@ class Heard:
 
 def diagnosed(files: Mapping[str, str], cache: Path, limit_s: float, options: tuple[str, ...] = ()) -> Heard:
     """Diagnose a recording, name -> text of its files, within a limit of time."""
-    with scratch_folder() as folder:
-        room = folder.resolve()
-        recording = room / "recording"
+    with scratch_folder() as scratch:
+        folder = scratch.resolve()
+        recording = folder / "recording"
         recording.mkdir()
-        (room / "tmp").mkdir()
+        (folder / "tmp").mkdir()
         for file, text in files.items():
             (recording / file).write_text(text, "utf-8")
-        guard = [sys.executable, "-m", "diagnose.prove.guard", str(os.getpid()), str(room), str(cache)]
+        guard = [sys.executable, "-m", "diagnose.prove.guard", str(os.getpid()), str(folder), str(cache), PROGRAM]
         begun = time.perf_counter()
         try:
             ended = subprocess.run(
                 [*guard, "diagnose", "recording", "-o", "verdict", "--json", *options],
-                cwd=room,
-                env=environment(room, cache),
+                cwd=folder,
+                env=environment(folder, cache),
                 capture_output=True,
                 text=True,
                 timeout=limit_s,
@@ -49,11 +50,11 @@ def diagnosed(files: Mapping[str, str], cache: Path, limit_s: float, options: tu
             )
         except subprocess.TimeoutExpired:
             return Heard(None, f"no verdict within {limit_s:g} s", time.perf_counter() - begun)
-        return _heard(ended, room, time.perf_counter() - begun)
+        return _heard(ended, folder, time.perf_counter() - begun)
 
 
-def _heard(ended: "subprocess.CompletedProcess[str]", room: Path, seconds: float) -> Heard:
-    verdict, wave = room / "verdict" / "verdict.json", room / "verdict" / "next-press.csv"
+def _heard(ended: "subprocess.CompletedProcess[str]", folder: Path, seconds: float) -> Heard:
+    verdict, wave = folder / "verdict" / "verdict.json", folder / "verdict" / "next-press.csv"
     if not verdict.exists():
         last = " | ".join(ended.stderr.strip().splitlines()[-LINES:])
         return Heard(None, f"exit {ended.returncode}: {last}", seconds)
@@ -61,16 +62,16 @@ def _heard(ended: "subprocess.CompletedProcess[str]", room: Path, seconds: float
     return Heard(json.loads(verdict.read_text("utf-8")), "", seconds, following)
 
 
-def environment(room: Path, cache: Path) -> dict[str, str]:
+def environment(folder: Path, cache: Path) -> dict[str, str]:
     """No variable of the generator gets in: no seed, no folder of recordings, no cache of its presses."""
     program = Path(__file__).resolve().parents[2]
     kept = {name: os.environ[name] for name in KEPT if name in os.environ}
     return {
         **kept,
         **ONE_THREAD,
-        "HOME": str(room),
-        "TMPDIR": str(room / "tmp"),
+        "HOME": str(folder),
+        "TMPDIR": str(folder / "tmp"),
         "PYTHONPATH": str(program),
         "SOFTDOT_CACHE": str(cache),
-        "MPLCONFIGDIR": str(room / "tmp"),
+        "MPLCONFIGDIR": str(folder / "tmp"),
     }
