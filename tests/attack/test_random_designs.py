@@ -28,7 +28,10 @@ from tests.softdot.toml_text import toml_text
 DESIGNS, BLOCKS = 300, 8
 EACH, MOST_STOPPED, MOST_REFUSED = 20, 0.12, 0.05
 NAMED = re.compile(r"step \d+ of \d+.*(stopped at|has no equilibrium).*(x = |loses contact|prestretched)")
-NOT_HERE = {"Waveform.file"}  # needs a second file; see test_bad_configurations.py
+NOT_HERE = {
+    "Waveform.file",
+    "MeshOptions.file",
+}  # need a second file; see test_bad_configurations.py, test_mesh_files.py
 MONOTONE = {"low-pass", "saturation", "mains-hum", "charge-leakage", "parasitic-capacitance", "pyroelectric-drift",
             "contact-electrification", "hyperelastic-stiffening", "elastic-sides", "dot-offset", "contact-gap",
             "crosstalk", "property-error"}  # fmt: skip

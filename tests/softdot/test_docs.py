@@ -24,6 +24,7 @@ from tests.softdot.stand_ins import result_of
 
 ROOT = Path(__file__).parents[2]
 DOCUMENTS = sorted([*(ROOT / "docs").glob("*.md"), *ROOT.glob("*.md"), ROOT / "examples" / "README.md"])
+SOURCES = ("geometry", "mesh", "solve", "export", "diagnose", "softdot", "docs", "tests", "examples", "benchmarks")
 HOMES = (
     geometry.parameters, geometry.fabrication.parameters, import_module("mesh.build"), solve.model, solve.mechanisms,
     solve.materials.parameters,
@@ -109,6 +110,9 @@ def test_named_source_files_exist(path):
     named = re.findall(r"`((?:geometry|mesh|solve|export|softdot|docs|tests)/[\w./]+\.\w+)`", path.read_text("utf-8"))
     to_be_measured = {"docs/verification.md", "docs/_site/index.html"}  # the last one is built
     assert [name for name in named if name not in to_be_measured and not (ROOT / name).exists()] == []
+    bare = re.findall(r"`(\w+\.py)`", path.read_text("utf-8"))
+    known = {file.name for top in SOURCES for file in (ROOT / top).rglob("*.py")} | {"strip.py"}  # made in the tutorial
+    assert [name for name in bare if name not in known] == []
 
 
 @pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.relative_to(ROOT).as_posix())

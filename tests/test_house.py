@@ -1,0 +1,77 @@
+"""How the house is built: which way imports go, how large files and folders are, and that names lead somewhere."""
+
+import ast
+import re
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+MAY_IMPORT = {
+    "geometry": set(),
+    "mesh": {"geometry"},
+    "solve": {"geometry", "mesh"},
+    "export": {"geometry", "mesh", "solve"},
+    "diagnose": {"geometry", "solve"},
+    "softdot": {"geometry", "mesh", "solve", "export", "diagnose"},
+}
+FILES = [path for top in MAY_IMPORT for path in sorted((ROOT / top).rglob("*.py"))]
+MOST_FILES, MOST_LINES, MOST_IN_A_FOLDER = 320, 500, 15
+HIDDEN_WORLD = ROOT / "diagnose" / "prove" / "world"  # knows nothing of the rest, so it has names of its own
+
+
+def imported(path):
+    """Top packages that a file imports, inside functions too."""
+    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name.partition(".")[0] for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}: relative import"
+            yield node.module.partition(".")[0]
+
+
+@pytest.mark.parametrize("top", MAY_IMPORT)
+def test_imports_go_one_way(top):
+    found = {name for path in FILES if path.is_relative_to(ROOT / top) for name in imported(path)}
+    assert found & set(MAY_IMPORT) - {top} <= MAY_IMPORT[top]
+
+
+def test_files_and_folders_stay_small():
+    assert len(FILES) <= MOST_FILES
+    assert [path for path in FILES if len(path.read_text("utf-8").splitlines()) > MOST_LINES] == []
+    assert [
+        folder for folder, count in Counter(path.parent for path in FILES).items() if count > MOST_IN_A_FOLDER
+    ] == []
+
+
+def test_no_class_name_occurs_twice():
+    trees = (ast.parse(path.read_text("utf-8")) for path in FILES if not path.is_relative_to(HIDDEN_WORLD))
+    names = Counter(node.name for tree in trees for node in ast.walk(tree) if isinstance(node, ast.ClassDef))
+    assert [name for name, count in names.items() if count > 1] == []
+
+
+def test_modules_that_a_text_names_exist():
+    """Dotted names in docstrings and comments; a name inside a module must occur in its source."""
+    lost = {(path.name, name) for path in FILES for name in named_in_texts(path) if not leads_somewhere(name)}
+    assert lost == set()
+
+
+def named_in_texts(path):
+    """Dotted names below our packages in the docstrings, messages and comments of a file."""
+    source = path.read_text("utf-8")
+    strings = [node.value for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Constant)]
+    texts = [text for text in strings if isinstance(text, str) and " " in text] + re.findall(r"#.*", source)
+    pattern = r"\b(?:geometry|solve|export|diagnose)(?:\.(?!md\b)[a-z_]+)+"
+    return {name for text in texts for name in re.findall(pattern, text)}
+
+
+def leads_somewhere(name):
+    """Whether a dotted name is a package or module, or a name that a module holds."""
+    place = ROOT.joinpath(*name.split("."))
+    if place.is_dir() or place.with_suffix(".py").is_file():
+        return True
+    module = (
+        place.parent.with_suffix(".py") if place.parent.with_suffix(".py").is_file() else place.parent / "__init__.py"
+    )
+    return module.is_file() and re.search(rf"\b{place.name}\b", module.read_text("utf-8")) is not None
