@@ -9,7 +9,11 @@ class InputError(ValueError):
 
 
 def nearest(word: str, known: Iterable[str]) -> str:
-    """The sentence end "did you mean 'x'?" where something is near, else the list of what is known."""
+    """The sentence end "did you mean 'x'?" where something is near, else the list of what is known.
+
+    >>> nearest("thicknes_mm", ["thickness_mm", "material"])
+    "did you mean 'thickness_mm'?"
+    """
     names = sorted(known)
     near = difflib.get_close_matches(word, names, n=1, cutoff=0.5)
     return f"did you mean '{near[0]}'?" if near else f"known are {', '.join(names)}"

@@ -109,6 +109,9 @@ def raised_dots(character: str, field: str = "dot.cell") -> tuple[int, ...]:
     """Numbers of the raised dots of a Unicode Braille character: bit n - 1 of its code stands for dot n.
 
     InputError, which names the field, for anything but one character from U+2800 to U+28FF.
+
+    >>> raised_dots("⠙")  # the letter d
+    (1, 4, 5)
     """
     if len(character) != 1 or not FIRST <= ord(character) <= LAST:
         raise InputError(f"{field} = '{character}': must be one Unicode Braille character, U+2800 to U+28FF")
@@ -171,6 +174,9 @@ def from_base(base_diameter_mm: float, height_mm: float) -> DotSize:
 
     A spherical cap has R = (d^2 / 4 + h^2) / 2h. Higher than d / 2 it would pass the hemisphere and undercut
     its base: such a dot is a hemisphere of radius d / 2 on a cylindrical foot of height h - d / 2.
+
+    >>> from_base(1.5, 0.5).radius_mm
+    0.8125
     """
     half = base_diameter_mm / 2
     if height_mm > half:

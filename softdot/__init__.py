@@ -55,12 +55,12 @@ _HOMES = {
     "sweep": "softdot.studies",
 }
 _BESIDE = Path(__file__).resolve().parents[1]
-_ROOMS = ("geometry", "mesh", "solve", "export", "diagnose")
+_PACKAGES = ("geometry", "mesh", "solve", "export", "diagnose")
 
 
 def _refuse_foreign_packages() -> None:
     """ImportError in one sentence for a module of another program that hides one of ours; a command exits with 2."""
-    for name in _ROOMS:
+    for name in _PACKAGES:
         known = sys.modules.get(name)
         spec = getattr(known, "__spec__", None) if known is not None else find_spec(name)
         place = Path(spec.origin).resolve() if spec is not None and spec.origin else None

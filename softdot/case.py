@@ -43,6 +43,20 @@ class Case:
 
     config : as stated, with all defaults. Everything else is derived from it; what cannot be built or solved is refused
     by an InputError with one sentence where it is first needed.
+
+    >>> case = Case(
+    ...     segment={"section": "plane-strain", "medium1": {"thickness_mm": 0.4}},
+    ...     dot={"shape": "ridge"},
+    ...     press={"indentation_mm": 0.1, "load_steps": 2},
+    ...     mesh={"mesher": "layered", "element_size_mm": 0.5},
+    ... )
+    >>> [part.label for part in case.parts]
+    ['effector', 'medium1', 'film', 'medium2', 'case', 'dot']
+    >>> pressed = case.press()
+    >>> pressed.converged, pressed.indentation_mm.tolist()
+    (True, [0.0, 0.05, 0.1])
+    >>> list(pressed.to_dataframe())
+    ['time_s', 'indentation_mm', 'reaction_force_N', 'film_charge_pC', 'open_circuit_voltage_V']
     """
 
     def __init__(self, config: Config | None = None, **tables: Any) -> None:
@@ -56,7 +70,11 @@ class Case:
 
     @classmethod
     def load(cls, path: Path | str | None = None, settings: Sequence[str] = ()) -> "Case":
-        """From a TOML file, or the default design; settings : 'dotted.key=value' after the file. InputError."""
+        """From a TOML file, or the default design; settings : 'dotted.key=value' after the file. InputError.
+
+        >>> Case.load(settings=["press.indentation_mm=0.2"]).config.press.indentation_mm
+        0.2
+        """
         return cls(load_config(path, settings))
 
     @cached_property
@@ -171,6 +189,14 @@ class Pressed:
     """What Case.press gives. All arrays have one value for each reported step (s,); index 0 is the unloaded state.
 
     result : the solver's own result with its fields, in SI units. Electrodes are taken in parallel.
+
+    >>> coarse = {"mesher": "layered", "element_size_mm": 0.8}
+    >>> soft = Case(segment={"section": "plane-strain"}, dot={"shape": "ridge"}, press={"load_steps": 1}, mesh=coarse)
+    >>> pressed = soft.press()
+    >>> bool(pressed.reaction_force_N[-1] > 0.0), pressed.failure
+    (True, None)
+    >>> pressed.to_pyvista().point_data["displacement_mm"].shape[1]
+    3
     """
 
     def __init__(self, case: "Case", result: PressResult) -> None:

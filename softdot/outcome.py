@@ -92,9 +92,14 @@ def derivatives(config: Config, keys: Sequence[str]) -> list[Derivative]:
     "segment.film.thickness_um" or "mechanisms[0].parameters.coefficient" (see solve.solution.sensitivity).
 
     InputError for a key that is absent, no number, zero or decides which parts there are.
-    """
-    from softdot.case import Case
 
+    >>> from softdot import load_config
+    >>> coarse = ["segment.section=plane-strain", "dot.shape=ridge", "mesh.mesher=layered", "mesh.element_size_mm=0.8"]
+    >>> config = load_config(None, [*coarse, "press.load_steps=1"])
+    >>> (by_thickness,) = derivatives(config, ["segment.medium2.thickness_mm"])
+    >>> bool(by_thickness.reaction_force_N[-1] < 0.0)  # a thicker medium gives way more
+    True
+    """
     result, found = press_with_derivatives(config, keys, Case(config).mesh)
     if not result.converged:
         raise InputError(f"the press stopped early: {result.failure}")

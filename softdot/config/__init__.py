@@ -77,6 +77,9 @@ def load_config(path: Path | str | None = None, settings: Sequence[str] = ()) ->
 
     What the file leaves out of the default design comes from there. settings : 'dotted.key=value' after the file.
     InputError with one sentence for a file that cannot be read and for anything in it that is not allowed.
+
+    >>> load_config().segment.film.thickness_um
+    28.0
     """
     tables = with_settings(default_design() if path is None else read_toml(Path(path)), settings)
     with naming_the_flag(settings):
@@ -139,6 +142,10 @@ def config_hash(config: Config) -> str:
     """SHA-256 of the canonical text of the resolved configuration, in hexadecimal.
 
     How the parts are made is left out: it changes no press.
+
+    >>> six, seven = load_config(None, ["press.load_steps=6"]), load_config(None, ["press.load_steps=7"])
+    >>> config_hash(six) == config_hash(seven)
+    False
     """
     tables = resolved(config).model_dump(mode="json", exclude={"fabrication"})
     text = json.dumps(tables, sort_keys=True, separators=(",", ":"))
@@ -160,5 +167,9 @@ def input_hash(config: Config) -> str:
 
 
 def config_schema() -> dict[str, Any]:
-    """JSON Schema (draft 2020-12): description, unit, bounds and default of every key."""
+    """JSON Schema (draft 2020-12): description, unit, bounds and default of every key.
+
+    >>> config_schema()["$defs"]["Press"]["properties"]["load_steps"]["default"]
+    6
+    """
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **Config.model_json_schema()}

@@ -57,7 +57,12 @@ class NeoHookean(MaterialTable):
 
     @property
     def law(self) -> laws.MediumLaw:
-        """Its law, in MPa."""
+        """Its law, in MPa.
+
+        >>> rubber = NeoHookean(youngs_modulus_MPa=1.0, poisson_ratio=0.25)
+        >>> rubber.shear_modulus_MPa, round(rubber.law.bulk_modulus, 6)
+        (0.4, 0.666667)
+        """
         return laws.InvariantLaw(0.5 * self.shear_modulus_MPa, 0.0, 0.0, 0.0, _bulk_MPa(self))
 
 

@@ -95,6 +95,10 @@ def layer_stiffness(thickness_um: float, youngs_modulus_MPa: float, poisson_rati
 
     The faces keep a layer that is thin against its width from contracting sideways, so that the confined modulus
     M = E (1 - nu) / ((1 + nu) (1 - 2 nu)) counts and not E (the limit of Geymonat, Krasucki and Lenci, 1999).
+
+    >>> normal, shear = layer_stiffness(50.0, 1.0, 0.25)  # M = 1.2 MPa and G = 0.4 MPa over 0.05 mm
+    >>> round(normal, 6), round(shear, 6)
+    (24.0, 8.0)
     """
     shear = youngs_modulus_MPa / (2.0 * (1.0 + poisson_ratio))
     confined = 2.0 * shear * (1.0 - poisson_ratio) / (1.0 - 2.0 * poisson_ratio)
