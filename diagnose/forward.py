@@ -3,8 +3,9 @@ and engines that pass on what another one answers, for some of the runs.
 """
 
 from collections.abc import Callable, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass, field, replace
-from typing import Any, Protocol
+from typing import Any, Protocol, Self
 
 import numpy as np
 
@@ -117,6 +118,9 @@ class Engine(Protocol):
         None where the model has no such part.
         """
 
+    def with_candidates(self, candidates: tuple[Candidate, ...]) -> Self:
+        """The engine with fewer candidates."""
+
     def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
         """Do whatever full solves these candidates need, or recall them. Repeated calls cost nothing."""
 
@@ -153,6 +157,12 @@ class PassingOn:
     def nuisance(self, name: str) -> Candidate | None:
         """As the engine."""
         return self._engine.nuisance(name)
+
+    def with_candidates(self, candidates: tuple[Candidate, ...]) -> Self:
+        """As the engine, with fewer candidates."""
+        fewer = copy(self)
+        fewer.candidates = candidates
+        return fewer
 
     def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
         """As the engine."""

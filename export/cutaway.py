@@ -6,7 +6,7 @@ Maps of the film: where it is stretched and where the charge comes from.
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -44,6 +44,9 @@ from geometry.dot import DotShape
 from geometry.solids import PART_COLOURS
 from mesh.types import TetMesh
 from solve.result import FilmPeak, Step
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 OPEN, FRONT = View(28.0, 18.0), View(0.0, 0.0)
 NAMES = {"medium1": "medium 1", "medium2": "medium 2"}
@@ -268,10 +271,10 @@ def film_map(tet_mesh: TetMesh, step: Step) -> FilmMap:
     )
 
 
-def draw_film(tet_mesh: TetMesh, step: Step, peak: FilmPeak, title: str, path: Path, slice_: bool) -> None:
-    """Two maps from above, or for a plane-strain slice two lines along x, in the range of the stated largest values.
+def film_figure(tet_mesh: TetMesh, step: Step, peak: FilmPeak, title: str) -> "Figure":
+    """Strain and charge of the film: two maps from above, or for a plane-strain slice two lines along x.
 
-    Values beyond it, at a held rim, are drawn in the colour of its end.
+    In the range of the stated largest values; those beyond it, at a held rim, have the colour of its end.
     """
     from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine
@@ -285,13 +288,13 @@ def draw_film(tet_mesh: TetMesh, step: Step, peak: FilmPeak, title: str, path: P
     )
     figure.suptitle(title, x=0.04, ha="left", fontsize=15, fontweight="bold", color=INK)
     left, right = figure.subplots(1, 2)
-    draw = _line if slice_ else _map
+    draw = _line if is_slice(tet_mesh) else _map
     strain = Scale("largest principal strain (%)", 0.0, 100 * peak.strain, COLOUR_MAP)
     draw(figure, left, shown, shown.strain_percent, strain)
     low, high = (PC_PER_MM2_PER_C_PER_M2 * density for density in peak.charge_density_C_per_m2)
     most = max(abs(low), abs(high))
     draw(figure, right, shown, shown.charge_pC_per_mm2, Scale("charge density (pC/mm²)", -most, most, DIVERGING))
-    save(figure, path)
+    return figure
 
 
 def _map(figure: Any, axes: Any, shown: FilmMap, values: Floats, scale: Scale) -> None:

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from export.cutaway import draw_film, draw_parts, draw_von_mises, is_slice, open_scene
+from export.cutaway import draw_parts, draw_von_mises, film_figure, open_scene
 from export.skin import MM_PER_M
 from export.view import DPI, HEIGHT_IN, INK, WIDTH_IN, save
 from geometry.arrays import Floats
@@ -98,7 +98,7 @@ def write_pictures(
         scene = open_scene(tet_mesh, last, dot_shape)
         draw_parts(scene, pressed, files["deformed"])
         draw_von_mises(scene, pressed, files["von_mises"])
-        draw_film(tet_mesh, last, result.film_peak, f"Film at {depth:.3g} mm", files["film"], is_slice(tet_mesh))
+        save(film_figure(tet_mesh, last, result.film_peak, f"Film at {depth:.3g} mm"), files["film"])
         draw_curves(abscissa(result), *_history(result), readout_voltage_V, files["force_voltage"])
     return {name: folder / f"{name}.png" for name in FILES}
 

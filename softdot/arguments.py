@@ -7,7 +7,6 @@ from softdot.console import BAD_INPUT, GOOD
 
 EXIT_STATUS = "Exit status: 0 good, 2 bad input, 3 a computation did not converge, 130 interrupted."
 LISTED = ("materials", "standards", "mechanisms")
-MESH_FORMATS = ("msh", "inp", "xdmf")
 TEMPLATES = ("default", "slice", "dome", "circuit", "time-dependent")
 
 
@@ -79,7 +78,6 @@ def _add_run(commands: Any) -> None:
         "--mesh-format",
         action="append",
         default=[],
-        choices=MESH_FORMATS,
         metavar="FORMAT",
         help="write the mesh for other codes too: msh (Gmsh), inp (Abaqus, CalculiX) or xdmf; may be repeated",
     )

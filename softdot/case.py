@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cached_property
 from html import escape
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -182,7 +183,7 @@ def press_key(case: Case, tet_mesh: TetMesh) -> str:
 
 
 LAST = -1
-FIGURE_SIZE_IN = 8.0, 3.2
+FIGURE_SIZE_IN, SCREEN_DPI = (8.0, 3.2), 100
 
 
 class Pressed:
@@ -306,7 +307,16 @@ class Pressed:
             axes.plot(abscissa, values, "o-", markersize=3)
             axes.set(xlabel=label, ylabel=name)
             axes.grid(alpha=0.3)
-        return figure
+        return _shown(figure)
+
+    def plot_film(self) -> "Figure":
+        """Strain and charge density of the film at the deepest step, as in film.png of `softdot run`."""
+        from export.cutaway import film_figure
+        from export.pictures import deepest
+
+        step = deepest(self.result)
+        title = f"Film at {1e3 * step.indentation_m:.3g} mm"
+        return _shown(film_figure(self.result.tet_mesh, step, self.result.film_peak, title))
 
     def _repr_html_(self) -> str:
         """For notebooks: how it ended, and a table of the steps."""
@@ -324,3 +334,15 @@ class Pressed:
         state = "" if self.converged else f", not converged: {self.failure}"
         values: dict[str, Any] = {name: array[LAST] for name, array in self._columns().items()}
         return "Pressed(" + ", ".join(f"{name}={value:.4g}" for name, value in values.items()) + f"{state})"
+
+
+def _shown(figure: "Figure") -> "Figure":
+    """The figure, which a notebook shows as a picture also where pyplot has not been imported."""
+
+    def png() -> bytes:
+        buffer = BytesIO()
+        figure.savefig(buffer, format="png", dpi=SCREEN_DPI)
+        return buffer.getvalue()
+
+    figure._repr_png_ = png  # type: ignore[attr-defined]
+    return figure

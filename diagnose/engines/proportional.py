@@ -17,6 +17,7 @@ strains the film.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import sinh
+from typing import Self
 
 import numpy as np
 
@@ -125,6 +126,10 @@ class ProportionalEngine:
 
     def nuisance(self, name: str) -> Candidate | None:
         """None: moduli and thicknesses of a sensor that nobody knows hide in its sensitivity."""
+
+    def with_candidates(self, candidates: tuple[Candidate, ...]) -> Self:
+        """The engine with fewer candidates."""
+        return replace(self, candidates=candidates)
 
     def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
         """Nothing."""

@@ -4,13 +4,14 @@ meshio writes the nodes and elements. What it leaves out, or would write for no 
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from io import StringIO
 from pathlib import Path
 
 import numpy as np
 
 from geometry.arrays import Ints
+from geometry.base import InputError, nearest
 from mesh.types import TET_FACES, TetMesh
 
 REGIONS = {"medium2": 1, "film": 2, "medium1": 3, "effector": 4}
@@ -27,17 +28,24 @@ INP_NUMBER = ".14g"
 def write_mesh(tet_mesh: TetMesh, formats: Sequence[str], folder: Path) -> list[Path]:
     """Write segment.msh, segment.inp or segment.xdmf into the folder, which is made; returns the named files.
 
-    formats : of "msh", "inp" and "xdmf"; KeyError for another. XDMF has a second file segment_surfaces.xdmf, and the
+    formats : keys of WRITERS; InputError for another. XDMF has a second file segment_surfaces.xdmf, and the
     numbers of both stand beside them in .h5. OSError where the folder cannot be written.
     """
+    check_formats(formats)
     folder.mkdir(parents=True, exist_ok=True)
-    writers = {"msh": _write_msh, "inp": _write_inp, "xdmf": _write_xdmf}
     paths = []
     for name in dict.fromkeys(formats):
         path = folder / f"{STEM}.{name}"
-        writers[name](tet_mesh, path)
+        WRITERS[name](tet_mesh, path)
         paths.append(path)
     return paths
+
+
+def check_formats(formats: Sequence[str]) -> None:
+    """InputError for a format that has no writer."""
+    for name in formats:
+        if name not in WRITERS:
+            raise InputError(f"--mesh-format = '{name}': there is no such format; {nearest(name, WRITERS)}")
 
 
 def _surfaces(tet_mesh: TetMesh) -> dict[str, Ints]:
@@ -151,3 +159,7 @@ def _write_grid(path: Path, tet_mesh: TetMesh, kind: str, cells: Ints, field: st
 
     whole = meshio.Mesh(tet_mesh.points_mm, [(kind, cells)], cell_data={field: [values]})
     meshio.xdmf.write(path, whole)
+
+
+WRITERS: dict[str, Callable[[TetMesh, Path], None]] = {"msh": _write_msh, "inp": _write_inp, "xdmf": _write_xdmf}
+"""Ending of the file -> what writes it."""

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from diagnose.findings import Findings
-from diagnose.forward import Engine, PassingOn, all_but, other_units, some_runs
+from diagnose.forward import Engine, all_but, other_units, some_runs
 from diagnose.next_press.choose import NextPress, next_press
 from diagnose.noise.estimate import noise_models
 from diagnose.signals.columns import refuse_slow_sampling
@@ -137,9 +137,7 @@ def narrowed(engine: Engine, without: Sequence[str]) -> Engine:
     for name in without:
         if name not in MECHANISMS:
             raise InputError(f"--without '{name}': {nearest(name, MECHANISMS)}")
-    fewer = PassingOn(engine)
-    fewer.candidates = tuple(one for one in engine.candidates if one.mechanism not in without)
-    return fewer
+    return engine.with_candidates(tuple(one for one in engine.candidates if one.mechanism not in without))
 
 
 def held_out(recording: Recording, parts: Sequence[str]) -> list[int]:

@@ -12,6 +12,7 @@ from export.view import ensure_rendering
 from geometry.arrays import Floats
 from geometry.dot import DotShape
 from geometry.solids import Part
+from mesh.files.formats import check_formats, write_mesh
 from mesh.types import MeshingError
 from softdot.case import Case, OnStep
 from softdot.checks import design_warnings, result_warnings
@@ -64,12 +65,13 @@ def run_case(
 ) -> dict[str, Any]:
     """Run the whole pipeline of a case into the folder out and return its summary.
 
-    mesh_formats : of "msh", "inp" and "xdmf", in which the mesh is written for other codes.
+    mesh_formats : in which the mesh is written for other codes, see mesh.files.formats.
     InputError before any work for what cannot be built or written. Where a computation does not converge
     nothing is raised: solver.converged is False, solver.failure says why and what converged is written.
     """
     progress = progress or Logged()
     with named_when_missing(), lines_when_interactive():
+        check_formats(mesh_formats)
         _ = case.checked
         ensure_rendering()
         with staged_folder(out, RUN) as folder:
@@ -97,8 +99,6 @@ def _fill(case: Case, folder: Path, progress: Progress, mesh_formats: Sequence[s
     except MeshingError as error:
         return {**summary, "solver": stopped_solver(f"meshing: {error}"), "timing_s": clock.seconds}
     if mesh_formats:
-        from mesh.files.formats import write_mesh
-
         with clock("export"):
             write_mesh(case.mesh, mesh_formats, folder / "mesh")
     progress.stage("solve")

@@ -63,7 +63,9 @@ class NeoHookean(MaterialTable):
         >>> rubber.shear_modulus_MPa, round(rubber.law.bulk_modulus, 6)
         (0.4, 0.666667)
         """
-        return laws.InvariantLaw(0.5 * self.shear_modulus_MPa, 0.0, 0.0, 0.0, _bulk_MPa(self))
+        return laws.InvariantLaw(
+            0.5 * self.shear_modulus_MPa, 0.0, 0.0, 0.0, laws.bulk_modulus(self.shear_modulus_MPa, self.poisson_ratio)
+        )
 
 
 class Linear(MaterialTable):
@@ -81,7 +83,8 @@ class Linear(MaterialTable):
     @property
     def law(self) -> laws.MediumLaw:
         """Its law, in MPa."""
-        return laws.LinearLaw(self.shear_modulus_MPa, _bulk_MPa(self))
+        bulk = laws.bulk_modulus(self.shear_modulus_MPa, self.poisson_ratio)
+        return laws.LinearLaw(self.shear_modulus_MPa, bulk)
 
 
 class MooneyRivlin(MaterialTable):
@@ -105,7 +108,9 @@ class MooneyRivlin(MaterialTable):
     @property
     def law(self) -> laws.MediumLaw:
         """Its law, in MPa."""
-        return laws.InvariantLaw(self.c10_MPa, self.c01_MPa, 0.0, 0.0, _bulk_MPa(self))
+        return laws.InvariantLaw(
+            self.c10_MPa, self.c01_MPa, 0.0, 0.0, laws.bulk_modulus(self.shear_modulus_MPa, self.poisson_ratio)
+        )
 
 
 class Yeoh(MaterialTable):
@@ -125,7 +130,9 @@ class Yeoh(MaterialTable):
     @property
     def law(self) -> laws.MediumLaw:
         """Its law, in MPa."""
-        return laws.InvariantLaw(self.c10_MPa, 0.0, self.c20_MPa, self.c30_MPa, _bulk_MPa(self))
+        return laws.InvariantLaw(
+            self.c10_MPa, 0.0, self.c20_MPa, self.c30_MPa, laws.bulk_modulus(self.shear_modulus_MPa, self.poisson_ratio)
+        )
 
 
 class Ogden(MaterialTable):
@@ -150,7 +157,8 @@ class Ogden(MaterialTable):
     @property
     def law(self) -> laws.MediumLaw:
         """Its law, in MPa."""
-        return laws.OgdenLaw(self.mu_MPa, self.alpha, _bulk_MPa(self))
+        bulk = laws.bulk_modulus(self.shear_modulus_MPa, self.poisson_ratio)
+        return laws.OgdenLaw(self.mu_MPa, self.alpha, bulk)
 
 
 class Hyperfoam(MaterialTable):
@@ -233,10 +241,6 @@ class PiezoelectricFilm(MaterialTable):
         raise ValueError(f"{self.model} is not a medium")
 
 
-def _bulk_MPa(material: "NeoHookean | Linear | MooneyRivlin | Yeoh | Ogden") -> float:
-    return laws.bulk_modulus(material.shear_modulus_MPa, material.poisson_ratio)
-
-
 def _require_terms(name: str, values: tuple[float, ...], mu: tuple[float, ...]) -> None:
     if len(values) != len(mu):
         raise ValueError(f"{name} has {len(values)} values but mu_MPa has {len(mu)}: one of each per term")
@@ -247,7 +251,6 @@ def _require_shear_modulus(shear_MPa: float, formula: str) -> None:
         raise ValueError(f"small-strain shear modulus = {shear_MPa:g} MPa: {formula} must be above 0")
 
 
-Medium = NeoHookean | Linear | MooneyRivlin | Yeoh | Ogden | Hyperfoam
 Material = NeoHookean | Linear | MooneyRivlin | Yeoh | Ogden | Hyperfoam | PiezoelectricFilm
 AnyMaterial = Annotated[Material, Field(discriminator="model")]
 

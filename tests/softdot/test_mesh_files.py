@@ -21,11 +21,9 @@ def test_each_format_that_is_asked_for_is_written(tmp_path):
 
 @pytest.mark.usefixtures("stages")
 def test_another_format_is_refused_with_the_ones_there_are(tmp_path, capsys):
-    with pytest.raises(SystemExit) as stopped:
-        main(["run", "-o", str(tmp_path / "out"), "--mesh-format", "vtk"])
-    assert stopped.value.code == 2
+    assert main(["run", "-o", str(tmp_path / "out"), "--mesh-format", "vtk"]) == 2
     said = capsys.readouterr().err
-    assert "argument --mesh-format: invalid choice: 'vtk' (choose from 'msh', 'inp', 'xdmf')" in said
+    assert "--mesh-format = 'vtk': there is no such format; known are inp, msh, xdmf" in said
     assert len(said.splitlines()) == 1
     assert not (tmp_path / "out").exists()
 

@@ -7,6 +7,7 @@ import pytest
 
 from export import cutaway as film_map
 from export.skin import largest_principal
+from export.view import save
 from export.viewer_data import viewer_data
 from export.vtu import write_results
 from geometry.parameters import Film, Medium, Segment
@@ -59,7 +60,7 @@ def test_the_film_picture_ends_at_the_headline_values(pressed, stated, monkeypat
     tet_mesh, result = pressed
     figures = []
     monkeypatch.setattr(film_map, "save", lambda figure, _: figures.append(figure))
-    film_map.draw_film(tet_mesh, result.steps[-1], result.film_peak, "", tmp_path / "film.png", slice_=False)
+    save(film_map.film_figure(tet_mesh, result.steps[-1], result.film_peak, ""), tmp_path / "film.png")
     strain, charge = (axes.collections[0] for axes in figures[0].axes[:2])
     assert strain.get_clim() == pytest.approx((0.0, 100 * stated["max_principal_strain"]))
     assert charge.get_clim()[1] == pytest.approx(stated["charge_density_pC_per_mm2"][1])

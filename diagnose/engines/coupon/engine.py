@@ -4,8 +4,8 @@ What a coupon test teaches about a material, as a configuration has it.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass, field, replace
+from typing import Any, Self
 
 import numpy as np
 
@@ -57,6 +57,10 @@ class CouponEngine:
         if name in FACTORS:
             return relative_error(PartOfLayer, name, FACTORS[name])
         return drive_error(name) if name in DRIVE_ERRORS else None
+
+    def with_candidates(self, candidates: tuple[Candidate, ...]) -> Self:
+        """The engine with fewer candidates."""
+        return replace(self, candidates=candidates)
 
     def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
         """Nothing: a point is solved in milliseconds."""

@@ -6,8 +6,10 @@ Quantities that are comparable between laws, read from the tables.
 """
 
 from collections.abc import Callable, Sequence
+from copy import copy
 from dataclasses import replace
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 
@@ -141,6 +143,12 @@ class SegmentEngine:
     def nuisance(self, name: str) -> Candidate | None:
         """See diagnose.forward.Engine; also "offset_mm", the error of the first touch where a displacement drives."""
         return nuisance(self.scene, self.recording, name)
+
+    def with_candidates(self, candidates: tuple[Candidate, ...]) -> Self:
+        """The engine with fewer candidates."""
+        fewer = copy(self)
+        fewer.candidates = candidates
+        return fewer
 
     def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
         """Press what these candidates need. NoEquilibriumError."""

@@ -4,6 +4,7 @@ Force: two relaxing springs in parallel, F = R1(k1 u) + R2(k2 u^3). Charge: Q = 
 Voltage: a film and its input, (C + Cin) V' = Q' - V / R, then a low-pass.
 """
 
+from copy import copy
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -152,6 +153,11 @@ class ToyEngine:
         if name not in fields:
             return None
         return one("property-error", name, fields[name], -0.9, 3.0, 0.05)
+
+    def with_candidates(self, candidates):
+        fewer = copy(self)
+        fewer.candidates = candidates
+        return fewer
 
     def prepare(self, candidates, report):
         pass

@@ -1,5 +1,6 @@
 """A sensor that one can calculate by hand, a recording of it, and findings about it."""
 
+from copy import copy
 from dataclasses import replace
 
 import numpy as np
@@ -50,6 +51,11 @@ class ToyEngine:
 
     def nuisance(self, name):
         return None
+
+    def with_candidates(self, candidates):
+        fewer = copy(self)
+        fewer.candidates = candidates
+        return fewer
 
     def prepare(self, candidates, report):
         report("prepared", len(candidates), len(candidates))
