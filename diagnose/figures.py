@@ -54,5 +54,5 @@ def p_equals(value: float, least: float = LEAST_P) -> str:
 
 
 def p_alone(value: float | None) -> str:
-    """The same for a column of p-values."""
+    """A p-value for a column of them, without its name."""
     return figure(value) if value is None else p_equals(value).removeprefix("p ").removeprefix("= ")

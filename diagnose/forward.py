@@ -131,14 +131,14 @@ class Engine(Protocol):
         """
 
     def imagine(self, run: Run, settings: Sequence[Setting]) -> Signals:
-        """The same for a run that nobody has recorded: its drive as samples, its readout and dot_offset_mm, no answers.
+        """Every answer of a run that was not recorded: its drive as samples, readout and dot_offset_mm, no answers.
 
         Every channel that the sensor has, by the names of the recording. ValueError with one sentence where this is
         beyond what the model can tell, such as deeper than was prepared or off the prepared position.
         """
 
     def solve(self, run: int, mechanisms: Sequence[Mechanism], report: Report) -> Signals:
-        """The same by the full model with these mechanisms switched on, in minutes. NoEquilibriumError."""
+        """Every answer of a run by the full model with these mechanisms, in minutes. NoEquilibriumError."""
 
 
 class PassingOn:

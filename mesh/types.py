@@ -96,7 +96,7 @@ def split_prisms(lower: Ints, upper: Ints) -> Ints:
 
 
 def without_unused(linear: LinearMesh) -> LinearMesh:
-    """The same mesh without nodes that belong to no tetrahedron; the order of nodes is kept."""
+    """The mesh without nodes that belong to no tetrahedron; the order of nodes is kept."""
     used = np.unique(linear.tets)
     number = np.full(len(linear.points_mm), -1, dtype=np.int64)
     number[used] = np.arange(len(used))

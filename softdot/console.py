@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def plain(value: Any) -> Any:
-    """The same data in Python's own types; NaN and infinity, which JSON lacks, become None."""
+    """The data in Python's own types; NaN and infinity, which JSON lacks, become None."""
     if isinstance(value, dict):
         return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple | set | frozenset):

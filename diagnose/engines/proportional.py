@@ -141,7 +141,7 @@ class ProportionalEngine:
         return {name: values + sum(self._hum(run, one) for one in hum) for name, values in signals.items()}
 
     def imagine(self, run: Run, settings: Sequence[Setting]) -> Signals:
-        """The same of a run that was not made, without hum."""
+        """Every answer of a run that was not made, without hum."""
         phases = segmented(run.time_s, run.drive_values, from_touch=False)
         return self._answer(run, _loading(run, phases, self.largest_N), settings)
 
@@ -161,7 +161,7 @@ class ProportionalEngine:
         return signals
 
     def solve(self, run: int, mechanisms: Sequence[Mechanism], report: Report) -> Signals:
-        """The same. NoEquilibriumError."""
+        """Every answer of a run with these mechanisms. NoEquilibriumError."""
         return self._voltages(self.recording.runs[run], self.loadings[run], mechanisms, self.sensitivity_C)
 
     def _voltages(

@@ -148,7 +148,7 @@ class ObservedModel:
         return held
 
     def vector(self, values: Floats, settings: Sequence[Setting] = ()) -> Floats:
-        """The same whitened, (n,)."""
+        """What the instruments would show, whitened, (n,)."""
         return self.samples.coefficients(self.signals(values, settings))
 
     def tangents(self, values: Floats, settings: Sequence[Setting] = ()) -> Floats:

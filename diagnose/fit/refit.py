@@ -113,7 +113,7 @@ def fitted_baseline(model: ObservedModel) -> LinearisedSystem:
 
 
 def believed(model: ObservedModel, system: LinearisedSystem) -> LinearisedSystem:
-    """The same about nuisances that their priors find plausible: far out they stand in for what is missing."""
+    """The system about nuisances that their priors find plausible: far out they stand in for what is missing."""
     values = plausible(system.values, model.sigma)
     return system if np.array_equal(values, system.values) else linearised(model, values)
 

@@ -110,13 +110,13 @@ class LinearisedSystem:
         return np.asarray(rows * (weight if rows.ndim == 1 else weight[:, None]))
 
     def reached(self, informative: Bools) -> "LinearisedSystem":
-        """The same where only some of its informative rows are looked at."""
+        """This system where only some of its informative rows are looked at."""
         return replace(
             self, nuisance_design=self.nuisance_design[informative[self.informative]], informative=informative
         )
 
     def with_nuisance_columns(self, columns: Floats, sigma: Floats) -> "LinearisedSystem":
-        """The same with more nuisance columns (n, k), of prior deviations (k,)."""
+        """This system with more nuisance columns (n, k), of prior deviations (k,)."""
         place = len(self.sigma_of_one) - self.laws
         nuisance_design = np.hstack(
             [self.nuisance_design[:, :place], columns[self.informative], self.nuisance_design[:, place:]]

@@ -159,7 +159,7 @@ def trained_and_held(
 
 
 def unimproved(fit: Fit) -> Fit:
-    """The same where nothing is named: after is as before."""
+    """The fit where nothing is named: after is as before."""
     return replace(fit, nrmse_after=fit.nrmse_before, log_score_gain_per_press=0.0)
 
 

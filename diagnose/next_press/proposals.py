@@ -114,7 +114,7 @@ class PressSetup:
     removes: str = ""
 
     def changed(self, words: str, changes: Mapping[str, Any], **parts: Any) -> "PressSetup":
-        """The same with another run, shape or removal, said and noted."""
+        """This press with another run, shape or removal, said and noted."""
         return replace(self, words=(*self.words, words), changes={**self.changes, **changes}, **parts)
 
     @property

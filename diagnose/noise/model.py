@@ -155,7 +155,7 @@ class NoiseModel:
         return float(np.sqrt(own + sum(0.5 * line.amplitude**2 for line in self.lines)))
 
     def without_lines(self) -> "NoiseModel":
-        """The same without the mains: where hum is not to be excused as noise."""
+        """The noise without the mains, for the question whether hum is what the model lacks."""
         return replace(self, lines=())
 
     def whitening(self, observed: Bools, time_s: Floats | None = None) -> "Whitening":

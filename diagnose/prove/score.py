@@ -160,7 +160,7 @@ def rate(items: Iterable[Item], holds: Callable[[Item], bool]) -> dict[str, Any]
 
 
 def share(count: int, of: int) -> dict[str, Any]:
-    """The same of numbers."""
+    """Count, total and Wilson interval of a share."""
     if of == 0:
         return {"count": 0, "of": 0, "rate": None, "low": None, "high": None}
     low, high = wilson_interval(count, of)

@@ -112,7 +112,7 @@ def _table(stream: TextIO, header: Sequence[str], file: Path) -> Floats:
 
 
 def _row_by_row(stream: TextIO, header: Sequence[str], file: Path) -> Floats:
-    """The same with empty cells as NaN, or InputError for the first cell that is no number."""
+    """The columns with empty cells as NaN, or InputError for the first cell that is no number."""
     cells, reader = array("d"), csv.reader(stream)
     for row in reader:
         if not row:

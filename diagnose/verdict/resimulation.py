@@ -42,7 +42,7 @@ class Resimulated:
 
     @property
     def after_all(self) -> float:
-        """The same with what was named."""
+        """Error of the full model with what was named."""
         return _together(self.after)
 
 
@@ -134,7 +134,7 @@ def _misfit(run: Run, channel: str, values: Floats) -> float:
 
 
 def _timed(report: Report, limit_s: float | None) -> Report:
-    """The same report, which ends the work once the time is over."""
+    """A report that passes on what it is told, and ends the work once the time is over."""
     end = time.monotonic() + limit_s if limit_s is not None else float("inf")
 
     def told(what: str, done: int, count: int) -> None:

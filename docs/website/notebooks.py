@@ -20,11 +20,7 @@ def navigation(root: Path) -> list[str]:
 
 def _page(path: Path, root: Path) -> str:
     cells = json.loads(path.read_text("utf-8"))["cells"]
-    texts = ["".join(cell["source"]) for cell in cells]
-    blocks = [
-        text if cell["cell_type"] == "markdown" else f"```python\n{text}\n```" for cell, text in zip(cells, texts)
-    ]
-    title, *rest = blocks
+    title, *rest = (_block("".join(cell["source"]), cell["cell_type"]) for cell in cells)
     source = path.relative_to(root).as_posix()
     return "\n\n".join([title, HEAD.format(source=source, name=path.name), *rest]) + "\n"
 

@@ -29,11 +29,11 @@ class Thing:
     name: str = ""
 
     def lifted(self, by_mm: float) -> "Thing":
-        """The same, higher."""
+        """The thing moved up."""
         return replace(self, surface=self.surface.translate((0.0, 0.0, by_mm), inplace=False))
 
     def moved(self, x_mm: float, y_mm: float) -> "Thing":
-        """The same, elsewhere."""
+        """The thing moved sideways."""
         return replace(self, surface=self.surface.translate((x_mm, y_mm, 0.0), inplace=False))
 
     def cut_open(self, y_mm: float) -> "Thing":

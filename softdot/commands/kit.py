@@ -78,7 +78,7 @@ APART_MM, ROW_MM = 5.0, 150.0
 
 
 def side_by_side(parts: Sequence[FabricationPart]) -> list[FabricationPart]:
-    """The same parts in rows along x, their undersides at z = 0, in mm."""
+    """The parts in rows along x, their undersides at z = 0, in mm."""
     from build123d import Pos
 
     found, x, y, depth = [], 0.0, 0.0, 0.0

@@ -129,7 +129,7 @@ def _overriding(name: str, table: Any) -> Any:
 
 
 def resolved(config: Config) -> Config:
-    """The same configuration with the materials it uses and the default indentation written out."""
+    """The configuration with the materials it uses and the default indentation written out."""
     used = {layer.material for layer in layers(config.segment)}
     found = {name: find_material(name, config.materials, "material") for name in sorted(used)}
     press = config.press

@@ -195,7 +195,7 @@ def refuse_absurd_numbers(tables: Any) -> None:
 
 
 def without_round_off(value: Any) -> Any:
-    """The same tables with zero for every number below 1e-12 in size: a script that subtracts leaves -1.1e-16."""
+    """The tables with zero for every number below 1e-12 in size: a script that subtracts leaves -1.1e-16."""
     if isinstance(value, dict):
         return {key: without_round_off(item) for key, item in value.items()}
     if isinstance(value, list | tuple):

@@ -35,7 +35,7 @@ class Response(NamedTuple):
 
 
 def coarser(config: Config, factor: float) -> Config:
-    """The same press in fewer steps on elements that are larger by the factor; never on the mesh of a file."""
+    """The press in fewer steps on elements that are larger by the factor; never on the mesh of a file."""
     options = config.mesh
     sizes = {
         name: factor * size
@@ -65,7 +65,7 @@ class KitPress:
         return Response(*found[0]), {key: Response(*pair) for key, pair in found[1].items()}
 
     def full_load_slopes(self, keys: Sequence[str]) -> tuple[Response, dict[str, Response]]:
-        """The same of force and open-circuit voltage at full load, before any slide, whatever stands behind the film.
+        """Force and open-circuit voltage at full load, before any slide, with their slopes; no amplifier.
 
         InputError also where the path of the press matters; else as for slopes.
         """

@@ -26,7 +26,7 @@ FACTORS: dict[str, tuple[str, ...]] = {
 
 
 def with_factors(config: Config) -> Config:
-    """The same configuration with a property error of every component, all factors one, behind its mechanisms.
+    """The configuration with a property error of every component, all factors one, behind its mechanisms.
 
     Layers that share a material so get errors of their own.
     """

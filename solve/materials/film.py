@@ -188,7 +188,7 @@ class FilmPlasticity:
     needs_energy = False
 
     def scaled(self, factor: float) -> "FilmPlasticity":
-        """The same law in another unit of stress."""
+        """The law with its moduli times a factor, for another unit of stress."""
         law = self.law
         return replace(self, law=YieldLaw(factor * law.stiffness, factor * law.yield_stress, factor * law.hardening))
 

@@ -57,7 +57,7 @@ class Inelastic(Protocol):
         """Response and memory at the end of a time step (s)."""
 
     def scaled(self, factor: float) -> "Inelastic":
-        """The same law in another unit of stress."""
+        """The law with its moduli times a factor, for another unit of stress."""
 
     def time_error(self, memory: Memory, new: Memory, time_step: float, after_kink: bool) -> float:
         """Error of the time integration in a step, relative to the largest stress; 0 for a law without rates."""
@@ -108,7 +108,7 @@ class Prony:
     needs_energy = False
 
     def scaled(self, factor: float) -> "Prony":
-        """The same series: its moduli are relative."""
+        """The series itself: its moduli are relative."""
         return self
 
     def start(self, points: int, components: int = 6) -> Memory:
@@ -161,7 +161,7 @@ class Softening:
     needs_energy = True
 
     def scaled(self, factor: float) -> "Softening":
-        """The same law in another unit of stress."""
+        """The law with its moduli times a factor, for another unit of stress."""
         return replace(self, energy=factor * self.energy)
 
     def start(self, points: int, components: int = 6) -> Memory:

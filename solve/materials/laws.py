@@ -31,7 +31,7 @@ class MediumLaw(Protocol):
         """True when stress and energy are whole; False when they are isochoric and the pressure is an unknown."""
 
     def scaled(self, factor: float) -> "MediumLaw":
-        """The same law in another unit of stress."""
+        """The law with its moduli times a factor, for another unit of stress."""
 
     def stress(self, cauchy_green: Floats) -> tuple[Floats, Floats]:
         """S (n, 6) and tangent (n, 6, 6) at C (n, 3, 3)."""
@@ -64,7 +64,7 @@ class InvariantLaw:
         return False
 
     def scaled(self, factor: float) -> "InvariantLaw":
-        """The same law in another unit of stress."""
+        """The law with its moduli times a factor, for another unit of stress."""
         return InvariantLaw(*(factor * c for c in (self.c10, self.c01, self.c20, self.c30, self.bulk_modulus)))
 
     def stress(self, cauchy_green: Floats) -> tuple[Floats, Floats]:
@@ -98,7 +98,7 @@ class OgdenLaw:
         return False
 
     def scaled(self, factor: float) -> "OgdenLaw":
-        """The same law in another unit of stress."""
+        """The law with its moduli times a factor, for another unit of stress."""
         return OgdenLaw(tuple(factor * m for m in self.mu), self.alpha, factor * self.bulk_modulus)
 
     def stress(self, cauchy_green: Floats) -> tuple[Floats, Floats]:
@@ -129,7 +129,7 @@ class LinearLaw:
         return False
 
     def scaled(self, factor: float) -> "LinearLaw":
-        """The same law in another unit of stress."""
+        """The law with its moduli times a factor, for another unit of stress."""
         return replace(self, shear_modulus=factor * self.shear_modulus, bulk_modulus=factor * self.bulk_modulus)
 
     def stress(self, cauchy_green: Floats) -> tuple[Floats, Floats]:

@@ -189,7 +189,7 @@ class HyperfoamLaw:
         return True
 
     def scaled(self, factor: float) -> "HyperfoamLaw":
-        """The same law in another unit of stress."""
+        """The law with its moduli times a factor, for another unit of stress."""
         return HyperfoamLaw(tuple(factor * m for m in self.mu), self.alpha, self.beta)
 
     def stress(self, cauchy_green: Floats) -> tuple[Floats, Floats]:

@@ -79,7 +79,7 @@ def rig_mesh(
 
 
 def _under_a_dome(model: Model, options: MeshOptions, largest: int) -> tuple[TetMesh, MeshOptions]:
-    """The same by the user's mesher, in few attempts, as each takes seconds."""
+    """A mesh of a dome by the user's mesher: coarser in few attempts, as each takes seconds."""
     made, count = _made(model, options)
     while count > largest:
         coarser = scaled(options, max(COARSER, (count / largest) ** 0.6))  # nodes grow with size to about -1.7

@@ -132,7 +132,7 @@ class ContactFacets(Term):
         return self._sum(np.einsum("kq,qi,kq->ki", self.area, HATS, gap))
 
     def mean_gap(self, displacement: Floats, move: Floats) -> Floats:
-        """The same as a mean around each node (c,)."""
+        """Weighted gap over nodal area: the mean gap around each node (c,)."""
         return self.weighted_gap(displacement, move) / self.nodal_area
 
     def constraints(self) -> tuple[Ints, Floats]:
@@ -160,7 +160,7 @@ class ContactFacets(Term):
         return self._pressed(trial, self._at_quadrature(trial.displacement, trial.move)[0])
 
     def _pressed(self, trial: Trial, gap: Floats) -> Bools:
-        """The same with the gap (k, q) at the quadrature points."""
+        """Nodes in contact (c,) from the gap (k, q) at the quadrature points."""
         mean_gap = self._weighted(gap) / self.nodal_area
         return np.asarray(trial.x[self.pressure_dofs] - ACTIVE_SET_STIFFNESS * mean_gap > 0.0)
 

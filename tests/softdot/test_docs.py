@@ -62,7 +62,8 @@ def test_every_plain_key_has_an_example():
 
 
 def toml_blocks():
-    text = "".join(path.read_text("utf-8") for path in DOCUMENTS)
+    """Configurations; those of CONTRIBUTING.md are pieces of the program's own tables."""
+    text = "".join(path.read_text("utf-8") for path in DOCUMENTS if path.name != "CONTRIBUTING.md")
     return re.findall(r"```toml\n(.*?)```", text, re.DOTALL)
 
 

@@ -70,7 +70,7 @@ class CouponEngine:
         return self.imagine(self.recording.runs[run], settings)
 
     def imagine(self, run: Run, settings: Sequence[Setting]) -> Signals:
-        """The same of a run that was not made."""
+        """Every answer of a run that was not made."""
         of_drive = {s.candidate.mechanism: s.values[0] for s in settings if s.candidate.component == "drive"}
         of_coupon = [s for s in settings if s.candidate.component != "drive"]
         try:
@@ -79,7 +79,7 @@ class CouponEngine:
             raise ValueError(str(error)) from None
 
     def solve(self, run: int, mechanisms: Sequence[Mechanism], report: Report) -> Signals:
-        """The same; mechanisms of a coupon act on medium 1. NoEquilibriumError."""
+        """Every answer of a run with these mechanisms, which act on medium 1. NoEquilibriumError."""
         return self._answer(self.recording.runs[run], mechanisms, {})
 
     def model(self, mechanisms: Sequence[Mechanism]) -> Model:

@@ -185,7 +185,7 @@ class SegmentEngine:
         return shown(run, names, drive, values, found, self._film(on), on, ahead_s)
 
     def solve(self, run: int, mechanisms: Sequence[Mechanism], report: Report) -> Signals:
-        """The same by the 3D model along the run's own drive. ValueError, NoEquilibriumError."""
+        """Every answer of a run by the 3D model along its own drive. ValueError, NoEquilibriumError."""
         base, asked, drive = self.prepared, self.recording.runs[run], self.drives[run]
         believed = replace(base.moved(asked.dot_offset_mm), readout=self._readout(asked))
         on = with_mechanisms(believed, mechanisms)

@@ -97,7 +97,7 @@ def _between(turned: Floats, curves: Sequence[Floats], largest: Floats) -> Float
 
 
 def with_history(found: Mechanics, histories: Sequence[PathHistory], fit: ResponseTable, depth_mm: float) -> Mechanics:
-    """The same path with force, area and charge as its history makes them."""
+    """The path with force, area and charge as its history makes them."""
     share, force = found.path_mm / depth_mm, fit.table[:, 0, 0]
     factors, charge = np.ones((len(share), 2)), found.charge_C
     for history in histories:
@@ -145,7 +145,7 @@ def effect(together: str, coordinates: tuple[Coordinate, ...]) -> PressedEffect:
 
 
 def effect_of(candidate: Candidate) -> PressedEffect:
-    """The same of a candidate."""
+    """What a candidate changes in a press."""
     return effect(candidate.together, candidate.coordinates)
 
 

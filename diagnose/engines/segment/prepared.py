@@ -288,7 +288,7 @@ def _all_there(outputs: list[Floats]) -> list[Floats]:
 
 
 def press_name(candidate: Candidate, point: Sequence[float]) -> Name:
-    """The same for a nuisance and for the candidate that has it among others."""
+    """Name of a press, one for a nuisance and for the candidate that has it among others."""
     on = tuple((c.name, value) for c, value in zip(candidate.coordinates, point, strict=True) if value != 0.0)
     return (*candidate.name, on)
 

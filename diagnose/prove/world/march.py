@@ -34,7 +34,7 @@ class Course:
 
 @dataclass(frozen=True)
 class Table:
-    """The same over depth (k,) mm, rising from 0."""
+    """A course over depth (k,) mm, rising from 0."""
 
     depth_mm: Floats
     course: Course

@@ -42,7 +42,7 @@ def strength(made: Made) -> float:
 
 
 def with_strength(made: Made, value: float) -> Made:
-    """The same with the memory at another strength; 0 forgets."""
+    """The segment with its memory at another strength; 0 forgets."""
     layers = []
     for layer in made.layers:
         if isinstance(layer, Layer) and layer.spectrum:

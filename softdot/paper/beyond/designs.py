@@ -70,7 +70,7 @@ def sample(count_log2: int, seed: int) -> list[Design]:
 
 
 def papers_variables(count_log2: int, seed: int) -> list[Design]:
-    """The same for h1, E1, h2 and E2 alone; effector and film stay the paper's."""
+    """Designs that differ in h1, E1, h2 and E2 alone; effector and film stay the paper's."""
     unit = qmc.Sobol(4, rng=seed).random_base2(count_log2)
     others = {name: getattr(PAPERS, name) for name in ("effector_height_mm", "effector_MPa", "film_um")}
     return [replace(design_at(np.append(point, [0.0, 0.0, 0.0])), **others) for point in unit]

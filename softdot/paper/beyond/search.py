@@ -274,7 +274,7 @@ def _sides(name: str) -> dict[str, Config]:
 
 
 def elastic(config: Config, stiffness: float) -> Config:
-    """The same segment with the sides of its held layers on springs, in N/mm³."""
+    """The segment with the sides of its held layers on springs, in N/mm³."""
     changes = {"boundary": "elastic", "side_stiffness_N_per_mm3": stiffness}
     return config.model_copy(update={"segment": config.segment.model_copy(update=changes)})
 

@@ -50,7 +50,7 @@ class PressCurve:
         return _extended(self._voltage, self.depth_mm[-1], np.asarray(depth_mm))
 
     def scaled(self, force: float, voltage: float) -> "PressCurve":
-        """The same shape with other values."""
+        """The curve with force and voltage scaled."""
         return replace(self, force_N=force * self.force_N, voltage_V=voltage * self.voltage_V)
 
     @cached_property

@@ -131,7 +131,7 @@ def readings(study: Study) -> PaperTable:
 
 
 def errors(study: Study) -> PaperTable:
-    """The same press on a finer mesh."""
+    """What a finer mesh changes in one press."""
     rows: list[list[Cell]] = []
     for reading, words in SHORT_NAMES.items():
         coarse, fine = study.readings[reading][CHECKED], study.refined[reading]
