@@ -176,7 +176,7 @@ def with_film(bare: LinearMesh, thickness_mm: float, film_layers: int) -> Linear
 
 
 def section_with_film(bare: MeshedSection, thickness_mm: float, film_layers: int) -> MeshedSection:
-    """Put a film into a slice: interface edges of the x-z section become rectangles cut in two, mirrored about x = 0."""
+    """Put a film into a slice: interface edges of the x-z section become rectangles, cut in two, mirrored at x = 0."""
     lower = bare.region == 0
     edges = _interface_edges(bare)
     points, levels, moved = _levels(bare.points_mm, bare.triangles, lower, np.unique(edges), thickness_mm, film_layers)
