@@ -19,7 +19,7 @@ from diagnose.forward import Signals
 from diagnose.signals.phases import rest_of
 from geometry.arrays import Floats
 
-FORM = 0.05
+FORM_ERROR = 0.05
 """One sigma by which the effect of a mechanism may differ from that of the right one by its law alone."""
 COSINES = 3
 Relative = Sequence[float]
@@ -72,7 +72,7 @@ def allowance(samples: Samples, vector: Floats, relative: Relative) -> Floats:
     """Variance (n,) that is added to the coefficients of a signal (n,).
 
     Half of the expected square is where the signal is (its cell), half is spread over its piece with the spectrum of
-    a random walk: an error of form is rougher than the signal.
+    a random walk: a model-form error is rougher than the signal.
     """
     size = np.asarray(relative)[samples.kind[samples.block_of]] ** 2
     square = vector**2

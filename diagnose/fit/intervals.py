@@ -44,10 +44,10 @@ def points(fit: Fitted) -> tuple[Mapping[str, Interval], ...]:
 
 
 def _law_may_differ(fit: Fitted) -> Fitted:
-    """With the error of form at its largest, where the law is one of several: those have derived quantities."""
+    """With the model-form error at its largest, where the law is one of several: those have derived quantities."""
     if not any(one.candidate.derived(one.values) for one in fit.settings):
         return fit
-    return replace(fit, system=replace(fit.system, form=fit.largest_form))
+    return replace(fit, system=replace(fit.system, form_error=fit.largest_form_error))
 
 
 def _model_may_err(model: ObservedModel, fit: Fitted) -> Fitted:

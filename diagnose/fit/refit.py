@@ -1,4 +1,4 @@
-"""Mechanisms fitted to all samples, with the nuisances and the error of form renewed until they stand still.
+"""Mechanisms fitted to all samples, with the nuisances and the model-form error renewed until they stand still.
 
 The baseline, fitted fairly: nuisances alone, under their priors, from several starts.
 """
@@ -10,32 +10,32 @@ import numpy as np
 
 from diagnose.fit import discrepancy
 from diagnose.fit.descent import Place, descended, descent, fitted_jointly, settings
-from diagnose.fit.discrepancy import FORM
+from diagnose.fit.discrepancy import FORM_ERROR
 from diagnose.fit.observed_model import ObservedModel, by_name, late
 from diagnose.fit.samples import Samples
 from diagnose.fit.system import LinearisedSystem, Quadratic, linearised
 from diagnose.forward import Candidate, Setting
-from diagnose.statistics.abstain import LARGEST_FORM
+from diagnose.statistics.abstain import LARGEST_FORM_SHARE
 from geometry.arrays import Bools, Floats
 
 ROUNDS = 2
 NEAR = 1.0  # standard deviations: variances stay so far
-FORMS = np.array([0.0, 0.125, 0.25, 0.5, 1.0])  # of the largest error of form
+FORM_ERRORS = np.array([0.0, 0.125, 0.25, 0.5, 1.0])  # of the largest model-form error
 
 
 @dataclass(frozen=True)
 class Fitted:
     """candidates and their values (q,). system : linear about them. slopes : (n, q) change per unit of each value.
 
-    largest_form : error of form that is allowed. evidence : logarithm of the marginal likelihood at these values, but
-    for a constant.
+    largest_form_error : model-form error that is allowed. evidence : logarithm of the marginal likelihood at these
+    values, but for a constant.
     """
 
     candidates: tuple[Candidate, ...]
     values: Floats
     system: LinearisedSystem
     slopes: Floats
-    largest_form: float
+    largest_form_error: float
     evidence: float
 
     @property
@@ -45,22 +45,22 @@ class Fitted:
 
 
 def common_metric(samples: Samples, baseline: LinearisedSystem) -> LinearisedSystem:
-    """The baseline with the same variance for every candidate's error of form: as if its residual were the effect."""
+    """The baseline with one model-form error for all candidates, as if its residual were the effect."""
     excess = discrepancy.allowance(samples, baseline.residual, [1.0] * len(samples.channels))
-    return replace(baseline, formal=excess, form=FORM)
+    return replace(baseline, unit_form_variance=excess, form_error=FORM_ERROR)
 
 
 def fitted(
     model: ObservedModel, system: LinearisedSystem, candidates: Sequence[Candidate], start: Floats, excess: float
 ) -> Fitted:
-    """system : from where nuisances start, with the rows that are looked at. excess : see largest_form.
+    """system : from where nuisances start, with the rows that are looked at. excess : see largest_form_error.
 
-    The error of form is the likeliest up to the largest.
+    The model-form error is the likeliest up to the largest.
     """
     values, nuisances = start, system.values
     for _ in range(ROUNDS):
-        system = linearised(model, nuisances, settings(candidates, values), FORM, system.informative)
-        system = replace(system, form=largest_form(system, excess))
+        system = linearised(model, nuisances, settings(candidates, values), FORM_ERROR, system.informative)
+        system = replace(system, form_error=largest_form_error(system, excess))
         found = fitted_jointly(model, system, candidates, values)
         change = model.vector(found.nuisances, settings(candidates, found.values)) - model.vector(
             nuisances, settings(candidates, values)
@@ -68,19 +68,23 @@ def fitted(
         values, nuisances = found.values, found.nuisances
         if np.linalg.norm(system.weighted(change)) < NEAR:
             break
-    system = linearised(model, nuisances, settings(candidates, values), FORM, system.informative)
-    largest = largest_form(system, excess)
-    system = replace(system, form=max(largest * FORMS, key=lambda form: _evidence(replace(system, form=form))))
+    system = linearised(model, nuisances, settings(candidates, values), FORM_ERROR, system.informative)
+    largest = largest_form_error(system, excess)
+    likeliest = max(largest * FORM_ERRORS, key=lambda error: _evidence(replace(system, form_error=error)))
+    system = replace(system, form_error=likeliest)
     system, place, slopes = _moved(model, system, candidates, values)
     return Fitted(tuple(candidates), place.values, system, slopes, largest, _evidence(system))
 
 
-def largest_form(system: LinearisedSystem, excess: float) -> float:
-    """FORM, or less where that would excuse more than LARGEST_FORM of the excess (a sum of squares above noise)."""
-    nuisance_design = float((system.formal / system.numerical)[system.informative].sum())
-    return (
-        min(FORM, float(np.sqrt(LARGEST_FORM * max(excess, 0.0) / nuisance_design))) if nuisance_design > 0.0 else FORM
-    )
+def largest_form_error(system: LinearisedSystem, excess: float) -> float:
+    """FORM_ERROR, or less where that would account for more than LARGEST_FORM_SHARE of the excess.
+
+    excess : sum of squares above noise.
+    """
+    at_one = float((system.unit_form_variance / system.numerical)[system.informative].sum())
+    if at_one <= 0.0:
+        return FORM_ERROR
+    return min(FORM_ERROR, float(np.sqrt(LARGEST_FORM_SHARE * max(excess, 0.0) / at_one)))
 
 
 def _moved(

@@ -78,24 +78,24 @@ class LinearisedSystem:
     values: Floats
     residual: Floats
     numerical: Floats
-    formal: Floats
+    unit_form_variance: Floats
     nuisance_design: Floats
     sigma_of_one: Floats
     laws: int
     effect: Floats
-    form: float
+    form_error: float
     informative: Bools
 
     @property
     def variance(self) -> Floats:
         """Of each coefficient, (n,)."""
-        return np.asarray(self.numerical + self.form**2 * self.formal)
+        return np.asarray(self.numerical + self.form_error**2 * self.unit_form_variance)
 
     @property
     def sigma(self) -> Floats:
         """Prior deviations (k,) of the nuisance parameters."""
         sigma = self.sigma_of_one.copy()
-        sigma[len(sigma) - self.laws :] *= self.form
+        sigma[len(sigma) - self.laws :] *= self.form_error
         return sigma
 
     @cached_property
@@ -154,17 +154,17 @@ def linearised(
     model: ObservedModel,
     values: Floats,
     settings: Sequence[Setting] = (),
-    form: float = 0.0,
+    form_error: float = 0.0,
     informative: Bools | None = None,
 ) -> LinearisedSystem:
-    """About nuisances (p,) and mechanisms; form : relative error of their effect."""
+    """About nuisances (p,) and mechanisms; form_error : relative error of their effect."""
     samples, own = model.samples, relative(model)
     shown = model.signals(values, settings)
     predicted = samples.coefficients(shown)
     tangents = model.tangents(values, settings)
     numerical, numerical_sigma = discrepancy.columns(samples, shown, own)
     nuisance_design, sigma = [tangents, numerical], [model.sigma, numerical_sigma]
-    effect, formal, laws = np.zeros(len(samples)), np.zeros(len(samples)), 0
+    effect, unit_form_variance, laws = np.zeros(len(samples)), np.zeros(len(samples)), 0
     if settings:
         without = model.signals(values)
         effect = predicted - samples.coefficients(without)
@@ -172,17 +172,17 @@ def linearised(
         change = [{name: a[name] - b[name] for name in a} for a, b in zip(shown, without, strict=True)]
         columns, deviations = discrepancy.columns(samples, change, ones)
         nuisance_design, sigma, laws = [*nuisance_design, columns], [*sigma, deviations], len(deviations)
-        formal = discrepancy.allowance(samples, effect, ones)
+        unit_form_variance = discrepancy.allowance(samples, effect, ones)
     return LinearisedSystem(
         values,
         samples.recorded - predicted + tangents @ values,
         1.0 + discrepancy.allowance(samples, predicted, own) + drive_noise(samples, shown),
-        formal,
+        unit_form_variance,
         np.column_stack([columns if informative is None else columns[informative] for columns in nuisance_design]),
         np.concatenate(sigma),
         laws,
         effect,
-        form,
+        form_error,
         np.ones(len(samples), dtype=bool) if informative is None else informative,
     )
 

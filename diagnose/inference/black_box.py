@@ -116,7 +116,7 @@ def box_scores(samples: Samples, baseline: LinearisedSystem, metric: LinearisedS
 
 
 def worth_of_form(samples: Samples, metric: LinearisedSystem) -> float:
-    """Nats per press that it is worth to know the error of form: half its share of the variance, summed."""
+    """Nats per press that it is worth to know the model-form error: half its share of the variance, summed."""
     share = (metric.variance - metric.numerical) / metric.variance
     folds = len(np.unique(samples.fold[metric.informative]))
     return 0.5 * float(share[metric.informative].sum()) / folds

@@ -66,7 +66,7 @@ class Judge:
         samples = self.model.samples
         forecast = forecasted(samples, fit.system, fit)
         left = share_left(fit, self.found.excess)
-        system, p_left = replace(fit.system, form=fit.largest_form), 1.0
+        system, p_left = replace(fit.system, form_error=fit.largest_form_error), 1.0
         if left > LEFT or self.found.excess == 0.0:
             found = checked(samples, system, self.rng, fit.slopes, draws)
             p_left, strain = found.p_value, found.strain
@@ -158,7 +158,7 @@ NOTHING = "The residual resembles none of the candidates more than chance allows
 def _decided(judge: Judge, models: tuple[Judged, ...], p_mismatch: float) -> Choice:
     samples, best = judge.model.samples, models[0]
     past = memory(samples)
-    metric = replace(best.fit.system, form=best.fit.largest_form)
+    metric = replace(best.fit.system, form_error=best.fit.largest_form_error)
     over = box_scores(samples, judge.declared, metric, past) - forecasted(samples, metric, best.fit).log_scores
     box = gain_over_noise(over, np.sqrt(2.0 * np.maximum(over, 0.0)), RATES.level)
     none = box_scores(samples, judge.declared, judge.declared, past)

@@ -137,7 +137,7 @@ def excess(system: LinearisedSystem) -> float:
 
 def share_left(fit: Fitted, before: float) -> float:
     """Share of an excess that a fitted model leaves, its model discrepancy not integrated out."""
-    system = replace(fit.system, form=0.0)
+    system = replace(fit.system, form_error=0.0)
     columns = np.column_stack([system.nuisance_design, fit.slopes[system.informative]])
     sigma = np.concatenate([system.sigma, np.full(fit.slopes.shape[1], np.inf)])
     square = Quadratic(system.weighted(columns), sigma).square(system.weighted(system.residual))

@@ -15,7 +15,7 @@ from typing import Any, cast
 import numpy as np
 
 from diagnose.findings import Findings, FittedModel
-from diagnose.fit.discrepancy import FORM
+from diagnose.fit.discrepancy import FORM_ERROR
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.samples import Samples
 from diagnose.fit.system import LinearisedSystem, Quadratic, linearised
@@ -98,7 +98,7 @@ class PressJudge:
         prediction = model.vector(values, settings)
         slopes = [(model.vector(values, moved) - prediction) / step for moved, step in _moved(settings)]
         return ImaginedAnswer(
-            linearised(model, values, settings, FORM),
+            linearised(model, values, settings, FORM_ERROR),
             prediction,
             np.column_stack([np.zeros((len(prediction), 0)), *slopes]),
         )

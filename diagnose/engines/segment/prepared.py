@@ -33,7 +33,7 @@ from solve.tables.rig_mesh import Mesh, MeshSettings, finer_mesh, mesh_of, rig_m
 from solve.tables.smooth import PRESSED, TRUSTED, Depths, accuracy, change, replaced, smooth
 from solve.tables.workers import run_all
 
-RUNG = 1.05  # noise of the drive is far less than a step, and a table 5 % too deep costs nothing
+LADDER_STEP = 1.05  # noise of the drive is far less than a step, and a table 5 % too deep costs nothing
 DEEPER = 1.3  # of the depth that a force reaches: softer candidates go deeper, and layers creep
 
 
@@ -47,8 +47,8 @@ def deepest(model: Model, tet_mesh: Mesh, recording: Recording) -> float:
 
 
 def rounded_up(value: float) -> float:
-    """The next number up of a ladder in steps of RUNG, so that noise of the drive does not ask for presses anew."""
-    return float(RUNG ** np.ceil(np.log(value) / np.log(RUNG)))
+    """The next power of LADDER_STEP, so that noise of the drive does not ask for presses anew."""
+    return float(LADDER_STEP ** np.ceil(np.log(value) / np.log(LADDER_STEP)))
 
 
 def reached(model: Model, tet_mesh: Mesh, force_N: float) -> float:

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from diagnose.fit.descent import descended, descent
-from diagnose.fit.discrepancy import FORM
+from diagnose.fit.discrepancy import FORM_ERROR
 from diagnose.fit.intervals import intervals
 from diagnose.fit.observed_model import ObservedModel
-from diagnose.fit.refit import believed, common_metric, fitted, fitted_baseline, largest_form
+from diagnose.fit.refit import believed, common_metric, fitted, fitted_baseline, largest_form_error
 from diagnose.fit.samples import Samples
 from diagnose.fit.system import linearised
 from diagnose.forward import Candidate, Coordinate
@@ -85,8 +85,8 @@ def test_the_right_mechanism_leaves_little_and_the_wrong_one_most():
 
 def test_an_effect_that_nuisances_cancel_excuses_nothing():
     _, baseline, right = leaking()
-    assert right.largest_form == pytest.approx(FORM, rel=0.5)
-    assert largest_form(right.system, 1e-6 * excess(baseline)) < 0.01 * FORM
+    assert right.largest_form_error == pytest.approx(FORM_ERROR, rel=0.5)
+    assert largest_form_error(right.system, 1e-6 * excess(baseline)) < 0.01 * FORM_ERROR
 
 
 def test_an_interval_is_where_the_likelihood_has_fallen_by_its_quantile():
