@@ -120,7 +120,7 @@ RATES = Rates(rate_for_promise(4, 400), margin=0.0, largest_group=3)
 LEFT = 0.05
 """Share of the excess, or of the strain of what floats, that a named model may leave although chance does not."""
 LARGEST_FORM_SHARE = 0.1
-"""Share of the excess that the model-form error may account for: an effect that nuisances cancel accounts for nothing."""
+"""Share of the excess that the model-form error may account for; an effect that nuisances cancel has none."""
 ALIKE = 0.05
 """Chance of choosing the wrong one of two models above which they are called ambiguous."""
 FINALISTS = 6
