@@ -51,6 +51,8 @@ KITS: dict[str, tuple[str, ...]] = {
 }
 NOT_NUMBERS = ("timing_s", "softdot_version", "config_hash", "seconds", "created", "wall", "memory", "threads")
 """Keys of what depends on the clock or on the commit."""
+ROUND_OFF = ("max_relative_residual", "newton_iterations", "mesh_error")
+"""Keys of what is made of rounding: residuals, the iterations that reach them, differences near zero."""
 DRAWN = (".json", ".stl", ".dxf", ".svg", ".csv", ".toml")
 """Endings of files whose bytes are compared; STEP, 3MF and pictures carry dates."""
 
@@ -132,10 +134,10 @@ def compare(before: Path, after: Path) -> int:
             continue
         one, two = json.loads(path.read_text()), json.loads(other.read_text())
         count, largest, where, different = 0, 0.0, "", []
-        for key, old, new in _pairs(one, two, ""):
+        for key, old, new, scale in _pairs(one, two, ""):
             if _number(old) and _number(new):
                 count += 1
-                change = _change(float(old), float(new))
+                change = _change(float(old), float(new), scale)
                 if change > largest:
                     largest, where = change, key
             elif old != new:
@@ -151,25 +153,30 @@ def _number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def _change(old: float, new: float) -> float:
+def _change(old: float, new: float, scale: float) -> float:
+    """Relative to the larger one, or to the largest of its list."""
     if math.isclose(old, new, rel_tol=0.0, abs_tol=1e-15):
         return 0.0
-    return abs(old - new) / max(abs(old), abs(new))
+    return abs(old - new) / max(abs(old), abs(new), scale)
 
 
-def _pairs(one: object, two: object, key: str) -> Iterator[tuple[str, Any, Any]]:
-    """Values of the same place in two JSON trees; a place that only one has comes with the other as text."""
+def _pairs(one: object, two: object, key: str, scale: float = 0.0) -> Iterator[tuple[str, Any, Any, float]]:
+    """Values of the same place in two JSON trees, and the largest number of their list.
+
+    A place that only one has comes with the other as text.
+    """
     if key.endswith("/screened"):  # candidates come in any order
         one, two = (sorted(rows, key=str) for rows in (one, two))
     if isinstance(one, dict) and isinstance(two, dict):
         for name in sorted({*one, *two}):
-            if not any(word in name for word in NOT_NUMBERS):
+            if not any(word in name for word in (*NOT_NUMBERS, *ROUND_OFF)):
                 yield from _pairs(one.get(name, "absent"), two.get(name, "absent"), f"{key}/{name}")
     elif isinstance(one, list) and isinstance(two, list) and len(one) == len(two):
+        scale = max((abs(float(value)) for value in one if _number(value)), default=0.0)
         for number, (old, new) in enumerate(zip(one, two, strict=True)):
-            yield from _pairs(old, new, f"{key}[{number}]")
+            yield from _pairs(old, new, f"{key}[{number}]", scale)
     else:
-        yield key, one, two
+        yield key, one, two, scale
 
 
 if __name__ == "__main__":

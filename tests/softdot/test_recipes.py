@@ -13,6 +13,7 @@ ROOT = Path(__file__).parents[2]
 TEXT = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
 RECIPES = dict(re.findall(r"^### (.+?)\n(.*?)(?=^### |\Z)", TEXT, re.DOTALL | re.MULTILINE))
 BLOCK = re.compile(r"^```(?:python|toml)\n# (.+?)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+LEFT_OUT = shutil.ignore_patterns("*.pyc*", "*.tmp.*")  # what numba compiled stays, else it takes 20 s again
 PACKAGES = ("geometry", "mesh", "solve", "export", "diagnose", "softdot")
 
 
@@ -30,7 +31,7 @@ def apply(folder: Path, where: str, text: str) -> None:
         return
     kind, quoted = re.fullmatch(r"(before|in place of) \"(.*)\"", place).groups()
     assert source.count(quoted) == 1
-    new = text + quoted if kind == "before" else text.removesuffix("\n")
+    new = f"{text}\n\n{quoted}" if kind == "before" else text.removesuffix("\n")
     path.write_text(source.replace(quoted, new), "utf-8")
 
 
@@ -39,7 +40,7 @@ def test_a_recipe_works(name, tmp_path):
     program, here = tmp_path / "program", tmp_path / "here"
     here.mkdir()
     for package in PACKAGES:
-        shutil.copytree(ROOT / package, program / package, ignore=shutil.ignore_patterns("__pycache__"))
+        shutil.copytree(ROOT / package, program / package, ignore=LEFT_OUT)
     blocks = BLOCK.findall(RECIPES[name])
     checks = [text for where, text in blocks if where == "check"]
     for where, text in blocks:
