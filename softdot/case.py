@@ -344,5 +344,6 @@ def _shown(figure: "Figure") -> "Figure":
         figure.savefig(buffer, format="png", dpi=SCREEN_DPI)
         return buffer.getvalue()
 
+    figure.set_dpi(SCREEN_DPI)
     figure._repr_png_ = png  # type: ignore[attr-defined]
     return figure

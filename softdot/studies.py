@@ -90,7 +90,7 @@ class Verdict:
         return path if path.exists() else None
 
     def to_dataframe(self) -> "pd.DataFrame":
-        """One row for each parameter of what is named: mechanism, component, parameter, value, low, high, unit."""
+        """One row for each parameter of what is named: mechanism, component, parameter, value, low, high, unit, fixed."""
         import pandas as pd
 
         rows = [
@@ -98,7 +98,7 @@ class Verdict:
             for one in self.missing_physics
             for name, values in one["parameters"].items()
         ]
-        return pd.DataFrame(rows, columns=["mechanism", "component", "parameter", "value", "low", "high", "unit"])
+        return pd.DataFrame(rows, columns=["mechanism", "component", "parameter", "value", "low", "high", "unit", "fixed"])
 
     def where(self) -> "pd.DataFrame":
         """One row for each run, channel, phase and band in which the simulation is off."""

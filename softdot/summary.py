@@ -84,7 +84,7 @@ def history(result: PressResult) -> History:
     weighted = np.array([step.open_circuit_voltage_V @ result.capacitance_F for step in steps])
     return History(
         indentation_mm=MM * np.array([step.indentation_m for step in steps]),
-        reaction_force_N=np.array([step.reaction_force_N for step in steps]),
+        reaction_force_N=np.array([step.reaction_force_N for step in steps]) + 0.0,  # no -0 at rest
         film_charge_pC=PC * charge,
         open_circuit_voltage_V=weighted / result.capacitance_F.sum(),
     )
