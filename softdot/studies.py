@@ -90,15 +90,16 @@ class Verdict:
         return path if path.exists() else None
 
     def to_dataframe(self) -> "pd.DataFrame":
-        """One row for each parameter of what is named: mechanism, component, parameter, value, low, high, unit, fixed."""
+        """One row for each parameter of what is named, with its interval; fixed : stated, not fitted."""
         import pandas as pd
 
+        columns = ["mechanism", "component", "parameter", "value", "low", "high", "unit", "fixed"]
         rows = [
             {"mechanism": one["mechanism"], "component": one["component"], "parameter": name, **values}
             for one in self.missing_physics
             for name, values in one["parameters"].items()
         ]
-        return pd.DataFrame(rows, columns=["mechanism", "component", "parameter", "value", "low", "high", "unit", "fixed"])
+        return pd.DataFrame(rows, columns=columns)
 
     def where(self) -> "pd.DataFrame":
         """One row for each run, channel, phase and band in which the simulation is off."""
