@@ -68,11 +68,11 @@ def plot(rows: list[dict], path: Path) -> None:
 
 def main(table: Path, picture: Path) -> None:
     """Run what is missing, then draw."""
-    rows = json.loads(table.read_text()) if table.exists() else []
+    rows = json.loads(table.read_text(encoding="utf-8")) if table.exists() else []
     for factor in FACTORS:
         if all(row["factor"] != factor for row in rows):
             rows.append(measure(factor))
-            table.write_text(json.dumps(rows, indent=1) + "\n")
+            table.write_text(json.dumps(rows, indent=1) + "\n", "utf-8")
             print(rows[-1], flush=True)
     rows.sort(key=lambda row: -row["factor"])
     for row in rows:

@@ -84,7 +84,7 @@ TABLES = {"newton_step": newton_step, "growth": growth, "press": press, "diagnos
 def main(table: Path, page: Path) -> None:
     """Rewrite the tables of the sections that the file has."""
     text = page.read_text("utf-8")
-    for name, section in json.loads(table.read_text()).items():
+    for name, section in json.loads(table.read_text(encoding="utf-8")).items():
         content = f"{TABLES[name](section['rows'])}\n\n{machine(section)}"
         pattern = rf"(<!-- {name} -->\n).*?(<!-- /{name} -->)"
         text = re.sub(pattern, lambda found, content=content: f"{found[1]}{content}\n{found[2]}", text, flags=re.DOTALL)

@@ -104,7 +104,7 @@ def _made(words: tuple[str, ...], cache: Path) -> dict[str, Any]:
         reports = sorted(path for path in out.glob("*.json"))
         return {
             "exit": status,
-            "reports": {path.name: json.loads(path.read_text()) for path in reports},
+            "reports": {path.name: json.loads(path.read_text(encoding="utf-8")) for path in reports},
             "files": {
                 str(path.relative_to(out)): _digest(path)
                 for path in sorted(out.rglob("*"))
@@ -132,7 +132,7 @@ def compare(before: Path, after: Path) -> int:
             print(f"{path.stem:28} {'':>8} {'':>15}  not made")
             wrong += 1
             continue
-        one, two = json.loads(path.read_text()), json.loads(other.read_text())
+        one, two = json.loads(path.read_text(encoding="utf-8")), json.loads(other.read_text(encoding="utf-8"))
         count, largest, where, different = 0, 0.0, "", []
         for key, old, new, scale in _pairs(one, two, ""):
             if _number(old) and _number(new):

@@ -51,7 +51,7 @@ PANELS = {"newton_step": newton_step, "growth": growth, "press": press}
 
 def main(table: Path, picture: Path) -> None:
     """One panel for each section that the file has."""
-    sections = json.loads(table.read_text())
+    sections = json.loads(table.read_text(encoding="utf-8"))
     present = [name for name in PANELS if name in sections]
     plt.rcParams["font.size"] = 13
     figure, axes = plt.subplots(len(present), 1, figsize=(9.0, 5.0 * len(present)), layout="constrained", squeeze=False)

@@ -64,7 +64,8 @@ def measure(points: int, workers: int) -> dict:
         done = subprocess.run([*command, "--json"], check=True, capture_output=True, env=environment)
         seconds = time.perf_counter() - start
         summary = json.loads(done.stdout)
-        sizes = {json.loads(path.read_text())["mesh"]["unknowns"] for path in (folder / "out" / "points").iterdir()}
+        stored = [json.loads(path.read_text(encoding="utf-8")) for path in (folder / "out" / "points").iterdir()]
+        sizes = {point["mesh"]["unknowns"] for point in stored}
     if summary["ended"]["solved"] != points:
         raise SystemExit(f"not every point was solved: {summary['ended']}")
     return {

@@ -52,7 +52,7 @@ def hardware() -> dict:
 
 
 def _lines(path: str) -> list[str]:
-    return Path(path).read_text().splitlines() if Path(path).exists() else []
+    return Path(path).read_text(encoding="utf-8").splitlines() if Path(path).exists() else []
 
 
 def file_argument(number: int = 1) -> Path:
@@ -68,7 +68,7 @@ def run_alone(program: str, *arguments: object) -> dict:
     command = [sys.executable, "-m", f"benchmarks.{program}", *map(str, arguments)]
     tools = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])  # NGSolve's compiler
     done = subprocess.run(
-        command, capture_output=True, text=True, cwd=Path(__file__).parents[1], env={**os.environ, "PATH": tools}
+        command, capture_output=True, encoding="utf-8", cwd=Path(__file__).parents[1], env={**os.environ, "PATH": tools}
     )
     if done.returncode:
         raise SystemExit(f"{' '.join(command)}\n{done.stderr}")
@@ -85,7 +85,7 @@ class Table:
         self._head = everything.get(section, {}).get("measured_on") or hardware()
 
     def _read(self) -> dict:
-        return json.loads(self._path.read_text()) if self._path.exists() else {}
+        return json.loads(self._path.read_text(encoding="utf-8")) if self._path.exists() else {}
 
     def add(self, row: dict) -> None:
         """Append, write and show."""

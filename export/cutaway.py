@@ -271,7 +271,7 @@ def film_map(tet_mesh: TetMesh, step: Step) -> FilmMap:
     )
 
 
-def film_figure(tet_mesh: TetMesh, step: Step, peak: FilmPeak, title: str) -> "Figure":
+def film_figure(tet_mesh: TetMesh, step: Step, peak: FilmPeak) -> "Figure":
     """Strain and charge of the film: two maps from above, or for a plane-strain slice two lines along x.
 
     In the range of the stated largest values; those beyond it, at a held rim, have the colour of its end.
@@ -286,6 +286,7 @@ def film_figure(tet_mesh: TetMesh, step: Step, peak: FilmPeak, title: str) -> "F
         facecolor="white",
         layout=ConstrainedLayoutEngine(w_pad=0.12, h_pad=0.12),
     )
+    title = f"Film at {step.indentation_m * MM_PER_M:.3g} mm"
     figure.suptitle(title, x=0.04, ha="left", fontsize=15, fontweight="bold", color=INK)
     left, right = figure.subplots(1, 2)
     draw = _line if is_slice(tet_mesh) else _map

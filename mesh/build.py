@@ -15,7 +15,7 @@ from geometry.parameters import Positive, Segment, Table
 from mesh.types import LinearMesh
 
 if TYPE_CHECKING:
-    from mesh.types import LinearMesh, TetMesh
+    from mesh.types import TetMesh
 
 
 class MeshOptions(Table):

@@ -314,9 +314,7 @@ class Pressed:
         from export.cutaway import film_figure
         from export.pictures import deepest
 
-        step = deepest(self.result)
-        title = f"Film at {1e3 * step.indentation_m:.3g} mm"
-        return _shown(film_figure(self.result.tet_mesh, step, self.result.film_peak, title))
+        return _shown(film_figure(self.result.tet_mesh, deepest(self.result), self.result.film_peak))
 
     def _repr_html_(self) -> str:
         """For notebooks: how it ended, and a table of the steps."""

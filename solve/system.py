@@ -184,7 +184,7 @@ class System:
         excess = None if self.symmetric else np.zeros(len(data))
         load_norm, touching, status, slots = 0.0, False, [], iter(self.pattern.slots)
         for term, history in zip(self.terms, histories, strict=True):
-            before = residual.copy()
+            before = residual.copy() if term.is_load else residual
             own = [next(slots) for _ in term.groups]
             for block in term.elements(trial, history):
                 dofs, slot = term.groups[block.group][block.part], own[block.group][block.part]
@@ -193,7 +193,8 @@ class System:
                 else:
                     scatter_unsymmetric(block.matrices, block.residuals, dofs, slot, data, excess, residual)
             status.append(term.status(trial, history))
-            load_norm = max(load_norm, term.load_norm(trial, (residual - before)[self.mechanical]))
+            if term.is_load:
+                load_norm = max(load_norm, term.load_norm(trial, (residual - before)[self.mechanical]))
             touching = touching or term.touches(status[-1])
         upper = self.pattern.matrix(data)
         lower = None if excess is None else self.pattern.matrix(excess)

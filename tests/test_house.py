@@ -3,6 +3,7 @@
 import ast
 import re
 from collections import Counter
+from graphlib import TopologicalSorter
 from pathlib import Path
 from statistics import median
 
@@ -37,6 +38,36 @@ def imported(path):
 def test_imports_go_one_way(top):
     found = {name for path in FILES if path.is_relative_to(ROOT / top) for name in imported(path)}
     assert found & set(MAY_IMPORT) - {top} <= MAY_IMPORT[top]
+
+
+def name_of(path):
+    return ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+
+
+def run_on_import(path):
+    """Modules that run when a file is imported: those named outside functions, with the packages that hold them."""
+    modules = {name_of(file) for file in FILES}
+    own = name_of(path)
+    waiting = list(ast.parse(path.read_text("utf-8")).body)
+    for node in waiting:
+        if isinstance(node, ast.ImportFrom):
+            names = [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
+        elif isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        else:
+            typing_only = isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
+            inside = isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) or typing_only
+            waiting += [] if inside else [child for child in ast.iter_child_nodes(node) if isinstance(child, ast.stmt)]
+            continue
+        for name in names:
+            parts = name.split(".")
+            holders = (".".join(parts[:count]) for count in range(1, len(parts) + 1))
+            yield from (holder for holder in holders if holder in modules and not f"{own}.".startswith(f"{holder}."))
+
+
+def test_no_module_imports_itself_in_a_circle():
+    """Whichever module is imported first, the rest follow."""
+    TopologicalSorter({name_of(path): set(run_on_import(path)) for path in FILES}).prepare()
 
 
 def test_files_and_folders_stay_small():

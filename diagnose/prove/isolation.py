@@ -44,7 +44,7 @@ def diagnosed(files: Mapping[str, str], cache: Path, limit_s: float, options: tu
                 cwd=folder,
                 env=environment(folder, cache),
                 capture_output=True,
-                text=True,
+                encoding="utf-8",
                 timeout=limit_s,
                 check=False,
             )

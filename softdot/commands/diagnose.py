@@ -222,7 +222,7 @@ def engine_for(rig: Rig, report: Report) -> Engine:
     if rig.config is not None:
         return _of_segment(rig, rig.config, report)
     if rig.recording.specimen is not None:
-        from diagnose.engines.coupon import coupon_engine
+        from diagnose.engines.coupon.engine import coupon_engine
 
         return coupon_engine(rig.recording, rig.materials, report)
     from diagnose.engines.proportional import proportional_engine
@@ -231,7 +231,7 @@ def engine_for(rig: Rig, report: Report) -> Engine:
 
 
 def _of_segment(rig: Rig, config: Config, report: Report) -> Engine:
-    from diagnose.engines.segment import segment_engine
+    from diagnose.engines.segment.engine import segment_engine
     from softdot.config.model import model_of
 
     return segment_engine(model_of(config), config.mesh, rig.recording, report)

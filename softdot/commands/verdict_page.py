@@ -10,7 +10,7 @@ from typing import Any, cast
 import tomlkit
 from tomlkit.items import InlineTable, Table
 
-from diagnose.engines.coupon import CouponEngine, improved_material
+from diagnose.engines.coupon.engine import CouponEngine, improved_material
 from diagnose.figures import figure, p_alone, percent, probability
 from diagnose.findings import Findings, FittedModel
 from diagnose.forward import Engine

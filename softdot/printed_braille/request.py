@@ -117,7 +117,7 @@ def liblouis() -> Translator | None:
     program = shutil.which("lou_translate")
     if program is None:
         return None
-    said = subprocess.run([program, "--version"], capture_output=True, text=True, timeout=TIMEOUT_S, check=False)
+    said = subprocess.run([program, "--version"], capture_output=True, encoding="utf-8", timeout=TIMEOUT_S, check=False)
     found = re.search(r"\d+(\.\d+)+", said.stdout + said.stderr)
     return Translator(program, found.group() if found else "unknown")
 
@@ -143,7 +143,7 @@ def _translate(translator: Translator, text: str, table: str) -> str:
         return _by_binding(text, table)
     tables = f"{DISPLAY},{table}"
     done = subprocess.run(
-        [translator.called_by, "--forward", tables], input=text, capture_output=True, text=True, timeout=TIMEOUT_S,
+        [translator.called_by, "--forward", tables], input=text, capture_output=True, timeout=TIMEOUT_S,
         encoding="utf-8", check=False,
     )  # fmt: skip
     cells = done.stdout.rstrip("\n")

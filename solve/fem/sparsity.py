@@ -199,6 +199,7 @@ class Term(ABC):
     """
 
     symmetric = True
+    is_load = False  # whether load_norm is to be asked
     inelastic: tuple[Any, ...] = ()  # laws with memory, whose memories are the history of the term
 
     @property

@@ -101,6 +101,7 @@ class ContactFacets(Term):
     pressure_dofs: Ints
     index: Ints
     dot: RigidDot
+    is_load = True
 
     @property
     def groups(self) -> tuple[Ints, ...]:

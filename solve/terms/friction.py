@@ -85,6 +85,7 @@ class FrictionalContact(Term):
     slip_stiffness: float = ACTIVE_SET_STIFFNESS
 
     symmetric = False
+    is_load = True
 
     @property
     def groups(self) -> tuple[Ints, ...]:

@@ -44,6 +44,7 @@ class RigTerm(Term):
     approach_dof: int
     mass: float
     compliance: float | None
+    is_load = True
 
     @property
     def groups(self) -> tuple[Ints, ...]:

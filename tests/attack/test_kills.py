@@ -99,7 +99,7 @@ class SolidBench(Bench):
 
 def whole(out: Path, summary: str) -> dict:
     """The summary of a folder; every file that its kind of product always has is there."""
-    found = json.loads((out / summary).read_text())
+    found = json.loads((out / summary).read_text(encoding="utf-8"))
     assert (out / ("kit.html" if summary == "kit.json" else "report.html")).stat().st_size > 1000
     return found
 

@@ -30,7 +30,7 @@ def run(folder: Path, limit=None, **environment: str) -> "subprocess.CompletedPr
     command = [sys.executable, "-m", "softdot.cli", "run", "-q", "tiny.toml", "-o", "out"]
     preset = None if limit is None else lambda: resource.setrlimit(*limit)
     return subprocess.run(
-        command, cwd=folder, env=own, capture_output=True, text=True, timeout=300, check=False, preexec_fn=preset
+        command, cwd=folder, env=own, capture_output=True, encoding="utf-8", timeout=300, check=False, preexec_fn=preset
     )
 
 
@@ -80,7 +80,9 @@ def test_a_full_disk(full, small_disk, result, tmp_path):
         (folder / "solid.toml").write_text(TINY.replace('"plane-strain"', '"solid"').replace('"ridge"', '"cap"'))
         command = [sys.executable, "-m", "softdot.cli", "run", "-q", "solid.toml", "-o", "out"]
         own = {**os.environ, "TMPDIR": str(small_disk), "SOFTDOT_CACHE": str(tmp_path / "cache")}
-        done = subprocess.run(command, cwd=folder, env=own, capture_output=True, text=True, timeout=300, check=False)
+        done = subprocess.run(
+            command, cwd=folder, env=own, capture_output=True, encoding="utf-8", timeout=300, check=False
+        )
         assert "disk is full" in sentence(done)
         assert (folder / "out" / "summary.json").read_bytes() == before
         return

@@ -54,7 +54,7 @@ def test_a_random_design_gives_a_right_result_or_says_in_one_sentence_why_not(bl
     (ledger / f"{block}.partial").write_text(json.dumps(seen))
     os.replace(ledger / f"{block}.partial", ledger / f"{block}.json")
     if len(list(ledger.glob("*.json"))) == BLOCKS:
-        judge([one for path in ledger.glob("*.json") for one in json.loads(path.read_text())])
+        judge([one for path in ledger.glob("*.json") for one in json.loads(path.read_text(encoding="utf-8"))])
 
 
 def outcome(number: int) -> dict:
@@ -141,7 +141,7 @@ def judge(seen):
               "refused": [(one["number"], one["said"]) for one in seen if one["kind"] == "refused"]}  # fmt: skip
     print(json.dumps(report, indent=1), file=sys.stderr)
     if "SOFTDOT_ATTACK_REPORT" in os.environ:
-        Path(os.environ["SOFTDOT_ATTACK_REPORT"]).write_text(json.dumps(report, indent=1))
+        Path(os.environ["SOFTDOT_ATTACK_REPORT"]).write_text(json.dumps(report, indent=1), "utf-8")
     assert len(seen) == DESIGNS
     assert kinds["stopped"] <= MOST_STOPPED * DESIGNS
     assert kinds["refused"] + kinds["untouched"] <= MOST_REFUSED * DESIGNS
@@ -156,7 +156,7 @@ def test_the_command_gives_a_random_design_its_folder(number, tmp_path):
     path, out = tmp_path / "design.toml", tmp_path / "out"
     path.write_text(toml_text(design(number)), "utf-8")
     ended = subprocess.run(
-        [sys.executable, "-m", "softdot.cli", "run", str(path), "-o", str(out)], capture_output=True, text=True
+        [sys.executable, "-m", "softdot.cli", "run", str(path), "-o", str(out)], capture_output=True, encoding="utf-8"
     )
     assert ended.returncode in (0, 3), ended.stderr  # 3: stopped, and told where
     summary = json.loads((out / "summary.json").read_text("utf-8"), parse_constant=pytest.fail)

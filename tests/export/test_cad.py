@@ -58,7 +58,7 @@ def test_one_file_for_each_part_and_nothing_else(written):
 
 def test_step_keeps_labels_volumes_and_colours(written):
     parts, folder = written
-    text = (folder / "segment.step").read_text()
+    text = (folder / "segment.step").read_text(encoding="utf-8")
     assert "AUTOMOTIVE_DESIGN" in text  # the schema of AP214
     assert "SI_UNIT(.MILLI.,.METRE.)" in text
     found = {child.label: child for child in import_step(folder / "segment.step").children}
@@ -133,7 +133,7 @@ def test_an_error_leaves_the_earlier_folder(written, tmp_path, monkeypatch):
 
 def slicer_info(path: Path) -> dict[str, str]:
     """What PrusaSlicer says of a file; it ends with 0 on a broken surface too, so its words count."""
-    done = subprocess.run(["prusa-slicer", "--info", path], capture_output=True, text=True, timeout=120)
+    done = subprocess.run(["prusa-slicer", "--info", path], capture_output=True, encoding="utf-8", timeout=120)
     assert done.returncode == 0, done.stderr
     lines = [line.split(" = ", 1) for line in done.stdout.splitlines() if " = " in line]
     return {key.strip(): value.strip() for key, value in lines}

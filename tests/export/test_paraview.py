@@ -39,7 +39,7 @@ def pvpython(display: str, script: Path, *arguments: Path) -> "subprocess.Comple
     """A script run by ParaView's Python."""
     return subprocess.run(
         ["pvpython", "--force-offscreen-rendering", script, *arguments],
-        capture_output=True, text=True, timeout=240, check=False, env={**os.environ, "DISPLAY": display},
+        capture_output=True, encoding="utf-8", timeout=240, check=False, env={**os.environ, "DISPLAY": display},
     )  # fmt: skip
 
 

@@ -101,7 +101,7 @@ def test_missing_opengl_is_one_sentence_not_a_crash() -> None:
         "headless.subprocess.run = lambda *a, **k: SimpleNamespace(returncode=-11, stdout=b'')\n"
         "headless.ensure_rendering()"
     )
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, encoding="utf-8", timeout=60, check=False)
     assert run.stderr.strip().splitlines()[-1] == f"geometry.base.InputError: {ADVICE}"
 
 

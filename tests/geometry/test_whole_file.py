@@ -10,8 +10,8 @@ def test_the_file_is_there_when_the_block_has_ended(tmp_path):
     path.write_text("old")
     with whole_file(path) as beside:
         beside.write_text("new")
-        assert path.read_text() == "old"
-    assert [(entry.name, entry.read_text()) for entry in tmp_path.iterdir()] == [("a.txt", "new")]
+        assert path.read_text(encoding="utf-8") == "old"
+    assert [(entry.name, entry.read_text(encoding="utf-8")) for entry in tmp_path.iterdir()] == [("a.txt", "new")]
 
 
 def stop_halfway(path, error):
@@ -26,7 +26,7 @@ def test_after_an_interruption_the_old_file_is_all_there_is(tmp_path, error):
     path.write_text("old")
     with pytest.raises(error):
         stop_halfway(path, error)
-    assert [(entry.name, entry.read_text()) for entry in tmp_path.iterdir()] == [("a.txt", "old")]
+    assert [(entry.name, entry.read_text(encoding="utf-8")) for entry in tmp_path.iterdir()] == [("a.txt", "old")]
 
 
 def test_of_two_who_write_at_once_the_last_to_end_wins_whole(tmp_path):
@@ -35,5 +35,5 @@ def test_of_two_who_write_at_once_the_last_to_end_wins_whole(tmp_path):
         first.write_text("first")
         with whole_file(path, shared=True) as second:
             second.write_text("second")
-        assert path.read_text() == "second"
-    assert [(entry.name, entry.read_text()) for entry in tmp_path.iterdir()] == [("a.txt", "first")]
+        assert path.read_text(encoding="utf-8") == "second"
+    assert [(entry.name, entry.read_text(encoding="utf-8")) for entry in tmp_path.iterdir()] == [("a.txt", "first")]

@@ -49,7 +49,7 @@ def test_every_gmsh_group_has_its_entity_and_its_elements(name: str, tmp_path: P
     """Read from the text, as the format describes it, without meshio."""
     mesh = built(name)
     (path,) = write_mesh(mesh, ["msh"], tmp_path)
-    part = sections(path.read_text())
+    part = sections(path.read_text(encoding="utf-8"))
     assert part["MeshFormat"] == ["4.1 0 8"]
     stated = {line.split()[2].strip('"'): tuple(map(int, line.split()[:2])) for line in part["PhysicalNames"][1:]}
     surfaces = {key: facets for key, facets in mesh.facets.items() if len(facets)}
@@ -79,13 +79,13 @@ def test_an_entity_gets_a_node_where_all_of_its_nodes_are_shared(tmp_path: Path)
     one = TetMesh(points, tets, np.zeros(1, int), ("film",), facets, np.arange(10), 1.0)
     (path,) = write_mesh(one, ["msh"], tmp_path)
     assert set(meshio.gmsh.read(path).cell_sets) >= {"film", "base", "contact", "side-film"}
-    assert sections(path.read_text())["Entities"][0] == "0 0 3 1"
+    assert sections(path.read_text(encoding="utf-8"))["Entities"][0] == "0 0 3 1"
 
 
 def test_abaqus_surfaces_name_the_faces_that_look_outward(tmp_path: Path) -> None:
     mesh = built("cylinder solid layered")
     (path,) = write_mesh(mesh, ["inp"], tmp_path)
-    text = path.read_text()
+    text = path.read_text(encoding="utf-8")
     assert "*ELEMENT, TYPE=C3D10\n" in text
     numbers = re.findall(r"-?\d[\d.e+-]*", text[text.index("*NODE") : text.index("*ELEMENT")])
     assert max(map(len, numbers)) <= 20  # what Abaqus and CalculiX read

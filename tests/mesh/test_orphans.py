@@ -29,7 +29,7 @@ time.sleep(60)
 
 def running(number: int) -> bool:
     try:
-        return Path(f"/proc/{number}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
+        return Path(f"/proc/{number}/stat").read_text(encoding="utf-8").rsplit(")", 1)[1].split()[0] != "Z"
     except OSError:
         return False
 
@@ -41,7 +41,7 @@ def test_a_child_ends_with_a_parent_that_is_killed(starting, tmp_path):
     code = CHILD.format(wait="time.sleep(0.5)" if starting else "pass")
     own = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
     command = [sys.executable, "-c", PARENT, code, str(begun)]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=own) as parent:
+    with subprocess.Popen(command, stdout=subprocess.PIPE, encoding="utf-8", env=own) as parent:
         child = int(parent.stdout.readline())
         while not starting and not begun.exists():
             time.sleep(0.02)

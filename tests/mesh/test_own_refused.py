@@ -125,6 +125,6 @@ def test_what_is_no_mesh_is_refused(name: str, text: str | None, said: str, tmp_
 
 def test_a_gmsh_file_with_elements_of_no_group_says_how_to_save_it(tmp_path: Path) -> None:
     (path,) = write_mesh(built(SLICE), ["msh"], tmp_path)
-    path.write_text(path.read_text().replace("\n11 0 0 0 0 0 0 1 11 0\n", "\n11 0 0 0 0 0 0 0 0\n"))
+    path.write_text(path.read_text(encoding="utf-8").replace("\n11 0 0 0 0 0 0 1 11 0\n", "\n11 0 0 0 0 0 0 0 0\n"))
     with pytest.raises(InputError, match="elements of no physical group; save only those of physical groups"):
         own_mesh(str(path), segment_of(SLICE))

@@ -29,7 +29,7 @@ def test_a_file(tmp_path, refused):
     out = tmp_path / "out"
     out.write_text("mine")
     assert refused(out) == f"output '{out}': this is a file, a folder is needed"
-    assert out.read_text() == "mine"
+    assert out.read_text(encoding="utf-8") == "mine"
 
 
 def test_a_file_on_the_way(tmp_path, refused):
@@ -57,7 +57,7 @@ def test_an_earlier_run_to_which_something_was_added(tmp_path, capfd):
     (out / "notes.txt").write_text("mine")
     assert main(["run", "-o", str(out)]) == 2
     assert "holds 'notes.txt'" in capfd.readouterr().err
-    assert (out / "notes.txt").read_text() == "mine"
+    assert (out / "notes.txt").read_text(encoding="utf-8") == "mine"
 
 
 def test_a_name_that_is_too_long(tmp_path, refused):

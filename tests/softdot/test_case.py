@@ -101,7 +101,7 @@ def test_a_foreign_module_that_hides_one_of_ours_is_named_at_import(name, tmp_pa
     (tmp_path / name).parent.mkdir(exist_ok=True)
     (tmp_path / name).write_text("")
     done = subprocess.run(
-        [sys.executable, "-c", "import softdot"], cwd=tmp_path, capture_output=True, text=True, check=False
+        [sys.executable, "-c", "import softdot"], cwd=tmp_path, capture_output=True, encoding="utf-8", check=False
     )
     package = name.split("/")[0].removesuffix(".py")
     assert done.returncode == 1

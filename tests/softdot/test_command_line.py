@@ -32,7 +32,7 @@ def test_help_loads_nothing_heavy(command):
         "except SystemExit as end: assert end.code == 0\n"
         f"print('LOADED', [name for name in {HEAVY} if name in sys.modules])"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, encoding="utf-8", check=True)
     assert done.stdout.startswith("usage: softdot")
     assert done.stdout.splitlines()[-1] == "LOADED []"
 
@@ -74,7 +74,7 @@ def test_version_is_the_installed_one(capsys):
 
 def test_a_reader_that_leaves_early_is_no_error():
     command = f"{sys.executable} -m softdot.cli schema | head -c 10; exit ${{PIPESTATUS[0]}}"
-    done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, check=False)
+    done = subprocess.run(["bash", "-c", command], capture_output=True, encoding="utf-8", check=False)
     assert (done.returncode, done.stderr) == (0, "")
 
 

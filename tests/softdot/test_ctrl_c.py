@@ -30,7 +30,7 @@ sys.exit(main(["run", "-o", "out"]))
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupted_process_exits_130_and_leaves_nothing(tmp_path, number):
     process = subprocess.Popen(
-        [sys.executable, "-c", SLOW_RUN], cwd=tmp_path, stderr=subprocess.PIPE, text=True, env=_environment(),
+        [sys.executable, "-c", SLOW_RUN], cwd=tmp_path, stderr=subprocess.PIPE, encoding="utf-8", env=_environment(),
         preexec_fn=heard,
     )  # fmt: skip
     while not (tmp_path / "begun").exists():
@@ -64,8 +64,8 @@ def test_an_import_is_finished_before_ctrl_c_is_answered(tmp_path):
         "sys.exit(cli.main(['run', '-o', 'out']))"
     )
     done = subprocess.run(
-        [sys.executable, "-c", program], cwd=tmp_path, env=_environment(), capture_output=True, text=True, timeout=20,
-        preexec_fn=heard, check=False,
+        [sys.executable, "-c", program], cwd=tmp_path, env=_environment(), capture_output=True, encoding="utf-8",
+        timeout=20, preexec_fn=heard, check=False,
     )  # fmt: skip
     assert (done.returncode, done.stderr) == (130, "softdot: interrupted, nothing was written\n")
     assert (tmp_path / "imported").exists()

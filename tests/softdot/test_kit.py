@@ -135,7 +135,7 @@ def test_parts_lie_side_by_side(kit, summary):
 
 
 def test_step_holds_every_part_by_name(kit, summary):
-    text = (kit / "kit.step").read_text()
+    text = (kit / "kit.step").read_text(encoding="utf-8")
     assert "MILLI" in text
     assert all(f"'{part['label']}'" in text for part in summary["parts"])
 
@@ -258,7 +258,7 @@ def test_a_budget_does_not_go_into_another_kit(tmp_path, monkeypatch, capsys):
     (tmp_path / "free.toml").write_text(FREE)
     assert main(["kit", str(tmp_path / "free.toml"), "-o", str(tmp_path / "out")]) == 2
     assert "another kit was written there meanwhile" in capsys.readouterr().err
-    assert (tmp_path / "out" / "kit.json").read_text() == "{}"
+    assert (tmp_path / "out" / "kit.json").read_text(encoding="utf-8") == "{}"
 
 
 @pytest.mark.parametrize(
@@ -300,7 +300,7 @@ def test_another_folder_is_not_touched(tmp_path, monkeypatch, capsys):
     (tmp_path / "out" / "letter.txt").write_text("mine")
     assert main(["kit", "-o", str(tmp_path / "out")]) == 2
     assert "holds 'letter.txt'" in capsys.readouterr().err
-    assert (tmp_path / "out" / "letter.txt").read_text() == "mine"
+    assert (tmp_path / "out" / "letter.txt").read_text(encoding="utf-8") == "mine"
 
 
 @pytest.mark.slow

@@ -16,7 +16,7 @@ SOLVED = {"warnings": ["segment.held_layers is not what you think"], "solver": {
 
 def _softdot(folder, *arguments):
     command = [sys.executable, "-m", "softdot.cli", *arguments]
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=True)
+    return subprocess.run(command, cwd=folder, capture_output=True, encoding="utf-8", check=True)
 
 
 def test_in_a_pipe_each_stage_is_a_line_with_its_time_on_stderr_and_in_the_log(tmp_path):
@@ -25,7 +25,7 @@ def test_in_a_pipe_each_stage_is_a_line_with_its_time_on_stderr_and_in_the_log(t
     times, stages = zip(*(line.split(" s  ") for line in done.stderr.splitlines()), strict=True)
     assert list(stages) == ["printability", "export"]
     assert [float(time) for time in times] == sorted(float(time) for time in times)
-    assert "INFO    export" in (tmp_path / "out" / LOG_FILE).read_text()
+    assert "INFO    export" in (tmp_path / "out" / LOG_FILE).read_text(encoding="utf-8")
 
 
 def test_quiet_tells_nothing_and_json_alone_is_on_stdout(tmp_path):
@@ -63,7 +63,7 @@ def test_details_are_in_the_log_always_and_on_stderr_when_asked_for(tmp_path, ca
         with lines_on_stderr(verbose=verbose), log_file(tmp_path / LOG_FILE):
             LOG.debug("Newton iteration 3")
         assert ("Newton iteration 3" in capsys.readouterr().err) is verbose
-    assert (tmp_path / LOG_FILE).read_text().count("Newton iteration 3") == 2
+    assert (tmp_path / LOG_FILE).read_text(encoding="utf-8").count("Newton iteration 3") == 2
 
 
 def test_a_warning_is_told_once_even_when_its_text_has_a_percent_sign(capsys):

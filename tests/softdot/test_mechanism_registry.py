@@ -129,7 +129,7 @@ def test_a_diagnosis_names_it(tmp_path, monkeypatch):
     monkeypatch.setattr(leaky_amplifier, "LEAK_MOHM", 1e12)
     leaky_amplifier.make(tmp_path / "recording")
     for path in (tmp_path / "recording").glob("press-*.csv"):
-        head = path.read_text().split("\n")[0]
+        head = path.read_text(encoding="utf-8").split("\n")[0]
         samples = np.loadtxt(path, delimiter=",", skiprows=1)
         column = head.split(",").index("voltage_V")
         samples[:, column] = QuadraticInput(K_PER_V2).applied(samples[:, 0], samples[:, column])

@@ -57,7 +57,7 @@ def test_the_3d_view_ends_at_the_headline_strain(pressed, stated):
 
 def test_the_film_picture_ends_at_the_headline_values(pressed, stated):
     tet_mesh, result = pressed
-    figure = film_figure(tet_mesh, result.steps[-1], result.film_peak, "")
+    figure = film_figure(tet_mesh, result.steps[-1], result.film_peak)
     figure.draw_without_rendering()
     strain, charge = (axes.collections[0] for axes in figure.axes[:2])
     assert strain.get_clim() == pytest.approx((0.0, 100 * stated["max_principal_strain"]))

@@ -233,7 +233,7 @@ needs_slicer = pytest.mark.skipif(shutil.which("prusa-slicer") is None, reason="
 
 def slicer(*arguments):
     """What PrusaSlicer says."""
-    done = subprocess.run(["prusa-slicer", *map(str, arguments)], capture_output=True, text=True, timeout=170)
+    done = subprocess.run(["prusa-slicer", *map(str, arguments)], capture_output=True, encoding="utf-8", timeout=170)
     assert done.returncode == 0, done.stderr
     return done.stdout + done.stderr
 

@@ -69,7 +69,7 @@ def test_paraview_finds_steps_and_fields_and_draws_the_press(out: Path, tmp_path
     picture = tmp_path / "paraview.png"
     run = subprocess.run(
         ["pvpython", "--force-offscreen-rendering", SCRIPT, out / "results", picture, str(DEPTH_MM), str(LOAD_STEPS)],
-        capture_output=True, text=True, timeout=240, check=False, env={**os.environ, "DISPLAY": display},
+        capture_output=True, encoding="utf-8", timeout=240, check=False, env={**os.environ, "DISPLAY": display},
     )  # fmt: skip
     assert run.returncode == 0, run.stderr
     assert "all as expected" in run.stdout
@@ -107,6 +107,7 @@ def test_slicer_finds_every_printable_part_and_the_3mf_manifold(out: Path, parts
 
 def manifold_answers(path: Path) -> list[str]:
     """PrusaSlicer's word on each object of a file."""
-    done = subprocess.run(["prusa-slicer", "--info", path], capture_output=True, text=True, timeout=120, check=True)
+    command = ["prusa-slicer", "--info", path]
+    done = subprocess.run(command, capture_output=True, encoding="utf-8", timeout=120, check=True)
     lines = [line.split(" = ") for line in done.stdout.splitlines()]
     return [line[1].strip() for line in lines if line[0].strip() == "manifold"]

@@ -50,7 +50,7 @@ def test_a_recipe_works(name, tmp_path):
     assert len(blocks) > 1
     environment = {**os.environ, "PYTHONPATH": str(program), "SOFTDOT_CACHE": str(tmp_path / "cache")}
     ended = subprocess.run(
-        [sys.executable, "-c", checks[0]], cwd=here, env=environment, capture_output=True, text=True, check=False
+        [sys.executable, "-c", checks[0]], cwd=here, env=environment, capture_output=True, encoding="utf-8", check=False
     )
     assert ended.returncode == 0, ended.stderr[-2000:]
 

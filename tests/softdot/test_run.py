@@ -29,7 +29,7 @@ def test_a_good_run_writes_everything_and_exits_0(tmp_path):
 @pytest.mark.usefixtures("stages")
 def test_summary_holds_what_was_solved(tmp_path):
     main(["run", "-o", str(tmp_path / "out")])
-    summary = json.loads((tmp_path / "out/summary.json").read_text())
+    summary = json.loads((tmp_path / "out/summary.json").read_text(encoding="utf-8"))
     assert summary["format"] == "softdot-run/1"
     assert summary["indentation_mm"] == pytest.approx([0.0, 0.15, 0.3])
     assert summary["reaction_force_N"] == pytest.approx([0.0, 1.5, 3.0])
@@ -55,7 +55,7 @@ def test_summary_holds_what_was_solved(tmp_path):
 def test_json_prints_the_summary_alone(tmp_path, capfd):
     assert main(["run", "-o", str(tmp_path / "out"), "--json"]) == 0
     printed = capfd.readouterr()
-    assert json.loads(printed.out) == json.loads((tmp_path / "out/summary.json").read_text())
+    assert json.loads(printed.out) == json.loads((tmp_path / "out/summary.json").read_text(encoding="utf-8"))
     assert complaints(printed.err) == ""
 
 
@@ -80,7 +80,7 @@ def test_a_quiet_run_in_a_pipe_says_nothing(tmp_path, capfd):
 def test_a_press_that_stops_keeps_what_converged_and_exits_3(tmp_path, capfd, stages):
     stages.solve = lambda *_: result_of([0.0, 0.1], failure="step 2 of 3 stopped at 0.100 mm")
     assert main(["run", "-o", str(tmp_path / "out")]) == 3
-    summary = json.loads((tmp_path / "out/summary.json").read_text())
+    summary = json.loads((tmp_path / "out/summary.json").read_text(encoding="utf-8"))
     assert summary["solver"]["converged"] is False
     assert summary["solver"]["failure"] == "step 2 of 3 stopped at 0.100 mm"
     assert summary["indentation_mm"] == pytest.approx([0.0, 0.1])
@@ -93,7 +93,7 @@ def test_a_press_that_stops_keeps_what_converged_and_exits_3(tmp_path, capfd, st
 def test_a_press_that_never_starts_gives_null_sensitivities(tmp_path, stages):
     stages.solve = lambda *_: result_of([0.0], failure="step 1 of 3 stopped at 0 mm")
     assert main(["run", "-o", str(tmp_path / "out")]) == 3
-    summary = json.loads((tmp_path / "out/summary.json").read_text())
+    summary = json.loads((tmp_path / "out/summary.json").read_text(encoding="utf-8"))
     assert summary["sensitivity"]["voltage_per_mm"] is None
     assert summary["sensitivity"]["charge_pC_per_N"] is None
     assert summary["sensitivity"]["least_detectable_indentation_um"] is None
@@ -106,7 +106,7 @@ def test_a_mesh_that_fails_keeps_the_cad_files_and_exits_3(tmp_path, capfd, stag
     stages.mesh = fail
     assert main(["run", "-o", str(tmp_path / "out")]) == 3
     assert entries(tmp_path / "out") == {"summary.json", "log.txt", "cad/segment.step"}
-    summary = json.loads((tmp_path / "out/summary.json").read_text())
+    summary = json.loads((tmp_path / "out/summary.json").read_text(encoding="utf-8"))
     assert summary["solver"] == {
         "converged": False,
         "failure": "meshing: the mesher took longer than 300 s",
@@ -127,7 +127,7 @@ def test_an_earlier_run_is_replaced_whole(tmp_path):
 def test_an_earlier_run_survives_a_failure(tmp_path, stages):
     out = tmp_path / "out"
     main(["run", "-o", str(out)])
-    before = (out / "summary.json").read_text()
+    before = (out / "summary.json").read_text(encoding="utf-8")
 
     def fail(*_):
         raise ZeroDivisionError
@@ -135,7 +135,7 @@ def test_an_earlier_run_survives_a_failure(tmp_path, stages):
     stages.solve = fail
     with pytest.raises(ZeroDivisionError):
         main(["run", "-o", str(out)])
-    assert (out / "summary.json").read_text() == before
+    assert (out / "summary.json").read_text(encoding="utf-8") == before
     assert entries(tmp_path) == {f"out/{name}" for name in EVERYTHING}
 
 

@@ -119,7 +119,7 @@ def test_a_sweep_on_a_cluster_that_runs_already(scheduler, space, tmp_path):
     found = read_table(out).to_pylist()
     assert [row["status"] for row in found] == ["solved", "solved"]
     assert found[0]["reaction_force_N"] == outcome(at_depth(0.04))["reaction_force_N"]
-    assert json.loads((out / "sweep.json").read_text())["scheduler"] == scheduler.scheduler_address
+    assert json.loads((out / "sweep.json").read_text(encoding="utf-8"))["scheduler"] == scheduler.scheduler_address
 
 
 def test_workers_with_another_softdot_are_refused(scheduler, space, tmp_path, capfd, monkeypatch):
@@ -230,7 +230,9 @@ def test_a_sweep_that_is_stopped_goes_on_with_what_is_missing(number, tmp_path):
     space, out = tmp_path / "space.toml", tmp_path / "out"
     space.write_text(toml_text(space_of(depths(*DEPTHS_MM), workers=1)), "utf-8")
     command = [sys.executable, "-m", "softdot.cli", "sweep", str(space), "-o", str(out)]
-    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True, preexec_fn=heard)
+    process = subprocess.Popen(
+        command, stderr=subprocess.PIPE, encoding="utf-8", start_new_session=True, preexec_fn=heard
+    )
     while len(list(out.glob("points/*.json"))) < 3:
         assert process.poll() is None, process.stderr.read()
         time.sleep(0.02)
@@ -263,7 +265,7 @@ def _require_gone(group):
 def _group_and_state(path):
     """Process group of a live process, 0 for one that has ended."""
     try:
-        state, _, group = (path / "stat").read_text().rpartition(")")[2].split()[:3]
+        state, _, group = (path / "stat").read_text(encoding="utf-8").rpartition(")")[2].split()[:3]
     except OSError:
         return 0, "X"
     return (0 if state in "ZX" else int(group)), state

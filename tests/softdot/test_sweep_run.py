@@ -57,7 +57,7 @@ def rows(out):
 
 
 def points(out):
-    return [json.loads(path.read_text()) for path in sorted((out / "points").iterdir())]
+    return [json.loads(path.read_text(encoding="utf-8")) for path in sorted((out / "points").iterdir())]
 
 
 def sweep(tmp_path, out, *axes, **settings):
@@ -87,10 +87,10 @@ def test_the_summary_is_printed_and_kept(tmp_path, out, capfd):
     path.write_text(toml_text(space_of(depths(0.1, 0.2))), "utf-8")
     assert main(["sweep", str(path), "-o", str(out), "--json"]) == 0
     printed = json.loads(capfd.readouterr().out)
-    assert printed == json.loads((out / "sweep.json").read_text())
+    assert printed == json.loads((out / "sweep.json").read_text(encoding="utf-8"))
     assert (printed["format"], printed["complete"], printed["points"]) == ("softdot-sweep/1", True, 2)
     assert printed["ended"] == {"solved": 2, "refused": 0, "not-converged": 0, "crashed": 0, "lost": 0}
-    assert (out / "space.toml").read_text() == path.read_text()
+    assert (out / "space.toml").read_text(encoding="utf-8") == path.read_text(encoding="utf-8")
     assert sorted(entry.name for entry in out.iterdir()) == [
         "log.txt", "points", "report.html", "space.toml", "sweep.csv", "sweep.json", "sweep.parquet", "sweep.png",
     ]  # fmt: skip
@@ -119,7 +119,7 @@ def test_a_point_that_fails_is_a_row_with_its_reason(presses, stages, tmp_path, 
         ("crashed", "RuntimeError: a bug"),
         ("refused", "press.indentation_mm = 0.4: too deep"),
     ]
-    assert json.loads((out / "sweep.json").read_text())["ended"]["crashed"] == 1
+    assert json.loads((out / "sweep.json").read_text(encoding="utf-8"))["ended"]["crashed"] == 1
 
 
 def test_a_configuration_that_cannot_be_is_a_row_too(out):

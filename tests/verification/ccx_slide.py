@@ -56,9 +56,9 @@ def forces(block: Grid, case: Slide, folder: Path) -> Floats:
     deck.write_text("\n".join(_deck(block, case)) + "\n")
     environment = {**os.environ, "OMP_NUM_THREADS": "1", "CCX_NPROC_EQUATION_SOLVER": "1"}
     done = subprocess.run(
-        [CCX, "slide"], cwd=folder, env=environment, capture_output=True, text=True, check=False, timeout=900
+        [CCX, "slide"], cwd=folder, env=environment, capture_output=True, encoding="utf-8", check=False, timeout=900
     )
-    text = (folder / "slide.dat").read_text() if (folder / "slide.dat").exists() else ""
+    text = (folder / "slide.dat").read_text(encoding="utf-8") if (folder / "slide.dat").exists() else ""
     found = np.array(re.findall(r"total force.*set DIE and time\s+(\S+)\s+(\S+)\s+(\S+)\s+(\S+)", text), float)
     times = _end_times(case)
     if len(found) == 0 or not np.isclose(found[-1, 0], times[-1]):

@@ -45,7 +45,7 @@ def by_ngsolve(part, stack, dot, path):
         moduli=[1.0, 5.0, 1.0],
         film_thickness=0.028,
     )
-    done = subprocess.run([sys.executable, PROGRAM, path], capture_output=True, text=True, check=True)
+    done = subprocess.run([sys.executable, PROGRAM, path], capture_output=True, encoding="utf-8", check=True)
     history = json.loads(done.stdout.splitlines()[-1])["history"]
     return {round(1e3 * at["depth_mm"]): (4.0 * at["force_N"], at["voltage_V"]) for at in history}
 

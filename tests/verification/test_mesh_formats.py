@@ -113,9 +113,9 @@ def base_force(folder, load):
     (folder / "press.inp").write_text("\n".join(deck) + "\n")
     environment = {**os.environ, "OMP_NUM_THREADS": "1", "CCX_NPROC_EQUATION_SOLVER": "1"}
     done = subprocess.run(
-        [CCX, "press"], cwd=folder, env=environment, capture_output=True, text=True, check=False, timeout=600
+        [CCX, "press"], cwd=folder, env=environment, capture_output=True, encoding="utf-8", check=False, timeout=600
     )
-    found = re.search(r"total force.*\n+\s*(\S+)\s+(\S+)\s+(\S+)", (folder / "press.dat").read_text())
+    found = re.search(r"total force.*\n+\s*(\S+)\s+(\S+)\s+(\S+)", (folder / "press.dat").read_text(encoding="utf-8"))
     assert found, done.stdout[-1500:]
     return [float(value) for value in found.groups()]
 

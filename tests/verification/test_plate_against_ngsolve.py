@@ -48,7 +48,7 @@ def by_ngsolve(tet_mesh, held, path):
         film_thickness=0.028,
         **facets,
     )
-    done = subprocess.run([sys.executable, PROGRAM, path], capture_output=True, text=True, check=True)
+    done = subprocess.run([sys.executable, PROGRAM, path], capture_output=True, encoding="utf-8", check=True)
     return json.loads(done.stdout.splitlines()[-1])
 
 

@@ -194,86 +194,85 @@ def _is(name: str, scale: float, start: float = 0.0) -> Callable[[Bench, float],
     return lambda _bench, s: {name: start + scale * s}
 
 
-def _all() -> tuple[Effect, ...]:
-    bessel, fractional = "Bessel of order four where order two is fitted", "fractional Zener where Prony is fitted"
-    foam = "compressible neo-Hooke where a hyperfoam is fitted"
-    gent, tanh = "Gent where Yeoh is fitted", "Dorfmann-Ogden where Ogden-Roxburgh is fitted"
-    film_bond, upper_bond = "bond-film-medium2", "bond-medium1-film"
-    known = [
-        Effect("leakage", "charge-leakage", "readout", _leak, lambda b, s: {"resistance_MOhm": _leak_MOhm(b, s)}),
-        Effect("low-pass", "low-pass", "readout", _slow, form=bessel, most=8.0),
-        Effect("relaxing-medium2", "viscoelasticity", "medium2", _relaxing("medium2"), _relaxed, 5.0, fractional),
-        Effect("gap", "contact-gap", "dot", _field("gap_mm", 0.004), _is("gap_mm", 0.004), 15.0),
-        Effect(
-            "soft-rig",
-            "rig-compliance",
-            "rig",
-            _field("compliance_mm_per_N", 5e-4),
-            _is("compliance_mm_per_N", 5e-4),
-            40.0,
-        ),
-        Effect("glue-below", "adhesive-compliance", film_bond, _glued("film"), form="resolved glue", most=50.0),
-        Effect("stiffening-medium1", "hyperelastic-stiffening", "medium1", _stiffening("medium1"), form=gent, most=8.0),
-        Effect(
-            "modulus-medium2",
-            "property-error",
-            "medium2",
-            _factor("medium2", "modulus_MPa", 0.05),
-            _is("modulus_factor", 0.05, 1.0),
-        ),
-        Effect("weak-film", "property-error", "film", _weak_film, _is("d31_factor", -0.02, 1.0), 30.0),
-        Effect(
-            "cable",
-            "parasitic-capacitance",
-            "readout",
-            _parasitic,
-            lambda b, s: {"capacitance_pF": _extra_pF(b, s)},
-            40.0,
-        ),
-        Effect(
-            "elastic-case", "elastic-sides", "sides", _sides, lambda _b, s: {"stiffness_N_per_mm3": 200.0 / s}, 40.0
-        ),
-        Effect("beside", "dot-offset", "dot", _offset, most=16.0),
-        Effect("hum", "mains-hum", "readout", _hum, form="off its frequency, with a harmonic", most=30.0),
-        Effect("warm", "pyroelectric-drift", "film", _warm, form="diffusion where an exponential is fitted", most=50.0),
-        Effect("clipped", "saturation", "readout", _limit, form="another soft knee", most=10.0),
-        Effect(
-            "stiffening-effector", "hyperelastic-stiffening", "effector", _stiffening("effector"), form=gent, most=4.0
-        ),
-        Effect("softened-medium2", "stress-softening", "medium2", _softening("medium2"), form=tanh, most=5.0),
-        Effect("relaxing-medium1", "viscoelasticity", "medium1", _relaxing("medium1"), _relaxed, 5.0, fractional),
-        Effect("charged", "contact-electrification", "film", _touch, form="power of the area", most=30.0),
-        Effect("stretched", "film-prestretch", "film", _stretched, _is("strain_x", 1e-3), 10.0),
-        Effect("glue-above", "adhesive-compliance", upper_bond, _glued("medium1"), form="resolved glue", most=50.0),
-        Effect(
-            "modulus-effector",
-            "property-error",
-            "effector",
-            _factor("effector", "modulus_MPa", -0.04),
-            _is("modulus_factor", -0.04, 1.0),
-            15.0,
-        ),
-        Effect(
-            "foam-medium2",
-            "foam-densification",
-            "medium2",
-            _foamed("medium2"),
-            lambda _b, s: {"poisson_ratio": _poisson_ratio(s)},
-            15.0,
-            foam,
-        ),
-        Effect("mass", "inertia", "rig", _field("mass_g", 200.0), _is("moving_mass_g", 200.0), 20.0),
-    ]
-    unknown = [
-        Effect("fatigue", "", "film", _field("fatigue", 0.01), most=30.0),
-        Effect("warm-gain", "", "readout", _field("drift", 0.05), most=20.0),
-        Effect("clock-jump", "", "readout", _field("jump_s", 0.004), most=20.0),
-        Effect("pick-up", "", "readout", _pickup, most=30.0),
-    ]
-    return (*known, *unknown)
+BESSEL_FORM, FRACTIONAL_FORM = (
+    "Bessel of order four where order two is fitted",
+    "fractional Zener where Prony is fitted",
+)
+FOAM_FORM = "compressible neo-Hooke where a hyperfoam is fitted"
+GENT_FORM, TANH_FORM = "Gent where Yeoh is fitted", "Dorfmann-Ogden where Ogden-Roxburgh is fitted"
+FILM_BOND, UPPER_BOND = "bond-film-medium2", "bond-medium1-film"
+LISTED = (
+    Effect("leakage", "charge-leakage", "readout", _leak, lambda b, s: {"resistance_MOhm": _leak_MOhm(b, s)}),
+    Effect("low-pass", "low-pass", "readout", _slow, form=BESSEL_FORM, most=8.0),
+    Effect("relaxing-medium2", "viscoelasticity", "medium2", _relaxing("medium2"), _relaxed, 5.0, FRACTIONAL_FORM),
+    Effect("gap", "contact-gap", "dot", _field("gap_mm", 0.004), _is("gap_mm", 0.004), 15.0),
+    Effect(
+        "soft-rig",
+        "rig-compliance",
+        "rig",
+        _field("compliance_mm_per_N", 5e-4),
+        _is("compliance_mm_per_N", 5e-4),
+        40.0,
+    ),
+    Effect("glue-below", "adhesive-compliance", FILM_BOND, _glued("film"), form="resolved glue", most=50.0),
+    Effect(
+        "stiffening-medium1", "hyperelastic-stiffening", "medium1", _stiffening("medium1"), form=GENT_FORM, most=8.0
+    ),
+    Effect(
+        "modulus-medium2",
+        "property-error",
+        "medium2",
+        _factor("medium2", "modulus_MPa", 0.05),
+        _is("modulus_factor", 0.05, 1.0),
+    ),
+    Effect("weak-film", "property-error", "film", _weak_film, _is("d31_factor", -0.02, 1.0), 30.0),
+    Effect(
+        "cable",
+        "parasitic-capacitance",
+        "readout",
+        _parasitic,
+        lambda b, s: {"capacitance_pF": _extra_pF(b, s)},
+        40.0,
+    ),
+    Effect("elastic-case", "elastic-sides", "sides", _sides, lambda _b, s: {"stiffness_N_per_mm3": 200.0 / s}, 40.0),
+    Effect("beside", "dot-offset", "dot", _offset, most=16.0),
+    Effect("hum", "mains-hum", "readout", _hum, form="off its frequency, with a harmonic", most=30.0),
+    Effect("warm", "pyroelectric-drift", "film", _warm, form="diffusion where an exponential is fitted", most=50.0),
+    Effect("clipped", "saturation", "readout", _limit, form="another soft knee", most=10.0),
+    Effect(
+        "stiffening-effector", "hyperelastic-stiffening", "effector", _stiffening("effector"), form=GENT_FORM, most=4.0
+    ),
+    Effect("softened-medium2", "stress-softening", "medium2", _softening("medium2"), form=TANH_FORM, most=5.0),
+    Effect("relaxing-medium1", "viscoelasticity", "medium1", _relaxing("medium1"), _relaxed, 5.0, FRACTIONAL_FORM),
+    Effect("charged", "contact-electrification", "film", _touch, form="power of the area", most=30.0),
+    Effect("stretched", "film-prestretch", "film", _stretched, _is("strain_x", 1e-3), 10.0),
+    Effect("glue-above", "adhesive-compliance", UPPER_BOND, _glued("medium1"), form="resolved glue", most=50.0),
+    Effect(
+        "modulus-effector",
+        "property-error",
+        "effector",
+        _factor("effector", "modulus_MPa", -0.04),
+        _is("modulus_factor", -0.04, 1.0),
+        15.0,
+    ),
+    Effect(
+        "foam-medium2",
+        "foam-densification",
+        "medium2",
+        _foamed("medium2"),
+        lambda _b, s: {"poisson_ratio": _poisson_ratio(s)},
+        15.0,
+        FOAM_FORM,
+    ),
+    Effect("mass", "inertia", "rig", _field("mass_g", 200.0), _is("moving_mass_g", 200.0), 20.0),
+    Effect("fatigue", "", "film", _field("fatigue", 0.01), most=30.0),
+    Effect("warm-gain", "", "readout", _field("drift", 0.05), most=20.0),
+    Effect("clock-jump", "", "readout", _field("jump_s", 0.004), most=20.0),
+    Effect("pick-up", "", "readout", _pickup, most=30.0),
+)
 
 
-EFFECTS: Mapping[str, Effect] = {effect.name: effect for effect in _all()}
+EFFECTS: Mapping[str, Effect] = {effect.name: effect for effect in LISTED}
 KNOWN = tuple(effect.name for effect in EFFECTS.values() if effect.mechanism)
 UNKNOWN = tuple(effect.name for effect in EFFECTS.values() if not effect.mechanism)
 STAGED = 8

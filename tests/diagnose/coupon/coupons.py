@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from diagnose.engines.coupon import coupon_engine
+from diagnose.engines.coupon.engine import coupon_engine
 from diagnose.signals.recording import Recording, Run, Specimen
 from solve.materials.parameters import NeoHookean
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from diagnose.engines.coupon import coupon_engine, improved_material
+from diagnose.engines.coupon.engine import coupon_engine, improved_material
 from diagnose.forward import Setting
 from diagnose.signals.recording import Recording
 from geometry.base import InputError

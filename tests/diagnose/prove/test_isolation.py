@@ -25,7 +25,7 @@ def run_guarded(where, code):
         cwd=where,
         env=isolation.environment(where / "folder", where / "cache"),
         capture_output=True,
-        text=True,
+        encoding="utf-8",
         check=False,
     )
 
@@ -116,15 +116,15 @@ def test_the_truth_is_not_on_disk_while_a_case_is_diagnosed(monkeypatch, tmp_pat
     written = {}
 
     def diagnosed(*_):
-        written.update({p: p.read_text() for p in tmp_path.rglob("*") if p.is_file()})
+        written.update({p: p.read_text(encoding="utf-8") for p in tmp_path.rglob("*") if p.is_file()})
         return isolation.Heard(None, "stopped", 0.0)
 
     monkeypatch.setattr(trial, "diagnosed", diagnosed)
     record = work.prove_case(truth.case, trial.Terms(tmp_path / "cache"), place, "program")
     assert "0.123456789" not in "".join(written.values())
-    assert record["digest"] in (place / "commitments" / "case-0001.json").read_text()
+    assert record["digest"] in (place / "commitments" / "case-0001.json").read_text(encoding="utf-8")
     assert record["digest"] in "".join(written.values())  # committed before
-    assert "0.123456789" in (place / "cases" / "case-0001.json").read_text()  # revealed after
+    assert "0.123456789" in (place / "cases" / "case-0001.json").read_text(encoding="utf-8")  # revealed after
 
 
 def test_a_changed_truth_is_noticed():
@@ -174,7 +174,7 @@ def test_a_record_with_a_changed_digit_is_told_of_and_not_used(tmp_path, caplog)
     store.keep(place, case.name, record)
     assert store.kept(place, case, "p") == json.loads(json.dumps(record)) == next(store.records(place))
     path = place / "cases" / "case-0001.json"
-    path.write_text(path.read_text().replace("1.25", "7.25"))
+    path.write_text(path.read_text(encoding="utf-8").replace("1.25", "7.25"))
     assert store.kept(place, case, "p") is None
     assert list(store.records(place)) == []
     assert "damaged" in caplog.text
@@ -187,5 +187,6 @@ def test_the_generator_shares_no_code_with_what_it_tests():
         " or (n.startswith('diagnose.') and not n.startswith('diagnose.prove'))))"
     )
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    found = subprocess.run([sys.executable, "-c", text], env=environment, capture_output=True, text=True, check=True)
+    command = [sys.executable, "-c", text]
+    found = subprocess.run(command, env=environment, capture_output=True, encoding="utf-8", check=True)
     assert found.stdout.strip() == ""

@@ -55,7 +55,8 @@ def test_a_proof_counts_and_writes_all_that_it_promises(tmp_path, capsys):
     assert summary["rates"]["clear_exact"]["rate"] == 1.0
     assert summary["rivals"]["always leakage"]["false_names_without_effect"]["rate"] == 1.0
     assert {path.name for path in out.iterdir()} == {"proof.json", "proof.md", "detection.png", "cases", "commitments"}
-    assert "not run: pysindy" in (out / "proof.md").read_text() or "sparse regression" in summary["rivals"]
+    report = (out / "proof.md").read_text(encoding="utf-8")
+    assert "not run: pysindy" in report or "sparse regression" in summary["rivals"]
 
 
 @pytest.mark.usefixtures("tried")
@@ -63,7 +64,7 @@ def test_without_effects_there_is_no_curve_to_draw(tmp_path):
     out = tmp_path / "proof"
     assert main(["prove", "--cases", "2", "--kinds", "none", "-o", str(out)]) == 0
     assert not (out / "detection.png").exists()
-    assert "detection.png" not in (out / "proof.md").read_text()
+    assert "detection.png" not in (out / "proof.md").read_text(encoding="utf-8")
 
 
 def test_a_proof_that_was_stopped_goes_on(tried, tmp_path):

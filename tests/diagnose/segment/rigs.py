@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from diagnose.engines.segment import segment_engine
+from diagnose.engines.segment.engine import segment_engine
 from diagnose.signals.recording import Recording, Run
 from mesh.build import MeshOptions
 from softdot.config import config_from

@@ -67,6 +67,6 @@ def test_prusaslicer_slices_every_part_without_a_manifold_warning(written, tmp_p
 
 
 def slicer(*arguments) -> str:
-    done = subprocess.run(["prusa-slicer", *arguments], capture_output=True, text=True, timeout=120)
+    done = subprocess.run(["prusa-slicer", *arguments], capture_output=True, encoding="utf-8", timeout=120)
     assert done.returncode == 0, done.stderr
     return done.stdout + done.stderr
