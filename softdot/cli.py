@@ -7,6 +7,7 @@ import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
+from io import TextIOWrapper
 from threading import Timer
 from types import FrameType
 
@@ -34,6 +35,7 @@ ASKED_AGAIN_S = 0.05
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command and return its exit status."""
+    _write_utf8()
     chosen = parser().parse_args(arguments)
     asked = _Interrupt()
     with suppress(ValueError):  # outside the main thread
@@ -87,6 +89,13 @@ def _under_way(frame: FrameType | None) -> bool:
             return True
         frame = frame.f_back
     return False
+
+
+def _write_utf8() -> None:
+    """Units and configurations are written in UTF-8 in every locale: TOML knows no other encoding."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(encoding="utf-8")
 
 
 def _refuse_unprintable(chosen: argparse.Namespace) -> None:

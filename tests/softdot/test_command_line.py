@@ -1,5 +1,6 @@
 """The command line itself: quick, and clear about what it does not know."""
 
+import os
 import subprocess
 import sys
 import time
@@ -44,6 +45,15 @@ def test_help_takes_less_than_half_a_second():
         return time.perf_counter() - start
 
     assert min(once() for _ in range(3)) < 0.5
+
+
+def test_a_configuration_is_written_in_utf8_in_every_locale():
+    """TOML knows no other encoding; a cluster's jobs may run in the locale POSIX."""
+    ascii_only = {**os.environ, "LC_ALL": "POSIX", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
+    command = [sys.executable, "-m", "softdot.cli", "new"]
+    written = [subprocess.run(command, env=own, capture_output=True, check=True).stdout for own in (ascii_only, None)]
+    assert written[0] == written[1]
+    assert "³" in written[0].decode("utf-8")
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 """The documentation site: every document is on it, it builds without a warning, and it loads nothing from the net."""
 
+import os
 import re
 import subprocess
 import sys
@@ -76,7 +77,8 @@ def site(tmp_path_factory):
         pytest.importorskip(needed)
     folder = tmp_path_factory.mktemp("site")
     command = [sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "--site-dir", str(folder)]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, encoding="utf-8", check=False)
+    own = {**os.environ, "PYTHONUTF8": "1"}
+    done = subprocess.run(command, cwd=ROOT, env=own, capture_output=True, encoding="utf-8", check=False)
     assert done.returncode == 0, done.stderr
     return folder
 
