@@ -2,7 +2,7 @@
 
 The reference resolves the film as a solid on another mesh with another element; its figures are rounded to 0.01 N
 and 1 mV. Voltages are open-circuit volts divided by the paper's calibration factor of 337. The two codes differ by
-their discretisation errors, hence 3 % in force and 4 % in voltage.
+their discretisation errors, hence 3 % in force and 4 % in voltage, each beside the rounding.
 """
 
 import functools
@@ -15,6 +15,7 @@ from softdot.paper.published import segment_config
 
 MESHERS = [pytest.param("layered"), pytest.param("pytetwild", marks=pytest.mark.slow)]
 FINE_MM = 0.15, 0.151, 0.152  # half the default, a fourth of the error; every size is another mesh of pytetwild
+ROUNDED_N, ROUNDED_MV = 0.005, 0.5
 SOFT, MIDDLE, HARD = 0.05, 1.0, 5.0  # modulus of medium 2, MPa
 
 
@@ -40,7 +41,9 @@ def force_and_millivolts(mesher, boundary, h1_mm, e2_MPa, element_size_mm=0.3):
     ],
 )
 def test_forces(mesher, boundary, h1_mm, e2_MPa, force_N):
-    assert force_and_millivolts(mesher, boundary, h1_mm, e2_MPa)[0] == pytest.approx(force_N, rel=0.03)
+    assert force_and_millivolts(mesher, boundary, h1_mm, e2_MPa)[0] == pytest.approx(
+        force_N, abs=0.03 * force_N + ROUNDED_N
+    )
 
 
 @pytest.mark.parametrize("mesher", MESHERS)
@@ -56,7 +59,7 @@ def test_forces(mesher, boundary, h1_mm, e2_MPa, force_N):
 )
 def test_voltages(mesher, cases, millivolts):
     total = sum(force_and_millivolts(mesher, *case)[1] for case in cases)
-    assert total == pytest.approx(millivolts, rel=0.04)
+    assert total == pytest.approx(millivolts, abs=0.04 * millivolts + ROUNDED_MV)
 
 
 @pytest.mark.slow
