@@ -87,7 +87,7 @@ def record(folder: Path, recordings: list[Path], only: list[str] | None) -> None
                 continue
             begun = time.monotonic()
             found = _made(words, Path(cache))
-            (folder / f"{name}.json").write_text(json.dumps(found, indent=1, sort_keys=True))
+            (folder / f"{name}.json").write_text(json.dumps(found, indent=1, sort_keys=True), "utf-8")
             print(f"{name}: exit {found['exit']}, {time.monotonic() - begun:.0f} s", flush=True)
 
 

@@ -57,7 +57,7 @@ def measure(points: int, workers: int) -> dict:
     """One sweep from the command line, in an empty folder with an empty cache."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        (folder / "space.toml").write_text(SPACE.format(points=points, workers=workers))
+        (folder / "space.toml").write_text(SPACE.format(points=points, workers=workers), "utf-8")
         command = [sys.executable, "-m", "softdot.cli", "sweep", str(folder / "space.toml"), "-o", str(folder / "out")]
         environment = {**os.environ, "SOFTDOT_CACHE": str(folder / "cache")}
         start = time.perf_counter()

@@ -92,7 +92,7 @@ class Table:
         self.rows.append(row)
         everything = self._read()
         everything[self._section] = {"measured_on": self._head, "rows": self.rows}
-        self._path.write_text(json.dumps(everything, indent=1) + "\n")
+        self._path.write_text(json.dumps(everything, indent=1) + "\n", "utf-8")
         print(json.dumps(row), flush=True)
 
     def has(self, **keys: object) -> bool:

@@ -115,7 +115,7 @@ def test_damage_is_noticed_and_told_once(kind, folder, caplog):
 def test_a_cache_folder_that_cannot_be_one_is_refused_before_any_work(name, tmp_path, monkeypatch, capfd):
     from softdot.cli import main
 
-    (tmp_path / "file").write_text("")
+    (tmp_path / "file").write_text("", "utf-8")
     place = tmp_path / "file" if name == "a file" else tmp_path / "file" / "cache"
     monkeypatch.setenv("SOFTDOT_CACHE", str(place))
     assert main(["run", "-o", str(tmp_path / "out")]) == 2

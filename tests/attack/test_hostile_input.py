@@ -147,7 +147,7 @@ def test_configurations(attempt, tmp_path):
 
 
 def test_waveforms(attempt, tmp_path):
-    (tmp_path / "mine.toml").write_text(WAVE_CONFIG.format("wave.csv"))
+    (tmp_path / "mine.toml").write_text(WAVE_CONFIG.format("wave.csv"), "utf-8")
     assert refused(attempt, tmp_path / "wave.csv", WAVE, 40, 2, "run", "mine.toml") > 15
 
 
@@ -156,7 +156,7 @@ def test_recordings(attempt, tmp_path, name):
     folder, texts = tmp_path / "recording", {"rig.toml": RIG, "press.csv": PRESS}
     folder.mkdir()
     for file, text in texts.items():
-        (folder / file).write_text(text)
+        (folder / file).write_text(text, "utf-8")
     assert refused(attempt, folder / name, texts[name], 20, 3, "diagnose", "recording") > 5
 
 
@@ -217,9 +217,9 @@ def test_commands(arguments, attempt, tmp_path):
 @pytest.mark.parametrize("name", ["pipe", "endless", "loop", "x" * 300, "."])
 def test_traps_as_waveforms_and_runs(name, attempt, tmp_path):
     place_traps(tmp_path)
-    (tmp_path / "mine.toml").write_text(WAVE_CONFIG.format(name))
+    (tmp_path / "mine.toml").write_text(WAVE_CONFIG.format(name), "utf-8")
     assert attempt("run", "mine.toml")
     (tmp_path / "recording").mkdir()
     place_traps(tmp_path / "recording")
-    (tmp_path / "recording" / "rig.toml").write_text(RIG.replace("press.csv", name))
+    (tmp_path / "recording" / "rig.toml").write_text(RIG.replace("press.csv", name), "utf-8")
     assert attempt("diagnose", "recording")

@@ -72,7 +72,7 @@ class Bench:
         """The command on another design each time, so that nothing is remembered."""
         height = round(self.random.uniform(0.4, 0.6), 6)
         file = self.folder / "mine.toml"
-        file.write_text(config(*self._shape, height))
+        file.write_text(config(*self._shape, height), "utf-8")
         arguments = [self.command, str(file), "-o", str(self.out)]
         return subprocess.Popen(
             [sys.executable, "-m", "softdot.cli", *arguments], env=self.environment, stdout=subprocess.DEVNULL,

@@ -18,7 +18,7 @@ KB, MB = 1024, 1024**2
 def result(tmp_path_factory):
     """A folder with the result of an earlier run, and the bytes of its summary."""
     folder = tmp_path_factory.mktemp("earlier")
-    (folder / "tiny.toml").write_text(TINY)
+    (folder / "tiny.toml").write_text(TINY, "utf-8")
     done = run(folder)
     assert done.returncode == 0, done.stderr
     return folder, (folder / "out" / "summary.json").read_bytes()
@@ -77,7 +77,9 @@ def test_a_full_disk(full, small_disk, result, tmp_path):
     folder, before = result
     if full == "TMPDIR":
         (small_disk / "filler").write_bytes(bytes(290 * KB))
-        (folder / "solid.toml").write_text(TINY.replace('"plane-strain"', '"solid"').replace('"ridge"', '"cap"'))
+        (folder / "solid.toml").write_text(
+            TINY.replace('"plane-strain"', '"solid"').replace('"ridge"', '"cap"'), "utf-8"
+        )
         command = [sys.executable, "-m", "softdot.cli", "run", "-q", "solid.toml", "-o", "out"]
         own = {**os.environ, "TMPDIR": str(small_disk), "SOFTDOT_CACHE": str(tmp_path / "cache")}
         done = subprocess.run(
@@ -86,7 +88,7 @@ def test_a_full_disk(full, small_disk, result, tmp_path):
         assert "disk is full" in sentence(done)
         assert (folder / "out" / "summary.json").read_bytes() == before
         return
-    (small_disk / "tiny.toml").write_text(TINY)
+    (small_disk / "tiny.toml").write_text(TINY, "utf-8")
     if full == "nearly full output":
         (small_disk / "filler").write_bytes(bytes(200 * KB))
     assert "disk is full" in sentence(run(small_disk))

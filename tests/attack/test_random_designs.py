@@ -51,7 +51,7 @@ def ledger(tmp_path_factory, worker_id):
 def test_a_random_design_gives_a_right_result_or_says_in_one_sentence_why_not(block, ledger):
     seen = [outcome(number) for number in range(block, DESIGNS, BLOCKS)]
     assert [one for one in seen if one["faults"]] == []
-    (ledger / f"{block}.partial").write_text(json.dumps(seen))
+    (ledger / f"{block}.partial").write_text(json.dumps(seen), "utf-8")
     os.replace(ledger / f"{block}.partial", ledger / f"{block}.json")
     if len(list(ledger.glob("*.json"))) == BLOCKS:
         judge([one for path in ledger.glob("*.json") for one in json.loads(path.read_text(encoding="utf-8"))])

@@ -162,7 +162,7 @@ def test_many_files_are_counted_together(tmp_path, monkeypatch):
     ("make", "expected"),
     [
         (lambda _: None, ": there is no such folder"),
-        (lambda folder: folder.write_text(""), ": this is a file, a folder is needed"),
+        (lambda folder: folder.write_text("", "utf-8"), ": this is a file, a folder is needed"),
         (lambda folder: folder.mkdir(), ": has no rig.toml, which states what was built and measured"),
     ],
 )

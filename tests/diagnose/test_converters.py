@@ -46,7 +46,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples" / "recordings"
 @pytest.mark.parametrize("kind", OSCILLOSCOPES)
 def test_an_oscilloscope(kind, tmp_path):
     text, channels = OSCILLOSCOPES[kind]
-    (tmp_path / "scope.csv").write_text(text)
+    (tmp_path / "scope.csv").write_text(text, "utf-8")
     found = read_oscilloscope(tmp_path / "scope.csv")
     assert set(found) == {"time_s", *channels}
     for name, values in {"time_s": TIME, **channels}.items():
@@ -62,7 +62,7 @@ def test_an_oscilloscope(kind, tmp_path):
     ],
 )
 def test_an_oscilloscope_that_is_none(text, expected, tmp_path):
-    (tmp_path / "scope.csv").write_text(text)
+    (tmp_path / "scope.csv").write_text(text, "utf-8")
     with pytest.raises(InputError, match=r"scope.csv'") as caught:
         read_oscilloscope(tmp_path / "scope.csv")
     assert expected in str(caught.value)
@@ -86,7 +86,7 @@ def test_a_mat_file_of_the_hdf5_kind_is_told_how_to_save_it(tmp_path):
 
 
 def test_a_mat_file_that_is_none(tmp_path):
-    (tmp_path / "a.mat").write_text("time,voltage")
+    (tmp_path / "a.mat").write_text("time,voltage", "utf-8")
     with pytest.raises(InputError, match=r"a.mat': cannot be read as a .mat file"):
         read_mat(tmp_path / "a.mat", {"time_s": "t"})
 
@@ -118,7 +118,7 @@ def test_nothing_is_written_that_is_no_recording(tmp_path):
 
 
 def test_nothing_is_overwritten(tmp_path):
-    (tmp_path / "mine.txt").write_text("")
+    (tmp_path / "mine.txt").write_text("", "utf-8")
     with pytest.raises(InputError, match="exists already; name a new or empty folder"):
         write_recording(tmp_path, HEAD + SEGMENT + RUN, {"press.csv": samples()})
 

@@ -119,7 +119,7 @@ def test_an_error_leaves_the_earlier_folder(written, tmp_path, monkeypatch):
     parts, _ = written
     old = tmp_path / "cad"
     old.mkdir()
-    (old / "kept").write_text("earlier")
+    (old / "kept").write_text("earlier", "utf-8")
 
     def fail(*_):
         raise OSError("disk full")

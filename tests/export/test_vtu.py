@@ -119,7 +119,7 @@ def test_failure_leaves_the_former_results_untouched(
 ) -> None:
     folder = tmp_path / "results"
     folder.mkdir()
-    (folder / "mine.txt").write_text("kept")
+    (folder / "mine.txt").write_text("kept", "utf-8")
     broken = replace(press.steps[1], fields=replace(press.steps[1].fields, max_stretch=np.ones(3)))
     with pytest.raises(ValueError, match="length"):
         write_results(segment, replace(press, steps=(press.steps[0], broken)), dot, folder)

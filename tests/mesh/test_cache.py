@@ -49,7 +49,7 @@ def test_node_numbers_out_of_range_are_a_miss() -> None:
 
 
 def test_an_unwritable_cache_does_no_harm(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("")
+    (tmp_path / "file").write_text("", "utf-8")
     monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path / "file"))
     assert remembered("abc", lambda: ONE) is ONE
 

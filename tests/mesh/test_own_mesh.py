@@ -68,8 +68,8 @@ def test_the_content_includes_the_files_that_a_file_names(tmp_path: Path) -> Non
     before = contents(str(tmp_path / "segment.xdmf"))
     (tmp_path / "segment.h5").write_bytes(b"changed")
     assert contents(str(tmp_path / "segment.xdmf")) != before
-    (tmp_path / "main.inp").write_text("*HEADING\n*INCLUDE, INPUT=nodes.inp\n")
-    (tmp_path / "nodes.inp").write_text("*NODE\n")
+    (tmp_path / "main.inp").write_text("*HEADING\n*INCLUDE, INPUT=nodes.inp\n", "utf-8")
+    (tmp_path / "nodes.inp").write_text("*NODE\n", "utf-8")
     assert contents(str(tmp_path / "main.inp")).endswith(b"*NODE\n")
     assert contents(str(tmp_path / "none.inp")) == b""
 

@@ -118,13 +118,15 @@ def test_a_bulging_skin_and_a_thick_slice_are_refused(tmp_path: Path) -> None:
 )
 def test_what_is_no_mesh_is_refused(name: str, text: str | None, said: str, tmp_path: Path) -> None:
     if text is not None:
-        (tmp_path / name).write_text(text)
+        (tmp_path / name).write_text(text, "utf-8")
     with pytest.raises(InputError, match=rf"^mesh\.file = '.*{name}': .*({said})"):
         own_mesh(str(tmp_path / name), segment())
 
 
 def test_a_gmsh_file_with_elements_of_no_group_says_how_to_save_it(tmp_path: Path) -> None:
     (path,) = write_mesh(built(SLICE), ["msh"], tmp_path)
-    path.write_text(path.read_text(encoding="utf-8").replace("\n11 0 0 0 0 0 0 1 11 0\n", "\n11 0 0 0 0 0 0 0 0\n"))
+    path.write_text(
+        path.read_text(encoding="utf-8").replace("\n11 0 0 0 0 0 0 1 11 0\n", "\n11 0 0 0 0 0 0 0 0\n"), "utf-8"
+    )
     with pytest.raises(InputError, match="elements of no physical group; save only those of physical groups"):
         own_mesh(str(path), segment_of(SLICE))

@@ -40,7 +40,7 @@ def stages(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
         def write(*args: object, **_: object) -> list[Path]:
             folder = next(arg for arg in args if isinstance(arg, Path))
             folder.mkdir(exist_ok=True)
-            (folder / name).write_text("stand-in")
+            (folder / name).write_text("stand-in", "utf-8")
             return [folder / name]
 
         return write
@@ -50,7 +50,7 @@ def stages(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
         assert isinstance(folder, Path)
         file_writer("segment.pvd")(folder / "results")
         file_writer("force.png")(folder / "pictures")
-        (folder / "report.html").write_text("stand-in")
+        (folder / "report.html").write_text("stand-in", "utf-8")
 
     fakes = SimpleNamespace(
         checked=lambda *_: (cap_of_height(0.5), []),

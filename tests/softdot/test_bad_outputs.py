@@ -27,26 +27,26 @@ def refused(stages, capfd):
 
 def test_a_file(tmp_path, refused):
     out = tmp_path / "out"
-    out.write_text("mine")
+    out.write_text("mine", "utf-8")
     assert refused(out) == f"output '{out}': this is a file, a folder is needed"
     assert out.read_text(encoding="utf-8") == "mine"
 
 
 def test_a_file_on_the_way(tmp_path, refused):
-    (tmp_path / "file").write_text("mine")
+    (tmp_path / "file").write_text("mine", "utf-8")
     out = tmp_path / "file" / "deep" / "out"
     assert refused(out) == f"output '{out}': '{tmp_path / 'file'}' is a file, a folder is needed"
 
 
 def test_a_folder_with_other_things(tmp_path, refused):
-    (tmp_path / "thesis.tex").write_text("mine")
+    (tmp_path / "thesis.tex").write_text("mine", "utf-8")
     said = refused(tmp_path)
     assert said == (f"output '{tmp_path}': holds 'thesis.tex', which softdot did not write; name a new or empty folder")
     assert os.listdir(tmp_path) == ["thesis.tex"]
 
 
 def test_a_summary_of_another_program(tmp_path, refused):
-    (tmp_path / "summary.json").write_text('{"format": "other/1"}')
+    (tmp_path / "summary.json").write_text('{"format": "other/1"}', "utf-8")
     assert "holds 'summary.json', which softdot did not write" in refused(tmp_path)
 
 
@@ -54,7 +54,7 @@ def test_a_summary_of_another_program(tmp_path, refused):
 def test_an_earlier_run_to_which_something_was_added(tmp_path, capfd):
     out = tmp_path / "out"
     assert main(["run", "-o", str(out)]) == 0
-    (out / "notes.txt").write_text("mine")
+    (out / "notes.txt").write_text("mine", "utf-8")
     assert main(["run", "-o", str(out)]) == 2
     assert "holds 'notes.txt'" in capfd.readouterr().err
     assert (out / "notes.txt").read_text(encoding="utf-8") == "mine"

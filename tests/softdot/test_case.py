@@ -37,7 +37,7 @@ def test_nothing_is_made_before_it_is_asked_for():
 
 def test_a_case_takes_tables_a_file_or_settings(tmp_path):
     path = tmp_path / "mine.toml"
-    path.write_text("[press]\nindentation_mm = 0.2\n")
+    path.write_text("[press]\nindentation_mm = 0.2\n", "utf-8")
     assert Case(press={"indentation_mm": 0.2}).config == Case.load(path).config
     assert Case.load(path, ["press.indentation_mm=0.1"]).config.press.indentation_mm == 0.1
     with pytest.raises(InputError, match=r"press.indentation_mm = -1"):
@@ -99,7 +99,7 @@ def test_a_sweep_is_a_data_frame(tmp_path):
 @pytest.mark.parametrize("name", ["mesh.py", "geometry/__init__.py"])
 def test_a_foreign_module_that_hides_one_of_ours_is_named_at_import(name, tmp_path):
     (tmp_path / name).parent.mkdir(exist_ok=True)
-    (tmp_path / name).write_text("")
+    (tmp_path / name).write_text("", "utf-8")
     done = subprocess.run(
         [sys.executable, "-c", "import softdot"], cwd=tmp_path, capture_output=True, encoding="utf-8", check=False
     )

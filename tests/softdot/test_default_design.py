@@ -88,7 +88,8 @@ def test_a_wrong_kind_of_table_is_still_refused_by_name(loaded):
 def test_a_recording_says_what_was_built(tmp_path):
     (tmp_path / "rig.toml").write_text(
         'format = "softdot-recording/1"\n[dot]\nstandard = "ada"\n[[runs]]\nfile = "a.csv"\nlabel = "a"\n'
-        'drive = "displacement_mm"\n'
+        'drive = "displacement_mm"\n',
+        "utf-8",
     )
     with pytest.raises(InputError, match=r"segment.medium1.thickness_mm is missing"):
         load_rig(tmp_path)

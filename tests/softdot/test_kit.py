@@ -82,7 +82,7 @@ def white_pictures(contents, _cut, folder):
 def kit(tmp_path_factory):
     """The kit of a free segment without an effector, its pictures and its budget made up; what was printed."""
     folder = tmp_path_factory.mktemp("kit")
-    (folder / "free.toml").write_text(FREE)
+    (folder / "free.toml").write_text(FREE, "utf-8")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(make, "ensure_rendering", lambda: None)
         patch.setattr(make, "draw_all", white_pictures)
@@ -210,7 +210,7 @@ def test_a_budget_that_fails_leaves_a_kit_without_it(tmp_path, monkeypatch, caps
 
     prepared(monkeypatch)
     monkeypatch.setattr(make, "budget_of", stop)
-    (tmp_path / "free.toml").write_text(FREE)
+    (tmp_path / "free.toml").write_text(FREE, "utf-8")
     assert main(["kit", str(tmp_path / "free.toml"), "-o", str(tmp_path / "out")]) == 3
     said = capsys.readouterr()
     assert said.out == ""
@@ -235,7 +235,7 @@ def test_the_kit_is_there_before_its_budget(tmp_path, monkeypatch):
 
     prepared(monkeypatch)
     monkeypatch.setattr(make, "budget_of", look)
-    (tmp_path / "free.toml").write_text(FREE)
+    (tmp_path / "free.toml").write_text(FREE, "utf-8")
     assert main(["kit", str(tmp_path / "free.toml"), "-o", str(tmp_path / "out")]) == 0
     assert seen["entries"] == make.KIT.files
     assert (seen["summary"]["tolerance_budget"], seen["summary"]["failure"]) == (None, None)
@@ -250,12 +250,12 @@ def test_a_budget_does_not_go_into_another_kit(tmp_path, monkeypatch, capsys):
     """A second command that wrote its own kit into the folder meanwhile keeps it."""
 
     def overtaken(*_):
-        (tmp_path / "out" / "kit.json").write_text("{}")
+        (tmp_path / "out" / "kit.json").write_text("{}", "utf-8")
         return MADE_UP
 
     prepared(monkeypatch)
     monkeypatch.setattr(make, "budget_of", overtaken)
-    (tmp_path / "free.toml").write_text(FREE)
+    (tmp_path / "free.toml").write_text(FREE, "utf-8")
     assert main(["kit", str(tmp_path / "free.toml"), "-o", str(tmp_path / "out")]) == 2
     assert "another kit was written there meanwhile" in capsys.readouterr().err
     assert (tmp_path / "out" / "kit.json").read_text(encoding="utf-8") == "{}"
@@ -273,7 +273,7 @@ def test_a_budget_does_not_go_into_another_kit(tmp_path, monkeypatch, capsys):
 )
 def test_an_impossible_kit_is_refused_in_one_sentence(tmp_path, monkeypatch, capsys, more, sentence):
     prepared(monkeypatch)
-    (tmp_path / "dome.toml").write_text(DOME + more)
+    (tmp_path / "dome.toml").write_text(DOME + more, "utf-8")
     assert main(["kit", str(tmp_path / "dome.toml"), "-o", str(tmp_path / "out")]) == 2
     said = capsys.readouterr().err
     assert re.search(sentence, said)
@@ -288,7 +288,7 @@ def test_an_interrupt_leaves_a_whole_kit_or_nothing(tmp_path, monkeypatch, when,
 
     prepared(monkeypatch)
     monkeypatch.setattr(make, when, interrupt)
-    (tmp_path / "free.toml").write_text(FREE)
+    (tmp_path / "free.toml").write_text(FREE, "utf-8")
     assert main(["kit", str(tmp_path / "free.toml"), "-o", str(tmp_path / "out")]) == 130
     assert sorted(path.name for path in tmp_path.iterdir()) == left
     assert all({entry.name for entry in (tmp_path / name).iterdir()} == make.KIT.files for name in left[1:])
@@ -297,7 +297,7 @@ def test_an_interrupt_leaves_a_whole_kit_or_nothing(tmp_path, monkeypatch, when,
 def test_another_folder_is_not_touched(tmp_path, monkeypatch, capsys):
     prepared(monkeypatch)
     (tmp_path / "out").mkdir()
-    (tmp_path / "out" / "letter.txt").write_text("mine")
+    (tmp_path / "out" / "letter.txt").write_text("mine", "utf-8")
     assert main(["kit", "-o", str(tmp_path / "out")]) == 2
     assert "holds 'letter.txt'" in capsys.readouterr().err
     assert (tmp_path / "out" / "letter.txt").read_text(encoding="utf-8") == "mine"
@@ -308,7 +308,7 @@ def test_whole_kit_of_a_coarse_segment(tmp_path, capsys):
     """With its own budget and pictures: a picture for every step, none of them empty, and a budget in order."""
     from matplotlib.image import imread
 
-    (tmp_path / "coarse.toml").write_text(COARSE)
+    (tmp_path / "coarse.toml").write_text(COARSE, "utf-8")
     out: Path = tmp_path / "out"
     assert main(["kit", str(tmp_path / "coarse.toml"), "-o", str(out), "--json"]) == 0
     summary = json.loads(capsys.readouterr().out)

@@ -48,7 +48,8 @@ def test_metres_in_elements_of_a_tenth_of_a_millimetre_are_refused(tmp_path, cap
     config = tmp_path / "metres.toml"
     config.write_text(
         "[segment]\nlength_mm = 2500.0\nwidth_mm = 2500.0\n[segment.medium1]\nthickness_mm = 500.0\n"
-        "[segment.film]\nthickness_um = 28.0\n[segment.medium2]\nthickness_mm = 2000.0\n"
+        "[segment.film]\nthickness_um = 28.0\n[segment.medium2]\nthickness_mm = 2000.0\n",
+        "utf-8",
     )
     assert main(["run", str(config), "-o", str(tmp_path / "out")]) == 2
     assert capfd.readouterr().err.count("\n") == 1

@@ -218,7 +218,7 @@ def test_an_earlier_plate_is_replaced_and_a_strange_folder_is_not(tmp_path, capf
     out = write(tmp_path / "out", "a", "--standard", "nls")
     write(out, "b", "--standard", "nls")
     assert json.loads((out / "plate.json").read_text("utf-8"))["cells"] == ["⠃"]
-    (out / "mine.txt").write_text("kept")
+    (out / "mine.txt").write_text("kept", "utf-8")
     assert main(["plate", "a", "--standard", "nls", "-o", str(out)]) == 2
     assert "holds 'mine.txt'" in capfd.readouterr().err
 

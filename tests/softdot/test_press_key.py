@@ -20,10 +20,10 @@ def configured(wave: str) -> Config:
 def test_a_waveform_that_was_edited_is_another_press(tmp_path):
     wave = tmp_path / "wave.csv"
     config = configured(str(wave))
-    wave.write_text(SLOW)
+    wave.write_text(SLOW, "utf-8")
     key = press_key(Case(config), one_tetrahedron())
     assert press_key(Case(config), one_tetrahedron()) == key
-    wave.write_text(FAST)
+    wave.write_text(FAST, "utf-8")
     assert press_key(Case(config), one_tetrahedron()) != key
 
 
@@ -31,10 +31,10 @@ def test_an_own_mesh_that_was_edited_is_another_input(tmp_path):
     file = tmp_path / "mine.inp"
     config = configured("none.csv")
     config = config.model_copy(update={"mesh": config.mesh.model_copy(update={"file": str(file)})})
-    file.write_text("*NODE\n")
+    file.write_text("*NODE\n", "utf-8")
     before = input_hash(config)
     assert input_hash(config) == before
-    file.write_text("*NODE\n1, 0, 0, 0\n")
+    file.write_text("*NODE\n1, 0, 0, 0\n", "utf-8")
     assert input_hash(config) != before
 
 

@@ -119,7 +119,7 @@ def test_a_mesh_that_fails_keeps_the_cad_files_and_exits_3(tmp_path, capfd, stag
 def test_an_earlier_run_is_replaced_whole(tmp_path):
     out = tmp_path / "out"
     main(["run", "-o", str(out)])
-    (out / "pictures/stale.png").write_text("of the earlier run")
+    (out / "pictures/stale.png").write_text("of the earlier run", "utf-8")
     assert main(["run", "-o", str(out)]) == 0
     assert entries(tmp_path) == {f"out/{name}" for name in EVERYTHING}
 

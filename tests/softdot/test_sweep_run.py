@@ -202,7 +202,7 @@ def test_only_accidents_are_tried_again(presses, monkeypatch, tmp_path, out, acc
 
 def test_a_damaged_summary_is_solved_again(presses, tmp_path, out, monkeypatch):
     sweep(tmp_path, out, depths(0.1))
-    next((out / "points").iterdir()).write_text('{"half')
+    next((out / "points").iterdir()).write_text('{"half', "utf-8")
     monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path / "another"))
     presses.depths = []
     assert sweep(tmp_path, out, depths(0.1)) == 0
@@ -221,9 +221,9 @@ def test_a_changed_program_solves_again(presses, tmp_path, out, monkeypatch):
 def test_a_changed_waveform_file_solves_again(presses, tmp_path, out):
     wave = tmp_path / "wave.csv"
     shape = {"key": "press.waveform", "values": [{"shape": "file", "file": str(wave)}]}
-    wave.write_text("time_s,fraction\n0,0\n1,1\n")
+    wave.write_text("time_s,fraction\n0,0\n1,1\n", "utf-8")
     sweep(tmp_path, out, shape)
-    wave.write_text("time_s,fraction\n0,0\n2,1\n")
+    wave.write_text("time_s,fraction\n0,0\n2,1\n", "utf-8")
     presses.depths = []
     sweep(tmp_path, out, shape)
     assert presses.depths == [0.05]
@@ -237,8 +237,8 @@ def test_a_design_that_stands_twice_in_a_list_is_solved_once(presses, tmp_path, 
 
 def test_half_written_files_of_a_killed_process_are_swept_up(tmp_path, out):
     sweep(tmp_path, out, depths(0.1))
-    (out / ".sweep.parquet.part").write_text("half")
-    (out / "points" / ".0123.json.part").write_text("half")
+    (out / ".sweep.parquet.part").write_text("half", "utf-8")
+    (out / "points" / ".0123.json.part").write_text("half", "utf-8")
     sweep(tmp_path, out, depths(0.1, 0.2))
     assert list(out.rglob("*.part")) == []
 
@@ -256,7 +256,7 @@ def test_a_full_disk_is_one_sentence_and_the_points_stay(tmp_path, out, monkeypa
 
 def test_a_folder_with_something_else_is_refused(presses, tmp_path, out, capfd):
     out.mkdir()
-    (out / "thesis.tex").write_text("mine")
+    (out / "thesis.tex").write_text("mine", "utf-8")
     assert sweep(tmp_path, out, depths(0.1)) == 2
     assert "holds 'thesis.tex', which softdot did not write" in capfd.readouterr().err
     assert presses.depths == []
@@ -295,7 +295,7 @@ def test_a_second_sweep_into_a_folder_is_refused_and_the_first_keeps_its_file(tm
 
     assert sweep(tmp_path, out, depths(0.1)) == 0
     half = out / "points" / ".half.json.part"
-    half.write_text("half")
+    half.write_text("half", "utf-8")
     held = hold(out)
     try:
         assert sweep(tmp_path, out, depths(0.1, 0.2)) == 2

@@ -95,9 +95,9 @@ def test_trapezoid_and_half_sine_return_to_rest():
 
 def test_waveform_file(tmp_path):
     table = tmp_path / "w.csv"
-    table.write_text("time_s,fraction\n0,0\n1,0.5\n2,1\n")
+    table.write_text("time_s,fraction\n0,0\n1,0.5\n2,1\n", "utf-8")
     assert fraction(Waveform(shape="file", file=str(table)), np.array([1.5])) == pytest.approx([0.75])
-    table.write_text("time_s,fraction\n0,0\n0,2\n")
+    table.write_text("time_s,fraction\n0,0\n0,2\n", "utf-8")
     with pytest.raises(InputError, match=r"press\.waveform\.file.*between 0 and 1"):
         fraction(Waveform(shape="file", file=str(table)), np.array([0.0]))
 

@@ -53,7 +53,7 @@ def forces(block: Grid, case: Slide, folder: Path) -> Floats:
     """Force (increments, 3) of the cylinder on the block after every increment. RuntimeError with ccx's last words."""
     assert CCX is not None
     deck = folder / "slide.inp"
-    deck.write_text("\n".join(_deck(block, case)) + "\n")
+    deck.write_text("\n".join(_deck(block, case)) + "\n", "utf-8")
     environment = {**os.environ, "OMP_NUM_THREADS": "1", "CCX_NPROC_EQUATION_SOLVER": "1"}
     done = subprocess.run(
         [CCX, "slide"], cwd=folder, env=environment, capture_output=True, encoding="utf-8", check=False, timeout=900

@@ -110,7 +110,7 @@ def base_force(folder, load):
         deck += [f"*SOLID SECTION, ELSET={name}, MATERIAL=of-{name}"]
     deck += ["*BOUNDARY", "base, 1, 3", "*STEP", "*STATIC", *load]
     deck += ["*NODE PRINT, NSET=base, TOTALS=ONLY", "RF", "*END STEP"]
-    (folder / "press.inp").write_text("\n".join(deck) + "\n")
+    (folder / "press.inp").write_text("\n".join(deck) + "\n", "utf-8")
     environment = {**os.environ, "OMP_NUM_THREADS": "1", "CCX_NPROC_EQUATION_SOLVER": "1"}
     done = subprocess.run(
         [CCX, "press"], cwd=folder, env=environment, capture_output=True, encoding="utf-8", check=False, timeout=600

@@ -135,7 +135,7 @@ def test_what_creeps_or_yields_leaves_a_charge_when_the_dot_has_gone(name, compo
 def test_a_creeping_segment_recovers_and_a_yielded_one_does_not(tmp_path):
     """Ten relaxation times after the release."""
     table = tmp_path / "rest.csv"
-    table.write_text("time_s,fraction\n0,0\n0.1,1\n0.2,1\n0.3,0\n1.3,0\n2.3,0\n")
+    table.write_text("time_s,fraction\n0,0\n0.1,1\n0.2,1\n0.3,0\n1.3,0\n2.3,0\n", "utf-8")
     press = waved("file", 1, file=str(table))
     left = []
     for name, component, parameters in (

@@ -2,7 +2,8 @@
 
 The reference resolves the film as a solid on another mesh with another element; its figures are rounded to 0.01 N
 and 1 mV. Voltages are open-circuit volts divided by the paper's calibration factor of 337. The two codes differ by
-their discretisation errors, hence 3 % in force and 4 % in voltage, each beside the rounding.
+their discretisation errors, hence 3 % in force and 4 % in voltage. Meshes of pytetwild scatter, and no seed repeats
+one: a single force by up to 0.9 %. What is compared of them is the mean of eight.
 """
 
 import functools
@@ -15,17 +16,22 @@ from softdot.paper.published import segment_config
 
 MESHERS = [pytest.param("layered"), pytest.param("pytetwild", marks=pytest.mark.slow)]
 FINE_MM = 0.15, 0.151, 0.152  # half the default, a fourth of the error; every size is another mesh of pytetwild
-ROUNDED_N, ROUNDED_MV = 0.005, 0.5
+DEFAULT_MM = [round(0.3 + 1e-4 * number, 4) for number in range(8)]
 SOFT, MIDDLE, HARD = 0.05, 1.0, 5.0  # modulus of medium 2, MPa
 
 
 @functools.cache
-def force_and_millivolts(mesher, boundary, h1_mm, e2_MPa, element_size_mm=0.3):
+def force_and_millivolts(mesher, boundary, h1_mm, e2_MPa, element_size_mm):
     mesh = {"mesher": mesher, "element_size_mm": element_size_mm, "contact_element_size_mm": element_size_mm / 3.0}
     config = segment_config(boundary, h1_mm, e2_MPa, load_steps=3, mesh=mesh)
     found = solved(config, lambda *_: None)
     assert found["solver"]["converged"], found["solver"]
     return found["reaction_force_N"][-1], 1e3 * found["open_circuit_voltage_V"][-1] / 337
+
+
+def reading(mesher, boundary, h1_mm, e2_MPa):
+    sizes_mm = DEFAULT_MM if mesher == "pytetwild" else DEFAULT_MM[:1]
+    return np.mean([force_and_millivolts(mesher, boundary, h1_mm, e2_MPa, size) for size in sizes_mm], axis=0)
 
 
 @pytest.mark.parametrize("mesher", MESHERS)
@@ -41,9 +47,7 @@ def force_and_millivolts(mesher, boundary, h1_mm, e2_MPa, element_size_mm=0.3):
     ],
 )
 def test_forces(mesher, boundary, h1_mm, e2_MPa, force_N):
-    assert force_and_millivolts(mesher, boundary, h1_mm, e2_MPa)[0] == pytest.approx(
-        force_N, abs=0.03 * force_N + ROUNDED_N
-    )
+    assert reading(mesher, boundary, h1_mm, e2_MPa)[0] == pytest.approx(force_N, rel=0.03)
 
 
 @pytest.mark.parametrize("mesher", MESHERS)
@@ -58,8 +62,8 @@ def test_forces(mesher, boundary, h1_mm, e2_MPa, force_N):
     ],
 )
 def test_voltages(mesher, cases, millivolts):
-    total = sum(force_and_millivolts(mesher, *case)[1] for case in cases)
-    assert total == pytest.approx(millivolts, abs=0.04 * millivolts + ROUNDED_MV)
+    total = sum(reading(mesher, *case)[1] for case in cases)
+    assert total == pytest.approx(millivolts, rel=0.04)
 
 
 @pytest.mark.slow

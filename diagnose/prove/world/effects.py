@@ -194,10 +194,8 @@ def _is(name: str, scale: float, start: float = 0.0) -> Callable[[Bench, float],
     return lambda _bench, s: {name: start + scale * s}
 
 
-BESSEL_FORM, FRACTIONAL_FORM = (
-    "Bessel of order four where order two is fitted",
-    "fractional Zener where Prony is fitted",
-)
+BESSEL_FORM = "Bessel of order four where order two is fitted"
+FRACTIONAL_FORM = "fractional Zener where Prony is fitted"
 FOAM_FORM = "compressible neo-Hooke where a hyperfoam is fitted"
 GENT_FORM, TANH_FORM = "Gent where Yeoh is fitted", "Dorfmann-Ogden where Ogden-Roxburgh is fitted"
 FILM_BOND, UPPER_BOND = "bond-film-medium2", "bond-medium1-film"
@@ -270,8 +268,6 @@ LISTED = (
     Effect("clock-jump", "", "readout", _field("jump_s", 0.004), most=20.0),
     Effect("pick-up", "", "readout", _pickup, most=30.0),
 )
-
-
 EFFECTS: Mapping[str, Effect] = {effect.name: effect for effect in LISTED}
 KNOWN = tuple(effect.name for effect in EFFECTS.values() if effect.mechanism)
 UNKNOWN = tuple(effect.name for effect in EFFECTS.values() if not effect.mechanism)

@@ -21,7 +21,7 @@ def silent(bench):
 def test_a_recording_is_read_as_it_was_meant(name, tmp_path):
     bench = BENCHES[name]
     for file, text in files(bench, list(silent(bench))).items():
-        (tmp_path / file).write_text(text)
+        (tmp_path / file).write_text(text, "utf-8")
     rig = load_rig(tmp_path)
     assert [len(one.presses) for one in rig.recording.phases] == [run.count for run in bench.runs]
     assert not rig.recording.warnings

@@ -35,8 +35,8 @@ def house(tmp_path):
     """A folder with a recording, and the truth beside it."""
     for name in ("folder", "cache", "proof"):
         (tmp_path / name).mkdir()
-    (tmp_path / "folder" / "press.csv").write_text("time_s\n")
-    (tmp_path / "proof" / "truth.json").write_text("{}")
+    (tmp_path / "folder" / "press.csv").write_text("time_s\n", "utf-8")
+    (tmp_path / "proof" / "truth.json").write_text("{}", "utf-8")
     return tmp_path
 
 
@@ -174,7 +174,7 @@ def test_a_record_with_a_changed_digit_is_told_of_and_not_used(tmp_path, caplog)
     store.keep(place, case.name, record)
     assert store.kept(place, case, "p") == json.loads(json.dumps(record)) == next(store.records(place))
     path = place / "cases" / "case-0001.json"
-    path.write_text(path.read_text(encoding="utf-8").replace("1.25", "7.25"))
+    path.write_text(path.read_text(encoding="utf-8").replace("1.25", "7.25"), "utf-8")
     assert store.kept(place, case, "p") is None
     assert list(store.records(place)) == []
     assert "damaged" in caplog.text

@@ -99,7 +99,7 @@ def test_without_the_other_code_it_says_what_to_install(monkeypatch, tmp_path, c
 
 
 def test_a_foreign_folder_is_left_alone(tmp_path, capsys):
-    (tmp_path / "diary.txt").write_text("dear")
+    (tmp_path / "diary.txt").write_text("dear", "utf-8")
     assert main(["prove", "--cases", "1", "-o", str(tmp_path)]) == 2
     assert "diary.txt" in capsys.readouterr().err
 
@@ -108,7 +108,7 @@ def test_a_foreign_folder_is_left_alone(tmp_path, capsys):
 def test_a_proof_that_was_killed_while_it_wrote_goes_on(tmp_path):
     command = ["prove", "--staged", "--rigs", RIDGES, "-o", str(tmp_path / "proof"), "--cases", "4"]
     assert main(command) == 0
-    (tmp_path / "proof" / ".proof.json.part").write_text("{")
+    (tmp_path / "proof" / ".proof.json.part").write_text("{", "utf-8")
     assert main(command) == 0
 
 

@@ -259,7 +259,7 @@ def test_help_is_quick():
 
 def test_another_folder_is_refused_before_any_work(tmp_path, diagnosed, monkeypatch):
     (tmp_path / "out").mkdir()
-    (tmp_path / "out" / "thesis.tex").write_text("mine")
+    (tmp_path / "out" / "thesis.tex").write_text("mine", "utf-8")
     monkeypatch.setattr(engines, "engine_for", lambda *_: pytest.fail("work began"))
     status, _, said = diagnosed(write_toy(tmp_path / "rig"))
     assert status == 2

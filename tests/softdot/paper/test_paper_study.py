@@ -91,7 +91,7 @@ def test_json_goes_to_standard_output(tmp_path, capfd):
 def test_a_study_is_replaced_but_a_foreign_folder_is_refused(made, tmp_path, capsys):
     assert main(["paper", "-o", str(made)]) == 0
     (tmp_path / "mine").mkdir()
-    (tmp_path / "mine" / "thesis.txt").write_text("x")
+    (tmp_path / "mine" / "thesis.txt").write_text("x", "utf-8")
     assert main(["paper", "-o", str(tmp_path / "mine")]) == 2
     assert "holds 'thesis.txt'" in capsys.readouterr().err
 
