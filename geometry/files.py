@@ -196,7 +196,3 @@ def _watch(parent: int) -> None:
     while os.getppid() == parent:
         time.sleep(EVERY_S)
     os._exit(1)
-
-
-ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
-"""One thread each for OpenMP, MKL, numba and OpenBLAS, which read it once, when they are loaded."""

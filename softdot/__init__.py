@@ -12,6 +12,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import geometry  # noqa: F401 - sets the thread pools before NumPy is loaded
+
 if TYPE_CHECKING:
     from geometry.base import InputError
     from mesh.types import MeshingError

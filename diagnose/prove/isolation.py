@@ -10,7 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from geometry.files import ONE_THREAD, scratch_folder
+from geometry.files import scratch_folder
+from geometry.threads import ONE_THREAD
 
 KEPT = ("PATH", "LANG", "LC_ALL", "LD_LIBRARY_PATH")
 LINES = 3

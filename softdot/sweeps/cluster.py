@@ -13,7 +13,8 @@ from typing import Any
 
 from geometry.base import InputError
 from geometry.cache import source_hash
-from geometry.files import ONE_THREAD, scratch_folder
+from geometry.files import scratch_folder
+from geometry.threads import ONE_THREAD, usable_cores
 from softdot.config import Config
 from softdot.console import Logged, Progress
 from softdot.outcome import outcome, outcome_key, remembered
@@ -32,13 +33,6 @@ SETTINGS = {
 }
 NO_DASHBOARD = {"dashboard": False, "dashboard_address": "127.0.0.1:0"}
 GRACE_S = 0.5
-
-
-def usable_cores() -> int:
-    """Cores that this process may use: affinity and the limits of a container count."""
-    from dask.system import CPU_COUNT
-
-    return int(CPU_COUNT)
 
 
 @contextmanager

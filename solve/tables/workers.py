@@ -19,7 +19,8 @@ import numpy as np
 
 from geometry.arrays import Floats
 from geometry.base import Report
-from geometry.files import ONE_THREAD, end_with_parent
+from geometry.files import end_with_parent
+from geometry.threads import ONE_THREAD
 from solve.solution.newton import NoEquilibriumError
 from solve.tables import job as job_files
 from solve.tables.job import RETURN, Job, Reduction

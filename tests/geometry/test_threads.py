@@ -1,0 +1,77 @@
+"""Threads sleep while they wait, and there are no more of them than cores that this process may use."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+SAID = """
+import os
+{first}
+import softdot
+import solve
+import numba
+print(numba.config.NUMBA_NUM_THREADS, os.environ["OMP_NUM_THREADS"])
+"""
+
+
+def threads(first="", **environment):
+    """Of numba and OpenMP in a new process."""
+    own = {name: value for name, value in os.environ.items() if not name.endswith("_NUM_THREADS")}
+    command = [sys.executable, "-c", SAID.format(first=first)]
+    done = subprocess.run(command, env={**own, **environment}, capture_output=True, text=True, encoding="utf-8")
+    assert done.returncode == 0, done.stderr
+    return done.stdout.split()
+
+
+@pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="this system has no affinity of processes")
+def test_a_process_on_one_core_has_one_thread():
+    core = min(os.sched_getaffinity(0))
+    assert threads(f"os.sched_setaffinity(0, {{{core}}})") == ["1", "1"]
+
+
+def test_what_the_user_sets_stays_and_numba_follows_it():
+    assert threads(OMP_NUM_THREADS="1") == ["1", "1"]
+    assert threads(OMP_NUM_THREADS="1", NUMBA_NUM_THREADS="2") == ["2", "1"]
+
+
+def test_a_pool_that_waits_takes_no_time():
+    """All three pools work, then wait: hardly any of 0.2 s of waiting is spent on a core."""
+    code = """
+import softdot, solve, os, time
+import numpy as np
+from numba import njit, prange
+from pypardiso import spsolve
+from scipy.sparse import eye_array
+
+@njit(parallel=True)
+def total(values):
+    result = 0.0
+    for n in prange(len(values)):
+        result += values[n]
+    return result
+
+def work():
+    a = np.ones((400, 400))
+    total((a @ a).ravel())
+    spsolve(eye_array(2000, format="csr") * 2.0, np.ones(2000))
+
+work()
+spent = 0.0
+for _ in range(5):
+    work()
+    before = sum(os.times()[:2])
+    time.sleep(0.04)
+    spent += sum(os.times()[:2]) - before
+print(spent)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, encoding="utf-8", env=free())
+    assert done.returncode == 0, done.stderr
+    assert float(done.stdout) <= 0.05
+
+
+def free():
+    """Two threads whatever these tests run with."""
+    own = {name: value for name, value in os.environ.items() if not name.endswith("_NUM_THREADS")}
+    return own | {"OMP_NUM_THREADS": "2", "OPENBLAS_NUM_THREADS": "2"}
