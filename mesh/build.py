@@ -12,7 +12,7 @@ from pydantic import Field
 from geometry.cache import data_hash, folder, read_arrays, source_hash, write_arrays
 from geometry.dot import DotShape
 from geometry.parameters import Positive, Segment, Table
-from mesh.types import LinearMesh
+from mesh.types import LinearMesh, Planes
 
 if TYPE_CHECKING:
     from mesh.types import TetMesh
@@ -34,13 +34,17 @@ class MeshOptions(Table):
     coarsen: bool = Field(
         False, description="pytetwild: merge elements smaller than requested; half as many where sizes are large"
     )
+    symmetry: Literal["auto", "none"] = Field(
+        "auto", description="auto: mesh a half or a quarter where all is symmetric; results are those of the whole"
+    )
     timeout_s: Positive = Field(300.0, description="the mesher is stopped after this time")
 
 
-def build(segment: Segment, dot: DotShape, options: MeshOptions) -> TetMesh:
+def build(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes = ()) -> TetMesh:
     """Mesh a segment, film included, as curved ten-node tetrahedra with named facets.
 
-    dot : where and how round the dot is, which is where the mesh is fine.
+    dot : where and how round the dot is, which is where the mesh is fine. planes : mirror planes of the whole press
+    (solve.symmetry), at which the mesh ends; an own mesh has none.
     Raises InputError when the mesher cannot mesh the shape or options.file is no mesh of it, MeshingError when the
     mesher fails or takes too long.
     """
@@ -50,22 +54,22 @@ def build(segment: Segment, dot: DotShape, options: MeshOptions) -> TetMesh:
         from mesh.files.own import own_mesh
 
         return own_mesh(options.file, segment)
-    return finished(_linear(segment, dot, options), segment, options)
+    return finished(_linear(segment, dot, options, planes), segment, options, planes)
 
 
-def _linear(segment: Segment, dot: DotShape, options: MeshOptions) -> LinearMesh:
+def _linear(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes) -> LinearMesh:
     """Choose the mesher; what pytetwild makes is remembered."""
     from mesh.layered import layered, layered_slice, tetwild_slice
     from mesh.tetwild import tetwild
 
     is_slice = segment.section == "plane-strain"
     if options.mesher == "layered":
-        return (layered_slice if is_slice else layered)(segment, dot, options)
+        return (layered_slice if is_slice else layered)(segment, dot, options, planes)
     make = tetwild_slice if is_slice else tetwild
-    return remembered(key(segment, dot, options), lambda: make(segment, dot, options))
+    return remembered(key(segment, dot, options, planes), lambda: make(segment, dot, options, planes))
 
 
-def key(segment: Segment, dot: DotShape, options: MeshOptions) -> str:
+def key(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes = ()) -> str:
     """Hash of the geometry, of the dot's place and size, of the options and of the meshers."""
     from importlib.metadata import version
 
@@ -76,7 +80,8 @@ def key(segment: Segment, dot: DotShape, options: MeshOptions) -> str:
         "layers": [segment.medium1.thickness_mm, segment.medium2.thickness_mm],
         "effector": effector and effector.model_dump(exclude={"material"}),
         "dot": [dot.kind, dot.radius_mm, *(np.round(a, 9).tolist() for a in _places(dot))],
-        "options": options.model_dump(exclude={"timeout_s", "file"}),
+        "options": options.model_dump(exclude={"timeout_s", "file", "symmetry"}),
+        "planes": planes,
     }
     return data_hash(content)
 

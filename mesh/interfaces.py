@@ -15,7 +15,7 @@ from geometry.parameters import Segment
 from geometry.stack import layers
 from mesh.outline import StackOutline
 from mesh.sizing import Sizing, graded_through
-from mesh.types import TET_FACES, LinearMesh, TetMesh, face_neighbours, node_mask, oriented, split_prisms
+from mesh.types import TET_FACES, UPSIDE_DOWN, LinearMesh, TetMesh, face_neighbours, node_mask, oriented, split_prisms
 
 # bond -> (part below, part above); the ground below the base is no part
 INTERFACES = {
@@ -24,7 +24,6 @@ INTERFACES = {
     "bond-medium1-film": ("film", "medium1"),
     "bond-effector-medium1": ("medium1", "effector"),
 }
-UPSIDE_DOWN = [0, 2, 1, 5, 4, 3]  # the same quadratic facet with the opposite normal
 
 
 def interface_facets(tet_mesh: TetMesh, name: str) -> Ints:
@@ -135,6 +134,7 @@ def structured(
     layer, column = np.divmod(np.arange((len(x) - 1) * (len(heights) - 1)), len(x) - 1)
     middle = (x[column] + x[column + 1]) / 2
     kept = (layer_region[layer] < 3) | (np.abs(middle) < stack.effector_half_x)
+    kept &= middle > stack.low[0]
     column, layer, middle = column[kept], layer[kept], middle[kept]
     a = layer * len(x) + column
     b, c, d = a + 1, a + 1 + len(x), a + len(x)

@@ -22,7 +22,7 @@ from mesh.interfaces import MeshedSection, section_with_film, structured
 from mesh.outline import StackOutline, outline
 from mesh.sizing import Sizing, graded, sizing
 from mesh.tetwild import bare_stack
-from mesh.types import TET_FACES, LinearMesh, boundary_faces, oriented, split_prisms, without_unused
+from mesh.types import TET_FACES, LinearMesh, Planes, boundary_faces, oriented, split_prisms, without_unused
 
 Bools = NDArray[np.bool_]
 
@@ -194,10 +194,10 @@ def _joined(triangles: Floats, part: Ints) -> Triangulation:
     return Triangulation(flat[first], number.reshape(-1, 3).astype(np.int64), part)
 
 
-def layered(segment: Segment, dot: DotShape, options: MeshOptions) -> LinearMesh:
-    """Mesh a solid segment by extrusion. Raises InputError for a dome."""
+def layered(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes = ()) -> LinearMesh:
+    """Mesh a solid segment by extrusion, as far as its mirror planes. Raises InputError for a dome."""
     refuse_dome(segment)
-    stack = outline(segment)
+    stack = outline(segment, planes=planes)
     field = sizing(stack, dot, options)
     foot = _triangulate(stack, field)
     heights, layer_region, names = levels(stack, field, options.film_layers)
@@ -241,8 +241,16 @@ def _triangulate(stack: StackOutline, field: Sizing) -> Triangulation:
         at = [np.column_stack([xy, np.full(len(xy), z)]) for z in (stack.film_top, stack.top)]
         return 1.6 * np.minimum(field.at(at[0]), field.at(at[1]))  # right triangles: hypotenuse to mean edge
 
-    start = start_triangulation(stack, field.coarse_mm)
+    start = _beside(start_triangulation(stack, field.coarse_mm), stack.planes)
     return refine(start, size, stack.effector_half_x if stack.shape == "cylinder" else None)
+
+
+def _beside(start: Triangulation, planes: Planes) -> Triangulation:
+    """The triangles on the positive side of every plane: the start and what bisection makes of it are symmetric."""
+    middle = start.points[start.triangles].mean(axis=1)
+    kept = (middle[:, list(planes)] > 0.0).all(axis=1)
+    used, number = np.unique(start.triangles[kept], return_inverse=True)
+    return Triangulation(start.points[used], number.reshape(-1, 3).astype(np.int64), start.part[kept])
 
 
 def _extrude(foot: Triangulation, heights: Floats, layer_region: Ints, names: tuple[str, ...]) -> LinearMesh:
@@ -261,19 +269,19 @@ def _extrude(foot: Triangulation, heights: Floats, layer_region: Ints, names: tu
 SLAB = 2.0  # thickness of the slab that pytetwild meshes against that of the slice
 
 
-def layered_slice(segment: Segment, dot: DotShape, options: MeshOptions) -> LinearMesh:
+def layered_slice(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes = ()) -> LinearMesh:
     """The slice from a structured graded section; its thickness is the contact element size."""
     refuse_dome(segment)
     thickness_mm = options.contact_element_size_mm
-    stack = outline(segment, slice_mm=thickness_mm)
+    stack = outline(segment, slice_mm=thickness_mm, planes=planes)
     field = sizing(stack, dot, options)
     return extruded(structured(stack, field, *levels(stack, field, options.film_layers)), thickness_mm)
 
 
-def tetwild_slice(segment: Segment, dot: DotShape, options: MeshOptions) -> LinearMesh:
+def tetwild_slice(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes = ()) -> LinearMesh:
     """The slice from an unstructured section: the y face of a slab that pytetwild has meshed."""
     thickness_mm = options.contact_element_size_mm
-    stack = outline(segment, film_thickness_mm=0.0, slice_mm=SLAB * thickness_mm)
+    stack = outline(segment, film_thickness_mm=0.0, slice_mm=SLAB * thickness_mm, planes=planes)
     bare = y_face(bare_stack(segment, stack, dot, options), stack)
     section = section_with_film(bare, segment.film.thickness_um * 1e-3, options.film_layers)
     return extruded(section, thickness_mm)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from geometry.arrays import Floats
 from geometry.parameters import Segment
+from mesh.types import Planes
 
 Shape = Literal["none", "layer", "block", "cylinder", "dome"]
 
@@ -21,6 +22,7 @@ class StackOutline:
     film_bottom, film_top, medium1_top, top : heights.
     shape, effector_half_x, effector_half_y : the effector and half its foot (the radius when round).
     is_slice : a plane-strain slice; a cylinder then is the rectangle, a dome the arc of its section at y = 0.
+    planes : mirror planes at which the stack is cut (mesh.symmetry); sizes remain those of the whole.
     """
 
     half_x: float
@@ -33,6 +35,12 @@ class StackOutline:
     effector_half_x: float
     effector_half_y: float
     is_slice: bool
+    planes: Planes = ()
+
+    @property
+    def low(self) -> tuple[float, float]:
+        """Least x and y of what is meshed."""
+        return (0.0 if 0 in self.planes else -self.half_x, 0.0 if 1 in self.planes else -self.half_y)
 
     @property
     def dome_radius(self) -> float:
@@ -53,7 +61,11 @@ class StackOutline:
         return (x < self.effector_half_x) & (y < self.effector_half_y)
 
     def volumes(self) -> dict[str, float]:
-        """Exact volume of each part in mm^3."""
+        """Exact volume of each part in mm^3, as far as it is meshed."""
+        share = 0.5 ** len(self.planes)
+        return {name: share * volume for name, volume in self._whole_volumes().items()}
+
+    def _whole_volumes(self) -> dict[str, float]:
         foot = 4 * self.half_x * self.half_y
         result = {
             "medium2": foot * self.film_bottom,
@@ -78,10 +90,13 @@ class StackOutline:
         return 4 * a * self.effector_half_y * height
 
 
-def outline(segment: Segment, film_thickness_mm: float | None = None, slice_mm: float = 0.0) -> StackOutline:
+def outline(
+    segment: Segment, film_thickness_mm: float | None = None, slice_mm: float = 0.0, planes: Planes = ()
+) -> StackOutline:
     """The outline of a segment.
 
-    film_thickness_mm : overrides the film's thickness; slice_mm : size in y of a plane-strain slice.
+    film_thickness_mm : overrides the film's thickness; slice_mm : size in y of a plane-strain slice; planes : mirror
+    planes at which it is cut.
     """
     film = segment.film.thickness_um * 1e-3 if film_thickness_mm is None else film_thickness_mm
     is_slice = segment.section == "plane-strain"
@@ -90,7 +105,7 @@ def outline(segment: Segment, film_thickness_mm: float | None = None, slice_mm: 
     medium1_top = bottom + film + segment.medium1.thickness_mm
     shape, foot_x, foot_y, height = _effector(segment, half_x, half_y)
     heights = (bottom, bottom + film, medium1_top, medium1_top + height)
-    return StackOutline(half_x, half_y, *heights, shape, foot_x, foot_y, is_slice)
+    return StackOutline(half_x, half_y, *heights, shape, foot_x, foot_y, is_slice, planes)
 
 
 def _effector(segment: Segment, half_x: float, half_y: float) -> tuple[Shape, float, float, float]:

@@ -9,7 +9,7 @@ from mesh.build import MeshOptions
 from mesh.layered import twins
 from mesh.outline import RoundSurface, StackOutline, curved_surface, outline
 from mesh.quality import refuse_inverted, smallest_determinant_ratio
-from mesh.types import TET_FACES, LinearMesh, TetMesh, boundary_faces, face_neighbours, unique_edges
+from mesh.types import TET_FACES, LinearMesh, Planes, TetMesh, boundary_faces, face_neighbours, unique_edges
 
 FLATTEST = 0.1  # a curved element keeps at least this share of its mean Jacobian everywhere
 
@@ -87,6 +87,8 @@ def _outer_facets(
     on_x, on_y = _on_either(corner[..., 0], stack.half_x), _on_either(corner[..., 1], stack.half_y)
     on_side = on_x if stack.is_slice else on_x | on_y
     cut = on_y & stack.is_slice
+    for axis in stack.planes:
+        cut = cut | _on_plane(corner[..., axis], 0.0)
     result = {"contact": outer[~(on_base | on_side | cut)], "base": outer[on_base]}
     for number, name in enumerate(names):
         mine = outer[on_side & ~on_base & (region[owner] == number)]
@@ -112,14 +114,14 @@ def _between(tets: Ints, region: Ints, neighbour: Ints, lower: int, upper: int) 
     return np.asarray(tets[owner[:, None], TET_FACES[face]])
 
 
-def finished(linear: LinearMesh, segment: Segment, options: MeshOptions) -> TetMesh:
+def finished(linear: LinearMesh, segment: Segment, options: MeshOptions, planes: Planes = ()) -> TetMesh:
     """Add mid-side nodes, facets and twins. Raises MeshingError when an element is inverted."""
     is_slice = segment.section == "plane-strain"
     thickness_mm = options.contact_element_size_mm if is_slice else segment.width_mm
-    stack = outline(segment, slice_mm=thickness_mm)
+    stack = outline(segment, slice_mm=thickness_mm, planes=planes)
     points, tets = quadratic(linear, curved_surface(stack))
     twin = twins(points) if is_slice else np.arange(len(points), dtype=np.int64)
     facets = named_facets(points, tets, linear.region, linear.region_names, stack)
-    result = TetMesh(points, tets, linear.region, linear.region_names, facets, twin, thickness_mm)
+    result = TetMesh(points, tets, linear.region, linear.region_names, facets, twin, thickness_mm, planes)
     refuse_inverted(result)
     return result

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from geometry.arrays import Floats, Ints
 from geometry.parameters import Segment
 from mesh.outline import curved_surface, outline
+from mesh.symmetry import PLANE_NAMES
 from mesh.types import TET_EDGES, TET_FACES, MeshingError, TetMesh, boundary_faces
 
 _INNER = (5 - np.sqrt(5)) / 20
@@ -79,6 +80,7 @@ class Quality:
     min_scaled_jacobian : over all tetrahedra but the film's, 1 for a regular tetrahedron.
     inverted : tetrahedra with a Jacobian <= 0 at any sample point.
     straight_edges : skin edges on a curved surface that stayed straight to keep an element valid.
+    symmetry_planes : at which a half or a quarter of the segment ends, that stands for the whole.
     """
 
     tetrahedra: int
@@ -89,6 +91,7 @@ class Quality:
     min_scaled_jacobian: float
     inverted: int
     straight_edges: int
+    symmetry_planes: tuple[str, ...]
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values for a summary."""
@@ -109,6 +112,7 @@ def measure(tet_mesh: TetMesh, segment: Segment) -> Quality:
         min_scaled_jacobian=float(scaled_jacobians(nodes[~film]).min()),
         inverted=int((np.linalg.det(jacobians(nodes)) <= 0).any(axis=1).sum()),
         straight_edges=_straight_edges(tet_mesh, segment),
+        symmetry_planes=tuple(PLANE_NAMES[axis] for axis in tet_mesh.planes),
     )
 
 
@@ -137,7 +141,7 @@ def dihedral_angles(corners: Floats) -> Floats:
 
 def _volume_errors(tet_mesh: TetMesh, nodes: Floats, segment: Segment) -> dict[str, float]:
     """Relative volume error of each part."""
-    exact = outline(segment, slice_mm=tet_mesh.thickness_mm).volumes()
+    exact = outline(segment, slice_mm=tet_mesh.thickness_mm, planes=tet_mesh.planes).volumes()
     meshed = np.bincount(tet_mesh.region, weights=volumes(nodes), minlength=len(tet_mesh.region_names))
     return {n: float(meshed[i] / exact[n] - 1) for i, n in enumerate(tet_mesh.region_names)}
 

@@ -96,7 +96,7 @@ MOST_POINTS = 300_000
 
 def background(stack: StackOutline, field: Sizing) -> tuple[Floats, Ints, Floats]:
     """Vertices (n, 3), tetrahedra (m, 4) and edge lengths (n,) over the bounding box and a little beyond."""
-    low, high = (-stack.half_x, -stack.half_y, 0.0), (stack.half_x, stack.half_y, stack.top)
+    low, high = (*stack.low, 0.0), (stack.half_x, stack.half_y, stack.top)
     volume = float(np.prod(np.subtract(high, low)))
     step = max(STEP_MM, (volume / MOST_POINTS) ** (1 / 3))  # a large segment has no more points than a small one
     lines = []

@@ -14,7 +14,7 @@ from mesh.interfaces import with_film
 from mesh.outline import StackOutline, curved_surface, outline
 from mesh.sizing import background, sizing
 from mesh.tetwild_process import tetrahedralize
-from mesh.types import TET_FACES, LinearMesh, MeshingError, face_neighbours, oriented, shape, without_unused
+from mesh.types import TET_FACES, LinearMesh, MeshingError, Planes, face_neighbours, oriented, shape, without_unused
 
 DEFLECTION_MM = 2e-3  # nodes are put on the exact surface afterwards
 DEFLECTION = 0.02  # of the smallest detail, where that is more
@@ -49,11 +49,20 @@ def _merged(vertices: Floats, faces: Ints) -> tuple[Floats, Ints]:
 
 def _solids(segment: Segment, stack: StackOutline) -> list[Any]:
     """build123d solids of the stack without its film."""
-    if stack.is_slice:
-        return _slab(stack)
     from geometry.solids import layer_solids
 
-    return list(layer_solids(segment, film_thickness_mm=0.0).values())
+    whole = _slab(stack) if stack.is_slice else list(layer_solids(segment, film_thickness_mm=0.0).values())
+    return [_cut(solid, stack) for solid in whole] if stack.planes else whole
+
+
+def _cut(solid: Any, stack: StackOutline) -> Any:
+    """What of a solid is on the positive sides of the mirror planes."""
+    from build123d import Box, Pos
+
+    (x, y), beyond = stack.low, 1.0
+    size = stack.half_x - x + beyond, stack.half_y - y + beyond, stack.top + 2 * beyond
+    at = x if 0 in stack.planes else x - beyond / 2, y if 1 in stack.planes else y - beyond / 2, -beyond
+    return (Pos(*(low + length / 2 for low, length in zip(at, size, strict=True))) * Box(*size)) & solid
 
 
 def _slab(stack: StackOutline) -> list[Any]:
@@ -91,9 +100,12 @@ def snapped(points: Floats, tets: Ints, region: Ints, stack: StackOutline) -> Fl
     planes, curved = _planes(stack), curved_surface(stack)
     off = np.array([np.abs(points[facets, axis] - value).max(axis=1) for axis, value in planes])
     if curved is not None:
-        # The skin of a round effector is its curved surface, its lid or a slice's cut, never a side.
+        # The skin of a round effector is its curved surface, its lid, a slice's cut or a mirror plane, never a side.
         skin = (region[owner] == EFFECTOR) & (other[owner, face] < 0)
-        own = [(axis, value) == (2, stack.top) or (axis == 1 and stack.is_slice) for axis, value in planes]
+        own = [
+            (axis, value) == (2, stack.top) or (axis == 1 and stack.is_slice) or (axis in stack.planes and value == 0.0)
+            for axis, value in planes
+        ]
         off[np.ix_(~np.array(own), skin)] = np.inf
         away = np.abs(curved.distance(points[facets].reshape(-1, 3))).reshape(-1, 3).max(axis=1)
         off = np.vstack([off, np.where(skin, away, np.inf)])
@@ -111,7 +123,7 @@ def snapped(points: Floats, tets: Ints, region: Ints, stack: StackOutline) -> Fl
 
 def _planes(stack: StackOutline) -> list[tuple[int, float]]:
     """Axis and position of every plane of the stack."""
-    planes = [(0, -stack.half_x), (0, stack.half_x), (1, -stack.half_y), (1, stack.half_y)]
+    planes = [(0, stack.low[0]), (0, stack.half_x), (1, stack.low[1]), (1, stack.half_y)]
     planes += [(2, 0.0), (2, stack.film_bottom), (2, stack.medium1_top)]
     if stack.shape in ("layer", "block", "cylinder"):
         planes.append((2, stack.top))
@@ -119,7 +131,7 @@ def _planes(stack: StackOutline) -> list[tuple[int, float]]:
         planes += [(0, -stack.effector_half_x), (0, stack.effector_half_x)]
     if stack.shape == "block":
         planes += [(1, -stack.effector_half_y), (1, stack.effector_half_y)]
-    return planes
+    return [(axis, value) for axis, value in planes if axis == 2 or value >= stack.low[axis]]
 
 
 STOP_ENERGY = 7.0
@@ -132,9 +144,12 @@ LOG = logging.getLogger(__name__)
 ATTEMPTS = 6  # pytetwild is not repeatable: another attempt gives another mesh, one in ten flat elements
 
 
-def tetwild(segment: Segment, dot: DotShape, options: MeshOptions) -> LinearMesh:
-    """Mesh a solid segment. Raises MeshingError when pytetwild fails, hangs or leaves an inverted element."""
-    stack = outline(segment, film_thickness_mm=0.0)
+def tetwild(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes = ()) -> LinearMesh:
+    """Mesh a solid segment, as far as its mirror planes.
+
+    Raises MeshingError when pytetwild fails, hangs or leaves an inverted element.
+    """
+    stack = outline(segment, film_thickness_mm=0.0, planes=planes)
     bare = bare_stack(segment, stack, dot, options)
     return with_film(bare, segment.film.thickness_um * 1e-3, options.film_layers)
 
@@ -197,11 +212,12 @@ def _labelled(points: Floats, tets: Ints, stack: StackOutline) -> LinearMesh:
 def region_of(points: Floats, stack: StackOutline) -> Ints:
     """Part of each point (n, 3): 0 medium2, 1 medium1, 2 effector, -1 outside."""
     x, y, z = np.abs(points[:, 0]), np.abs(points[:, 1]), points[:, 2]
-    foot = (x < stack.half_x) & (y < stack.half_y)
+    beside = (points[:, :2] > stack.low).all(axis=1)
+    foot = beside & (x < stack.half_x) & (y < stack.half_y)
     result = np.full(len(points), -1, dtype=np.int64)
     result[foot & (z > 0) & (z < stack.film_bottom)] = 0
     result[foot & (z > stack.film_top) & (z < stack.medium1_top)] = 1
-    effector = stack.inside_effector(points[:, :2]) & (z > stack.medium1_top) & (z < stack.top)
+    effector = beside & stack.inside_effector(points[:, :2]) & (z > stack.medium1_top) & (z < stack.top)
     if stack.shape == "dome":
         across = x if stack.is_slice else np.hypot(x, y)
         effector &= np.hypot(across, z - stack.dome_centre_z) < stack.dome_radius

@@ -8,6 +8,11 @@ from numpy.typing import NDArray
 
 from geometry.arrays import Floats, Ints
 
+Planes = tuple[int, ...]
+"""Axes of mirror planes: 0 is the plane x = 0, 1 the plane y = 0."""
+UPSIDE_DOWN = [0, 2, 1, 5, 4, 3]
+"""The same quadratic facet with the opposite normal."""
+
 
 @dataclass(frozen=True)
 class TetMesh:
@@ -26,7 +31,9 @@ class TetMesh:
         "film-bottom", "film-top"  the two faces of the film
     twin : (n,) int. For each node the node that stands for it: itself, except in a plane-strain slice, where
         all nodes of equal (x, z) share one, so that nothing varies over y.
-    thickness_mm : size in y of what is meshed (the slice's thickness when plane strain, else width_mm).
+    thickness_mm : thickness in y of a plane-strain slice, else width_mm.
+    planes : axes, 0 for x and 1 for y, at whose zero a mirror plane ends the mesh (mesh.symmetry). No facets are named
+        there.
     """
 
     points_mm: Floats
@@ -36,6 +43,7 @@ class TetMesh:
     facets: dict[str, Ints]
     twin: Ints
     thickness_mm: float
+    planes: Planes = ()
 
     def region_tets(self, name: str) -> Ints:
         """Indices of the tetrahedra of one part, shape (k,)."""
@@ -152,7 +160,7 @@ def node_mask(count: int, nodes: Ints) -> NDArray[np.bool_]:
 def mesh_hash(tet_mesh: TetMesh) -> str:
     """Of all that a mesh holds."""
     facets = sorted(tet_mesh.facets)
-    told = (tet_mesh.thickness_mm, tet_mesh.region_names, facets)
+    told = (tet_mesh.thickness_mm, tet_mesh.region_names, tet_mesh.planes, facets)
     digest = hashlib.sha256(repr(told).encode())
     arrays = [tet_mesh.points_mm, tet_mesh.tets, tet_mesh.region, tet_mesh.twin]
     for array in [*arrays, *(tet_mesh.facets[name] for name in facets)]:

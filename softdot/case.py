@@ -20,7 +20,7 @@ import numpy as np
 
 from geometry.arrays import Floats
 from geometry.dot import DotShape
-from mesh.types import TetMesh
+from mesh.types import Planes, TetMesh
 from softdot.config import Config, config_from, input_hash, load_config
 from softdot.config.model import model_of
 from softdot.config.toml import completed
@@ -104,18 +104,32 @@ class Case:
 
     @cached_property
     def mesh(self) -> TetMesh:
-        """The conforming mesh. InputError, MeshingError."""
+        """The conforming mesh of the whole segment. InputError, MeshingError."""
+        from mesh.symmetry import unfolded
+
+        return unfolded(self.solved_mesh).tet_mesh
+
+    @cached_property
+    def solved_mesh(self) -> TetMesh:
+        """What is solved: the mesh of a half or a quarter where all is symmetric. InputError, MeshingError."""
         import mesh
 
         touching = self.dot.origin_mm - [0.0, 0.0, self.model.dot.gap_mm]  # a gap is not another mesh
-        return mesh.build(self.model.segment, replace(self.dot, origin_mm=touching), self.config.mesh)
+        return mesh.build(self.model.segment, replace(self.dot, origin_mm=touching), self.config.mesh, self.planes)
+
+    @property
+    def planes(self) -> Planes:
+        """Mirror planes at which the mesh ends: axes, 0 for x = 0 and 1 for y = 0. InputError."""
+        from solve.symmetry import meshed_planes
+
+        return meshed_planes(self.model, self.dot, self.config.mesh)
 
     @property
     def mesh_quality(self) -> dict[str, Any]:
-        """Numbers about the mesh, as in summary.json."""
+        """Numbers about the mesh that is solved, as in summary.json."""
         from mesh.quality import measure
 
-        return measure(self.mesh, self.model.segment).as_dict()
+        return measure(self.solved_mesh, self.model.segment).as_dict()
 
     def press(self, on_step: OnStep | None = None) -> "Pressed":
         """The press, as far as it converged: .converged says whether, .failure why not. InputError, MeshingError."""
@@ -130,7 +144,7 @@ class Case:
         from solve.press import press_segment
         from solve.solution.checkpoint import Checkpoint
 
-        on_mesh = self.mesh if tet_mesh is None else tet_mesh
+        on_mesh = self.solved_mesh if tet_mesh is None else tet_mesh
         key = press_key(self, on_mesh)
         return press_segment(self.model, on_mesh, on_step, Checkpoint(folder() / f"press-{key}.npz", key), self.dot)
 

@@ -19,12 +19,14 @@ from geometry.stack import layers
 from mesh.build import MeshOptions, build
 from mesh.outline import outline
 from mesh.sizing import sizing
+from mesh.types import Planes
 from softdot.config import Config
 from softdot.machine import needed_GB, refuse_too_little_memory
 from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.model import Model
 from solve.result import PressResult
 from solve.solution.schedule import duration_s
+from solve.symmetry import meshed_planes
 from solve.terms.contact import RigidDot
 
 TOO_MANY = 1_000_000
@@ -34,12 +36,13 @@ FILL = 6.0 * np.sqrt(2.0)
 PRISMS = 12.0 / np.sqrt(3.0)
 
 
-def refuse_huge_mesh(segment: Segment, dot_shape: DotShape, options: MeshOptions) -> None:
+def refuse_huge_mesh(segment: Segment, dot_shape: DotShape, options: MeshOptions, planes: Planes = ()) -> None:
     """InputError when the wished edge lengths mean more than a million elements, or more than fit into memory.
 
-    Of mesh.file the elements are counted; InputError too when it is no mesh of the segment.
+    planes : mirror planes at which the mesh ends. Of mesh.file the elements are counted; InputError too when it is no
+    mesh of the segment.
     """
-    count = expected_tetrahedra(segment, dot_shape, options)
+    count = expected_tetrahedra(segment, dot_shape, options, planes)
     if options.file is not None:
         if count > TOO_MANY:
             raise InputError(f"mesh.file = '{options.file}': has {count:.0f} elements, at most {TOO_MANY} are allowed")
@@ -55,7 +58,7 @@ def refuse_huge_mesh(segment: Segment, dot_shape: DotShape, options: MeshOptions
     refuse_too_little_memory(count, segment.section == "plane-strain", name, float(sizes[name]))
 
 
-def expected_tetrahedra(segment: Segment, dot_shape: DotShape, options: MeshOptions) -> float:
+def expected_tetrahedra(segment: Segment, dot_shape: DotShape, options: MeshOptions, planes: Planes = ()) -> float:
     """Rough number of elements of the soft layers: the mean of 6 sqrt 2 / h^3 over points in the stack.
 
     A slice is one layer of triangles of area sqrt 3 / 4 h^2, each of three tetrahedra. Of mesh.file their number.
@@ -67,6 +70,7 @@ def expected_tetrahedra(segment: Segment, dot_shape: DotShape, options: MeshOpti
     field = sizing(shape, dot_shape, options)
     high = np.array([shape.half_x, shape.half_y, shape.top])
     low = np.array([-shape.half_x, -shape.half_y, 0.0])
+    low[list(planes)] = 0.0
     points = np.random.default_rng(0).uniform(low, high, (POINTS, 3))
     if sliced:
         return float((high - low)[0] * (high - low)[2] * np.mean(PRISMS / field.at(points) ** 2))
@@ -91,9 +95,9 @@ class Cost:
     memory_GB: float
 
 
-def expected_cost(config: Config, dot_shape: DotShape) -> Cost:
+def expected_cost(config: Config, dot_shape: DotShape, planes: Planes = ()) -> Cost:
     """Cost of a run. Waveforms that are followed in time, slides and mechanisms may take several times as long."""
-    count = expected_tetrahedra(config.segment, dot_shape, config.mesh)
+    count = expected_tetrahedra(config.segment, dot_shape, config.mesh, planes)
     unknowns = UNKNOWNS_PER_TETRAHEDRON[config.segment.section] * count
     solve_s = ITERATIONS * config.press.load_steps * ITERATION_S * (unknowns / AT_UNKNOWNS) ** EXPONENT
     time_s = SOLIDS_AND_PICTURES_S + MESH_S_PER_TETRAHEDRON * count + solve_s
@@ -226,7 +230,7 @@ def check_case(model: Model, options: MeshOptions) -> tuple[DotShape, list[str]]
     else:
         check_pushed_dot(model.dot, segment, press.path_xy_mm)
     dot_shape = resolve_dot(model.dot, segment)
-    refuse_huge_mesh(segment, dot_shape, options)
+    refuse_huge_mesh(segment, dot_shape, options, meshed_planes(model, dot_shape, options))
     if depth is not None:
         warnings += press_warnings(dot_shape, segment, depth)
         warnings += held_rim_warnings(segment, dot_shape, depth)

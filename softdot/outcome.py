@@ -100,7 +100,7 @@ def derivatives(config: Config, keys: Sequence[str]) -> list[Derivative]:
     >>> bool(by_thickness.reaction_force_N[-1] < 0.0)  # a thicker medium gives way more
     True
     """
-    result, found = press_with_derivatives(config, keys, Case(config).mesh)
+    result, found = press_with_derivatives(config, keys, Case(config).solved_mesh)
     if not result.converged:
         raise InputError(f"the press stopped early: {result.failure}")
     return found

@@ -3,14 +3,15 @@
 From a model and a mesh to what the march needs: the system and the recorder of its history.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from geometry.dot import DotShape, resolve_dot
-from mesh.types import TetMesh
+from mesh.symmetry import unfolded
+from mesh.types import Planes, TetMesh
 from solve.model import Model
-from solve.problem import OpenInterface, build_system, open_interfaces, refuse_unresolved, scale_of_section
+from solve.problem import OpenInterface, build_system, meshed_share, open_interfaces, refuse_unresolved, whole_charge
 from solve.recorder import Recorder
 from solve.result import PressResult, Step
 from solve.solution.checkpoint import Checkpoint
@@ -18,14 +19,20 @@ from solve.solution.linear import LinearSolver
 from solve.solution.march import march, rest_state
 from solve.solution.newton import NoEquilibriumError, explained
 from solve.solution.schedule import Target, schedule
+from solve.symmetry import planes_of
 from solve.system import System, Units
 
 
 @dataclass(frozen=True)
 class Setup:
-    """A discretised press."""
+    """A discretised press. tet_mesh : what is meshed of it, its interfaces open; unfolded : axes about which the mesh
+    that was given has been mirrored.
+    """
 
     model: Model
+    tet_mesh: TetMesh
+    unfolded: Planes
+    opened: tuple[OpenInterface, ...]
     system: System
     recorder: Recorder
 
@@ -34,12 +41,26 @@ class Setup:
         """Depth or force at the end of the press, solver units."""
         press, segment = self.model.press, self.model.segment
         if press.force_N is not None:
-            return press.force_N / scale_of_section(segment, self.recorder.tet_mesh)[0] / self.system.units.force
+            return press.force_N * meshed_share(segment, self.tet_mesh) / self.system.units.force
         return 1e-3 * press.depth_mm / self.system.units.length
 
     def targets(self, follows_time: bool) -> list[Target]:
         """What is to be reached, and when (see solve.solution.schedule)."""
         return schedule(self.model.press, self.full_drive, self.system.units.length, follows_time)
+
+
+def discretise(model: Model, tet_mesh: TetMesh, dot: DotShape, others: Iterable[Model] = ()) -> Setup:
+    """Discretise a press. A mesh of a half or a quarter is unfolded about every plane that the press does not have.
+
+    others : models that are to share this mesh, with dots of their own. InputError for a patch outside its interface.
+    """
+    kept = set(planes_of(model, dot))
+    for other in others:
+        kept &= set(planes_of(other, resolve_dot(other.dot, other.segment)))
+    lost = tuple(axis for axis in tet_mesh.planes if axis not in kept)
+    physics, plane_strain = model.physics, model.segment.section == "plane-strain"
+    opened = open_interfaces(unfolded(tet_mesh, lost).tet_mesh, physics.bonds, physics.delaminations, plane_strain)
+    return replace(set_up(model, dot, *opened), unfolded=lost)
 
 
 def set_up(
@@ -49,13 +70,19 @@ def set_up(
     opened: tuple[OpenInterface, ...],
     units: Units | None = None,
 ) -> Setup:
-    """Discretise a model on a mesh whose interfaces are open already; units : of another system, to share them."""
+    """On a mesh whose interfaces are open already; units : of another system, to share them.
+
+    ValueError for a mesh that ends at a plane which the press does not have.
+    """
+    if not set(tet_mesh.planes) <= set(planes_of(model, dot)):
+        raise ValueError("the press is not symmetric about a plane at which its mesh ends")
     driven = model.press.force_N is not None
     system = build_system(
         model.segment, model.materials, dot, tet_mesh, driven, model.physics, model.readout, opened, units
     )
-    refuse_unresolved(model.segment, system.film.area())
-    return Setup(model, system, Recorder(system, tet_mesh, model.physics, model.segment, model.materials))
+    refuse_unresolved(model.segment, whole_charge(model.segment, tet_mesh) @ system.film.area())
+    recorder = Recorder(system, tet_mesh, model.physics, model.segment, model.materials)
+    return Setup(model, tet_mesh, (), opened, system, recorder)
 
 
 OnStep = Callable[[Step, int, int], None]
@@ -76,9 +103,7 @@ def press_segment(
     Want of convergence raises nothing: the result then holds what converged and says where and why it ended.
     InputError for a delaminated patch outside its interface.
     """
-    physics, plane_strain = model.physics, model.segment.section == "plane-strain"
-    opened_mesh, opened = open_interfaces(tet_mesh, physics.bonds, physics.delaminations, plane_strain)
-    setup = set_up(model, dot or resolve_dot(model.dot, model.segment), opened_mesh, opened)
+    setup = discretise(model, tet_mesh, dot or resolve_dot(model.dot, model.segment))
     linear = LinearSolver(setup.system.factorisation_shift)
     failure = _follow(setup, linear, on_step, checkpoint)
     linear.close()

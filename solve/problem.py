@@ -1,6 +1,6 @@
 """From parameters and a mesh to the discrete problem in solver units.
 
-Where the electrodes lie, and what a plane-strain slice stands for.
+What a plane-strain slice, a half or a quarter stands for.
 
 Which interfaces of the mesh open: those with a compliant bond, and delaminated patches of the others.
 
@@ -24,6 +24,7 @@ from solve.materials.inelastic import Inelastic
 from solve.materials.laws import MediumLaw
 from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.model import BondLine, Delamination, Physics, Readout
+from solve.symmetry import electrode_rectangles, images, orbits
 from solve.system import System, Units
 from solve.terms.contact import RigidDot, contact_facets
 from solve.terms.film import FilmRegion, film_region
@@ -39,7 +40,8 @@ ROUND_OFF_MM = 1e-9
 def delaminated_facets(
     tet_mesh: TetMesh, name: str, center_mm: tuple[float, float], diameter_mm: float, plane_strain: bool
 ) -> Bools:
-    """Facets (k,) of interface_facets whose middle lies in the disc (plane strain: |x - x_c| <= diameter / 2).
+    """Facets (k,) of interface_facets whose middle lies in the disc (plane strain: |x - x_c| <= diameter / 2) or its
+    image where the mesh ends at a mirror plane.
 
     A diameter of 0 selects none. InputError when the disc reaches outside the interface, or is so small that the
     mesh has no node inside which could open.
@@ -50,8 +52,11 @@ def delaminated_facets(
     given = f"mechanisms.delamination at {name}: center_mm = {list(center_mm)}, diameter_mm = {diameter_mm:g}"
     corners = tet_mesh.points_mm[facets[:, :3], :2]
     axes = slice(0, 1) if plane_strain else slice(0, 2)
-    center = np.array(center_mm)
-    _refuse_outside(corners[..., axes].reshape(-1, center[axes].size), center[axes], diameter_mm, given)
+    center, mirrored = np.array(center_mm), list(tet_mesh.planes)
+    center[mirrored] = np.abs(center[mirrored])  # of what reaches over the plane the image covers as much and more
+    high, low = corners.max(axis=(0, 1)), corners.min(axis=(0, 1))
+    low[mirrored] = -high[mirrored]
+    _refuse_outside(low[axes], high[axes], center[axes], diameter_mm, given)
     # the two triangles of a slice's rectangle share their middle in x, not their centroid
     middle = (corners.min(axis=1) + corners.max(axis=1)) / 2 if plane_strain else corners.mean(axis=1)
     inside = np.linalg.norm((middle - center)[:, axes], axis=1) <= diameter_mm / 2 + ROUND_OFF_MM
@@ -60,9 +65,8 @@ def delaminated_facets(
     return np.asarray(inside)
 
 
-def _refuse_outside(corners: Floats, center: Floats, diameter: float, given: str) -> None:
-    """InputError when the disc leaves the box around the interface's corners (k, d)."""
-    low, high = corners.min(axis=0), corners.max(axis=0)
+def _refuse_outside(low: Floats, high: Floats, center: Floats, diameter: float, given: str) -> None:
+    """InputError when the disc leaves the box around the interface, from low (d,) to high (d,)."""
     reach = diameter / 2 - ROUND_OFF_MM
     if diameter < 0.0 or (center - reach < low).any() or (center + reach > high).any():
         box = ", ".join(f"{axis} from {a:g} to {b:g} mm" for axis, a, b in zip("xy", low, high, strict=False))
@@ -105,36 +109,23 @@ def open_interfaces(
     return tet_mesh, tuple(opened)
 
 
-def electrode_rectangles(segment: Segment) -> Floats:
-    """Electrodes as (e, 4) x0, x1, y0, y1 in mm; without any, one over everything.
-
-    In a plane-strain slice nothing varies over y: the electrodes then reach over the whole slice, and their
-    share of the width is applied with the width (see scale_of_section).
-    """
-    if not segment.film.electrodes:
-        return np.array([[-np.inf, np.inf, -np.inf, np.inf]])
-    centre = np.array([e.center_mm for e in segment.film.electrodes])
-    half = 0.5 * np.array([e.size_mm for e in segment.film.electrodes])
-    rectangles = np.column_stack([centre - half, centre + half])[:, [0, 2, 1, 3]]
-    if segment.section == "plane-strain":
-        rectangles[:, 2:] = -np.inf, np.inf
-    return rectangles
+def meshed_share(segment: Segment, tet_mesh: TetMesh) -> float:
+    """What is meshed, as a share of the whole segment: a slice, and what mirror planes leave."""
+    share = 0.5 ** len(tet_mesh.planes)
+    return share if segment.section == "solid" else share * tet_mesh.thickness_mm / segment.width_mm
 
 
-def scale_of_section(segment: Segment, tet_mesh: TetMesh) -> tuple[float, Floats]:
-    """Factors from what is meshed to the whole segment: for the force, and for each electrode's charge (e,)."""
-    count = max(1, len(segment.film.electrodes))
+def whole_charge(segment: Segment, tet_mesh: TetMesh) -> Floats:
+    """Matrix (e, e) from what each electrode collects where it is meshed to what each collects in the whole segment."""
+    total = images(electrode_rectangles(segment), tet_mesh.planes)
     if segment.section == "solid":
-        return 1.0, np.ones(count)
-    force = segment.width_mm / tet_mesh.thickness_mm
-    if not segment.film.electrodes:
-        return force, np.array([force])
-    widths = np.array([e.size_mm[1] for e in segment.film.electrodes])
-    return force, np.minimum(widths, segment.width_mm) / tet_mesh.thickness_mm
+        return total
+    widths = np.array([e.size_mm[1] for e in segment.film.electrodes] or [segment.width_mm])
+    return np.asarray(np.minimum(widths, segment.width_mm)[:, None] / tet_mesh.thickness_mm * total)
 
 
 def refuse_unresolved(segment: Segment, area: Floats) -> None:
-    """InputError for an electrode that covers no quadrature point of the film; area (e,)."""
+    """InputError for an electrode that covers no quadrature point of the film; area (e,) of the whole segment."""
     for electrode, covered in zip(segment.film.electrodes, area, strict=False):
         if covered == 0.0:
             raise InputError(
@@ -225,7 +216,7 @@ def _number(
         held_regions=segment.held_layers if segment.boundary == "clamped" else (),
         plane_strain=segment.section == "plane-strain",
         without_pressure=("film", *(name for name, law in laws.items() if law.compressible)),
-        electrodes=max(1, len(segment.film.electrodes)),
+        electrodes=orbits(electrode_rectangles(segment), tet_mesh.planes),
         two_way=two_way and not virtual_ground,
         parallel=readout is not None,
         approach=force_driven or physics.rig_compliance_mm_per_N > 0.0,
@@ -315,7 +306,7 @@ def _circuit(make: Builder, film: FilmRegion) -> Iterator[Term]:
     if readout is None or make.unknowns.voltage[0] < 0:
         return
     farad = units.charge / units.voltage
-    share = make.tet_mesh.thickness_mm / make.segment.width_mm if make.segment.section == "plane-strain" else 1.0
+    share = meshed_share(make.segment, make.tet_mesh)
     resistance = 1e6 * (readout.input_resistance_MOhm or np.inf) * farad / share
     input_capacitance = 1e-12 * readout.input_capacitance_pF / farad * share
     dof = int(make.unknowns.voltage[0])
@@ -326,7 +317,7 @@ def _rig(make: Builder, force_driven: bool) -> Iterator[Term]:
     if make.unknowns.approach < 0:
         return
     units, physics = make.units, make.physics
-    share = make.tet_mesh.thickness_mm / make.segment.width_mm if make.segment.section == "plane-strain" else 1.0
+    share = meshed_share(make.segment, make.tet_mesh)
     compliance = 1e-3 * physics.rig_compliance_mm_per_N * units.force / units.length / share
     mass = 1e-3 * physics.moving_mass_g / units.mass * share
     yield RigTerm(make.unknowns.approach, mass, None if force_driven else compliance)

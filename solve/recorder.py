@@ -13,10 +13,11 @@ import numpy as np
 
 from geometry.arrays import Floats
 from geometry.parameters import Segment
+from mesh.symmetry import unfolded
 from mesh.types import TetMesh
 from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.model import Physics, Press, Waveform
-from solve.problem import scale_of_section
+from solve.problem import meshed_share, whole_charge
 from solve.readout.amplifier import other_charge_C
 from solve.result import PressResult, Record, Step, Trace, fields, film_peak
 from solve.solution.march import SMALLEST_IN_TIME, TIME_TOLERANCE
@@ -111,7 +112,10 @@ class Recorder:
     ) -> None:
         self.system, self.tet_mesh, self.physics = system, tet_mesh, physics
         self.segment, self.film = segment, materials["film"]
-        self.force_scale, self.charge_scale = scale_of_section(segment, tet_mesh)
+        self.whole = unfolded(tet_mesh)
+        self._copies, self._whole_force = 2 ** len(tet_mesh.planes), np.full(3, 1.0 / meshed_share(segment, tet_mesh))
+        self._whole_force[list(tet_mesh.planes)] = 0.0  # both sides of a mirror plane pull against each other
+        self._whole_charge = whole_charge(segment, tet_mesh)
         self.steps: list[Step] = []
         self.records: list[Record] = []
         self._rest_charge = np.zeros(system.film.electrodes)
@@ -148,10 +152,10 @@ class Recorder:
                 time_s=state.time,
                 indentation_m=sensor * units.length,
                 dot_path_m=-float(trial.move[2]) * units.length,
-                contact_force_N=-resultant * units.force * self.force_scale,
-                rig_force_N=self._rig_force(state, before) * units.force * self.force_scale,
+                contact_force_N=-resultant * units.force * self._whole_force,
+                rig_force_N=self._rig_force(state, before) * units.force * self._whole_force[2],
                 film_charge_C=(self._mechanical_charge(state, before) - self._rest_charge),
-                contact_area_m2=float(system.contact.nodal_area[touched].sum()) * units.length**2,
+                contact_area_m2=self._copies * float(system.contact.nodal_area[touched].sum()) * units.length**2,
                 newton_iterations=state.iterations,
                 relative_residual=state.relative_residual,
                 time_error=state.time_error,
@@ -176,7 +180,7 @@ class Recorder:
                 relative_residual=max(r.relative_residual for r in self.records[self._reported :]),
                 dot_position_m=1e-3 * system.contact.dot.shape.origin_mm + move * system.units.length,
                 dot_force_N=record.contact_force_N,
-                fields=fields(system, self.tet_mesh, state, before),
+                fields=fields(system, self.tet_mesh, self.whole, state, before),
             )
         )
         self._reported = len(self.records)
@@ -199,7 +203,8 @@ class Recorder:
             steps=steps,
             trace=trace,
             follows_time=follows_time,
-            tet_mesh=self.tet_mesh,
+            tet_mesh=self.whole.tet_mesh,
+            planes=self.tet_mesh.planes,
             converged=failure is None,
             failure=failure,
             electrode_names=tuple(e.name for e in self.segment.film.electrodes) or ("film",),
@@ -207,7 +212,7 @@ class Recorder:
             unknowns=self.system.count,
             linear_solver=linear_solver,
             max_relative_residual=max(step.relative_residual for step in steps),
-            film_peak=film_peak(steps, self.tet_mesh, self.segment),
+            film_peak=film_peak(steps, self.whole.tet_mesh, self.segment),
             warnings=doubtful_results(steps, self.records),
         )
 
@@ -215,13 +220,18 @@ class Recorder:
     def capacitance_F(self) -> Floats:
         """Of the undeformed film under each electrode (e,)."""
         units = self.system.units
-        return self.system.film.capacitance() * (units.charge / units.voltage) * self.charge_scale
+        return self._whole_charge @ self.system.film.capacitance() * (units.charge / units.voltage)
+
+    @property
+    def electrode_area_m2(self) -> Floats:
+        """Of the undeformed film under each electrode (e,)."""
+        return np.asarray(self._whole_charge @ self.system.film.area() * self.system.units.length**2)
 
     def _mechanical_charge(self, state: State, before: State) -> Floats:
         """Short-circuit charge of each electrode in C, (e,)."""
         film, system = self.system.film, self.system
         trial = system.trial(state.x, state.load, state.time, before)
-        return film.charge(trial, system.history_of(film, before)) * self.charge_scale * system.units.charge
+        return self._whole_charge @ film.charge(trial, system.history_of(film, before)) * system.units.charge
 
     def _rig_force(self, state: State, before: State) -> float:
         """What the rig's force sensor reads, solver units; positive in compression."""
@@ -256,6 +266,5 @@ class Recorder:
     def _other_charge(self, trace: Trace) -> Floats:
         """Charge of heat and of the touch, (t, e) in C."""
         assert isinstance(self.film, PiezoelectricFilm)
-        area = self.system.film.area() * self.system.units.length**2 * self.charge_scale
         constant = self.film.pyroelectric_uC_per_m2_K
-        return other_charge_C(trace.time_s, trace.contact_area_m2, area, constant, self.physics)
+        return other_charge_C(trace.time_s, trace.contact_area_m2, self.electrode_area_m2, constant, self.physics)

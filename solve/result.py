@@ -17,11 +17,13 @@ import numpy as np
 
 from geometry.arrays import Floats, Ints
 from geometry.parameters import Segment
-from mesh.types import TetMesh
+from mesh.symmetry import Unfolded
+from mesh.types import Planes, TetMesh
 from solve.fem.kinematics import deformation_gradient, linear, tetrahedron
 from solve.fem.sparsity import History, Trial
 from solve.materials.isochoric import from_voigt, to_voigt
 from solve.system import State, System
+from solve.terms.film import FilmRegion
 from solve.terms.solid import SolidRegion
 
 
@@ -135,7 +137,8 @@ class PressResult:
     """The history of a press. steps[0] is the unloaded state, trace has every sub-step too.
 
     follows_time : the press followed its waveform; else only loads were solved, whose order matters but not their time.
-    tet_mesh : the mesh of the fields, its nodes doubled where an interface opens.
+    tet_mesh : the mesh of the fields and of the whole segment, its nodes doubled where an interface opens.
+    planes : mirror planes at which the mesh that was solved ends (mesh.symmetry).
 
     converged is False when the last asked depth was not reached; failure then says where and why.
     Forces and charges are those of the whole segment (a plane-strain slice is scaled to width_mm).
@@ -154,6 +157,7 @@ class PressResult:
     max_relative_residual: float
     film_peak: FilmPeak
     warnings: tuple[str, ...] = field(default=())
+    planes: Planes = ()
 
 
 RIM_THICKNESSES = 5.0
@@ -228,40 +232,45 @@ def _largest_principal(voigt: Floats) -> Floats:
     return np.asarray(np.linalg.eigvalsh(from_voigt(voigt))[:, -1])
 
 
-def fields(system: System, tet_mesh: TetMesh, state: State, before: State) -> Fields:
-    """All fields in a converged state; before : the state that its step started from."""
-    x = state.x
-    trial = system.trial(x, state.load, state.time, before)
-    displacement = trial.displacement
-    cauchy, right_cauchy_green = np.zeros((2, len(tet_mesh.tets), 3, 3))
-    for solid in system.solids:
-        index = tet_mesh.region_tets(solid.name)
-        cauchy[index], right_cauchy_green[index] = _medium(solid, trial, system.history_of(solid, before))
-    film = tet_mesh.region_tets("film")
-    history = system.history_of(system.film, before)
-    strain, stress, cauchy[film], right_cauchy_green[film] = _film(system, trial, history)
-    columns = film_columns(tet_mesh)
-    strain, stress = columns.mean(strain), columns.mean(stress)
-    density = stress @ system.film.law.coupling
-    turn = system.film.law.to_film_axes
+def fields(system: System, tet_mesh: TetMesh, whole: Unfolded, state: State, before: State) -> Fields:
+    """All fields of the whole segment in a converged state.
+
+    tet_mesh : what is solved, whole : its images; before : the state that its step started from.
+    """
+    trial, units = system.trial(state.x, state.load, state.time, before), system.units
+    cauchy, right_cauchy_green, strain, stress = map(whole.tensors, _means(system, tet_mesh, trial, before))
+    film, columns, law = whole.tet_mesh.region_tets("film"), film_columns(whole.tet_mesh), system.film.law
+    film_strain = columns.mean(to_voigt(strain[film], 2.0))
+    film_stress = columns.mean(to_voigt(stress[film]))
     deviator = cauchy - np.einsum("mii->m", cauchy)[:, None, None] / 3.0 * np.eye(3)
-    contact_nodes = np.unique(tet_mesh.facets["contact"])
-    pressure_dofs = system.unknowns.contact[contact_nodes]
+    contact_nodes = np.unique(whole.tet_mesh.facets["contact"])
+    touched = whole.node[contact_nodes]
     return Fields(
-        displacement_m=displacement * system.units.length,
-        cauchy_stress_Pa=to_voigt(cauchy) * system.units.stress,
+        displacement_m=trial.displacement[whole.node] * whole.node_sign * units.length,
+        cauchy_stress_Pa=to_voigt(cauchy) * units.stress,
         green_lagrange_strain=to_voigt(0.5 * (right_cauchy_green - np.eye(3))),
-        von_mises_Pa=np.sqrt(1.5 * np.einsum("mij,mij->m", deviator, deviator)) * system.units.stress,
-        pressure_Pa=-np.einsum("mii->m", cauchy) / 3.0 * system.units.stress,
+        von_mises_Pa=np.sqrt(1.5 * np.einsum("mij,mij->m", deviator, deviator)) * units.stress,
+        pressure_Pa=-np.einsum("mii->m", cauchy) / 3.0 * units.stress,
         max_stretch=_largest_stretch(right_cauchy_green),
         film_tets=film,
-        film_strain=strain @ turn.T * [1, 1, 1, 0.5, 0.5, 0.5],
-        film_stress_Pa=_in_film_axes(turn, stress) * system.units.stress,
-        charge_density_C_per_m2=density * system.units.stress * system.units.length / system.units.voltage,
+        film_strain=film_strain @ law.to_film_axes.T * [1, 1, 1, 0.5, 0.5, 0.5],
+        film_stress_Pa=_in_film_axes(law.to_film_axes, film_stress) * units.stress,
+        charge_density_C_per_m2=film_stress @ law.coupling * (units.stress * units.length / units.voltage),
         contact_nodes=contact_nodes,
-        gap_m=_gap(system, trial, contact_nodes),
-        contact_pressure_Pa=x[pressure_dofs] * system.units.stress,
+        gap_m=_gap(system, trial, touched),
+        contact_pressure_Pa=trial.x[system.unknowns.contact[touched]] * units.stress,
     )
+
+
+def _means(system: System, tet_mesh: TetMesh, trial: Trial, before: State) -> Floats:
+    """Means over each element in segment axes, (4, m, 3, 3): Cauchy stress, right Cauchy-Green tensor, and of the film
+    its strain and second Piola-Kirchhoff stress, 0 elsewhere.
+    """
+    means = np.zeros((4, len(tet_mesh.tets), 3, 3))
+    for solid in system.solids:
+        means[:2, tet_mesh.region_tets(solid.name)] = _medium(solid, trial, system.history_of(solid, before))
+    means[:, tet_mesh.region_tets("film")] = _film(system.film, trial, system.history_of(system.film, before))
+    return means
 
 
 def _medium(solid: SolidRegion, trial: Trial, history: History) -> tuple[Floats, Floats]:
@@ -277,14 +286,13 @@ def _medium(solid: SolidRegion, trial: Trial, history: History) -> tuple[Floats,
     return _mean(sigma, solid.weight), _mean(c, solid.weight)
 
 
-def _film(system: System, trial: Trial, history: History) -> tuple[Floats, Floats, Floats, Floats]:
-    """Mean strain and stress (k, 6) in segment axes, mean Cauchy stress and right Cauchy-Green tensor (k, 3, 3)."""
-    film = system.film
+def _film(film: FilmRegion, trial: Trial, history: History) -> tuple[Floats, ...]:
+    """Means (k, 3, 3) of Cauchy stress, right Cauchy-Green tensor, strain and stress in segment axes."""
     strain, stress = film.strain_and_stress(trial, history)
     f = deformation_gradient(film.gradient, trial.displacement[film.tets])
     sigma = f @ from_voigt(stress) @ f.swapaxes(-1, -2) / np.linalg.det(f)[..., None, None]
-    c = _mean(f.swapaxes(-1, -2) @ f, film.weight)
-    return _mean(strain, film.weight), _mean(stress, film.weight), _mean(sigma, film.weight), c
+    tensors = sigma, f.swapaxes(-1, -2) @ f, from_voigt(strain, 2.0), from_voigt(stress)
+    return tuple(_mean(each, film.weight) for each in tensors)
 
 
 def _mean(values: Floats, weight: Floats) -> Floats:

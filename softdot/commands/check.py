@@ -42,7 +42,7 @@ def check_file(path: Path, settings: list[str]) -> dict[str, Any]:
     if checked is None:
         return summary
     case, dot_shape, warnings = checked
-    cost = expected_cost(case.config, dot_shape)
+    cost = expected_cost(case.config, dot_shape, case.planes)
     told: dict[str, Any] = plain({"warnings": [*warnings, *design_warnings(case.model)], "expected": vars(cost)})
     return {**summary, **told, "from_default": list(from_default(stated, case.config.model_dump(mode="json")))}
 

@@ -166,6 +166,16 @@ def command(chosen: Namespace) -> int:
     return NOT_CONVERGED
 
 
+PARTS = {1: "a half", 2: "a quarter"}
+
+
+def _halved(planes: Sequence[str]) -> list[str]:
+    """Told where a part was solved."""
+    if not planes:
+        return []
+    return [f"symmetric about {' and '.join(planes)}: solved on {PARTS[len(planes)]}, all results are of the whole"]
+
+
 def short_text(summary: dict[str, Any], output: str) -> str:
     """The deepest step and where to look, in a few lines."""
     from export.report import plus_minus
@@ -173,6 +183,7 @@ def short_text(summary: dict[str, Any], output: str) -> str:
     lines = []
     if summary.get("indentation_mm"):
         force, voltage = (plus_minus(summary, name) for name in ("force_percent", "voltage_percent"))
+        lines += _halved(summary["mesh"]["symmetry_planes"])
         lines.append(
             f"{summary['indentation_mm'][-1]:.3g} mm: force {summary['reaction_force_N'][-1]:.4g} N{force}, "
             f"charge {summary['film_charge_pC'][-1]:.4g} pC, "

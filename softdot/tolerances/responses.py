@@ -47,8 +47,8 @@ def coarser(config: Config, factor: float) -> Config:
 
 
 def mesh_of(config: Config) -> TetMesh:
-    """The mesh of a configuration. InputError, MeshingError."""
-    return Case(config).mesh
+    """The mesh that is solved of a configuration. InputError, MeshingError."""
+    return Case(config).solved_mesh
 
 
 class KitPress:

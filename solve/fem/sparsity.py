@@ -16,6 +16,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from geometry.arrays import Bools, Floats, Ints
+from mesh.symmetry import in_plane
 from mesh.types import TetMesh
 
 
@@ -290,12 +291,16 @@ def number(
     held_regions: tuple[str, ...],
     plane_strain: bool,
     without_pressure: tuple[str, ...],
-    electrodes: int,
+    electrodes: Ints,
     two_way: bool,
     parallel: bool,
     approach: bool,
 ) -> Unknowns:
-    """Number the unknowns of a problem; two_way : voltages act back, of electrodes in parallel or each alone."""
+    """Number the unknowns of a problem.
+
+    electrodes : (e,) numbers from 0, equal for electrodes of equal voltage; two_way : voltages act back, of electrodes
+    in parallel or each alone.
+    """
     twin = tet_mesh.twin
     free = _free(tet_mesh, held_regions, plane_strain)
     displacement = np.full(free.shape, -1)
@@ -307,9 +312,9 @@ def number(
 
     nodes = np.concatenate([np.nonzero(free)[0], corners, touching])
     new = np.append(along_x(tet_mesh.points_mm[nodes]), -1)  # -1 stays -1
-    voltage = np.full(electrodes, -1)
+    voltage = np.full(len(electrodes), -1)
     if two_way:
-        voltage[:] = numbers.take(1 if parallel else electrodes)
+        voltage[:] = numbers.take(1) if parallel else numbers.take(int(electrodes.max()) + 1)[electrodes]
     dot = int(numbers.take(1)[0]) if approach else -1
     return Unknowns(new[displacement][twin], new[pressure], voltage, new[contact][twin], dot)
 
@@ -321,6 +326,8 @@ def _free(tet_mesh: TetMesh, held_regions: tuple[str, ...], plane_strain: bool) 
     free[tet_mesh.twin[fixed_nodes(tet_mesh, held_regions)]] = False
     if plane_strain:
         free[:, 1] = False
+    for axis in tet_mesh.planes:
+        free[in_plane(tet_mesh.points_mm, axis), axis] = False
     return free
 
 

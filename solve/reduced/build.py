@@ -21,8 +21,7 @@ from mesh.types import TetMesh
 from solve.materials.inelastic import Prony
 from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.model import Model, Physics, Press, Waveform
-from solve.press import press_segment, set_up
-from solve.problem import open_interfaces
+from solve.press import discretise, press_segment
 from solve.reduced import model as model_files
 from solve.reduced.fit import FINER, fit
 from solve.reduced.model import Accuracy, ReducedModel, structure
@@ -163,7 +162,7 @@ def _build(case: ReductionTask, check: bool) -> ReducedModel:
     film = case.materials["film"]
     assert isinstance(film, PiezoelectricFilm)
     recorder = sampler.recorder
-    area = sampler.system.film.area() * sampler.system.units.length**2 * recorder.charge_scale
+    area = recorder.electrode_area_m2
     electrodes = np.column_stack([recorder.capacitance_F, area])
     model = ReducedModel(
         fit(samples, layers), case.depth_mm, case.relaxing, electrodes, film.pyroelectric_uC_per_m2_K,
@@ -180,11 +179,9 @@ def _sampler(case: ReductionTask, layers: tuple[str, ...]) -> Sampler:
         bonds=case.physics.bonds, delaminations=case.physics.delaminations, prestretch=case.physics.prestretch,
         viscosity={layer: Frozen(layer=layer) for layer in layers},
     )  # fmt: skip
-    plane_strain = case.segment.section == "plane-strain"
-    opened_mesh, opened = open_interfaces(case.tet_mesh, kept.bonds, kept.delaminations, plane_strain)
     press = Press(indentation_mm=case.depth_mm)
     model = Model(case.segment, case.materials, Dot(), press, None, kept)
-    return Sampler(set_up(model, case.dot, opened_mesh, opened), layers, case.depth_nodes)
+    return Sampler(discretise(model, case.tet_mesh, case.dot), layers, case.depth_nodes)
 
 
 def _samples(sampler: Sampler, relaxing: Mapping[str, float]) -> Iterator[Sample]:

@@ -11,7 +11,8 @@ import numpy as np
 from scipy.interpolate import BSpline, make_interp_spline
 
 from geometry.arrays import Floats, Ints
-from mesh.types import TetMesh
+from mesh.symmetry import MIRRORED
+from mesh.types import UPSIDE_DOWN, Planes, TetMesh
 from solve.solution.linear import LinearSolver
 from solve.solution.march import march
 from solve.solution.newton import NoEquilibriumError, equilibrate
@@ -44,6 +45,17 @@ class Equilibria:
         known = np.column_stack([course.unknowns, np.zeros(len(found))])  # index -1, a prescribed value, reads zero
         return cls(course.places, known[:, displacement] * units.length, known[:, pressure] * units.stress,
                    known[:, contact] * units.stress)  # fmt: skip
+
+    def unfolded(self, axes: Planes) -> "Equilibria":
+        """On the elements of mesh.symmetry.unfolded about these planes."""
+        moved, pressure, contact = self.displacement_m, self.pressure_Pa, self.contact_Pa
+        for axis in axes:
+            sign = np.ones(3)
+            sign[axis] = -1.0
+            moved = np.concatenate([moved, moved[:, :, MIRRORED] * sign], axis=1)
+            pressure = np.concatenate([pressure, pressure[:, :, MIRRORED[:4]]], axis=1)
+            contact = np.concatenate([contact, contact[:, :, UPSIDE_DOWN]], axis=1)
+        return Equilibria(self.places, moved, pressure, contact)
 
     def course(self, system: System, tet_mesh: TetMesh) -> "Course | None":
         """For another system on these elements; None on other ones, such as a slice in the place of a solid."""

@@ -25,16 +25,16 @@ from mesh.interfaces import morphed
 from mesh.types import TetMesh
 from solve.fem.sparsity import Tangent
 from solve.model import Model
-from solve.press import Setup, set_up
-from solve.problem import OpenInterface, open_interfaces
+from solve.press import Setup, discretise, set_up
 from solve.readout.amplifier import amplify
 from solve.recorder import Recorder
 from solve.result import PressResult, Trace
 from solve.solution.linear import LinearSolver
 from solve.solution.march import march, rest_state
-from solve.solution.near import reach
+from solve.solution.near import Equilibria, reach
 from solve.solution.newton import NoEquilibriumError
 from solve.solution.schedule import Target
+from solve.symmetry import planes_of
 from solve.system import Load, State
 
 
@@ -109,12 +109,9 @@ def press_with_sensitivities(
     Of a press that stops short they end where it does. ValueError for a parameter that changes the mesh or the number
     of unknowns; InputError as press_segment.
     """
-    physics, plane_strain = model.physics, model.segment.section == "plane-strain"
-    opened_mesh, opened = open_interfaces(tet_mesh, physics.bonds, physics.delaminations, plane_strain)
-    base = set_up(model, resolve_dot(model.dot, model.segment), opened_mesh, opened)
-    twins: dict[str, tuple[Twin, Twin]] = {}
-    for name, variation in variations.items():
-        twins[name] = twins_of(name, variation, base, opened_mesh, opened)
+    varied = [changed for variation in variations.values() for changed in (variation.below, variation.above)]
+    base = discretise(model, tet_mesh, resolve_dot(model.dot, model.segment), varied)
+    twins = {name: twins_of(name, variation, base) for name, variation in variations.items()}
     linear = LinearSolver(base.system.factorisation_shift)
     failure = _march(base, linear, twins)
     linear.close()
@@ -122,14 +119,12 @@ def press_with_sensitivities(
     return result, {name: _difference(*pair, variations[name].span) for name, pair in twins.items()}
 
 
-def twins_of(
-    name: str, variation: Variation, base: Setup, opened_mesh: TetMesh, opened: tuple[OpenInterface, ...]
-) -> tuple[Twin, Twin]:
+def twins_of(name: str, variation: Variation, base: Setup) -> tuple[Twin, Twin]:
     """Below and above, on the base's mesh moved to their sizes; ValueError as press_with_sensitivities."""
     pair = []
     for changed in (variation.below, variation.above):
-        moved = morphed(opened_mesh, base.model.segment, changed.segment)
-        setup = set_up(changed, resolve_dot(changed.dot, changed.segment), moved, opened, base.system.units)
+        moved = morphed(base.tet_mesh, base.model.segment, changed.segment)
+        setup = set_up(changed, resolve_dot(changed.dot, changed.segment), moved, base.opened, base.system.units)
         if setup.system.count != base.system.count:
             raise ValueError(f"{name}: this parameter switches something on or off at its present value")
         pair.append(Twin(setup, setup.full_drive / base.full_drive))
@@ -210,12 +205,8 @@ class FullLoad:
     def __init__(self, model: Model, tet_mesh: TetMesh) -> None:
         if model.follows_time:
             raise ValueError("the path of this press matters")
-        self._model = model
-        plane_strain = model.segment.section == "plane-strain"
-        self._mesh, self._opened = open_interfaces(
-            tet_mesh, model.physics.bonds, model.physics.delaminations, plane_strain
-        )
-        self._base = set_up(model, resolve_dot(model.dot, model.segment), self._mesh, self._opened)
+        self._tet_mesh = tet_mesh
+        self._base = discretise(model, tet_mesh, resolve_dot(model.dot, model.segment))
         self._linear = LinearSolver(self._base.system.factorisation_shift)
         self._rest = _rest(self._base, self._linear)
         past = [self._rest]
@@ -230,7 +221,7 @@ class FullLoad:
         trial = system.trial(self._state.x, self._state.load, self._state.time, self._rest)
         tangent = system.evaluate(trial, self._rest.histories).tangent
         for number, (name, variation) in enumerate(variations.items()):
-            pair = twins_of(name, variation, base, self._mesh, self._opened)
+            pair = twins_of(name, variation, base)
             for twin in pair:
                 twin.start(self._rest)
             tow(pair, self._linear, tangent, self._state, similar=number > 0)
@@ -245,12 +236,18 @@ class FullLoad:
         """
         if model.follows_time:
             raise ValueError("the path of this press matters")
-        moved = morphed(self._mesh, self._model.segment, model.segment)
-        dot, units = resolve_dot(model.dot, model.segment), self._base.system.units
-        setup = set_up(model, dot, moved, self._opened, units)
+        dot, base = resolve_dot(model.dot, model.segment), self._base
+        if set(base.tet_mesh.planes) <= set(planes_of(model, dot)):
+            moved = morphed(base.tet_mesh, base.model.segment, model.segment)
+            setup = set_up(model, dot, moved, base.opened, base.system.units)
+            guess = self._state.x if setup.system.count == base.system.count else None
+        else:
+            setup = discretise(model, morphed(self._tet_mesh, base.model.segment, model.segment), dot)
+            found = Equilibria.of(base.system, base.tet_mesh, [(1.0, self._state.x)])
+            course = found.unfolded(setup.unfolded).course(setup.system, setup.tet_mesh)
+            guess = None if course is None else course.unknowns[0]
         linear = LinearSolver(setup.system.factorisation_shift)
         past, last = [_rest(setup, linear)], _targets(setup)[-1]
-        guess = self._state.x if setup.system.count == self._base.system.count else None
         rest = past[0]
         _refuse(reach(setup.system, linear, past, last, True, guess))
         linear.close()

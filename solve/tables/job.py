@@ -20,8 +20,7 @@ from geometry.cache import data_hash, folder, read_arrays, source_hash, write_ar
 from geometry.dot import resolve_dot
 from mesh.types import TetMesh, mesh_hash
 from solve.model import Model, Press
-from solve.press import Setup, set_up
-from solve.problem import open_interfaces
+from solve.press import Setup, discretise
 from solve.reduced.build import build_reduced
 from solve.reduced.model import ReducedModel
 from solve.solution.linear import LinearSolver
@@ -66,15 +65,12 @@ class Job:
             outputs, found = _walk(self, setup, linear, near)
         finally:
             linear.close()
-        return outputs, Equilibria.of(setup.system, setup.recorder.tet_mesh, found) if self.guides else None
+        return outputs, Equilibria.of(setup.system, setup.tet_mesh, found) if self.guides else None
 
 
 def _set_up(job: Job) -> Setup:
     model = replace(job.model, press=Press(indentation_mm=job.depth_mm))
-    dot = resolve_dot(model.dot, model.segment)
-    plane_strain = model.segment.section == "plane-strain"
-    opened_mesh, opened = open_interfaces(job.tet_mesh, model.physics.bonds, model.physics.delaminations, plane_strain)
-    return set_up(model, dot, opened_mesh, opened)
+    return discretise(model, job.tet_mesh, resolve_dot(model.dot, model.segment))
 
 
 def _walk(
@@ -84,7 +80,7 @@ def _walk(
     rest = rest_state(setup.system, linear, start)
     setup.recorder.start(rest)
     places = 0.0, *job.shares
-    beside = near.course(setup.system, setup.recorder.tet_mesh) if near is not None else None
+    beside = near.unfolded(setup.unfolded).course(setup.system, setup.tet_mesh) if near is not None else None
     past, found, down, back = [rest], [(0.0, rest.x)], list[Floats](), list[Floats]()
     for number, (before, share) in enumerate(pairwise(places)):
         for place in np.linspace(before, share, job.parts + 1)[1:]:

@@ -14,8 +14,10 @@ from geometry.parameters import Segment
 from mesh.build import MeshOptions, build
 from mesh.interfaces import morphed
 from mesh.outline import outline
+from mesh.symmetry import unfolded
 from mesh.types import TET_EDGES, MeshingError, TetMesh
 from solve.model import Model
+from solve.symmetry import meshed_planes
 
 Mesh: TypeAlias = TetMesh
 MeshSettings: TypeAlias = MeshOptions
@@ -61,7 +63,7 @@ NODES_PER_CUBE = 8  # of an element's size: one corner and seven mid-sides
 def rig_mesh(
     model: Model, options: MeshOptions, largest: int = LARGEST, coarsen: bool = True
 ) -> tuple[TetMesh, MeshOptions]:
-    """The mesh with as many nodes at most, and its sizes, which grow together until it is small enough.
+    """The mesh whose whole has as many nodes at most, and its sizes, which grow together until it is small enough.
 
     Layered wherever that mesher can, as it is repeatable and takes no time. Under a dome it cannot, and a round skin
     may need more nodes whatever the sizes: there the search ends where coarser elements save no more. InputError,
@@ -91,14 +93,18 @@ def _under_a_dome(model: Model, options: MeshOptions, largest: int) -> tuple[Tet
 
 
 def _made(model: Model, options: MeshOptions) -> tuple[TetMesh, int]:
-    """The mesh and its nodes, those on both sides of an interface counted once."""
+    """The mesh, a half or a quarter where all is symmetric, and how many nodes the whole has.
+
+    Those on both sides of an interface count once.
+    """
+    dot = _resting(model)
     try:
-        made = build(model.segment, _resting(model), options)
+        made = build(model.segment, dot, options, meshed_planes(model, dot, options))
     except MeshingError:
         if not options.coarsen:
             raise
         return _made(model, options.model_copy(update={"coarsen": False}))  # coarsening may leave flat elements
-    return made, len(np.unique(made.twin))
+    return made, len(np.unique(unfolded(made).tet_mesh.twin))
 
 
 def finer_mesh(model: Model, options: MeshOptions, factor: float, largest: int) -> tuple[TetMesh, MeshOptions]:

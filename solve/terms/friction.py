@@ -142,6 +142,12 @@ class FrictionalContact(Term):
         free[self.contact.index] = self.contact.dofs[:, :18].reshape(-1, 6, 3) >= 0
         return free
 
+    @property
+    def _turnable(self) -> Bools:
+        """Components of the nodal normals (c, 3) that are not zero: in a mirror plane the other half takes them off."""
+        free = self._free
+        return free | ~free.any(axis=1, keepdims=True)
+
     def _nodal_sum(self, local: Floats) -> Floats:
         """Nodal sums (c, 3) of contributions (k, 6, 3) of the facets."""
         total = np.zeros(self.friction_dofs.shape)
@@ -154,7 +160,7 @@ class FrictionalContact(Term):
         step = (trial.displacement - trial.previous_displacement)[contact.facets]
         step = step - (trial.move - trial.previous_move)
         moved = self._free * self._nodal_sum(np.einsum("kq,qi,qn,knj->kij", area, HATS, SHAPES, step, optimize=True))
-        n = self._nodal_sum(np.einsum("kq,qi,kqj->kij", area, HATS, gradient, optimize=True))
+        n = self._turnable * self._nodal_sum(np.einsum("kq,qi,kqj->kij", area, HATS, gradient, optimize=True))
         weighted_gap = contact._weighted(gap)
         nodal_area = contact.nodal_area
         length = np.maximum(np.linalg.norm(n, axis=1), 1e-12 * nodal_area)  # opposite flanks may cancel, far away
@@ -227,6 +233,7 @@ class FrictionalContact(Term):
         ke[:, MOTION, 25:] = work.swapaxes(1, 2)
         re[:, MOTION] += np.einsum("krd,kr->kd", work, nodal.tau[index].reshape(count, 18))
         rows = _apply(law.by_moved[index], self._free[index][..., None] * motion)
+        turning *= self._turnable[index][..., None]
         rows += _apply(law.by_normal[index], turning) + law.by_gap[index][..., None] * closing[:, :, None, :]
         ke[:, 25:, MOTION] = rows.reshape(count, 18, 19)
 

@@ -49,6 +49,8 @@ def design(number: int) -> dict:
     }
     if draw.perhaps(0.6):
         tables["readout"] = _readout(draw)
+    if draw.perhaps(0.3):
+        tables["mesh"]["symmetry"] = "none"
     return tables
 
 

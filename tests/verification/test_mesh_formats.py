@@ -139,6 +139,7 @@ def test_a_press_on_its_own_exported_mesh_gives_the_same_numbers(name, tables, e
     (path,) = write_mesh(Case(config).mesh, [extension], tmp_path)
     own = config_from(completed({**tables, "mesh": {**tables["mesh"], "file": str(path)}}))
     before, after = (solved(one, lambda *_: None) for one in (config, own))
-    assert after["mesh"]["tetrahedra"] == before["mesh"]["tetrahedra"]
+    solved_as = 2 ** len(before["mesh"]["symmetry_planes"])
+    assert after["mesh"]["tetrahedra"] == solved_as * before["mesh"]["tetrahedra"]
     for key in ("reaction_force_N", "film_charge_pC", "open_circuit_voltage_V"):
         agrees(f"{name} from its own {extension}, {key}", after[key][-1], before[key][-1], 1e-9)

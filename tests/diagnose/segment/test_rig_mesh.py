@@ -19,9 +19,9 @@ def counted(monkeypatch):
     sizes = []
     make = rig_mesh.build
 
-    def build(segment, dot, options):
+    def build(segment, dot, options, planes):
         sizes.append(options.contact_element_size_mm)
-        return make(segment, dot, options)
+        return make(segment, dot, options, planes)
 
     monkeypatch.setattr(rig_mesh, "build", build)
     return sizes

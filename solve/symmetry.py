@@ -1,0 +1,125 @@
+"""Mirror planes of a press: a half or a quarter of it then stands for the whole.
+
+A press is its own image in the plane x = 0 or y = 0 where everything that the solver is told is: the film's constants
+in the axes of the segment, electrodes, delaminated patches, the dot at rest and its path. The layers are centred and
+isotropic. On the plane the displacement normal to it is zero, and so is the traction along it, which is the natural
+condition of the weak form.
+"""
+
+import numpy as np
+
+from geometry.arrays import Floats, Ints
+from geometry.dot import DotShape
+from geometry.parameters import Segment
+from mesh.build import MeshOptions
+from mesh.types import Planes
+from solve.materials.film import FilmLaw, film_law
+from solve.materials.isochoric import strain_rotation
+from solve.materials.parameters import PiezoelectricFilm
+from solve.model import Delamination, Model
+
+SAME_MM, SAME = 1e-9, 1e-9
+"""How far an image may be off: in mm; of the largest constant, for angles whose cosine is rounded."""
+
+
+def planes_of(model: Model, dot: DotShape) -> Planes:
+    """Axes of the mirror planes that a press of this dot has; a slice varies over x alone."""
+    axes = (0,) if model.segment.section == "plane-strain" else (0, 1)
+    return tuple(axis for axis in axes if _is_mirrored(model, dot, axis))
+
+
+def meshed_planes(model: Model, dot: DotShape, options: MeshOptions) -> Planes:
+    """Those of them at which the mesh is to end; an own mesh is of the whole."""
+    return planes_of(model, dot) if options.symmetry == "auto" and options.file is None else ()
+
+
+def _is_mirrored(model: Model, dot: DotShape, axis: int) -> bool:
+    film = model.materials["film"]
+    assert isinstance(film, PiezoelectricFilm)
+    return (
+        mirrored_law(film_law(film, model.segment.film.draw_angle_deg), axis)
+        and electrode_images(electrode_rectangles(model.segment), axis) is not None
+        and _mirrored_patches(model.physics.delaminations, axis, model.segment.section == "plane-strain")
+        and mirrored_dot(dot, axis)
+        and all(point[axis] == 0.0 for point in model.press.path_xy_mm)
+    )
+
+
+def mirrored_law(law: FilmLaw, axis: int) -> bool:
+    """Whether the constants of a film are those of its image."""
+    sign = np.ones(3)
+    sign[axis] = -1.0
+    turn = np.diag(strain_rotation(np.diag(sign)))  # of strains; stresses turn by the same signs
+    off = law.stiffness - turn[:, None] * law.stiffness * turn
+    off_coupling = law.coupling - turn * law.coupling
+    return bool(
+        np.abs(off).max() <= SAME * np.abs(law.stiffness).max()
+        and np.abs(off_coupling).max() <= SAME * np.abs(law.coupling).max()
+    )
+
+
+def electrode_rectangles(segment: Segment) -> Floats:
+    """Electrodes as (e, 4) x0, x1, y0, y1 in mm; without any, one over everything.
+
+    In a plane-strain slice nothing varies over y: the electrodes then reach over the whole slice, and their
+    share of the width is applied with the width (see solve.problem.whole_charge).
+    """
+    if not segment.film.electrodes:
+        return np.array([[-np.inf, np.inf, -np.inf, np.inf]])
+    centre = np.array([e.center_mm for e in segment.film.electrodes])
+    half = 0.5 * np.array([e.size_mm for e in segment.film.electrodes])
+    rectangles = np.column_stack([centre - half, centre + half])[:, [0, 2, 1, 3]]
+    if segment.section == "plane-strain":
+        rectangles[:, 2:] = -np.inf, np.inf
+    return rectangles
+
+
+def electrode_images(rectangles: Floats, axis: int) -> Ints | None:
+    """The electrode (e,) that is the image of each of the rectangles (e, 4); None where one has none."""
+    image = rectangles.copy()
+    image[:, [2 * axis, 2 * axis + 1]] = -rectangles[:, [2 * axis + 1, 2 * axis]]
+    same = np.array([[np.allclose(one, other, rtol=0.0, atol=SAME_MM) for other in rectangles] for one in image])
+    return np.asarray(same.argmax(axis=1)) if same.any(axis=1).all() else None
+
+
+def _mirrored_patches(patches: tuple[Delamination, ...], axis: int, is_slice: bool) -> bool:
+    """Whether the image of each patch is one of them; in a slice they are strips, which y does not tell apart."""
+
+    def place(patch: Delamination, sign: float) -> tuple[str, float, float, float]:
+        center = [*patch.center_mm]
+        center[axis] *= sign
+        return patch.bond, round(center[0], 9), 0.0 if is_slice else round(center[1], 9), patch.diameter_mm
+
+    return {place(patch, -1.0) for patch in patches} == {place(patch, 1.0) for patch in patches}
+
+
+def mirrored_dot(dot: DotShape, axis: int) -> bool:
+    """Whether a dot at rest is its own image: it stands on the plane, and its plate is not turned out of it."""
+    sign = np.ones(3)
+    sign[axis] = -1.0
+    turned = sign[:, None] * dot.rotation * sign
+    centers = {tuple(center) for center in np.round(dot.centers_xy_mm, 9) + 0.0}
+    images = {tuple(center) for center in np.round(dot.centers_xy_mm * sign[:2], 9) + 0.0}
+    endless = dot.kind == "plate" or (dot.kind == "ridge" and axis == 1)
+    on_plane = endless or abs(dot.origin_mm[axis]) <= SAME_MM
+    return bool(on_plane and np.abs(turned - dot.rotation).max() <= SAME and centers == images)
+
+
+def orbits(rectangles: Floats, planes: Planes) -> Ints:
+    """Number of the group (e,), from 0, that each of the electrodes (e, 4) shares with its images."""
+    first = np.arange(len(rectangles))
+    for axis in planes:
+        image = electrode_images(rectangles, axis)
+        assert image is not None, "the mesh is cut at a plane that the electrodes do not have"
+        first = np.minimum(first, first[image])
+    return np.unique(first, return_inverse=True)[1].ravel()
+
+
+def images(rectangles: Floats, planes: Planes) -> Floats:
+    """Matrix (e, e): what all electrodes collect, from what each collects of the part that is meshed."""
+    total = np.eye(len(rectangles))
+    for axis in planes:
+        image = electrode_images(rectangles, axis)
+        assert image is not None, "the mesh is cut at a plane that the electrodes do not have"
+        total = total + total[:, image]
+    return total
