@@ -16,7 +16,7 @@ from benchmarks.displacement_law import SOFT_BULK
 from benchmarks.timing import REPEATS, Phases
 from solve.fem.kinematics import tetrahedron
 from solve.fem.sparsity import Tangent
-from solve.solution.linear import Pardiso
+from solve.solution.factorisation import Pardiso
 
 
 def upper_triangle(matrix: sp.csr_matrix, free: np.ndarray) -> Tangent:

@@ -15,7 +15,7 @@ from benchmarks.timing import REPEATS, Phases
 from solve.fem.kernels import scatter
 from solve.fem.sparsity import Tangent, Trial, along_x, build_pattern
 from solve.materials.laws import InvariantLaw
-from solve.solution.linear import Pardiso
+from solve.solution.factorisation import Pardiso
 from solve.terms.solid import solid_region
 
 

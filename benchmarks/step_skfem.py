@@ -16,7 +16,7 @@ from benchmarks.cube import BULK, SHEAR, cube
 from benchmarks.timing import REPEATS, Phases
 from solve.fem.kinematics import tetrahedron
 from solve.fem.sparsity import Tangent
-from solve.solution.linear import Pardiso
+from solve.solution.factorisation import Pardiso
 
 
 def _state(w):

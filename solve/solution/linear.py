@@ -1,8 +1,7 @@
 """Solution of the indefinite tangent, with a residual check after every solve.
 
-PARDISO where MKL exists, as real symmetric indefinite (mtype -2) or, with friction, unsymmetric (mtype 11), else or
-when its answer is wrong SciPy's SuperLU. PARDISO can return a wrong answer without an error on a weak diagonal, hence
-the check.
+A factorisation whose answer is wrong is replaced by the next one of solve.solution.factorisation: PARDISO, PARDISO with
+stronger pivoting, SuperLU. Each is asked again later, so that one bad matrix does not slow down all that follow.
 Two measures: Newton's method asks for a relative residual |r| / |b|, which its next iteration mends anyway. Where
 nothing comes after, as in derivatives, that measure is no good: with a film a million times stiffer than its medium
 rounding alone leaves a |r| / |b| of 1e-7 of a right solution, while 1e-9 may hide an error of 3 % in the soft part. The
@@ -15,132 +14,27 @@ for Sparse Linear Systems, 2003, ch. 9). A factorisation costs tens of them, so 
 again where the tangent has changed little.
 """
 
-import os
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
-from importlib.metadata import files
-from typing import Any, Protocol
 
 import numpy as np
-import scipy.sparse as sp
-from scipy.sparse.linalg import LinearOperator, gmres, splu
+from scipy.sparse.linalg import LinearOperator, gmres
 
 from geometry.arrays import Floats
 from solve.fem.sparsity import Tangent
+from solve.solution.factorisation import Factorisation, Pardiso, PivotingPardiso, SuperLU
 
 KRYLOV_ITERATIONS = 18  # with a factorisation of the same matrix
 REFINEMENTS = 5  # as LAPACK's xSYRFS; each must at least halve the error
 REFINED, ACCEPTED = 1e-12, 1e-10  # backward errors: refinement goes on down to the first, the second will do
 WEAK_SHIFT = 1e-4  # of Newton's: many right-hand sides share the factorisation, and each then takes fewer iterations
-MOST_FAILURES = 3  # one after the other, then a solver is left out
+LONGEST_REST = 64  # solutions
 EVENS_OUT = 15_000, 20.0, 2.0 / 3.0  # unknowns, back substitutions that cost as much as a factorisation, exponent
 
 
 class LinearSolveError(RuntimeError):
     """No solver gave a solution with a small residual: the tangent is singular."""
-
-
-class Factorisation(Protocol):
-    """A direct solver that keeps its analysis of one sparsity pattern."""
-
-    name: str
-
-    def factorise(self, tangent: Tangent) -> None:
-        """Factorise."""
-
-    def back_substitute(self, rhs: Floats) -> Floats:
-        """Solve with the last factorisation."""
-
-    def free(self) -> None:
-        """Give its memory back."""
-
-
-class Pardiso:
-    """MKL PARDISO; the analysis of the pattern is kept."""
-
-    name = "pardiso"
-
-    def __init__(self) -> None:
-        self._solver: Any = None
-        self._matrix: sp.csr_matrix | None = None
-
-    def factorise(self, tangent: Tangent) -> None:
-        """Factorise; analyse the pattern the first time, an unsymmetric one each time: its pivots follow values."""
-        symmetric = tangent.excess is None
-        matrix = tangent.upper if symmetric else tangent.full()
-        if self._solver is None:
-            self._solver = _pardiso(-2 if symmetric else 11)
-        self._solver.set_phase(22 if symmetric and self._matrix is not None else 12)
-        self._matrix = matrix
-        self._call(np.zeros(matrix.shape[0]))
-
-    def back_substitute(self, rhs: Floats) -> Floats:
-        """Solve with the last factorisation."""
-        self._solver.set_phase(33)
-        return self._call(rhs)
-
-    def _call(self, rhs: Floats) -> Floats:
-        """One phase."""
-        solution: Floats = self._solver._call_pardiso(self._matrix, rhs)
-        return solution
-
-    def free(self) -> None:
-        """Give MKL's memory back."""
-        if self._solver is not None:
-            self._solver.free_memory(everything=True)
-
-
-def _pardiso(kind: int) -> Any:
-    """PyPardiso for a matrix type, with the parameters of MKL's iparm that differ from its defaults.
-
-    iparm(10), the size of perturbed pivots: with 1e-13, the default of unsymmetric matrices, one perturbed pivot of
-    a sticking contact left residuals of 1e-3 that GMRES could not remove; with 1e-8, that of symmetric ones, 1e-7.
-    """
-    _tell_where_mkl_is()  # before the import, which looks for it
-    from pypardiso import PyPardisoSolver
-
-    solver = PyPardisoSolver(mtype=kind)
-    symmetric = ((1, 1), (2, 3), (10, 13), (11, 0), (13, 0), (21, 1))
-    unsymmetric = ((1, 1), (2, 3), (10, 8), (11, 1), (13, 1))
-    for parameter, value in symmetric if kind == -2 else unsymmetric:
-        solver.set_iparm(parameter, value)
-    return solver
-
-
-def _tell_where_mkl_is() -> None:
-    """PyPardiso would search the whole environment for MKL's library; its wheel knows."""
-    if "PYPARDISO_MKL_RT" in os.environ:
-        return
-    for file in files("mkl") or ():
-        if "mkl_rt" in file.name:
-            os.environ["PYPARDISO_MKL_RT"] = str(file.locate())
-            return
-
-
-class SuperLU:
-    """SciPy's SuperLU in symmetric mode."""
-
-    name = "superlu"
-
-    def __init__(self) -> None:
-        self._factor: Any = None
-
-    def factorise(self, tangent: Tangent) -> None:
-        """Factorise the full matrix."""
-        options = {"SymmetricMode": tangent.excess is None}
-        ordering = "MMD_AT_PLUS_A" if tangent.excess is None else "COLAMD"
-        pivoting = 0.01 if tangent.excess is None else 1.0
-        self._factor = splu(tangent.full().tocsc(), permc_spec=ordering, diag_pivot_thresh=pivoting, options=options)
-
-    def back_substitute(self, rhs: Floats) -> Floats:
-        """Solve with the last factorisation."""
-        solution: Floats = self._factor.solve(rhs)
-        return solution
-
-    def free(self) -> None:
-        """Give its memory back."""
-        self._factor = None
 
 
 class LinearSolver:
@@ -151,9 +45,10 @@ class LinearSolver:
 
     def __init__(self, shift: Floats) -> None:
         self._shift = shift
-        self._registry: list[type[Pardiso] | type[SuperLU]] = [Pardiso, SuperLU]
+        self._registry: list[type[Factorisation]] = [Pardiso, PivotingPardiso, SuperLU]
         self._current: Factorisation | None = None
-        self._failures: Counter[str] = Counter()
+        self._failures: Counter[str] = Counter()  # one after the other
+        self._rest: Counter[str] = Counter()  # solutions for which each is not asked
         self.name = Pardiso.name
         """Name of the factorisation used last."""
 
@@ -180,7 +75,8 @@ class LinearSolver:
             if error <= goal.accepted:
                 return solution
         reasons = []
-        for kind in tuple(self._registry):
+        asked = self._asked()
+        for kind in asked:
             try:
                 self._factorise(tangent, kind, goal.shift)
                 solution, error = self._refined(tangent, rhs, KRYLOV_ITERATIONS, goal, REFINEMENTS)
@@ -188,18 +84,26 @@ class LinearSolver:
                 reasons.append(f"{kind.name}: {failure}")
             else:
                 if error <= goal.accepted:
-                    self._remember_success(kind.name)
+                    self._remember_success(kind, asked)
                     return solution
                 reasons.append(f"{kind.name}: {goal.measure.__name__.strip('_').replace('_', ' ')} {error:.1e}")
         raise LinearSolveError("; ".join(reasons))
 
-    def _remember_success(self, name: str) -> None:
-        """Those before it in the registry have failed on the same matrix; they are given up after a few times."""
-        names = [kind.name for kind in self._registry]
-        self._failures.update(names[: names.index(name)])
-        self._failures[name] = 0
-        self._registry = [kind for kind in self._registry if self._failures[kind.name] < MOST_FAILURES]
-        self.name = name
+    def _asked(self) -> list[type[Factorisation]]:
+        """The registry, without those that rest, but for the last one, which always answers."""
+        awake = [kind for kind in self._registry if not self._rest[kind.name]]
+        self._rest -= Counter(self._rest.keys())
+        return awake or self._registry[-1:]
+
+    def _remember_success(self, kind: type[Factorisation], asked: list[type[Factorisation]]) -> None:
+        """Those asked before it failed on a matrix that it solved: from the second time on they rest for 2, 6, 14 ...
+        solutions, then they are asked again.
+        """
+        self._failures[kind.name] = 0
+        for failed in asked[: asked.index(kind)]:
+            self._failures[failed.name] += 1
+            self._rest[failed.name] = min(2 ** self._failures[failed.name] - 2, LONGEST_REST)
+        self.name = kind.name
 
     def may_reuse(self, changed: int) -> bool:
         """Whether the last factorisation is worth trying after so many constraints have changed their state.
@@ -220,7 +124,7 @@ class LinearSolver:
             self._current.free()
         self._current = None
 
-    def _factorise(self, tangent: Tangent, kind: type[Pardiso] | type[SuperLU], shift: float) -> None:
+    def _factorise(self, tangent: Tangent, kind: type[Factorisation], shift: float) -> None:
         """With a share of the shift."""
         if type(self._current) is not kind:
             self.close()
