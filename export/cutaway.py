@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from export.dot_surface import placed_dot, triangle_surface
+from export.recovery import film_patches
 from export.skin import (
     MM_PER_M,
     PC_PER_MM2_PER_C_PER_M2,
     Skin,
-    film_at_nodes,
     largest_principal,
     nearby_plane,
     nodal_steps,
@@ -260,14 +260,15 @@ def film_map(tet_mesh: TetMesh, step: Step) -> FilmMap:
     local = local.reshape(facets.shape)
     place = tet_mesh.points_mm[nodes] + step.fields.displacement_m[nodes] * MM_PER_M
     corners = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
+    patches, count = film_patches(tet_mesh), len(tet_mesh.points_mm)
     return FilmMap(
         place[:, 0],
         place[:, 1],
         tet_mesh.points_mm[nodes, 0],
         -step.fields.displacement_m[nodes, 2] * MM_PER_M,
         local[:, corners].reshape(-1, 3),
-        100 * film_at_nodes(tet_mesh, largest_principal(step.fields.film_strain))[nodes],
-        PC_PER_MM2_PER_C_PER_M2 * film_at_nodes(tet_mesh, step.fields.charge_density_C_per_m2)[nodes],
+        100 * largest_principal(patches.at_nodes(step.fields.film_strain, count)[nodes]),
+        PC_PER_MM2_PER_C_PER_M2 * patches.at_nodes(step.fields.charge_density_C_per_m2, count)[nodes],
     )
 
 

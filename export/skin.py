@@ -54,12 +54,6 @@ def film_values(tet_mesh: TetMesh, film_tets: Ints, values: Floats) -> Floats:
     return whole
 
 
-def film_at_nodes(tet_mesh: TetMesh, values: Floats) -> Floats:
-    """Film values (k,) or (k, c) at the mesh's nodes: the volume-weighted mean around each, zero off the film."""
-    film = tet_mesh.region_tets("film")
-    return _at_nodes(tet_mesh.tets[film], _volumes(tet_mesh)[film], values, len(tet_mesh.points_mm))
-
-
 def _volumes(tet_mesh: TetMesh) -> Floats:
     """Volumes (m,) of the straight tetrahedra, mm3."""
     a, b, c, d = (tet_mesh.points_mm[tet_mesh.tets[:, i]] for i in range(4))

@@ -11,7 +11,8 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from export.dot_surface import placed_dot
-from export.skin import MM_PER_M, MPA_PER_PA, PC_PER_MM2_PER_C_PER_M2, film_at_nodes, split_nodes, spread
+from export.recovery import FilmPatches, film_patches
+from export.skin import MM_PER_M, MPA_PER_PA, PC_PER_MM2_PER_C_PER_M2, split_nodes, spread
 from geometry.arrays import Floats, Ints
 from geometry.dot import DotShape
 from geometry.files import whole_folder
@@ -76,9 +77,10 @@ def write_results(tet_mesh: TetMesh, result: PressResult, dot_shape: DotShape, f
     the field data "region_<name>" holds each part's number. The collection parts has a named block for each part, with
     stress and strain at nodes; show_in_paraview.py shows it all. The folder appears whole or not at all.
     """
+    patches = film_patches(tet_mesh)
     parts: dict[str, Callable[[Step], Any]] = {
         "segment": lambda step: _segment(tet_mesh, step),
-        "film": lambda step: _film(tet_mesh, step),
+        "film": lambda step: _film(tet_mesh, patches, step),
         "contact": lambda step: _contact(tet_mesh, step),
         "dot": lambda step: _dot(tet_mesh, dot_shape, step),
     }
@@ -141,7 +143,7 @@ def _parts(tet_mesh: TetMesh, step: Step) -> dict[str, Any]:
     return blocks
 
 
-def _film(tet_mesh: TetMesh, step: Step) -> Any:
+def _film(tet_mesh: TetMesh, patches: FilmPatches, step: Step) -> Any:
     """The film's tetrahedra alone, in the film's own axes."""
     fields = step.fields
     nodes, tets = _compact(tet_mesh.tets[fields.film_tets])
@@ -157,7 +159,7 @@ def _film(tet_mesh: TetMesh, step: Step) -> Any:
         "nodal_charge_density_pC_per_mm2": (charge, ()),
     }
     for name, (values, axes) in at_nodes.items():
-        _add(grid.point_data, name, film_at_nodes(tet_mesh, values)[nodes], axes)
+        _add(grid.point_data, name, patches.at_nodes(values, len(tet_mesh.points_mm))[nodes], axes)
     return grid
 
 

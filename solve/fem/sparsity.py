@@ -93,11 +93,15 @@ class Tangent:
     excess: sp.csr_matrix | None = None
 
     def __matmul__(self, vector: Floats) -> Floats:
-        diagonal = self.upper.data[self._leading]
-        product: Floats = self.upper @ vector + self.upper.T @ vector - diagonal * vector
+        product: Floats = self.upper @ vector + self.upper.T @ vector - self.diagonal * vector
         if self.excess is not None:
             product += self.excess.T @ vector
         return product
+
+    @property
+    def diagonal(self) -> Floats:
+        """Its entries (n,)."""
+        return np.asarray(self.upper.data[self._leading])
 
     @property
     def _leading(self) -> Ints:
@@ -223,6 +227,10 @@ class Term(ABC):
     def status(self, trial: Trial, history: History) -> Bools:
         """Discrete states (open or touching, stick or slip) that must repeat before Newton has converged."""
         return np.zeros(0, bool)
+
+    def elements_in(self, trial: Trial, status: Bools) -> Iterator[Block] | None:
+        """As elements, with constraints in these states in place of the trial's own; None where there is no way."""
+        return None
 
     def touches(self, status: Bools) -> bool:
         """Whether the dot touches, by the discrete states of this term."""

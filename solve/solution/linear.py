@@ -1,7 +1,8 @@
 """Solution of the indefinite tangent, with a residual check after every solve.
 
-A factorisation whose answer is wrong is replaced by the next one of solve.solution.factorisation: PARDISO, PARDISO with
-stronger pivoting, SuperLU. Each is asked again later, so that one bad matrix does not slow down all that follow.
+A factorisation whose answer is wrong is replaced by the next one of solve.solution.factorisation: PARDISO in single and
+in double precision, PARDISO with stronger pivoting, SuperLU. Each is asked again later, so that one bad matrix does not
+slow down all that follow.
 Two measures: Newton's method asks for a relative residual |r| / |b|, which its next iteration mends anyway. Where
 nothing comes after, as in derivatives, that measure is no good: with a film a million times stiffer than its medium
 rounding alone leaves a |r| / |b| of 1e-7 of a right solution, while 1e-9 may hide an error of 3 % in the soft part. The
@@ -11,7 +12,8 @@ Higham, Accuracy and Stability of Numerical Algorithms, 2002, ch. 12).
 The contact rows have a zero diagonal, which costs pivots; the matrix that is factorised carries a small negative one
 instead, and GMRES preconditioned by it solves the true system in a few back substitutions (Saad, Iterative Methods
 for Sparse Linear Systems, 2003, ch. 9). A factorisation costs tens of them, so one of an earlier Newton step is used
-again where the tangent has changed little.
+again where the tangent has changed little; constraints that have opened since are released from it
+(solve.solution.preconditioner).
 """
 
 from collections import Counter
@@ -23,14 +25,18 @@ from scipy.sparse.linalg import LinearOperator, gmres
 
 from geometry.arrays import Floats
 from solve.fem.sparsity import Tangent
-from solve.solution.factorisation import Factorisation, Pardiso, PivotingPardiso, SuperLU
+from solve.solution.factorisation import Factorisation, Pardiso, PivotingPardiso, SinglePardiso, SuperLU
+from solve.solution.preconditioner import Preconditioner
 
 KRYLOV_ITERATIONS = 18  # with a factorisation of the same matrix
 REFINEMENTS = 5  # as LAPACK's xSYRFS; each must at least halve the error
 REFINED, ACCEPTED = 1e-12, 1e-10  # backward errors: refinement goes on down to the first, the second will do
 WEAK_SHIFT = 1e-4  # of Newton's: many right-hand sides share the factorisation, and each then takes fewer iterations
 LONGEST_REST = 64  # solutions
-EVENS_OUT = 15_000, 20.0, 2.0 / 3.0  # unknowns, back substitutions that cost as much as a factorisation, exponent
+SAFETY, LITTLE = 0.3, 0.1  # a refinement gains what is wanted and this much more, and a digit at least
+EASY = 4  # back substitutions of a solution that the factorisation fits well
+CLOSED, OPENED = 2.0, 0.25  # back substitutions that a constraint costs which has closed or opened since
+EVENS_OUT = 15_000, 14.0, 2.0 / 3.0  # unknowns, back substitutions that cost as much as a factorisation, exponent
 
 
 class LinearSolveError(RuntimeError):
@@ -45,11 +51,13 @@ class LinearSolver:
 
     def __init__(self, shift: Floats) -> None:
         self._shift = shift
-        self._registry: list[type[Factorisation]] = [Pardiso, PivotingPardiso, SuperLU]
-        self._current: Factorisation | None = None
+        self._multipliers = np.flatnonzero(shift)
+        self._registry: list[type[Factorisation]] = [SinglePardiso, Pardiso, PivotingPardiso, SuperLU]
+        self._current: Preconditioner | None = None
+        self._excess = 0  # back substitutions since the factorisation that one of the same tangent would have saved
         self._failures: Counter[str] = Counter()  # one after the other
         self._rest: Counter[str] = Counter()  # solutions for which each is not asked
-        self.name = Pardiso.name
+        self.name = self._registry[0].name
         """Name of the factorisation used last."""
 
     def solve(self, tangent: Tangent, rhs: Floats, tolerance: float, similar: bool = False) -> Floats:
@@ -58,7 +66,7 @@ class LinearSolver:
         similar : the tangent has changed little since the last factorisation.
         LinearSolveError when every factorisation fails.
         """
-        return self._solve(tangent, rhs, similar, _Goal(_relative_residual, tolerance, tolerance, tolerance, 1.0, 0))
+        return self._solve(tangent, rhs, similar, _Goal(_relative_residual, tolerance, tolerance, tolerance, 1.0, 1))
 
     def solve_to_round_off(self, tangent: Tangent, rhs: Floats, similar: bool = False) -> Floats:
         """Solve A x = rhs by iterative refinement until x is exact for coefficients that differ by round-off.
@@ -70,11 +78,14 @@ class LinearSolver:
 
     def _solve(self, tangent: Tangent, rhs: Floats, similar: bool, goal: "_Goal") -> Floats:
         """With the last factorisation where that will do, else with the first of the registry that does."""
+        reasons = []
         if similar and self._current is not None:
+            before = self._current.back_substitutions
+            self._current.adapt(tangent)
             solution, error = self._refined(tangent, rhs, self._patience, goal, goal.similar_refinements)
+            self._excess += max(self._current.back_substitutions - before - EASY, 0)
             if error <= goal.accepted:
                 return solution
-        reasons = []
         asked = self._asked()
         for kind in asked:
             try:
@@ -82,6 +93,7 @@ class LinearSolver:
                 solution, error = self._refined(tangent, rhs, KRYLOV_ITERATIONS, goal, REFINEMENTS)
             except Exception as failure:  # MKL absent, zero pivot, out of memory: the next one may do
                 reasons.append(f"{kind.name}: {failure}")
+                self.close()
             else:
                 if error <= goal.accepted:
                     self._remember_success(kind, asked)
@@ -105,12 +117,18 @@ class LinearSolver:
             self._rest[failed.name] = min(2 ** self._failures[failed.name] - 2, LONGEST_REST)
         self.name = kind.name
 
-    def may_reuse(self, changed: int) -> bool:
-        """Whether the last factorisation is worth trying after so many constraints have changed their state.
+    def may_reuse(self, tangent: Tangent, changed: int | None) -> bool:
+        """Whether the last factorisation is worth trying for a tangent.
 
-        Each costs GMRES up to two more back substitutions.
+        changed : number of discrete states that differ from those of the last solution, None after another load; of a
+        symmetric tangent the constraints that differ from the factorised ones tell more.
         """
-        return 2 * changed <= self._patience // 2
+        if self._current is None or self._excess > 2 * self._patience:
+            return False
+        if tangent.excess is not None:
+            return changed is not None and CLOSED * changed <= self._patience // 2
+        closed, opened = self._current.changed(tangent)
+        return CLOSED * closed + OPENED * opened <= self._patience
 
     @property
     def _patience(self) -> int:
@@ -121,18 +139,16 @@ class LinearSolver:
     def close(self) -> None:
         """Give the memory of the factorisation back."""
         if self._current is not None:
-            self._current.free()
+            self._current.direct.free()
         self._current = None
 
     def _factorise(self, tangent: Tangent, kind: type[Factorisation], shift: float) -> None:
         """With a share of the shift."""
-        if type(self._current) is not kind:
+        if self._current is None or type(self._current.direct) is not kind:
             self.close()
-            self._current = kind()
-        assert self._current is not None
-        if tangent.excess is None:
-            tangent = tangent.shifted(shift * self._shift)
-        self._current.factorise(tangent)
+            self._current = Preconditioner(kind(), self._multipliers)
+        self._current.factorise(tangent, shift * self._shift)
+        self._excess = 0
 
     def _refined(
         self, tangent: Tangent, rhs: Floats, iterations: int, goal: "_Goal", refinements: int
@@ -144,7 +160,8 @@ class LinearSolver:
         for _ in range(refinements):
             if error <= goal.refined or not np.isfinite(error):
                 break
-            finer = solution + self._krylov(tangent, residual, goal.krylov, iterations)
+            wanted = max(goal.krylov, min(SAFETY * goal.refined / error, LITTLE))
+            finer = solution + self._krylov(tangent, residual, wanted, iterations)
             left = rhs - tangent @ finer
             less = goal.measure(tangent, rhs, finer, left)
             if not less < error:
@@ -156,11 +173,12 @@ class LinearSolver:
 
     def _krylov(self, tangent: Tangent, rhs: Floats, tolerance: float, iterations: int) -> Floats:
         """GMRES preconditioned from the right by the last factorisation."""
-        direct = self._current
-        assert direct is not None
-        operator = LinearOperator(tangent.upper.shape, lambda v: tangent @ direct.back_substitute(v), dtype=float)
-        transformed, _ = gmres(operator, rhs, rtol=0.9 * tolerance, restart=iterations, maxiter=1)
-        return direct.back_substitute(transformed)
+        approximate = self._current
+        assert approximate is not None
+        operator = LinearOperator(tangent.upper.shape, lambda v: tangent @ approximate(v), dtype=float)
+        within = max(0.9 * tolerance, 10.0**-approximate.direct.digits)
+        transformed, _ = gmres(operator, rhs, rtol=within, restart=iterations, maxiter=1)
+        return approximate(transformed)
 
 
 Measure = Callable[[Tangent, Floats, Floats, Floats], float]

@@ -200,7 +200,7 @@ def _equilibrate(system: System, linear: LinearSolver, past: list[State], load: 
     """Newton from the extrapolated past and, where that fails, from the last state."""
     last = past[-1]
     guess = _extrapolate(past, time)
-    if len(past) > 1 and _same_contact(system, guess, load, time, last):
+    if len(past) > 1:
         try:
             return equilibrate(system, linear, guess, load, time, last)
         except NoEquilibriumError:
@@ -211,12 +211,6 @@ def _equilibrate(system: System, linear: LinearSolver, past: list[State], load: 
         if system.unknowns.approach < 0:
             raise
     return equilibrate(system, linear, _touching(system, last, load, time, 1), load, time, last)
-
-
-def _same_contact(system: System, guess: Floats, load: Load, time: float, last: State) -> bool:
-    """Whether the guess touches where the last state does: where contact changes, the past is no guide."""
-    closed = system.contact.closed(system.trial(guess, load, time, last))
-    return np.array_equal(closed, system.contact.closed(system.trial(last.x, last.load, last.time, last)))
 
 
 def _extrapolate(past: list[State], time: float) -> Floats:

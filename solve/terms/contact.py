@@ -168,7 +168,14 @@ class ContactFacets(Term):
     def elements(self, trial: Trial, history: History) -> Iterator[Block]:
         """-sum lambda_i g_i over the active nodes; -lambda_i = 0 in the rows of the others."""
         distance = self._at_quadrature(trial.displacement, trial.move)
-        active, pressure = self._pressed(trial, distance[0]), trial.x[self.pressure_dofs]
+        return self._blocks(trial, distance, self._pressed(trial, distance[0]))
+
+    def elements_in(self, trial: Trial, status: Bools) -> Iterator[Block]:
+        """As elements, with these nodes in contact."""
+        return self._blocks(trial, self._at_quadrature(trial.displacement, trial.move), status)
+
+    def _blocks(self, trial: Trial, distance: tuple[Floats, Floats, Floats], active: Bools) -> Iterator[Block]:
+        pressure = trial.x[self.pressure_dofs]
         yield Block(0, slice(0, len(self.facets)), *self._facets(distance, pressure, active))
         closed = np.where(active, 0.0, -1.0)
         yield Block(1, slice(0, len(closed)), closed[:, None, None], (closed * pressure)[:, None])

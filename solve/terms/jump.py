@@ -235,8 +235,18 @@ class UnilateralInterface(Term):
 
     def elements(self, trial: Trial, history: History) -> Iterator[Block]:
         """Facets: -sum lambda_i g_i over closed nodes. Nodes: -lambda_i^2 / 2 over open ones."""
-        jump, width = self.facets.jump(trial.displacement), self.facets.dofs.shape[1]
-        pressure, closed = trial.x[self.multipliers], self._closed(trial, self._weighted(jump.opening))
+        return self._blocks(trial, self.status(trial, history))
+
+    def elements_in(self, trial: Trial, status: Bools) -> Iterator[Block]:
+        """As elements, with these nodes closed."""
+        return self._blocks(trial, status)
+
+    def _blocks(self, trial: Trial, closed: Bools) -> Iterator[Block]:
+        jump, width, pressure = (
+            self.facets.jump(trial.displacement),
+            self.facets.dofs.shape[1],
+            trial.x[self.multipliers],
+        )
         hats = self.hats * np.append(closed, False)[self.index][:, None, :]
         at = np.einsum("kqi,ki->kq", hats, np.append(pressure, 0.0)[self.index])
         matrices = np.zeros((len(hats), width + 6, width + 6))

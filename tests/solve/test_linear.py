@@ -6,7 +6,7 @@ import scipy.sparse as sp
 
 import solve.solution.linear
 from solve.fem.sparsity import Tangent
-from solve.solution.factorisation import Pardiso, PivotingPardiso, SuperLU
+from solve.solution.factorisation import Pardiso, PivotingPardiso, SinglePardiso, SuperLU
 from solve.solution.linear import LinearSolveError, LinearSolver
 
 TOLERANCE = 1e-10
@@ -33,7 +33,11 @@ def shift(upper, contact_rows=20):
     return value
 
 
-@pytest.mark.parametrize("registry", [[Pardiso], [PivotingPardiso], [SuperLU]], ids=["pardiso", "pivoting", "superlu"])
+@pytest.mark.parametrize(
+    "registry",
+    [[SinglePardiso], [Pardiso], [PivotingPardiso], [SuperLU]],
+    ids=["single", "pardiso", "pivoting", "superlu"],
+)
 def test_saddle_point_system(saddle, registry):
     upper, rhs = saddle
     solver = LinearSolver(shift(upper))
@@ -43,7 +47,11 @@ def test_saddle_point_system(saddle, registry):
     solver.close()
 
 
-@pytest.mark.parametrize("registry", [[Pardiso], [PivotingPardiso], [SuperLU]], ids=["pardiso", "pivoting", "superlu"])
+@pytest.mark.parametrize(
+    "registry",
+    [[SinglePardiso], [Pardiso], [PivotingPardiso], [SuperLU]],
+    ids=["single", "pardiso", "pivoting", "superlu"],
+)
 def test_unsymmetric_system(saddle, registry):
     upper, rhs = saddle
     excess = sp.triu(upper, 1, format="csr") * 0.3
@@ -134,7 +142,11 @@ def stiff_on_soft():
     return upper, np.full(2 * n, 1.0)
 
 
-@pytest.mark.parametrize("registry", [[Pardiso], [PivotingPardiso], [SuperLU]], ids=["pardiso", "pivoting", "superlu"])
+@pytest.mark.parametrize(
+    "registry",
+    [[SinglePardiso], [Pardiso], [PivotingPardiso], [SuperLU]],
+    ids=["single", "pardiso", "pivoting", "superlu"],
+)
 def test_bad_scaling_is_no_failure(stiff_on_soft, registry):
     """Rounding of the stiff chain's forces alone leaves more than 1e-8 of the load, in the right solution too."""
     upper, rhs = stiff_on_soft
