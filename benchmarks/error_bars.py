@@ -1,10 +1,11 @@
 """Stated against true discretisation errors of random designs: python -m benchmarks.error_bars JSON [FIRST COUNT].
 
-The true error is that against the same press on a mesh with four times the unknowns, made by the layered mesher where the
-design allows it. Designs are drawn anew from their number; rows that the file has are not computed again.
+The true error is that against the same press on a mesh with four times the unknowns. Designs are drawn anew from their
+number; rows that the file has are not computed again.
 """
 
 import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -86,7 +87,8 @@ def pressed(tables: dict[str, Any], factor: float) -> tuple[list[float], int]:
     return answers(press_part(None, result, None)), result.unknowns
 
 
-def main(path: Any, first: int, count: int) -> None:
+def main(path: Path, first: int = 0, count: int = 40) -> None:
+    """Compute what the file has not."""
     table = Table(path, "error bars")
     for number in range(first, first + count):
         if table.has(design=number):

@@ -1,9 +1,9 @@
 """Nodal values of the film, recovered from those of its elements by superconvergent patch recovery.
 
-Around each corner node a linear polynomial is fitted to the values at the centroids of the elements there, and its value
-at the node is taken (Zienkiewicz and Zhu, Int. J. Numer. Meth. Eng. 33, 1992, 1331-1364). Means over the elements around
-a node would do inside the film. At its rim they would not: elements that have an edge there and those that have only a
-corner there lie at different distances from it, and their mean follows the elements instead of the field.
+Around each corner node a linear polynomial is fitted to the values at the centroids of the elements there, and its
+value at the node is taken (Zienkiewicz and Zhu, Int. J. Numer. Meth. Eng. 33, 1992, 1331-1364). Means over the elements
+around a node would do inside the film. At its rim they would not: elements that have an edge there and those that have
+only a corner there lie at different distances from it, and their mean follows the elements instead of the field.
 """
 
 from dataclasses import dataclass
@@ -57,7 +57,8 @@ def film_patches(tet_mesh: TetMesh) -> FilmPatches:
     touch = sp.csr_matrix(
         (np.ones(place_of.size), (place_of.ravel(), np.repeat(columns.column, 4))), (len(where), gather.shape[0])
     )
-    patches, weight = _patches(touch, _on_rim(where)), np.bincount(columns.column, columns.volume)
+    weight = np.bincount(columns.column, columns.volume).astype(np.float64)
+    patches = _patches(touch, _on_rim(where))
     fit = _fitted(patches, where, gather @ points.mean(axis=1), weight)
     node, place = _places_of_nodes(tets, place_of)
     return FilmPatches(sp.csr_matrix(fit @ gather), node, place)

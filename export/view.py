@@ -133,7 +133,7 @@ def page(box: tuple[float, float, float, float], title: str) -> tuple[Any, Any, 
 
 def save(figure: Any, path: Any) -> None:
     """Write a PNG of the figure's full size."""
-    figure.savefig(path, dpi=DPI, facecolor="white")
+    figure.savefig(path, dpi=DPI, facecolor="white", pil_kwargs={"compress_level": 3})  # half the time of the usual 6
 
 
 def ruler(axes: Any, view: View, start_mm: Floats, end_mm: Floats, name: str, away: Floats) -> None:

@@ -5,11 +5,11 @@ again. Arrays go into one .npz file without pickle; several processes may write 
 depends on in the program is derived from imports (source_hash), so that an edit forgets it.
 """
 
-import ast
 import hashlib
 import json
 import logging
 import os
+import re
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from functools import cache
@@ -138,13 +138,19 @@ def source_hash(module: str) -> str:
         path = _source_path(waiting.pop())
         if path is None or path in found:
             continue
-        found[path] = path.read_bytes()
-        imported = _imported(ast.parse(found[path]))
-        waiting += imported | (_modules_below(path.parent) if "pkgutil.walk_packages" in imported else set())
-        for data in path.parent.iterdir():
-            if data.suffix in DATA and data.name.encode() in found[path]:
-                found[data] = data.read_bytes()
+        found[path], needed, data = _source(path)
+        waiting += needed
+        found |= data
     return hashlib.sha256(b"".join(found[path] for path in sorted(found))).hexdigest()
+
+
+def _source(path: Path) -> tuple[bytes, set[str], dict[Path, bytes]]:
+    """A source, the modules that it needs, and the data files that it names."""
+    text = path.read_bytes()
+    imported = imported_names(text.decode())
+    needed = imported | (_modules_below(path.parent) if "pkgutil.walk_packages" in imported else set())
+    beside = (data for data in path.parent.iterdir() if data.suffix in DATA and data.name.encode() in text)
+    return text, needed, {data: data.read_bytes() for data in beside}
 
 
 def _source_path(module: str) -> Path | None:
@@ -158,14 +164,19 @@ def _modules_below(folder: Path) -> set[str]:
     return {".".join(path.relative_to(PROGRAM).with_suffix("").parts) for path in folder.rglob("*.py")}
 
 
-def _imported(tree: ast.AST) -> set[str]:
-    """Names that a source imports, with the packages that hold them; some may be no modules."""
-    names: set[str] = set()
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Import):
-            names |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom) and node.module is not None:
-            names |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
+FROM = re.compile(r"^[ \t]*from[ \t]+([\w.]+)[ \t]+import[ \t]+(\([^)]*\)|[^\n#;]*)", re.MULTILINE)
+IMPORT = re.compile(r"^[ \t]*import[ \t]+([^\n#;]*)", re.MULTILINE)
+NAME = re.compile(r"([\w.]+)(?:[ \t]+as[ \t]+\w+)?")
+
+
+def imported_names(source: str) -> set[str]:
+    """Names that a source imports, with the packages that hold them; some may be no modules.
+
+    By the look of its lines, in a tenth of the time of a syntax tree: a name too many does no harm.
+    """
+    names = {name for line in IMPORT.findall(source) for name in NAME.findall(line)}
+    for module, taken in FROM.findall(source):
+        names |= {module, *(f"{module}.{name}" for name in NAME.findall(re.sub(r"#.*", "", taken)))}
     parts = [name.split(".") for name in names]
     return {".".join(one[:count]) for one in parts for count in range(1, len(one) + 1)}
 

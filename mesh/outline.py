@@ -43,6 +43,11 @@ class StackOutline:
         return (0.0 if 0 in self.planes else -self.half_x, 0.0 if 1 in self.planes else -self.half_y)
 
     @property
+    def is_round(self) -> bool:
+        """Whether a part is no box; a cylinder is one in a slice."""
+        return self.shape == "dome" or (self.shape == "cylinder" and not self.is_slice)
+
+    @property
     def dome_radius(self) -> float:
         """Radius of the dome's sphere: (a^2 + h^2) / 2h with the foot's radius a and the height h."""
         height = self.top - self.medium1_top

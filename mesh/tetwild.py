@@ -1,6 +1,7 @@
 """The default mesher: pytetwild (fTetWild) on the merged surfaces of the parts, snapped to their exact surfaces."""
 
 import logging
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -27,11 +28,11 @@ def merged_surface(segment: Segment, stack: StackOutline, detail_mm: float) -> t
     detail_mm : size of the smallest elements or parts; round surfaces get facets that suit it.
     """
     deflection = max(DEFLECTION_MM, DEFLECTION * detail_mm)
+    surfaces = _rounded(segment, stack, deflection) if stack.is_round else _boxes(stack)
     vertices, faces, count = [], [], 0
-    for solid in _solids(segment, stack):
-        points, triangles = solid.tessellate(deflection, TURN_RAD)
-        vertices.append(np.array([tuple(p) for p in points]))
-        faces.append(np.array(triangles, dtype=np.int64) + count)
+    for points, triangles in surfaces:
+        vertices.append(points)
+        faces.append(triangles + count)
         count += len(points)
     return _merged(np.concatenate(vertices), np.concatenate(faces))
 
@@ -47,12 +48,35 @@ def _merged(vertices: Floats, faces: Ints) -> tuple[Floats, Ints]:
     return points, triangles[np.sort(kept)]
 
 
-def _solids(segment: Segment, stack: StackOutline) -> list[Any]:
-    """build123d solids of the stack without its film."""
+CORNERS = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)])
+BOX = np.array(
+    [[0, 3, 1], [0, 2, 3], [4, 5, 7], [4, 7, 6], [0, 1, 5], [0, 5, 4],
+     [2, 7, 3], [2, 6, 7], [0, 6, 2], [0, 4, 6], [1, 3, 7], [1, 7, 5]]
+)  # fmt: skip
+"""Its triangles; lid and base are cut along the same diagonal, so that those of two boxes coincide."""
+
+
+def _boxes(stack: StackOutline) -> Iterator[tuple[Floats, Ints]]:
+    """Corners (8, 3) and triangles (12, 3) of the parts of a stack without its film, none of which is round."""
+    foot = stack.half_x, stack.half_y
+    parts = [(*foot, 0.0, stack.film_bottom), (*foot, stack.film_top, stack.medium1_top)]
+    if stack.shape != "none":
+        half_y = stack.half_y if stack.is_slice else stack.effector_half_y
+        parts.append((stack.effector_half_x, half_y, stack.medium1_top, stack.top))
+    for half_x, half_y, bottom, top in parts:
+        low = np.array([max(-half_x, stack.low[0]), max(-half_y, stack.low[1]), bottom])
+        yield low + CORNERS * (np.array([half_x, half_y, top]) - low), BOX
+
+
+def _rounded(segment: Segment, stack: StackOutline, deflection_mm: float) -> Iterator[tuple[Floats, Ints]]:
+    """Points and triangles of the parts of a stack without its film, by their exact solids."""
     from geometry.solids import layer_solids
 
-    whole = _slab(stack) if stack.is_slice else list(layer_solids(segment, film_thickness_mm=0.0).values())
-    return [_cut(solid, stack) for solid in whole] if stack.planes else whole
+    whole = _dome_slab(stack) if stack.is_slice else list(layer_solids(segment, film_thickness_mm=0.0).values())
+    for solid in whole:
+        cut = _cut(solid, stack) if stack.planes else solid
+        points, triangles = cut.tessellate(deflection_mm, TURN_RAD)
+        yield np.array([tuple(p) for p in points]), np.array(triangles, dtype=np.int64)
 
 
 def _cut(solid: Any, stack: StackOutline) -> Any:
@@ -65,24 +89,19 @@ def _cut(solid: Any, stack: StackOutline) -> Any:
     return (Pos(*(low + length / 2 for low, length in zip(at, size, strict=True))) * Box(*size)) & solid
 
 
-def _slab(stack: StackOutline) -> list[Any]:
-    """The x-z section as a slab: a cylinder is a box then, a dome a circular segment along y."""
+def _dome_slab(stack: StackOutline) -> list[Any]:
+    """The x-z section under a dome as a slab, in which the dome is a circular segment along y."""
     from build123d import Box, Cylinder, Pos, Rot
 
     def box(half_x: float, low: float, high: float) -> Any:
         return Pos(0, 0, (low + high) / 2) * Box(2 * half_x, 2 * stack.half_y, high - low)
 
-    parts = [
+    ridge = Rot(90, 0, 0) * Cylinder(stack.dome_radius, 2 * stack.half_y)
+    return [
         box(stack.half_x, 0.0, stack.film_bottom),
         box(stack.half_x, stack.film_top, stack.medium1_top),
+        Pos(0, 0, stack.dome_centre_z) * ridge & box(2 * stack.dome_radius, stack.medium1_top, stack.top),
     ]
-    if stack.shape == "dome":
-        ridge = Rot(90, 0, 0) * Cylinder(stack.dome_radius, 2 * stack.half_y)
-        above = box(2 * stack.dome_radius, stack.medium1_top, stack.top)
-        parts.append(Pos(0, 0, stack.dome_centre_z) * ridge & above)
-    elif stack.shape != "none":
-        parts.append(box(stack.effector_half_x, stack.medium1_top, stack.top))
-    return parts
 
 
 EFFECTOR = 2  # its region in a stack without film

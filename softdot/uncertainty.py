@@ -7,6 +7,7 @@ mesh and mesher alone are far less than the materials do.
 """
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from math import hypot
 from typing import Any
 
@@ -20,6 +21,7 @@ from solve.solution.linear import LinearSolveError
 from solve.solution.sensitivity import StoppedShortError
 
 COARSER = 2.0
+UNSOLVED = InputError, LinearSolveError, MeshingError, StoppedShortError
 STUDY = {"solid": (0.4, 1.0), "plane-strain": (0.5, 0.6)}
 """Percent of force and of voltage that the default mesh is off: convergence of the default design, and of the same as a
 clamped slice, in docs/verification.md."""
@@ -48,10 +50,10 @@ def uncertainty(config: Config, force_N: float, voltage_V: float) -> dict[str, A
     mesh_source = "convergence study of the default design"
     parts, note = [], _not_estimated(config)
     if note is None:
-        rows = [row for row in material_tolerances(config) if row.counted]
+        rows = _counted(config)
         try:
-            nominal, slopes = KitPress(_coarse(config)).full_load_slopes(_keys(rows))
-        except (InputError, LinearSolveError, MeshingError, StoppedShortError):
+            nominal, slopes = _slopes(config, rows)
+        except UNSOLVED:
             note = LOST["failed"]
         else:
             parts = [_part(row, nominal, slopes, given) for row in rows]
@@ -68,6 +70,22 @@ def uncertainty(config: Config, force_N: float, voltage_V: float) -> dict[str, A
         "discretisation_error": {"force_percent": mesh_error[0], "voltage_percent": mesh_error[1]},
         "uncertainty": {**(_together(parts) if note is None else {}), "parts": parts, "note": note},
     }
+
+
+def prepare(config: Config) -> None:
+    """What uncertainty needs besides force and voltage, left in the cache: it may be done beside the press itself."""
+    if _not_estimated(config) is None:
+        with suppress(*UNSOLVED):
+            _slopes(config, _counted(config))
+
+
+def _counted(config: Config) -> list[Tolerance]:
+    return [row for row in material_tolerances(config) if row.counted]
+
+
+def _slopes(config: Config, rows: Sequence[Tolerance]) -> tuple[Response, dict[str, Response]]:
+    """Response on larger elements, and its derivatives by what the rows depend on. UNSOLVED."""
+    return KitPress(_coarse(config)).full_load_slopes(sorted({key for row in rows for key in row.slopes}))
 
 
 def _not_estimated(config: Config) -> str | None:
@@ -90,10 +108,6 @@ def _known_force(percent: tuple[float, float], given: bool) -> tuple[float, floa
 
 def _together(parts: Sequence[Mapping[str, Any]]) -> dict[str, float]:
     return {name: hypot(*(part[name] for part in parts)) for name in ("force_percent", "voltage_percent")}
-
-
-def _keys(rows: Sequence[Tolerance]) -> list[str]:
-    return sorted({key for row in rows for key in row.slopes})
 
 
 def _part(row: Tolerance, nominal: Response, slopes: Mapping[str, Response], given: bool) -> dict[str, Any]:

@@ -5,11 +5,13 @@ import time
 from argparse import Namespace
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 from export.view import ensure_rendering
 from geometry.arrays import Floats
+from geometry.beside import Ask, beside
 from geometry.dot import DotShape
 from geometry.solids import Part
 from mesh.files.formats import check_formats, write_mesh
@@ -34,6 +36,7 @@ from softdot.console import (
 from softdot.machine import named_when_missing
 from softdot.output import RUN, staged_folder
 from softdot.summary import heading, mesh_part, press_part, stopped_solver
+from softdot.uncertainty import prepare
 from solve.result import PressResult, Step
 
 LOG = logging.getLogger(__name__)
@@ -74,29 +77,28 @@ def run_case(
         check_formats(mesh_formats)
         _ = case.checked
         ensure_rendering()
-        with staged_folder(out, RUN) as folder:
-            summary: dict[str, Any] = heading(case.config) | plain(_fill(case, folder, progress, mesh_formats))
+        with staged_folder(out, RUN) as folder, beside() as ask:
+            summary: dict[str, Any] = heading(case.config) | plain(_fill(case, folder, progress, mesh_formats, ask))
             write_json(folder / RUN.summary, summary)
     return summary
 
 
-def _fill(case: Case, folder: Path, progress: Progress, mesh_formats: Sequence[str]) -> dict[str, Any]:
-    """Everything but summary.json; returns the summary."""
+def _fill(case: Case, folder: Path, progress: Progress, mesh_formats: Sequence[str], ask: Ask) -> dict[str, Any]:
+    """Everything but summary.json; returns the summary. Parts and pictures are made beside mesh, press and files."""
     clock, config, model = StageClock(), case.config, case.model
     summary = {**heading(config), "warnings": [*case.checked[1], *design_warnings(model)]}
     warn(summary["warnings"])
     if config.from_default:
         LOG.info("%s", told(config.from_default, config.model_dump(mode="json")))
-    progress.stage("geometry")
-    with clock("geometry"):
-        parts = case.parts
-    with clock("export"):
-        write_cad(parts, folder / "cad")
+    cad = ask(make_cad, config, folder / "cad")
+    ask(prepare, config)
+    ask(ready_to_draw)
     progress.stage("mesh")
     try:
         with clock("mesh"):
             quality = case.mesh_quality
     except MeshingError as error:
+        clock.seconds["geometry"] = cad.result()
         return {**summary, "solver": stopped_solver(f"meshing: {error}"), "timing_s": clock.seconds}
     if mesh_formats:
         with clock("export"):
@@ -105,6 +107,7 @@ def _fill(case: Case, folder: Path, progress: Progress, mesh_formats: Sequence[s
     with clock("solve"):
         result = case.press(_reporting(progress)).result
         readout, channels = case.amplified(result) or (None, None)
+    clock.seconds["geometry"] = cad.result()
     summary |= {"mesh": mesh_part(quality, result.unknowns), **press_part(model.readout, result, readout, channels)}
     late = result_warnings(model, case.dot, result)
     warn(late)
@@ -116,8 +119,15 @@ def _fill(case: Case, folder: Path, progress: Progress, mesh_formats: Sequence[s
     progress.stage("export")
     with clock("export"):
         so_far = {"timing_s": dict(clock.seconds)}
-        write_outputs(case.dot, result, readout, plain(summary | so_far), folder)
+        write_outputs(case.dot, result, readout, plain(summary | so_far), folder, ask)
     return {**summary, "timing_s": clock.seconds}
+
+
+def make_cad(config: Config, folder: Path) -> float:
+    """The parts and their files; returns how many seconds they took. InputError."""
+    start = time.perf_counter()
+    write_cad(Case(config).parts, folder)
+    return time.perf_counter() - start
 
 
 def write_cad(parts: Sequence[Part], folder: Path) -> None:
@@ -128,18 +138,36 @@ def write_cad(parts: Sequence[Part], folder: Path) -> None:
 
 
 def write_outputs(
-    dot_shape: DotShape, result: PressResult, readout_voltage_V: Floats | None, summary: dict[str, Any], folder: Path
+    dot_shape: DotShape,
+    result: PressResult,
+    readout_voltage_V: Floats | None,
+    summary: dict[str, Any],
+    folder: Path,
+    ask: Ask,
 ) -> None:
-    """ParaView files, pictures and the report of what converged."""
-    from export.pictures import write_pictures
+    """ParaView files, pictures and the report of what converged; the pictures are made beside."""
     from export.report import write_report
     from export.viewer_data import viewer_data
     from export.vtu import write_results
 
     tet_mesh = result.tet_mesh
+    pictures = ask(draw, tet_mesh, result, dot_shape, folder / "pictures", readout_voltage_V)
     write_results(tet_mesh, result, dot_shape, folder / "results")
-    pictures = write_pictures(tet_mesh, result, dot_shape, folder / "pictures", readout_voltage_V)
-    write_report(summary, pictures, viewer_data(tet_mesh, result, dot_shape), folder / "report.html")
+    viewer = viewer_data(tet_mesh, result, dot_shape)
+    write_report(summary, pictures.result(), viewer, folder / "report.html")
+
+
+def ready_to_draw() -> None:
+    """Load what draws, which takes two seconds."""
+    for name in ("matplotlib.figure", "pyvista.plotting", "export.pictures"):
+        import_module(name)
+
+
+def draw(*arguments: Any) -> dict[str, Path]:
+    """As export.pictures.write_pictures."""
+    from export.pictures import write_pictures
+
+    return write_pictures(*arguments)
 
 
 def _reporting(progress: Progress) -> OnStep:

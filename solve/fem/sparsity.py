@@ -188,11 +188,11 @@ class Trial:
 class Block(NamedTuple):
     """Element matrices (s, k, k) and residuals (s, k) of the elements in part of one group of a term.
 
-    Symmetric terms fill the upper triangles only.
+    part : a slice, or the numbers of the elements. Symmetric terms fill the upper triangles only.
     """
 
     group: int
-    part: slice
+    part: slice | Ints
     matrices: Floats
     residuals: Floats
 

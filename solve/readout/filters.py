@@ -17,7 +17,6 @@ from typing import ClassVar, Literal
 import numba as nb
 import numpy as np
 from scipy.linalg import expm
-from scipy.signal import butter, impulse, tf2ss
 
 from geometry.arrays import Floats
 from solve.readout.stages import FILTER
@@ -41,6 +40,8 @@ class Filter:
 
     def transfer(self) -> tuple[Floats, Floats]:
         """Numerator and denominator of H(s) but for the dead time, highest power first."""
+        from scipy.signal import butter  # half a second, which a press without a filter need not wait
+
         corner = 2.0 * np.pi * self.corner_Hz
         if self.quality is None:
             numerator, denominator = butter(self.order, corner, self.kind, analog=True)
@@ -73,6 +74,8 @@ def corner_over_natural(quality: float) -> float:
 @lru_cache(maxsize=64)
 def _discrete(own: Filter, step: float) -> tuple[Floats, Floats, Floats, Floats, float]:
     """A, the gains of the sample before and of this one, c and d of _march, by the exponential of one matrix."""
+    from scipy.signal import tf2ss
+
     a, b, c, d = tf2ss(*own.transfer())
     order = own.order
     generator = np.zeros((order + 2, order + 2))
@@ -88,6 +91,8 @@ def _largest_gain(own: Filter) -> float:
 
     A high-pass of order n has, besides its direct passage, the impulse response of its state space.
     """
+    from scipy.signal import impulse, tf2ss
+
     a, b, c, d = tf2ss(*own.transfer())
     time = np.linspace(0.0, 120.0, 24_001)
     direct = np.abs(d[0, 0])

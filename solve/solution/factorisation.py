@@ -12,7 +12,6 @@ from importlib.metadata import files
 from typing import Any, Protocol
 
 import numpy as np
-import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 from geometry.arrays import Floats

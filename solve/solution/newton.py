@@ -15,7 +15,7 @@ from solve.system import Evaluation, Load, State, System
 from solve.terms.solid import InvertedElementError
 
 LOG = logging.getLogger(__name__)
-TOLERANCE = 1e-9
+TOLERANCE = 1e-10  # of the load: differences of presses, such as a diagnosis takes, are to tell 1e-6 of a parameter
 ROUND_OFF = 1e-12  # of the largest displacement: a smaller correction changes nothing
 ROUNDED_TOLERANCE = 1e-6  # a stiff film on a soft foam: its own round-off may exceed TOLERANCE of a small load
 LEAST_LOAD = 1e-5  # solver units: what is less, the first touch of a moving mass, counts as this much
@@ -68,7 +68,7 @@ def equilibrate(
                 break
             similar = linear.may_reuse(now.tangent, None if status is None else int(np.sum(status != now.status)))
             # inexact Newton: the linear residual need fall neither faster than the nonlinear one nor below its goal
-            loosest = min(0.1 * relative, LOOSEST / max(relative, 1.0))
+            loosest = min(0.01 * relative, LOOSEST / max(relative, 1.0))
             tolerance = min(max(loosest, 0.1 * TOLERANCE / max(relative, 1e-300)), LOOSEST)
             step = linear.solve(now.tangent, -now.residual, tolerance, similar)
             share, before = circles.share(now.status, norm), x

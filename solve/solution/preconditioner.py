@@ -6,8 +6,8 @@ more unknown mu_j in row j lets go of it, one more equation gives dlambda_j. Wit
 
     K z + E mu = r (0 in the rows j),    E^t z = -r_j,    (E^t K^-1 E) mu = E^t K^-1 r + r_j,
 
-which takes a back substitution for each released constraint, many at once, and a small dense matrix (Nocedal and Wright,
-Numerical Optimization, 2006, ch. 16, on the Schur complement method for changes of the active set).
+which takes a back substitution for each released constraint, many at once, and a small dense matrix (Nocedal and
+Wright, Numerical Optimization, 2006, ch. 16, on the Schur complement method for changes of the active set).
 """
 
 from dataclasses import dataclass

@@ -1,16 +1,9 @@
-"""Presses that are not on disk yet, on all cores: one process a core, fed one press at a time.
-
-A process that presses the 3D model: jobs come in on standard input, answers go out on standard output.
-
-Started with one argument: the process number of its parent.
-"""
+"""Presses that are not on disk yet, on all cores: one process a core, fed one press at a time."""
 
 import os
-import pickle
-import subprocess
-import sys
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from concurrent.futures import wait
+from contextlib import ExitStack
 from queue import Empty, SimpleQueue
 from threading import Event, Thread
 from typing import Any
@@ -19,7 +12,7 @@ import numpy as np
 
 from geometry.arrays import Floats
 from geometry.base import Report
-from geometry.files import end_with_parent
+from geometry.beside import Ask, beside
 from geometry.threads import ONE_THREAD
 from solve.solution.newton import NoEquilibriumError
 from solve.tables import job as job_files
@@ -40,24 +33,6 @@ def _outputs_of(job: Job) -> Floats:
     if found is not None:
         job_files.keep_equilibria(job_files.key(job), found)
     return outputs
-
-
-def work() -> None:
-    """Answer jobs on standard input until it ends. What libraries print goes to standard error."""
-    end_with_parent(int(sys.argv[1]))
-    answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
-    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
-    while True:
-        try:
-            job = pickle.load(sys.stdin.buffer)
-        except EOFError:
-            return
-        pickle.dump(answer(job), answers)
-        answers.flush()
-
-
-if __name__ == "__main__":
-    work()
 
 
 WORTH_A_PROCESS = 4  # presses: a process takes seconds to start
@@ -108,50 +83,25 @@ def _pressed(jobs: dict[str, Job | Reduction]) -> Iterator[tuple[str, Any]]:
     for item in jobs.items():
         waiting.put(item)
     over = Event()
-    with _processes(count) as processes:
+    with ExitStack() as processes:
         try:
-            for process in processes:
-                Thread(target=_feed, args=(process, waiting, done, over), daemon=True).start()
+            for _ in range(count):
+                ask = processes.enter_context(beside(ONE_THREAD))
+                Thread(target=_feed, args=(ask, waiting, done, over), daemon=True).start()
             for _ in jobs:
-                yield done.get()
+                name, future = done.get()
+                yield name, future.result()
         finally:
             over.set()
 
 
-@contextmanager
-def _processes(count: int) -> Iterator[list["subprocess.Popen[bytes]"]]:
-    """Workers that end with the block, also when it is interrupted."""
-    command = [sys.executable, "-m", __name__, str(os.getpid())]
-    own = {**os.environ, **ONE_THREAD, "PYTHONPATH": os.pathsep.join(sys.path)}
-    pipe = subprocess.PIPE
-    started = [  # in sessions of their own: Ctrl-C in the terminal reaches this process alone, which ends them
-        subprocess.Popen(command, env=own, stdin=pipe, stdout=pipe, start_new_session=True) for _ in range(count)
-    ]
-    try:
-        yield started
-    finally:
-        for process in started:
-            process.kill()
-            process.wait()
-
-
-def _feed(
-    process: "subprocess.Popen[bytes]", waiting: "SimpleQueue[Any]", done: "SimpleQueue[Any]", over: Event
-) -> None:
-    """One worker's share of the jobs. What a worker that dies leaves undone is done here."""
-    assert process.stdin is not None
-    assert process.stdout is not None
+def _feed(ask: Ask, waiting: "SimpleQueue[Any]", done: "SimpleQueue[Any]", over: Event) -> None:
+    """One worker's share of the jobs."""
     while not over.is_set():
         try:
             name, job = waiting.get_nowait()
         except Empty:
             return
-        try:
-            pickle.dump(job, process.stdin)
-            process.stdin.flush()
-            answer = pickle.load(process.stdout)
-        except (OSError, EOFError, pickle.UnpicklingError):
-            if over.is_set():
-                return
-            answer = answer(job)
-        done.put((name, answer))
+        future = ask(answer, job)
+        wait((future,))
+        done.put((name, future))

@@ -176,33 +176,35 @@ class ContactFacets(Term):
 
     def _blocks(self, trial: Trial, distance: tuple[Floats, Floats, Floats], active: Bools) -> Iterator[Block]:
         pressure = trial.x[self.pressure_dofs]
-        yield Block(0, slice(0, len(self.facets)), *self._facets(distance, pressure, active))
+        near = np.flatnonzero(active[self.index].any(axis=1))  # of the others all is zero
+        yield Block(0, near, *self._facets(near, distance, pressure, active))
         closed = np.where(active, 0.0, -1.0)
-        yield Block(1, slice(0, len(closed)), closed[:, None, None], (closed * pressure)[:, None])
+        yield Block(1, np.arange(len(closed)), closed[:, None, None], (closed * pressure)[:, None])
 
     def _facets(
-        self, distance: tuple[Floats, Floats, Floats], pressure: Floats, active: Bools
+        self, near: Ints, distance: tuple[Floats, Floats, Floats], pressure: Floats, active: Bools
     ) -> tuple[Floats, Floats]:
-        """Matrices (k, 25, 25) and residuals (k, 25); rows of inactive nodes carry no coupling."""
-        phi = HATS
-        gap, normal, hessian = distance
-        on = active[self.index].astype(float)
-        lam = np.einsum("qi,ki->kq", phi, np.where(active, pressure, 0.0)[self.index])
+        """Matrices (k, 25, 25) and residuals (k, 25) of some facets; rows of inactive nodes carry no coupling."""
+        phi, index, area = HATS, self.index[near], self.area[near]
+        gap, normal, hessian = (part[near] for part in distance)
+        on = active[index].astype(float)
+        lam = np.einsum("qi,ki->kq", phi, np.where(active, pressure, 0.0)[index])
         # generalised direction of each unknown: displacement of node n along i, then the approach along -z
-        count = len(self.facets)
-        direction = np.zeros((len(phi), 19, 3))
-        direction[:, :18] = np.einsum("qn,ij->qnij", SHAPES, np.eye(3)).reshape(len(phi), 18, 3)
+        count, points = len(near), len(phi)
+        direction = np.zeros((points, 19, 3))
+        direction[:, :18] = np.einsum("qn,ij->qnij", SHAPES, np.eye(3)).reshape(points, 18, 3)
         direction[:, 18, 2] = 1.0  # the dot moves by -z: the gap changes as if the surface moved by +z
-        slope = np.einsum("kqi,qdi->kqd", normal, direction)
+        slope = np.matmul(direction, normal[..., None])[..., 0]
         columns = np.r_[0:18, 24]
         ke, re = np.zeros((count, 25, 25)), np.zeros((count, 25))
-        curvature = np.einsum("kq,kq,qdi,kqij,qej->kde", self.area, lam, direction, hessian, direction, optimize=True)
+        bent = np.matmul((area * lam)[..., None, None] * hessian, direction.swapaxes(1, 2))
+        curvature = np.matmul(direction.transpose(1, 0, 2).reshape(19, -1), bent.reshape(count, 3 * points, 19))
         ke[:, columns[:, None], columns[None, :]] = -curvature
-        coupling = -np.einsum("kq,kqd,qi->kdi", self.area, slope, phi, optimize=True) * on[:, None, :]
+        coupling = -np.matmul((area[..., None] * slope).swapaxes(1, 2), phi) * on[:, None, :]
         ke[:, columns, 18:24] = coupling
         ke[:, 18:24, 24] = coupling[:, 18, :]
-        re[:, columns] = -np.einsum("kq,kq,kqd->kd", self.area, lam, slope)
-        re[:, 18:24] = -np.einsum("kq,qi,kq->ki", self.area, phi, gap) * on
+        re[:, columns] = -np.einsum("kq,kqd->kd", area * lam, slope)
+        re[:, 18:24] = -np.einsum("kq,qi->ki", area * gap, phi) * on
         return ke, re
 
     def force(self, displacement: Floats, move: Floats, pressure: Floats) -> Floats:

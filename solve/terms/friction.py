@@ -122,10 +122,11 @@ class FrictionalContact(Term):
         nodal = self._nodal(trial)
         law = self._rows(nodal)
         ke, re = np.zeros((len(self.contact.dofs), 43, 43)), np.zeros((len(self.contact.dofs), 43))
-        ke[:, :25, :25] = np.triu(frictionless.matrices) + np.triu(frictionless.matrices, 1).swapaxes(1, 2)
-        re[:, :25] = frictionless.residuals
+        near = frictionless.part
+        ke[near, :25, :25] = np.triu(frictionless.matrices) + np.triu(frictionless.matrices, 1).swapaxes(1, 2)
+        re[near, :25] = frictionless.residuals
         self._add_friction(trial, nodal, law, ke, re)
-        yield Block(0, frictionless.part, ke, re)
+        yield Block(0, slice(0, len(ke)), ke, re)
         nodes = np.zeros((len(law.row), 4, 4))
         nodes[:, 0, 0] = open_rows.matrices[:, 0, 0]
         nodes[:, 1:, 0], nodes[:, 1:, 1:] = law.by_pressure, law.by_tau

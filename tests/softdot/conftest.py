@@ -1,11 +1,14 @@
 """A pipeline whose stages are replaced by quick stand-ins, and a way to call the command line."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future
+from contextlib import contextmanager
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
+from geometry.beside import Ask
 from softdot.case import Case
 from softdot.commands import run
 from tests.softdot.stand_ins import cap_of_height, one_tetrahedron, result_of
@@ -46,8 +49,7 @@ def stages(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
         return write
 
     def written(*args: object) -> None:
-        folder = args[-1]
-        assert isinstance(folder, Path)
+        folder = next(arg for arg in args if isinstance(arg, Path))
         file_writer("segment.pvd")(folder / "results")
         file_writer("force.png")(folder / "pictures")
         (folder / "report.html").write_text("stand-in", "utf-8")
@@ -73,4 +75,18 @@ def stages(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
         monkeypatch.setattr(Case, name, called(name))
     for name in ("write_cad", "write_outputs"):
         monkeypatch.setattr(run, name, called(name))
+    monkeypatch.setattr(run, "beside", at_once)
+    monkeypatch.setattr(run, "prepare", lambda _: None)
     return fakes
+
+
+@contextmanager
+def at_once() -> Iterator[Ask]:
+    """In place of geometry.beside: calls are done here, where the stand-ins are."""
+
+    def ask(function: Callable[..., object], *arguments: object) -> Future[object]:
+        future: Future[object] = Future()
+        future.set_result(function(*arguments))
+        return future
+
+    yield ask

@@ -1,5 +1,6 @@
 """What softdot keeps on disk is made anew when the source that it depends on is edited, and only then."""
 
+import ast
 import shutil
 from pathlib import Path
 
@@ -65,3 +66,12 @@ def test_an_edited_source_makes_anew_what_depends_on_it(edited, made_anew, copie
     path.write_text(text, "utf-8")
     assert {name for name in before if after[name] != before[name]} == made_anew
     assert kept() == before
+
+
+def test_no_import_of_this_program_is_overlooked():
+    """Against Python's own syntax tree, for every module."""
+    for path in (path for package in PACKAGES for path in (PROGRAM / package).rglob("*.py")):
+        source = path.read_text("utf-8")
+        nodes = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.ImportFrom) and node.module]
+        meant = {node.module for node in nodes} | {f"{node.module}.{one.name}" for node in nodes for one in node.names}
+        assert meant <= cache.imported_names(source), path

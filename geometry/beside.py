@@ -1,0 +1,78 @@
+"""A process beside this one that does one call after another, on a core that this one leaves free.
+
+Calls and answers are pickled through its standard input and output. Started with one argument: the process number of
+its parent. It ends with its parent, however that ends.
+"""
+
+import os
+import pickle
+import subprocess
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import contextmanager
+from threading import Event
+from typing import Any
+
+from geometry.files import end_with_parent
+
+Ask = Callable[..., "Future[Any]"]
+"""Of a function, which a module holds under its name, and its arguments: what it returns or raises, later."""
+
+
+@contextmanager
+def beside(variables: Mapping[str, str] | None = None) -> Iterator[Ask]:
+    """A process for the time of a block, with these environment variables beside those of this process.
+
+    Calls are done in the order in which they were asked for; what a process that dies leaves undone is done here. At
+    the end of the block, or when it is interrupted, calls that are not done yet are given up.
+    """
+    command = [sys.executable, "-m", __name__, str(os.getpid())]
+    own = {**os.environ, **(variables or {}), "PYTHONPATH": os.pathsep.join(sys.path)}
+    pipe = subprocess.PIPE
+    # in a session of its own: Ctrl-C in the terminal reaches this process alone, which ends it
+    process = subprocess.Popen(command, env=own, stdin=pipe, stdout=pipe, start_new_session=True)
+    over, pool = Event(), ThreadPoolExecutor(1)
+    try:
+        yield lambda function, *arguments: pool.submit(_answer, process, over, function, *arguments)
+    finally:
+        over.set()
+        process.kill()
+        process.wait()
+        pool.shutdown(cancel_futures=True)
+
+
+def _answer(process: "subprocess.Popen[bytes]", over: Event, function: Callable[..., Any], *arguments: Any) -> Any:
+    assert process.stdin is not None
+    assert process.stdout is not None
+    try:
+        pickle.dump((function, arguments), process.stdin)
+        process.stdin.flush()
+        done, value = pickle.load(process.stdout)
+    except (OSError, EOFError, pickle.UnpicklingError):
+        return None if over.is_set() else function(*arguments)
+    if not done:
+        raise value
+    return value
+
+
+def work() -> None:
+    """Do what standard input asks for until it ends. What libraries print goes to standard error."""
+    end_with_parent(int(sys.argv[1]))
+    answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
+    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
+    while True:
+        try:
+            function, arguments = pickle.load(sys.stdin.buffer)
+        except EOFError:
+            return
+        try:
+            answer = pickle.dumps((True, function(*arguments)))
+        except Exception as error:
+            answer = pickle.dumps((False, error))
+        answers.write(answer)
+        answers.flush()
+
+
+if __name__ == "__main__":
+    work()
