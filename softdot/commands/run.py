@@ -13,6 +13,7 @@ from export.view import ensure_rendering
 from geometry.arrays import Floats
 from geometry.beside import Ask, beside
 from geometry.dot import DotShape
+from geometry.parameters import Segment
 from geometry.solids import Part
 from mesh.files.formats import check_formats, write_mesh
 from mesh.types import MeshingError
@@ -90,7 +91,7 @@ def _fill(case: Case, folder: Path, progress: Progress, mesh_formats: Sequence[s
     warn(summary["warnings"])
     if config.from_default:
         LOG.info("%s", told(config.from_default, config.model_dump(mode="json")))
-    cad = ask(make_cad, config, folder / "cad")
+    cad = ask(make_cad, model.segment, case.dot, folder / "cad")
     ask(prepare, config)
     ask(ready_to_draw)
     progress.stage("mesh")
@@ -123,10 +124,12 @@ def _fill(case: Case, folder: Path, progress: Progress, mesh_formats: Sequence[s
     return {**summary, "timing_s": clock.seconds}
 
 
-def make_cad(config: Config, folder: Path) -> float:
+def make_cad(segment: Segment, dot_shape: DotShape, folder: Path) -> float:
     """The parts and their files; returns how many seconds they took. InputError."""
+    from geometry import assembly
+
     start = time.perf_counter()
-    write_cad(Case(config).parts, folder)
+    write_cad(assembly.build_parts(segment, dot_shape), folder)
     return time.perf_counter() - start
 
 

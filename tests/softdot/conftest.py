@@ -8,6 +8,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from geometry import assembly
 from geometry.beside import Ask
 from softdot.case import Case
 from softdot.commands import run
@@ -69,7 +70,8 @@ def stages(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
     def called(name: str) -> Callable[..., object]:
         return lambda *args, **_: getattr(fakes, name)(*args)  # looked up each time: a test can exchange one
 
-    for name in ("checked", "parts", "mesh", "mesh_quality"):
+    monkeypatch.setattr(assembly, "build_parts", called("parts"))
+    for name in ("checked", "mesh", "mesh_quality"):
         monkeypatch.setattr(Case, name, property(called(name)))
     for name in ("solve", "amplified", "uncertainty"):
         monkeypatch.setattr(Case, name, called(name))
