@@ -1,10 +1,11 @@
 """A factorisation as a preconditioner, also after constraints that it holds have been released.
 
 A constraint j that is closed reads G_j du = r_j, with its pressure as the unknown dlambda_j in the other rows; open, it
-reads -dlambda_j = r_j. The matrix with some constraints released follows from the factorised one, K, by bordering: one
-more unknown mu_j in row j lets go of it, one more equation gives dlambda_j. With E the columns of these unknowns,
+reads -dlambda_j = r_j, and no other row has dlambda_j. The matrix with some constraints released follows from the
+factorised one, K, by bordering: one more unknown mu_j in row j lets go of it, one more equation takes dlambda_j out of
+the others. With E the columns of these unknowns,
 
-    K z + E mu = r (0 in the rows j),    E^t z = -r_j,    (E^t K^-1 E) mu = E^t K^-1 r + r_j,
+    K z + E mu = r (0 in the rows j),    E^t z = 0,    (E^t K^-1 E) mu = E^t K^-1 r,
 
 which takes a back substitution for each released constraint, many at once, and a small dense matrix (Nocedal and
 Wright, Numerical Optimization, 2006, ch. 16, on the Schur complement method for changes of the active set).
@@ -13,11 +14,13 @@ Wright, Numerical Optimization, 2006, ch. 16, on the Schur complement method for
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import lu_factor, lu_solve
 
 from geometry.arrays import Bools, Floats, Ints
 from solve.fem.sparsity import Tangent
 from solve.solution.factorisation import Factorisation
+
+
+NOTHING = 1e-12  # relative singular value of a constraint that holds nothing
 
 
 class Preconditioner:
@@ -57,7 +60,7 @@ class Preconditioner:
             units[new, np.arange(len(new))] = 1.0
             self._columns.update(zip(new.tolist(), self.direct.back_substitute(units).T, strict=True))
         columns = np.column_stack([self._columns[row] for row in opened.tolist()])
-        self._release = _Release(opened, columns, lu_factor(columns[opened]))
+        self._release = _Release(opened, columns, np.linalg.pinv(columns[opened], rcond=NOTHING))
 
     def __call__(self, rhs: Floats) -> Floats:
         """Solve approximately, (n,)."""
@@ -72,15 +75,15 @@ class Preconditioner:
 
 @dataclass(frozen=True)
 class _Release:
-    """rows (m,), columns K^-1 E (n, m) and the factors of the dense E^t K^-1 E."""
+    """rows (m,), columns K^-1 E (n, m) and the pseudo-inverse (m, m) of E^t K^-1 E: a constraint may hold nothing."""
 
     rows: Ints
     columns: Floats
-    factors: tuple[Floats, Ints]
+    inverse: Floats
 
     def applied(self, held: Floats, rhs: Floats) -> Floats:
         """The solution z (n,) from that with the constraints held."""
-        force = lu_solve(self.factors, held[self.rows] + rhs[self.rows])
+        force = self.inverse @ held[self.rows]
         result: Floats = held - self.columns @ force
         result[self.rows] = -rhs[self.rows]
         return result

@@ -49,6 +49,27 @@ def test_tangent_is_the_derivative_of_the_residual(force_driven):
     assert np.linalg.norm(here.tangent @ direction - difference) < 1e-6 * np.linalg.norm(difference)
 
 
+def test_switched_constraints_are_those_of_a_state_that_has_them():
+    """Pressures move nodes in and out of contact; the gap does not know of them."""
+    stack = segment()
+    dot = cap(stack)
+    system = build_system(stack, materials(), dot, coarse_mesh(stack, dot), force_driven=False)
+    rest, load = system.at_rest(Load((0.0, 0.0), 0.0)), Load((0.0, 0.0), 0.05)
+    trial = system.trial(1e-4 * np.random.default_rng(0).standard_normal(system.count), load, 1.0, rest)
+    now = system.evaluate(trial, rest.histories)
+    wanted = ~now.status
+    wanted[::3] = now.status[::3]
+    there = system.switched(now, trial, rest.histories, wanted)
+    back = system.switched(there, trial, rest.histories, now.status)
+    np.testing.assert_allclose(back.residual, now.residual, atol=1e-12)
+    np.testing.assert_allclose(back.tangent.upper.data, now.tangent.upper.data, atol=1e-12)
+    rows, pressure = system.contact.pressure_dofs, trial.x[system.contact.pressure_dofs]
+    np.testing.assert_array_equal(there.tangent.diagonal[rows], np.where(wanted, 0.0, -1.0))
+    np.testing.assert_allclose(there.residual[rows][~wanted], -pressure[~wanted], atol=1e-12)
+    gap = system.contact.weighted_gap(trial.displacement, trial.move)
+    np.testing.assert_allclose(there.residual[rows][wanted], -gap[wanted], atol=1e-12)
+
+
 def test_a_force_of_what_the_depth_took_gives_the_depth():
     stack = segment()
     deep = last(stack, materials(), cap(stack))

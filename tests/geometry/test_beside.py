@@ -1,0 +1,59 @@
+"""A process beside this one answers in order, raises what a call raised, and ends with its block."""
+
+import os
+import time
+from concurrent.futures import CancelledError
+
+import pytest
+
+from geometry.base import InputError
+from geometry.beside import beside
+
+
+def refused(text):
+    raise InputError(text)
+
+
+def dies():
+    if os.environ.get("SOFTDOT_TEST_BESIDE"):
+        os._exit(1)
+    return os.getpid()
+
+
+def exists(process):
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    return True
+
+
+def test_calls_are_done_in_order_in_another_process():
+    with beside() as ask:
+        other, second = ask(os.getpid), ask(len, [1, 2])
+        assert other.result() != os.getpid()
+        assert second.result() == 2
+        assert exists(other.result())
+    assert not exists(other.result())
+
+
+def test_what_a_call_raises_is_raised_here():
+    with beside() as ask:
+        with pytest.raises(InputError, match="no such dot"):
+            ask(refused, "no such dot").result()
+        assert ask(len, "abc").result() == 3
+
+
+def test_what_a_process_that_dies_leaves_undone_is_done_here():
+    with beside({"SOFTDOT_TEST_BESIDE": "1"}) as ask:
+        assert ask(dies).result() == os.getpid()
+
+
+def test_a_block_that_is_left_waits_for_nothing():
+    start = time.perf_counter()
+    with beside() as ask:
+        slow, never = ask(time.sleep, 60.0), ask(len, "abc")
+    assert time.perf_counter() - start < 20.0
+    assert slow.cancelled() or slow.result() is None
+    with pytest.raises(CancelledError):
+        never.result()
