@@ -6,7 +6,6 @@ its parent. It ends with its parent, however that ends.
 
 import os
 import pickle
-import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping
@@ -15,9 +14,7 @@ from contextlib import contextmanager
 from threading import Event
 from typing import Any
 
-from geometry.files import end_with_parent
-
-GRACE_S = 3.0
+from geometry.files import end_with_parent, sweep_scratch
 
 Ask = Callable[..., "Future[Any]"]
 """Of a function, which a module holds under its name, and its arguments: what it returns or raises, later."""
@@ -40,18 +37,10 @@ def beside(variables: Mapping[str, str] | None = None) -> Iterator[Ask]:
         yield lambda function, *arguments: pool.submit(_answer, process, over, function, *arguments)
     finally:
         over.set()
-        _end(process)
-        pool.shutdown(cancel_futures=True)
-
-
-def _end(process: "subprocess.Popen[bytes]") -> None:
-    """Asked to end it removes what it was writing; a library that does not let go of it is not waited for."""
-    process.terminate()
-    try:
-        process.wait(GRACE_S)
-    except subprocess.TimeoutExpired:
-        process.kill()
+        process.kill()  # asked to end, it could be held up by a library for seconds
         process.wait()
+        pool.shutdown(cancel_futures=True)
+        sweep_scratch()
 
 
 def _answer(process: "subprocess.Popen[bytes]", over: Event, function: Callable[..., Any], *arguments: Any) -> Any:
@@ -71,7 +60,6 @@ def _answer(process: "subprocess.Popen[bytes]", over: Event, function: Callable[
 def work() -> None:
     """Do what standard input asks for until it ends. What libraries print goes to standard error."""
     end_with_parent(int(sys.argv[1]))
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
     while True:

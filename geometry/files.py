@@ -150,14 +150,19 @@ def sweep(folder: Path) -> None:
 @contextmanager
 def scratch_folder() -> Iterator[Path]:
     """A temporary folder of this process alone; those of processes that were killed are removed first."""
-    for left in Path(gettempdir()).glob(f"{PREFIX}*"):
-        sweep(left)
+    sweep_scratch()
     folder, held = _made()
     try:
         yield folder
     finally:
         shutil.rmtree(folder, ignore_errors=True)
         release(held)
+
+
+def sweep_scratch() -> None:
+    """Remove the temporary folders of processes that were killed."""
+    for left in Path(gettempdir()).glob(f"{PREFIX}*"):
+        sweep(left)
 
 
 def _made() -> tuple[Path, int | None]:

@@ -19,7 +19,6 @@ from geometry.arrays import Bools, Floats, Ints
 from solve.fem.sparsity import Tangent
 from solve.solution.factorisation import Factorisation
 
-
 NOTHING = 1e-12  # relative singular value of a constraint that holds nothing
 
 
