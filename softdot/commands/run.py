@@ -18,7 +18,7 @@ from geometry.solids import Part
 from mesh.files.formats import check_formats, write_mesh
 from mesh.types import MeshingError
 from softdot.case import Case, OnStep
-from softdot.checks import design_warnings, result_warnings
+from softdot.checks import COMPILE_S, design_warnings, result_warnings
 from softdot.config import Config
 from softdot.config.toml import told
 from softdot.console import (
@@ -86,11 +86,15 @@ def run_case(
 
 def _fill(case: Case, folder: Path, progress: Progress, mesh_formats: Sequence[str], ask: Ask) -> dict[str, Any]:
     """Everything but summary.json; returns the summary. Parts and pictures are made beside mesh, press and files."""
+    from solve.fem.kernels import compiled
+
     clock, config, model = StageClock(), case.config, case.model
     summary = {**heading(config), "warnings": [*case.checked[1], *design_warnings(model)]}
     warn(summary["warnings"])
     if config.from_default:
         LOG.info("%s", told(config.from_default, config.model_dump(mode="json")))
+    if not compiled():
+        LOG.info("the element kernels are compiled first, once on this machine: about %.0f s", COMPILE_S)
     cad = ask(make_cad, model.segment, case.dot, folder / "cad")
     ask(prepare, config)
     ask(ready_to_draw)

@@ -11,6 +11,8 @@ Compiled element integrals of a compressible solid: quadratic displacement, no p
 Compiled element integrals of the piezoelectric film: quadratic tetrahedra and the electrode's voltage.
 """
 
+from pathlib import Path
+
 import numba as nb
 import numpy as np
 
@@ -217,3 +219,8 @@ def film_solid(grad, weight, f, stress, tangent, charge, coupling, permittivity,
                 ke[e, col, 30] += w * per_volt * x
             re[e, 30] -= w * per_volt * charge[e, q]
             ke[e, 30, 30] += w * per_volt * per_volt * (dcd - permittivity)
+
+
+def compiled() -> bool:
+    """Whether the kernels are kept on this machine, as numba keeps them; else the first press compiles them."""
+    return any(Path(mixed_solid.stats.cache_path or "").glob("*.mixed_solid-*.nbc"))
