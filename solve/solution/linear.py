@@ -78,7 +78,7 @@ class LinearSolver:
 
     def _solve(self, tangent: Tangent, rhs: Floats, similar: bool, goal: "_Goal") -> Floats:
         """With the last factorisation where that will do, else with the first of the registry that does."""
-        reasons = []
+        reason = ""
         if similar and self._current is not None:
             before = self._current.back_substitutions
             self._current.adapt(tangent)
@@ -92,14 +92,14 @@ class LinearSolver:
                 self._factorise(tangent, kind, goal.shift)
                 solution, error = self._refined(tangent, rhs, KRYLOV_ITERATIONS, goal, REFINEMENTS)
             except Exception as failure:  # MKL absent, zero pivot, out of memory: the next one may do
-                reasons.append(f"{kind.name}: {failure}")
+                reason = str(failure)
                 self.close()
             else:
                 if error <= goal.accepted:
                     self._remember_success(kind, asked)
                     return solution
-                reasons.append(f"{kind.name}: {goal.measure.__name__.strip('_').replace('_', ' ')} {error:.1e}")
-        raise LinearSolveError("; ".join(reasons))
+                reason = f"{goal.measure.__name__.strip('_').replace('_', ' ')} {error:.1e}"
+        raise LinearSolveError(f"{', '.join(kind.name for kind in asked)}: {reason}")
 
     def _asked(self) -> list[type[Factorisation]]:
         """The registry, without those that rest, but for the last one, which always answers."""

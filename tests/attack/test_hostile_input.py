@@ -71,16 +71,15 @@ def attempt(monkeypatch, tmp_path, capfd):
     def reached(*_args, **_kwargs):
         raise ReachedError
 
-    from softdot.case import Case
-    from softdot.commands import diagnose, plate, sweep
+    from softdot.commands import diagnose, plate, run, sweep
 
-    monkeypatch.setattr(Case, "parts", property(reached))
+    monkeypatch.setattr(run, "staged_folder", reached)
     monkeypatch.setattr(diagnose, "engine_for", reached)
     monkeypatch.setattr(sweep, "run_sweep", reached)
     monkeypatch.setattr(plate, "staged_folder", reached)
     monkeypatch.chdir(tmp_path)
 
-    def run(*arguments):
+    def attempted(*arguments):
         before = sorted(tmp_path.rglob("*"))
         capfd.readouterr()
         try:
@@ -102,7 +101,7 @@ def attempt(monkeypatch, tmp_path, capfd):
             assert len(said[0]) < LONGEST
         return status == 2
 
-    return run
+    return attempted
 
 
 def mutated(text: str, rng: random.Random) -> bytes:

@@ -23,13 +23,14 @@ SMALLEST_FORCE = 1e-3  # solver units; of less than this round-off leaves too mu
 
 @dataclass
 class Pressed:
-    """What a press gave, and the discrete problem behind it."""
+    """What a press gave, and the discrete problem behind it, on its mesh: that of a part where all is symmetric."""
 
     model: object
     dot: object
     result: object
     voltage: object
     system: object
+    mesh: object
     last: tuple
 
 
@@ -41,7 +42,7 @@ def solved(tables) -> Pressed:
     with patch.object(press_module, "set_up", lambda *given: kept.append(set_up(*given)) or kept[0]):
         result = case.solve()
     voltage = case.amplified(result)
-    return Pressed(case.model, case.dot, result, voltage, kept[0].system, kept[0].recorder._last)
+    return Pressed(case.model, case.dot, result, voltage, kept[0].system, kept[0].tet_mesh, kept[0].recorder._last)
 
 
 def wrong(pressed) -> list[str]:
@@ -128,7 +129,7 @@ def patches(pressed):
 
 def equilibrium(pressed):
     """Nodal forces vanish where nothing acts, and what the segment carries is what the dot pushes."""
-    system, mesh, state = pressed.system, pressed.result.tet_mesh, pressed.last[0]
+    system, mesh, state = pressed.system, pressed.mesh, pressed.last[0]
     force = np.zeros_like(system.points)
     np.add.at(force, mesh.twin, nodal_forces(pressed))
     free = (system.unknowns.displacement >= 0) & (mesh.twin == np.arange(len(force)))[:, None]
@@ -148,15 +149,15 @@ def equilibrium(pressed):
 
 def _edge_pressed(pressed, outer):
     """Whether the dot presses on facets with a held node, which carries a part of the force unseen."""
-    facets, unknowns = pressed.result.tet_mesh.facets["contact"], pressed.system.unknowns
-    facets = pressed.result.tet_mesh.twin[facets]
+    facets, unknowns = pressed.mesh.facets["contact"], pressed.system.unknowns
+    facets = pressed.mesh.twin[facets]
     beside = facets[outer[facets].any(axis=1)]
     return bool((pressed.last[0].x[unknowns.contact[beside]] > 0.0).any())
 
 
 def _on_springs(pressed):
     """Nodes of elastic sides, and of the base with what is bonded there."""
-    mesh, segment = pressed.result.tet_mesh, pressed.model.segment
+    mesh, segment = pressed.mesh, pressed.model.segment
     names = [f"side-{name}" for name in segment.held_layers] if segment.boundary == "elastic" else []
     nodes = [mesh.facets[name].ravel() for name in names if name in mesh.facets]
     nodes.append(np.flatnonzero(mesh.points_mm[:, 2] < 1e-9))
