@@ -132,7 +132,7 @@ def _settled(
         if other is None or not linear.may_reuse(other.tangent, None):
             break
         left = -other.residual - other.tangent @ step
-        wanted = min(tolerance * size / float(np.linalg.norm(left)), LITTLE)
+        wanted = min(tolerance * size / max(float(np.linalg.norm(left)), 1e-300), LITTLE)
         step, held = step + linear.solve(other.tangent, left, wanted, similar=True), there
     return step, held
 
