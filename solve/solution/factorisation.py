@@ -22,8 +22,6 @@ class Factorisation(Protocol):
     """A direct solver that keeps its analysis of one sparsity pattern."""
 
     name: str
-    digits: int
-    """Of its solutions, about."""
 
     def factorise(self, tangent: Tangent) -> None:
         """Factorise."""
@@ -42,7 +40,6 @@ class Pardiso:
     """MKL PARDISO; the analysis of the pattern is kept."""
 
     name = "pardiso"
-    digits = 15
     symmetric = True
     precision: type[np.floating[Any]] = np.float64
 
@@ -99,7 +96,6 @@ class SinglePardiso(Pardiso):
     """PARDISO in single precision."""
 
     name = "pardiso in single precision"
-    digits = 6
     precision = np.float32
 
 
@@ -144,7 +140,6 @@ class SuperLU:
     """SciPy's SuperLU in symmetric mode."""
 
     name = "superlu"
-    digits = 15
 
     def __init__(self) -> None:
         self._factor: Any = None

@@ -12,7 +12,7 @@ Higham, Accuracy and Stability of Numerical Algorithms, 2002, ch. 12).
 The contact rows have a zero diagonal, which costs pivots; the matrix that is factorised carries a small negative one
 instead, and GMRES preconditioned by it solves the true system in a few back substitutions (Saad, Iterative Methods
 for Sparse Linear Systems, 2003, ch. 9). A factorisation costs tens of them, so one of an earlier Newton step is used
-again where the tangent has changed little; constraints that have opened since are released from it
+again where the tangent has changed little; constraints that have opened or closed since are changed in it, too
 (solve.solution.preconditioner).
 """
 
@@ -21,11 +21,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse.linalg import LinearOperator, gmres
 
 from geometry.arrays import Floats
 from solve.fem.sparsity import Tangent
 from solve.solution.factorisation import Factorisation, Pardiso, PivotingPardiso, SinglePardiso, SuperLU
+from solve.solution.krylov import flexible_gmres
 from solve.solution.preconditioner import Preconditioner
 
 KRYLOV_ITERATIONS = 18  # with a factorisation of the same matrix
@@ -35,7 +35,8 @@ WEAK_SHIFT = 1e-4  # of Newton's: many right-hand sides share the factorisation,
 LONGEST_REST = 64  # solutions
 SAFETY, LITTLE = 0.3, 0.1  # a refinement gains what is wanted and this much more, and a digit at least
 EASY = 4  # back substitutions of a solution that the factorisation fits well
-CLOSED, OPENED = 2.0, 0.25  # back substitutions that a constraint costs which has closed or opened since
+CHANGED = 2.0  # back substitutions that a discrete state costs which has changed since, of an unsymmetric tangent
+BORDERED = 0.25  # of a symmetric one, that a constraint costs which has closed or opened since
 EVENS_OUT = 15_000, 14.0, 2.0 / 3.0  # unknowns, back substitutions that cost as much as a factorisation, exponent
 
 
@@ -66,7 +67,7 @@ class LinearSolver:
         similar : the tangent has changed little since the last factorisation.
         LinearSolveError when every factorisation fails.
         """
-        return self._solve(tangent, rhs, similar, _Goal(_relative_residual, tolerance, tolerance, tolerance, 1.0, 1))
+        return self._solve(tangent, rhs, similar, _Goal(_relative_residual, tolerance, tolerance, tolerance, 1.0, 0))
 
     def solve_to_round_off(self, tangent: Tangent, rhs: Floats, similar: bool = False) -> Floats:
         """Solve A x = rhs by iterative refinement until x is exact for coefficients that differ by round-off.
@@ -126,9 +127,8 @@ class LinearSolver:
         if self._current is None or self._excess > 2 * self._patience:
             return False
         if tangent.excess is not None:
-            return changed is not None and CLOSED * changed <= self._patience // 2
-        closed, opened = self._current.changed(tangent)
-        return CLOSED * closed + OPENED * opened <= self._patience
+            return changed is not None and CHANGED * changed <= self._patience // 2
+        return BORDERED * self._current.changed(tangent) <= self._patience
 
     @property
     def _patience(self) -> int:
@@ -173,12 +173,8 @@ class LinearSolver:
 
     def _krylov(self, tangent: Tangent, rhs: Floats, tolerance: float, iterations: int) -> Floats:
         """GMRES preconditioned from the right by the last factorisation."""
-        approximate = self._current
-        assert approximate is not None
-        operator = LinearOperator(tangent.upper.shape, lambda v: tangent @ approximate(v), dtype=float)
-        within = max(0.9 * tolerance, 10.0**-approximate.direct.digits)
-        transformed, _ = gmres(operator, rhs, rtol=within, restart=iterations, maxiter=1)
-        return approximate(transformed)
+        assert self._current is not None
+        return flexible_gmres(lambda v: tangent @ v, self._current, rhs, 0.9 * tolerance, iterations)
 
 
 Measure = Callable[[Tangent, Floats, Floats, Floats], float]

@@ -1,19 +1,23 @@
-"""A factorisation as a preconditioner, also after constraints that it holds have been released.
+"""A factorisation as a preconditioner, also after constraints have opened or closed since.
 
 A constraint j that is closed reads G_j du = r_j, with its pressure as the unknown dlambda_j in the other rows; open, it
-reads -dlambda_j = r_j, and no other row has dlambda_j. The matrix with some constraints released follows from the
-factorised one, K, by bordering: one more unknown mu_j in row j lets go of it, one more equation takes dlambda_j out of
-the others. With E the columns of these unknowns,
+reads -dlambda_j = r_j, and no other row has dlambda_j. The matrix with some constraints changed follows from the
+factorised one, K, by bordering. To open one, one more unknown mu_j in row j lets go of it, and one more equation takes
+dlambda_j out of the others. To close one, G_j and its transpose are the border, and mu_j is dlambda_j itself. With B
+the columns of these unknowns, unit vectors and G_j^t,
 
-    K z + E mu = r (0 in the rows j),    E^t z = 0,    (E^t K^-1 E) mu = E^t K^-1 r,
+    K z + B mu = r (0 in the rows j),    B^t z = c,    (B^t K^-1 B) mu = B^t K^-1 r - c,
 
-which takes a back substitution for each released constraint, many at once, and a small dense matrix (Nocedal and
-Wright, Numerical Optimization, 2006, ch. 16, on the Schur complement method for changes of the active set).
+where c_j is 0 for one that opens and r_j for one that closes. This takes a back substitution for each constraint that
+changed, many at once, and a small dense matrix (Nocedal and Wright, Numerical Optimization, 2006, ch. 16, on the Schur
+complement method for changes of the active set). Without the border, GMRES took ten iterations to find out about a
+single constraint that had closed.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.sparse as sp
 
 from geometry.arrays import Bools, Floats, Ints
 from solve.fem.sparsity import Tangent
@@ -28,61 +32,106 @@ class Preconditioner:
     def __init__(self, direct: Factorisation, multipliers: Ints) -> None:
         self.direct, self._multipliers = direct, multipliers
         self._closed: Bools = np.zeros(len(multipliers), dtype=np.bool_)
-        self._columns: dict[int, Floats] = {}
-        self._release: _Release | None = None
+        self._known: _Known | None = None
+        self._border: _Border | None = None
         self.back_substitutions = 0
         """Since the factorisation."""
 
     def factorise(self, tangent: Tangent, shift: Floats) -> None:
         """Factorise with shift (n,) on the diagonal; an unsymmetric tangent as it is."""
-        self._closed, self._release = tangent.diagonal[self._multipliers] == 0.0, None
-        self._columns.clear()
+        self._closed, self._known, self._border = self._closed_in(tangent), None, None
         self.direct.factorise(tangent if tangent.excess is not None else tangent.shifted(shift))
         self.back_substitutions = 0
 
-    def changed(self, tangent: Tangent) -> tuple[int, int]:
-        """How many constraints of a tangent have closed and opened since the factorisation."""
-        closed = tangent.diagonal[self._multipliers] == 0.0
-        return int(np.sum(closed & ~self._closed)), int(np.sum(self._closed & ~closed))
+    def changed(self, tangent: Tangent) -> int:
+        """How many constraints of a tangent have closed or opened since the factorisation."""
+        return int(np.sum(self._closed_in(tangent) != self._closed))
+
+    def _closed_in(self, tangent: Tangent) -> Bools:
+        return np.asarray(tangent.diagonal[self._multipliers] == 0.0)
 
     def adapt(self, tangent: Tangent) -> None:
-        """Release what is open in a symmetric tangent and was closed when factorised; keep what is known of it."""
-        opened = self._multipliers[self._closed & (tangent.diagonal[self._multipliers] != 0.0)]
-        if len(opened) == 0 or tangent.excess is not None:
-            self._release = None
+        """Open and close what a symmetric tangent has open and closed; keep what is known of it."""
+        rows = self._multipliers[self._closed_in(tangent) != self._closed]
+        if len(rows) == 0 or tangent.excess is not None:
+            self._border = None
             return
-        if self._release is not None and np.array_equal(opened, self._release.rows):
+        if self._border is not None and np.array_equal(rows, self._border.rows):
             return
-        new = np.array([row for row in opened if row not in self._columns], dtype=np.int64)
+        if self._known is None:
+            self._known = _Known(np.zeros(0, np.int64), sp.csr_array((0, tangent.upper.shape[0])), None)
+        new = np.setdiff1d(rows, self._known.rows)
         if len(new):
-            units = np.zeros((tangent.upper.shape[0], len(new)), order="F")
-            units[new, np.arange(len(new))] = 1.0
-            self._columns.update(zip(new.tolist(), self.direct.back_substitute(units).T, strict=True))
-        columns = np.column_stack([self._columns[row] for row in opened.tolist()])
-        self._release = _Release(opened, columns, np.linalg.pinv(columns[opened], rcond=NOTHING))
+            across = _borders(tangent, new)
+            self._known = self._known.extended(new, across, self.direct.back_substitute(across.T.toarray()))
+        self._border = self._known.border(rows, tangent.diagonal[rows] != 0.0)
 
     def __call__(self, rhs: Floats) -> Floats:
         """Solve approximately, (n,)."""
         self.back_substitutions += 1
-        release = self._release
-        if release is None:
+        border = self._border
+        if border is None:
             return self.direct.back_substitute(rhs)
-        free = rhs.copy()
-        free[release.rows] = 0.0
-        return release.applied(self.direct.back_substitute(free), rhs)
+        rest = rhs.copy()
+        rest[border.rows] = 0.0
+        return border.applied(self.direct.back_substitute(rest), rhs)
+
+
+def _borders(tangent: Tangent, rows: Ints) -> sp.csr_array:
+    """B^t (m, n): unit vectors of the constraints that are open, the constraints themselves where they are closed."""
+    count = tangent.upper.shape[0]
+    units = sp.csr_array((np.ones(len(rows)), (np.arange(len(rows)), rows)), (len(rows), count))
+    closed = sp.diags_array((tangent.diagonal[rows] == 0.0).astype(np.float64)) @ units
+    # the diagonal, which both triangles hold, is zero
+    return sp.csr_array(units - closed + closed @ tangent.upper + closed @ tangent.upper.T)
 
 
 @dataclass(frozen=True)
-class _Release:
-    """rows (m,), columns K^-1 E (n, m) and the pseudo-inverse (m, m) of E^t K^-1 E: a constraint may hold nothing."""
+class _Known:
+    """Of the constraints that have changed at any time since the factorisation: rows (m,), across B^t (m, n) and
+    columns K^-1 B (n, m), None where there are none.
+    """
 
     rows: Ints
+    across: sp.csr_array
+    columns: Floats | None
+
+    def extended(self, rows: Ints, across: sp.csr_array, columns: Floats) -> "_Known":
+        """With more of them."""
+        wider = columns if self.columns is None else np.column_stack([self.columns, columns])
+        return _Known(np.append(self.rows, rows), sp.vstack([self.across, across], format="csr"), wider)
+
+    def border(self, rows: Ints, opened: Bools) -> "_Border":
+        """Of some of them. A pseudo-inverse, since a constraint may hold nothing; scaled, since one that opens is a
+        pressure and one that closes a gap.
+        """
+        assert self.columns is not None
+        order = np.argsort(self.rows)
+        at = order[np.searchsorted(self.rows, rows, sorter=order)]
+        across, columns = self.across[at], self.columns[:, at]
+        schur = across @ columns
+        size = np.sqrt(np.abs(schur.diagonal()))
+        size[size == 0.0] = 1.0
+        scale = np.outer(size, size)
+        return _Border(rows, opened, across, columns, np.linalg.pinv(schur / scale, rcond=NOTHING) / scale)
+
+
+@dataclass(frozen=True)
+class _Border:
+    """rows (m,); opened (m,), the others closed; across B^t (m, n); columns K^-1 B (n, m); inverse (m, m) of
+    B^t K^-1 B.
+    """
+
+    rows: Ints
+    opened: Bools
+    across: sp.csr_array
     columns: Floats
     inverse: Floats
 
     def applied(self, held: Floats, rhs: Floats) -> Floats:
-        """The solution z (n,) from that with the constraints held."""
-        force = self.inverse @ held[self.rows]
+        """The solution z (n,) from that without the border."""
+        own = rhs[self.rows]
+        force = self.inverse @ (self.across @ held - np.where(self.opened, 0.0, own))
         result: Floats = held - self.columns @ force
-        result[self.rows] = -rhs[self.rows]
+        result[self.rows] = np.where(self.opened, -own, force)
         return result
