@@ -5,6 +5,7 @@ number; rows that the file has are not computed again.
 """
 
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ import numpy as np
 
 from benchmarks.timing import Table, file_argument
 from softdot.case import Case
+from softdot.discretisation import RATIOS, Answers, answers_of, discretisation_error
 from softdot.summary import press_part
 
 FOUR_TIMES = {"solid": 4.0 ** (-1.0 / 3.0), "plane-strain": 4.0 ** (-1.0 / 2.0)}
@@ -71,20 +73,49 @@ def effector(shape: str, length: float, between: Any, material: str) -> dict[str
     return table
 
 
-def answers(summary: dict[str, Any]) -> list[float]:
-    """Force in N and the open-circuit voltage in V of each electrode, at the last step."""
-    voltages = [one["open_circuit_voltage_V"][-1] for one in summary["electrodes"]]
-    return [float(summary["reaction_force_N"][-1]), *map(float, voltages)]
-
-
-def pressed(tables: dict[str, Any], factor: float) -> tuple[list[float], int]:
+def pressed(tables: dict[str, Any], factor: float) -> tuple[Answers, int]:
     """Answers on elements that are larger by the factor, and the number of unknowns."""
-    base = Case(**tables).config.mesh
-    sizes = {key: factor * getattr(base, key) for key in ("element_size_mm", "contact_element_size_mm")}
-    result = Case(**{**tables, "mesh": {**tables["mesh"], **sizes}}).solve()
+    config = Case(**tables).config
+    larger = config.model_copy(update={"mesh": config.mesh.scaled(factor)})
+    result = Case(larger).solve()
     if not result.converged:
         raise SystemExit(f"{tables}: {result.failure}")
-    return answers(press_part(None, result, None)), result.unknowns
+    return answers_of(press_part(None, result, None)), result.unknowns
+
+
+def compared(tables: dict[str, Any]) -> dict[str, Any]:
+    """Stated and true errors in percent, of the force and of each voltage."""
+    fine, unknowns = pressed(tables, 1.0)
+    larger = {ratio: pressed(tables, ratio)[0] for ratio in RATIOS}
+    reference, reference_unknowns = pressed(tables, FOUR_TIMES[tables["segment"]["section"]])
+    stated = discretisation_error(fine, larger)
+    return {
+        "unknowns": unknowns,
+        "reference unknowns": reference_unknowns,
+        "stated": [stated.force_percent, *stated.electrodes_percent],
+        "true": [off(fine.force_N, reference.force_N), *off(fine.electrode_voltages_V, reference.electrode_voltages_V)],
+    }
+
+
+def off(found: np.ndarray, reference: np.ndarray) -> Any:
+    """Error at the last step in percent."""
+    return 100.0 * abs(found[-1] / reference[-1] - 1.0)
+
+
+def counted(rows: list[dict]) -> dict[str, float]:
+    """Of the force and the voltages of all designs: how many bars cover, and the median of how many times too wide."""
+    pairs = [pair for row in rows for pair in distinct(zip(row["stated"], row["true"], strict=True))]
+    stated, true = np.array(pairs).T
+    return {
+        "numbers": len(pairs),
+        "covered %": round(100.0 * float(np.mean(stated >= true)), 1),
+        "median of stated over true": round(float(np.median(stated / true)), 2),
+    }
+
+
+def distinct(pairs: Iterable[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Mirrored electrodes have the same voltage, which counts once."""
+    return list({(round(stated, 6), round(true, 6)): (stated, true) for stated, true in pairs}.values())
 
 
 def main(path: Path, first: int = 0, count: int = 40) -> None:
@@ -94,16 +125,15 @@ def main(path: Path, first: int = 0, count: int = 40) -> None:
         if table.has(design=number):
             continue
         tables = design(number)
-        row: dict[str, Any] = {
+        table.add({
             "design": number,
             "mesher": tables["mesh"]["mesher"],
             "section": tables["segment"]["section"],
             "boundary": tables["segment"]["boundary"],
             "shape": tables["segment"].get("effector", {}).get("shape"),
-        }
-        for name, factor in (("2", 2.0), ("1.5", 1.5), ("1", 1.0), ("ref", FOUR_TIMES[row["section"]])):
-            row[name], row[name + "_n"] = pressed(tables, factor)
-        table.add(row)
+            **compared(tables),
+        })  # fmt: skip
+    print(counted(table.rows))
 
 
 if __name__ == "__main__":

@@ -96,11 +96,11 @@ def _fill(case: Case, folder: Path, progress: Progress, mesh_formats: Sequence[s
     if not compiled():
         LOG.info("the element kernels are compiled first, once on this machine: about %.0f s", COMPILE_S)
     cad = ask(make_cad, model.segment, case.dot, folder / "cad")
-    ask(prepare, config)
-    ask(ready_to_draw)
     progress.stage("mesh")
     try:
         with clock("mesh"):
+            ask(prepare, case.sized)
+            ask(ready_to_draw)
             quality = case.mesh_quality
     except MeshingError as error:
         clock.seconds["geometry"] = cad.result()
