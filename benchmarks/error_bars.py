@@ -5,7 +5,6 @@ number; rows that the file has are not computed again.
 """
 
 import sys
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -73,49 +72,38 @@ def effector(shape: str, length: float, between: Any, material: str) -> dict[str
     return table
 
 
-def pressed(tables: dict[str, Any], factor: float) -> tuple[Answers, int]:
-    """Answers on elements that are larger by the factor, and the number of unknowns."""
+def pressed(tables: dict[str, Any], factor: float) -> tuple[list[float], int]:
+    """Force and the voltage of each electrode at full depth on elements larger by the factor, and the unknowns."""
     config = Case(**tables).config
-    larger = config.model_copy(update={"mesh": config.mesh.scaled(factor)})
-    result = Case(larger).solve()
+    result = Case(config.model_copy(update={"mesh": config.mesh.scaled(factor)})).solve()
     if not result.converged:
         raise SystemExit(f"{tables}: {result.failure}")
-    return answers_of(press_part(None, result, None)), result.unknowns
+    found = answers_of(press_part(None, result, None))
+    return [float(found.force_N[-1]), *map(float, found.electrode_voltages_V[-1])], result.unknowns
 
 
-def compared(tables: dict[str, Any]) -> dict[str, Any]:
-    """Stated and true errors in percent, of the force and of each voltage."""
-    fine, unknowns = pressed(tables, 1.0)
-    larger = {ratio: pressed(tables, ratio)[0] for ratio in RATIOS}
-    reference, reference_unknowns = pressed(tables, FOUR_TIMES[tables["segment"]["section"]])
-    stated = discretisation_error(fine, larger)
-    return {
-        "unknowns": unknowns,
-        "reference unknowns": reference_unknowns,
-        "stated": [stated.force_percent, *stated.electrodes_percent],
-        "true": [off(fine.force_N, reference.force_N), *off(fine.electrode_voltages_V, reference.electrode_voltages_V)],
-    }
+def answers(row: dict, mesh: str) -> Answers:
+    """As the product compares them; all electrodes in parallel are not kept."""
+    force, *voltages = row[mesh]
+    return Answers(np.array([force]), np.zeros(1), np.array([voltages]))
 
 
-def off(found: np.ndarray, reference: np.ndarray) -> Any:
-    """Error at the last step in percent."""
-    return 100.0 * abs(found[-1] / reference[-1] - 1.0)
+def errors(row: dict) -> set[tuple[float, float]]:
+    """Stated and true error in percent of force and voltages; mirrored electrodes count once."""
+    stated = discretisation_error(answers(row, "1"), {ratio: answers(row, f"{ratio:g}") for ratio in RATIOS})
+    true = 100.0 * np.abs(np.array(row["1"]) / np.array(row["reference"]) - 1.0)
+    both = zip([stated.force_percent, *stated.electrodes_percent], true, strict=True)
+    return {(round(float(one), 6), round(float(other), 6)) for one, other in both}
 
 
 def counted(rows: list[dict]) -> dict[str, float]:
-    """Of the force and the voltages of all designs: how many bars cover, and the median of how many times too wide."""
-    pairs = [pair for row in rows for pair in distinct(zip(row["stated"], row["true"], strict=True))]
-    stated, true = np.array(pairs).T
+    """How many of all numbers their bars cover, and how many times too wide they are in the median."""
+    stated, true = np.array([pair for row in rows for pair in errors(row)]).T
     return {
-        "numbers": len(pairs),
+        "numbers": len(true),
         "covered %": round(100.0 * float(np.mean(stated >= true)), 1),
         "median of stated over true": round(float(np.median(stated / true)), 2),
     }
-
-
-def distinct(pairs: Iterable[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Mirrored electrodes have the same voltage, which counts once."""
-    return list({(round(stated, 6), round(true, 6)): (stated, true) for stated, true in pairs}.values())
 
 
 def main(path: Path, first: int = 0, count: int = 40) -> None:
@@ -125,14 +113,17 @@ def main(path: Path, first: int = 0, count: int = 40) -> None:
         if table.has(design=number):
             continue
         tables = design(number)
-        table.add({
+        row: dict[str, Any] = {
             "design": number,
             "mesher": tables["mesh"]["mesher"],
             "section": tables["segment"]["section"],
             "boundary": tables["segment"]["boundary"],
             "shape": tables["segment"].get("effector", {}).get("shape"),
-            **compared(tables),
-        })  # fmt: skip
+        }
+        factors = {"1": 1.0, **{f"{ratio:g}": ratio for ratio in RATIOS}, "reference": FOUR_TIMES[row["section"]]}
+        for name, factor in factors.items():
+            row[name], row[f"{name} unknowns"] = pressed(tables, factor)
+        table.add(row)
     print(counted(table.rows))
 
 
