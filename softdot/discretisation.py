@@ -24,7 +24,7 @@ from solve.solution.sensitivity import StoppedShortError
 RATIOS = 2.0, 3.0
 """Sizes of the larger elements over that of the others."""
 ORDER, LEAST_PERCENT = 1.25, 0.2
-"""Of convergence, and the least error that is stated: chosen on 24 designs that benchmarks/error_bars.py does not count."""
+"""Of convergence, and least error that is stated: chosen on designs that benchmarks/error_bars.py does not count."""
 
 
 class Answers(NamedTuple):
