@@ -7,7 +7,8 @@ import json
 import re
 from pathlib import Path
 
-from benchmarks.growth import efficiency, exponents
+from benchmarks.error_bars import counted
+from benchmarks.growth import UP_TO, efficiency, exponents, of_precision
 from benchmarks.press import CODES, errors, of_code, seconds_at
 from benchmarks.timing import file_argument
 
@@ -32,19 +33,22 @@ def newton_step(rows: list[dict]) -> str:
 
 
 def growth(rows: list[dict]) -> str:
-    """Seconds of the phases, memory, and the share of what the machine can do."""
-    phases, body = ("assemble", "factorise", "back substitute", "gmres"), []
-    for row in rows:
-        flops, read = efficiency(row)
-        times = [f"{row['seconds'][name]:.3f}" for name in phases]
-        shares = [f"{100 * flops:.0f} %", f"{100 * read:.0f} %"]
-        body.append([str(row["unknowns"]), *times, f"{row['peak_GB']:.2f}", f"{row['factor_gflop']:.1f}", *shares])
-    slope = exponents(rows)
-    if slope:
-        fitted = [f"{slope[name]:.2f}" for name in (*phases, "peak_GB", "factor_gflop")]
-        body.append(["exponent", *fitted, "", ""])
-    head = ("unknowns", "assembly s", "factorisation s", "back substitution s", "GMRES s", "peak GB", "factor GFlop")
-    return _table((*head, "of the dense product's speed", "of the memory's speed"), body)
+    """Seconds of the phases, memory, and the share of what the machine can do, in both precisions."""
+    phases, body = ("assemble", "factorise", "back substitute", "gmres", "to 1e-10"), []
+    for precision in UP_TO:
+        own = of_precision(rows, precision)
+        for row in own:
+            flops, read = efficiency(row)
+            times = [f"{row['seconds'][name]:.3f}" for name in phases]
+            shares = [f"{100 * flops:.0f} %", f"{100 * read:.0f} %"]
+            size = [precision, str(row["unknowns"])]
+            body.append([*size, *times, f"{row['peak_GB']:.2f}", f"{row['factor_gflop']:.1f}", *shares])
+        slope = exponents(own)
+        if slope:
+            fitted = [f"{slope[name]:.2f}" for name in (*phases, "peak_GB", "factor_gflop")]
+            body.append([precision, "exponent", *fitted, "", ""])
+    head = ("factor", "unknowns", "assembly s", "factorisation s", "back substitution s", "GMRES s", "to 1e-10 s")
+    return _table((*head, "peak GB", "GFlop", "of the dense product's speed", "of the memory's speed"), body)
 
 
 def press(rows: list[dict]) -> str:
@@ -70,6 +74,35 @@ def diagnosis(rows: list[dict]) -> str:
     return _table(("rig", "first s", "further s", "first/further", "first GB", "further GB"), body)
 
 
+def neighbours(rows: list[dict]) -> str:
+    """Seconds of the press beside busy loops."""
+    body = [[str(row["busy loops"]), f"{row['press s']:.1f}", f"{row['ratio']:.2f}"] for row in rows]
+    return _table(("busy loops", "press s", "against idle cores"), body)
+
+
+def against_itself(rows: list[dict]) -> str:
+    """Seconds of whole commands of both versions."""
+    body = [
+        [row["case"], row["part"], f"{row['then_s']:.1f}", f"{row['now_s']:.1f}", f"{row['ratio']:.2f}",
+         f"{row['aim']:g}"]
+        for row in rows
+    ]  # fmt: skip
+    return _table(("command", "part", "then s", "now s", "ratio", "aim"), body)
+
+
+def error_bars(rows: list[dict]) -> str:
+    """How often the stated error covers the true one."""
+    body = []
+    for section in ("solid", "plane-strain"):
+        for mesher in ("pytetwild", "layered"):
+            own = [row for row in rows if (row["section"], row["mesher"]) == (section, mesher)]
+            if own:
+                body.append([section, mesher, str(len(own)), *(f"{value:g}" for value in counted(own).values())])
+    body.append(["all", "", str(len(rows)), *(f"{value:g}" for value in counted(rows).values())])
+    head = ("section", "mesher", "designs", "forces and voltages", "covered %", "median of stated over true")
+    return _table(head, body)
+
+
 def machine(section: dict) -> str:
     """One line on what it ran."""
     on = section["measured_on"]
@@ -78,7 +111,10 @@ def machine(section: dict) -> str:
     return f"Measured on {where}; Python {on['python']}, {versions}."
 
 
-TABLES = {"newton_step": newton_step, "growth": growth, "press": press, "diagnosis": diagnosis}
+TABLES = {
+    "newton_step": newton_step, "growth": growth, "press": press, "diagnosis": diagnosis, "neighbours": neighbours,
+    "against itself": against_itself, "error bars": error_bars,
+}  # fmt: skip
 
 
 def main(table: Path, page: Path) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 
 from benchmarks.timing import Table, file_argument
 from softdot.case import Case
+from softdot.discretisation import RATIOS, Answers, answers_of, discretisation_error
 from softdot.summary import press_part
 
 FOUR_TIMES = {"solid": 4.0 ** (-1.0 / 3.0), "plane-strain": 4.0 ** (-1.0 / 2.0)}
@@ -71,20 +72,38 @@ def effector(shape: str, length: float, between: Any, material: str) -> dict[str
     return table
 
 
-def answers(summary: dict[str, Any]) -> list[float]:
-    """Force in N and the open-circuit voltage in V of each electrode, at the last step."""
-    voltages = [one["open_circuit_voltage_V"][-1] for one in summary["electrodes"]]
-    return [float(summary["reaction_force_N"][-1]), *map(float, voltages)]
-
-
 def pressed(tables: dict[str, Any], factor: float) -> tuple[list[float], int]:
-    """Answers on elements that are larger by the factor, and the number of unknowns."""
-    base = Case(**tables).config.mesh
-    sizes = {key: factor * getattr(base, key) for key in ("element_size_mm", "contact_element_size_mm")}
-    result = Case(**{**tables, "mesh": {**tables["mesh"], **sizes}}).solve()
+    """Force and the voltage of each electrode at full depth on elements larger by the factor, and the unknowns."""
+    config = Case(**tables).config
+    result = Case(config.model_copy(update={"mesh": config.mesh.scaled(factor)})).solve()
     if not result.converged:
         raise SystemExit(f"{tables}: {result.failure}")
-    return answers(press_part(None, result, None)), result.unknowns
+    found = answers_of(press_part(None, result, None))
+    return [float(found.force_N[-1]), *map(float, found.electrode_voltages_V[-1])], result.unknowns
+
+
+def answers(row: dict, mesh: str) -> Answers:
+    """As the product compares them; all electrodes in parallel are not kept."""
+    force, *voltages = row[mesh]
+    return Answers(np.array([force]), np.zeros(1), np.array([voltages]))
+
+
+def errors(row: dict) -> set[tuple[float, float]]:
+    """Stated and true error in percent of force and voltages; mirrored electrodes count once."""
+    stated = discretisation_error(answers(row, "1"), {ratio: answers(row, f"{ratio:g}") for ratio in RATIOS})
+    true = 100.0 * np.abs(np.array(row["1"]) / np.array(row["reference"]) - 1.0)
+    both = zip([stated.force_percent, *stated.electrodes_percent], true, strict=True)
+    return {(round(float(one), 6), round(float(other), 6)) for one, other in both}
+
+
+def counted(rows: list[dict]) -> dict[str, float]:
+    """How many of all numbers their bars cover, and how many times too wide they are in the median."""
+    stated, true = np.array([pair for row in rows for pair in errors(row)]).T
+    return {
+        "numbers": len(true),
+        "covered %": round(100.0 * float(np.mean(stated >= true)), 1),
+        "median of stated over true": round(float(np.median(stated / true)), 2),
+    }
 
 
 def main(path: Path, first: int = 0, count: int = 40) -> None:
@@ -101,9 +120,11 @@ def main(path: Path, first: int = 0, count: int = 40) -> None:
             "boundary": tables["segment"]["boundary"],
             "shape": tables["segment"].get("effector", {}).get("shape"),
         }
-        for name, factor in (("2", 2.0), ("1.5", 1.5), ("1", 1.0), ("ref", FOUR_TIMES[row["section"]])):
-            row[name], row[name + "_n"] = pressed(tables, factor)
+        factors = {"1": 1.0, **{f"{ratio:g}": ratio for ratio in RATIOS}, "reference": FOUR_TIMES[row["section"]]}
+        for name, factor in factors.items():
+            row[name], row[f"{name} unknowns"] = pressed(tables, factor)
         table.add(row)
+    print(counted(table.rows))
 
 
 if __name__ == "__main__":

@@ -1,7 +1,8 @@
 """How time and memory of a Newton step grow with the unknowns: python -m benchmarks.growth JSON [LARGEST].
 
-LARGEST : thousands of unknowns, 500 if not given. Each size runs in a process of its own, so the peak of memory is
-its own too; sizes that the file has are not measured again. Exponents are fitted to the sizes above 25 000 unknowns.
+LARGEST : thousands of unknowns, 1000 if not given; in double precision 500 at most. Each size runs in a process of its
+own, so the peak of memory is its own too; sizes that the file has are not measured again. Exponents are fitted to the
+sizes above 25 000 unknowns.
 """
 
 import sys
@@ -11,7 +12,8 @@ import numpy as np
 
 from benchmarks.timing import Table, file_argument, run_alone
 
-CELLS = {7: 6, 15: 8, 30: 10, 60: 13, 100: 15, 160: 18, 300: 22, 500: 27}  # thousands of unknowns: cells
+CELLS = {7: 6, 15: 8, 30: 10, 60: 13, 100: 15, 160: 18, 300: 22, 500: 27, 1000: 34}  # thousands of unknowns: cells
+UP_TO = {"double": 500, "single": 1000}
 
 
 def exponents(rows: list[dict]) -> dict[str, float]:
@@ -26,13 +28,19 @@ def exponents(rows: list[dict]) -> dict[str, float]:
     return {name: float(np.polyfit(size, np.log(values), 1)[0]) for name, values in series.items()}
 
 
+def of_precision(rows: list[dict], precision: str) -> list[dict]:
+    """Of the factorisation."""
+    return [row for row in rows if row["precision"] == precision]
+
+
 def efficiency(row: dict) -> tuple[float, float]:
     """Share of the dense product's speed in the factorisation, and of the read's in the back substitution.
 
-    The back substitution reads the factor twice, eight bytes an entry.
+    The back substitution reads the factor twice, eight bytes an entry in double precision; the product is in double.
     """
     speed = row["factor_gflop"] / row["seconds"]["factorise"]
-    traffic = 2 * 8e-9 * row["factor_entries"] / row["seconds"]["back substitute"]
+    entry_GB = 8e-9 if row["precision"] == "double" else 4e-9
+    traffic = 2 * entry_GB * row["factor_entries"] / row["seconds"]["back substitute"]
     return speed / row["dgemm_gflops"], traffic / row["read_gb_s"]
 
 
@@ -49,10 +57,11 @@ def show(rows: list[dict]) -> None:
 def main(path: Path, largest: int) -> None:
     """Measure what is missing."""
     table = Table(path, "growth")
-    for size, cells in CELLS.items():
-        if size <= largest and not table.has(cells=cells):
-            table.add(run_alone("growth_point", cells))
-    show(table.rows)
+    for precision, most in UP_TO.items():
+        for size, cells in CELLS.items():
+            if size <= min(largest, most) and not table.has(cells=cells, precision=precision):
+                table.add(run_alone("growth_point", cells, precision))
+        show(of_precision(table.rows, precision))
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 
-from benchmarks.growth import exponents
+from benchmarks.growth import exponents, of_precision
 from benchmarks.press import CODES, errors, of_code
 from benchmarks.timing import file_argument
 
@@ -26,7 +26,8 @@ def newton_step(axes: plt.Axes, rows: list[dict]) -> None:
 
 
 def growth(axes: plt.Axes, rows: list[dict]) -> None:
-    """Time of each phase and peak memory against the unknowns, with fitted exponents."""
+    """Time of each phase and peak memory against the unknowns, with fitted exponents, as a press factorises."""
+    rows = of_precision(rows, "single")
     unknowns, slope = [row["unknowns"] for row in rows], exponents(rows)
     for phase in PHASES:
         seconds = [row["seconds"][phase] for row in rows]

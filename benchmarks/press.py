@@ -1,9 +1,9 @@
 """The frictionless press of the true segment against NGSolve: python -m benchmarks.press JSON [FINEST].
 
-Both codes press the same meshes, from coarse to fine (FINEST: smallest factor on the default element sizes), each in
-as few equal load steps as it converges in: softdot in one. The
-error is that of the force and of the voltage against the limit of both codes' finest meshes at second order. Time at
-equal error is read from straight lines through (log error, log time). Rows that the file has are not measured again.
+Both codes press the same meshes of a quarter, held at its mirror planes, from coarse to fine (FINEST: smallest factor
+on the default element sizes), each in as few equal load steps as it converges in: softdot in one. The error is that of
+the force and of the voltage against the limit of both codes' finest meshes at second order. Time at equal error is read
+from straight lines through (log error, log time). Rows that the file has are not measured again.
 """
 
 import sys

@@ -96,6 +96,7 @@ class Fit:
 class Findings:
     """mismatch, named, unexplained as statistics.abstain decides, with its reasons as sentences.
 
+    engine, engine_accuracy : name and accuracy of the model, see diagnose.forward.Engine.
     models : all that were fitted, best first; best : the first of them where it is named, else None.
     groups : indices into models that these recordings cannot tell apart, the best model's group first.
     nuisances : name or "name of run" -> (value, one sigma of the prior) at the baseline.
@@ -106,6 +107,7 @@ class Findings:
     """
 
     engine: str
+    engine_accuracy: Mapping[str, float]
     detection: Detection
     places: tuple[LocatedExcess, ...]
     shares: Mapping[str, float]

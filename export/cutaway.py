@@ -141,7 +141,7 @@ def _draw(scene: CutawayScene, bodies: list[DrawnBody], title: str) -> tuple[Any
     flat = np.vstack([scene.view.flat(np.asarray(b.surface.points)) for b in bodies if b.surface.n_points])
     box = frame(flat)
     figure, axes, pixels_per_mm = page(box, title)
-    image = render(bodies, scene.view, box, 2 * pixels_per_mm)
+    image = render(bodies, scene.view, box, 2 * pixels_per_mm, smooth_edges=False)
     limits = axes.get_xlim(), axes.get_ylim()
     axes.imshow(image, extent=box, interpolation="antialiased", aspect="auto")
     axes.set_xlim(limits[0])

@@ -70,6 +70,7 @@ def write_report(
         s=summary,
         headline=headline(summary),
         steps=step_rows(summary),
+        mesh_errors=_mesh_errors(summary),
         pictures=[_picture(name, file, _captions(summary)) for name, file in _in_order(pictures)],
         view=_script_safe(json.dumps(view)) if view else None,
         viewer=(HERE / "viewer.js").read_text(encoding="utf-8"),
@@ -134,6 +135,12 @@ def plus_minus(summary: Mapping[str, Any], name: str, before: str = " ") -> str:
     """' ± 12 %' where an uncertainty is stated, '' for a given force; two digits, as more would claim too much."""
     stated = summary.get("uncertainty", {}).get(name)
     return "" if not stated else f"{before}±\u00a0{number(float(stated), 2)}\u00a0%"
+
+
+def _mesh_errors(summary: Mapping[str, Any]) -> dict[str, float]:
+    """Electrode -> error of its voltage in percent, where it is known."""
+    each = summary.get("discretisation_error", {}).get("electrodes", [])
+    return {one["name"]: one["voltage_percent"] for one in each}
 
 
 def _at_the_rim(film: Mapping[str, Any]) -> list[tuple[str, Any, str, str]]:

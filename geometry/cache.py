@@ -133,13 +133,14 @@ def source_hash(module: str) -> str:
     modules of a package that finds its modules by walking through itself.
     """
     found: dict[Path, bytes] = {}
-    waiting = [module]
+    waiting, seen = [module], {module}
     while waiting:
         path = _source_path(waiting.pop())
         if path is None or path in found:
             continue
         found[path], needed, data = _source(path)
-        waiting += needed
+        waiting += needed - seen  # most are named by many sources, and to look for a file takes long
+        seen |= needed
         found |= data
     return hashlib.sha256(b"".join(found[path] for path in sorted(found))).hexdigest()
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from geometry.cache import data_hash, folder, read_arrays, source_hash, write_arrays
 from geometry.dot import DotShape
@@ -26,6 +26,9 @@ class MeshOptions(Table):
     film_element_size_mm: Positive | None = Field(
         None, description="edge length on the film; none: geometric mean of the two"
     )
+    accuracy_percent: Annotated[float, Field(ge=0.3, le=20.0)] | None = Field(
+        None, description="all sizes are scaled together until force and voltages are so accurate; none: as stated"
+    )
     mesher: Literal["pytetwild", "layered"] = Field("pytetwild", description="layered: extruded, deterministic")
     file: str | None = Field(
         None, description="your own mesh instead: .msh, .inp or .xdmf in mm, with the names of the parts"
@@ -38,6 +41,23 @@ class MeshOptions(Table):
         "auto", description="auto: mesh a half or a quarter where all is symmetric; results are those of the whole"
     )
     timeout_s: Positive = Field(300.0, description="the mesher is stopped after this time")
+
+    @model_validator(mode="after")
+    def _sizes_can_change(self) -> Self:
+        if self.accuracy_percent is not None and self.file is not None:
+            raise ValueError(f"accuracy_percent = {self.accuracy_percent:g}: the mesh of a file has sizes of its own")
+        return self
+
+    def scaled(self, factor: float) -> Self:
+        """All sizes times a factor, now as stated."""
+        sizes = {name: factor * size for name, size in self.sizes_mm.items()}
+        return self.model_copy(update={**sizes, "accuracy_percent": None})
+
+    @property
+    def sizes_mm(self) -> dict[str, float]:
+        """The edge lengths that are stated, by their keys."""
+        names = ("element_size_mm", "contact_element_size_mm", "film_element_size_mm")
+        return {name: size for name in names if (size := getattr(self, name)) is not None}
 
 
 def build(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes = ()) -> TetMesh:
@@ -80,7 +100,7 @@ def key(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes = 
         "layers": [segment.medium1.thickness_mm, segment.medium2.thickness_mm],
         "effector": effector and effector.model_dump(exclude={"material"}),
         "dot": [dot.kind, dot.radius_mm, *(np.round(a, 9).tolist() for a in _places(dot))],
-        "options": options.model_dump(exclude={"timeout_s", "file", "symmetry"}),
+        "options": options.model_dump(exclude={"timeout_s", "file", "symmetry", "accuracy_percent"}),
         "planes": planes,
     }
     return data_hash(content)

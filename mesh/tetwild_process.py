@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from geometry.arrays import Floats, Ints
+from geometry.base import load_alone
 from geometry.files import end_with_parent, scratch_folder
 from mesh.types import MeshingError
 
@@ -65,6 +66,7 @@ def main(folder: Path) -> None:
     """Tetrahedralize the surface in folder/input.npz with its background sizes."""
     with np.load(folder / "input.npz") as data:
         given = {name: data[name] for name in data.files}
+    load_alone("pytetwild", "pytetwild")  # the whole package loads VTK
     from pytetwild.pytetwild import tetrahedralize
 
     points, tets = tetrahedralize(

@@ -115,7 +115,14 @@ class Case:
         import mesh
 
         touching = self.dot.origin_mm - [0.0, 0.0, self.model.dot.gap_mm]  # a gap is not another mesh
-        return mesh.build(self.model.segment, replace(self.dot, origin_mm=touching), self.config.mesh, self.planes)
+        return mesh.build(self.model.segment, replace(self.dot, origin_mm=touching), self.sized.mesh, self.planes)
+
+    @cached_property
+    def sized(self) -> Config:
+        """The configuration with the element sizes that mesh.accuracy_percent asks for. InputError."""
+        from softdot.accuracy import sized
+
+        return sized(self.config)
 
     @property
     def planes(self) -> Planes:
@@ -129,7 +136,8 @@ class Case:
         """Numbers about the mesh that is solved, as in summary.json."""
         from mesh.quality import measure
 
-        return measure(self.solved_mesh, self.model.segment).as_dict()
+        sizes = {} if self.config.mesh.file is not None else self.sized.mesh.sizes_mm
+        return {**measure(self.solved_mesh, self.model.segment).as_dict(), **sizes}
 
     def press(self, on_step: OnStep | None = None) -> "Pressed":
         """The press, as far as it converged: .converged says whether, .failure why not. InputError, MeshingError."""
@@ -167,7 +175,7 @@ class Case:
         """How far the last force and voltage of a summary can be trusted."""
         from softdot.uncertainty import uncertainty
 
-        return uncertainty(self.config, summary["reaction_force_N"][-1], summary["open_circuit_voltage_V"][-1])
+        return uncertainty(self.sized, summary)
 
     def derivatives(self, keys: Sequence[str]) -> "list[Derivative]":
         """Of force, charge and voltage along the press by keys such as "segment.film.thickness_um". InputError."""

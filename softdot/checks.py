@@ -48,14 +48,14 @@ def refuse_huge_mesh(segment: Segment, dot_shape: DotShape, options: MeshOptions
             raise InputError(f"mesh.file = '{options.file}': has {count:.0f} elements, at most {TOO_MANY} are allowed")
         refuse_too_little_memory(count, segment.section == "plane-strain", "file", options.file)
         return
-    sizes = {name: value for name, value in options if name.endswith("size_mm") and value is not None}
-    name = min(sizes, key=lambda one: float(sizes[one]))
+    sizes = options.sizes_mm
+    name = min(sizes, key=lambda one: sizes[one])
     if count > TOO_MANY:
         raise InputError(
             f"mesh.{name} = {sizes[name]:g}: means about {count:.1g} elements, "
             f"at most {TOO_MANY:.0g} are allowed; use a larger size"
         )
-    refuse_too_little_memory(count, segment.section == "plane-strain", name, float(sizes[name]))
+    refuse_too_little_memory(count, segment.section == "plane-strain", name, sizes[name])
 
 
 def expected_tetrahedra(segment: Segment, dot_shape: DotShape, options: MeshOptions, planes: Planes = ()) -> float:

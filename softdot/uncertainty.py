@@ -2,103 +2,105 @@
 
 To first order: each constant of a material, off by what is stated of it, moves the response along its derivative
 (ISO/IEC Guide 98-3, 2008, clause 5.1.2). The derivatives come from the same press on elements twice as large, at its
-full load alone. All parts are taken as independent, and their squares added. Where a part is missing there is no sum:
-mesh and mesher alone are far less than the materials do.
+full load alone, which also tells the discretisation error (softdot.discretisation). All parts are taken as independent,
+and their squares added. Where a part is missing there is no sum: the mesh alone is far less than the materials do.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from math import hypot
-from typing import Any
+from typing import Any, TypeVar
 
 from geometry.base import InputError
 from mesh.types import MeshingError
 from softdot.config import Config
-from softdot.config.model import model_of
-from softdot.tolerances.responses import KitPress, Response, coarser
+from softdot.discretisation import (
+    RATIOS,
+    Answers,
+    DiscretisationError,
+    along_path,
+    answer_at,
+    answers_of,
+    discretisation_error,
+    follows_path,
+    full_load,
+)
+from softdot.tolerances.responses import Response
 from softdot.tolerances.tolerances import Tolerance, material_tolerances
 from solve.solution.linear import LinearSolveError
 from solve.solution.sensitivity import StoppedShortError
 
-COARSER = 2.0
 UNSOLVED = InputError, LinearSolveError, MeshingError, StoppedShortError
-STUDY = {"solid": (0.4, 1.0), "plane-strain": (0.5, 0.6)}
-"""Percent of force and of voltage that the default mesh is off: convergence of the default design, and of the same as a
-clamped slice, in docs/verification.md."""
-SCATTER = 0.5, 0.5
-"""Percent by which meshes of pytetwild differ, which is not repeatable: 0.1 to 0.6 % on the segments of
-docs/verification.md, once 1.9 %."""
 LOST = {
     "path": "what the tolerances of the materials do is not estimated here, since this press depends on its path; "
     "softdot kit calculates it",
     "slide": "what the tolerances of the materials do is not estimated here, since the dot slides after it is pressed "
     "in; softdot kit calculates it for the press before the slide",
-    "failed": "what the tolerances of the materials do could not be estimated: the press on larger elements failed",
+    "failed": "what the tolerances of the materials and the mesh do could not be estimated: the press on larger "
+    "elements failed",
 }
 
 
-def uncertainty(config: Config, force_N: float, voltage_V: float) -> dict[str, Any]:
+def uncertainty(config: Config, summary: Mapping[str, Any]) -> dict[str, Any]:
     """The keys discretisation_error and uncertainty of summary.json: of the final force and open-circuit voltage.
 
-    config : as the user states it. Each part has name, source, force_percent and voltage_percent; note says what is
-    missing, and then there is no sum. A run whose force or voltage is zero has no percentages.
+    config : as the user states it; summary : of its press, which converged. Each part has name, source, force_percent
+    and voltage_percent; note says what is missing, and then there is no sum. A run whose force or voltage is zero has
+    no percentages.
     """
-    if force_N == 0.0 or voltage_V == 0.0:
+    found, given = answers_of(summary), config.press.force_N is not None
+    if found.force_N[-1] == 0.0 or found.voltage_V[-1] == 0.0:
         return {}
-    given = config.press.force_N is not None
-    mesh_error = _known_force(STUDY[config.segment.section], given)
-    mesh_source = "convergence study of the default design"
-    parts, note = [], _not_estimated(config)
-    if note is None:
-        rows = _counted(config)
-        try:
-            nominal, slopes = _slopes(config, rows)
-        except UNSOLVED:
-            note = LOST["failed"]
-        else:
-            parts = [_part(row, nominal, slopes, given) for row in rows]
-            own = _known_force(_third_of_difference(nominal, force_N, voltage_V), given)
-            if hypot(*own) > hypot(*mesh_error):
-                mesh_error, mesh_source = own, "a third of the change from elements twice as large"
-    parts.sort(key=lambda part: -part["voltage_percent"])
-    parts += [_named("mesh", mesh_source, mesh_error)]
-    made = config.mesh.file is None and config.mesh.mesher == "pytetwild"
-    if made and config.segment.section == "solid":
-        scatter = _known_force(SCATTER, given)
-        parts += [_named("repeatability of the mesher", "repeated meshes of the same segments", scatter)]
+    try:
+        parts, larger, note = _estimated(config, given)
+    except UNSOLVED:
+        return {"uncertainty": {"parts": [], "note": LOST["failed"]}}
+    error = discretisation_error(found, larger)
+    percent = _known_force((error.force_percent, error.voltage_percent), given)
+    times = " and ".join(f"{ratio:g}" for ratio in larger)
+    parts.append(_named("mesh", f"the same press on elements {times} times as large", percent))
     return {
-        "discretisation_error": {"force_percent": mesh_error[0], "voltage_percent": mesh_error[1]},
+        "discretisation_error": _told(error, percent, [one["name"] for one in summary["electrodes"]]),
         "uncertainty": {**(_together(parts) if note is None else {}), "parts": parts, "note": note},
     }
 
 
-def prepare(config: Config) -> None:
-    """What uncertainty needs besides force and voltage, left in the cache: it may be done beside the press itself."""
-    if _not_estimated(config) is None:
+def _told(error: DiscretisationError, percent: tuple[float, float], electrodes: Sequence[str]) -> dict[str, Any]:
+    named = zip(electrodes, error.electrodes_percent, strict=True)
+    each = [{"name": name, "voltage_percent": float(one)} for name, one in named]
+    return {"force_percent": percent[0], "voltage_percent": percent[1], "electrodes": each}
+
+
+def _estimated(config: Config, given: bool) -> tuple[list[dict[str, Any]], dict[float, Answers], str | None]:
+    """What the materials do, largest on the voltage first; answers on larger elements; what is missing. UNSOLVED."""
+    if follows_path(config):
+        larger = _on_larger_elements(lambda ratio: along_path(config, ratio))
+        return [], larger, LOST["slide" if config.press.path_xy_mm else "path"]
+    rows = [row for row in material_tolerances(config) if row.counted]
+    keys = sorted({key for row in rows for key in row.slopes})
+    loads = _on_larger_elements(lambda ratio: full_load(config, ratio, keys if ratio == RATIOS[0] else ()))
+    nominal, _, slopes = loads[RATIOS[0]]
+    parts = [_part(row, nominal, slopes, given) for row in rows]
+    larger = {ratio: answer_at(load) for ratio, load in loads.items()}
+    return sorted(parts, key=lambda part: -part["voltage_percent"]), larger, None
+
+
+Found = TypeVar("Found")
+
+
+def _on_larger_elements(press: Callable[[float], Found]) -> dict[float, Found]:
+    """By ratio; only the first is indispensable. UNSOLVED."""
+    found = {RATIOS[0]: press(RATIOS[0])}
+    for ratio in RATIOS[1:]:
         with suppress(*UNSOLVED):
-            _slopes(config, _counted(config))
+            found[ratio] = press(ratio)
+    return found
 
 
-def _counted(config: Config) -> list[Tolerance]:
-    return [row for row in material_tolerances(config) if row.counted]
-
-
-def _slopes(config: Config, rows: Sequence[Tolerance]) -> tuple[Response, dict[str, Response]]:
-    """Response on larger elements, and its derivatives by what the rows depend on. UNSOLVED."""
-    return KitPress(_coarse(config)).full_load_slopes(sorted({key for row in rows for key in row.slopes}))
-
-
-def _not_estimated(config: Config) -> str | None:
-    """Why the full load alone does not tell about the last step; what an amplifier adds does not matter to it."""
-    if model_of(config).follows_time:
-        return LOST["path"]
-    return LOST["slide"] if config.press.path_xy_mm else None
-
-
-def _coarse(config: Config) -> Config:
-    """On larger elements, in one load step: where the path does not matter the steps do not either."""
-    coarse = coarser(config, COARSER)
-    return coarse.model_copy(update={"press": coarse.press.model_copy(update={"load_steps": 1})})
+def prepare(config: Config) -> None:
+    """What uncertainty needs besides the press itself, left in the cache: it may be done beside that."""
+    with suppress(*UNSOLVED):
+        _estimated(config, given=False)
 
 
 def _known_force(percent: tuple[float, float], given: bool) -> tuple[float, float]:
@@ -119,11 +121,6 @@ def _part(row: Tolerance, nominal: Response, slopes: Mapping[str, Response], giv
         100 * row.plus_minus * abs(voltage / nominal.voltage),
     )
     return _named(f"{row.label} ±{row.plus_minus:.3g} {row.unit}", row.source, _known_force(percent, given))
-
-
-def _third_of_difference(coarse: Response, force_N: float, voltage_V: float) -> tuple[float, float]:
-    """Percent of the error of this mesh from one twice as coarse, at second order (Richardson)."""
-    return 100 * abs(coarse.force / force_N - 1.0) / 3.0, 100 * abs(coarse.voltage / voltage_V - 1.0) / 3.0
 
 
 def _named(name: str, source: str, percent: tuple[float, float]) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from geometry.dot import DotShape, resolve_dot
 from mesh.symmetry import unfolded
 from mesh.types import Planes, TetMesh
 from solve.model import Model
-from solve.problem import OpenInterface, build_system, meshed_share, open_interfaces, refuse_unresolved, whole_charge
+from solve.problem import OpenInterface, build_system, meshed_share, open_interfaces, refuse_unresolved
 from solve.recorder import Recorder
 from solve.result import PressResult, Step
 from solve.solution.checkpoint import Checkpoint
@@ -80,7 +80,7 @@ def set_up(
     system = build_system(
         model.segment, model.materials, dot, tet_mesh, driven, model.physics, model.readout, opened, units
     )
-    refuse_unresolved(model.segment, whole_charge(model.segment, tet_mesh) @ system.film.area())
+    refuse_unresolved(model.segment, tet_mesh, system.film)
     recorder = Recorder(system, tet_mesh, model.physics, model.segment, model.materials)
     return Setup(model, tet_mesh, (), opened, system, recorder)
 

@@ -124,9 +124,13 @@ def whole_charge(segment: Segment, tet_mesh: TetMesh) -> Floats:
     return np.asarray(np.minimum(widths, segment.width_mm)[:, None] / tet_mesh.thickness_mm * total)
 
 
-def refuse_unresolved(segment: Segment, area: Floats) -> None:
-    """InputError for an electrode that covers no quadrature point of the film; area (e,) of the whole segment."""
-    for electrode, covered in zip(segment.film.electrodes, area, strict=False):
+def refuse_unresolved(segment: Segment, tet_mesh: TetMesh, film: FilmRegion) -> None:
+    """InputError for an electrode whose voltage acts back on the film and that is over no middle of an element."""
+    if (film.voltage_dofs < 0).all():
+        return
+    elements = np.array([np.count_nonzero(film.electrode == number) for number in range(film.electrodes)])
+    whole = whole_charge(segment, tet_mesh) @ elements
+    for electrode, covered in zip(segment.film.electrodes, whole, strict=False):
         if covered == 0.0:
             raise InputError(
                 f"segment.film.electrodes: '{electrode.name}' with size_mm = {list(electrode.size_mm)} is smaller than "

@@ -129,6 +129,7 @@ def _quiet(model: ObservedModel, baseline: LinearisedSystem, found: Checked) -> 
     """No mismatch: a good result."""
     return Findings(
         engine=model.engine.name,
+        engine_accuracy=model.engine.accuracy,
         detection=_detection(model, found),
         places=(),
         shares={},
@@ -165,6 +166,7 @@ def _findings(model: ObservedModel, screening: Screening, found: Checked, choice
         train, held_out = unimproved(train), unimproved(held_out) if held_out else None
     return Findings(
         engine=model.engine.name,
+        engine_accuracy=model.engine.accuracy,
         detection=_detection(model, found),
         places=places(model.samples, found, screening, explained),
         shares=shares(screening, explained),

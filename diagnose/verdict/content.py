@@ -146,6 +146,7 @@ def verdict(
             "held_out": _fit(findings.held_out),
             "held_out_best_unnamed": _fit(findings.unnamed),
             "engine": findings.engine,
+            "engine_error_percent": {_kind(name): 100.0 * share for name, share in findings.engine_accuracy.items()},
             "resimulated": [_resimulated(each) for each in resimulated],
         },
         "black_box_gain_over_best_per_press": findings.black_box_gain,
@@ -157,6 +158,11 @@ def verdict(
         "next_experiment": next_experiment(findings, following),
         "warnings": [*findings.warnings, *warnings],
     }
+
+
+def _kind(channel: str) -> str:
+    """force_N -> force."""
+    return channel.rpartition("_")[0]
 
 
 def _detection(findings: Findings) -> dict[str, Any]:

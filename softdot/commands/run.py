@@ -1,26 +1,17 @@
 """softdot run: check, geometry, mesh, solve, export; everything appears at once or not at all."""
 
+from __future__ import annotations
+
 import logging
 import time
-from argparse import Namespace
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from importlib import import_module
+from concurrent.futures import Future, wait
+from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
-from typing import Any
+from threading import Thread
+from typing import TYPE_CHECKING, Any
 
-from export.view import ensure_rendering
-from geometry.arrays import Floats
-from geometry.beside import Ask, beside
-from geometry.dot import DotShape
-from geometry.parameters import Segment
-from geometry.solids import Part
-from mesh.files.formats import check_formats, write_mesh
-from mesh.types import MeshingError
-from softdot.case import Case, OnStep
-from softdot.checks import COMPILE_S, design_warnings, result_warnings
-from softdot.config import Config
-from softdot.config.toml import told
+from geometry.base import InputError, without_collector
 from softdot.console import (
     GOOD,
     NOT_CONVERGED,
@@ -36,9 +27,16 @@ from softdot.console import (
 )
 from softdot.machine import named_when_missing
 from softdot.output import RUN, staged_folder
-from softdot.summary import heading, mesh_part, press_part, stopped_solver
-from softdot.uncertainty import prepare
-from solve.result import PressResult, Step
+from softdot.second_process import draw, make_cad, second_process
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+
+    from geometry.beside import Ask
+    from geometry.dot import DotShape
+    from softdot.case import Case, OnStep
+    from softdot.config import Config
+    from solve.result import PressResult, Step
 
 LOG = logging.getLogger(__name__)
 
@@ -61,46 +59,60 @@ class StageClock:
 
 def run_config(config: Config, out: Path, progress: Progress | None = None) -> dict[str, Any]:
     """As run_case, of a configuration."""
+    from softdot.case import Case
+
     return run_case(Case(config), out, progress)
 
 
 def run_case(
-    case: Case, out: Path, progress: Progress | None = None, mesh_formats: Sequence[str] = ()
+    case: Case,
+    out: Path,
+    progress: Progress | None = None,
+    mesh_formats: Sequence[str] = (),
+    ask: Ask | None = None,
 ) -> dict[str, Any]:
     """Run the whole pipeline of a case into the folder out and return its summary.
 
-    mesh_formats : in which the mesh is written for other codes, see mesh.files.formats.
-    InputError before any work for what cannot be built or written. Where a computation does not converge
-    nothing is raised: solver.converged is False, solver.failure says why and what converged is written.
+    mesh_formats : in which the mesh is written for other codes, see mesh.files.formats. ask : of a second process that
+    is there already; else one is started. InputError before any work for what cannot be built or written. Where a
+    computation does not converge nothing is raised: solver.converged is False, solver.failure says why and what
+    converged is written.
     """
+    from export.view import ensure_rendering
+    from mesh.files.formats import check_formats
+    from softdot.summary import heading
+
     progress = progress or Logged()
     with named_when_missing(), lines_when_interactive():
         check_formats(mesh_formats)
         _ = case.checked
-        ensure_rendering()
-        with staged_folder(out, RUN) as folder, beside() as ask:
-            summary: dict[str, Any] = heading(case.config) | plain(_fill(case, folder, progress, mesh_formats, ask))
+        window = ensure_rendering()
+        with staged_folder(out, RUN) as folder, nullcontext(ask) if ask else second_process() as second:
+            second(ensure_rendering, window)
+            filled = _fill(case, folder, progress, mesh_formats, second)
+            summary: dict[str, Any] = heading(case.config) | plain(filled)
             write_json(folder / RUN.summary, summary)
     return summary
 
 
 def _fill(case: Case, folder: Path, progress: Progress, mesh_formats: Sequence[str], ask: Ask) -> dict[str, Any]:
     """Everything but summary.json; returns the summary. Parts and pictures are made beside mesh, press and files."""
-    from solve.fem.kernels import compiled
+    from mesh.files.formats import write_mesh
+    from mesh.types import MeshingError
+    from softdot.checks import design_warnings, result_warnings
+    from softdot.summary import heading, mesh_part, press_part, stopped_solver
+    from softdot.uncertainty import prepare
 
     clock, config, model = StageClock(), case.config, case.model
     summary = {**heading(config), "warnings": [*case.checked[1], *design_warnings(model)]}
     warn(summary["warnings"])
-    if config.from_default:
-        LOG.info("%s", told(config.from_default, config.model_dump(mode="json")))
-    if not compiled():
-        LOG.info("the element kernels are compiled first, once on this machine: about %.0f s", COMPILE_S)
+    _tell(config)
     cad = ask(make_cad, model.segment, case.dot, folder / "cad")
-    ask(prepare, config)
-    ask(ready_to_draw)
     progress.stage("mesh")
     try:
         with clock("mesh"):
+            # a slice is pressed before another process has loaded the solver
+            ahead = ask(prepare, case.sized) if config.segment.section == "solid" else None
             quality = case.mesh_quality
     except MeshingError as error:
         clock.seconds["geometry"] = cad.result()
@@ -112,7 +124,9 @@ def _fill(case: Case, folder: Path, progress: Progress, mesh_formats: Sequence[s
     with clock("solve"):
         result = case.press(_reporting(progress)).result
         readout, channels = case.amplified(result) or (None, None)
-    clock.seconds["geometry"] = cad.result()
+    if ahead is not None and ahead.cancel():  # not begun: it is done here, while the second process draws
+        ahead = None
+    pictures = ask(draw, result.tet_mesh, result, case.dot, folder / "pictures", readout)
     summary |= {"mesh": mesh_part(quality, result.unknowns), **press_part(model.readout, result, readout, channels)}
     late = result_warnings(model, case.dot, result)
     warn(late)
@@ -120,61 +134,39 @@ def _fill(case: Case, folder: Path, progress: Progress, mesh_formats: Sequence[s
     if result.converged:
         progress.stage("uncertainty")
         with clock("uncertainty"):
+            wait((ahead,) if ahead is not None else ())
             summary |= case.uncertainty(summary)
+    clock.seconds["geometry"] = cad.result()
     progress.stage("export")
     with clock("export"):
         so_far = {"timing_s": dict(clock.seconds)}
-        write_outputs(case.dot, result, readout, plain(summary | so_far), folder, ask)
+        write_outputs(case.dot, result, plain(summary | so_far), folder, pictures)
     return {**summary, "timing_s": clock.seconds}
 
 
-def make_cad(segment: Segment, dot_shape: DotShape, folder: Path) -> float:
-    """The parts and their files; returns how many seconds they took. InputError."""
-    from geometry import assembly
+def _tell(config: Config) -> None:
+    """What a user should know before it begins: what was not stated, and that the first run takes longer."""
+    from softdot.checks import COMPILE_S
+    from softdot.config.toml import told
+    from solve.fem.kernels import compiled
 
-    start = time.perf_counter()
-    write_cad(assembly.build_parts(segment, dot_shape), folder)
-    return time.perf_counter() - start
-
-
-def write_cad(parts: Sequence[Part], folder: Path) -> None:
-    """STEP, 3MF and STL files of the parts."""
-    from export import cad
-
-    cad.write_cad(parts, folder)
+    if config.from_default:
+        LOG.info("%s", told(config.from_default, config.model_dump(mode="json")))
+    if not compiled():
+        LOG.info("the element kernels are compiled first, once on this machine: about %.0f s", COMPILE_S)
 
 
 def write_outputs(
-    dot_shape: DotShape,
-    result: PressResult,
-    readout_voltage_V: Floats | None,
-    summary: dict[str, Any],
-    folder: Path,
-    ask: Ask,
+    dot_shape: DotShape, result: PressResult, summary: dict[str, Any], folder: Path, pictures: Future[dict[str, Path]]
 ) -> None:
-    """ParaView files, pictures and the report of what converged; the pictures are made beside."""
+    """ParaView files of what converged, and the report with the pictures, which are made beside."""
     from export.report import write_report
     from export.viewer_data import viewer_data
     from export.vtu import write_results
 
-    tet_mesh = result.tet_mesh
-    pictures = ask(draw, tet_mesh, result, dot_shape, folder / "pictures", readout_voltage_V)
-    write_results(tet_mesh, result, dot_shape, folder / "results")
-    viewer = viewer_data(tet_mesh, result, dot_shape)
+    write_results(result.tet_mesh, result, dot_shape, folder / "results")
+    viewer = viewer_data(result.tet_mesh, result, dot_shape)
     write_report(summary, pictures.result(), viewer, folder / "report.html")
-
-
-def ready_to_draw() -> None:
-    """Load what draws, which takes two seconds."""
-    for name in ("matplotlib.figure", "pyvista.plotting", "export.pictures"):
-        import_module(name)
-
-
-def draw(*arguments: Any) -> dict[str, Path]:
-    """As export.pictures.write_pictures."""
-    from export.pictures import write_pictures
-
-    return write_pictures(*arguments)
 
 
 def _reporting(progress: Progress) -> OnStep:
@@ -188,17 +180,30 @@ def _reporting(progress: Progress) -> OnStep:
 
 def command(chosen: Namespace) -> int:
     """Run chosen.config into chosen.output; 0, or 3 when a computation did not converge. InputError."""
-    from softdot.config import load_config
-    from softdot.console import progress_of
+    with second_process() as ask:  # at once: it loads its libraries while this one does
+        with without_collector():
+            Thread(target=_try_to_draw, daemon=True).start()
+            from softdot.case import Case
+            from softdot.config import load_config
+            from softdot.console import progress_of
+            from softdot.uncertainty import uncertainty  # noqa: F401 - loads the solver
 
-    config = load_config(chosen.config, chosen.set)
-    with only_the_summary_on_stdout(), progress_of(chosen) as progress:
-        summary = run_case(Case(config), Path(chosen.output), progress, chosen.mesh_format)
+        config = load_config(chosen.config, chosen.set)
+        with only_the_summary_on_stdout(), progress_of(chosen) as progress:
+            summary = run_case(Case(config), Path(chosen.output), progress, chosen.mesh_format, ask)
     show(summary, chosen, short_text)
     if summary["solver"]["converged"]:
         return GOOD
     complain(f"not converged, {summary['solver']['failure']}; what converged is in '{chosen.output}'")
     return NOT_CONVERGED
+
+
+def _try_to_draw() -> None:
+    """Half a second, in which another process tries; run_case tells what comes of it."""
+    from export.view import ensure_rendering
+
+    with suppress(InputError):
+        ensure_rendering()
 
 
 PARTS = {1: "a half", 2: "a quarter"}
@@ -214,6 +219,7 @@ def _halved(planes: Sequence[str]) -> list[str]:
 def short_text(summary: dict[str, Any], output: str) -> str:
     """The deepest step and where to look, in a few lines."""
     from export.report import plus_minus
+    from softdot.config.toml import told
 
     lines = []
     if summary.get("indentation_mm"):

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from geometry.arrays import Floats
 from geometry.base import InputError
 from geometry.cache import data_hash, recall, remember, source_hash
 from mesh.interfaces import morphed
@@ -36,19 +37,27 @@ class Response(NamedTuple):
 
 def coarser(config: Config, factor: float) -> Config:
     """The press in fewer steps on elements that are larger by the factor; never on the mesh of a file."""
-    options = config.mesh
-    sizes = {
-        name: factor * size
-        for name in ("element_size_mm", "contact_element_size_mm", "film_element_size_mm")
-        if (size := getattr(options, name)) is not None
-    }
     press = config.press.model_copy(update={"load_steps": min(config.press.load_steps, LOAD_STEPS)})
-    return config.model_copy(update={"mesh": options.model_copy(update={**sizes, "file": None}), "press": press})
+    return on_larger_elements(config, factor).model_copy(update={"press": press})
+
+
+def on_larger_elements(config: Config, factor: float) -> Config:
+    """The same on elements that are larger by the factor; never on the mesh of a file."""
+    options = config.mesh.scaled(factor).model_copy(update={"file": None})
+    return config.model_copy(update={"mesh": options})
 
 
 def mesh_of(config: Config) -> TetMesh:
     """The mesh that is solved of a configuration. InputError, MeshingError."""
     return Case(config).solved_mesh
+
+
+class FullLoadResponse(NamedTuple):
+    """At full load: the response, the voltage of each electrode alone, and the derivatives of the response by key."""
+
+    nominal: Response
+    electrode_voltages_V: tuple[float, ...]
+    slopes: dict[str, Response]
 
 
 class KitPress:
@@ -64,14 +73,15 @@ class KitPress:
         found = remembered(with_factors(self.config), f"slopes {keys}", lambda: self._slopes(keys))
         return Response(*found[0]), {key: Response(*pair) for key, pair in found[1].items()}
 
-    def full_load_slopes(self, keys: Sequence[str]) -> tuple[Response, dict[str, Response]]:
-        """Force and open-circuit voltage at full load, before any slide, with their slopes; no amplifier.
+    def full_load(self, keys: Sequence[str]) -> FullLoadResponse:
+        """Force and open-circuit voltages at full load, before any slide, with their slopes; no amplifier.
 
         InputError also where the path of the press matters; else as for slopes.
         """
         changed = with_factors(self.config)
-        found = remembered(changed, f"full-load slopes {keys}", lambda: self._full_load_slopes(keys))
-        return Response(*found[0]), {key: Response(*pair) for key, pair in found[1].items()}
+        voltages, nominal, slopes = remembered(changed, f"full load {keys}", lambda: self._at_full_load(keys))
+        by_key = {key: Response(*pair) for key, pair in slopes.items()}
+        return FullLoadResponse(Response(*nominal), tuple(voltages), by_key)
 
     def value(self, moved: Config) -> Response:
         """The response of a changed configuration, on the mesh of the unchanged one so that the mesh does not blur the
@@ -93,6 +103,10 @@ class KitPress:
         if path_matters(changed):
             return slopes_along(changed, keys, self._mesh)
         return self._full_load_slopes(keys)
+
+    def _at_full_load(self, keys: Sequence[str]) -> tuple[Floats, Response, dict[str, Response]]:
+        slopes = self._full_load_slopes(keys)
+        return (self._full_load.electrode_voltages_V, *slopes)
 
     def _full_load_slopes(self, keys: Sequence[str]) -> tuple[Response, dict[str, Response]]:
         changed = with_factors(self.config)

@@ -197,7 +197,7 @@ class FullResponse(NamedTuple):
 
 
 class FullLoad:
-    """A press under its full load, before any slide; answer : what it gives.
+    """A press under its full load, before any slide; answer : what it gives, electrode_voltages_V : (e,) of each alone.
 
     ValueError for a model whose path matters, InputError as press_segment, StoppedShortError.
     """
@@ -214,6 +214,8 @@ class FullLoad:
             _refuse(march(self._base.system, self._linear, past, target, before.kink, self._base.recorder.record))
         self._state = past[-1]
         self.answer = _answer(self._base)
+        charge = self._base.recorder.trace(model.press).film_charge_C[-1]
+        self.electrode_voltages_V: Floats = charge / self._base.recorder.capacitance_F
 
     def derivatives(self, variations: Mapping[str, Variation]) -> dict[str, FullResponse]:
         """Of the answer by each parameter. ValueError for one that changes the mesh or the number of unknowns."""

@@ -77,14 +77,14 @@ def rig_mesh(
         made, count = _made(model, options)
         if count <= largest or options.contact_element_size_mm > model.segment.length_mm:
             return made, options
-        options = scaled(options, max(COARSER, 0.7 * (count / largest) ** (1.0 / 3.0)))
+        options = options.scaled(max(COARSER, 0.7 * (count / largest) ** (1.0 / 3.0)))
 
 
 def _under_a_dome(model: Model, options: MeshOptions, largest: int) -> tuple[TetMesh, MeshOptions]:
     """A mesh of a dome by the user's mesher: coarser in few attempts, as each takes seconds."""
     made, count = _made(model, options)
     while count > largest:
-        coarser = scaled(options, max(COARSER, (count / largest) ** 0.6))  # nodes grow with size to about -1.7
+        coarser = options.scaled(max(COARSER, (count / largest) ** 0.6))  # nodes grow with size to about -1.7
         other, fewer = _made(model, coarser)
         if fewer > SAVES * count:
             break
@@ -112,7 +112,7 @@ def finer_mesh(model: Model, options: MeshOptions, factor: float, largest: int) 
 
     Not coarsened, which saves little there and costs shape.
     """
-    made, options = rig_mesh(model, scaled(options, factor), largest, coarsen=False)
+    made, options = rig_mesh(model, options.scaled(factor), largest, coarsen=False)
     return (crowded(made, model.segment) if options.mesher == "layered" else made), options
 
 
@@ -121,19 +121,8 @@ def mesh_of(model: Model, known: Model, tet_mesh: TetMesh, options: MeshOptions)
     if model.segment.section != known.segment.section:  # the sizes of a slice would make half a million nodes
         volume_mm3 = sum(outline(model.segment).volumes().values())
         even_mm = (NODES_PER_CUBE * volume_mm3 / LARGEST) ** (1.0 / 3.0)
-        return rig_mesh(model, scaled(options, max(1.0, even_mm / options.element_size_mm)))[0]
+        return rig_mesh(model, options.scaled(max(1.0, even_mm / options.element_size_mm)))[0]
     return morphed(tet_mesh, known.segment, model.segment)
-
-
-def scaled(options: MeshOptions, factor: float) -> MeshOptions:
-    """All sizes times a factor."""
-    film = options.film_element_size_mm
-    sizes = {
-        "element_size_mm": factor * options.element_size_mm,
-        "contact_element_size_mm": factor * options.contact_element_size_mm,
-        "film_element_size_mm": None if film is None else factor * film,
-    }
-    return options.model_copy(update=sizes)
 
 
 def _resting(model: Model) -> DotShape:

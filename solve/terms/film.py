@@ -11,6 +11,7 @@ from solve.fem.kinematics import deformation_gradient, green_lagrange, physical_
 from solve.fem.sparsity import Block, History, Term, Trial
 from solve.materials.film import FilmLaw
 from solve.materials.inelastic import Inelastic, StressResponse, at_rest, respond, time_error
+from solve.terms.electrodes import Coverage, coverage
 from solve.terms.solid import refuse_inversion
 
 
@@ -20,7 +21,7 @@ class FilmRegion(Term):
 
     tets : (m, 10); dofs : (m, 31) displacements and the voltage (-1 when it does not act back);
     electrode : (m,) index of the electrode over the element, -1 for bare film; electrodes : their number.
-    covered : (m, q) the same at each quadrature point, for the charge.
+    coverage : what each electrode collects, also of elements that its edges cut.
     voltage_dofs : (e,); thickness : undeformed; prestrain : (6,) Green-Lagrange, engineering shears.
     inelastic : laws with memory that act on the stress.
     """
@@ -31,7 +32,7 @@ class FilmRegion(Term):
     gradient: Floats
     weight: Floats
     electrode: Ints
-    covered: Ints
+    coverage: Coverage
     voltage_dofs: Ints
     thickness: float
     prestrain: Floats
@@ -110,20 +111,14 @@ class FilmRegion(Term):
         """Largest membrane force of the prestretch, per width."""
         return float(np.abs(self.law.stiffness @ self.prestrain).max()) * self.thickness
 
-    def _collect(self, density: Floats) -> Floats:
-        """Integral over the undeformed area of each electrode, shape (e,)."""
-        part = np.broadcast_to(density * self.weight / self.thickness, self.weight.shape).ravel()
-        under, index = self.covered.ravel() >= 0, self.covered.ravel()
-        total: Floats = np.bincount(index[under], part[under], self.electrodes).astype(np.float64)
-        return total
-
     def charge(self, trial: Trial, history: History) -> Floats:
         """Short-circuit charge of each electrode: integral of d . S over its undeformed area, shape (e,)."""
-        return self._collect(self.strain_and_stress(trial, history)[1] @ self.law.coupling)
+        density = self.strain_and_stress(trial, history)[1] @ self.law.coupling
+        return self.coverage.integral(density) / self.thickness
 
     def area(self) -> Floats:
         """Undeformed area of each electrode, shape (e,)."""
-        return self._collect(np.ones(1))
+        return self.coverage.volume() / self.thickness
 
     def capacitance(self) -> Floats:
         """eps A / t of the undeformed film under each electrode, shape (e,)."""
@@ -148,7 +143,7 @@ def film_region(
     reference, weight = tetrahedron()
     shape, slope = quadratic(reference)
     gradient, volume = physical_gradients(points[tets], slope, weight)
-    covered = electrode_over(np.einsum("qn,mni->mqi", shape, points[tets]), rectangles)
+    at_points = np.einsum("qn,mni->mqi", shape, points[tets])
     electrode = electrode_over(points[tets[:, :4]].mean(axis=1), rectangles)
     dofs = np.concatenate(
         [displacement_dofs[tets].reshape(-1, 30), np.append(voltage_dofs, -1)[electrode][:, None]], axis=1
@@ -160,7 +155,7 @@ def film_region(
         gradient,
         volume,
         electrode,
-        covered,
+        coverage(points[tets[:, :4]], at_points, volume, rectangles),
         voltage_dofs,
         thickness,
         prestrain(law, prestretch),

@@ -10,6 +10,7 @@ import pytest
 
 from geometry import assembly
 from geometry.beside import Ask
+from softdot import second_process, uncertainty
 from softdot.case import Case
 from softdot.commands import run
 from tests.softdot.stand_ins import cap_of_height, one_tetrahedron, result_of
@@ -75,16 +76,17 @@ def stages(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
         monkeypatch.setattr(Case, name, property(called(name)))
     for name in ("solve", "amplified", "uncertainty"):
         monkeypatch.setattr(Case, name, called(name))
-    for name in ("write_cad", "write_outputs"):
-        monkeypatch.setattr(run, name, called(name))
-    monkeypatch.setattr(run, "beside", at_once)
-    monkeypatch.setattr(run, "prepare", lambda _: None)
+    monkeypatch.setattr(second_process, "write_cad", called("write_cad"))
+    monkeypatch.setattr(run, "write_outputs", called("write_outputs"))
+    monkeypatch.setattr(run, "second_process", at_once)
+    monkeypatch.setattr(run, "draw", lambda *_: {})
+    monkeypatch.setattr(uncertainty, "prepare", lambda _: None)
     return fakes
 
 
 @contextmanager
 def at_once() -> Iterator[Ask]:
-    """In place of geometry.beside: calls are done here, where the stand-ins are."""
+    """In place of the second process: calls are done here, where the stand-ins are."""
 
     def ask(function: Callable[..., object], *arguments: object) -> Future[object]:
         future: Future[object] = Future()

@@ -98,9 +98,9 @@ def test_newton_that_may_not_iterate_halves_its_steps_to_the_smallest_and_says_s
     assert 1e3 * result.steps[-1].indentation_m < 0.1
 
 
-def test_an_electrode_smaller_than_the_mesh_resolves_is_refused_and_not_divided_by():
+def test_an_electrode_whose_voltage_acts_back_on_no_element_is_refused():
     speck = Electrode(name="speck", center_mm=(0.1, 0.0), size_mm=(1e-6, 1.0))
     stack, shape = slab(film=Film(thickness_um=28.0, electrodes=(speck,))), dot("ridge", slab())
-    tables = {"medium1": SOFT, "medium2": SOFT, "film": FILM}
+    tables = {"medium1": SOFT, "medium2": SOFT, "film": FILM.model_copy(update={"coupling": "two-way"})}
     with pytest.raises(InputError, match=r"segment.film.electrodes: 'speck' .* reduce mesh.film_element_size_mm"):
         press_segment(stack, tables, shape, Press(indentation_mm=0.1), build(stack, shape, SLICE))

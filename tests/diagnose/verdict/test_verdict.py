@@ -26,7 +26,7 @@ SHAPE = {
     "alternatives": [{**NAMED, "probability": NUMBER}],
     "ambiguous_with": [[NAMED]],
     "unexplained": bool,
-    "fit": {"train": dict, "held_out": FIT, "engine": str},
+    "fit": {"train": dict, "held_out": FIT, "engine": str, "engine_error_percent": dict},
     "next_experiment": {"text": str, "changes": dict, "separates": list, "expected_separation_sigma": MAYBE},
 }
 QUIET = {**SHAPE, "fit": {"train": type(None), "held_out": type(None), "engine": str}}

@@ -151,6 +151,7 @@ def found(recording, models=(), best=None, groups=(), mismatch=True, unexplained
     fit = Fit(tuple(f"{run.label}, press 1" for run in recording.runs), 0.84, 0.03, 0.026, 100.0)
     parts = {
         "engine": "toy",
+        "engine_accuracy": {"force_N": 0.004, "voltage_V": 0.011},
         "detection": Detection(12.0, 1e-4 if mismatch else 0.4, 0.0032, noise),
         "places": (place,) if mismatch else (),
         "shares": {"readout": 0.8, "medium2": 0.1} if mismatch else {},

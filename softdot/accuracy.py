@@ -1,0 +1,89 @@
+"""Element sizes for an asked accuracy (mesh.accuracy_percent), instead of stated ones.
+
+All sizes of [mesh] are scaled together until the error of force and of every voltage at full load, as
+softdot.discretisation estimates it, is at most what is asked. A press whose path matters is judged by its elastic
+baseline, without mechanisms and slides: what the mesh resolves, the contact and the film, is the same there.
+"""
+
+from geometry.base import InputError
+from mesh.build import MeshOptions
+from mesh.types import MeshingError
+from softdot.case import Case
+from softdot.checks import refuse_huge_mesh
+from softdot.config import Config
+from softdot.discretisation import RATIOS, answer_at, discretisation_error, follows_path, full_load
+from softdot.tolerances.responses import remembered
+from solve.solution.linear import LinearSolveError
+from solve.solution.sensitivity import StoppedShortError
+
+ORDER = 1.5
+"""Power of the size by which the error is expected to fall: between 1, where a stress is singular, and 2."""
+AIM = 0.8
+"""Share of the asked error that the next sizes aim at."""
+COARSEST, WORTH = 2.0, 1.2
+"""Largest factor on the sizes, and the least that is worth another mesh."""
+FINEST = 0.4
+"""Least factor from one mesh to the next."""
+ROUNDS = 4
+
+
+def sized(config: Config) -> Config:
+    """The configuration with the sizes that its accuracy asks for; itself where it states sizes. Kept on disk.
+
+    InputError where the accuracy needs too many elements; MeshingError where it is not reached, or a press fails.
+    """
+    asked = config.mesh.accuracy_percent
+    if asked is None:
+        return config
+    factor: float = remembered(config, "sizes for an accuracy", lambda: _factor(_elastic(config), asked))
+    return config.model_copy(update={"mesh": config.mesh.scaled(factor)})
+
+
+def _elastic(config: Config) -> Config:
+    """Without what makes its path matter."""
+    if not follows_path(config):
+        return config
+    press = config.press.model_copy(update={"path_xy_mm": (), "waveform": None})
+    return config.model_copy(update={"mechanisms": (), "press": press, "readout": None})
+
+
+def _factor(config: Config, asked: float) -> float:
+    """On the stated sizes."""
+    factor = 1.0
+    found = _error_percent(config, factor)
+    if found <= asked:
+        larger = min(float((AIM * asked / max(found, 1e-9)) ** (1.0 / ORDER)), COARSEST)
+        return larger if larger > WORTH and _error_percent(config, larger) <= asked else factor
+    for _ in range(ROUNDS):
+        factor *= max((AIM * asked / found) ** (1.0 / ORDER), FINEST)
+        found = _error_percent(config, factor)
+        if found <= asked:
+            return float(factor)
+    under_dot = factor * config.mesh.contact_element_size_mm
+    raise MeshingError(
+        f"mesh.accuracy_percent = {asked:g}: force and voltages are still {found:.2g} % off on elements of "
+        f"{under_dot:.2g} mm under the dot; ask for less, or state the sizes"
+    )
+
+
+def _error_percent(config: Config, factor: float) -> float:
+    """The largest of the force, unless it is given, and of the voltages, on sizes times a factor. InputError."""
+    options = config.mesh.scaled(factor)
+    _refuse_too_many(config, options)
+    own = config.model_copy(update={"mesh": options})
+    try:
+        loads = {ratio: answer_at(full_load(own, ratio)) for ratio in (1.0, *RATIOS)}
+    except (LinearSolveError, StoppedShortError) as error:
+        asked = config.mesh.accuracy_percent
+        raise MeshingError(f"mesh.accuracy_percent = {asked:g}: a press to choose the sizes failed: {error}") from None
+    off = discretisation_error(loads.pop(1.0), loads)
+    found = [off.voltage_percent, *map(float, off.electrodes_percent)]
+    return max(found if config.press.force_N is not None else [off.force_percent, *found])
+
+
+def _refuse_too_many(config: Config, options: MeshOptions) -> None:
+    case = Case(config)
+    try:
+        refuse_huge_mesh(case.model.segment, case.dot, options, case.planes)
+    except InputError as error:
+        raise InputError(f"mesh.accuracy_percent = {config.mesh.accuracy_percent:g}: {error}") from None

@@ -1,0 +1,62 @@
+"""What a second process does for a run while the first one meshes and presses: the parts' files and the pictures.
+
+This module itself loads in no time, so that the second process starts before the first one has loaded anything.
+"""
+
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from geometry.base import load_alone, without_collector
+from geometry.beside import Ask, beside
+
+if TYPE_CHECKING:
+    from geometry.dot import DotShape
+    from geometry.parameters import Segment
+    from geometry.solids import Part
+
+PARTS = ("geometry", "topology", "exporters3d", "mesher")
+"""Of build123d; the rest of it loads scikit-learn, pandas and a reader of DXF files, in twice the time of these."""
+DRAWING = ("trimesh", "solve.result", "matplotlib.figure", "pyvista.plotting", "export.pictures")
+
+
+@contextmanager
+def second_process() -> Iterator[Ask]:
+    """The process for the time of a block; it begins to load what it needs at once."""
+    with beside() as ask:
+        ask(load_libraries)
+        yield ask
+
+
+def load_libraries() -> None:
+    """Load what parts and pictures take, which is two seconds of work."""
+    with without_collector():
+        load_alone("build123d", *PARTS)
+        for name in DRAWING:
+            import_module(name)
+
+
+def make_cad(segment: "Segment", dot_shape: "DotShape", folder: Path) -> float:
+    """The parts and their files; returns how many seconds they took. InputError."""
+    from geometry import assembly
+
+    start = time.perf_counter()
+    write_cad(assembly.build_parts(segment, dot_shape), folder)
+    return time.perf_counter() - start
+
+
+def write_cad(parts: "Sequence[Part]", folder: Path) -> None:
+    """STEP, 3MF and STL files of the parts."""
+    from export import cad
+
+    cad.write_cad(parts, folder)
+
+
+def draw(*arguments: Any) -> dict[str, Path]:
+    """As export.pictures.write_pictures."""
+    from export.pictures import write_pictures
+
+    return write_pictures(*arguments)
