@@ -32,6 +32,7 @@ KRYLOV_ITERATIONS = 18  # with a factorisation of the same matrix
 REFINEMENTS = 5  # as LAPACK's xSYRFS; each must at least halve the error
 REFINED, ACCEPTED = 1e-12, 1e-10  # backward errors: refinement goes on down to the first, the second will do
 WEAK_SHIFT = 1e-4  # of Newton's: many right-hand sides share the factorisation, and each then takes fewer iterations
+EXACT = 1e-8  # relative residual: far below what a Newton step is off by itself
 LONGEST_REST = 64  # solutions
 SAFETY, LITTLE = 0.3, 0.1  # a refinement gains what is wanted and this much more, and a digit at least
 EASY = 4  # back substitutions of a solution that the factorisation fits well
@@ -60,6 +61,9 @@ class LinearSolver:
         self._rest: Counter[str] = Counter()  # solutions for which each is not asked
         self.name = self._registry[0].name
         """Name of the factorisation used last."""
+        self.exact = False
+        """Whether every tangent is factorised, and its system solved to EXACT: where inexact steps have failed, which of
+        several equilibria Newton's method meets must not depend on them."""
 
     def solve(self, tangent: Tangent, rhs: Floats, tolerance: float, similar: bool = False) -> Floats:
         """Solve A x = rhs to a relative residual.
@@ -67,7 +71,8 @@ class LinearSolver:
         similar : the tangent has changed little since the last factorisation.
         LinearSolveError when every factorisation fails.
         """
-        return self._solve(tangent, rhs, similar, _Goal(_relative_residual, tolerance, tolerance, tolerance, 1.0, 0))
+        wanted = min(tolerance, EXACT) if self.exact else tolerance
+        return self._solve(tangent, rhs, similar, _Goal(_relative_residual, wanted, wanted, tolerance, 1.0, 0))
 
     def solve_to_round_off(self, tangent: Tangent, rhs: Floats, similar: bool = False) -> Floats:
         """Solve A x = rhs by iterative refinement until x is exact for coefficients that differ by round-off.
@@ -124,7 +129,7 @@ class LinearSolver:
         changed : number of discrete states that differ from those of the last solution, None after another load; of a
         symmetric tangent the constraints that differ from the factorised ones tell more.
         """
-        if self._current is None or self._excess > 2 * self._patience:
+        if self.exact or self._current is None or self._excess > 2 * self._patience:
             return False
         if tangent.excess is not None:
             return changed is not None and CHANGED * changed <= self._patience // 2

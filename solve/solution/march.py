@@ -152,6 +152,7 @@ def march(
     solve.solution.march); not where answers must be smooth over the path. Returns why it stopped short, or None.
     """
     start, done, size, first = Target(past[-1].time, past[-1].load, kink), 0.0, 1.0, kink
+    linear.exact = False
     while done < 1.0:
         left = 1.0 - done
         size = left / np.ceil(left / size - 1e-6)  # equal parts: a sliver that is left over would help nobody
@@ -171,6 +172,7 @@ def march(
                 state = replace(damped, iterations=state.iterations + damped.iterations, time_error=error)
         except NoEquilibriumError as failure:
             smallest = SMALLEST_SUBSTEP if size >= SMALLEST_SUBSTEP else SMALLEST_SUBSTEP**2
+            linear.exact = True
             if 0.5 * size >= smallest:
                 size *= 0.5
                 continue
