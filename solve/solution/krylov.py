@@ -31,13 +31,13 @@ def flexible_gmres(product: Apply, approximate: Apply, rhs: Floats, tolerance: f
         directions[i] = approximate(basis[i])
         image = product(directions[i])
         length = float(np.linalg.norm(image))
+        if not np.isfinite(length):
+            return np.full_like(rhs, np.nan)
         for _ in range(2):  # the second time takes away what round-off left of the basis
             part = basis[: i + 1] @ image
             image -= part @ basis[: i + 1]
             projected[: i + 1, i] += part
         projected[i + 1, i] = new = float(np.linalg.norm(image))
-        if not np.isfinite(new):
-            return np.full_like(rhs, np.nan)
         weights = np.linalg.lstsq(projected[: i + 2, : i + 1], goal[: i + 2])[0]
         left = float(np.linalg.norm(goal[: i + 2] - projected[: i + 2, : i + 1] @ weights))
         if left <= tolerance * size or new <= EXHAUSTED * length:

@@ -12,7 +12,7 @@ Higham, Accuracy and Stability of Numerical Algorithms, 2002, ch. 12).
 The contact rows have a zero diagonal, which costs pivots; the matrix that is factorised carries a small negative one
 instead, and GMRES preconditioned by it solves the true system in a few back substitutions (Saad, Iterative Methods
 for Sparse Linear Systems, 2003, ch. 9). A factorisation costs tens of them, so one of an earlier Newton step is used
-again where the tangent has changed little; constraints that have opened or closed since are changed in it, too
+again where the tangent has changed little; constraints that have opened or closed since are changed in it too
 (solve.solution.preconditioner).
 """
 
@@ -62,8 +62,8 @@ class LinearSolver:
         self.name = self._registry[0].name
         """Name of the factorisation used last."""
         self.exact = False
-        """Whether every tangent is factorised, and its system solved to EXACT: where inexact steps have failed, which of
-        several equilibria Newton's method meets must not depend on them."""
+        """Whether every tangent is factorised, and its system solved to EXACT: where inexact steps have failed, the
+        equilibrium that is met must not depend on them."""
 
     def solve(self, tangent: Tangent, rhs: Floats, tolerance: float, similar: bool = False) -> Floats:
         """Solve A x = rhs to a relative residual.

@@ -126,8 +126,10 @@ def test_a_press_may_snap_and_a_table_over_depth_may_not(monkeypatch):
     def on_state(*states):
         arrived.append(states[0])
 
-    assert marching.march(Truss(), None, [at(0.0)], target, True, on_state).startswith("sub-steps fell below 1/64")
+    assert marching.march(Truss(), SimpleNamespace(), [at(0.0)], target, True, on_state).startswith(
+        "sub-steps fell below 1/64"
+    )
     assert arrived == []
-    assert marching.march(Truss(), None, [at(0.0)], target, True, on_state, may_snap=True) is None
+    assert marching.march(Truss(), SimpleNamespace(), [at(0.0)], target, True, on_state, may_snap=True) is None
     assert arrived[-1].time == 1.0
     assert all(state.snapped for state in arrived)
