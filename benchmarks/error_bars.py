@@ -12,8 +12,8 @@ import numpy as np
 
 from benchmarks.timing import Table, file_argument
 from softdot.case import Case
-from softdot.discretisation import RATIOS, Answers, answers_of, discretisation_error
 from softdot.summary import press_part
+from softdot.tolerances.discretisation import RATIOS, Answers, answers_of, discretisation_error
 
 FOUR_TIMES = {"solid": 4.0 ** (-1.0 / 3.0), "plane-strain": 4.0 ** (-1.0 / 2.0)}
 MEDIA = ("vnr", "vnr-soft", "ecoflex-00-30", "ecoflex-00-50", "dragon-skin-30", "rtv615")

@@ -120,7 +120,7 @@ class Case:
     @cached_property
     def sized(self) -> Config:
         """The configuration with the element sizes that mesh.accuracy_percent asks for. InputError."""
-        from softdot.accuracy import sized
+        from softdot.tolerances.accuracy import sized
 
         return sized(self.config)
 
@@ -173,7 +173,7 @@ class Case:
 
     def uncertainty(self, summary: dict[str, Any]) -> dict[str, Any]:
         """How far the last force and voltage of a summary can be trusted."""
-        from softdot.uncertainty import uncertainty
+        from softdot.tolerances.uncertainty import uncertainty
 
         return uncertainty(self.sized, summary)
 

@@ -101,7 +101,7 @@ def _fill(case: Case, folder: Path, progress: Progress, mesh_formats: Sequence[s
     from mesh.types import MeshingError
     from softdot.checks import design_warnings, result_warnings
     from softdot.summary import heading, mesh_part, press_part, stopped_solver
-    from softdot.uncertainty import prepare
+    from softdot.tolerances.uncertainty import prepare
 
     clock, config, model = StageClock(), case.config, case.model
     summary = {**heading(config), "warnings": [*case.checked[1], *design_warnings(model)]}
@@ -186,7 +186,7 @@ def command(chosen: Namespace) -> int:
             from softdot.case import Case
             from softdot.config import load_config
             from softdot.console import progress_of
-            from softdot.uncertainty import uncertainty  # noqa: F401 - loads the solver
+            from softdot.tolerances.uncertainty import uncertainty  # noqa: F401 - loads the solver
 
         config = load_config(chosen.config, chosen.set)
         with only_the_summary_on_stdout(), progress_of(chosen) as progress:

@@ -1,1 +1,1 @@
-"""What may be off in a segment that is made, and what that does to force and voltage."""
+"""What may be off in a segment as it is made, in its materials and its mesh, and what that does to its answers."""

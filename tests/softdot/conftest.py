@@ -10,9 +10,10 @@ import pytest
 
 from geometry import assembly
 from geometry.beside import Ask
-from softdot import second_process, uncertainty
+from softdot import second_process
 from softdot.case import Case
 from softdot.commands import run
+from softdot.tolerances import uncertainty
 from tests.softdot.stand_ins import cap_of_height, one_tetrahedron, result_of
 
 MINIMAL = """

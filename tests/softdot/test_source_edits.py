@@ -54,7 +54,7 @@ def kept(copied: Path, monkeypatch: pytest.MonkeyPatch):
         ("solve/mechanisms/circuit/saturation.py", {"press", "outcome"}),
         ("solve/materials/library.toml", {"press", "outcome"}),
         ("softdot/checks.py", {"outcome"}),
-        ("softdot/uncertainty.py", {"outcome"}),
+        ("softdot/tolerances/uncertainty.py", {"outcome"}),
         ("diagnose/prove/trial.py", set()),
     ],
 )

@@ -6,7 +6,7 @@ from softdot.case import Case
 from softdot.config import config_from
 from softdot.summary import press_part
 from softdot.tolerances.responses import KitPress
-from softdot.uncertainty import uncertainty
+from softdot.tolerances.uncertainty import uncertainty
 from solve.solution.sensitivity import StoppedShortError
 
 SLICE = {

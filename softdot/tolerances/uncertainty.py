@@ -2,8 +2,9 @@
 
 To first order: each constant of a material, off by what is stated of it, moves the response along its derivative
 (ISO/IEC Guide 98-3, 2008, clause 5.1.2). The derivatives come from the same press on elements twice as large, at its
-full load alone, which also tells the discretisation error (softdot.discretisation). All parts are taken as independent,
-and their squares added. Where a part is missing there is no sum: the mesh alone is far less than the materials do.
+full load alone, which also tells the discretisation error (softdot.tolerances.discretisation). All parts are taken as
+independent, and their squares added. Where a part is missing there is no sum: the mesh alone is far less than the
+materials do.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -14,7 +15,7 @@ from typing import Any, TypeVar
 from geometry.base import InputError
 from mesh.types import MeshingError
 from softdot.config import Config
-from softdot.discretisation import (
+from softdot.tolerances.discretisation import (
     RATIOS,
     Answers,
     DiscretisationError,

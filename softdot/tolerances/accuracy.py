@@ -1,8 +1,8 @@
 """Element sizes for an asked accuracy (mesh.accuracy_percent), instead of stated ones.
 
 All sizes of [mesh] are scaled together until the error of force and of every voltage at full load, as
-softdot.discretisation estimates it, is at most what is asked. A press whose path matters is judged by its elastic
-baseline, without mechanisms and slides: what the mesh resolves, the contact and the film, is the same there.
+softdot.tolerances.discretisation estimates it, is at most what is asked. A press whose path matters is judged by its
+elastic baseline, without mechanisms and slides: what the mesh resolves, the contact and the film, is the same there.
 """
 
 from geometry.base import InputError
@@ -11,7 +11,7 @@ from mesh.types import MeshingError
 from softdot.case import Case
 from softdot.checks import refuse_huge_mesh
 from softdot.config import Config
-from softdot.discretisation import RATIOS, answer_at, discretisation_error, follows_path, full_load
+from softdot.tolerances.discretisation import RATIOS, answer_at, discretisation_error, follows_path, full_load
 from softdot.tolerances.responses import remembered
 from solve.solution.linear import LinearSolveError
 from solve.solution.sensitivity import StoppedShortError
