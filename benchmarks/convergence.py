@@ -1,6 +1,6 @@
 """How force and voltage of the default segment change with the element size, with a figure for the documents.
 
-    python benchmarks/convergence.py docs/convergence.json docs/pictures/convergence.png
+    python -m benchmarks.convergence docs/convergence.json docs/pictures/convergence.png
 
 Every finished size is written at once, and a size that the file already holds is not run again. The sizes are factors
 on the default ones (0.3 mm, 0.1 mm under the dot). The error of a mesh is its distance from the extrapolation of the
@@ -13,24 +13,17 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 
-import mesh
 from benchmarks.timing import file_argument
-from geometry.dot import resolve_dot
+from softdot.case import Case
 from softdot.config import load_config
-from solve.model import Model
-from solve.press import press_segment
 
-FACTORS = (2.0, 1.4, 1.0, 0.7)
+FACTORS = (2.0, 1.4, 1.0, 0.7, 0.5)
 
 
 def measure(factor: float) -> dict:
-    """Force and voltage of the default press on a mesh scaled by a factor."""
-    config = load_config(None)
-    dot = resolve_dot(config.dot, config.segment)
-    sizes = {name: factor * getattr(config.mesh, name) for name in ("element_size_mm", "contact_element_size_mm")}
-    tet_mesh = mesh.build(config.segment, dot, config.mesh.model_copy(update=sizes))
-    press = config.press.model_copy(update={"load_steps": 3})  # elastic and frictionless: the path does not matter
-    result = press_segment(Model(config.segment, config.layer_materials(), config.dot, press), tet_mesh)
+    """Force and voltage of the default press on a mesh scaled by a factor, of a quarter."""
+    config = load_config(None, ["press.load_steps=3"])  # elastic and frictionless: the path does not matter
+    result = Case(config.model_copy(update={"mesh": config.mesh.scaled(factor)})).solve()
     if not result.converged:
         raise SystemExit(result.failure)
     return {

@@ -25,7 +25,6 @@ SAME = 1e-3  # relative: a residual that comes back with the same discrete state
 MAX_CIRCLES = 3
 MAX_SETTLING = 10  # of the constraints in one step
 LITTLE = 0.1  # what a linear solution gains at least
-QUADRATIC = 0.1  # residual of a linear solution by that of the nonlinear one, which falls to 0.1 to 2 times its square
 LOOSEST = 1e-2  # residual of a linear solution, far from the end, relative to the residual and to the load
 
 
@@ -69,7 +68,7 @@ def equilibrate(
                 break
             similar = linear.may_reuse(now.tangent, None if status is None else int(np.sum(status != now.status)))
             # inexact Newton: the linear residual need fall neither faster than the nonlinear one nor below its goal
-            loosest = min(QUADRATIC * relative, LOOSEST / max(relative, 1.0))
+            loosest = min(0.01 * relative, LOOSEST / max(relative, 1.0))
             tolerance = min(max(loosest, 0.1 * TOLERANCE / max(relative, 1e-300)), LOOSEST)
             step = linear.solve(now.tangent, -now.residual, tolerance, similar)
             share, before = circles.share(now.status, norm), x
