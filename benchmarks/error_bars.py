@@ -1,7 +1,8 @@
 """Stated against true discretisation errors of random designs: python -m benchmarks.error_bars JSON [FIRST COUNT].
 
 The true error is that against the same press on a mesh with four times the unknowns. Designs are drawn anew from their
-number; rows that the file has are not computed again.
+number; rows that the file has are not computed again. The constants of the estimate were chosen on designs 0 to 39 and
+100 to 123, so that 40 others are counted.
 """
 
 import sys
@@ -106,7 +107,7 @@ def counted(rows: list[dict]) -> dict[str, float]:
     }
 
 
-def main(path: Path, first: int = 0, count: int = 40) -> None:
+def main(path: Path, first: int = 40, count: int = 40) -> None:
     """Compute what the file has not."""
     table = Table(path, "error bars")
     for number in range(first, first + count):

@@ -26,7 +26,7 @@ class MeshOptions(Table):
     film_element_size_mm: Positive | None = Field(
         None, description="edge length on the film; none: geometric mean of the two"
     )
-    accuracy_percent: Annotated[float, Field(ge=0.3, le=20.0)] | None = Field(
+    accuracy_percent: Annotated[float, Field(ge=0.4, le=20.0)] | None = Field(
         None, description="all sizes are scaled together until force and voltages are so accurate; none: as stated"
     )
     mesher: Literal["pytetwild", "layered"] = Field("pytetwild", description="layered: extruded, deterministic")

@@ -120,8 +120,8 @@ def test_stated_sizes_stay():
 
 def test_an_accuracy_that_needs_too_many_elements_is_refused_by_its_own_name(monkeypatch):
     monkeypatch.setattr("softdot.checks.TOO_MANY", 100)
-    with pytest.raises(InputError, match=r"mesh\.accuracy_percent = 0\.3: mesh\.contact_element_size_mm = .* elements"):
-        _ = Case(config_from({**SLICE, "mesh": {"accuracy_percent": 0.3}})).sized
+    with pytest.raises(InputError, match=r"mesh\.accuracy_percent = 0\.4: mesh\.contact_element_size_mm = .* elements"):
+        _ = Case(config_from({**SLICE, "mesh": {"accuracy_percent": 0.4}})).sized
 
 
 def test_a_mesh_of_a_file_has_the_accuracy_that_it_has():
