@@ -1,8 +1,8 @@
 """The frictionless press of the true segment against NGSolve: python -m benchmarks.press JSON [FINEST].
 
 Both codes press the same meshes of a quarter, held at its mirror planes, from coarse to fine (FINEST: smallest factor
-on the default element sizes), each in as few equal load steps as it converges in: softdot in one. The error is that of
-the force and of the voltage against the limit of both codes' finest meshes at second order. Time at equal error is read
+on the default element sizes), each in the number of equal load steps in which it is quickest. The error is that of the
+force and of the voltage against the limit of both codes' finest meshes at second order. Time at equal error is read
 from straight lines through (log error, log time). Rows that the file has are not measured again.
 """
 
@@ -14,15 +14,17 @@ import numpy as np
 
 from benchmarks.timing import Table, run_alone
 
-FACTORS = (2.8, 2.0, 1.4, 1.0, 0.7)
+FACTORS = (2.8, 2.0, 1.4, 1.0)
 CODES = ("softdot", "NGSolve")
-STEPS = (3, 4, 6, 12)  # of NGSolve; it converged in 1 or 2 on none of the meshes
+OUR_STEPS = (1, 2, 3)
+STEPS = (3, 4, 6, 12)  # of NGSolve, the first of which is the quickest; it converged in 1 or 2 on none of the meshes
 ANSWERS = ("force_N", "voltage_V")
 
 
 def of_code(rows: list[dict], code: str) -> list[dict]:
     """From coarse to fine."""
-    return sorted((row for row in rows if row["code"] == code), key=lambda row: -row["factor"])
+    own = (row for row in rows if row["code"] == code and row["load_steps"] is not None)
+    return sorted(own, key=lambda row: -row["factor"])
 
 
 def limit(rows: list[dict], name: str) -> float:
@@ -62,14 +64,19 @@ def show(rows: list[dict]) -> None:
         print(f"at {100 * error:.2f} % (our factor {row['factor']}): ours/theirs {ratio:.2f}")
 
 
+def by_softdot(factor: float, case: Path) -> dict:
+    """Its press in the quickest of its load steps; the mesh is written for NGSolve."""
+    return min((run_alone("press_ours", factor, steps, case) for steps in OUR_STEPS), key=lambda row: row["seconds"])
+
+
 def by_ngsolve(case: Path) -> dict:
-    """Its press in the first of its load steps that converges; what did not is not counted."""
+    """Its press in the first of its load steps that converges; no answers where none does."""
     for steps in STEPS:
         try:
             return run_alone("press_ngsolve", case, steps)
         except SystemExit as failure:
             print(f"NGSolve, {steps} steps: {str(failure).strip().splitlines()[-1]}", flush=True)
-    raise SystemExit("NGSolve converged in none of its load steps")
+    return {"load_steps": None}
 
 
 def main(path: Path, finest: float) -> None:
@@ -80,7 +87,7 @@ def main(path: Path, finest: float) -> None:
             continue
         with tempfile.TemporaryDirectory() as folder:
             case = Path(folder) / "case.npz"
-            ours = run_alone("press_ours", factor, case)
+            ours = by_softdot(factor, case)
             if not table.has(factor=factor, code="softdot"):
                 table.add({"code": "softdot", "factor": factor, **ours})
             if not table.has(factor=factor, code="NGSolve"):
