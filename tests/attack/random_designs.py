@@ -51,6 +51,8 @@ def design(number: int) -> dict:
         tables["readout"] = _readout(draw)
     if draw.perhaps(0.3):
         tables["mesh"]["symmetry"] = "none"
+    if not solid and draw.perhaps(0.05):
+        tables["mesh"]["accuracy_percent"] = 20.0
     return tables
 
 

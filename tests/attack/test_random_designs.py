@@ -114,7 +114,7 @@ def _charges(pressed):
     if len(result.electrode_names) != 2:
         return
     area = result.capacitance_F / result.capacitance_F.sum()
-    if not np.allclose(area, 0.5, atol=0.06):  # quadrature points of coarse elements fall left or right
+    if not np.allclose(area, 0.5, atol=1e-9):
         yield f"the halves have {area} of the capacitance"
 
 
