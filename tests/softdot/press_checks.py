@@ -37,6 +37,7 @@ class Pressed:
 def solved(tables) -> Pressed:
     """From tables to the result as softdot run goes, without its files. InputError, MeshingError."""
     case = Case(config_from(tables))
+    _ = case.solved_mesh  # sizes for an accuracy are found by presses of their own
     kept = []
     set_up = press_module.set_up
     with patch.object(press_module, "set_up", lambda *given: kept.append(set_up(*given)) or kept[0]):
