@@ -68,8 +68,8 @@ def equilibrate(
                 break
             similar = linear.may_reuse(now.tangent, None if status is None else int(np.sum(status != now.status)))
             # inexact Newton: the linear residual need fall neither faster than the nonlinear one nor below its goal
-            loosest = min(0.01 * relative, LOOSEST / max(relative, 1.0))
-            tolerance = min(max(loosest, 0.1 * TOLERANCE / max(relative, 1e-300)), LOOSEST)
+            loosest = min(0.001 * relative, LOOSEST / max(relative, 1.0))
+            tolerance = min(max(loosest, 0.01 * TOLERANCE / max(relative, 1e-300)), LOOSEST)
             step = linear.solve(now.tangent, -now.residual, tolerance, similar)
             share, before = circles.share(now.status, norm), x
             if circles.count > MAX_CIRCLES:
