@@ -6,6 +6,7 @@ elastic baseline, without mechanisms and slides: what the mesh resolves, the con
 """
 
 from geometry.base import InputError
+from geometry.cache import source_hash
 from mesh.build import MeshOptions
 from mesh.types import MeshingError
 from softdot.case import Case
@@ -35,7 +36,8 @@ def sized(config: Config) -> Config:
     asked = config.mesh.accuracy_percent
     if asked is None:
         return config
-    factor: float = remembered(config, "sizes for an accuracy", lambda: _factor(_elastic(config), asked))
+    what = f"sizes for an accuracy, as {source_hash(__name__)} finds them"
+    factor: float = remembered(config, what, lambda: _factor(_elastic(config), asked))
     return config.model_copy(update={"mesh": config.mesh.scaled(factor)})
 
 
