@@ -14,8 +14,8 @@ from mesh.outline import StackOutline
 
 GROWTH = 0.4  # mm of edge length per mm of distance: neighbouring edges differ by about a factor 1.4
 DEPTH_MM = 0.3  # the contact zone is refined for a press this deep
-HELD_EDGE = 0.6  # edge length along the film's rim against that of the film: its stress is singular there
-HELD_EDGE_SLICE = 0.2  # the same in a slice, where it costs next to nothing
+RIM, RIM_GROWTH = 0.3, 0.5  # edge length along the film's rim against that of the film: its stress is singular there
+RIM_SLICE, RIM_GROWTH_SLICE = 0.2, GROWTH  # the same in a slice, where it costs next to nothing
 
 
 @dataclass(frozen=True)
@@ -41,8 +41,8 @@ class Sizing:
         z = points[:, 2]
         to_film = np.abs(z - np.clip(z, self.outline.film_bottom, self.outline.film_top))
         film = self.film_mm + GROWTH * to_film
-        held = HELD_EDGE_SLICE if self.outline.is_slice else HELD_EDGE
-        rim = held * self.film_mm + GROWTH * np.hypot(to_film, self._to_side(points))
+        edge, growth = (RIM_SLICE, RIM_GROWTH_SLICE) if self.outline.is_slice else (RIM, RIM_GROWTH)
+        rim = edge * self.film_mm + growth * np.hypot(to_film, self._to_side(points))
         fine = np.minimum(np.minimum(contact, film), rim)
         return np.minimum(fine, self.coarse_mm)
 
