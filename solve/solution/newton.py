@@ -23,6 +23,7 @@ MAX_ITERATIONS = 25
 MAX_HALVINGS = 6
 SAME = 1e-3  # relative: a residual that comes back with the same discrete states runs in a circle
 MAX_CIRCLES = 3
+NEAR = 1.0  # relative residual from which constraints settle within a step: farther away they settle to the wrong ones
 MAX_SETTLING = 10  # of the constraints in one step
 LITTLE = 0.1  # what a linear solution gains at least
 LOOSEST = 1e-2  # residual of a linear solution, far from the end, relative to the residual and to the load
@@ -74,7 +75,9 @@ def equilibrate(
             share, before = circles.share(now.status, norm), x
             if circles.count > MAX_CIRCLES:
                 break
-            step, status = _settled(system, linear, now, x, step, tolerance, load, time, previous)
+            status = now.status
+            if relative <= NEAR:
+                step, status = _settled(system, linear, now, x, step, tolerance, load, time, previous)
             x, now = _advance(system, x, share * step, load, time, previous, damped)
             correction = _relative_change(system, before, x)
             lost = lost or (system.force_driven and not now.touching)

@@ -75,6 +75,11 @@ class Twin:
         self.state = replace(base, load=self.load(base.load), histories=self.setup.system.at_rest(base.load).histories)
         self.setup.recorder.start(self.state)
 
+    def ahead(self, other: "Twin") -> Floats:
+        """Difference (count,) of the unknowns of two twins."""
+        assert self.state is not None and other.state is not None
+        return self.state.x - other.state.x
+
     def residual(self, x: Floats, base: State) -> Floats:
         """Of the base's unknowns under this parameter and this memory (count,)."""
         assert self.state is not None
@@ -166,10 +171,15 @@ def _tow(
 
 
 def tow(pair: tuple[Twin, Twin], linear: LinearSolver, tangent: Tangent, state: State, similar: bool) -> None:
-    """Bring two twins to first order to a converged state of the base; similar : its tangent is factorised already."""
+    """Bring two twins to first order to a converged state of the base; similar : its tangent is factorised already.
+
+    From where they stand apart already: a dot that rests leaves them so, also where the base is at the very limit of
+    friction and its tangent slips.
+    """
     below, above = pair
-    change = above.residual(state.x, state) - below.residual(state.x, state)
-    half = 0.5 * linear.solve_to_round_off(tangent, -change, similar=similar)
+    apart = 0.5 * above.ahead(below)
+    change = above.residual(state.x + apart, state) - below.residual(state.x - apart, state)
+    half = 0.5 * linear.solve_to_round_off(tangent, -change, similar=similar) + apart
     below.follow(state.x - half, state)
     above.follow(state.x + half, state)
 

@@ -139,7 +139,7 @@ def test_the_contact_area_is_where_the_surface_lies_on_the_dot():
     linear, rest = LinearSolver(setup.system.factorisation_shift), setup.system.at_rest(Load((0.0, 0.0), 0.0))
     setup.recorder.start(rest)
     past = [rest]
-    for target in setup.targets(follows_time=False):
+    for target in setup.targets(follows_time=False)[1:]:  # the first is rest
         assert march(setup.system, linear, past, target, True, setup.recorder.record) is None
     contact, state, record = setup.system.contact, past[-1], setup.recorder.records[-1]
     gap = contact.mean_gap(setup.system.displacement(state.x), setup.system.move(state.x, state.load))
