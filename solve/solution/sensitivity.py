@@ -77,7 +77,8 @@ class Twin:
 
     def ahead(self, other: "Twin") -> Floats:
         """Difference (count,) of the unknowns of two twins."""
-        assert self.state is not None and other.state is not None
+        assert self.state is not None
+        assert other.state is not None
         return self.state.x - other.state.x
 
     def residual(self, x: Floats, base: State) -> Floats:
