@@ -25,7 +25,7 @@ from softdot.console import (
     warn,
     write_json,
 )
-from softdot.machine import named_when_missing
+from softdot.machine import named_when_missing, refuse_no_room_for_libraries
 from softdot.output import RUN, staged_folder
 from softdot.second_process import draw, make_cad, second_process
 
@@ -180,6 +180,7 @@ def _reporting(progress: Progress) -> OnStep:
 
 def command(chosen: Namespace) -> int:
     """Run chosen.config into chosen.output; 0, or 3 when a computation did not converge. InputError."""
+    refuse_no_room_for_libraries()
     with second_process() as ask:  # at once: it loads its libraries while this one does
         with without_collector():
             Thread(target=_try_to_draw, daemon=True).start()
