@@ -114,8 +114,9 @@ def refuse_too_little_memory(elements: float, sliced: bool, key: str, value: flo
 def refuse_no_room_for_libraries() -> None:
     """InputError where this process may have less memory than loading the libraries takes: they would fail midway."""
     for what, limit, extra in _limits():
-        if BASE_GB + extra > limit:
-            raise InputError(f"{what} leaves {limit:.2g} GB of memory, and a run needs {BASE_GB + extra:.2g} GB at least")
+        least = BASE_GB + extra
+        if least > limit:
+            raise InputError(f"{what} leaves {limit:.2g} GB of memory, and a run needs {least:.2g} GB at least")
 
 
 def _limits() -> Iterator[tuple[str, float, float]]:
