@@ -5,6 +5,7 @@ What may float without counting as physics, run by run as declared, and how the 
 
 from collections import OrderedDict
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -186,19 +187,26 @@ class ObservedModel:
     def _through(
         self, number: int, nuisance: Nuisance, values: Floats, settings: Sequence[Setting], shown: Sequence[Signals]
     ) -> Floats:
-        """Column (n,) of a nuisance that the engine answers to, by a difference."""
+        """Column (n,) of a nuisance that the engine answers to, by a difference; 0 where it answers on neither side."""
         assert nuisance.candidate is not None
         coordinate = nuisance.candidate.coordinates[nuisance.coordinate]
-        step = STEP * min(map(abs, coordinate.starts))
-        step = min(step, nuisance.sigma)
-        if values[number] + step > coordinate.high:
-            step = -step
-        moved = values.copy()
-        moved[number] += step
+        step = min(STEP * min(map(abs, coordinate.starts)), nuisance.sigma)
+        step = -step if values[number] + step > coordinate.high else step
+        for signed in (step, -step):
+            moved = values.copy()
+            moved[number] += signed
+            with suppress(ValueError):
+                return self._difference(nuisance.run, moved, settings, shown) / signed
+        return np.zeros(len(self.samples))
+
+    def _difference(
+        self, only: int | None, values: Floats, settings: Sequence[Setting], shown: Sequence[Signals]
+    ) -> Floats:
+        """Change (n,) from what is shown, in one run or in all. ValueError where the engine has no answer."""
         total = np.zeros(len(self.samples))
-        for run in range(len(self.runs)) if nuisance.run is None else [nuisance.run]:
-            after = self._shown(run, moved, settings)
-            total += self.of_run(run, {name: (after[name] - shown[run][name]) / step for name in after})
+        for run in range(len(self.runs)) if only is None else [only]:
+            after = self._shown(run, values, settings)
+            total += self.of_run(run, {name: after[name] - shown[run][name] for name in after})
         return total
 
     def of_run(self, run: int, signals: Signals) -> Floats:

@@ -204,10 +204,17 @@ def _descended(model: ObservedModel, values: Floats) -> LinearisedSystem:
 
 
 def _misfit(model: ObservedModel, values: Floats, system: LinearisedSystem) -> float:
-    """Twice the negative log posterior of nuisances, but for a constant; discrepancies integrated out by the system."""
+    """Twice the negative log posterior of nuisances, but for a constant; discrepancies integrated out by the system.
+
+    Infinite where the model has no answer.
+    """
+    try:
+        predicted = model.vector(values)
+    except ValueError:
+        return np.inf
     count = len(values)
     others: Bools = np.arange(system.nuisance_design.shape[1]) >= count
-    left = model.samples.recorded - model.vector(values)
+    left = model.samples.recorded - predicted
     columns, sigma = system.weighted(system.nuisance_design[:, others]), system.sigma[others]
     return Quadratic(columns, sigma).square(system.weighted(left)) + float(((values / model.sigma) ** 2).sum())
 

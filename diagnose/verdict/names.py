@@ -5,7 +5,7 @@ from math import ceil, isfinite, log10
 
 from diagnose.figures import figure
 from diagnose.findings import FittedModel, Interval
-from diagnose.forward import Candidate
+from diagnose.forward import Candidate, Setting
 from diagnose.vocabulary.base import vocabulary
 
 WHERE = {
@@ -39,9 +39,20 @@ def mechanism_words(mechanism: str, component: str) -> str:
     return words.format(component_words(component))
 
 
+def setting_words(setting: Setting) -> str:
+    """The same by its values: a law may do the opposite of what it is named for."""
+    mechanism, component = setting.candidate.name
+    known = vocabulary().get(mechanism)
+    if known is not None and known.below_one is not None:
+        ratio, words = known.below_one
+        if setting.candidate.derived(setting.values).get(ratio, 1.0) < 1.0:
+            return words.format(component_words(component))
+    return mechanism_words(mechanism, component)
+
+
 def model_words(model: FittedModel) -> str:
     """All mechanisms of a model, as half a sentence."""
-    return " and ".join(mechanism_words(*setting.candidate.name) for setting in model.settings)
+    return " and ".join(setting_words(setting) for setting in model.settings)
 
 
 def short_name(candidates: Sequence[Candidate]) -> str:

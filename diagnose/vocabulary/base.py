@@ -129,6 +129,7 @@ class Vocabulary:
     of_segment, of_coupon, of_unknown_geometry : its candidates in a rig, in a coupon test and for a sensor that nobody
     can mesh; none where it cannot be told there.
     undone_by : what a bench can change so that it does not act: words and keys; None where nothing is known.
+    below_one : a quantity that is derived from the values, and the words for what happens where it is below 1.
     """
 
     mechanism: MechanismType
@@ -137,6 +138,7 @@ class Vocabulary:
     of_coupon: Callable[[CouponScene], Iterable[Candidate]] = _none
     of_unknown_geometry: Callable[[Scene, Recording], Iterable[Candidate]] = _none
     undone_by: tuple[str, dict[str, str]] | None = None
+    below_one: tuple[str, str] | None = None
 
 
 VOCABULARY: dict[str, Vocabulary] = {}

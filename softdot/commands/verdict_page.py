@@ -23,6 +23,7 @@ from diagnose.verdict.names import (
     mechanism_words,
     model_words,
     quantity_words,
+    setting_words,
     unit_words,
 )
 from diagnose.verdict.pictures import draw_gains, draw_overview, draw_run, draw_shares
@@ -88,7 +89,7 @@ def page_text(
 def _parameter_rows(best: FittedModel) -> Iterator[list[str]]:
     """Mechanism, quantity, value, low, high, unit and remark."""
     for setting, intervals in zip(best.settings, best.parameters, strict=True):
-        what = mechanism_words(*setting.candidate.name)
+        what = setting_words(setting)
         for name, interval in intervals.items():
             value, low, high = interval_figures(interval)
             ends = ["–", "–"] if interval.fixed else [low, high]

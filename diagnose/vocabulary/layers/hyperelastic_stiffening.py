@@ -130,5 +130,6 @@ register(
         of_segment=of_segment,
         of_coupon=of_coupon,
         of_unknown_geometry=of_unknown_geometry,
+        below_one=("force_ratio", "{} stiffens less, or gives way, at large strain"),
     )
 )

@@ -11,7 +11,7 @@ from diagnose.findings import Fit, Interval, LocatedExcess
 from diagnose.forward import Candidate, Coordinate, Setting
 from diagnose.next_press.choose import next_press
 from diagnose.verdict.content import verdict, where_words
-from diagnose.verdict.names import WHERE, interval_words, listed, mechanism_words
+from diagnose.verdict.names import WHERE, interval_words, listed, mechanism_words, setting_words
 from diagnose.verdict.words import sentences
 from diagnose.vocabulary.base import vocabulary
 from solve.mechanisms import MECHANISMS
@@ -123,6 +123,18 @@ def test_every_mechanism_and_component_has_words():
     components = {part for kind in MECHANISMS.values() for part in kind.components if not part.startswith("channel")}
     assert components <= WHERE.keys()
     assert mechanism_words("crosstalk", "channel-2") == "other channels couple into channel 2"
+
+
+@pytest.mark.parametrize(("ratio", "said"), [(2.0, "stiffens at large strain"), (0.5, "gives way, at large strain")])
+def test_a_law_below_the_stated_one_is_not_called_stiffening(ratio, said):
+    law = Candidate(
+        "hyperelastic-stiffening",
+        "specimen",
+        (Coordinate("c20_MPa", -1.0, 2.0, (0.5,)),),
+        lambda _: {},
+        derived=lambda values: {"force_ratio": 1.0 + values[0]},
+    )
+    assert said in setting_words(Setting(law, (ratio - 1.0,)))
 
 
 @pytest.mark.parametrize(
