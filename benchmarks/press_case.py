@@ -16,13 +16,10 @@ AUGMENTATION_MPA_PER_MM = 20.0  # of NGSolve's contact; see tests/verification/t
 
 
 def segment_mesh(config: Config, factor: float) -> TetMesh:
-    """A quarter of the default segment, its element sizes times a factor.
-
-    By the layered mesher: meshes of pytetwild scatter, which hides the order at which the errors fall.
-    """
+    """A quarter of the default segment, its element sizes times a factor."""
     names = ("element_size_mm", "contact_element_size_mm")
     sizes = {name: factor * getattr(config.mesh, name) for name in names}
-    options = config.mesh.model_copy(update={**sizes, "mesher": "layered"})
+    options = config.mesh.model_copy(update=sizes)
     return mesh.build(config.segment, resolve_dot(config.dot, config.segment), options, PLANES)
 
 
