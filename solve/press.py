@@ -136,6 +136,6 @@ def _follow(setup: Setup, linear: LinearSolver, on_step: OnStep | None, checkpoi
             reached = recorder.steps[-1]
             depth = f"{1e3 * reached.indentation_m:.3f} mm and {reached.reaction_force_N + 0.0:.3g} N"
             return f"step {number} of {count} stopped at {depth}, {failure}"
-        if checkpoint is not None:
-            checkpoint.save(past, recorder)
+        if checkpoint is not None and checkpoint.save(past, recorder):
+            linear.close()  # it is not in the file: a press that goes on from there goes the same way
     return None

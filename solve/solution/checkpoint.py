@@ -85,15 +85,19 @@ class Checkpoint:
         recorder.restore(found[2])
         return past
 
-    def save(self, past: list[State], recorder: Recorder) -> None:
-        """Write, unless the last writing was a moment ago; a disk that cannot be written is no fault of the press."""
+    def save(self, past: list[State], recorder: Recorder) -> bool:
+        """Write, unless the last writing was a moment ago; returns whether it was written now.
+
+        A disk that cannot be written is no fault of the press.
+        """
         if time.monotonic() - self.written < EVERY_S:
-            return
+            return False
         try:
             write_archive(self.path, [self.key, past, recorder.memory()])
         except OSError:
-            return
+            return False
         self.written = time.monotonic()
+        return True
 
     def discard(self) -> None:
         """The press has ended."""

@@ -7,7 +7,6 @@ import solve.solution.checkpoint
 from solve.materials.inelastic import Prony
 from solve.model import Physics, Press, Waveform
 from solve.solution.checkpoint import Checkpoint, read_archive, write_archive
-from solve.solution.newton import TOLERANCE
 from tests.pressing import press_segment
 from tests.solve.segments import cap, coarse_mesh, materials, segment
 
@@ -42,15 +41,15 @@ def test_a_killed_press_ends_as_one_that_was_not(tmp_path, monkeypatch):
     assert file.path.exists()
     solved = []
     resumed = press(file, lambda _, number, __: solved.append(number))
-    whole = press()
+    whole = press(Checkpoint(tmp_path / "whole.npz", "key"))
     assert solved == [4, 5, 6]  # the first three were not solved again
     assert not file.path.exists()
     for name in ("time_s", "reaction_force_N", "film_charge_C"):
-        alone, once = getattr(resumed.trace, name), getattr(whole.trace, name)  # one factorisation less
-        np.testing.assert_allclose(alone, once, rtol=0.0, atol=TOLERANCE * np.abs(once).max())
+        alone, once = getattr(resumed.trace, name), getattr(whole.trace, name)  # MKL's threads add up in any order
+        np.testing.assert_allclose(alone, once, rtol=0.0, atol=1e-11 * np.abs(once).max())
     assert [step.newton_iterations for step in resumed.steps] == [step.newton_iterations for step in whole.steps]
     strain, reference = (result.steps[1].fields.film_strain for result in (resumed, whole))
-    np.testing.assert_allclose(strain, reference, rtol=0.0, atol=TOLERANCE * np.abs(reference).max())
+    np.testing.assert_allclose(strain, reference, rtol=0.0, atol=1e-11 * np.abs(reference).max())
 
 
 @pytest.mark.slow
