@@ -6,6 +6,7 @@ import resource
 import subprocess
 import sys
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 
@@ -24,10 +25,12 @@ def result(tmp_path_factory):
     return folder, (folder / "out" / "summary.json").read_bytes()
 
 
-def run(folder: Path, limit=None, **environment: str) -> "subprocess.CompletedProcess[str]":
-    """softdot run of the same design, under a limit of resources and with other variables."""
+def run(
+    folder: Path, limit=None, design="tiny.toml", within=(), **environment: str
+) -> "subprocess.CompletedProcess[str]":
+    """softdot run of a design, under a limit of resources, within what another command opens, with other variables."""
     own = {**os.environ, "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", **environment}
-    command = [sys.executable, "-m", "softdot.cli", "run", "-q", "tiny.toml", "-o", "out"]
+    command = [*within, sys.executable, "-m", "softdot.cli", "run", "-q", design, "-o", "out"]
     preset = None if limit is None else lambda: resource.setrlimit(*limit)
     return subprocess.run(
         command, cwd=folder, env=own, capture_output=True, encoding="utf-8", timeout=300, check=False, preexec_fn=preset
@@ -59,38 +62,51 @@ def test_little_memory(size, result):
     assert not list(folder.glob(".*"))
 
 
+class SmallDisk(NamedTuple):
+    """place : where it is within; within : the command that goes there; seen : the same place from outside."""
+
+    place: Path
+    within: tuple[str, ...]
+    seen: Path
+
+
 @pytest.fixture
 def small_disk(tmp_path):
-    """A file system of 300 KB; needs root."""
+    """A file system of 300 KB that only processes within a namespace of its own see, which any user may mount."""
     place = tmp_path / "disk"
     place.mkdir()
-    mount = ["mount", "-t", "tmpfs", "-o", "size=300k", "none", str(place)]
-    done = subprocess.run(mount, check=False, capture_output=True)
-    if done.returncode != 0:
-        pytest.skip("a file system can be mounted by root only")
-    yield place
-    subprocess.run(["umount", "-l", str(place)], check=True)
+    root = os.geteuid() == 0
+    new = ["unshare", "--mount", *([] if root else ["--user", "--map-root-user"])]
+    mount = f"mount -t tmpfs -o size=300k none '{place}' && echo mounted && exec cat"
+    with subprocess.Popen([*new, "sh", "-c", mount], stdin=-1, stdout=-1, encoding="utf-8") as holder:
+        if holder.stdout.readline() != "mounted\n":
+            pytest.skip("this machine lets none but root mount a file system: user namespaces are forbidden")
+        enter = (
+            "nsenter",
+            f"--target={holder.pid}",
+            "--mount",
+            *(() if root else ("--user", "--preserve-credentials")),
+        )
+        yield SmallDisk(place, (*enter, "env", f"--chdir={place}"), Path(f"/proc/{holder.pid}/root{place}"))
+        holder.stdin.close()
 
 
 @pytest.mark.parametrize("full", ["output", "nearly full output", "TMPDIR"])
 def test_a_full_disk(full, small_disk, result, tmp_path):
     folder, before = result
     if full == "TMPDIR":
-        (small_disk / "filler").write_bytes(bytes(290 * KB))
+        (small_disk.seen / "filler").write_bytes(bytes(290 * KB))
         (folder / "solid.toml").write_text(
             TINY.replace('"plane-strain"', '"solid"').replace('"ridge"', '"cap"'), "utf-8"
         )
-        command = [sys.executable, "-m", "softdot.cli", "run", "-q", "solid.toml", "-o", "out"]
-        own = {**os.environ, "TMPDIR": str(small_disk), "SOFTDOT_CACHE": str(tmp_path / "cache")}
-        done = subprocess.run(
-            command, cwd=folder, env=own, capture_output=True, encoding="utf-8", timeout=300, check=False
-        )
-        assert "disk is full" in sentence(done)
+        variables = {"TMPDIR": str(small_disk.place), "SOFTDOT_CACHE": str(tmp_path / "cache")}
+        within = (*small_disk.within[:-1], f"--chdir={folder}")
+        assert "disk is full" in sentence(run(folder, None, "solid.toml", within, **variables))
         assert (folder / "out" / "summary.json").read_bytes() == before
         return
-    (small_disk / "tiny.toml").write_text(TINY, "utf-8")
+    (small_disk.seen / "tiny.toml").write_text(TINY, "utf-8")
     if full == "nearly full output":
-        (small_disk / "filler").write_bytes(bytes(200 * KB))
-    assert "disk is full" in sentence(run(small_disk))
-    assert not (small_disk / "out").exists()
-    assert not list(small_disk.glob(".*"))
+        (small_disk.seen / "filler").write_bytes(bytes(200 * KB))
+    assert "disk is full" in sentence(run(tmp_path, within=small_disk.within))
+    assert not (small_disk.seen / "out").exists()
+    assert not list(small_disk.seen.glob(".*"))
