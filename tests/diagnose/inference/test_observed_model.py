@@ -7,6 +7,7 @@ import pytest
 
 from diagnose.fit.discrepancy import allowance, columns, drive_noise
 from diagnose.fit.observed_model import ObservedModel
+from diagnose.fit.refit import fitted_baseline
 from diagnose.fit.samples import Samples
 from diagnose.fit.system import informative_rows, linearised
 from diagnose.forward import Setting
@@ -31,6 +32,45 @@ def test_every_tangent_is_the_slope_of_the_prediction():
         slope = (model.vector(values + step) - model.vector(values - step)) / 2.0
         error = np.linalg.norm(tangents[:, number] * nuisance.sigma - slope) / np.linalg.norm(slope)
         assert error < 0.2, nuisance.name  # the slope of a signal with kinks is only as sharp as its sampling
+
+
+class Turning(ToyEngine):
+    """A law that turns over where a modulus is larger than stated by what is allowed, or smaller by more than that."""
+
+    def __init__(self, recording, low, high):
+        super().__init__(recording)
+        self.low, self.high = low, high
+
+    def predict(self, run, settings):
+        if any(not self.low <= s.values[0] <= self.high for s in settings if s.candidate.mechanism == "property-error"):
+            raise ValueError("the law turns over")
+        return super().predict(run, settings)
+
+
+@pytest.mark.parametrize(("low", "high", "answers"), [(-1.0, 0.0, True), (0.0, 0.0, False)])
+def test_a_slope_is_taken_on_the_side_that_has_an_answer(low, high, answers):
+    smooth = observed()
+    recording = smooth.samples.recording
+    model = ObservedModel(smooth.samples, Turning(recording, low, high))
+    zero = np.zeros(len(model.sigma))
+    shared = [(n.name, n.run) for n in model.nuisances].index(("modulus.medium1", None))
+    slope, expected = model.tangents(zero)[:, shared], smooth.tangents(zero)[:, shared]
+    if answers:
+        assert np.linalg.norm(slope - expected) < 0.05 * np.linalg.norm(expected)
+    else:
+        assert not slope.any()
+
+
+def test_a_baseline_is_fitted_beside_a_law_that_turns_over():
+    """The modulus may only fall: what the fit of the smooth law asks for beyond is a rejected trial."""
+    smooth = observed()
+    free = fitted_baseline(smooth).values
+    shared = [(n.name, n.run) for n in smooth.nuisances].index(("modulus.medium1", None))
+    edge = 0.5 * free[shared]
+    low, high = (edge, 1.0) if edge < 0.0 else (-1.0, edge)
+    held = fitted_baseline(ObservedModel(smooth.samples, Turning(smooth.samples.recording, low, high))).values
+    assert free[shared] != 0.0
+    assert low <= held[shared] <= high
 
 
 def test_nuisances_of_a_run_leave_the_other_alone_and_shared_ones_are_counted_once():
