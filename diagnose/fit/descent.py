@@ -9,13 +9,12 @@ their priors. Variances and discrepancies stay those of the system from which it
 """
 
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import lsq_linear
 
-from diagnose.fit.observed_model import STEP, Nuisance, ObservedModel
+from diagnose.fit.observed_model import STEP, Nuisance, ObservedModel, slope_by_step
 from diagnose.fit.system import LinearisedSystem, Quadratic
 from diagnose.forward import Candidate, Coordinate, Setting
 from geometry.arrays import Floats
@@ -73,12 +72,13 @@ class Descent:
 
     def _slope(self, place: Place, number: int, step: float) -> Floats:
         """(n,) per unit of one value; 0 where the model has an answer on neither side."""
-        for signed in (step, -step):
+
+        def change(by: float) -> Floats:
             moved = place.values.copy()
-            moved[number] += signed
-            with suppress(ValueError):
-                return np.asarray((self.vector(moved) - place.predicted) / signed)
-        return np.zeros_like(place.predicted)
+            moved[number] += by
+            return np.asarray(self.vector(moved) - place.predicted)
+
+        return slope_by_step(change, step, len(place.predicted))
 
 
 def descent(

@@ -4,7 +4,7 @@ What may float without counting as physics, run by run as declared, and how the 
 """
 
 from collections import OrderedDict
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 
@@ -110,6 +110,17 @@ def by_name(all_of_them: Sequence[Nuisance], values: Floats, run: int) -> dict[s
     return {n.name: float(v) for n, v in zip(all_of_them, values, strict=True) if n.run == run and n.candidate is None}
 
 
+def slope_by_step(change: Callable[[float], Floats], step: float, length: int) -> Floats:
+    """Change (length,) per unit of a value, by one step towards the side on which the model has an answer; else 0.
+
+    change : of a step; ValueError where the model has no answer.
+    """
+    for signed in (step, -step):
+        with suppress(ValueError):
+            return np.asarray(change(signed) / signed)
+    return np.zeros(length)
+
+
 REMEMBERED = 400  # predictions of one run
 STEP = 0.02  # of the first start of a coordinate, for slopes
 
@@ -192,12 +203,13 @@ class ObservedModel:
         coordinate = nuisance.candidate.coordinates[nuisance.coordinate]
         step = min(STEP * min(map(abs, coordinate.starts)), nuisance.sigma)
         step = -step if values[number] + step > coordinate.high else step
-        for signed in (step, -step):
+
+        def change(by: float) -> Floats:
             moved = values.copy()
-            moved[number] += signed
-            with suppress(ValueError):
-                return self._difference(nuisance.run, moved, settings, shown) / signed
-        return np.zeros(len(self.samples))
+            moved[number] += by
+            return self._difference(nuisance.run, moved, settings, shown)
+
+        return slope_by_step(change, step, len(self.samples))
 
     def _difference(
         self, only: int | None, values: Floats, settings: Sequence[Setting], shown: Sequence[Signals]
