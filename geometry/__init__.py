@@ -1,5 +1,8 @@
 """Parameters, Braille standards, the exact dot and the solids of a segment. Lengths in millimetres."""
 
-from geometry.threads import sleep_while_idle
+from pathlib import Path
+
+from geometry.environment import keep_kernels_apart, sleep_while_idle
 
 sleep_while_idle()
+keep_kernels_apart(Path(__file__).parent)

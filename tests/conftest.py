@@ -4,7 +4,7 @@ import os
 
 from hypothesis.internal.conjecture import providers
 
-from geometry.threads import ONE_THREAD
+from geometry.environment import ONE_THREAD
 
 if "PYTEST_XDIST_WORKER" in os.environ:  # set before a library that reads it is loaded
     os.environ.update(ONE_THREAD)

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from geometry.environment import ONE_THREAD
 from geometry.files import scratch_folder
-from geometry.threads import ONE_THREAD
 
 KEPT = ("PATH", "LANG", "LC_ALL", "LD_LIBRARY_PATH")
 LINES = 3
@@ -64,11 +64,16 @@ def _heard(ended: "subprocess.CompletedProcess[str]", folder: Path, seconds: flo
 
 
 def environment(folder: Path, cache: Path) -> dict[str, str]:
-    """No variable of the generator gets in: no seed, no folder of recordings, no cache of its presses."""
+    """No variable of the generator gets in: no seed, no folder of recordings, no cache of its presses.
+
+    Kernels that are not kept beside the source are compiled once for the cache of the diagnoses.
+    """
     program = Path(__file__).resolve().parents[2]
     kept = {name: os.environ[name] for name in KEPT if name in os.environ}
+    apart = {"NUMBA_CACHE_DIR": str(cache / "kernels")} if "NUMBA_CACHE_DIR" in os.environ else {}
     return {
         **kept,
+        **apart,
         **ONE_THREAD,
         "HOME": str(folder),
         "TMPDIR": str(folder / "tmp"),

@@ -13,8 +13,8 @@ from typing import Any
 
 from geometry.base import InputError
 from geometry.cache import source_hash
+from geometry.environment import ONE_THREAD, usable_cores
 from geometry.files import scratch_folder
-from geometry.threads import ONE_THREAD, usable_cores
 from softdot.config import Config
 from softdot.console import Logged, Progress
 from softdot.outcome import outcome, outcome_key, remembered

@@ -13,7 +13,7 @@ import numpy as np
 from geometry.arrays import Floats
 from geometry.base import Report
 from geometry.beside import Ask, beside
-from geometry.threads import ONE_THREAD
+from geometry.environment import ONE_THREAD
 from solve.solution.newton import NoEquilibriumError
 from solve.tables import job as job_files
 from solve.tables.job import RETURN, Job, Reduction

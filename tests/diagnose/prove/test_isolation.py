@@ -11,7 +11,7 @@ import pytest
 from diagnose.prove import isolation
 from diagnose.prove.guard import allowed_roots
 from diagnose.prove.trial import digest_of, seal, verified
-from geometry.threads import ONE_THREAD
+from geometry.environment import ONE_THREAD
 
 ROOT = Path(__file__).resolve().parents[3]
 FOREIGN = ("solve", "mesh", "geometry", "export", "softdot", "diagnose.forward", "diagnose.signals.recording")

@@ -1,10 +1,13 @@
-"""Threads sleep while they wait, and there are no more of them than cores that this process may use."""
+"""Threads sleep while they wait, no more of them than cores that are free; kernels are kept where they belong."""
 
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
+
+from geometry.environment import keep_kernels_apart
 
 SAID = """
 import os
@@ -75,3 +78,13 @@ def free():
     """Two threads whatever these tests run with."""
     own = {name: value for name, value in os.environ.items() if not name.endswith("_NUM_THREADS")}
     return own | {"OMP_NUM_THREADS": "2", "OPENBLAS_NUM_THREADS": "2"}
+
+
+@pytest.mark.parametrize(("place", "apart"), [("lib/python3.11/site-packages", True), ("src/softdot", False)])
+def test_kernels_of_an_installed_package_are_kept_where_pip_leaves_nothing_behind(place, apart, monkeypatch):
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    keep_kernels_apart(Path(place) / "geometry")
+    assert ("NUMBA_CACHE_DIR" in os.environ) == apart
+    monkeypatch.setenv("NUMBA_CACHE_DIR", "mine")
+    keep_kernels_apart(Path(place) / "geometry")
+    assert os.environ["NUMBA_CACHE_DIR"] == "mine"

@@ -1,0 +1,48 @@
+"""What the compiled libraries read from the environment, once, when they are loaded.
+
+Thread pools: as many threads as there are cores free to this process, asleep while they have no work. Each library has
+a pool of its own: OpenBLAS under NumPy and SciPy, libgomp under numba, libiomp under MKL. By default their threads spin
+for a while after each call, and so take the cores from one another and from other programs; docs/speed.md has what that
+costs.
+
+Compiled kernels: numba keeps them beside the source. Of an installed package they would stay behind when pip removes
+it, and the folders that hold them would hide a source checkout that is installed afterwards.
+"""
+
+import os
+from pathlib import Path
+
+ASLEEP = {
+    "OPENBLAS_THREAD_TIMEOUT": "4",  # 2^4 cycles, the least it takes; 2^26 by default
+    "OMP_WAIT_POLICY": "PASSIVE",
+    "KMP_BLOCKTIME": "0",  # MKL sets it by itself, and not to what OMP_WAIT_POLICY asks for
+}
+ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
+
+
+def sleep_while_idle() -> None:
+    """Before NumPy is loaded. What the user has set stays."""
+    for name, value in ASLEEP.items():
+        os.environ.setdefault(name, value)
+
+
+def follow_free_cores() -> None:
+    """Before numba and MKL are loaded; both follow OMP_NUM_THREADS where the user has set it."""
+    threads = os.environ.setdefault("OMP_NUM_THREADS", str(usable_cores())).split(",")[0]
+    if threads.isdecimal() and int(threads) > 0:
+        os.environ.setdefault("NUMBA_NUM_THREADS", threads)
+
+
+def keep_kernels_apart(package: Path) -> None:
+    """Before numba is loaded: kernels of a package in this folder go to the user's cache where pip installed it."""
+    if {"site-packages", "dist-packages"} & set(package.parts):
+        from platformdirs import user_cache_path
+
+        os.environ.setdefault("NUMBA_CACHE_DIR", str(user_cache_path("softdot", appauthor=False) / "kernels"))
+
+
+def usable_cores() -> int:
+    """Cores that this process may use: affinity and the limits of a container count."""
+    from dask.system import cpu_count
+
+    return int(cpu_count())
