@@ -71,6 +71,7 @@ def test_the_folder_is_not_within_reach_of_the_presses_of_the_generator(house, m
 
 
 def test_no_variable_gives_a_hint(house, monkeypatch):
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
     for name in ("SOFTDOT_PROOF_CACHE", "SOFTDOT_RECORDINGS", "CASE", "SEED", "PYTHONSTARTUP"):
         monkeypatch.setenv(name, "charge-leakage")
     given = isolation.environment(house / "folder", house / "cache")
