@@ -171,7 +171,7 @@ def _block(block: Block) -> dict[str, Any]:
 
 PAPER = Product("softdot-paper/1", "paper.json", frozenset({"paper.json", "paper.html", "figures", "tables"}))
 PARTS = ("analytical", "calibration", "segments", "beyond")
-"""Packages of softdot.paper, in the order of the page; each has section.section."""
+"""Packages of softdot.paper, in the order of the page; each has a function section."""
 
 
 def run_paper(out: Path, progress: Progress | None = None) -> dict[str, Any]:
@@ -214,7 +214,7 @@ def all_tables(sections: Sequence[Section]) -> list[PaperTable]:
 
 
 def _part(name: str) -> Callable[[Progress, Path], Section]:
-    found: Callable[[Progress, Path], Section] = import_module(f"softdot.paper.{name}.section").section
+    found: Callable[[Progress, Path], Section] = import_module(f"softdot.paper.{name}").section
     return found
 
 

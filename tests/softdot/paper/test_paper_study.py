@@ -18,6 +18,7 @@ PARTS = {
     "analytical": analytical,
     "segments": lambda _progress, folder: section_of(study(), folder),
 }
+NAMES, FIND = whole.PARTS, whole._part
 FOR_CALIBRATION = ("table1.", "section2.p", "section2.h2", "section2.E2")
 
 
@@ -36,6 +37,11 @@ def made(tmp_path_factory):
     out = tmp_path_factory.mktemp("study") / "out"
     assert main(["paper", "-o", str(out)]) == 0
     return out
+
+
+def test_every_part_of_the_page_is_found():
+    assert all(callable(FIND(name)) for name in NAMES)
+    assert FIND("analytical") is analytical
 
 
 def test_the_folder_holds_page_numbers_figures_and_tables(made):
