@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from enum import StrEnum
 from typing import Any
 
 from diagnose.forward import Setting, Signals
@@ -92,12 +93,35 @@ class Fit:
     log_score_gain_per_press: float
 
 
+class Grade(StrEnum):
+    """How much a verdict says of what is missing: all of it, most of it, its kind, or only that something is."""
+
+    AGREEMENT = "agreement"
+    IDENTIFIED = "identified"
+    MAIN_PART = "main part"
+    KIND_ONLY = "kind only"
+    UNEXPLAINED = "unexplained"
+
+
+@dataclass(frozen=True)
+class Remainder:
+    """share : of the excess over noise that the main part accounts for in conditions that it was not fitted to.
+
+    by_phase : phase -> share of what it leaves.
+    """
+
+    share: float
+    by_phase: Mapping[str, float]
+
+
 @dataclass(frozen=True)
 class Findings:
-    """mismatch, named, unexplained as statistics.abstain decides, with its reasons as sentences.
+    """mismatch, unexplained as statistics.abstain decides, with its reasons as sentences.
 
     engine, engine_accuracy : name and accuracy of the model, see diagnose.forward.Engine.
     models : all that were fitted, best first; best : the first of them where it is named, else None.
+    remainder : where the best is only the main part, what it leaves; then the mismatch is unexplained as a whole.
+    kind : half a sentence that is true of all explanations in the first group, where they are too many to name one.
     groups : indices into models that these recordings cannot tell apart, the best model's group first.
     nuisances : name or "name of run" -> (value, one sigma of the prior) at the baseline.
     baseline, improved : label -> fitted signals with nuisances; improved is None where nothing is named.
@@ -127,3 +151,16 @@ class Findings:
     warnings: tuple[str, ...] = ()
     unnamed: Fit | None = None
     information: Floats | None = field(default=None, compare=False)
+    remainder: Remainder | None = None
+    kind: str = ""
+
+    @property
+    def grade(self) -> Grade:
+        """How much they say."""
+        if not self.mismatch:
+            return Grade.AGREEMENT
+        if self.best is not None and not self.unexplained:
+            return Grade.IDENTIFIED
+        if self.best is not None and self.remainder is not None:
+            return Grade.MAIN_PART
+        return Grade.KIND_ONLY if self.kind else Grade.UNEXPLAINED

@@ -154,6 +154,7 @@ def _add_prove(commands: Any) -> None:
     kinds = "from none, single, pair, left-out, outside, ambiguous; default: all"
     prove.add_argument("--kinds", metavar="KIND,KIND", help=kinds)
     prove.add_argument("--staged", action="store_true", help="the first eight mechanisms only")
+    prove.add_argument("--details", action="store_true", help="rigs with small flaws that no mechanism describes")
     prove.add_argument("--workers", type=int, metavar="N", help="number of processes; one per core by default")
     prove.add_argument("--scheduler", metavar="ADDRESS", help="an existing Dask scheduler, tcp://host:8786")
     _add_output(prove)

@@ -69,6 +69,16 @@ class Verdict:
         return bool(self.content["mismatch"])
 
     @property
+    def grade(self) -> str:
+        """How much it says: agreement, identified, main part, kind only or unexplained."""
+        return str(self.content["grade"])
+
+    @property
+    def main_part(self) -> list[dict[str, Any]]:
+        """What most of the mismatch is, where the rest has no name; empty where all or nothing is named."""
+        return list(self.content["main_part"])
+
+    @property
     def missing_physics(self) -> list[dict[str, Any]]:
         """What is named: mechanism, component, parameters with intervals, probability; empty where nothing is."""
         return list(self.content["missing_physics"])

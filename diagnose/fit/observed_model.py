@@ -6,6 +6,7 @@ What may float without counting as physics, run by run as declared, and how the 
 from collections import OrderedDict
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -126,14 +127,27 @@ STEP = 0.02  # of the first start of a coordinate, for slopes
 
 
 class ObservedModel:
-    """nuisances : in order. sigma : (p,) of their priors."""
+    """nuisances : in order. sigma : (p,) of their priors. tolerance : (n,) variance of what it may leave, see there."""
 
     def __init__(self, samples: Samples, engine: Engine) -> None:
         self.samples, self.engine = samples, engine
+        self.tolerance = np.zeros(len(samples))
         self.runs = samples.recording.runs
         self.nuisances: tuple[Nuisance, ...] = nuisances(samples.recording, engine)
         self.sigma: Floats = np.array([nuisance.sigma for nuisance in self.nuisances])
         self._known: OrderedDict[tuple[object, ...], Signals] = OrderedDict()
+
+    def tolerating(self, variance: Floats) -> "ObservedModel":
+        """The same model that may leave a discrepancy of variance (n,)."""
+        other = copy(self)
+        other.tolerance = variance
+        return other
+
+    def seen_as(self, samples: Samples) -> "ObservedModel":
+        """The same model of the same recording, whose samples are weighed by another noise."""
+        other = copy(self)
+        other.samples, other.tolerance = samples, np.zeros(len(samples))
+        return other
 
     def predicted(self, run: int, settings: Sequence[Setting]) -> Signals:
         """The engine's answer, remembered."""

@@ -108,6 +108,7 @@ CLOSE = 0.01  # of a posterior standard deviation: another step is not worth it
 LAGS = 41  # over three deviations either way
 HALVINGS = 5
 PLAUSIBLE = 2.0  # deviations of a prior
+CAP = 4.0  # the same: what an explanation may not pull a nuisance beyond
 
 
 def fitted_baseline(model: ObservedModel) -> LinearisedSystem:
@@ -133,10 +134,22 @@ def within_priors(system: LinearisedSystem, fitted: LinearisedSystem) -> Lineari
     Otherwise a modulus that is ten deviations off, once learnt from one press, predicts all others.
     """
     count = len(fitted.values)
-    strained = np.flatnonzero(np.abs(fitted.values) > PLAUSIBLE * system.sigma[:count])
+    return _held(system, np.abs(fitted.values) > PLAUSIBLE * system.sigma[:count], system.values)
+
+
+def capped(system: LinearisedSystem) -> LinearisedSystem:
+    """The system with nuisances held at CAP deviations of their priors where the recording pulls them farther out."""
+    values = system.nuisances(system.residual)
+    reach = CAP * system.sigma[: len(values)]
+    return _held(system, np.abs(values) > reach, np.clip(values, -reach, reach))
+
+
+def _held(system: LinearisedSystem, which: Bools, values: Floats) -> LinearisedSystem:
+    """Some nuisances, (p,) flags, do not float any more: their values (p,) are given."""
+    number = np.flatnonzero(which)
     residual, sigma = system.residual.copy(), system.sigma_of_one.copy()
-    residual[system.informative] -= system.nuisance_design[:, strained] @ system.values[strained]
-    sigma[strained] = 0.0
+    residual[system.informative] -= system.nuisance_design[:, number] @ values[number]
+    sigma[number] = 0.0
     return replace(system, residual=residual, sigma_of_one=sigma)
 
 

@@ -176,7 +176,7 @@ def linearised(
     return LinearisedSystem(
         values,
         samples.recorded - predicted + tangents @ values,
-        1.0 + discrepancy.allowance(samples, predicted, own) + drive_noise(samples, shown),
+        1.0 + discrepancy.allowance(samples, predicted, own) + drive_noise(samples, shown) + model.tolerance,
         unit_form_variance,
         np.column_stack([columns if informative is None else columns[informative] for columns in nuisance_design]),
         np.concatenate(sigma),

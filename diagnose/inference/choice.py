@@ -13,7 +13,7 @@ from diagnose.forward import Candidate
 from diagnose.inference.black_box import box_scores, memory, worth_of_form
 from diagnose.inference.forecasts import Forecasted, alike, forecasted, grouped, separation, separations, share_left
 from diagnose.inference.residual_test import DRAWS, checked, nuisance_pull
-from diagnose.inference.search import Screening, paired, pairs, singles
+from diagnose.inference.search import Screening, first_fits, paired, pairs, singles
 from diagnose.statistics.abstain import FIRSTS, LEFT, RATES, Decision, Evidence, decide
 from diagnose.statistics.held_out import Gain, bic, gain_over_noise, held_out_probabilities
 from geometry.arrays import Bools, Floats
@@ -77,7 +77,7 @@ class Judge:
 
     def gained(self, one: Forecasted, rival: Forecasted) -> Gain:
         """Nats per press, with a lower bound that is corrected for all candidates."""
-        apart = separation(self.model.samples, one, rival)
+        apart = separation(one, rival)
         return gain_over_noise(one.log_scores - rival.log_scores, apart, RATES.level, len(self.found.candidates))
 
     def best(self, models: Sequence[Judged]) -> Judged:
@@ -101,7 +101,7 @@ def choose(
     model: ObservedModel, found: Screening, p_mismatch: float, rng: np.random.Generator, report: Report
 ) -> Choice:
     """Single mechanisms first; pairs only where something speaks against the best single one."""
-    fits = singles(model, found, report)
+    fits = singles(model, found, first_fits(model, found, report), report)
     if not fits:
         decision = decide(Evidence(p_mismatch, 0.0, 1.0, 0.0, 0.0, (), 0), RATES)
         return Choice((), np.zeros(0), (), 0.0, replace(decision, reasons=(NOTHING,)), None)

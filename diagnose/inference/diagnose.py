@@ -1,7 +1,5 @@
 """The whole chain: from a recording and a forward model to findings.
 
-Named on some runs, scored on others that took no part: another speed, another depth, another day.
-
 What the findings rest on, in sentences for somebody at a bench.
 """
 
@@ -11,24 +9,25 @@ from dataclasses import replace
 import numpy as np
 
 from diagnose.figures import figure, p_equals, part
-from diagnose.findings import Detection, Findings, FittedModel
+from diagnose.findings import Detection, Findings, FittedModel, Remainder
 from diagnose.fit.intervals import intervals, points
 from diagnose.fit.observed_model import ObservedModel
-from diagnose.fit.refit import Fitted, believed, fitted_baseline
+from diagnose.fit.refit import Fitted, fitted_baseline
 from diagnose.fit.samples import Samples
-from diagnose.fit.system import LinearisedSystem, linearised
-from diagnose.forward import Engine, Setting, Signals, SomeRuns, all_but, some_runs
+from diagnose.fit.system import LinearisedSystem
+from diagnose.forward import Engine, Setting, Signals
 from diagnose.inference import hum
-from diagnose.inference.black_box import errors, relaxed, trained_and_held, unimproved
+from diagnose.inference.black_box import trained_and_held, unimproved
 from diagnose.inference.choice import Choice, Judged, choose, criteria
 from diagnose.inference.localisation import explanations, places, shares
+from diagnose.inference.main_part import MainPart, confirmed, main_part
 from diagnose.inference.residual_test import Checked, checked
 from diagnose.inference.search import Screening, screen
 from diagnose.noise.estimate import noise_models
 from diagnose.signals.recording import Recording
 from diagnose.statistics.abstain import RATES
-from diagnose.statistics.held_out import Sums
-from geometry.arrays import Bools, Floats
+from diagnose.verdict.names import in_common
+from geometry.arrays import Floats
 from geometry.base import Report
 
 FAR = 3.0  # deviations of a prior
@@ -122,7 +121,11 @@ def diagnose(recording: Recording, engine: Engine, seed: int, report: Report) ->
     engine.prepare(engine.candidates, report)
     screening = screen(model, baseline, report)
     choice = choose(model, screening, found.p_value, rng, report)
-    return _findings(model, screening, found, choice)
+    findings = _findings(model, screening, found, choice)
+    if not findings.unexplained:
+        return findings
+    main = main_part(model, screening, report)
+    return findings if main is None else _with_main_part(findings, main, rng)
 
 
 def _quiet(model: ObservedModel, baseline: LinearisedSystem, found: Checked) -> Findings:
@@ -155,7 +158,8 @@ def _findings(model: ObservedModel, screening: Screening, found: Checked, choice
     explained = explanations(screening, fits)
     named = choice.decision.named
     models = tuple(
-        _model(model, choice, number, detailed=named and number in choice.groups[0]) for number in range(len(fits))
+        _model(model, one, float(choice.probabilities[n]), detailed=named and n in choice.groups[0])
+        for n, one in enumerate(choice.models)
     )
     best = choice.models[0] if choice.models else None
     chosen = best if named else None
@@ -185,18 +189,52 @@ def _findings(model: ObservedModel, screening: Screening, found: Checked, choice
         improved=_improved(model, chosen) if chosen else None,
         black_box_gain=choice.box_gain,
         warnings=warnings_of(model, screening.baseline, choice),
-        information=_information(choice) if choice.models else None,
+        information=_information([fits[number] for number in choice.groups[0]]) if fits else None,
     )
 
 
-def _model(model: ObservedModel, choice: Choice, number: int, detailed: bool) -> FittedModel:
-    one = choice.models[number]
+def _with_main_part(findings: Findings, main: MainPart, rng: np.random.Generator) -> Findings:
+    """What is unexplained as a whole, with its main part; as it was where a true refit does not confirm that."""
+    fits, best = [one.fit for one in main.models], main.models[0]
+    train, held_out = trained_and_held(main.model, main.found, best.fit, np.array([best.gain.mean]))
+    if held_out is not None and not confirmed(held_out):
+        return findings
+    if not main.nameable:
+        return _with_kind(findings, main, rng)
+    chances = main.probabilities(rng)
+    models = tuple(_model(main.model, one, float(chances[n]), n in main.group) for n, one in enumerate(main.models))
+    return replace(
+        findings,
+        models=models,
+        best=models[0],
+        groups=(main.group,),
+        train=train,
+        held_out=held_out,
+        unnamed=None,
+        improved=_improved(main.model, best),
+        information=_information([fits[number] for number in main.group]),
+        remainder=Remainder(main.share, main.left_by_phase),
+    )
+
+
+def _with_kind(findings: Findings, main: MainPart, rng: np.random.Generator) -> Findings:
+    """What is unexplained, with what all explanations of most of it have in common, if anything."""
+    group = [main.models[n].fit for n in main.group]
+    kind = in_common([candidate for fit in group for candidate in fit.candidates])
+    if not kind:
+        return findings
+    chances = main.probabilities(rng)
+    models = tuple(_model(main.model, one, float(chances[n]), False) for n, one in enumerate(main.models))
+    return replace(findings, models=models, groups=(main.group,), kind=kind, information=_information(group))
+
+
+def _model(model: ObservedModel, one: Judged, probability: float, detailed: bool) -> FittedModel:
     return FittedModel(
         settings=one.fit.settings,
         parameters=intervals(model, one.fit) if detailed else points(one.fit),
         gain=one.gain.mean,
         gain_lower=one.gain.lower,
-        probability=float(choice.probabilities[number]),
+        probability=probability,
         p_left=one.p_left,
     )
 
@@ -221,9 +259,8 @@ def _improved(model: ObservedModel, chosen: Judged) -> Mapping[str, Signals]:
     return labelled(model, model.possible(chosen.fit.system.closest()), chosen.fit.settings)
 
 
-def _information(choice: Choice) -> Floats:
-    """(p, p) of the coordinates of the models in the first group, nuisances integrated out, one block each."""
-    fits = [choice.models[number].fit for number in choice.groups[0]]
+def _information(fits: Sequence[Fitted]) -> Floats:
+    """(p, p) of the coordinates of models, nuisances integrated out, one block each."""
     count = sum(len(fit.values) for fit in fits)
     total, first = np.zeros((count, count)), 0
     for fit in fits:
@@ -232,75 +269,3 @@ def _information(choice: Choice) -> Floats:
         total[first:last, first:last] = fit.system.quadratic.product(columns, columns)
         first = last
     return total
-
-
-def diagnose_and_score(
-    recording: Recording, engine: Engine, held: Sequence[int], seed: int, report: Report
-) -> Findings:
-    """Findings of all runs but some, with held-out errors of those: numbers of runs of the recording.
-
-    Mechanisms and what all runs share are those of the training runs. What floats in a held-out run is fitted to it,
-    without mechanisms and with them alike. InputError for a channel without noise.
-    """
-    trained = all_but(recording, held)
-    own = some_runs(recording, trained)
-    findings = diagnose(own, SomeRuns(engine, trained), seed, report)
-    report("held-out runs", 0, 1)
-    return _scored(findings, _model_of(own, engine, trained), _model_of(some_runs(recording, held), engine, held))
-
-
-def _model_of(recording: Recording, engine: Engine, numbers: Sequence[int]) -> ObservedModel:
-    return ObservedModel(Samples(recording, noise_models(recording)), SomeRuns(engine, numbers))
-
-
-def _scored(findings: Findings, train: ObservedModel, held: ObservedModel) -> Findings:
-    """Findings whose errors, signals and noise speak of the held-out runs too."""
-    best: FittedModel | None = findings.models[0] if findings.models else None
-    settings = tuple(one for one in best.settings if not one.candidate.traits.free_phase) if best else ()
-    starts = [believed(model, fitted_baseline(model)).values for model in (train, held)]
-    before, after = (_transferred((train, held), starts, chosen) for chosen in ((), settings))
-    gains = _log_scores(held, after, settings) - _log_scores(held, before, ())
-    fit = errors(held, range(len(held.samples.presses)), before, after, settings, gains)
-    named = findings.best is not None
-    shown = findings.improved
-    return replace(
-        findings,
-        detection=replace(findings.detection, noise={**findings.detection.noise, **held.samples.noise_summaries()}),
-        held_out=fit if named else unimproved(fit),
-        unnamed=fit if best and not named else None,
-        baseline={**findings.baseline, **labelled(held, before, ())},
-        improved=None if shown is None else {**shown, **labelled(held, after, settings)},
-    )
-
-
-def _transferred(
-    models: tuple[ObservedModel, ObservedModel], starts: Sequence[Floats], settings: Sequence[Setting]
-) -> Floats:
-    """Nuisances (p,) of held-out runs: what is shared as in the training runs, the rest fitted from starts of both."""
-    train, held = models
-    known = _fitted(train, starts[0], settings, {})
-    shared = {one.name: value for one, value in zip(train.nuisances, known, strict=True) if one.run is None}
-    return _fitted(held, starts[1], settings, shared)
-
-
-def _fitted(model: ObservedModel, start: Floats, settings: Sequence[Setting], shared: dict[str, float]) -> Floats:
-    """Nuisances (p,) with these mechanisms on, within what is plausible; shared ones by name are not touched."""
-    values = start.copy()
-    frozen: Bools = np.array([one.run is None and one.name in shared for one in model.nuisances], dtype=bool)
-    values[frozen] = [shared[one.name] for one in model.nuisances if one.run is None and one.name in shared]
-    return relaxed(model, values, settings, np.ones(len(model.samples), dtype=bool), frozen)
-
-
-def _log_scores(model: ObservedModel, values: Floats, settings: Sequence[Setting]) -> Floats:
-    """Log-density (presses,) of each press alone, its own nuisances integrated out under their priors."""
-    system, samples = linearised(model, values, settings), model.samples
-    shared = np.flatnonzero([one.run is None for one in model.nuisances])
-    kept = np.setdiff1d(np.arange(len(system.sigma)), shared)
-    columns = system.weighted(system.nuisance_design)
-    white = system.weighted(system.residual) - columns[:, shared] @ values[shared]
-    scale = np.log(system.weight)
-    rows = [samples.press == number for number in range(len(samples.presses))]
-    return np.array([
-        Sums.of(columns[own][:, kept], white[own]).log_evidence(system.sigma[kept]) + float(scale[own].sum())
-        for own in rows
-    ])  # fmt: skip

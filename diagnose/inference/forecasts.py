@@ -19,7 +19,7 @@ from diagnose.fit.system import LinearisedSystem, Quadratic
 from diagnose.statistics.abstain import ALIKE, RATES
 from diagnose.statistics.held_out import Sums, leave_press_out
 from diagnose.statistics.separation import ambiguity_groups, least_separation
-from geometry.arrays import Floats
+from geometry.arrays import Floats, Ints
 
 FLAT = 1e4  # sigma of the noise: a prior for what has none, where nothing else limits it
 
@@ -29,15 +29,19 @@ class Forecasted:
     """log_scores : (presses,). predicted : (n,) whitened, of the recording. system : in whose metric.
 
     spread : per press, columns (n, k) whose unit normal combinations are the uncertainty of the prediction.
+    fold : (n,) label of what was held out together: a press, unless told otherwise.
     """
 
     log_scores: Floats
     predicted: Floats
     system: LinearisedSystem
     spread: tuple[Floats, ...]
+    fold: Ints
 
 
-def forecasted(samples: Samples, system: LinearisedSystem, fit: Fitted | None = None) -> Forecasted:
+def forecasted(
+    samples: Samples, system: LinearisedSystem, fit: Fitted | None = None, fold: Ints | None = None
+) -> Forecasted:
     """Leave one press out, linear about the fit to all; parameters with a normal prior as wide as their range.
 
     Where there is one press only its phases take the place of presses. Where there is one phase only nothing can be
@@ -48,14 +52,14 @@ def forecasted(samples: Samples, system: LinearisedSystem, fit: Fitted | None = 
         width = np.array([c.high - c.low for c in coordinates(fit.candidates)])
         columns, sigma = np.column_stack([columns, fit.slopes[system.informative]]), np.concatenate([sigma, width])
         residual = residual + fit.slopes @ fit.values
-    return _left_out(samples, system, system.weighted(columns), sigma, residual)
+    return _left_out(samples, system, system.weighted(columns), sigma, residual, samples.fold if fold is None else fold)
 
 
-def separation(samples: Samples, one: Forecasted, other: Forecasted) -> Floats:
+def separation(one: Forecasted, other: Forecasted) -> Floats:
     """Sigma (presses,) between two forecasts, in the predictive covariance of the first."""
     system = one.system
     apart = system.weighted(one.predicted - other.predicted)
-    folds = leave_press_out(samples.fold[system.informative])
+    folds = leave_press_out(one.fold[system.informative])
     return np.array([
         np.sqrt(max(Quadratic(spread, np.ones(spread.shape[1])).square(apart[held]), 0.0))
         for spread, (_, held) in zip(one.spread, folds, strict=True)
@@ -63,12 +67,12 @@ def separation(samples: Samples, one: Forecasted, other: Forecasted) -> Floats:
 
 
 def _left_out(
-    samples: Samples, system: LinearisedSystem, columns: Floats, sigma: Floats, residual: Floats
+    samples: Samples, system: LinearisedSystem, columns: Floats, sigma: Floats, residual: Floats, fold: Ints
 ) -> Forecasted:
     kept = sigma > 0.0
     columns, sigma = columns[:, kept], sigma[kept]
     white, informative = system.weighted(residual), np.flatnonzero(system.informative)
-    folds = leave_press_out(samples.fold[informative])
+    folds = leave_press_out(fold[informative])
     sums = [Sums.of(columns[held], white[held]) for _, held in folds]
     nothing = Sums(np.zeros((len(sigma), len(sigma))), np.zeros(len(sigma)), 0.0, 0)
     if len(folds) < 2:
@@ -87,7 +91,7 @@ def _left_out(
         spread.append(half)
         mean = half @ np.linalg.solve(root, others.moment / length)
         predicted[rows] = (samples.recorded - residual)[rows] + mean / system.weight[rows]
-    return Forecasted(scores, predicted, system, tuple(spread))
+    return Forecasted(scores, predicted, system, tuple(spread), fold)
 
 
 def separations(samples: Samples, fits: Sequence[Fitted]) -> Floats:

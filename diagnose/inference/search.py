@@ -171,22 +171,35 @@ def least_degrees(model: ObservedModel) -> float:
     return min(noise_degrees(law) for law in model.samples.noise.values())
 
 
-def singles(model: ObservedModel, found: Screening, report: Report) -> list[Fitted]:
-    """Survivors fitted in one metric, and the best of them with all that floats."""
+@dataclass(frozen=True)
+class FirstFit:
+    """One candidate by its number, fitted with the nuisances linear about a start; cost : half its square."""
+
+    number: int
+    values: Floats
+    cost: float
+
+
+def first_fits(model: ObservedModel, found: Screening, report: Report) -> list[FirstFit]:
+    """Survivors fitted in one metric, the best of them, FINALISTS at most, first."""
     common = common_metric(model.samples, found.start)
     rough = max(LEAST_GAIN, ROUGH * found.excess)
-    firsts: list[tuple[float, int, Floats]] = []
+    firsts = []
     for count, number in enumerate(found.survivors):
         report("first fits", count, len(found.survivors))
         only = (found.candidates[number],)
         best = lowest(descent(model, common, only, ()), found.tests.estimates[number][:STARTS], rough)
         if best is not None:
-            firsts.append((best.cost, number, best.values))
-    firsts = sorted(firsts, key=lambda one: one[0])[:FINALISTS]
+            firsts.append(FirstFit(number, best.values, best.cost))
+    return sorted(firsts, key=lambda one: one.cost)[:FINALISTS]
+
+
+def singles(model: ObservedModel, found: Screening, firsts: Sequence[FirstFit], report: Report) -> list[Fitted]:
+    """First fits continued with all that floats."""
     fits = []
-    for count, (_, number, values) in enumerate(firsts):
+    for count, one in enumerate(firsts):
         report("fits", count, len(firsts))
-        fits.append(fitted(model, found.start, (found.candidates[number],), values, found.excess))
+        fits.append(fitted(model, found.start, (found.candidates[one.number],), one.values, found.excess))
     return [fit for fit in fits if _acts(fit)]
 
 

@@ -158,6 +158,12 @@ class NoiseModel:
         """The noise without the mains, for the question whether hum is what the model lacks."""
         return replace(self, lines=())
 
+    def white(self) -> "NoiseModel":
+        """Noise of the same power without colour: whitened samples are then samples in units of its deviation."""
+        return replace(
+            self, autoregression=Autoregression(np.zeros(0), float(self.autoregression.autocovariance(1)[0]))
+        )
+
     def whitening(self, observed: Bools, time_s: Floats | None = None) -> "Whitening":
         """The map that whitens samples at times (n,), even if None, of which only the observed (n,) are there."""
         time = self._time(len(observed)) if time_s is None else time_s

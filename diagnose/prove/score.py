@@ -28,6 +28,7 @@ class Score:
 
     exact : just the true mechanisms at their components. grouped : exact, or a fair group that holds the truth.
     component, mechanism : as far as something is named. group : members of the group that holds the truth, else 1.
+    main_part : named as most of what is missing; main_right : exactly the truth, or in a fair group with it.
     overlap : of the localised excess with that of the generator, 0 to 1. held_out : error over noise floor.
     covered : value -> whether its interval holds it. next_sigma : what the next press is said to separate.
     resolved : whether that press, once made, leaves the truth alone; None where it was not made.
@@ -53,19 +54,28 @@ class Score:
     next_sigma: float | None = None
     resolved: bool | None = None
     seconds: float = 0.0
+    main_part: tuple[Name, ...] = ()
+    main_right: bool = False
+
+    @property
+    def right(self) -> bool:
+        """Whether the name that is given, at either grade, is right."""
+        return self.grouped or self.main_right
 
     def plain(self) -> dict[str, Any]:
         """As JSON has it."""
-        return {**asdict(self), "truth": list(map(list, self.truth)), "named": list(map(list, self.named))}
+        return {**asdict(self), "truth": list(map(list, self.truth)), "named": list(map(list, self.named)),
+                "main_part": list(map(list, self.main_part))}  # fmt: skip
 
 
 def scored(truth: Mapping[str, Any], verdict: Mapping[str, Any], separation: Separation, seconds: float = 0.0) -> Score:
     """Compare verdict.json with the revealed truth."""
     true = _names(truth["mechanisms"])
     named = () if verdict["unexplained"] else _names(verdict["missing_physics"])
+    main = _names(verdict.get("main_part") or [])
     exact = bool(named) and named == true
-    group = _group_with(true, named, verdict.get("ambiguous_with") or [])
-    fair = len(group) <= LARGEST_GROUP and _inseparable(group, true, separation)
+    group = _group_with(true, named or main, verdict.get("ambiguous_with") or [])
+    fair = 1 < len(group) <= LARGEST_GROUP and _inseparable(group, true, separation)
     held_out = (verdict.get("fit") or {}).get("held_out") or {}
     floor = held_out.get("noise_floor_nrmse")
     return Score(
@@ -78,7 +88,7 @@ def scored(truth: Mapping[str, Any], verdict: Mapping[str, Any], separation: Sep
         named,
         bool(verdict["unexplained"]),
         exact,
-        exact or (bool(named) and len(group) > 1 and fair),
+        exact or (bool(named) and fair),
         bool(named) and {m for m, _ in named} == {m for m, _ in true},
         bool(named) and {c for _, c in named} == {c for _, c in true},
         len(group),
@@ -88,6 +98,8 @@ def scored(truth: Mapping[str, Any], verdict: Mapping[str, Any], separation: Sep
         _covered(truth["mechanisms"], verdict["missing_physics"]) if exact else {},
         (verdict.get("next_experiment") or {}).get("expected_separation_sigma"),
         seconds=seconds,
+        main_part=main,
+        main_right=bool(main) and (main == true or fair),
     )
 
 
@@ -182,6 +194,12 @@ def tally(scores: Sequence[Score]) -> dict[str, Any]:
             [s for s in of[LEFT_OUT] + of[OUTSIDE] if s.size >= CLEAR], lambda s: s.abstained),
         "clear_named_or_grouped": rate(clear, lambda s: s.grouped),
         "clear_exact": rate(clear, lambda s: s.exact),
+        "main_parts_without_effect": rate(of[NONE], lambda s: bool(s.main_part)),
+        "main_parts_of_unknown": rate(of[LEFT_OUT] + of[OUTSIDE], lambda s: bool(s.main_part)),
+        "names_right": rate([s for s in scores if s.named or s.main_part], lambda s: s.right),
+        "clear_right": rate(clear, lambda s: s.exact or s.main_part == s.truth),
+        "clear_right_or_grouped": rate(clear, lambda s: s.right),
+        "clear_wrong": rate(clear, lambda s: bool(s.named or s.main_part) and not s.right),
         "clear_component": rate(clear, lambda s: s.component),
         "pairs_exact": rate(of[PAIR], lambda s: s.exact),
         "ambiguous_told": rate(of[AMBIGUOUS], lambda s: s.group > 1 or not s.named),

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from diagnose.figures import figure
-from diagnose.findings import Findings, Fit, FittedModel, Interval, LocatedExcess
+from diagnose.findings import Findings, Fit, FittedModel, Grade, Interval, LocatedExcess, Remainder
 from diagnose.next_press.choose import NextPress, surviving
 from diagnose.signals.phases import PHASES
 from diagnose.signals.recording import Recording
@@ -126,18 +126,23 @@ def verdict(
 ) -> dict[str, Any]:
     """The whole content. summary : sentences for people; following : the next press, None where none can be told.
 
-    Nothing is named unless the findings do, also where a best model is known.
+    What is only the main part has a key of its own: missing_physics is empty unless it explains everything.
     """
-    named = findings.best if findings.mismatch and not findings.unexplained else None
+    told = findings.best if findings.grade in (Grade.IDENTIFIED, Grade.MAIN_PART) else None
+    whole = findings.grade is Grade.IDENTIFIED
     return {
         "format": FORMAT,
         "summary": list(summary),
+        "grade": str(findings.grade),
         "mismatch": findings.mismatch,
         "detection": _detection(findings),
         "where": _where(findings),
         "component_shares": dict(findings.shares),
-        "missing_physics": _missing(named) if named is not None else [],
-        "alternatives": [_alternative(model) for model in findings.models if model is not named],
+        "missing_physics": _missing(told) if told is not None and whole else [],
+        "main_part": _missing(told) if told is not None and not whole else [],
+        "remainder": _remainder(findings.remainder),
+        "kind": findings.kind or None,
+        "alternatives": [_alternative(model) for model in findings.models if model is not told],
         "ambiguous_with": ambiguous(findings),
         "unexplained": findings.unexplained,
         "reasons": list(findings.reasons),
@@ -158,6 +163,13 @@ def verdict(
         "next_experiment": next_experiment(findings, following),
         "warnings": [*findings.warnings, *warnings],
     }
+
+
+def _remainder(left: Remainder | None) -> dict[str, Any] | None:
+    """What a main part leaves."""
+    if left is None:
+        return None
+    return {"share_explained_held_out": left.share, "share_left_by_phase": dict(left.by_phase)}
 
 
 def _kind(channel: str) -> str:
@@ -298,6 +310,11 @@ def without_press(findings: Findings) -> str:
         return (
             "None of the presses that were tried tells them apart: they act alike in this rig. Measure one part by "
             "itself, such as the amplifier without the sensor, or a coupon of the material."
+        )
+    if findings.grade is Grade.MAIN_PART:
+        return (
+            "Put it into your configuration, as improved.toml does, and look at what is left: change one thing at a "
+            "time (speed, depth, load resistor, position) and diagnose again."
         )
     if findings.best is not None:
         return "No press is needed: only one explanation is left."

@@ -55,6 +55,15 @@ def model_words(model: FittedModel) -> str:
     return " and ".join(setting_words(setting) for setting in model.settings)
 
 
+def in_common(candidates: Sequence[Candidate]) -> str:
+    """Half a sentence that is true of all of them, by their kind or their component; "" where there is none."""
+    kinds = {known.kind if (known := vocabulary().get(one.mechanism)) is not None else "" for one in candidates}
+    components = {one.component for one in candidates}
+    if len(kinds) == 1 and (kind := kinds.pop()):
+        return kind
+    return f"{component_words(components.pop())} behaves otherwise than stated" if len(components) == 1 else ""
+
+
 def short_name(candidates: Sequence[Candidate]) -> str:
     """mechanism (component), joined by +."""
     return " + ".join(f"{each.mechanism} ({each.component})" for each in candidates)

@@ -3,13 +3,15 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from diagnose.figures import figure, p_equals, percent
+from diagnose.figures import figure, p_equals, part, percent
 from diagnose.findings import Findings, Fit, FittedModel
 from diagnose.next_press.choose import NextPress, surviving
 from diagnose.signals.recording import Recording
-from diagnose.verdict.content import where_words, without_press
+from diagnose.verdict.content import IN_WORDS, where_words, without_press
 from diagnose.verdict.names import interval_words, listed, model_words, short_name
 from diagnose.verdict.resimulation import Resimulated
+
+HALF = 0.5  # of what is left: the phase that has more of it is named
 
 
 @dataclass(frozen=True)
@@ -30,9 +32,10 @@ def sentences(
     if not findings.mismatch:
         return _agreement(recording, findings)
     opening = [Sentence("", where_words(recording, findings))]
-    if findings.best is None or findings.unexplained:
+    if findings.best is None:
         return [*opening, *_unexplained(findings), *_next(findings, following)]
-    return [*opening, *_named(findings, findings.best), *_proof(resimulated), *_next(findings, following)]
+    told = [*opening, *_named(findings, findings.best), *_rest(findings), *_proof(resimulated)]
+    return [*told, *_next(findings, following)]
 
 
 def _agreement(recording: Recording, findings: Findings) -> list[Sentence]:
@@ -55,7 +58,12 @@ def detected(findings: Findings) -> str:
 
 
 def _named(findings: Findings, best: FittedModel) -> Iterator[Sentence]:
-    yield Sentence("Left out", f"{model_words(best)}{_numbers(best)}.")
+    left = findings.remainder
+    if left is None:
+        yield Sentence("Left out", f"{model_words(best)}{_numbers(best)}.")
+    else:
+        share = f"{part(left.share)} of the excess over noise in conditions that it was not fitted to"
+        yield Sentence("Most of what is left out", f"{model_words(best)}{_numbers(best)}. It accounts for {share}.")
     fit = findings.held_out
     if fit is not None:
         yield Sentence("With it", f"on presses that took no part in the fit, the error falls {_errors(fit)}.")
@@ -63,6 +71,15 @@ def _named(findings: Findings, best: FittedModel) -> Iterator[Sentence]:
     if rivals:
         words = listed([model_words(rival) for rival in rivals], "or")
         yield Sentence("Not excluded", f"{words}. These recordings cannot tell the explanations apart.")
+
+
+def _rest(findings: Findings) -> Iterator[Sentence]:
+    """What a main part leaves, and why it is not everything."""
+    if findings.remainder is None:
+        return
+    phase, share = max(findings.remainder.by_phase.items(), key=lambda item: item[1])
+    where = f", mostly {IN_WORDS[phase]}," if share > HALF else ""
+    yield Sentence("The rest", f"what remains{where} has no name. {' '.join(findings.reasons)}")
 
 
 def _errors(fit: Fit) -> str:
@@ -83,6 +100,12 @@ def _numbers(model: FittedModel) -> str:
 
 
 def _unexplained(findings: Findings) -> Iterator[Sentence]:
+    if findings.kind:
+        rivals = listed([model_words(findings.models[n]) for n in findings.groups[0]], "or")
+        yield Sentence(
+            "Left out", f"only its kind can be told: {findings.kind}. Each of these explains most: {rivals}."
+        )
+        return
     yield Sentence("Left out", "something that none of the known mechanisms explains, so nothing is named.")
     if findings.reasons:
         yield Sentence("Why nothing is named", " ".join(findings.reasons))

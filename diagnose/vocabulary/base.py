@@ -122,6 +122,13 @@ def _none(*_: object) -> Iterable[Candidate]:
     return ()
 
 
+GIVES_WAY = "something in series with the film gives way"
+LOSES_CHARGE = "the film or its input loses charge"
+OTHER_CHARGE = "charge comes from something else than the strain of the film"
+REMEMBERS = "a part remembers how it was strained"
+STIFFNESS = "a layer is stiffer or softer than its stated law"
+
+
 @dataclass(frozen=True)
 class Vocabulary:
     """words : half a sentence on what happens, with {} for where.
@@ -130,6 +137,7 @@ class Vocabulary:
     can mesh; none where it cannot be told there.
     undone_by : what a bench can change so that it does not act: words and keys; None where nothing is known.
     below_one : a quantity that is derived from the values, and the words for what happens where it is below 1.
+    kind : a sentence that is true of every mechanism of its kind, "" where it has no relatives.
     """
 
     mechanism: MechanismType
@@ -139,6 +147,7 @@ class Vocabulary:
     of_unknown_geometry: Callable[[Scene, Recording], Iterable[Candidate]] = _none
     undone_by: tuple[str, dict[str, str]] | None = None
     below_one: tuple[str, str] | None = None
+    kind: str = ""
 
 
 VOCABULARY: dict[str, Vocabulary] = {}

@@ -101,7 +101,8 @@ def _refuse_what_sampling_misses(rig: Rig) -> None:
 
 def _fill(rig: Rig, options: Options, progress: Progress, folder: Path) -> dict[str, Any]:
     """Everything but verdict.json; returns the verdict."""
-    from diagnose.inference.diagnose import diagnose, diagnose_and_score
+    from diagnose.inference.diagnose import diagnose
+    from diagnose.inference.held_runs import diagnose_and_score
     from softdot.commands.verdict_page import write_evidence
     from softdot.console import installed_version
 

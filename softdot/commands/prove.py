@@ -41,7 +41,9 @@ def command(chosen: Namespace) -> int:
 
     rigs = tuple(chosen.rigs.split(",")) if chosen.rigs else RIGS
     kinds = tuple(chosen.kinds.split(",")) if chosen.kinds else KINDS
-    request = Request(chosen.cases, chosen.seed, rigs, chosen.staged, chosen.workers, kinds, chosen.scheduler)
+    request = Request(
+        chosen.cases, chosen.seed, rigs, chosen.staged, chosen.workers, kinds, chosen.scheduler, details=chosen.details
+    )
     try:
         with only_the_summary_on_stdout(), progress_of_points(chosen) as progress:
             summary = run_proof(request, Path(chosen.output), progress)
@@ -89,7 +91,7 @@ class Request:
     """What is asked for. staged : the first eight mechanisms only. workers : processes, None for one per core.
 
     kinds : of cases; each case is the same as among all kinds. scheduler : address of a Dask cluster that sees the same
-    folders; None for processes of this computer.
+    folders; None for processes of this computer. details : whether every rig has flaws that no mechanism describes.
     """
 
     cases: int
@@ -100,6 +102,7 @@ class Request:
     kinds: tuple[str, ...] = KINDS
     scheduler: str | None = None
     limit_s: float = 3600.0
+    details: bool = False
 
 
 def run_proof(request: Request, out: Path, progress: Progress | None = None) -> dict[str, Any]:
@@ -110,7 +113,7 @@ def run_proof(request: Request, out: Path, progress: Progress | None = None) -> 
     _check(request)
     check_folder()
     place, program = proof_files.check(out), program_hash()
-    cases = plan(request.cases, request.seed, request.rigs, request.staged, request.kinds)
+    cases = plan(request.cases, request.seed, request.rigs, request.staged, request.kinds, request.details)
     found = {case.name: record for case in cases if (record := proof_files.kept(place, case, program)) is not None}
     missing = [case for case in cases if case.name not in found]
     progress = progress or Logged()
@@ -169,7 +172,7 @@ def _finished(request: Request, place: Path, records: Sequence[Mapping[str, Any]
     summary: dict[str, Any] = plain({
         "format": proof_files.FORMAT, "complete": True, "softdot_version": installed_version(),
         "cases": request.cases, "seed": request.seed, "rigs": list(request.rigs), "staged": request.staged,
-        "kinds": list(request.kinds),
+        "kinds": list(request.kinds), "details": request.details,
         "ended": dict(Counter(record["status"] for record in records)), "reused": reused,
         "reasons": sorted({record["reason"] for record in records if record["reason"]}),
         "rates": tally(scores), "rivals": rival_rates(records), "hardware": hardware(),
@@ -184,7 +187,7 @@ def _finished(request: Request, place: Path, records: Sequence[Mapping[str, Any]
 
 def score_from(saved: Mapping[str, Any]) -> Score:
     """The score that a record holds."""
-    names = {key: tuple((m, c) for m, c in saved[key]) for key in ("truth", "named")}
+    names = {key: tuple((m, c) for m, c in saved[key]) for key in ("truth", "named", "main_part") if key in saved}
     return Score(**{**saved, **names})
 
 

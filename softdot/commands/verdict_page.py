@@ -12,7 +12,7 @@ from tomlkit.items import InlineTable, Table
 
 from diagnose.engines.coupon.engine import CouponEngine, improved_material
 from diagnose.figures import figure, p_alone, percent, probability
-from diagnose.findings import Findings, FittedModel
+from diagnose.findings import Findings, FittedModel, Grade
 from diagnose.forward import Engine
 from diagnose.next_press.proposals import Shape, base_setup
 from diagnose.signals.recording import Recording
@@ -74,11 +74,11 @@ def page_text(
     return environment.get_template("verdict.html").render(
         v=summary,
         version=installed_version(),
-        verdict_class=_verdict_class(findings),
-        title=_title(findings),
+        verdict_class=HEADS[findings.grade][0],
+        title=HEADS[findings.grade][1],
         told=told,
         detected=detected(findings),
-        parameters=list(_parameter_rows(findings.best)) if summary["missing_physics"] and findings.best else [],
+        parameters=list(_parameter_rows(findings.best)) if findings.best else [],
         explanations=_explanation_rows(findings),
         pictures=[(picture, base64.b64encode(picture.path.read_bytes()).decode("ascii")) for picture in pictures],
         screened=summary["screened"][:MOST_SCREENED],
@@ -102,23 +102,17 @@ def _parameter_rows(best: FittedModel) -> Iterator[list[str]]:
 
 def _explanation_rows(findings: Findings) -> list[tuple[bool, str, FittedModel]]:
     """Whether it is the named one, its words, and the model."""
-    named = findings.best if findings.mismatch and not findings.unexplained else None
-    return [(model is named, model_words(model), model) for model in findings.models]
+    return [(model is findings.best, model_words(model), model) for model in findings.models]
 
 
-def _verdict_class(findings: Findings) -> str:
-    if not findings.mismatch:
-        return "good"
-    return "unknown" if findings.unexplained or findings.best is None else "found"
-
-
-def _title(findings: Findings) -> str:
-    titles = {
-        "good": "Simulation and recordings agree",
-        "unknown": "Simulation and recordings differ, and no known mechanism explains it",
-        "found": "What your simulation left out",
-    }
-    return titles[_verdict_class(findings)]
+HEADS = {
+    Grade.AGREEMENT: ("good", "Simulation and recordings agree"),
+    Grade.IDENTIFIED: ("found", "What your simulation left out"),
+    Grade.MAIN_PART: ("found", "Most of what your simulation left out"),
+    Grade.KIND_ONLY: ("unknown", "What kind of thing your simulation left out"),
+    Grade.UNEXPLAINED: ("unknown", "Simulation and recordings differ, and no known mechanism explains it"),
+}
+"""Of each grade the class of its box, and the title of the page."""
 
 
 def _pictures(

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from diagnose.prove.world.bench import BENCHES, VOLTAGE_ONLY, Bench, Run
+from diagnose.prove.world.details import Details
 from diagnose.prove.world.effects import EFFECTS, KNOWN, STAGED, UNKNOWN, applied, fits
 from diagnose.prove.world.laws import Floats
 from diagnose.prove.world.noise import noises
@@ -37,12 +38,15 @@ PAIRS: list[tuple[str, ...]] = [
 SPECIMENS = 4
 DISPLACEMENT_NOISE_MM = 2e-4
 SIZING_STEPS = 4
-AGAIN = 1  # tells the draws of one more press from those of the case
+AGAIN, FLAWS = 1, 2  # tell the draws of one more press, and of a rig's flaws, from those of the case
 
 
 @dataclass(frozen=True)
 class Case:
-    """size : whitened root mean square per sample that is aimed at, of each effect. without : left out of the tool."""
+    """size : whitened root mean square per sample that is aimed at, of each effect. without : left out of the tool.
+
+    details : whether the rig has flaws that no mechanism describes.
+    """
 
     number: int
     seed: int
@@ -51,6 +55,7 @@ class Case:
     effects: tuple[str, ...] = ()
     size: float = 0.0
     without: str = ""
+    details: bool = False
 
     @property
     def name(self) -> str:
@@ -97,7 +102,12 @@ class Truth:
 
 
 def plan(
-    count: int, seed: int, rigs: tuple[str, ...], staged: bool = True, kinds: tuple[str, ...] = KINDS
+    count: int,
+    seed: int,
+    rigs: tuple[str, ...],
+    staged: bool = True,
+    kinds: tuple[str, ...] = KINDS,
+    details: bool = False,
 ) -> list[Case]:
     """The first count cases of some kinds; all follow a fixed pattern, mechanisms, sizes and rigs take turns."""
     known = KNOWN[:STAGED] if staged else KNOWN
@@ -107,7 +117,7 @@ def plan(
         if len(cases) == count:
             break
         if kind in kinds:
-            cases.append(_case(number, seed, kind, turns[kind], rigs, known))
+            cases.append(replace(_case(number, seed, kind, turns[kind], rigs, known), details=details))
         turns[kind] += 1
     return cases
 
@@ -138,7 +148,7 @@ def concealed(case: Case) -> tuple[Truth, list[Signals]]:
     bench, rng = BENCHES[case.bench], np.random.default_rng([case.seed, case.number])
     judge, strengths = judge_of(case.bench), _strengths(case)
     nuisance = _nuisance(bench, rng)
-    plainly = replace(baseline(bench), nuisance=nuisance)
+    plainly = replace(baseline(bench), nuisance=nuisance, details=_details(case))
     reality = applied(plainly, bench, strengths)
     left = judge.left(reality, plainly)
     values = {name: EFFECTS[name].truth(bench, s) for name, s in strengths.items()}
@@ -159,8 +169,14 @@ def pressed_again(case: Case, run: Run) -> Signals:
     known = {key: value for key, value in _nuisance(bench, first).items() if isinstance(key, str)}
     here = [(name, width) for name, width in bench.nuisance if name in PER_RUN]
     own = {(name, len(bench.runs)): width * float(rng.standard_normal()) for name, width in here}
-    reality = applied(replace(baseline(bench), nuisance=known | own), bench, _strengths(case))
+    believed = replace(baseline(bench), nuisance=known | own, details=_details(case))
+    reality = applied(believed, bench, _strengths(case))
     return _noisy(record(reality, replace(bench, runs=(*bench.runs, run)))[-1], bench, rng)
+
+
+def _details(case: Case) -> Details | None:
+    """Of the specimen; None where the case has none."""
+    return Details.drawn(np.random.default_rng([case.seed, case.number, FLAWS])) if case.details else None
 
 
 def _strengths(case: Case) -> dict[str, float]:

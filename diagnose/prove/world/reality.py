@@ -21,6 +21,7 @@ from scipy.interpolate import PchipInterpolator
 from scipy.special import erfc
 
 from diagnose.prove.world.bench import BENCHES, Bench, Run
+from diagnose.prove.world.details import Details
 from diagnose.prove.world.laws import Floats, Layer, Made
 from diagnose.prove.world.march import Course, Table, table, through_time
 from diagnose.prove.world.noise import Amplifier, noises
@@ -100,7 +101,8 @@ class Reality:
     time (s) of a half-space that warms. touch_pC : charge left by the touch at the largest area. sensitivity : of the
     film, on all its constants d. fatigue : share of its charge that the film loses from one press to the next.
     drift : relative change of the gain over a minute. jump_s : the clock of the voltage jumps by this in the middle
-    of every run. pickup : volt per mm/s. nuisance : name, or (name, number of run), -> value.
+    of every run. pickup : volt per mm/s. nuisance : name, or (name, number of run), -> value. details : flaws of the
+    rig, which no mechanism describes.
     """
 
     made: Made
@@ -117,6 +119,7 @@ class Reality:
     jump_s: float = 0.0
     pickup: float = 0.0
     nuisance: Mapping[Any, float] = field(default_factory=dict)
+    details: Details | None = None
 
     def of(self, name: str, run: int) -> float:
         """A nuisance of a run."""
@@ -173,14 +176,17 @@ def with_scatter(reality: Reality) -> Made:
 
 def _run(reality: Reality, bench: Bench, run: Run, number: int, mechanics: Mechanics) -> Signals:
     time = run.times(bench.rate_Hz)
-    stage = run.depth(time) - reality.of("offset_mm", number)
-    course = mechanics.course(time, _path(reality, stage, mechanics.known))
-    force = course.force_N + 1e-6 * reality.mass_g * run.acceleration_mm_per_s2(time)
+    stage, details = run.depth(time) - reality.of("offset_mm", number), reality.details
+    surface = stage if details is None else details.path(time, stage, number)
+    course = mechanics.course(time, _path(reality, surface, mechanics.known))
+    force = course.force_N if details is None else details.force(stage, course.force_N)
+    force = force + 1e-6 * reality.mass_g * run.acceleration_mm_per_s2(time)
     charge = reality.sensitivity * course.charge_pC * (1.0 - reality.fatigue) ** run.presses_before(time)
     charge += _warmth(reality, run, time) + reality.touch_pC * _touched(course)
     voltage = _amplifier(reality, run).voltage(time, charge, reality.made.capacitance_pF, 1.7 * number)
     voltage += reality.pickup * run.speed_mm_per_s(time)
     voltage *= 1.0 + reality.drift * time / 60.0 * (number + 1)
+    voltage = voltage if details is None else details.voltage(time, voltage, bench.peak_V, number)
     late = reality.of("lag_s", number) + np.where(time > 0.5 * time[-1], reality.jump_s, 0.0)
     voltage = np.interp(time - late, time, voltage)
     signals = {"time_s": time, "displacement_mm": run.depth(time)}

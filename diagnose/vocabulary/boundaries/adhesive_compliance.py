@@ -5,7 +5,7 @@ from math import asinh, inf, sinh
 from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
-from diagnose.vocabulary.base import Scene, Vocabulary, register
+from diagnose.vocabulary.base import GIVES_WAY, Scene, Vocabulary, register
 from solve.mechanisms.boundaries.adhesive_compliance import ADHESIVE_COMPLIANCE
 from solve.model import BondLine
 
@@ -46,4 +46,4 @@ def _stiffness(compliance: float) -> float:
     return 1.0 / max(compliance, 1.0 / PERFECT_N_PER_MM3)
 
 
-register(Vocabulary(ADHESIVE_COMPLIANCE, "{} is compliant", of_segment=of_segment))
+register(Vocabulary(ADHESIVE_COMPLIANCE, "{} is compliant", of_segment=of_segment, kind=GIVES_WAY))

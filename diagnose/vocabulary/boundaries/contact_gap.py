@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
-from diagnose.vocabulary.base import Scene, Vocabulary, register
+from diagnose.vocabulary.base import GIVES_WAY, Scene, Vocabulary, register
 from solve.mechanisms.boundaries.contact_gap import CONTACT_GAP
 
 
@@ -24,4 +24,4 @@ def _gap(scene: Scene) -> Candidate:
     return Candidate(CONTACT_GAP.name, "dot", (coordinate,), parameters, units={"gap_mm": "mm"})
 
 
-register(Vocabulary(CONTACT_GAP, "there is a gap before {} touches", of_segment=of_segment))
+register(Vocabulary(CONTACT_GAP, "there is a gap before {} touches", of_segment=of_segment, kind=GIVES_WAY))

@@ -5,7 +5,7 @@ from math import sqrt
 from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
-from diagnose.vocabulary.base import Scene, Vocabulary, register
+from diagnose.vocabulary.base import GIVES_WAY, Scene, Vocabulary, register
 from solve.mechanisms.boundaries.delamination import DELAMINATION
 
 LARGEST_PATCH = 0.9  # of the width
@@ -32,4 +32,4 @@ def _delamination(scene: Scene, bond: str) -> Candidate:
     return Candidate(DELAMINATION.name, bond, (coordinate,), parameters, units={"center_mm": "mm", "diameter_mm": "mm"})
 
 
-register(Vocabulary(DELAMINATION, "{} has come apart in one place", of_segment=of_segment))
+register(Vocabulary(DELAMINATION, "{} has come apart in one place", of_segment=of_segment, kind=GIVES_WAY))

@@ -5,7 +5,7 @@ from math import asinh, exp, log, sinh
 from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
-from diagnose.vocabulary.base import Scene, Vocabulary, register, shrinking
+from diagnose.vocabulary.base import GIVES_WAY, Scene, Vocabulary, register, shrinking
 from solve.mechanisms.boundaries.elastic_sides import ELASTIC_SIDES
 
 STIFF_SIDE_N_PER_MM3 = 3000.0  # the ends of a film of PVDF, a few mm long, begin to move
@@ -44,4 +44,4 @@ def _other_sides(declared: float) -> Candidate:
     return Candidate(ELASTIC_SIDES.name, "sides", (coordinate,), parameters, units={"stiffness_N_per_mm3": "N/mm3"})
 
 
-register(Vocabulary(ELASTIC_SIDES, "{} are compliant", of_segment=of_segment))
+register(Vocabulary(ELASTIC_SIDES, "{} are compliant", of_segment=of_segment, kind=GIVES_WAY))

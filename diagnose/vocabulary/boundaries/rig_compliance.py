@@ -5,7 +5,7 @@ from math import sinh
 from typing import Any
 
 from diagnose.forward import Candidate
-from diagnose.vocabulary.base import CouponScene, Scene, Vocabulary, growing, register
+from diagnose.vocabulary.base import GIVES_WAY, CouponScene, Scene, Vocabulary, growing, register
 from solve.mechanisms.boundaries.rig_compliance import RIG_COMPLIANCE
 
 MOST_OF_TRAVEL = 0.25  # a tester that takes more than a quarter of the travel is seen to bend
@@ -46,5 +46,6 @@ register(
         "{} deflects, which the displacement sensor does not see",
         of_segment=of_segment,
         of_coupon=of_coupon,
+        kind=GIVES_WAY,
     )
 )

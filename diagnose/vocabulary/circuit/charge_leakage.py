@@ -7,7 +7,7 @@ from typing import Any
 
 from diagnose.forward import Candidate
 from diagnose.signals.recording import Recording
-from diagnose.vocabulary.base import Scene, Vocabulary, growing, register, shrinking
+from diagnose.vocabulary.base import LOSES_CHARGE, Scene, Vocabulary, growing, register, shrinking
 from solve.mechanisms.circuit.charge_leakage import CHARGE_LEAKAGE
 
 
@@ -50,6 +50,10 @@ def _with_time_constant(scene: Scene, one: Candidate) -> Candidate:
 
 register(
     Vocabulary(
-        CHARGE_LEAKAGE, "charge leaks through {}", of_segment=of_segment, of_unknown_geometry=of_unknown_geometry
+        CHARGE_LEAKAGE,
+        "charge leaks through {}",
+        of_segment=of_segment,
+        of_unknown_geometry=of_unknown_geometry,
+        kind=LOSES_CHARGE,
     )
 )

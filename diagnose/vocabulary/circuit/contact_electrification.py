@@ -5,7 +5,7 @@ from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
-from diagnose.vocabulary.base import Scene, Vocabulary, register
+from diagnose.vocabulary.base import OTHER_CHARGE, Scene, Vocabulary, register
 from solve.mechanisms.circuit.contact_electrification import CONTACT_ELECTRIFICATION
 
 TOUCH_CHARGE = 10.0  # of the largest charge that was recorded
@@ -39,5 +39,6 @@ register(
         "contact leaves charge on {}",
         of_segment=of_segment,
         of_unknown_geometry=of_unknown_geometry,
+        kind=OTHER_CHARGE,
     )
 )

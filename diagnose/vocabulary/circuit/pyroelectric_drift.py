@@ -6,7 +6,7 @@ from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
-from diagnose.vocabulary.base import Scene, Vocabulary, register
+from diagnose.vocabulary.base import OTHER_CHARGE, Scene, Vocabulary, register
 from solve.mechanisms.circuit.pyroelectric_drift import PYROELECTRIC_DRIFT
 
 UNDONE_BY = ("with the dot as warm as the film", {"dot_temperature": "of the film"})
@@ -48,5 +48,6 @@ register(
         of_segment=of_segment,
         of_unknown_geometry=of_unknown_geometry,
         undone_by=UNDONE_BY,
+        kind=OTHER_CHARGE,
     )
 )

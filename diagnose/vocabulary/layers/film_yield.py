@@ -5,7 +5,7 @@ from math import sinh
 from typing import Any
 
 from diagnose.forward import Candidate
-from diagnose.vocabulary.base import Scene, Vocabulary, growing, register, shrinking
+from diagnose.vocabulary.base import REMEMBERS, Scene, Vocabulary, growing, register, shrinking
 from solve.materials.parameters import PiezoelectricFilm
 from solve.mechanisms.layers.film_yield import FILM_YIELD
 
@@ -33,4 +33,4 @@ def _yield_stress(scene: Scene) -> Candidate:
     return Candidate(FILM_YIELD.name, "film", (coordinate,), parameters, units=units)
 
 
-register(Vocabulary(FILM_YIELD, "{} yields", of_segment=of_segment))
+register(Vocabulary(FILM_YIELD, "{} yields", of_segment=of_segment, kind=REMEMBERS))

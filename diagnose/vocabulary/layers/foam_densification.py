@@ -6,7 +6,7 @@ from typing import Any
 
 from diagnose.engines.coupon.laws import SPECIMEN, PartOfLayer
 from diagnose.forward import Candidate, Coordinate
-from diagnose.vocabulary.base import CouponScene, Scene, Vocabulary, register
+from diagnose.vocabulary.base import STIFFNESS, CouponScene, Scene, Vocabulary, register
 from solve.materials.parameters import Hyperfoam, Material
 from solve.mechanisms.base import MEDIA
 from solve.mechanisms.layers.foam_densification import FOAM_DENSIFICATION
@@ -117,5 +117,6 @@ register(
         "{} is a foam, which collapses and then densifies",
         of_segment=of_segment,
         of_coupon=of_coupon,
+        kind=STIFFNESS,
     )
 )

@@ -11,7 +11,7 @@ from diagnose.engines.coupon.laws import LARGEST_STRAIN, LAYER, MEDIUM, SPECIMEN
 from diagnose.engines.coupon.point import MaterialPoint
 from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
-from diagnose.vocabulary.base import CouponScene, Scene, Vocabulary, register
+from diagnose.vocabulary.base import STIFFNESS, CouponScene, Scene, Vocabulary, register
 from solve.materials.parameters import Hyperfoam, Material, MooneyRivlin, NeoHookean, Ogden, Yeoh
 from solve.mechanisms import Mechanism, with_mechanisms
 from solve.mechanisms.base import MEDIA
@@ -131,5 +131,6 @@ register(
         of_coupon=of_coupon,
         of_unknown_geometry=of_unknown_geometry,
         below_one=("force_ratio", "{} stiffens less, or gives way, at large strain"),
+        kind=STIFFNESS,
     )
 )

@@ -6,7 +6,7 @@ from typing import Any
 from diagnose.engines.coupon.laws import LAYER, SPECIMEN, PartOfLayer
 from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
-from diagnose.vocabulary.base import CouponScene, Scene, Vocabulary, register
+from diagnose.vocabulary.base import REMEMBERS, CouponScene, Scene, Vocabulary, register
 from solve.materials.inelastic import Softening
 from solve.mechanisms.base import MEDIA
 from solve.mechanisms.layers.stress_softening import STRESS_SOFTENING
@@ -62,5 +62,6 @@ register(
         of_segment=of_segment,
         of_coupon=of_coupon,
         of_unknown_geometry=of_unknown_geometry,
+        kind=REMEMBERS,
     )
 )

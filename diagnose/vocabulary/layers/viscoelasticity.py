@@ -9,7 +9,7 @@ import numpy as np
 from diagnose.engines.coupon.laws import LAYER, MOST_OF_COUPON, SPECIMEN, PartOfLayer, relaxation_times
 from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
-from diagnose.vocabulary.base import CouponScene, Scene, Vocabulary, register
+from diagnose.vocabulary.base import REMEMBERS, CouponScene, Scene, Vocabulary, register
 from solve.materials.inelastic import Prony
 from solve.mechanisms.layers.viscoelasticity import VISCOELASTICITY
 from solve.model import Model
@@ -126,5 +126,6 @@ register(
         of_segment=of_segment,
         of_coupon=of_coupon,
         of_unknown_geometry=of_unknown_geometry,
+        kind=REMEMBERS,
     )
 )

@@ -6,6 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from diagnose.findings import Grade
 from diagnose.inference.diagnose import diagnose
 from diagnose.signals.recording import Recording
 from solve.model import Readout
@@ -149,11 +150,12 @@ def test_one_press_is_judged_by_its_phases_and_says_so():
     assert "only one press" in " ".join(findings.warnings)
 
 
-def test_a_value_no_part_can_have_is_not_named():
-    narrow = one(*LEAK, "leak", 0.0, 0.9, 0.5)
-    findings = found(small(5, Sensor(leak=1.0), runs=3), (narrow,))
-    assert findings.best is None
+def test_a_value_at_the_edge_of_what_parts_have_is_the_main_part_where_it_leaves_next_to_nothing():
+    recording = small(5, Sensor(leak=5.0), runs=3)
+    findings = found(recording, (one(*LEAK, "leak", 0.0, 4.9, 0.5),))
+    assert (findings.grade, names(findings)) == (Grade.MAIN_PART, (LEAK,))
     assert "implausible" in " ".join(findings.reasons)
+    assert found(recording, (one(*LEAK, "leak", 0.0, 1.5, 0.5),)).best is None
 
 
 def test_a_sensor_of_unknown_sensitivity_is_no_mismatch():

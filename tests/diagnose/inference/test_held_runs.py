@@ -6,7 +6,8 @@ from functools import cache
 import pytest
 
 from diagnose.forward import some_runs
-from diagnose.inference.diagnose import diagnose, diagnose_and_score
+from diagnose.inference.diagnose import diagnose
+from diagnose.inference.held_runs import diagnose_and_score
 from tests.diagnose.inference.toy import CANDIDATES, Sensor, ToyEngine, silent, small
 
 FEW = tuple(CANDIDATES[n] for n in (0, 1, 4))

@@ -100,6 +100,17 @@ def test_an_interval_covers_or_not():
     assert not any(scored(truth(LEAK, values=known), verdict(LEAK, high=1.8), far).covered.values())
 
 
+def test_a_main_part_is_right_by_its_name_and_no_name_of_everything():
+    main = {**verdict(unexplained=True), "main_part": [LEAK]}
+    score = scored(truth(LEAK), main, far)
+    assert (score.named, score.main_part, score.right, score.exact) == ((), score.truth, True, False)
+    assert not scored(truth(CABLE), main, far).right
+    assert scored(truth(CABLE), {**main, "ambiguous_with": [[LEAK, CABLE]]}, near).right
+    rates = tally([score, scored(truth(kind=NONE, size=0.0), main, far)])
+    assert [rates[name]["count"] for name in ("clear_right", "clear_exact", "clear_wrong")] == [1, 0, 0]
+    assert (rates["main_parts_without_effect"]["count"], rates["names_right"]["count"]) == (1, 1)
+
+
 def test_a_tally_counts():
     scores = [
         scored(truth(LEAK), verdict(LEAK), far),

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from diagnose.findings import Remainder
 from diagnose.forward import Setting
 from diagnose.next_press.choose import next_press
 from diagnose.verdict.content import verdict
@@ -17,6 +18,8 @@ FIT = {"nrmse_before": NUMBER, "nrmse_after": NUMBER, "log_score_gain_per_press"
 NAMED = {"mechanism": str, "component": str}
 SHAPE = {
     "format": str,
+    "grade": str,
+    "main_part": [{**NAMED, "parameters": dict, "probability": NUMBER}],
     "mismatch": bool,
     "detection": {"statistic": NUMBER, "p_value_family_wise": NUMBER, "noise_model": dict},
     "where": [
@@ -102,6 +105,23 @@ def test_no_mismatch_names_nothing_and_places_nothing(recording):
     assert (said["mismatch"], said["unexplained"]) == (False, False)
     assert said["missing_physics"] == said["where"] == said["alternatives"] == []
     assert said["next_experiment"]["expected_separation_sigma"] is None
+
+
+def test_a_main_part_names_nothing_for_those_who_only_know_what_is_missing(recording):
+    left = Remainder(0.97, {"loading": 0.7, "hold": 0.3})
+    said = content(recording, found(recording, (LEAKS,), LEAKS, ((0,),), unexplained=True, remainder=left))
+    require(said, SHAPE)
+    assert (said["grade"], said["unexplained"], said["missing_physics"]) == ("main part", True, [])
+    assert [one["mechanism"] for one in said["main_part"]] == ["charge-leakage"]
+    assert said["remainder"] == {"share_explained_held_out": 0.97, "share_left_by_phase": {"loading": 0.7, "hold": 0.3}}
+
+
+def test_every_grade_has_its_word(recording):
+    of = {"identified": {}, "unexplained": {"best": None, "unexplained": True}, "agreement": {"mismatch": False}}
+    for word, parts in of.items():
+        assert content(recording, found(recording, **{"models": (LEAKS,), "best": LEAKS, **parts}))["grade"] == word
+    kind = found(recording, (LEAKS, RELAXES), None, ((0, 1),), unexplained=True, kind="something leaks")
+    assert (content(recording, kind)["grade"], content(recording, kind)["kind"]) == ("kind only", "something leaks")
 
 
 def test_the_unexplained_names_nothing_but_keeps_what_was_tried(recording):

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from diagnose.figures import figure
-from diagnose.findings import Fit, Interval, LocatedExcess
+from diagnose.findings import Fit, Interval, LocatedExcess, Remainder
 from diagnose.forward import Candidate, Coordinate, Setting
 from diagnose.next_press.choose import next_press
 from diagnose.verdict.content import verdict, where_words
-from diagnose.verdict.names import WHERE, interval_words, listed, mechanism_words, setting_words
+from diagnose.verdict.names import WHERE, in_common, interval_words, listed, mechanism_words, setting_words
 from diagnose.verdict.words import sentences
 from diagnose.vocabulary.base import vocabulary
 from solve.mechanisms import MECHANISMS
@@ -69,6 +69,36 @@ def test_the_unexplained_is_said_with_its_reasons(recording):
     lines = told(recording, findings)
     assert lines[1] == "Left out: something that none of the known mechanisms explains, so nothing is named."
     assert lines[2] == f"Why nothing is named: {reason}"
+
+
+def test_the_main_part_is_told_with_what_has_no_name(recording):
+    reason = "Its residual is still larger than noise makes it (p = 0.002)."
+    left = Remainder(0.974, {"loading": 0.8, "hold": 0.2})
+    findings = found(recording, (LEAKS,), LEAKS, ((0,),), unexplained=True, remainder=left, reasons=(reason,))
+    lines = told(recording, findings)
+    assert lines[1] == (
+        "Most of what is left out: charge leaks through the amplifier; resistance 2000 MΩ (90 % interval 1600 to "
+        "2400). It accounts for 97 % of the excess over noise in conditions that it was not fitted to."
+    )
+    assert lines[3] == f"The rest: what remains, mostly while loading, has no name. {reason}"
+    even = replace(findings, remainder=replace(left, by_phase={"loading": 0.4, "hold": 0.3, "after": 0.3}))
+    assert told(recording, even)[3].startswith("The rest: what remains has no name.")
+
+
+def test_where_too_many_are_as_good_their_kind_is_told(recording):
+    kind = found(recording, (LEAKS, RELAXES), None, ((0, 1),), unexplained=True, kind="something leaks")
+    assert told(recording, kind)[1] == (
+        "Left out: only its kind can be told: something leaks. Each of these explains most: charge leaks through the "
+        "amplifier or medium 2 relaxes (viscoelasticity)."
+    )
+
+
+def test_what_explanations_have_in_common():
+    leaks = [Candidate("charge-leakage", where, (), dict) for where in ("readout", "film")]
+    assert in_common(leaks) == "the film or its input loses charge"
+    mixed = [Candidate(name, "medium2", (), dict) for name in ("viscoelasticity", "property-error")]
+    assert in_common(mixed) == "medium 2 behaves otherwise than stated"
+    assert in_common([*leaks, *mixed]) == ""
 
 
 def test_how_far_the_best_unnamed_model_would_come_is_said_and_written(recording):

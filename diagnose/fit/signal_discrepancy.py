@@ -1,0 +1,80 @@
+"""What an explanation may leave: a discrepancy proportional to the signal, of one size per channel.
+
+Laws of real parts differ from ours, and every rig has flaws of its own: jitter of the drive, softness at first touch,
+hysteresis of the tester. Of each channel the discrepancy is white over a press, with a mean square that is a fixed
+share of the signal's: fits then weigh errors as a reader does, by their squares, and not by how little noise there is.
+
+It is no noise that averages out: each phase of a press errs as one, however many samples it has. So the variance is
+that of a sample times the samples per phase.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from diagnose.fit.samples import Samples
+from diagnose.noise.estimate import repeated
+from geometry.arrays import Floats, Ints
+
+TINY = np.finfo(float).tiny ** 0.5
+
+
+def in_plain_units(samples: Samples) -> Samples:
+    """The same samples with their noise taken as white: sums of squares are then those of the errors themselves."""
+    white = {id(law): law.white() for law in samples.noise.values()}
+    return Samples(samples.recording, {key: white[id(law)] for key, law in samples.noise.items()})
+
+
+class SignalDiscrepancy:
+    """samples : in plain units. unit : (n,) variance of each where the discrepancy is as large as the signal.
+
+    channel : (n,) number of the channel. pieces : (c,) phases of presses of each channel, which count as one each.
+    """
+
+    def __init__(self, samples: Samples) -> None:
+        self.samples = samples
+        self.channel: Ints = samples.kind[samples.block_of]
+        self.unit = np.empty(len(samples))
+        for block in samples.blocks:
+            rows, variance = block.rows, block.whitening.noise.autoregression.variance
+            values = samples.recording.runs[block.run].channels[block.channel][block.observed]
+            for press in np.unique(samples.press[rows]):
+                own = samples.press[rows] == press
+                phases = len(np.unique(samples.phase[rows][own]))
+                square = float(((values[own] - values[own].mean()) ** 2).sum())
+                self.unit[rows.start + np.flatnonzero(own)] = max(square / phases / variance, TINY)
+        each = np.unique(np.column_stack([self.channel, samples.press, samples.phase]), axis=0)
+        self.pieces = np.bincount(each[:, 0], minlength=len(samples.channels)).astype(float)
+
+    def variance(self, sizes: Floats) -> Floats:
+        """(n,) that discrepancies of sizes (c,), relative to the signals, add to each coefficient."""
+        return np.asarray(sizes[self.channel] ** 2 * self.unit)
+
+    def squares(self, residual: Floats) -> Floats:
+        """(n,) square of a whitened residual (n,) above noise, summing to its mean square relative to the signal."""
+        return np.asarray((residual**2 - 1.0) / self.unit / self.pieces[self.channel])
+
+    @property
+    def noise_error(self) -> float:
+        """One sigma of the sum of squares of noise alone, which has the mean 0."""
+        return float(np.sqrt(2.0 * np.sum(1.0 / (self.unit * self.pieces[self.channel]) ** 2)))
+
+    def sizes(self, residual: Floats) -> Floats:
+        """(c,) root mean square of each channel relative to its signal, above noise."""
+        squares = np.bincount(self.channel, self.squares(residual), len(self.pieces))
+        return np.asarray(np.sqrt(np.maximum(squares, 0.0)))
+
+
+def conditions(samples: Samples) -> Ints:
+    """Label (n,) of what is held out together: runs that repeat each other; where all do, presses or phases."""
+    home = {number: number for number in range(len(samples.recording.runs))}
+    for group in repeated(samples.recording.runs, samples.recording.phases):
+        home |= dict.fromkeys(group, group[0])
+    labels = np.array([home[number] for number in range(len(home))])[samples.run]
+    return np.asarray(labels if len(np.unique(labels)) > 1 else samples.fold, dtype=np.int64)
+
+
+def by_phase(samples: Samples, squares: Floats, names: Sequence[str]) -> dict[str, float]:
+    """Phase -> its share of squares (n,) above noise."""
+    total = np.maximum(np.bincount(samples.phase, squares, len(names)), 0.0)
+    return {name: float(part) for name, part in zip(names, total / max(float(total.sum()), TINY), strict=True)}

@@ -1,0 +1,92 @@
+"""Runs that only score: findings of all the others, with their error on these."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from diagnose.findings import Findings, FittedModel
+from diagnose.fit.observed_model import ObservedModel
+from diagnose.fit.refit import believed, fitted_baseline
+from diagnose.fit.samples import Samples
+from diagnose.fit.system import linearised
+from diagnose.forward import Engine, Setting, SomeRuns, all_but, some_runs
+from diagnose.inference.black_box import errors, relaxed, unimproved
+from diagnose.inference.diagnose import diagnose, labelled
+from diagnose.noise.estimate import noise_models
+from diagnose.signals.recording import Recording
+from diagnose.statistics.held_out import Sums
+from geometry.arrays import Bools, Floats
+from geometry.base import Report
+
+
+def diagnose_and_score(
+    recording: Recording, engine: Engine, held: Sequence[int], seed: int, report: Report
+) -> Findings:
+    """Findings of all runs but some, with held-out errors of those: numbers of runs of the recording.
+
+    Mechanisms and what all runs share are those of the training runs. What floats in a held-out run is fitted to it,
+    without mechanisms and with them alike. InputError for a channel without noise.
+    """
+    trained = all_but(recording, held)
+    own = some_runs(recording, trained)
+    findings = diagnose(own, SomeRuns(engine, trained), seed, report)
+    report("held-out runs", 0, 1)
+    return _scored(findings, _model_of(own, engine, trained), _model_of(some_runs(recording, held), engine, held))
+
+
+def _model_of(recording: Recording, engine: Engine, numbers: Sequence[int]) -> ObservedModel:
+    return ObservedModel(Samples(recording, noise_models(recording)), SomeRuns(engine, numbers))
+
+
+def _scored(findings: Findings, train: ObservedModel, held: ObservedModel) -> Findings:
+    """Findings whose errors, signals and noise speak of the held-out runs too."""
+    best: FittedModel | None = findings.models[0] if findings.models else None
+    settings = tuple(one for one in best.settings if not one.candidate.traits.free_phase) if best else ()
+    starts = [believed(model, fitted_baseline(model)).values for model in (train, held)]
+    before, after = (_transferred((train, held), starts, chosen) for chosen in ((), settings))
+    gains = _log_scores(held, after, settings) - _log_scores(held, before, ())
+    fit = errors(held, range(len(held.samples.presses)), before, after, settings, gains)
+    named = findings.best is not None
+    shown = findings.improved
+    return replace(
+        findings,
+        detection=replace(findings.detection, noise={**findings.detection.noise, **held.samples.noise_summaries()}),
+        held_out=fit if named else unimproved(fit),
+        unnamed=fit if best and not named else None,
+        baseline={**findings.baseline, **labelled(held, before, ())},
+        improved=None if shown is None else {**shown, **labelled(held, after, settings)},
+    )
+
+
+def _transferred(
+    models: tuple[ObservedModel, ObservedModel], starts: Sequence[Floats], settings: Sequence[Setting]
+) -> Floats:
+    """Nuisances (p,) of held-out runs: what is shared as in the training runs, the rest fitted from starts of both."""
+    train, held = models
+    known = _fitted(train, starts[0], settings, {})
+    shared = {one.name: value for one, value in zip(train.nuisances, known, strict=True) if one.run is None}
+    return _fitted(held, starts[1], settings, shared)
+
+
+def _fitted(model: ObservedModel, start: Floats, settings: Sequence[Setting], shared: dict[str, float]) -> Floats:
+    """Nuisances (p,) with these mechanisms on, within what is plausible; shared ones by name are not touched."""
+    values = start.copy()
+    frozen: Bools = np.array([one.run is None and one.name in shared for one in model.nuisances], dtype=bool)
+    values[frozen] = [shared[one.name] for one in model.nuisances if one.run is None and one.name in shared]
+    return relaxed(model, values, settings, np.ones(len(model.samples), dtype=bool), frozen)
+
+
+def _log_scores(model: ObservedModel, values: Floats, settings: Sequence[Setting]) -> Floats:
+    """Log-density (presses,) of each press alone, its own nuisances integrated out under their priors."""
+    system, samples = linearised(model, values, settings), model.samples
+    shared = np.flatnonzero([one.run is None for one in model.nuisances])
+    kept = np.setdiff1d(np.arange(len(system.sigma)), shared)
+    columns = system.weighted(system.nuisance_design)
+    white = system.weighted(system.residual) - columns[:, shared] @ values[shared]
+    scale = np.log(system.weight)
+    rows = [samples.press == number for number in range(len(samples.presses))]
+    return np.array([
+        Sums.of(columns[own][:, kept], white[own]).log_evidence(system.sigma[kept]) + float(scale[own].sum())
+        for own in rows
+    ])  # fmt: skip

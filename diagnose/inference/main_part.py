@@ -1,0 +1,201 @@
+"""The main part: one explanation of most of the mismatch, where what is left has no name.
+
+The choice between mechanisms is made again with a discrepancy as part of the likelihood (fit/signal_discrepancy.py).
+Its size is learned, for each channel, from what the best explanation leaves. A bound of the search is no reason against
+an explanation here, and held-out conditions decide: runs that repeat each other are one.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.stats import norm
+
+from diagnose.findings import Fit
+from diagnose.fit.descent import settings
+from diagnose.fit.observed_model import ObservedModel
+from diagnose.fit.refit import Fitted, capped, within_priors
+from diagnose.fit.signal_discrepancy import SignalDiscrepancy, by_phase, conditions, in_plain_units
+from diagnose.fit.system import Quadratic, linearised, relative
+from diagnose.inference.choice import Judged, implausible
+from diagnose.inference.forecasts import Forecasted, forecasted, separation
+from diagnose.inference.search import FirstFit, Screening, first_fits, pairs, screen, singles
+from diagnose.signals.phases import PHASES
+from diagnose.statistics.abstain import RATES
+from diagnose.statistics.held_out import Gain, gain_over_noise, held_out_probabilities, leave_press_out
+from geometry.arrays import Floats
+from geometry.base import Report
+
+MOST = 0.9
+"""Share of the held-out excess over noise that a main part accounts for."""
+IN_EACH = 0.5
+"""The same in each condition alone."""
+VISIBLE = 0.01
+"""Root mean square error relative to the signal, above noise, below which flaws of an ordinary rig may make it."""
+
+
+AT_EDGE = 0.99
+"""The same share that it needs where one of its values is at the end of what a real part can have."""
+CONFIRMED = 0.8
+"""The same share when the model is fitted anew to half of the presses, and shown on the others."""
+
+
+@dataclass(frozen=True)
+class MainPart:
+    """models : best first, each with its gain over the baseline. group : numbers of those that are as good.
+
+    model, found : in the metric in which they were judged. base : the baseline's forecast there. share : of the
+    held-out excess over noise that the best accounts for. left_by_phase : phase -> share of what it leaves.
+    """
+
+    models: tuple[Judged, ...]
+    group: tuple[int, ...]
+    model: ObservedModel
+    found: Screening
+    base: Forecasted
+    share: float
+    left_by_phase: dict[str, float]
+
+    @property
+    def nameable(self) -> bool:
+        """Whether few enough are as good, and the best has no value at an edge, or leaves next to nothing."""
+        few = len(self.group) <= RATES.largest_group
+        return few and (self.share >= AT_EDGE or not implausible(self.models[0].fit))
+
+    def probabilities(self, rng: np.random.Generator) -> Floats:
+        """(m,) of the models, by their held-out scores, among them and the baseline."""
+        scores = [*(one.forecast.log_scores for one in self.models), self.base.log_scores]
+        return held_out_probabilities(np.array(scores), rng)[:-1]
+
+
+def confirmed(held_out: Fit) -> bool:
+    """Whether a model that was fitted to other presses takes most of the excess over noise away from these."""
+    noise = held_out.noise_floor_nrmse**2
+    before, after = held_out.nrmse_before**2 - noise, max(held_out.nrmse_after**2 - noise, 0.0)
+    return after < (1.0 - CONFIRMED) * before
+
+
+class TolerantJudge:
+    """Judges explanations on held-out conditions, in a metric that tolerates discrepancies of sizes (c,)."""
+
+    def __init__(self, model: ObservedModel, found: Screening, tolerance: SignalDiscrepancy, sizes: Floats) -> None:
+        self.tolerance, self.fold = tolerance, conditions(model.samples)
+        self.model = model.tolerating(tolerance.variance(np.maximum(sizes, relative(model))))
+        rows = found.baseline.informative
+        start, baseline = (linearised(self.model, one.values, (), 0.0, rows) for one in (found.start, found.baseline))
+        self.found = replace(found, start=start, baseline=baseline, excess=0.0)
+        self.base = forecasted(model.samples, within_priors(start, baseline), None, self.fold)
+
+    def judged(self, fit: Fitted) -> Judged:
+        """Held-out conditions predicted by a model that was fitted in this metric."""
+        forecast = forecasted(self.model.samples, capped(fit.system), fit, self.fold)
+        share = self.share(forecast)
+        return Judged(fit, forecast, self.gained(forecast, self.base), 1.0 - share, 1.0, 1.0)
+
+    def gained(self, one: Forecasted, rival: Forecasted) -> Gain:
+        """Nats per condition, with a lower bound that is corrected for all candidates."""
+        gains = one.log_scores - rival.log_scores
+        return gain_over_noise(gains, separation(one, rival), RATES.level, len(self.found.candidates))
+
+    def excluded(self, rival: Forecasted, best: Forecasted) -> bool:
+        """Whether the best would hardly predict so much better if the rival were true.
+
+        With d sigma between the two, its gain would then be normal with mean -d^2 / 2 and deviation d.
+        """
+        apart = float(np.linalg.norm(separation(best, rival)))
+        gain = float((best.log_scores - rival.log_scores).sum())
+        return gain + 0.5 * apart**2 > float(norm.isf(RATES.level / len(self.found.candidates))) * apart
+
+    def missed(self, forecast: Forecasted) -> Floats:
+        """(n,) residual of the recording, less what the nuisances of each run that was left out make of it."""
+        system, run = forecast.system, [one.run for one in self.model.nuisances]
+        residual = self.model.samples.recorded - forecast.predicted
+        own = np.flatnonzero([number is not None for number in run])
+        for _, held in leave_press_out(forecast.fold[system.informative]):
+            columns, rows = system.nuisance_design[held][:, own], np.flatnonzero(system.informative)[held]
+            weight = system.weight[rows]
+            found = Quadratic(columns * weight[:, None], system.sigma[own]).mean(residual[rows] * weight)
+            residual[rows] -= columns @ found
+        return residual
+
+    def left(self, forecast: Forecasted) -> Floats:
+        """(n,) squares above noise, relative to the signals, of what a forecast leaves."""
+        return self.tolerance.squares(self.missed(forecast))
+
+    def share(self, forecast: Forecasted) -> float:
+        """Share of the baseline's held-out excess that a forecast accounts for, at least, as noise hides the rest."""
+        before, after = (max(float(self.left(one).sum()), 0.0) for one in (self.base, forecast))
+        return 1.0 - (after + 2.0 * self.tolerance.noise_error) / before if before > 0.0 else 0.0
+
+    def in_each(self, forecast: Forecasted) -> Floats:
+        """The same in each condition; 1 where the baseline leaves hardly anything."""
+        _, place = np.unique(self.fold, return_inverse=True)
+        before, after = (np.bincount(place, self.left(one)) for one in (self.base, forecast))
+        plain = before > 0.25 * before.max(initial=0.0)
+        return np.asarray(1.0 - np.maximum(after, 0.0)[plain] / before[plain])
+
+    def visible(self) -> bool:
+        """Whether what the baseline leaves is larger than flaws of an ordinary rig."""
+        sizes = self.tolerance.sizes(self.missed(self.base))
+        return float(np.max(sizes, initial=0.0)) > VISIBLE
+
+    def best_first(self, fits: Sequence[Fitted]) -> list[Judged]:
+        """Models by how well they predict held-out conditions."""
+        return sorted(map(self.judged, fits), key=_score, reverse=True)
+
+
+def main_part(model: ObservedModel, found: Screening, report: Report) -> MainPart | None:
+    """None where no explanation, or none that is told from all but a few rivals, accounts for most of the mismatch."""
+    plain = model.seen_as(in_plain_units(model.samples))
+    seen = screen(plain, linearised(plain, found.baseline.values), report)
+    tolerance = SignalDiscrepancy(plain.samples)
+    judge = TolerantJudge(plain, seen, tolerance, tolerance.sizes(seen.start.residual))
+    firsts = first_fits(judge.model, judge.found, report) if judge.visible() else []
+    if not firsts:
+        return None
+    judge = TolerantJudge(plain, seen, tolerance, _left_by(judge, firsts[0]))
+    models = judge.best_first(singles(judge.model, judge.found, firsts, report))
+    if models and models[0].left > 1.0 - MOST:
+        models = _with_pairs(judge, models, report)
+    return _told(judge, models) if models else None
+
+
+def _left_by(judge: TolerantJudge, first: FirstFit) -> Floats:
+    """Sizes (c,) of what a first fit leaves of all presses, nuisances as they come closest."""
+    setting = settings((judge.found.candidates[first.number],), first.values)
+    start = judge.found.start
+    system = linearised(judge.model, start.values, setting, 0.0, start.informative)
+    residual = system.residual.copy()
+    residual[system.informative] -= system.nuisance_design @ system.quadratic.mean(system.weighted(system.residual))
+    return judge.tolerance.sizes(residual)
+
+
+def _with_pairs(judge: TolerantJudge, models: Sequence[Judged], report: Report) -> list[Judged]:
+    """A second mechanism beside the best, where both predict better for sure."""
+    best = models[0]
+    both = [judge.judged(fit) for fit in pairs(judge.model, judge.found, best.fit, [], report)]
+    better = [one for one in both if judge.gained(one.forecast, best.forecast).lower > 0.0]
+    return sorted([*models, *better], key=_score, reverse=True)
+
+
+def _told(judge: TolerantJudge, models: Sequence[Judged]) -> MainPart | None:
+    best = models[0]
+    group = [n for n, one in enumerate(models) if n == 0 or not judge.excluded(one.forecast, best.forecast)]
+    each = judge.in_each(best.forecast)
+    if best.left > 1.0 - MOST or best.gain.lower <= 0.0 or float(each.min(initial=1.0)) < IN_EACH:
+        return None
+    order = [*group, *(n for n in range(len(models)) if n not in group)]
+    left = by_phase(judge.model.samples, judge.left(best.forecast), PHASES)
+    return MainPart(
+        tuple(models[n] for n in order),
+        tuple(range(len(group))),
+        judge.model,
+        judge.found,
+        judge.base,
+        1.0 - best.left,
+        left,
+    )
+
+
+def _score(one: Judged) -> float:
+    return float(one.forecast.log_scores.sum())
