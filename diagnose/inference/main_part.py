@@ -14,7 +14,7 @@ from scipy.stats import norm
 from diagnose.findings import Fit
 from diagnose.fit.descent import settings
 from diagnose.fit.observed_model import ObservedModel
-from diagnose.fit.refit import Fitted, capped, within_priors
+from diagnose.fit.refit import Fitted, capped, fitted, within_priors
 from diagnose.fit.signal_discrepancy import SignalDiscrepancy, by_phase, conditions, in_plain_units
 from diagnose.fit.system import Quadratic, linearised, relative
 from diagnose.inference.choice import Judged, implausible
@@ -139,6 +139,11 @@ class TolerantJudge:
         sizes = self.tolerance.sizes(self.missed(self.base))
         return float(np.max(sizes, initial=0.0)) > VISIBLE
 
+    def refitted(self, fit: Fitted) -> Fitted:
+        """A model fitted anew in this metric, from its values in another one."""
+        start = replace(self.found.start, values=fit.system.values)
+        return fitted(self.model, start, fit.candidates, fit.values, 0.0)
+
     def best_first(self, fits: Sequence[Fitted]) -> list[Judged]:
         """Models by how well they predict held-out conditions."""
         return sorted(map(self.judged, fits), key=_score, reverse=True)
@@ -156,7 +161,7 @@ def main_part(model: ObservedModel, found: Screening, report: Report) -> MainPar
     judge = TolerantJudge(plain, seen, tolerance, _left_by(judge, firsts[0]))
     models = judge.best_first(singles(judge.model, judge.found, firsts, report))
     if models and models[0].left > 1.0 - MOST:
-        models = _with_pairs(judge, models, report)
+        judge, models = _with_pairs(judge, models, report)
     return _told(judge, models) if models else None
 
 
@@ -170,12 +175,21 @@ def _left_by(judge: TolerantJudge, first: FirstFit) -> Floats:
     return judge.tolerance.sizes(residual)
 
 
-def _with_pairs(judge: TolerantJudge, models: Sequence[Judged], report: Report) -> list[Judged]:
-    """A second mechanism beside the best, where both predict better for sure."""
-    best = models[0]
-    both = [judge.judged(fit) for fit in pairs(judge.model, judge.found, best.fit, [], report)]
-    better = [one for one in both if judge.gained(one.forecast, best.forecast).lower > 0.0]
-    return sorted([*models, *better], key=_score, reverse=True)
+def _with_pairs(judge: TolerantJudge, models: Sequence[Judged], report: Report) -> tuple[TolerantJudge, list[Judged]]:
+    """A second mechanism beside the best, where both predict better for sure; all judged by what the best pair leaves.
+
+    Beside the discrepancy that one mechanism leaves hardly any second one would show, so that the best are tried.
+    """
+    single = models[0]
+    both = [judge.judged(fit) for fit in pairs(judge.model, judge.found, single.fit, [], report, level=1.0)]
+    if not both:
+        return judge, list(models)
+    sizes = judge.tolerance.sizes(judge.missed(max(both, key=_score).forecast))
+    closer = TolerantJudge(judge.model, judge.found, judge.tolerance, sizes)
+    again = [closer.judged(closer.refitted(one.fit)) for one in (*models, *both)]
+    best = max(again[: len(models)], key=_score)
+    kept = [one for one in again[len(models) :] if closer.gained(one.forecast, best.forecast).lower > 0.0]
+    return closer, sorted([*again[: len(models)], *kept], key=_score, reverse=True)
 
 
 def _told(judge: TolerantJudge, models: Sequence[Judged]) -> MainPart | None:

@@ -204,9 +204,17 @@ def singles(model: ObservedModel, found: Screening, firsts: Sequence[FirstFit], 
 
 
 def pairs(
-    model: ObservedModel, found: Screening, first: Fitted, same: Sequence[Candidate], report: Report
+    model: ObservedModel,
+    found: Screening,
+    first: Fitted,
+    same: Sequence[Candidate],
+    report: Report,
+    level: float = RATES.level,
 ) -> list[Fitted]:
-    """The first mechanism with each second one that shows in what it leaves; same : those that act as the first."""
+    """The first mechanism with each second one that shows in what it leaves; same : those that act as the first.
+
+    level : p-value of the score test up to which a second one shows.
+    """
     names = [one.name for one in (*first.candidates, *same)]
     others = [c for c in found.candidates if c.name not in names]
     each = [sensitivity(model, first.system.values, other, first.settings) for other in others]
@@ -216,7 +224,7 @@ def pairs(
         sigma_of_one=np.concatenate([np.full(first.slopes.shape[1], np.inf), first.system.sigma_of_one]),
     )
     tests = screened(beside, each, least_degrees(model))
-    shown = [int(n) for n in np.argsort(-tests.explained) if tests.p_values[n] <= RATES.level][:PAIRS]
+    shown = [int(n) for n in np.argsort(-tests.explained) if tests.p_values[n] <= level][:PAIRS]
     fits = []
     for count, number in enumerate(shown):
         report("pairs", count, len(shown))

@@ -22,6 +22,7 @@ from diagnose.signals.columns import (
     saturated,
     suspicions,
 )
+from diagnose.signals.phases import Segmentation
 from diagnose.signals.recording import Recording, Run, RunTable, Specimen
 from geometry.arrays import Bools, Floats, Ints
 from geometry.base import InputError
@@ -104,13 +105,19 @@ ENOUGH = 15_000
 """Samples of a channel over all runs: as many as a diagnosis handles in a minute."""
 LEAST_Hz = 250.0
 """No recording gets slower: mains and their second harmonic stay visible, and so does every press by hand."""
+ENOUGH_OF_COUPON, LEAST_IN_LOADING = 5_000, 50
+"""The same for a coupon, each sample of which is an equilibrium to solve; what stays is counted while it is loaded."""
 
 
 def thinned(recording: Recording) -> Recording:
     """The recording with ENOUGH samples, if its rate allows; a warning says so."""
-    count = sum(len(run.time_s) for run in recording.runs)
-    asked = ceil(count / ENOUGH)
-    factors = [max(1, min(asked, int(1.0 / (run.step_s * LEAST_Hz) + 1e-6))) for run in recording.runs]
+    count, enough = sum(len(run.time_s) for run in recording.runs), ENOUGH
+    most = [int(1.0 / (run.step_s * LEAST_Hz) + 1e-6) for run in recording.runs]
+    if recording.specimen is not None:
+        enough = ENOUGH_OF_COUPON
+        most = [_loading(found) // LEAST_IN_LOADING for found in recording.phases]
+    asked = ceil(count / enough)
+    factors = [max(1, min(asked, largest)) for largest in most]
     if max(factors) == 1:
         return recording
     runs = tuple(averaged(run, factor) for run, factor in zip(recording.runs, factors, strict=True))
@@ -119,6 +126,11 @@ def thinned(recording: Recording) -> Recording:
         f"nothing faster than {0.5 / max(run.step_s for run in runs):.3g} Hz was analysed."
     )
     return replace(recording, runs=runs, warnings=(*recording.warnings, said))
+
+
+def _loading(phases: Segmentation) -> int:
+    """Samples of the shortest loading."""
+    return min((press.held - press.touch for press in phases.presses), default=0)
 
 
 def averaged(run: Run, factor: int) -> Run:

@@ -95,7 +95,22 @@ class CouponEngine:
         values = point_of(self.specimen, model).answer(run.time_s, drive, kind)
         if kind == "force_N":
             return {"displacement_mm": values}
-        return {"force_N": felt(run.time_s, drive, values, model.physics.moving_mass_g)}
+        held = np.maximum(values, -buckling_load_N(self.specimen, model.materials[LAYER]))
+        return {"force_N": felt(run.time_s, drive, held, model.physics.moving_mass_g)}
+
+
+def buckling_load_N(specimen: Specimen, material: Material) -> float:
+    """What a strip between grips can push before it bends aside and is slack; infinite for a block or a layer.
+
+    Euler's load of a column with clamped ends, 4 pi^2 E I / L^2 (Timoshenko and Gere, Theory of Elastic Stability,
+    2nd edition, 1961, section 2.1), with Young's modulus at small strain.
+    """
+    if specimen.kind != "tension":
+        return np.inf
+    shear, bulk = material.law.shear_modulus, material.law.bulk_modulus
+    young = 9.0 * bulk * shear / (3.0 * bulk + shear)
+    wide, thin = max(specimen.width_mm, specimen.thickness_mm), min(specimen.width_mm, specimen.thickness_mm)
+    return float(4.0 * np.pi**2 * young * wide * thin**3 / 12.0 / specimen.length_mm**2)
 
 
 def point_of(specimen: Specimen, model: Model) -> MaterialPoint:

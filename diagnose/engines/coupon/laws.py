@@ -25,9 +25,10 @@ from math import ceil
 from typing import Any
 
 import numpy as np
+from scipy.ndimage import uniform_filter1d
 
 from diagnose.forward import Candidate, Coordinate, Setting
-from diagnose.signals.recording import Recording
+from diagnose.signals.recording import Recording, Run
 from geometry.parameters import Dot, Film, Medium, Segment
 from solve.materials.parameters import Material, MooneyRivlin, Ogden, Yeoh, library
 from solve.mechanisms import Mechanism, with_mechanisms
@@ -40,6 +41,10 @@ LARGEST_STRAIN = 0.1
 MOST_OF_COUPON = 20.0  # of E_i / E_inf: a tape or a gel may relax by 95 % within a decade
 
 
+STAIRCASE = 3.0  # times as long as at the quickest rate: a loading with rests in it
+SMOOTHED = 5  # samples, against the noise of the drive
+
+
 def relaxation_times(recording: Recording) -> tuple[float, ...]:
     """Times in s, a decade apart, between a third of the quickest loading and the longest run."""
     longest = max(float(run.time_s[-1] - run.time_s[0]) for run in recording.runs)
@@ -50,13 +55,21 @@ def relaxation_times(recording: Recording) -> tuple[float, ...]:
 
 
 def _quickest(recording: Recording) -> list[float]:
-    """Time of every loading, s."""
-    found = [
-        float(run.time_s[max(press.held - 1, press.touch)] - run.time_s[press.touch])
-        for run, phases in zip(recording.runs, recording.phases, strict=True)
-        for press in phases.presses
-    ]
+    """Time of every loading, s; of a staircase that in which its quickest step would go through the whole range."""
+    found = []
+    for run, phases in zip(recording.runs, recording.phases, strict=True):
+        through = _through_s(run)
+        for press in phases.presses:
+            loading = float(run.time_s[max(press.held - 1, press.touch)] - run.time_s[press.touch])
+            found.append(through if loading > STAIRCASE * through else loading)
     return [time for time in found if time > 0.0] or [float(recording.runs[0].step_s)]
+
+
+def _through_s(run: Run) -> float:
+    """Range of the drive over its largest rate, s."""
+    course = uniform_filter1d(run.drive_values, SMOOTHED, mode="nearest")
+    rate = float(np.max(np.abs(np.gradient(course, run.time_s)))) if len(course) > 1 else 0.0
+    return float(np.ptp(course)) / rate if rate > 0.0 else np.inf
 
 
 EXPONENTS = (4.0, 8.0, -2.0)

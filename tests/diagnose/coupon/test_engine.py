@@ -1,9 +1,12 @@
 """A coupon's candidates: off is the baseline, every start is a material, and parameters mean what they say."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from diagnose.engines.coupon.engine import coupon_engine, improved_material
+from diagnose.engines.coupon.laws import relaxation_times
 from diagnose.forward import Setting
 from diagnose.signals.recording import Recording
 from geometry.base import InputError
@@ -40,6 +43,36 @@ def test_a_grip_adds_its_mass_times_the_acceleration_of_the_crosshead():
     added = force(of, Setting(grip, (value,))) - force(of)
     np.testing.assert_allclose(added[early][1:-1], 1e-6 * mass_g * acceleration_mm_per_s2, rtol=1e-6)
     np.testing.assert_allclose(added[gathers + 0.1 < TIME][:-1], 0.0, atol=1e-9)
+
+
+def test_a_strip_that_is_pushed_bends_aside_at_eulers_load():
+    """Half of its travel back beyond rest: a block would push with the whole force, a strip of 2 mm with 4 % of it."""
+    travel = np.interp(TIME, [0.0, 5.0, 15.0, 20.0], [0.0, 4.0, -4.0, 0.0])
+    pushed = coupon_engine(Recording((run(travel),), specimen()), {"mine": RUBBER}, silent)
+    load_N = 4.0 * np.pi**2 * 1.2 * (5.0 * 2.0**3 / 12.0) / 20.0**2
+    assert force(pushed).min() == pytest.approx(-load_N, rel=1e-6)
+    assert force(pushed).max() > 4.0 * load_N
+    thinner = specimen().model_copy(update={"thickness_mm": 0.2})
+    slack = coupon_engine(Recording((run(travel),), thinner), {"mine": RUBBER}, silent)
+    assert -force(slack).min() < 2e-3 * force(slack).max()
+
+
+def test_a_staircase_is_as_quick_as_its_steps():
+    """Ten steps of 0.5 s with rests of 60 s between them, and one loading of 5 s: the same quickest time."""
+    stairs = np.linspace(0.0, 620.0, 12401)
+    corners = np.concatenate([[n * 60.0 + 10.0, n * 60.0 + 10.5] for n in range(10)])
+    heights = np.repeat(np.arange(11) * 0.8, 2)[1:-1]
+    once = np.linspace(0.0, 620.0, 12401)
+    made = []
+    for time, travel in ((stairs, np.interp(stairs, corners, heights)), (once, np.interp(once, [10.0, 15.0], [0, 8]))):
+        one = run()
+        channels = {"displacement_mm": travel, "force_N": 0.5 * travel}
+        there = {name: np.ones(len(time), dtype=bool) for name in channels}
+        made.append(
+            replace(one, time_s=time, channels=channels, valid=there, saturated={n: ~f for n, f in there.items()})
+        )
+    shortest = [relaxation_times(Recording((one,), specimen()))[0] for one in made]
+    assert shortest[0] == pytest.approx(shortest[1], rel=0.3)
 
 
 def test_a_grip_of_a_test_by_force_is_not_sought():
