@@ -32,8 +32,6 @@ IN_EACH = 0.5
 """The same in each condition alone."""
 VISIBLE = 0.01
 """Root mean square error relative to the signal, above noise, below which flaws of an ordinary rig may make it."""
-
-
 AT_EDGE = 0.99
 """The same share that it needs where one of its values is at the end of what a real part can have."""
 CONFIRMED = 0.8
@@ -45,7 +43,8 @@ class MainPart:
     """models : best first, each with its gain over the baseline. group : numbers of those that are as good.
 
     model, found : in the metric in which they were judged. base : the baseline's forecast there. share : of the
-    held-out excess over noise that the best accounts for. left_by_phase : phase -> share of what it leaves.
+    held-out excess over noise that the best accounts for; hidden : what noise may hide of it. left_by_phase : phase ->
+    share of what it leaves.
     """
 
     models: tuple[Judged, ...]
@@ -54,13 +53,14 @@ class MainPart:
     found: Screening
     base: Forecasted
     share: float
+    hidden: float
     left_by_phase: dict[str, float]
 
     @property
     def nameable(self) -> bool:
         """Whether few enough are as good, and the best has no value at an edge, or leaves next to nothing."""
         few = len(self.group) <= RATES.largest_group
-        return few and (self.share >= AT_EDGE or not implausible(self.models[0].fit))
+        return few and (self.share - self.hidden >= AT_EDGE or not implausible(self.models[0].fit))
 
     def probabilities(self, rng: np.random.Generator) -> Floats:
         """(m,) of the models, by their held-out scores, among them and the baseline."""
@@ -123,9 +123,14 @@ class TolerantJudge:
         return self.tolerance.squares(self.missed(forecast))
 
     def share(self, forecast: Forecasted) -> float:
-        """Share of the baseline's held-out excess that a forecast accounts for, at least, as noise hides the rest."""
+        """Share of the baseline's held-out excess that a forecast accounts for."""
         before, after = (max(float(self.left(one).sum()), 0.0) for one in (self.base, forecast))
-        return 1.0 - (after + 2.0 * self.tolerance.noise_error) / before if before > 0.0 else 0.0
+        return 1.0 - after / before if before > 0.0 else 0.0
+
+    def hidden(self) -> float:
+        """Share of the baseline's held-out excess that noise may hide, two sigma."""
+        before = float(self.left(self.base).sum())
+        return 2.0 * self.tolerance.noise_error / before if before > 0.0 else 1.0
 
     def in_each(self, forecast: Forecasted) -> Floats:
         """The same in each condition; 1 where the baseline leaves hardly anything."""
@@ -207,6 +212,7 @@ def _told(judge: TolerantJudge, models: Sequence[Judged]) -> MainPart | None:
         judge.found,
         judge.base,
         1.0 - best.left,
+        judge.hidden(),
         left,
     )
 

@@ -127,6 +127,23 @@ def test_of_two_equals_the_one_that_a_real_part_can_have_is_named():
     assert [model.probability for model in findings.models] == [pytest.approx(1.0, abs=1e-3), 0.0]
 
 
+def test_beside_something_without_a_name_the_main_part_is_named():
+    """A leak, and contact charge that is no candidate."""
+    findings = found(small(5, Sensor(leak=1.0, touch_charge=0.02), runs=4, noise=0.001), FEW[:3])
+    assert (findings.grade, names(findings)) == (Grade.MAIN_PART, (LEAK,))
+    assert findings.unexplained
+    assert findings.remainder.share > 0.98
+    assert findings.held_out.nrmse_after < 0.2 * findings.held_out.nrmse_before
+    low, high = (getattr(findings.best.parameters[0]["leak"], end) for end in ("low", "high"))
+    assert low < 1.0 < high
+
+
+def test_flaws_of_a_rig_alone_have_no_main_part():
+    """A surface that is soft by 2 um at the touch, which no candidate describes."""
+    findings = found(small(5, Sensor(rounding_mm=0.002), runs=4, noise=0.001), FEW)
+    assert findings.grade in (Grade.AGREEMENT, Grade.UNEXPLAINED)
+
+
 @pytest.mark.slow
 def test_two_mechanisms_are_a_pair():
     findings = found(small(12, Sensor(leak=1.0, friction=0.1), runs=4))
