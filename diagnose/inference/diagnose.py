@@ -8,8 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnose.figures import figure, p_equals, part
-from diagnose.findings import Detection, Findings, FittedModel, Remainder
+from diagnose.figures import figure, p_equals, part, percent
+from diagnose.findings import Detection, Findings, Fit, FittedModel, Remainder
 from diagnose.fit.intervals import intervals, points
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.refit import Fitted, fitted_baseline
@@ -25,7 +25,7 @@ from diagnose.inference.residual_test import Checked, checked
 from diagnose.inference.search import Screening, screen
 from diagnose.noise.estimate import noise_models
 from diagnose.signals.recording import Recording
-from diagnose.statistics.abstain import RATES
+from diagnose.statistics.abstain import RATES, Decision
 from diagnose.verdict.names import in_common
 from geometry.arrays import Floats
 from geometry.base import Report
@@ -156,15 +156,16 @@ def _quiet(model: ObservedModel, baseline: LinearisedSystem, found: Checked) -> 
 def _findings(model: ObservedModel, screening: Screening, found: Checked, choice: Choice) -> Findings:
     fits = [one.fit for one in choice.models]
     explained = explanations(screening, fits)
+    best = choice.models[0] if choice.models else None
+    gains = best.forecast.log_scores - choice.base.log_scores if best and choice.base else np.zeros(0)
+    train, held_out = trained_and_held(model, screening, best.fit if best else None, gains)
+    choice = replace(choice, decision=agreeing(choice.decision, held_out))
     named = choice.decision.named
     models = tuple(
         _model(model, one, float(choice.probabilities[n]), detailed=named and n in choice.groups[0])
         for n, one in enumerate(choice.models)
     )
-    best = choice.models[0] if choice.models else None
     chosen = best if named else None
-    gains = best.forecast.log_scores - choice.base.log_scores if best and choice.base else np.zeros(0)
-    train, held_out = trained_and_held(model, screening, best.fit if best else None, gains)
     unnamed = held_out if best and not named else None
     if not named:
         train, held_out = unimproved(train), unimproved(held_out) if held_out else None
@@ -191,6 +192,17 @@ def _findings(model: ObservedModel, screening: Screening, found: Checked, choice
         warnings=warnings_of(model, screening.baseline, choice),
         information=_information([fits[number] for number in choice.groups[0]]) if fits else None,
     )
+
+
+def agreeing(decision: Decision, held_out: Fit | None) -> Decision:
+    """Nothing is named where held-out presses are predicted with more error, whatever their log-score says."""
+    if not decision.named or held_out is None or held_out.nrmse_after < held_out.nrmse_before:
+        return decision
+    reason = (
+        f"Fitted to the other presses, it predicts the held-out ones with an error of {percent(held_out.nrmse_after)} "
+        f"instead of {percent(held_out.nrmse_before)}, although it gains in the score that weighs errors by the noise."
+    )
+    return replace(decision, named=False, unexplained=True, reasons=(*decision.reasons, reason))
 
 
 def _with_main_part(findings: Findings, main: MainPart, rng: np.random.Generator) -> Findings:

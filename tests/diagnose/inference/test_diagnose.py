@@ -6,9 +6,10 @@ from functools import cache
 import numpy as np
 import pytest
 
-from diagnose.findings import Grade
-from diagnose.inference.diagnose import diagnose
+from diagnose.findings import Fit, Grade
+from diagnose.inference.diagnose import agreeing, diagnose
 from diagnose.signals.recording import Recording
+from diagnose.statistics.abstain import Decision
 from solve.model import Readout
 from tests.diagnose.inference.toy import (
     CANDIDATES,
@@ -125,6 +126,15 @@ def test_of_two_equals_the_one_that_a_real_part_can_have_is_named():
     findings = found(small(5, Sensor(leak=1.0), runs=3), (capped, richer))
     assert names(findings) == (LEAK,)
     assert [model.probability for model in findings.models] == [pytest.approx(1.0, abs=1e-3), 0.0]
+
+
+def test_a_better_score_with_a_larger_error_names_nothing():
+    decision = Decision(True, True, False, ())
+    worse = Fit(("run 1, press 1",), 0.29, 1.4, 0.01, 2e5)
+    assert agreeing(decision, replace(worse, nrmse_after=0.1)) is agreeing(decision, None) is decision
+    refused = agreeing(decision, worse)
+    assert (refused.named, refused.unexplained) == (False, True)
+    assert "140 % instead of 29 %" in refused.reasons[0]
 
 
 def test_beside_something_without_a_name_the_main_part_is_named():
