@@ -54,10 +54,14 @@ class SignalDiscrepancy:
         """(n,) square of a whitened residual (n,) above noise, summing to its mean square relative to the signal."""
         return np.asarray((residual**2 - 1.0) / self.unit / self.pieces[self.channel])
 
+    def noise_errors(self, place: Ints) -> Floats:
+        """One sigma of the sums of squares of noise alone, which have the mean 0, over each place (n,) from 0 on."""
+        return np.asarray(np.sqrt(np.bincount(place, 2.0 / (self.unit * self.pieces[self.channel]) ** 2)))
+
     @property
     def noise_error(self) -> float:
-        """One sigma of the sum of squares of noise alone, which has the mean 0."""
-        return float(np.sqrt(2.0 * np.sum(1.0 / (self.unit * self.pieces[self.channel]) ** 2)))
+        """The same of the sum over all."""
+        return float(self.noise_errors(np.zeros(len(self.unit), dtype=np.int64))[0])
 
     def sizes(self, residual: Floats) -> Floats:
         """(c,) root mean square of each channel relative to its signal, above noise."""

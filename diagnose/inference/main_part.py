@@ -28,8 +28,9 @@ from geometry.base import Report
 
 MOST = 0.9
 """Share of the held-out excess over noise that a main part accounts for."""
-IN_EACH = 0.5
-"""The same in each condition alone."""
+IN_EACH, MOST_LEFT, SIGMAS = 0.5, 0.5, 4.0
+"""The same in a condition, channel or phase alone, where that holds this share of all that is left; its excess counts
+from so many standard errors above noise."""
 VISIBLE = 0.01
 """Root mean square error relative to the signal, above noise, below which flaws of an ordinary rig may make it."""
 AT_EDGE = 0.99
@@ -132,12 +133,20 @@ class TolerantJudge:
         before = float(self.left(self.base).sum())
         return 2.0 * self.tolerance.noise_error / before if before > 0.0 else 1.0
 
-    def in_each(self, forecast: Forecasted) -> Floats:
-        """The same in each condition; 1 where the baseline leaves hardly anything."""
-        _, place = np.unique(self.fold, return_inverse=True)
-        before, after = (np.bincount(place, self.left(one)) for one in (self.base, forecast))
-        plain = before > 0.25 * before.max(initial=0.0)
-        return np.asarray(1.0 - np.maximum(after, 0.0)[plain] / before[plain])
+    def spread(self, forecast: Forecasted) -> bool:
+        """Whether no condition, channel or phase holds most of what is left while most of its own excess stays there.
+
+        That would be something else; laws that are not quite right and flaws of a rig leave a little everywhere.
+        """
+        samples = self.model.samples
+        before, after = self.left(self.base), self.left(forecast)
+        for labels in (self.fold, self.tolerance.channel, samples.phase):
+            _, place = np.unique(labels, return_inverse=True)
+            was, still = (np.maximum(np.bincount(place, squares), 0.0) for squares in (before, after))
+            seen = was > SIGMAS * self.tolerance.noise_errors(place)
+            if np.any(seen & (still > (1.0 - IN_EACH) * was) & (still > MOST_LEFT * still.sum())):
+                return False
+        return True
 
     def visible(self) -> bool:
         """Whether what the baseline leaves is larger than flaws of an ordinary rig."""
@@ -200,8 +209,7 @@ def _with_pairs(judge: TolerantJudge, models: Sequence[Judged], report: Report) 
 def _told(judge: TolerantJudge, models: Sequence[Judged]) -> MainPart | None:
     best = models[0]
     group = [n for n, one in enumerate(models) if n == 0 or not judge.excluded(one.forecast, best.forecast)]
-    each = judge.in_each(best.forecast)
-    if best.left > 1.0 - MOST or best.gain.lower <= 0.0 or float(each.min(initial=1.0)) < IN_EACH:
+    if best.left > 1.0 - MOST or best.gain.lower <= 0.0 or not judge.spread(best.forecast):
         return None
     order = [*group, *(n for n in range(len(models)) if n not in group)]
     left = by_phase(judge.model.samples, judge.left(best.forecast), PHASES)
