@@ -33,8 +33,10 @@ IN_EACH, MOST_LEFT, SIGMAS = 0.5, 0.5, 4.0
 from so many standard errors above noise."""
 VISIBLE = 0.01
 """Root mean square error relative to the signal, above noise, below which flaws of an ordinary rig may make it."""
-AT_EDGE = 0.99
-"""The same share that it needs where one of its values is at the end of what a real part can have."""
+FLAWS = 0.02
+"""The same that it may leave: more is not the flaws of a rig and the details of a law."""
+NEARLY_ALL = 0.99
+"""The share that it needs where it leaves more, or has a value at the end of what a real part can have."""
 CONFIRMED = 0.8
 """The same share when the model is fitted anew to half of the presses, and shown on the others."""
 
@@ -44,8 +46,8 @@ class MainPart:
     """models : best first, each with its gain over the baseline. group : numbers of those that are as good.
 
     model, found : in the metric in which they were judged. base : the baseline's forecast there. share : of the
-    held-out excess over noise that the best accounts for; hidden : what noise may hide of it. left_by_phase : phase ->
-    share of what it leaves.
+    held-out excess over noise that the best accounts for; hidden : what noise may hide of it. left_size : root mean
+    square of what it leaves, relative to the signal, of the worst channel. left_by_phase : phase -> share of that.
     """
 
     models: tuple[Judged, ...]
@@ -55,13 +57,15 @@ class MainPart:
     base: Forecasted
     share: float
     hidden: float
+    left_size: float
     left_by_phase: dict[str, float]
 
     @property
     def nameable(self) -> bool:
-        """Whether few enough are as good, and the best has no value at an edge, or leaves next to nothing."""
+        """Whether few enough are as good, and the best leaves little and has no value at an edge, or is nearly all."""
         few = len(self.group) <= RATES.largest_group
-        return few and (self.share - self.hidden >= AT_EDGE or not implausible(self.models[0].fit))
+        plain = self.left_size <= FLAWS and not implausible(self.models[0].fit)
+        return few and (plain or self.share - self.hidden >= NEARLY_ALL)
 
     def probabilities(self, rng: np.random.Generator) -> Floats:
         """(m,) of the models, by their held-out scores, among them and the baseline."""
@@ -148,10 +152,9 @@ class TolerantJudge:
                 return False
         return True
 
-    def visible(self) -> bool:
-        """Whether what the baseline leaves is larger than flaws of an ordinary rig."""
-        sizes = self.tolerance.sizes(self.missed(self.base))
-        return float(np.max(sizes, initial=0.0)) > VISIBLE
+    def largest(self, forecast: Forecasted) -> float:
+        """Root mean square of what a forecast leaves, relative to the signal, of the worst channel."""
+        return float(np.max(self.tolerance.sizes(self.missed(forecast)), initial=0.0))
 
     def refitted(self, fit: Fitted) -> Fitted:
         """A model fitted anew in this metric, from its values in another one."""
@@ -169,7 +172,7 @@ def main_part(model: ObservedModel, found: Screening, report: Report) -> MainPar
     seen = screen(plain, linearised(plain, found.baseline.values), report)
     tolerance = SignalDiscrepancy(plain.samples)
     judge = TolerantJudge(plain, seen, tolerance, tolerance.sizes(seen.start.residual))
-    firsts = first_fits(judge.model, judge.found, report) if judge.visible() else []
+    firsts = first_fits(judge.model, judge.found, report) if judge.largest(judge.base) > VISIBLE else []
     if not firsts:
         return None
     judge = TolerantJudge(plain, seen, tolerance, _left_by(judge, firsts[0]))
@@ -221,6 +224,7 @@ def _told(judge: TolerantJudge, models: Sequence[Judged]) -> MainPart | None:
         judge.base,
         1.0 - best.left,
         judge.hidden(),
+        judge.largest(best.forecast),
         left,
     )
 

@@ -56,12 +56,13 @@ def model_words(model: FittedModel) -> str:
 
 
 def in_common(candidates: Sequence[Candidate]) -> str:
-    """Half a sentence that is true of all of them, by their kind or their component; "" where there is none."""
+    """Half a sentence that is true of all of them, by their kind, or of several by their component; "" without one."""
     kinds = {known.kind if (known := vocabulary().get(one.mechanism)) is not None else "" for one in candidates}
     components = {one.component for one in candidates}
     if len(kinds) == 1 and (kind := kinds.pop()):
         return kind
-    return f"{component_words(components.pop())} behaves otherwise than stated" if len(components) == 1 else ""
+    shared = len(components) == 1 and len(candidates) > 1
+    return f"{component_words(components.pop())} behaves otherwise than stated" if shared else ""
 
 
 def short_name(candidates: Sequence[Candidate]) -> str:
