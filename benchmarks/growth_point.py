@@ -62,8 +62,8 @@ def counts(tangent: Tangent, direct: Pardiso) -> dict[str, float]:
     probe.iparm[TWO_LEVEL] = 0  # its other values do not count
     probe.set_phase(11)
     probe._call_pardiso(tangent.upper, np.zeros(tangent.upper.shape[0]))
-    counts = probe.iparm[[FACTOR_ENTRIES, FACTOR_MFLOP]].astype(np.uint32)  # above two thousand million they wrap
-    answer = {"factor_entries": int(counts[0]), "factor_gflop": 1e-3 * int(counts[1])}
+    entries, mflop = probe.iparm[[FACTOR_ENTRIES, FACTOR_MFLOP]].astype(np.uint32)  # they pass two thousand million
+    answer = {"factor_entries": int(entries), "factor_gflop": 1e-3 * int(mflop)}
     probe.free_memory(everything=True)
     return answer
 

@@ -11,7 +11,7 @@ from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.refit import Fitted, within_priors
 from diagnose.forward import Candidate
 from diagnose.inference.black_box import box_scores, memory, worth_of_form
-from diagnose.inference.forecasts import Forecasted, alike, forecasted, grouped, separation, separations, share_left
+from diagnose.inference.forecasts import Forecasted, alike, forecasted, gained, grouped, separations, share_left
 from diagnose.inference.residual_test import DRAWS, checked, nuisance_pull
 from diagnose.inference.search import Screening, first_fits, paired, pairs, singles
 from diagnose.statistics.abstain import FIRSTS, LEFT, RATES, Decision, Evidence, decide
@@ -77,8 +77,7 @@ class Judge:
 
     def gained(self, one: Forecasted, rival: Forecasted) -> Gain:
         """Nats per press, with a lower bound that is corrected for all candidates."""
-        apart = separation(one, rival)
-        return gain_over_noise(one.log_scores - rival.log_scores, apart, RATES.level, len(self.found.candidates))
+        return gained(one, rival, len(self.found.candidates))
 
     def best(self, models: Sequence[Judged]) -> Judged:
         """The fewest coordinates of those whose loss to the best score is within one standard error.
@@ -86,7 +85,7 @@ class Judge:
         Where it leaves too much, or has a value that no part can have, one without such a fault takes its place that
         does not predict worse for sure.
         """
-        top = max(models, key=_score)
+        top = max(models, key=score_of)
         near = [one for one in models if one is top or self._within_one_error(top, one)]
         best = _simplest(near)
         sound = [one for one in models if not _doubtful(one) and self.gained(top.forecast, one.forecast).lower <= 0.0]
@@ -191,7 +190,7 @@ def _told_apart(judge: Judge, models: Sequence[Judged]) -> Bools:
 
 def contradicted(models: Sequence[Judged]) -> Bools:
     """(m, m) whether held-out presses speak for one of two faultless models and the fit to all for the other."""
-    scores, badness = np.array([_score(one) for one in models]), criteria(models)
+    scores, badness = np.array([score_of(one) for one in models]), criteria(models)
     faultless = np.array([not _doubtful(one) for one in models])
     against = np.subtract.outer(scores, scores) * np.subtract.outer(badness, badness) > 0.0
     return np.asarray(against & np.logical_and.outer(faultless, faultless))
@@ -211,15 +210,15 @@ def _same(judge: Judge, one: Judged, other: Judged) -> bool:
 
 def _simplest(models: Sequence[Judged]) -> Judged:
     """The fewest coordinates, of equals the one that predicts best."""
-    return min(models, key=lambda one: (len(one.fit.values), -_score(one)))
+    return min(models, key=lambda one: (len(one.fit.values), -score_of(one)))
 
 
 def _others(models: Sequence[Judged], best: Judged) -> list[Judged]:
     """All but the best, those that predict best first."""
-    return sorted((one for one in models if one is not best), key=lambda one: -_score(one))
+    return sorted((one for one in models if one is not best), key=lambda one: -score_of(one))
 
 
-def _score(one: Judged) -> float:
+def score_of(one: Judged) -> float:
     """Logarithm of the predictive density of all held-out presses."""
     return float(one.forecast.log_scores.sum())
 

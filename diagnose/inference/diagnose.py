@@ -125,7 +125,7 @@ def diagnose(recording: Recording, engine: Engine, seed: int, report: Report) ->
     if not findings.unexplained:
         return findings
     main = main_part(model, screening, report)
-    return findings if main is None else _with_main_part(findings, main, rng)
+    return findings if main is None else _with_main_part(findings, main, choice, rng)
 
 
 def _quiet(model: ObservedModel, baseline: LinearisedSystem, found: Checked) -> Findings:
@@ -205,7 +205,7 @@ def agreeing(decision: Decision, held_out: Fit | None) -> Decision:
     return replace(decision, named=False, unexplained=True, reasons=(*decision.reasons, reason))
 
 
-def _with_main_part(findings: Findings, main: MainPart, rng: np.random.Generator) -> Findings:
+def _with_main_part(findings: Findings, main: MainPart, choice: Choice, rng: np.random.Generator) -> Findings:
     """What is unexplained as a whole, with its main part; as it was where a true refit does not confirm that."""
     fits, best = [one.fit for one in main.models], main.models[0]
     train, held_out = trained_and_held(main.model, main.found, best.fit, np.array([best.gain.mean]))
@@ -226,7 +226,17 @@ def _with_main_part(findings: Findings, main: MainPart, rng: np.random.Generator
         improved=_improved(main.model, best),
         information=_information([fits[number] for number in main.group]),
         remainder=Remainder(main.share, main.left_by_phase),
+        reasons=_not_everything(findings, choice, best),
+        black_box_gain=0.0,  # of another metric
     )
+
+
+def _not_everything(findings: Findings, choice: Choice, main: Judged) -> tuple[str, ...]:
+    """Why a main part is not all: what spoke against it, or against another one that comes first by the noise alone."""
+    first, reasons = choice.models[:1], findings.reasons[1:]  # the first of them praises the best
+    if not first or first[0].fit.candidates == main.fit.candidates:
+        return reasons
+    return (f"By the noise alone {named(first[0].fit)} comes first, which is not named either.", *reasons)
 
 
 def _with_kind(findings: Findings, main: MainPart, rng: np.random.Generator) -> Findings:
@@ -237,7 +247,9 @@ def _with_kind(findings: Findings, main: MainPart, rng: np.random.Generator) -> 
         return findings
     chances = main.probabilities(rng)
     models = tuple(_model(main.model, one, float(chances[n]), False) for n, one in enumerate(main.models))
-    return replace(findings, models=models, groups=(main.group,), kind=kind, information=_information(group))
+    return replace(
+        findings, models=models, groups=(main.group,), kind=kind, information=_information(group), black_box_gain=0.0
+    )
 
 
 def _model(model: ObservedModel, one: Judged, probability: float, detailed: bool) -> FittedModel:

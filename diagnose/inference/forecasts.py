@@ -17,7 +17,7 @@ from diagnose.fit.refit import Fitted
 from diagnose.fit.samples import Samples
 from diagnose.fit.system import LinearisedSystem, Quadratic
 from diagnose.statistics.abstain import ALIKE, RATES
-from diagnose.statistics.held_out import Sums, leave_press_out
+from diagnose.statistics.held_out import Gain, Sums, gain_over_noise, leave_press_out
 from diagnose.statistics.separation import ambiguity_groups, least_separation
 from geometry.arrays import Floats, Ints
 
@@ -64,6 +64,12 @@ def separation(one: Forecasted, other: Forecasted) -> Floats:
         np.sqrt(max(Quadratic(spread, np.ones(spread.shape[1])).square(apart[held]), 0.0))
         for spread, (_, held) in zip(one.spread, folds, strict=True)
     ])  # fmt: skip
+
+
+def gained(one: Forecasted, rival: Forecasted, candidates: int) -> Gain:
+    """Nats per fold, with a lower bound that is corrected for the number of candidates."""
+    gains = one.log_scores - rival.log_scores
+    return gain_over_noise(gains, separation(one, rival), RATES.level, candidates)
 
 
 def _left_out(

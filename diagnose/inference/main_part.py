@@ -17,12 +17,12 @@ from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.refit import Fitted, capped, fitted, within_priors
 from diagnose.fit.signal_discrepancy import SignalDiscrepancy, by_phase, conditions, in_plain_units
 from diagnose.fit.system import Quadratic, linearised, relative
-from diagnose.inference.choice import Judged, implausible
-from diagnose.inference.forecasts import Forecasted, forecasted, separation
+from diagnose.inference.choice import Judged, implausible, score_of
+from diagnose.inference.forecasts import Forecasted, forecasted, gained, separation
 from diagnose.inference.search import FirstFit, Screening, first_fits, pairs, screen, singles
 from diagnose.signals.phases import PHASES
 from diagnose.statistics.abstain import RATES
-from diagnose.statistics.held_out import Gain, gain_over_noise, held_out_probabilities, leave_press_out
+from diagnose.statistics.held_out import Gain, held_out_probabilities, leave_press_out
 from geometry.arrays import Floats
 from geometry.base import Report
 
@@ -90,17 +90,17 @@ class TolerantJudge:
         start, baseline = (linearised(self.model, one.values, (), 0.0, rows) for one in (found.start, found.baseline))
         self.found = replace(found, start=start, baseline=baseline, excess=0.0)
         self.base = forecasted(model.samples, within_priors(start, baseline), None, self.fold)
+        self.before = self.left(self.base)
 
     def judged(self, fit: Fitted) -> Judged:
         """Held-out conditions predicted by a model that was fitted in this metric."""
         forecast = forecasted(self.model.samples, capped(fit.system), fit, self.fold)
-        share = self.share(forecast)
-        return Judged(fit, forecast, self.gained(forecast, self.base), 1.0 - share, 1.0, 1.0)
+        left = 1.0 - self.share(forecast)
+        return Judged(fit, forecast, self.gained(forecast, self.base), left, np.nan, np.nan)  # no test of noise alone
 
     def gained(self, one: Forecasted, rival: Forecasted) -> Gain:
         """Nats per condition, with a lower bound that is corrected for all candidates."""
-        gains = one.log_scores - rival.log_scores
-        return gain_over_noise(gains, separation(one, rival), RATES.level, len(self.found.candidates))
+        return gained(one, rival, len(self.found.candidates))
 
     def excluded(self, rival: Forecasted, best: Forecasted) -> bool:
         """Whether the best would hardly predict so much better if the rival were true.
@@ -129,12 +129,12 @@ class TolerantJudge:
 
     def share(self, forecast: Forecasted) -> float:
         """Share of the baseline's held-out excess that a forecast accounts for."""
-        before, after = (max(float(self.left(one).sum()), 0.0) for one in (self.base, forecast))
+        before, after = (max(float(squares.sum()), 0.0) for squares in (self.before, self.left(forecast)))
         return 1.0 - after / before if before > 0.0 else 0.0
 
     def hidden(self) -> float:
         """Share of the baseline's held-out excess that noise may hide, two sigma."""
-        before = float(self.left(self.base).sum())
+        before = float(self.before.sum())
         return 2.0 * self.tolerance.noise_error / before if before > 0.0 else 1.0
 
     def spread(self, forecast: Forecasted) -> bool:
@@ -142,11 +142,10 @@ class TolerantJudge:
 
         That would be something else; laws that are not quite right and flaws of a rig leave a little everywhere.
         """
-        samples = self.model.samples
-        before, after = self.left(self.base), self.left(forecast)
-        for labels in (self.fold, self.tolerance.channel, samples.phase):
+        after = self.left(forecast)
+        for labels in (self.fold, self.tolerance.channel, self.model.samples.phase):
             _, place = np.unique(labels, return_inverse=True)
-            was, still = (np.maximum(np.bincount(place, squares), 0.0) for squares in (before, after))
+            was, still = (np.maximum(np.bincount(place, squares), 0.0) for squares in (self.before, after))
             seen = was > SIGMAS * self.tolerance.noise_errors(place)
             if np.any(seen & (still > (1.0 - IN_EACH) * was) & (still > MOST_LEFT * still.sum())):
                 return False
@@ -163,7 +162,7 @@ class TolerantJudge:
 
     def best_first(self, fits: Sequence[Fitted]) -> list[Judged]:
         """Models by how well they predict held-out conditions."""
-        return sorted(map(self.judged, fits), key=_score, reverse=True)
+        return sorted(map(self.judged, fits), key=score_of, reverse=True)
 
 
 def main_part(model: ObservedModel, found: Screening, report: Report) -> MainPart | None:
@@ -201,12 +200,12 @@ def _with_pairs(judge: TolerantJudge, models: Sequence[Judged], report: Report) 
     both = [judge.judged(fit) for fit in pairs(judge.model, judge.found, single.fit, [], report, level=1.0)]
     if not both:
         return judge, list(models)
-    sizes = judge.tolerance.sizes(judge.missed(max(both, key=_score).forecast))
+    sizes = judge.tolerance.sizes(judge.missed(max(both, key=score_of).forecast))
     closer = TolerantJudge(judge.model, judge.found, judge.tolerance, sizes)
     again = [closer.judged(closer.refitted(one.fit)) for one in (*models, *both)]
-    best = max(again[: len(models)], key=_score)
+    best = max(again[: len(models)], key=score_of)
     kept = [one for one in again[len(models) :] if closer.gained(one.forecast, best.forecast).lower > 0.0]
-    return closer, sorted([*again[: len(models)], *kept], key=_score, reverse=True)
+    return closer, sorted([*again[: len(models)], *kept], key=score_of, reverse=True)
 
 
 def _told(judge: TolerantJudge, models: Sequence[Judged]) -> MainPart | None:
@@ -227,7 +226,3 @@ def _told(judge: TolerantJudge, models: Sequence[Judged]) -> MainPart | None:
         judge.largest(best.forecast),
         left,
     )
-
-
-def _score(one: Judged) -> float:
-    return float(one.forecast.log_scores.sum())

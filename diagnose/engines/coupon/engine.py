@@ -19,7 +19,7 @@ from diagnose.engines.coupon.laws import (
     switched,
     with_factors_last,
 )
-from diagnose.engines.coupon.point import NO_SERIES, MaterialPoint
+from diagnose.engines.coupon.point import NO_SERIES, MaterialPoint, youngs_modulus_MPa
 from diagnose.forward import Candidate, Setting, Signals
 from diagnose.signals.recording import Drive, Recording, Run, Specimen
 from diagnose.vocabulary.base import CouponScene, candidates_of_coupon
@@ -107,10 +107,9 @@ def buckling_load_N(specimen: Specimen, material: Material) -> float:
     """
     if specimen.kind != "tension":
         return np.inf
-    shear, bulk = material.law.shear_modulus, material.law.bulk_modulus
-    young = 9.0 * bulk * shear / (3.0 * bulk + shear)
-    wide, thin = max(specimen.width_mm, specimen.thickness_mm), min(specimen.width_mm, specimen.thickness_mm)
-    return float(4.0 * np.pi**2 * young * wide * thin**3 / 12.0 / specimen.length_mm**2)
+    thin, wide = sorted((specimen.width_mm, specimen.thickness_mm))
+    stiffness = youngs_modulus_MPa(material.law) * wide * thin**3 / 12.0
+    return float(4.0 * np.pi**2 * stiffness / specimen.length_mm**2)
 
 
 def point_of(specimen: Specimen, model: Model) -> MaterialPoint:

@@ -123,6 +123,12 @@ def _newton_step(residual, by_stress, stress_by, by_unknown, moduli, fade, gain)
     return step
 
 
+def youngs_modulus_MPa(law: MediumLaw) -> float:
+    """Of small strains, 9 K G / (3 K + G)."""
+    shear, bulk = law.shear_modulus, law.bulk_modulus
+    return 9.0 * bulk * shear / (3.0 * bulk + shear)
+
+
 TOLERANCE = 1e-7  # of the logarithm of the stretch, or of the shear; the iterate behind it errs by the square
 MAX_ITERATIONS = 80  # four or five, unless samples lie at the kink of softening
 MAX_ROUNDS = 30  # two or three
@@ -146,8 +152,8 @@ class MaterialPoint:
 
     def travel_if_linear(self, force: Floats) -> Floats:
         """Travel (t,) of a force at the stiffness of small strains."""
-        shear, bulk = self.law.shear_modulus, self.law.bulk_modulus
-        modulus = shear if isinstance(self.kinematics, SimpleShear) else 9.0 * bulk * shear / (3.0 * bulk + shear)
+        sheared = isinstance(self.kinematics, SimpleShear)
+        modulus = self.law.shear_modulus if sheared else youngs_modulus_MPa(self.law)
         return force * self.kinematics.length_mm / (self.kinematics.area_mm2 * modulus)
 
     def energy(self, unknown: Floats) -> Floats:

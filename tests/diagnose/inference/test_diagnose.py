@@ -142,6 +142,8 @@ def test_beside_something_without_a_name_the_main_part_is_named():
     findings = found(small(5, Sensor(leak=1.0, touch_charge=0.02), runs=4, noise=0.001), FEW[:3])
     assert (findings.grade, names(findings)) == (Grade.MAIN_PART, (LEAK,))
     assert findings.unexplained
+    assert "stated uncertainty" in findings.reasons[0]  # and not what praises the best
+    assert np.isnan(findings.models[0].p_left)  # no test of noise alone in a metric with a discrepancy
     assert findings.remainder.share > 0.98
     assert findings.held_out.nrmse_after < 0.2 * findings.held_out.nrmse_before
     low, high = (getattr(findings.best.parameters[0]["leak"], end) for end in ("low", "high"))
