@@ -73,13 +73,18 @@ def short_name(candidates: Sequence[Candidate]) -> str:
 def quantity_words(name: str, unit: str) -> str:
     """resistance_MOhm -> resistance, mu_MPa[0] -> mu (term 1)."""
     stem, _, index = name.removesuffix("]").partition("[")
-    words = (stem.removesuffix(f"_{unit}") if unit else stem).replace("_", " ")
+    words = (stem.removesuffix(f"_{_as_in_names(unit)}") if unit else stem).replace("_", " ")
     return f"{words} (term {int(index) + 1})" if index else words
 
 
 def unit_words(unit: str) -> str:
     """MOhm -> MΩ."""
-    return SYMBOLS.get(unit, unit.replace("_per_", "/"))
+    return SYMBOLS.get(_as_in_names(unit), unit.replace("_per_", "/"))
+
+
+def _as_in_names(unit: str) -> str:
+    """N/mm3 -> N_per_mm3, as it ends the name of a parameter."""
+    return unit.replace("/", "_per_")
 
 
 def interval_words(name: str, interval: Interval) -> str:

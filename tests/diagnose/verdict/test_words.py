@@ -93,6 +93,11 @@ def test_where_too_many_are_as_good_their_kind_is_told(recording):
     )
 
 
+def test_a_unit_is_told_once():
+    told = interval_words("normal_stiffness_N_per_mm3", Interval(65.0, 8.4, 66.0, "N/mm3"))
+    assert told == "normal stiffness 65 N/mm³ (90 % interval 8.4 to 66)"
+
+
 def test_what_explanations_have_in_common():
     leaks = [Candidate("charge-leakage", where, (), dict) for where in ("readout", "film")]
     assert in_common(leaks) == "the film or its input loses charge"
