@@ -51,6 +51,7 @@ TABLES = {
     "`[materials.NAME]`, model `linear`": "Linear",
     "`[materials.NAME]`, model `mooney-rivlin`": "MooneyRivlin",
     "`[materials.NAME]`, model `yeoh`": "Yeoh",
+    "`[materials.NAME]`, model `knowles`": "Knowles",
     "`[materials.NAME]`, model `ogden`": "Ogden",
     "`[materials.NAME]`, model `hyperfoam`": "Hyperfoam",
     "`[materials.NAME]`, model `piezoelectric-film`": "PiezoelectricFilm",

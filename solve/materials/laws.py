@@ -11,7 +11,7 @@ from typing import Protocol
 import numpy as np
 
 from geometry.arrays import Floats
-from solve.materials.isochoric import isochoric_energy, isochoric_stress, to_voigt
+from solve.materials.isochoric import Power, isochoric_energy, isochoric_stress, to_voigt
 from solve.materials.principal_stretches import log_stretches, principal_stress
 
 
@@ -74,6 +74,41 @@ class InvariantLaw:
     def energy(self, cauchy_green: Floats) -> Floats:
         """W_iso (n,) at C (n, 3, 3)."""
         return isochoric_energy(cauchy_green, np.array([self.c10, self.c01, self.c20, self.c30]))
+
+
+@dataclass(frozen=True)
+class KnowlesLaw:
+    """W_iso = c10 / b [(1 + b / n (I1 - 3))^n - 1]; invariant of J^(-2/3) C.
+
+    Knowles, Int. J. Fract. 13, 1977, p. 611. n = 1: neo-Hookean; n = 2: Yeoh's first two terms; an infinite n:
+    c10 / b [exp(b (I1 - 3)) - 1], the exponential of Fung (1967) as Demiray (J. Biomech. 5, 1972) has it for rubber.
+    """
+
+    c10: float
+    power: Power
+    bulk_modulus: float
+
+    @property
+    def shear_modulus(self) -> float:
+        """Small-strain shear modulus."""
+        return 2.0 * self.c10
+
+    @property
+    def compressible(self) -> bool:
+        """False: the pressure is an unknown."""
+        return False
+
+    def scaled(self, factor: float) -> "KnowlesLaw":
+        """The law with its moduli times a factor, for another unit of stress."""
+        return replace(self, c10=factor * self.c10, bulk_modulus=factor * self.bulk_modulus)
+
+    def stress(self, cauchy_green: Floats) -> tuple[Floats, Floats]:
+        """S (n, 6) and tangent (n, 6, 6) at C (n, 3, 3)."""
+        return isochoric_stress(cauchy_green, np.array([self.c10, 0.0, 0.0, 0.0]), self.power)
+
+    def energy(self, cauchy_green: Floats) -> Floats:
+        """W_iso (n,) at C (n, 3, 3)."""
+        return isochoric_energy(cauchy_green, np.array([self.c10, 0.0, 0.0, 0.0]), self.power)
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from functools import cache
 from importlib.resources import files
 from typing import Annotated, Any, Literal, Self
 
+import numpy as np
 from pydantic import AfterValidator, Field, TypeAdapter, model_validator
 
 from geometry.base import InputError, nearest
@@ -27,6 +28,8 @@ PoissonRatio = Annotated[
 ]
 Terms = Annotated[tuple[Finite, ...], Field(min_length=1)]
 Exponent = Annotated[float, Field(ge=-100, le=100)]  # stretches to a higher power overflow
+StiffeningRate = Annotated[float, Field(gt=0, le=100)]
+Power = Annotated[float, Field(ge=0.5, le=100)]  # below 1/2 the law loses ellipticity in shear (Knowles 1977)
 Exponents = Annotated[tuple[Exponent, ...], Field(min_length=1)]
 
 
@@ -133,6 +136,27 @@ class Yeoh(MaterialTable):
         return laws.InvariantLaw(
             self.c10_MPa, 0.0, self.c20_MPa, self.c30_MPa, laws.bulk_modulus(self.shear_modulus_MPa, self.poisson_ratio)
         )
+
+
+class Knowles(MaterialTable):
+    """W = c10 / b [(1 + b / n (I1 - 3))^n - 1], isochoric, + K/2 (J - 1)^2; G = 2 c10; without n, exponential."""
+
+    model: Literal["knowles"] = Field("knowles", description="Knowles' power law of rubber; without n that of Fung")
+    c10_MPa: Positive = Field(description="linear constant")
+    b: StiffeningRate = Field(description="how soon it stiffens with I1 - 3")
+    n: Power | None = Field(None, description="exponent; none: infinite, the exponential law of Fung and Demiray")
+    poisson_ratio: PoissonRatio = Field(0.495, description="small-strain Poisson's ratio")
+
+    @property
+    def shear_modulus_MPa(self) -> float:
+        """Small-strain shear modulus G = 2 c10."""
+        return 2.0 * self.c10_MPa
+
+    @property
+    def law(self) -> laws.MediumLaw:
+        """Its law, in MPa."""
+        power = self.b, np.inf if self.n is None else self.n
+        return laws.KnowlesLaw(self.c10_MPa, power, laws.bulk_modulus(self.shear_modulus_MPa, self.poisson_ratio))
 
 
 class Ogden(MaterialTable):
@@ -251,7 +275,7 @@ def _require_shear_modulus(shear_MPa: float, formula: str) -> None:
         raise ValueError(f"small-strain shear modulus = {shear_MPa:g} MPa: {formula} must be above 0")
 
 
-Material = NeoHookean | Linear | MooneyRivlin | Yeoh | Ogden | Hyperfoam | PiezoelectricFilm
+Material = NeoHookean | Linear | MooneyRivlin | Yeoh | Knowles | Ogden | Hyperfoam | PiezoelectricFilm
 AnyMaterial = Annotated[Material, Field(discriminator="model")]
 
 

@@ -1,6 +1,6 @@
 """Random media of every law, whose energy stays convex where it is asked to, and random films."""
 
-MODELS = ("neo-hookean", "neo-hookean", "linear", "mooney-rivlin", "yeoh", "ogden", "hyperfoam")
+MODELS = ("neo-hookean", "neo-hookean", "linear", "mooney-rivlin", "yeoh", "knowles", "ogden", "hyperfoam")
 
 
 def medium_material(draw) -> dict:
@@ -15,6 +15,10 @@ def medium_material(draw) -> dict:
     elif model == "yeoh":
         table |= {"c10_MPa": shear_MPa / 2, "c20_MPa": draw.between(0.0, 0.1) * shear_MPa}
         table["c30_MPa"] = draw.between(0.0, 0.02) * shear_MPa
+    elif model == "knowles":
+        table |= {"c10_MPa": shear_MPa / 2, "b": draw.log(0.01, 2.0)}
+        if draw.perhaps(0.7):
+            table["n"] = draw.between(0.5, 8.0)
     else:
         foam = model == "hyperfoam"
         table["alpha"] = [draw.between(1.5, 12.0 if foam else 6.0) for _ in range(draw.whole(1, 3))]

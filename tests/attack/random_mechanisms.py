@@ -74,11 +74,15 @@ def _prony(draw):
 
 
 def _stiffening(draw):
-    law = draw.whole(0, 2)
+    law = draw.whole(0, 4)
     if law == 0:
         return {"c10_MPa": draw.log(0.02, 1.0), "c20_MPa": draw.log(1e-3, 0.1), "c30_MPa": draw.log(1e-4, 0.02)}
     if law == 1:
         return {"c01_MPa": draw.log(1e-3, 0.2)}
+    if law == 2:
+        return {"b": draw.log(0.01, 2.0), "n": draw.between(0.5, 8.0)}
+    if law == 3:
+        return {"b": draw.log(0.01, 2.0)}
     return {"mu_MPa": [draw.log(0.02, 1.0)], "alpha": [draw.between(2.0, 6.0)]}
 
 

@@ -84,7 +84,7 @@ def effectors(draw, section, segment, shapes):
 @st.composite
 def media(draw):
     """A soft medium of any law; the constants keep the energy positive."""
-    model = draw(st.sampled_from(("neo-hookean", "linear", "mooney-rivlin", "yeoh", "ogden", "hyperfoam")))
+    model = draw(st.sampled_from(("neo-hookean", "linear", "mooney-rivlin", "yeoh", "knowles", "ogden", "hyperfoam")))
     shear_MPa = draw(log_between(0.05, 5.0))
     if model in ("neo-hookean", "linear"):
         table = {"youngs_modulus_MPa": 3.0 * shear_MPa}
@@ -93,6 +93,8 @@ def media(draw):
         table = {"c10_MPa": share * shear_MPa / 2, "c01_MPa": (1 - share) * shear_MPa / 2}
     elif model == "yeoh":
         table = {"c10_MPa": shear_MPa / 2, "c20_MPa": draw(between(0.0, 0.2)) * shear_MPa}
+    elif model == "knowles":
+        table = {"c10_MPa": shear_MPa / 2, "b": draw(log_between(0.01, 2.0)), "n": draw(between(0.5, 8.0))}
     else:
         exponents = between(1.5, 6.0) if model == "ogden" else between(1.5, 12.0)
         alpha = draw(st.lists(exponents, min_size=1, max_size=3))

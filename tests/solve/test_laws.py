@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from solve.materials.isochoric import from_voigt, to_voigt
-from solve.materials.laws import InvariantLaw, LinearLaw, OgdenLaw, bulk_modulus
+from solve.materials.laws import InvariantLaw, KnowlesLaw, LinearLaw, OgdenLaw, bulk_modulus
 from solve.materials.parameters import Hyperfoam, Linear, MooneyRivlin, NeoHookean, Ogden, PiezoelectricFilm, Yeoh
 from solve.materials.principal_stretches import HyperfoamLaw
 
@@ -13,6 +13,9 @@ LAWS = {
     "neo-hookean": InvariantLaw(0.5, 0.0, 0.0, 0.0, 100.0),
     "mooney-rivlin": InvariantLaw(0.3, 0.2, 0.0, 0.0, 100.0),
     "yeoh": InvariantLaw(0.5, 0.0, 0.05, 0.002, 100.0),
+    "knowles": KnowlesLaw(0.5, (1.2, 3.5), 100.0),
+    "knowles softening": KnowlesLaw(0.5, (0.4, 0.5), 100.0),
+    "fung": KnowlesLaw(0.5, (1.2, np.inf), 100.0),
     "linear": LinearLaw(1.0, 100.0),
     "ogden": OgdenLaw((0.63, 0.0012, -0.01, 0.1), (1.3, 5.0, -2.0, 0.0), 100.0),
     "hyperfoam": HyperfoamLaw((0.9, 0.1, 0.2), (12.0, -2.0, 3.0), (0.05 / 0.9, 0.0, 1.0)),
@@ -74,6 +77,27 @@ def test_mooney_rivlin_and_yeoh_in_uniaxial_tension(x):
     assert nominal_stress(LAWS["yeoh"], stretches, 2) == pytest.approx(yeoh, rel=1e-12)
 
 
+@pytest.mark.parametrize("x", [0.6, 0.9, 1.3, 2.5])
+@pytest.mark.parametrize(
+    ("law", "slope"),
+    [
+        (LAWS["knowles"], lambda excess: 0.5 * (1 + 1.2 / 3.5 * excess) ** 2.5),
+        (LAWS["fung"], lambda excess: 0.5 * np.exp(1.2 * excess)),
+        (KnowlesLaw(0.5, (1.2, 2.0), 100.0), InvariantLaw(0.5, 0.0, 0.15, 0.0, 100.0)),
+        (KnowlesLaw(0.5, (1.2, 1.0), 100.0), LAWS["neo-hookean"]),
+    ],
+    ids=["power", "exponential", "n = 2 is Yeoh's quadratic", "n = 1 is neo-Hookean"],
+)
+def test_knowles_in_uniaxial_tension(law, slope, x):
+    """P = 2 (L - L^-2) W1 with W1 = c10 (1 + b / n (I1 - 3))^(n - 1) (Knowles 1977); exp(b (I1 - 3)) in the limit."""
+    stretches = [x, x**-0.5, x**-0.5]
+    if callable(slope):
+        expected = 2 * (x - x**-2) * slope(x**2 + 2 / x - 3.0)
+    else:
+        expected = nominal_stress(slope, stretches, 2)
+    assert nominal_stress(law, stretches, 2) == pytest.approx(expected, rel=1e-12)
+
+
 @pytest.mark.parametrize("stretches", STRETCHES.values(), ids=STRETCHES)
 @pytest.mark.parametrize("name", LAWS)
 def test_tangent_is_the_derivative_of_the_stress(name, stretches):
@@ -109,7 +133,7 @@ def test_stress_is_the_derivative_of_the_energy(name, stretches):
     np.testing.assert_allclose(law.energy(np.eye(3)[None]), 0.0, atol=1e-16)
 
 
-@pytest.mark.parametrize("name", ["neo-hookean", "mooney-rivlin", "yeoh", "linear"])
+@pytest.mark.parametrize("name", ["neo-hookean", "mooney-rivlin", "yeoh", "knowles", "fung", "linear"])
 def test_stress_is_the_complex_step_derivative_of_the_energy(name):
     c = stretched((0.7, 1.1, 1.4))
     slope = LAWS[name].energy(c + 1e-30j * 2.0 * from_voigt(np.eye(6), 2.0)).imag / 1e-30

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from geometry.parameters import Dot
-from solve.materials.parameters import Hyperfoam, MooneyRivlin, Ogden, Yeoh
+from solve.materials.parameters import Hyperfoam, Knowles, MooneyRivlin, Ogden, Yeoh
 from solve.mechanisms import Mechanism, with_mechanisms
 from solve.model import Model, Readout
 from solve.readout.amplifier import amplify
@@ -72,6 +72,8 @@ def test_offsets_and_gaps_add(model):
     ("parameters", "kind"),
     [
         ({"c20_MPa": 0.1}, Yeoh),
+        ({"b": 0.5, "n": 3.0}, Knowles),
+        ({"b": 0.5}, Knowles),
         ({"c10_MPa": 0.1, "c01_MPa": 0.05}, MooneyRivlin),
         ({"mu_MPa": [0.3], "alpha": [2.0]}, Ogden),
     ],

@@ -5,7 +5,7 @@ import pytest
 
 from geometry.dot import DotShape
 from solve.materials.film import FilmLaw, film_law
-from solve.materials.parameters import Hyperfoam, Linear, MooneyRivlin, NeoHookean, Ogden, PiezoelectricFilm, Yeoh
+from solve.materials.parameters import Hyperfoam, Knowles, Linear, MooneyRivlin, NeoHookean, Ogden, PiezoelectricFilm, Yeoh
 from solve.terms.contact import RigidDot
 from solve.terms.film import film_region
 from tests.verification.body import Body, solid_body
@@ -16,6 +16,8 @@ MEDIA = {
     "neo-hookean 0.4999": NeoHookean(youngs_modulus_MPa=1.0, poisson_ratio=0.4999),
     "mooney-rivlin": MooneyRivlin(c10_MPa=0.3, c01_MPa=0.1, poisson_ratio=0.4995),
     "yeoh": Yeoh(c10_MPa=0.3, c20_MPa=0.03, c30_MPa=0.002, poisson_ratio=0.495),
+    "knowles": Knowles(c10_MPa=0.3, b=1.0, n=3.0, poisson_ratio=0.495),
+    "fung": Knowles(c10_MPa=0.3, b=1.0, poisson_ratio=0.495),
     "ogden": Ogden(mu_MPa=(0.63, 0.0012, -0.01), alpha=(1.3, 5.0, -2.0), poisson_ratio=0.495),
     "hyperfoam": Hyperfoam(mu_MPa=(0.02, 0.01), alpha=(8.0, -2.0), poisson_ratio=(0.1, 0.0)),
     "linear": Linear(youngs_modulus_MPa=1.0, poisson_ratio=0.29),

@@ -17,6 +17,8 @@ from solve.mechanisms import Mechanism, with_mechanisms
 from solve.mechanisms.base import MEDIA
 from solve.mechanisms.layers.hyperelastic_stiffening import HYPERELASTIC_STIFFENING
 
+HIGHEST = float(np.log1p(30.0))  # a slope of dW/dI1 of 30 at rest: soft tissue reaches it, no rubber does
+EXPONENTIAL = 0.01  # of 1 / (n - 1), below which the law is as good as exponential
 STEEP = 8.0  # exponent of the Ogden term that stiffens
 
 
@@ -24,7 +26,9 @@ def of_segment(scene: Scene) -> Iterator[Candidate]:
     """Of the media that this rig has: a law that goes over into the declared one, with constants 0 where it is off."""
     for component in MEDIA:
         material = scene.model.materials.get(component)
-        if isinstance(material, NeoHookean | Yeoh):
+        if isinstance(material, NeoHookean):
+            yield _knowles(component)
+        elif isinstance(material, Yeoh):
             yield _yeoh(component, material)
         elif isinstance(material, MooneyRivlin | Ogden):
             yield _ogden(component, material)
@@ -55,10 +59,35 @@ def _of_sensor() -> Candidate:
     return Candidate(HYPERELASTIC_STIFFENING.name, LAYER, law.coordinates, law.parameters, derived, units)
 
 
-def _yeoh(component: str, material: NeoHookean | Yeoh) -> Candidate:
+def _knowles(component: str) -> Candidate:
+    """From the exponential law to Yeoh's quadratic, by the slope of dW/dI1 at rest, b (n - 1) / n, and 1 / (n - 1).
+
+    Gent's law with the limit J of I1 - 3 has the slope 1 / J at rest.
+    """
+    coordinates = (
+        Coordinate("log_stiffening", 0.0, HIGHEST, (0.3, 1.2), (0.2 * HIGHEST, 0.45 * HIGHEST, 0.7 * HIGHEST, HIGHEST)),
+        Coordinate("power_law", 0.0, 1.0, (0.3, 1.0), (0.3, 1.0), (True, True)),
+    )
+
+    def parameters(values: Sequence[float]) -> dict[str, Any]:
+        b, inverse = float(np.expm1(values[0])) * (1.0 + values[1]), values[1]
+        return {"b": b, "n": 1.0 + 1.0 / inverse} if inverse > EXPONENTIAL else {"b": b}
+
+    units = {"b": "", "n": "", "force_ratio": ""}
+    return Candidate(
+        HYPERELASTIC_STIFFENING.name,
+        component,
+        coordinates,
+        parameters,
+        units=units,
+        compared="force_ratio",
+        together="fading",
+    )
+
+
+def _yeoh(component: str, material: Yeoh) -> Candidate:
     """c20 and c30 over c10. Gent's law with the limit J of I1 - 3 has 1 / 2J and 1 / 3J^2: up to J = 0.4 and 0.33."""
-    c10 = 0.5 * material.shear_modulus_MPa
-    c20, c30 = (material.c20_MPa, material.c30_MPa) if isinstance(material, Yeoh) else (0.0, 0.0)
+    c10, c20, c30 = material.c10_MPa, material.c20_MPa, material.c30_MPa
     coordinates = (
         Coordinate("c20_over_c10", 0.0, 1.25, (0.1, 0.5), (0.4, 1.25)),
         Coordinate("c30_over_c10", 0.0, 3.0, (0.1, 1.0), (0.75, 3.0)),
