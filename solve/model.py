@@ -107,11 +107,12 @@ class BondLine:
 
 @dataclass(frozen=True)
 class Delamination:
-    """A disc (in plane strain a strip of that width) without bond."""
+    """A disc (in plane strain a strip of that width) without bond; outside : all but that disc without bond."""
 
     bond: str
     center_mm: tuple[float, float]
     diameter_mm: float
+    outside: bool = False
 
 
 @dataclass(frozen=True)
@@ -138,8 +139,8 @@ class Physics:
     bonds : bond -> stiffness. friction : Coulomb coefficient between dot and surface.
     rig_compliance_mm_per_N lies between the displacement sensor and the dot, moving_mass_g between the force sensor
     and the dot. prestretch : nominal strain of the film in x and y. contact_charge_pC : charge that the dot leaves on
-    the electrodes, in proportion to the contact area, all of it at the largest area. electronics : stages of the
-    amplifier beside those of the read-out. crosstalk : channel (from 1) -> share of the other channels' voltage.
+    the electrodes, all of it at the largest contact area, before that by a power of the area. electronics : stages of
+    the amplifier beside those of the read-out. crosstalk : channel (from 1) -> share of the other channels' voltage.
     """
 
     viscosity: Mapping[str, Prony] = field(default_factory=dict)
@@ -153,6 +154,7 @@ class Physics:
     prestretch: tuple[float, float] = (0.0, 0.0)
     pyroelectric: Pyroelectric = Pyroelectric()
     contact_charge_pC: float = 0.0
+    contact_charge_exponent: float = 1.0
     electronics: tuple[Stage, ...] = ()
     crosstalk: Mapping[int, float] = field(default_factory=dict)
 

@@ -37,32 +37,34 @@ from solve.terms.springs import bond, side_springs
 ROUND_OFF_MM = 1e-9
 
 
-def delaminated_facets(
-    tet_mesh: TetMesh, name: str, center_mm: tuple[float, float], diameter_mm: float, plane_strain: bool
-) -> Bools:
+def delaminated_facets(tet_mesh: TetMesh, patch: Delamination, plane_strain: bool) -> Bools:
     """Facets (k,) of interface_facets whose middle lies in the disc (plane strain: |x - x_c| <= diameter / 2) or its
-    image where the mesh ends at a mirror plane.
+    image where the mesh ends at a mirror plane; of a patch outside the disc all others.
 
-    A diameter of 0 selects none. InputError when the disc reaches outside the interface, or is so small that the
-    mesh has no node inside which could open.
+    A diameter of 0 selects none. InputError when the disc reaches outside the interface, or is so small, or so large
+    where the rim is loose, that the mesh has no node which could open.
     """
+    name, diameter_mm = patch.bond, patch.diameter_mm
     facets = interface_facets(tet_mesh, name)
     if diameter_mm == 0.0:
-        return np.zeros(len(facets), bool)
-    given = f"mechanisms.delamination at {name}: center_mm = {list(center_mm)}, diameter_mm = {diameter_mm:g}"
+        return np.full(len(facets), patch.outside)
+    what = "bonded_diameter_mm" if patch.outside else "diameter_mm"
+    given = f"mechanisms.delamination at {name}: center_mm = {list(patch.center_mm)}, {what} = {diameter_mm:g}"
     corners = tet_mesh.points_mm[facets[:, :3], :2]
     axes = slice(0, 1) if plane_strain else slice(0, 2)
-    center, mirrored = np.array(center_mm), list(tet_mesh.planes)
+    center, mirrored = np.array(patch.center_mm), list(tet_mesh.planes)
     center[mirrored] = np.abs(center[mirrored])  # of what reaches over the plane the image covers as much and more
     high, low = corners.max(axis=(0, 1)), corners.min(axis=(0, 1))
     low[mirrored] = -high[mirrored]
-    _refuse_outside(low[axes], high[axes], center[axes], diameter_mm, given)
+    if not patch.outside:
+        _refuse_outside(low[axes], high[axes], center[axes], diameter_mm, given)
     # the two triangles of a slice's rectangle share their middle in x, not their centroid
     middle = (corners.min(axis=1) + corners.max(axis=1)) / 2 if plane_strain else corners.mean(axis=1)
     inside = np.linalg.norm((middle - center)[:, axes], axis=1) <= diameter_mm / 2 + ROUND_OFF_MM
-    if not len(inner_nodes(tet_mesh, facets, ~inside)):
-        raise InputError(f"{given}: must span several facets, which are too large there (mesh.element_size_mm)")
-    return np.asarray(inside)
+    loose: Bools = inside != patch.outside
+    if not len(inner_nodes(tet_mesh, facets, ~loose)):
+        raise InputError(f"{given}: what is loose must span several facets, too large there (mesh.element_size_mm)")
+    return loose
 
 
 def _refuse_outside(low: Floats, high: Floats, center: Floats, diameter: float, given: str) -> None:
@@ -102,7 +104,7 @@ def open_interfaces(
             continue
         bare = np.zeros(len(interface_facets(tet_mesh, name)), bool)
         for patch in patches:
-            bare |= delaminated_facets(tet_mesh, name, patch.center_mm, patch.diameter_mm, plane_strain)
+            bare |= delaminated_facets(tet_mesh, patch, plane_strain)
         joined = np.zeros_like(bare) if name in bonds else ~bare
         tet_mesh, lower, upper = split_interface(tet_mesh, name, joined)
         opened.append(OpenInterface(name, lower, upper, bare))

@@ -85,10 +85,11 @@ def electrode_images(rectangles: Floats, axis: int) -> Ints | None:
 def _mirrored_patches(patches: tuple[Delamination, ...], axis: int, is_slice: bool) -> bool:
     """Whether the image of each patch is one of them; in a slice they are strips, which y does not tell apart."""
 
-    def place(patch: Delamination, sign: float) -> tuple[str, float, float, float]:
+    def place(patch: Delamination, sign: float) -> tuple[str, float, float, float, bool]:
         center = [*patch.center_mm]
         center[axis] *= sign
-        return patch.bond, round(center[0], 9), 0.0 if is_slice else round(center[1], 9), patch.diameter_mm
+        across = 0.0 if is_slice else round(center[1], 9)
+        return patch.bond, round(center[0], 9), across, patch.diameter_mm, patch.outside
 
     return {place(patch, -1.0) for patch in patches} == {place(patch, 1.0) for patch in patches}
 

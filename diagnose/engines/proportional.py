@@ -72,7 +72,8 @@ def other_charge(model: Model, loading: Loading) -> Floats:
     """Charge (t,) in C of the touch and of heat."""
     physics, film = model.physics, model.materials["film"]
     assert isinstance(film, PiezoelectricFilm)
-    touch = 1e-12 * physics.contact_charge_pC * np.maximum(loading.force, 0.0) ** HERTZ
+    area = np.maximum(loading.force, 0.0) ** HERTZ
+    touch = 1e-12 * physics.contact_charge_pC * area**physics.contact_charge_exponent
     area_m2 = 1e-6 * model.segment.length_mm * model.segment.width_mm
     warming = warming_K(loading.time_s - loading.touch_s, physics.pyroelectric)
     return np.asarray(touch + 1e-6 * film.pyroelectric_uC_per_m2_K * area_m2 * warming)

@@ -69,7 +69,7 @@ def _refuse_viscous_perfect_bonds(model: Model) -> None:
 
 
 def _refuse_patches_outside(model: Model) -> None:
-    for patch in model.physics.delaminations:
+    for patch in (each for each in model.physics.delaminations if not each.outside):
         check_patch(model.segment, patch.bond, patch.center_mm, patch.diameter_mm)
 
 

@@ -64,14 +64,15 @@ def warming_K(time_s: Floats, heat: Pyroelectric) -> Floats:
 def other_charge_C(
     time_s: Floats, contact_area: Floats, electrode_area_m2: Floats, pyroelectric_uC_per_m2_K: float, physics: Physics
 ) -> Floats:
-    """Charge (t, e) in C of heat, p A dT, and of the touch, in proportion to the contact area (t,) so far.
+    """Charge (t, e) in C of heat, p A dT, and of the touch, by a power of the contact area (t,) so far.
 
     The touch leaves contact_charge_pC at the largest contact area, shared by the electrodes (e,) as their areas are.
     """
     share = electrode_area_m2 / electrode_area_m2.sum()
     heat = 1e-6 * pyroelectric_uC_per_m2_K * warming_K(time_s, physics.pyroelectric)[:, None] * electrode_area_m2
     touched = contact_area / max(float(contact_area.max()), 1e-300)
-    return np.asarray(heat + 1e-12 * physics.contact_charge_pC * touched[:, None] * share)
+    touch = 1e-12 * physics.contact_charge_pC * touched**physics.contact_charge_exponent
+    return np.asarray(heat + touch[:, None] * share)
 
 
 def mixed_channels(alone: Floats, physics: Physics) -> Floats:

@@ -19,7 +19,10 @@ def mechanism(draw, name, segment, dot) -> dict | None:
             "film",
             {"temperature_step_K": draw.sign(0.01, 2.0), "time_constant_s": draw.log(0.1, 10.0)},
         ),
-        "contact-electrification": lambda: ("film", {"charge_pC": draw.sign(1.0, 50.0)}),
+        "contact-electrification": lambda: (
+            "film",
+            {"charge_pC": draw.sign(1.0, 50.0), "area_exponent": draw.between(0.3, 3.0)},
+        ),
         "viscoelasticity": lambda: (draw.among([*media, *media, "film", *_bonded(segment)]), _prony(draw)),
         "hyperelastic-stiffening": lambda: (draw.among(media), _stiffening(draw)),
         "foam-densification": lambda: (draw.among(media), _foam(draw)),
@@ -106,7 +109,10 @@ def _adhesive(draw):
 
 def _patch(draw, segment):
     width = min(segment["length_mm"], segment["width_mm"])
-    return {"center_mm": [draw.between(-0.02, 0.02) * width, 0.0], "diameter_mm": draw.between(0.5, 0.9) * width}
+    center = [draw.between(-0.02, 0.02) * width, 0.0]
+    if draw.perhaps(0.3):
+        return {"center_mm": center, "bonded_diameter_mm": draw.between(0.3, 0.6) * width}
+    return {"center_mm": center, "diameter_mm": draw.between(0.5, 0.9) * width}
 
 
 def _property(draw, media, dot):

@@ -6,6 +6,7 @@ import pytest
 from geometry.base import InputError
 from mesh.interfaces import interface_facets, split_interface
 from solve.materials.laws import InvariantLaw
+from solve.model import Delamination
 from solve.problem import delaminated_facets
 from solve.terms.jump import opening_nodes, unilateral_interface
 from tests.solve.term_body import TermBody, layers, tangent_error
@@ -22,9 +23,9 @@ def blocks(cells: int = 4, is_slice: bool = False):
     return layers(x, y, [[0.0, 0.5], [0.5, 1.0]], is_slice=is_slice)
 
 
-def delaminated(tet_mesh, name, center=(0.0, 0.0), diameter=0.6, is_slice=False, laws=LAWS):
+def delaminated(tet_mesh, name, center=(0.0, 0.0), diameter=0.6, is_slice=False, laws=LAWS, outside=False):
     """A body with a patch, the patch, and the displacements (n, 3) that the ground holds."""
-    inside = delaminated_facets(tet_mesh, name, center, diameter, is_slice)
+    inside = delaminated_facets(tet_mesh, Delamination(name, center, diameter, outside), is_slice)
     split, lower, upper = split_interface(tet_mesh, name, ~inside)
     body = TermBody(split, laws)
     fixed = np.zeros(body.points.shape, bool)
@@ -38,9 +39,10 @@ def delaminated(tet_mesh, name, center=(0.0, 0.0), diameter=0.6, is_slice=False,
 
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("is_slice", [False, True], ids=["solid", "slice"])
-def test_even_compression_passes_through_a_closed_patch(name, is_slice):
+@pytest.mark.parametrize("outside", [False, True], ids=["patch", "rim"])
+def test_even_compression_passes_through_a_closed_patch(name, is_slice, outside):
     """u = -0.1 z in a confined block, as without the patch, and the same pressure at every node of the patch."""
-    body, patch, fixed = delaminated(blocks(is_slice=is_slice), name, is_slice=is_slice)
+    body, patch, fixed = delaminated(blocks(is_slice=is_slice), name, is_slice=is_slice, outside=outside)
     top = body.points[:, 2] == 1.0
     fixed[:, :2], fixed[top] = True, True
     squeezed = -0.1 * body.points * [0.0, 0.0, 1.0]
@@ -111,20 +113,29 @@ def test_tangent_is_the_derivative_of_the_residual(name):
 
 
 def test_no_diameter_is_no_delamination():
-    assert not delaminated_facets(blocks(), "bond-film-medium2", (0.0, 0.0), 0.0, False).any()
+    assert not delaminated_facets(blocks(), Delamination("bond-film-medium2", (0.0, 0.0), 0.0), False).any()
 
 
 def test_the_patch_has_the_area_of_its_disc():
     tet_mesh = blocks(16)
-    inside = delaminated_facets(tet_mesh, "bond-film-medium2", (0.1, -0.1), 0.6, False)
+    inside = delaminated_facets(tet_mesh, Delamination("bond-film-medium2", (0.1, -0.1), 0.6), False)
     assert inside.sum() / len(inside) == pytest.approx(np.pi * 0.3**2, rel=0.03)
+
+
+def test_a_loose_rim_is_all_but_the_disc_that_is_bonded():
+    tet_mesh = blocks(8)
+    disc, rim = (Delamination("bond-film-medium2", (0.1, 0.0), 0.6, outside) for outside in (False, True))
+    inside, outside = (delaminated_facets(tet_mesh, patch, False) for patch in (disc, rim))
+    np.testing.assert_array_equal(outside, ~inside)
+    with pytest.raises(InputError, match="bonded_diameter_mm = 3: what is loose must span several facets"):
+        delaminated_facets(tet_mesh, Delamination("bond-film-medium2", (0.0, 0.0), 3.0, True), False)
 
 
 def test_a_strip_takes_whole_rectangles_of_a_slice():
     """Rectangles of 0.125 whose middle lies within 0.3, though the next triangles' centroids do too."""
     tet_mesh = blocks(8, is_slice=True)
     facets = interface_facets(tet_mesh, "bond-film-medium2")
-    inside = delaminated_facets(tet_mesh, "bond-film-medium2", (0.0, 0.0), 0.6, True)
+    inside = delaminated_facets(tet_mesh, Delamination("bond-film-medium2", (0.0, 0.0), 0.6), True)
     covered = tet_mesh.points_mm[facets[inside], 0]
     assert (covered.min(), covered.max()) == (-0.25, 0.25)
     assert inside.sum() == 2 * 4
@@ -142,6 +153,6 @@ def test_a_strip_takes_whole_rectangles_of_a_slice():
 )
 def test_a_patch_that_reaches_outside_or_opens_nothing_is_refused(center, diameter, allowed):
     with pytest.raises(InputError, match=allowed) as refusal:
-        delaminated_facets(blocks(), "bond-film-medium2", center, diameter, False)
+        delaminated_facets(blocks(), Delamination("bond-film-medium2", center, diameter), False)
     assert f"center_mm = {list(center)}, diameter_mm = {diameter:g}" in str(refusal.value)
     assert "mechanisms.delamination" in str(refusal.value)

@@ -89,10 +89,11 @@ def test_heat_comes_with_its_time_constant(plain):
     np.testing.assert_allclose(share, np.expm1(-time / 0.04) / np.expm1(-time[-1] / 0.04), atol=1e-9)
 
 
-def test_touch_leaves_its_charge_in_proportion_to_the_area(plain):
-    touched = pressed(PRESS, Physics(contact_charge_pC=5.0))
+@pytest.mark.parametrize("exponent", [1.0, 0.5, 2.0])
+def test_touch_leaves_its_charge_by_a_power_of_the_area(plain, exponent):
+    touched = pressed(PRESS, Physics(contact_charge_pC=5.0, contact_charge_exponent=exponent))
     area = plain.trace.contact_area_m2
-    np.testing.assert_allclose(charge(touched) - charge(plain), 5e-12 * area / area.max(), atol=1e-20)
+    np.testing.assert_allclose(charge(touched) - charge(plain), 5e-12 * (area / area.max()) ** exponent, atol=1e-20)
 
 
 def test_what_leaks_through_the_resistance_is_missing_on_the_capacitance(plain):

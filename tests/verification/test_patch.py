@@ -5,7 +5,16 @@ import pytest
 
 from geometry.dot import DotShape
 from solve.materials.film import FilmLaw, film_law
-from solve.materials.parameters import Hyperfoam, Knowles, Linear, MooneyRivlin, NeoHookean, Ogden, PiezoelectricFilm, Yeoh
+from solve.materials.parameters import (
+    Hyperfoam,
+    Knowles,
+    Linear,
+    MooneyRivlin,
+    NeoHookean,
+    Ogden,
+    PiezoelectricFilm,
+    Yeoh,
+)
 from solve.terms.contact import RigidDot
 from solve.terms.film import film_region
 from tests.verification.body import Body, solid_body

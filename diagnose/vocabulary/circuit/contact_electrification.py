@@ -1,6 +1,7 @@
-"""Charge that the touch leaves, in terms of the largest that was recorded."""
+"""Charge that the touch leaves, in terms of the largest that was recorded, by a power of the contact area."""
 
 from collections.abc import Iterator, Sequence
+from math import exp, log
 from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
@@ -9,6 +10,7 @@ from diagnose.vocabulary.base import OTHER_CHARGE, Scene, Vocabulary, register
 from solve.mechanisms.circuit.contact_electrification import CONTACT_ELECTRIFICATION
 
 TOUCH_CHARGE = 10.0  # of the largest charge that was recorded
+LARGEST_EXPONENT = log(3.0)  # of the area: charge that grows with the pressure too
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
@@ -25,12 +27,16 @@ def _touch(scene: Scene) -> Candidate:
     """In terms of the charge that makes the largest voltage recorded."""
     scale = scene.capacitance_pF * (scene.voltage_V or 1.0)
     declared = scene.model.physics.contact_charge_pC
-    coordinate = Coordinate("charge", -TOUCH_CHARGE, TOUCH_CHARGE, (0.1, -0.1))
+    coordinates = (
+        Coordinate("charge", -TOUCH_CHARGE, TOUCH_CHARGE, (0.1, -0.1)),
+        Coordinate("log_exponent", -LARGEST_EXPONENT, LARGEST_EXPONENT, (0.4, -0.4)),
+    )
 
     def parameters(values: Sequence[float]) -> dict[str, Any]:
-        return {"charge_pC": declared + scale * values[0]}
+        return {"charge_pC": declared + scale * values[0], "area_exponent": exp(values[1])}
 
-    return Candidate(CONTACT_ELECTRIFICATION.name, "film", (coordinate,), parameters, units={"charge_pC": "pC"})
+    units = {"charge_pC": "pC", "area_exponent": ""}
+    return Candidate(CONTACT_ELECTRIFICATION.name, "film", coordinates, parameters, units=units)
 
 
 register(

@@ -5,7 +5,7 @@ Equation, source and typical values: docs/mechanisms.md#contact-electrification.
 
 from pydantic import Field
 
-from geometry.parameters import Finite
+from geometry.parameters import Finite, Positive
 from solve.mechanisms.base import MechanismType, Parameters, Traits, register, with_physics
 from solve.model import Model
 
@@ -13,12 +13,13 @@ from solve.model import Model
 class ContactElectrification(Parameters):
     """Charge that the touch leaves on the electrodes."""
 
-    charge_pC: Finite = Field(description="charge at the largest contact area; proportional to the area before that")
+    charge_pC: Finite = Field(description="charge at the largest contact area; by a power of the area before that")
+    area_exponent: Positive = Field(1.0, le=10.0, description="of that power; 1: in proportion to the area")
 
 
 def switch_on(model: Model, component: str, values: ContactElectrification) -> Model:
     """The model with this physics at a component."""
-    return with_physics(model, contact_charge_pC=values.charge_pC)
+    return with_physics(model, contact_charge_pC=values.charge_pC, contact_charge_exponent=values.area_exponent)
 
 
 CONTACT_ELECTRIFICATION = register(
@@ -30,6 +31,7 @@ CONTACT_ELECTRIFICATION = register(
         off={"charge_pC": 0.0},
         typical={
             "charge_pC": "0.1 to 10 times the signal with an input of gigaohms (rule of thumb); either sign",
+            "area_exponent": "1: every spot touched is charged alike; 0.5 to 2 where pressure matters (rule of thumb)",
         },
         traits=Traits(acts_on_tables=True),
     )

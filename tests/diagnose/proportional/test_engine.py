@@ -140,9 +140,11 @@ def test_heat_and_touch_add_charge_of_their_own():
     warming = -np.expm1(-np.maximum(SINCE, 0.0) / tau)
     np.testing.assert_allclose(drift, drift[-1] * warming / warming[-1], atol=1e-9)
     ramped = engine()
-    charge = voltage(ramped, Setting(candidate(ramped, "contact-electrification", "film"), (0.2,))) - voltage(ramped)
+    charge = voltage(ramped, Setting(candidate(ramped, "contact-electrification", "film"), (0.2, 0.0))) - voltage(
+        ramped
+    )
     np.testing.assert_allclose(charge, charge.max() * (RAMPS / 3.0) ** (2.0 / 3.0), atol=1e-12)
-    assert touch.parameters((0.2,))["charge_pC"] > 0.0
+    assert touch.parameters((0.2, 0.0))["charge_pC"] > 0.0
 
 
 def test_hum_has_a_phase_of_its_own_in_every_run():

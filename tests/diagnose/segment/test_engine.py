@@ -143,7 +143,7 @@ def test_hum_has_the_amplitude_and_the_phase_that_its_coordinates_say(rig):
 def test_what_was_not_prepared_is_refused(rig):
     chosen = candidate(rig, "delamination", "bond-base")
     with pytest.raises(ValueError, match="delamination of bond-base was not prepared"):
-        rig.predict(0, [Setting(chosen, (0.1,))])
+        rig.predict(0, [Setting(chosen, (0.1, 0.0))])
     with pytest.raises(ValueError, match="deeper than"):
         rig.imagine(run(values=press(run().time_s, 2.0 * DEPTH_MM)), [])
     with pytest.raises(ValueError, match="a dot at"):
