@@ -23,6 +23,7 @@ from diagnose.inference.localisation import explanations, places, shares
 from diagnose.inference.main_part import MainPart, confirmed, main_part
 from diagnose.inference.residual_test import Checked, checked
 from diagnose.inference.search import Screening, screen
+from diagnose.inference.tolerant_judge import distinguished
 from diagnose.noise.estimate import noise_models
 from diagnose.signals.recording import Recording
 from diagnose.statistics.abstain import RATES, Decision
@@ -120,7 +121,7 @@ def diagnose(recording: Recording, engine: Engine, seed: int, report: Report) ->
         return _quiet(model, baseline, found)
     engine.prepare(engine.candidates, report)
     screening = screen(model, baseline, report)
-    choice = choose(model, screening, found.p_value, rng, report)
+    choice = distinguished(model, screening, choose(model, screening, found.p_value, rng, report))
     findings = _findings(model, screening, found, choice)
     if not findings.unexplained:
         return findings

@@ -6,33 +6,27 @@ an explanation here, and held-out conditions decide: runs that repeat each other
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import norm
 
 from diagnose.findings import Fit
 from diagnose.fit.descent import settings
 from diagnose.fit.observed_model import ObservedModel
-from diagnose.fit.refit import Fitted, capped, fitted, within_priors
 from diagnose.fit.signal_discrepancy import SignalDiscrepancy, by_phase, conditions, in_plain_units
-from diagnose.fit.system import Quadratic, linearised, relative
+from diagnose.fit.system import linearised
 from diagnose.inference.choice import Judged, implausible, score_of
-from diagnose.inference.forecasts import Forecasted, forecasted, gained, separation
-from diagnose.inference.search import FirstFit, Screening, first_fits, pairs, screen, singles
+from diagnose.inference.forecasts import Forecasted
+from diagnose.inference.search import Screening, first_fits, pairs, screen, singles
+from diagnose.inference.tolerant_judge import VISIBLE, TolerantJudge, held_together, left_by
 from diagnose.signals.phases import PHASES
 from diagnose.statistics.abstain import RATES
-from diagnose.statistics.held_out import Gain, held_out_probabilities, leave_press_out
+from diagnose.statistics.held_out import held_out_probabilities
 from geometry.arrays import Floats
 from geometry.base import Report
 
 MOST = 0.9
 """Share of the held-out excess over noise that a main part accounts for."""
-IN_EACH, MOST_LEFT, SIGMAS = 0.5, 0.5, 4.0
-"""The same in a condition, channel or phase alone, where that holds this share of all that is left; its excess counts
-from so many standard errors above noise."""
-VISIBLE = 0.01
-"""Root mean square error relative to the signal, above noise, below which flaws of an ordinary rig may make it."""
 FLAWS = 0.02
 """The same that it may leave: more is not the flaws of a rig and the details of a law."""
 NEARLY_ALL = 0.99
@@ -80,115 +74,27 @@ def confirmed(held_out: Fit) -> bool:
     return after < (1.0 - CONFIRMED) * before
 
 
-class TolerantJudge:
-    """Judges explanations on held-out conditions, in a metric that tolerates discrepancies of sizes (c,)."""
-
-    def __init__(self, model: ObservedModel, found: Screening, tolerance: SignalDiscrepancy, sizes: Floats) -> None:
-        self.tolerance, self.fold = tolerance, conditions(model.samples)
-        self.model = model.tolerating(tolerance.variance(np.maximum(sizes, relative(model))))
-        rows = found.baseline.informative
-        start, baseline = (linearised(self.model, one.values, (), 0.0, rows) for one in (found.start, found.baseline))
-        self.found = replace(found, start=start, baseline=baseline, excess=0.0)
-        self.base = forecasted(model.samples, within_priors(start, baseline), None, self.fold)
-        self.before = self.left(self.base)
-
-    def judged(self, fit: Fitted) -> Judged:
-        """Held-out conditions predicted by a model that was fitted in this metric."""
-        forecast = forecasted(self.model.samples, capped(fit.system), fit, self.fold)
-        left = 1.0 - self.share(forecast)
-        return Judged(fit, forecast, self.gained(forecast, self.base), left, np.nan, np.nan)  # no test of noise alone
-
-    def gained(self, one: Forecasted, rival: Forecasted) -> Gain:
-        """Nats per condition, with a lower bound that is corrected for all candidates."""
-        return gained(one, rival, len(self.found.candidates))
-
-    def excluded(self, rival: Forecasted, best: Forecasted) -> bool:
-        """Whether the best would hardly predict so much better if the rival were true.
-
-        With d sigma between the two, its gain would then be normal with mean -d^2 / 2 and deviation d.
-        """
-        apart = float(np.linalg.norm(separation(best, rival)))
-        gain = float((best.log_scores - rival.log_scores).sum())
-        return gain + 0.5 * apart**2 > float(norm.isf(RATES.level / len(self.found.candidates))) * apart
-
-    def missed(self, forecast: Forecasted) -> Floats:
-        """(n,) residual of the recording, less what the nuisances of each run that was left out make of it."""
-        system, run = forecast.system, [one.run for one in self.model.nuisances]
-        residual = self.model.samples.recorded - forecast.predicted
-        own = np.flatnonzero([number is not None for number in run])
-        for _, held in leave_press_out(forecast.fold[system.informative]):
-            columns, rows = system.nuisance_design[held][:, own], np.flatnonzero(system.informative)[held]
-            weight = system.weight[rows]
-            found = Quadratic(columns * weight[:, None], system.sigma[own]).mean(residual[rows] * weight)
-            residual[rows] -= columns @ found
-        return residual
-
-    def left(self, forecast: Forecasted) -> Floats:
-        """(n,) squares above noise, relative to the signals, of what a forecast leaves."""
-        return self.tolerance.squares(self.missed(forecast))
-
-    def share(self, forecast: Forecasted) -> float:
-        """Share of the baseline's held-out excess that a forecast accounts for."""
-        before, after = (max(float(squares.sum()), 0.0) for squares in (self.before, self.left(forecast)))
-        return 1.0 - after / before if before > 0.0 else 0.0
-
-    def hidden(self) -> float:
-        """Share of the baseline's held-out excess that noise may hide, two sigma."""
-        before = float(self.before.sum())
-        return 2.0 * self.tolerance.noise_error / before if before > 0.0 else 1.0
-
-    def spread(self, forecast: Forecasted) -> bool:
-        """Whether no condition, channel or phase holds most of what is left while most of its own excess stays there.
-
-        That would be something else; laws that are not quite right and flaws of a rig leave a little everywhere.
-        """
-        after = self.left(forecast)
-        for labels in (self.fold, self.tolerance.channel, self.model.samples.phase):
-            _, place = np.unique(labels, return_inverse=True)
-            was, still = (np.maximum(np.bincount(place, squares), 0.0) for squares in (self.before, after))
-            seen = was > SIGMAS * self.tolerance.noise_errors(place)
-            if np.any(seen & (still > (1.0 - IN_EACH) * was) & (still > MOST_LEFT * still.sum())):
-                return False
-        return True
-
-    def largest(self, forecast: Forecasted) -> float:
-        """Root mean square of what a forecast leaves, relative to the signal, of the worst channel."""
-        return float(np.max(self.tolerance.sizes(self.missed(forecast)), initial=0.0))
-
-    def refitted(self, fit: Fitted) -> Fitted:
-        """A model fitted anew in this metric, from its values in another one."""
-        start = replace(self.found.start, values=fit.system.values)
-        return fitted(self.model, start, fit.candidates, fit.values, 0.0)
-
-    def best_first(self, fits: Sequence[Fitted]) -> list[Judged]:
-        """Models by how well they predict held-out conditions."""
-        return sorted(map(self.judged, fits), key=score_of, reverse=True)
-
-
 def main_part(model: ObservedModel, found: Screening, report: Report) -> MainPart | None:
     """None where no explanation, or none that is told from all but a few rivals, accounts for most of the mismatch."""
     plain = model.seen_as(in_plain_units(model.samples))
     seen = screen(plain, linearised(plain, found.baseline.values), report)
     tolerance = SignalDiscrepancy(plain.samples)
-    judge = TolerantJudge(plain, seen, tolerance, tolerance.sizes(seen.start.residual))
+    judge = TolerantJudge(plain, seen, tolerance, tolerance.sizes(seen.start.residual), conditions(plain.samples))
     firsts = first_fits(judge.model, judge.found, report) if judge.largest(judge.base) > VISIBLE else []
     if not firsts:
         return None
-    judge = TolerantJudge(plain, seen, tolerance, _left_by(judge, firsts[0]))
+    first = seen.candidates[firsts[0].number]
+    judge = TolerantJudge(
+        plain,
+        seen,
+        tolerance,
+        left_by(judge, settings((first,), firsts[0].values)),
+        held_together(plain.samples, [first]),
+    )
     models = judge.best_first(singles(judge.model, judge.found, firsts, report))
     if models and models[0].left > 1.0 - MOST:
         judge, models = _with_pairs(judge, models, report)
     return _told(judge, models) if models else None
-
-
-def _left_by(judge: TolerantJudge, first: FirstFit) -> Floats:
-    """Sizes (c,) of what a first fit leaves of all presses, nuisances as they come closest."""
-    setting = settings((judge.found.candidates[first.number],), first.values)
-    start = judge.found.start
-    system = linearised(judge.model, start.values, setting, 0.0, start.informative)
-    residual = system.residual.copy()
-    residual[system.informative] -= system.nuisance_design @ system.quadratic.mean(system.weighted(system.residual))
-    return judge.tolerance.sizes(residual)
 
 
 def _with_pairs(judge: TolerantJudge, models: Sequence[Judged], report: Report) -> tuple[TolerantJudge, list[Judged]]:
@@ -201,7 +107,7 @@ def _with_pairs(judge: TolerantJudge, models: Sequence[Judged], report: Report) 
     if not both:
         return judge, list(models)
     sizes = judge.tolerance.sizes(judge.missed(max(both, key=score_of).forecast))
-    closer = TolerantJudge(judge.model, judge.found, judge.tolerance, sizes)
+    closer = TolerantJudge(judge.model, judge.found, judge.tolerance, sizes, judge.fold)
     again = [closer.judged(closer.refitted(one.fit)) for one in (*models, *both)]
     best = max(again[: len(models)], key=score_of)
     kept = [one for one in again[len(models) :] if closer.gained(one.forecast, best.forecast).lower > 0.0]

@@ -86,11 +86,15 @@ def _against(evidence: Evidence, rates: Rates) -> list[str]:
             f"{figure(evidence.black_box_lower)} nats per press."
         )
     if evidence.group > rates.largest_group:
-        found.append(
-            f"{evidence.group} explanations cannot be told apart; at most {rates.largest_group} may remain for a name "
-            "to be given."
-        )
+        found.append(too_many(evidence.group, rates))
     return found
+
+
+def too_many(group: int, rates: Rates) -> str:
+    """The reason against a name that so many models share."""
+    return (
+        f"{group} explanations cannot be told apart; at most {rates.largest_group} may remain for a name to be given."
+    )
 
 
 def wilson_interval(successes: int, trials: int, level: float = 0.95) -> tuple[float, float]:

@@ -1,0 +1,179 @@
+"""Explanations judged as a reader does who knows that no law is exact: on held-out conditions, by their errors.
+
+A discrepancy is part of the likelihood (fit/signal_discrepancy.py); runs that repeat each other are one condition.
+
+Which explanations are as good as a name, once a discrepancy as large as what the name itself leaves is allowed.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from scipy.stats import norm
+
+from diagnose.figures import percent
+from diagnose.fit.observed_model import ObservedModel
+from diagnose.fit.refit import Fitted, capped, fitted, within_priors
+from diagnose.fit.samples import Samples
+from diagnose.fit.signal_discrepancy import SignalDiscrepancy, conditions, in_plain_units
+from diagnose.fit.system import Quadratic, linearised, relative
+from diagnose.forward import Candidate, Setting
+from diagnose.inference.choice import Choice, Judged, score_of
+from diagnose.inference.forecasts import Forecasted, forecasted, gained, separation
+from diagnose.inference.search import Screening
+from diagnose.statistics.abstain import RATES, too_many
+from diagnose.statistics.held_out import Gain, leave_press_out
+from geometry.arrays import Floats, Ints
+
+IN_EACH, MOST_LEFT, SIGMAS = 0.5, 0.5, 4.0
+"""Share of an excess that most of it is: in a condition, channel or phase alone, where that holds this share of all
+that is left; its excess counts from so many standard errors above noise."""
+
+
+class TolerantJudge:
+    """Judges explanations on what a fold (n,) holds out, in a metric that tolerates discrepancies of sizes (c,)."""
+
+    def __init__(
+        self, model: ObservedModel, found: Screening, tolerance: SignalDiscrepancy, sizes: Floats, fold: Ints
+    ) -> None:
+        self.tolerance, self.fold = tolerance, fold
+        self.model = model.tolerating(tolerance.variance(np.maximum(sizes, relative(model))))
+        rows = found.baseline.informative
+        start, baseline = (linearised(self.model, one.values, (), 0.0, rows) for one in (found.start, found.baseline))
+        self.found = replace(found, start=start, baseline=baseline, excess=0.0)
+        self.base = forecasted(model.samples, within_priors(start, baseline), None, self.fold)
+        self.before = self.left(self.base)
+
+    def judged(self, fit: Fitted) -> Judged:
+        """Held-out conditions predicted by a model that was fitted in this metric."""
+        forecast = forecasted(self.model.samples, capped(fit.system), fit, self.fold)
+        left = 1.0 - self.share(forecast)
+        return Judged(fit, forecast, self.gained(forecast, self.base), left, np.nan, np.nan)  # no test of noise alone
+
+    def gained(self, one: Forecasted, rival: Forecasted) -> Gain:
+        """Nats per condition, with a lower bound that is corrected for all candidates."""
+        return gained(one, rival, len(self.found.candidates))
+
+    def excluded(self, rival: Forecasted, best: Forecasted) -> bool:
+        """Whether the best would hardly predict so much better if the rival were true.
+
+        With d sigma between the two, its gain would then be normal with mean -d^2 / 2 and deviation d.
+        """
+        apart = float(np.linalg.norm(separation(best, rival)))
+        gain = float((best.log_scores - rival.log_scores).sum())
+        return gain + 0.5 * apart**2 > float(norm.isf(RATES.level / len(self.found.candidates))) * apart
+
+    def missed(self, forecast: Forecasted) -> Floats:
+        """(n,) residual of the recording, less what the nuisances of each run that was left out make of it."""
+        system, run = forecast.system, [one.run for one in self.model.nuisances]
+        residual = self.model.samples.recorded - forecast.predicted
+        own = np.flatnonzero([number is not None for number in run])
+        for _, held in leave_press_out(forecast.fold[system.informative]):
+            columns, rows = system.nuisance_design[held][:, own], np.flatnonzero(system.informative)[held]
+            weight = system.weight[rows]
+            found = Quadratic(columns * weight[:, None], system.sigma[own]).mean(residual[rows] * weight)
+            residual[rows] -= columns @ found
+        return residual
+
+    def left(self, forecast: Forecasted) -> Floats:
+        """(n,) squares above noise, relative to the signals, of what a forecast leaves."""
+        return self.tolerance.squares(self.missed(forecast))
+
+    def share(self, forecast: Forecasted) -> float:
+        """Share of the baseline's held-out excess that a forecast accounts for."""
+        before, after = (max(float(squares.sum()), 0.0) for squares in (self.before, self.left(forecast)))
+        return 1.0 - after / before if before > 0.0 else 0.0
+
+    def hidden(self) -> float:
+        """Share of the baseline's held-out excess that noise may hide, two sigma."""
+        before = float(self.before.sum())
+        return 2.0 * self.tolerance.noise_error / before if before > 0.0 else 1.0
+
+    def spread(self, forecast: Forecasted) -> bool:
+        """Whether no condition, channel or phase holds most of what is left while most of its own excess stays there.
+
+        That would be something else; laws that are not quite right and flaws of a rig leave a little everywhere.
+        """
+        after = self.left(forecast)
+        for labels in (self.fold, self.tolerance.channel, self.model.samples.phase):
+            _, place = np.unique(labels, return_inverse=True)
+            was, still = (np.maximum(np.bincount(place, squares), 0.0) for squares in (self.before, after))
+            seen = was > SIGMAS * self.tolerance.noise_errors(place)
+            if np.any(seen & (still > (1.0 - IN_EACH) * was) & (still > MOST_LEFT * still.sum())):
+                return False
+        return True
+
+    def largest(self, forecast: Forecasted) -> float:
+        """Root mean square of what a forecast leaves, relative to the signal, of the worst channel."""
+        return float(np.max(self.tolerance.sizes(self.missed(forecast)), initial=0.0))
+
+    def refitted(self, fit: Fitted) -> Fitted:
+        """A model fitted anew in this metric, from its values in another one."""
+        start = replace(self.found.start, values=fit.system.values)
+        return fitted(self.model, start, fit.candidates, fit.values, 0.0)
+
+    def best_first(self, fits: Sequence[Fitted]) -> list[Judged]:
+        """Models by how well they predict held-out conditions."""
+        return sorted(map(self.judged, fits), key=score_of, reverse=True)
+
+
+def held_together(samples: Samples, candidates: Sequence[Candidate]) -> Ints:
+    """Label (n,) of what is held out together: a condition, or a press where a candidate has values in each run.
+
+    The phase of hum in a run that was left out follows from no other run.
+    """
+    return samples.fold if any(one.traits.free_phase for one in candidates) else conditions(samples)
+
+
+def left_by(judge: TolerantJudge, on: Sequence[Setting]) -> Floats:
+    """Sizes (c,) of what settings leave of all presses, nuisances as they come closest."""
+    start = judge.found.start
+    system = linearised(judge.model, start.values, on, 0.0, start.informative)
+    residual = system.residual.copy()
+    residual[system.informative] -= system.nuisance_design @ system.quadratic.mean(system.weighted(system.residual))
+    return judge.tolerance.sizes(residual)
+
+
+VISIBLE = 0.01
+"""Root mean square error relative to the signal, above noise, below which flaws of an ordinary rig may make it."""
+
+
+def distinguished(model: ObservedModel, found: Screening, choice: Choice) -> Choice:
+    """A choice whose name has all that is as good in its group; there is no name where these are too many.
+
+    Nor is there one of a pair where one of the two alone leaves no more than flaws of an ordinary rig.
+    """
+    if not choice.decision.named:
+        return choice
+    judge = _judge_of_name(model, found, choice.models[0].fit)
+    again = [judge.judged(judge.refitted(one.fit)) for one in choice.models]
+    good = {n for n, one in enumerate(again) if not judge.excluded(one.forecast, again[0].forecast)}
+    group = tuple(sorted({*choice.groups[0], 0, *good}))
+    against = [too_many(len(group), RATES)] if len(group) > RATES.largest_group else _needless(judge, again)
+    rest = (tuple(n for n in other if n not in group) for other in choice.groups[1:])
+    decision = choice.decision
+    if against:
+        decision = replace(decision, named=False, unexplained=True, reasons=(*decision.reasons, *against))
+    return replace(choice, groups=(group, *filter(None, rest)), decision=decision)
+
+
+def _judge_of_name(model: ObservedModel, found: Screening, name: Fitted) -> TolerantJudge:
+    """Its discrepancy is what the name itself leaves."""
+    plain = model.seen_as(in_plain_units(model.samples))
+    tolerance, fold = SignalDiscrepancy(plain.samples), held_together(plain.samples, name.candidates)
+    judge = TolerantJudge(plain, found, tolerance, np.zeros(len(plain.samples.channels)), fold)
+    return TolerantJudge(plain, found, tolerance, left_by(judge, name.settings), fold)
+
+
+def _needless(judge: TolerantJudge, models: Sequence[Judged]) -> list[str]:
+    """The reason against a pair, which is the first of the models, where one of the two is enough."""
+    pair = models[0].fit.candidates
+    for one in models[1:]:
+        (first, *more), left = one.fit.candidates, judge.largest(one.forecast)
+        second = [other for other in pair if other != first]
+        if not more and len(second) < len(pair) and second and left <= VISIBLE:
+            return [
+                f"{first.mechanism} ({first.component}) alone leaves {percent(left)} of the signal, which may be flaws "
+                f"of an ordinary rig: {second[0].mechanism} ({second[0].component}) is not named for that."
+            ]
+    return []
