@@ -1,6 +1,6 @@
 """The whole chain on a toy sensor: its promises, on recordings of other laws than the engine's."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
@@ -118,6 +118,38 @@ def test_four_that_act_alike_are_not_named():
     findings = found(small(5, Sensor(leak=1.0), runs=3), (CANDIDATES[0], *twins))
     assert findings.unexplained
     assert "4 explanations cannot be told apart" in " ".join(findings.reasons)
+
+
+@dataclass
+class Rippled(ToyEngine):
+    """A leak through the film is the same as one of the input, but for ripples."""
+
+    ripples: float = 0.0
+
+    def predict(self, run, settings):
+        found = super().predict(run, settings)
+        film = any(setting.candidate.component == "film" for setting in settings)
+        wave = self.ripples * film * np.sin(60.0 * self.recording.runs[run].time_s)
+        return found | {"voltage_V": found["voltage_V"] * (1.0 + wave)}
+
+
+@pytest.mark.parametrize(("ripples", "alike"), [(0.003, 2), (0.03, 1)])
+def test_what_differs_by_less_than_two_codes_do_is_one_group(ripples, alike):
+    """By the noise alone both ripples tell the two leaks apart."""
+    recorded = small(5, Sensor(leak=1.0), runs=3, noise=0.0005, distort=0.001)
+    through_film = one("charge-leakage", "film", "leak", 0.0, 20.0, 0.5)
+    engine = Rippled(recorded, (*FEW[:3], through_film), {"force_N": 0.001, "voltage_V": 0.001}, ripples=ripples)
+    findings = diagnose(recorded, engine, 1, silent)
+    assert names(findings) == (LEAK,)
+    assert len(findings.groups[0]) == alike
+
+
+def test_a_second_mechanism_that_may_be_a_flaw_of_the_rig_is_not_named():
+    """A leak, and lost motion of 6 um that leaves half a per cent of the signal."""
+    sensor, sure = Sensor(leak=1.0, gap_mm=0.006), {"force_N": 0.003, "voltage_V": 0.003}
+    findings = found(small(5, sensor, runs=4, noise=0.001, distort=0.0), FEW[:4], accuracy=sure)
+    assert (findings.grade, names(findings)) == (Grade.MAIN_PART, (LEAK,))
+    assert "contact-gap (dot) is not named for that" in " ".join(findings.reasons)
 
 
 def test_of_two_equals_the_one_that_a_real_part_can_have_is_named():
