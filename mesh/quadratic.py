@@ -71,8 +71,8 @@ def named_facets(
     facets = _outer_facets(points_mm, tets, region, names, stack, neighbour)
     if "film" in names:
         film = names.index("film")
-        facets["film-bottom"] = _between(tets, region, neighbour, names.index("medium2"), film)
-        facets["film-top"] = _between(tets, region, neighbour, film, names.index("medium1"))
+        facets["film-bottom"] = between_parts(tets, region, neighbour, names.index("medium2"), film)
+        facets["film-top"] = between_parts(tets, region, neighbour, film, names.index("medium1"))
     return facets
 
 
@@ -107,7 +107,7 @@ def _on_either(coordinate: Floats, half: float) -> NDArray[np.bool_]:
     return np.asarray(_on_plane(coordinate, half) | _on_plane(coordinate, -half))
 
 
-def _between(tets: Ints, region: Ints, neighbour: Ints, lower: int, upper: int) -> Ints:
+def between_parts(tets: Ints, region: Ints, neighbour: Ints, lower: int, upper: int) -> Ints:
     """Facets from one part to the next above it, normal up."""
     other = np.where(neighbour >= 0, region[neighbour], -1)
     owner, face = np.nonzero((region[:, None] == lower) & (other == upper))
