@@ -12,6 +12,7 @@ import numpy as np
 from geometry.array.checks import check_array
 from geometry.array.layout import ArrayLayout, Place, array_layout
 from geometry.base import InputError
+from geometry.braille import COLUMN_AND_ROW, dot_offset_mm, dot_standard, raised_dots
 from geometry.checks import check_press_depth, check_segment
 from geometry.dot import DotShape, resolve_dot
 from geometry.parameters import Dot, Segment
@@ -52,7 +53,9 @@ class ArrayCase:
         if depth is not None:
             check_press_depth(self.config.segment, depth)
         presses = [self.press_over(place) for place in self.layout.places]
-        presses += [self.press_by_cell()] if self.config.dot.cell is not None else []
+        if self.config.dot.cell is not None:
+            self.under_dots()
+            presses.append(self.press_by_cell())
         for press in presses:
             count = expected_elements(self.layout, press.dot, self.config.mesh, press.planes)
             refuse_many_elements(count, self.config.mesh, False)
@@ -80,14 +83,33 @@ class ArrayCase:
         return ArrayPress(self, self.config.dot.model_copy(update=update))
 
     def press_by_cell(self) -> "ArrayPress":
-        """All dots of dot.cell on one plate, dot 1 where segment r1c1 is. InputError without a cell."""
-        from geometry.braille import dot_offset_mm
+        """All dots of dot.cell on one plate, dot 1 over segment r1c1, the others at the pitch of the standard.
 
+        InputError without a cell, or where the standard states no pitch.
+        """
         dot, first = self.config.dot, self.layout.places[0]
         if dot.cell is None:
             raise InputError("dot.cell is missing: a cell is needed that presses the array")
-        x, y = np.add(dot.offset_mm, dot_offset_mm(dot.cell_dot, self.layout.pitch_mm))
+        standard = dot_standard(dot)
+        pitch = self.layout.pitch_mm if standard is None else standard.nominal_mm("dot_pitch_mm")
+        x, y = np.add(dot.offset_mm, dot_offset_mm(dot.cell_dot, pitch))
         return ArrayPress(self, dot.model_copy(update={"offset_mm": (first.x_mm + float(x), first.y_mm + float(y))}))
+
+    def under_dots(self) -> dict[int, int]:
+        """Number of the segment under each raised dot of dot.cell, dot 1 over segment r1c1. InputError for a dot that
+        has none.
+        """
+        columns, rows = len(self.layout.centres(0)), len(self.layout.centres(1))
+        found = {}
+        for dot in raised_dots(self.config.dot.cell or ""):
+            column, row = COLUMN_AND_ROW[dot]
+            if column >= columns or row >= rows:
+                raise InputError(
+                    f"dot.cell = '{self.config.dot.cell}': dot {dot} has no segment under it, the array has {rows} rows "
+                    f"of {columns}"
+                )
+            found[dot] = row * columns + column
+        return found
 
     @cached_property
     def mirrors(self) -> Planes:
@@ -143,7 +165,7 @@ class ArrayPress:
                 f"mechanisms: {names}: one of them changes the segment, the dot or a bond, which an array does not "
                 "take; leave it out"
             )
-        return model
+        return replace(model, physics=replace(model.physics, separate_channels=True))
 
     @cached_property
     def dot(self) -> DotShape:
