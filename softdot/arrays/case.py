@@ -18,7 +18,7 @@ from geometry.dot import DotShape, resolve_dot
 from geometry.parameters import Dot, Segment
 from mesh.array_mesh import array_mesh, expected_elements
 from mesh.types import Planes, TetMesh
-from softdot.checks import refuse_many_elements
+from softdot.checks import Cost, cost_of, refuse_many_elements
 from softdot.config import Config
 from softdot.config.model import model_of
 from solve.materials.film import film_law
@@ -52,14 +52,22 @@ class ArrayCase:
         depth = self.config.press.indentation_mm
         if depth is not None:
             check_press_depth(self.config.segment, depth)
-        presses = [self.press_over(place) for place in self.layout.places]
         if self.config.dot.cell is not None:
             self.under_dots()
-            presses.append(self.press_by_cell())
-        for press in presses:
-            count = expected_elements(self.layout, press.dot, self.config.mesh, press.planes)
-            refuse_many_elements(count, self.config.mesh, False)
+        refuse_many_elements(max(self._elements), self.config.mesh, False)
         return warnings
+
+    @property
+    def _elements(self) -> list[float]:
+        """Rough number of elements of each press that is solved. InputError for a dot that overlaps the array."""
+        presses = [self.press_over(self.layout.places[number]) for number in self.solved]
+        presses += [self.press_by_cell()] if self.config.dot.cell is not None else []
+        return [expected_elements(self.layout, press.dot, self.config.mesh, press.planes) for press in presses]
+
+    @property
+    def cost(self) -> Cost:
+        """Of all presses of the array, whose meshes are of about the size of the largest. InputError."""
+        return cost_of(max(self._elements), self.config, len(self._elements))
 
     def _refuse_what_is_one_segments(self) -> None:
         """Keys of the configuration that an array does not take."""

@@ -4,9 +4,14 @@ import sys
 from argparse import Namespace
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from softdot.console import BAD_INPUT, GOOD, complain, json_text, plain
+
+if TYPE_CHECKING:
+    from softdot.checks import Cost
+    from softdot.config import Config
+    from solve.model import Model
 
 FORMAT = "softdot-check/1"
 
@@ -25,26 +30,42 @@ def command(chosen: Namespace) -> int:
 
 def check_file(path: Path, settings: list[str]) -> dict[str, Any]:
     """Mistakes, warnings and the expected cost of a configuration."""
-    from softdot.checks import design_warnings, expected_cost
+    from softdot.checks import design_warnings
     from softdot.config import config_from
     from softdot.config.errors import mistakes
     from softdot.config.toml import completed, from_default, read_toml, with_settings
 
     def check(tables: Mapping[str, Any]) -> tuple[Any, ...]:
-        from softdot.case import Case
-
-        case = Case(config_from(completed(tables)))
-        return (case, *case.checked)
+        config = config_from(completed(tables))
+        return (config, *(_segment(config) if config.array is None else _array(config)))
 
     stated = with_settings(read_toml(path), settings)
     found, checked = mistakes(stated, check)
     summary: dict[str, Any] = {"format": FORMAT, "config": str(path), "mistakes": found}
     if checked is None:
         return summary
-    case, dot_shape, warnings = checked
-    cost = expected_cost(case.config, dot_shape, case.planes)
-    told: dict[str, Any] = plain({"warnings": [*warnings, *design_warnings(case.model)], "expected": vars(cost)})
-    return {**summary, **told, "from_default": list(from_default(stated, case.config.model_dump(mode="json")))}
+    config, model, warnings, cost = checked
+    told: dict[str, Any] = plain({"warnings": [*warnings, *design_warnings(model)], "expected": vars(cost)})
+    return {**summary, **told, "from_default": list(from_default(stated, config.model_dump(mode="json")))}
+
+
+def _segment(config: "Config") -> "tuple[Model, list[str], Cost]":
+    """Model, warnings and cost of a run. InputError."""
+    from softdot.case import Case
+    from softdot.checks import expected_cost
+
+    case = Case(config)
+    dot_shape, warnings = case.checked
+    return case.model, warnings, expected_cost(config, dot_shape, case.planes)
+
+
+def _array(config: "Config") -> "tuple[Model, list[str], Cost]":
+    """Model, warnings and cost of the crosstalk of an array, whose lone segments come on top. InputError."""
+    from softdot.arrays.case import ArrayCase
+
+    case = ArrayCase(config)
+    warnings = case.checked
+    return case.press_over(case.layout.places[0]).model, warnings, case.cost
 
 
 def short_text(summary: dict[str, Any]) -> str:

@@ -1,7 +1,7 @@
 """The whole crosstalk matrix of an array of two segments against NGSolve: shared film and media, effectors of their own.
 
 The mesh is shared, element integrals, contact and solver are not (see test_against_ngsolve_press.py). Both codes solve
-a half, as the dots stand in the plane y = 0.
+a half, as the dots stand in the plane y = 0, and the press of the first segment: that of the second is its image.
 """
 
 import importlib.util
@@ -26,13 +26,13 @@ pytestmark = [
     pytest.mark.skipif(importlib.util.find_spec("pypardiso") is None, reason="NGSolve borrows MKL's PARDISO"),
 ]
 PROGRAM = Path(__file__).with_name("ngsolve_array.py")
-DEPTH_MM, STEPS = 0.3, 4
+DEPTH_MM, STEPS, THEIR_STEPS = 0.3, 4, 12  # their Newton method has no line search
 AUGMENTATION_MPA_PER_MM = 20.0
 TABLES = {
     "segment": {"length_mm": 2.3, "width_mm": 2.3, "boundary": "free"},
     "array": {"columns": 2, "rows": 1},
     "press": {"indentation_mm": DEPTH_MM, "load_steps": STEPS},
-    "mesh": {"element_size_mm": 0.6, "contact_element_size_mm": 0.15, "film_element_size_mm": 0.45},
+    "mesh": {"element_size_mm": 0.7, "contact_element_size_mm": 0.2, "film_element_size_mm": 0.45},
 }
 
 
@@ -54,7 +54,7 @@ def by_ngsolve(press, electrodes, path):
         facet_names=list(facets),
         **{f"facet:{name}": nodes for name, nodes in facets.items()},
         depth=DEPTH_MM,
-        steps=STEPS,
+        steps=THEIR_STEPS,
         radius=press.dot.radius_mm,
         dot_x=press.dot.origin_mm[0],
         electrodes=electrodes,
@@ -69,15 +69,12 @@ def by_ngsolve(press, electrodes, path):
 
 
 def test_matrix_of_two_segments(tmp_path, monkeypatch):
-    """Every entry within 2 %, the force within 1 %; both rows are solved there, one and its image here."""
+    """Every entry within 2 %, the force within 1 %."""
     monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path))
     case = ArrayCase(config_from(completed(TABLES)))
     matrix = crosstalk(case, lambda name: lambda step, number, count: None)
-    assert list(matrix.solved) == [0]
     electrodes = np.array(case.layout.edges(0))
-    for i, place in enumerate(case.layout.places):
-        force_N, voltages_V = by_ngsolve(case.press_over(place), electrodes, tmp_path / "case.npz")
-        agrees(f"array 2 x 1, {place.label} pressed, force (N)", matrix.force_N[i, -1], force_N, 0.01)
-        for j, other in enumerate(case.layout.places):
-            name = f"array 2 x 1, {place.label} pressed, voltage of {other.label} (V)"
-            agrees(name, matrix.voltage_V[i, -1, j], voltages_V[j], 0.02)
+    force_N, voltages_V = by_ngsolve(case.press_over(case.layout.places[0]), electrodes, tmp_path / "case.npz")
+    agrees("array 2 x 1, force (N)", matrix.force_N[0, -1], force_N, 0.01)
+    for i, j in np.ndindex(2, 2):
+        agrees(f"array 2 x 1, voltage [{i}][{j}] (V)", matrix.voltage_V[i, -1, j], voltages_V[(i + j) % 2], 0.02)
