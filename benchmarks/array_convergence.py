@@ -1,4 +1,4 @@
-"""Convergence of crosstalk matrices with the mesh, and the table of docs/array.md: the paper's final design as an array.
+"""Convergence of crosstalk matrices with the mesh: the paper's final design as an array (the table of docs/array.md).
 
     python -m benchmarks.array_convergence OUT.json
 
@@ -32,9 +32,9 @@ JOINED: dict[str, dict[str, list[str]]] = {
 }
 
 
-def quiet(name: str) -> Any:
+def quiet(_name: str) -> Any:
     """Tell nobody of the steps."""
-    return lambda step, number, count: None
+    return lambda _step, _number, _count: None
 
 
 def matrix(columns: int, rows: int, joined: dict[str, list[str]], sizes_mm: tuple[float, float]) -> CrosstalkMatrix:
@@ -70,7 +70,9 @@ def main(path: Path) -> None:
             meshes = {f"{sizes[0]}/{sizes[1]}": row(matrix(columns, rows, joined, sizes)) for sizes in SIZES_MM}
             finest = np.array(list(meshes.values())[-1]["charge_pC"])
             for one in meshes.values():
-                one["error_percent"] = float(100 * np.abs(np.array(one["charge_pC"]) - finest).max() / np.abs(finest).max())
+                one["error_percent"] = float(
+                    100 * np.abs(np.array(one["charge_pC"]) - finest).max() / np.abs(finest).max()
+                )
             table[f"{shape}: {name}"] = meshes
             path.write_text(json.dumps(table, indent=1), "utf-8")
             errors = ", ".join(f"{size} mm {one['error_percent']:.2f} %" for size, one in meshes.items())

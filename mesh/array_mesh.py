@@ -5,7 +5,7 @@ at all edges of layers, so that each triangle lies either inside a layer or outs
 inside the array (an island in a stiff grid) has these walls among its facets side-<part>, as its sides at the rim.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -62,14 +62,14 @@ class ArraySizing(Sizing):
         to_end = np.abs(_inside(points, self.ends)).min(axis=1)
         rim = RIM * self.film_mm + RIM_GROWTH * np.hypot(to_film, to_end) + beside
         contact = self.contact_mm + GROWTH * self._to_contact(points)
-        return np.minimum(np.minimum(np.minimum(contact, film), rim), self.coarse_mm)
+        return np.asarray(np.minimum(np.minimum(np.minimum(contact, film), rim), self.coarse_mm))
 
 
 def _inside(points: Floats, rectangles: Floats) -> Floats:
     """Distance (n, k) of points from the nearest edge of each rectangle, negative outside."""
     x, y = points[:, :1], points[:, 1:2]
     x0, x1, y0, y1 = rectangles.T
-    return np.asarray(np.minimum(np.minimum(x - x0, x1 - x), np.minimum(y - y0, y1 - y)))
+    return np.asarray(np.minimum(np.minimum(x - x0, x1 - x), np.minimum(y - y0, y1 - y)), dtype=np.float64)
 
 
 def _outside(points: Floats, rectangles: Floats) -> Floats:
@@ -77,7 +77,7 @@ def _outside(points: Floats, rectangles: Floats) -> Floats:
     x, y = points[:, :1], points[:, 1:2]
     x0, x1, y0, y1 = rectangles.T
     beside = np.maximum(np.maximum(x0 - x, x - x1), 0.0), np.maximum(np.maximum(y0 - y, y - y1), 0.0)
-    return np.asarray(np.hypot(*beside))
+    return np.asarray(np.hypot(*beside), dtype=np.float64)
 
 
 def array_mesh(layout: ArrayLayout, dot: DotShape, options: MeshOptions, planes: Planes = ()) -> TetMesh:

@@ -198,8 +198,8 @@ def _add_array(commands: Any) -> None:
     array = commands.add_parser(
         "array",
         help="press several segments under shared layers: their crosstalk",
-        description="Press each segment of an array alone: charge and voltage of every segment, what joins them, and "
-        "the lone segment that stands for one of them. Presses that were solved are kept, so that a second run goes on.",
+        description="Press each segment of an array alone: charge and voltage of every segment, and the lone segment "
+        "that stands for one of them. Presses that were solved are kept, so that a second run goes on.",
         epilog="docs/array.md explains the table [array] and the results. " + EXIT_STATUS,
     )
     _add_config(array)

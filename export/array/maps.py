@@ -33,10 +33,10 @@ def draw_matrix(labels: Sequence[str], crosstalk_percent: Floats, path: Path) ->
         short = [label.removeprefix("segment-") for label in labels]
         axes.set_xticks(range(count), short, fontsize=10, rotation=90 if count > 8 else 0)
         axes.set_yticks(range(count), short, fontsize=10)
-        for i, j in np.ndindex(count, count):
-            strong = abs(crosstalk_percent[i, j]) > DARK_PERCENT
-            axes.text(j, i, _percent(crosstalk_percent[i, j]), ha="center", va="center", fontsize=9 if count < 9 else 7,
-                      color="white" if strong else INK)  # fmt: skip
+        size = 9 if count < 9 else 7
+        for (i, j), share in np.ndenumerate(crosstalk_percent):
+            colour = "white" if abs(share) > DARK_PERCENT else INK
+            axes.text(j, i, _percent(share), ha="center", va="center", fontsize=size, color=colour)
     axes.set_xlabel("segment that is read", fontsize=12, color=INK)
     axes.set_ylabel("segment that is pressed", fontsize=12, color=INK)
     axes.set_title("Crosstalk in % of the pressed segment's voltage", fontsize=13, color=INK)

@@ -61,9 +61,9 @@ class ArrayLayout:
         """Middles of the columns (axis 0) or of the rows (axis 1), rising and mirrored about 0."""
         array = self.array
         if axis == 1:
-            return _centred(self.pitch_mm * np.arange(array.rows))
-        cells = self.cell_pitch_mm * np.arange(array.cells)
-        return _centred(np.add.outer(cells, self.pitch_mm * np.arange(array.columns)).ravel())
+            return _centred(self.pitch_mm * np.arange(array.rows, dtype=np.float64))
+        cells = self.cell_pitch_mm * np.arange(array.cells, dtype=np.float64)
+        return _centred((cells[:, None] + self.pitch_mm * np.arange(array.columns)).ravel())
 
     @cached_property
     def places(self) -> tuple[Place, ...]:
@@ -120,8 +120,8 @@ class ArrayLayout:
         """Whether a layer has material over points (n, 2), at a height within it."""
         if self.ends_at_walls(layer):
             foot = self.foot_mm(layer)
-            return np.logical_and.reduce([self._within(xy_mm[:, axis], axis, foot[axis] / 2) for axis in (0, 1)])
-        present = np.ones(len(xy_mm), dtype=bool)
+            return self._within(xy_mm[:, 0], 0, foot[0] / 2) & self._within(xy_mm[:, 1], 1, foot[1] / 2)
+        present: Bools = np.ones(len(xy_mm), dtype=bool)
         top = next(one.top_mm for one in layers(self.segment) if one.name == layer)
         for groove in self.grooves(layer):
             if z_mm > top - groove.depth_mm:
@@ -172,7 +172,7 @@ class ArrayLayout:
 def _centred(positions: Floats) -> Floats:
     """Rising positions moved so that they are mirrored about 0 to the last digit."""
     middle = positions - positions.mean()
-    return np.asarray((middle - middle[::-1]) / 2)
+    return np.asarray((middle - middle[::-1]) / 2, dtype=np.float64)
 
 
 def array_layout(array: Array, segment: Segment, dot: Dot) -> ArrayLayout:

@@ -23,12 +23,8 @@ class Array(Table):
     columns: Annotated[int, Field(ge=1, le=MOST_IN_A_LINE)] = Field(2, description="segments of a cell along x")
     rows: Annotated[int, Field(ge=1, le=MOST_IN_A_LINE)] = Field(3, description="segments along y")
     cells: Annotated[int, Field(ge=1, le=MOST_IN_A_LINE)] = Field(1, description="cells side by side along x")
-    pitch_mm: Positive | None = Field(
-        None, description="from segment to segment; none: the dot pitch of dot.standard"
-    )
-    cell_pitch_mm: Positive | None = Field(
-        None, description="from cell to cell; none: the cell pitch of dot.standard"
-    )
+    pitch_mm: Positive | None = Field(None, description="from segment to segment; none: the dot pitch of dot.standard")
+    cell_pitch_mm: Positive | None = Field(None, description="from cell to cell; none: the cell pitch of dot.standard")
     shared: tuple[LayerName, ...] = Field(
         ("film", "medium1", "medium2"), description="layers that run through; the others are islands, one a segment"
     )

@@ -46,7 +46,7 @@ class ArrayCase:
 
     @cached_property
     def checked(self) -> list[str]:
-        """What a user should know about this design. InputError, before any work, for what cannot be built or solved."""
+        """What a user should know about this design. InputError for what cannot be built or solved."""
         warnings = [*check_segment(self.config.segment), *check_array(self.layout)]
         self._refuse_what_is_one_segments()
         depth = self.config.press.indentation_mm
@@ -113,8 +113,8 @@ class ArrayCase:
             column, row = COLUMN_AND_ROW[dot]
             if column >= columns or row >= rows:
                 raise InputError(
-                    f"dot.cell = '{self.config.dot.cell}': dot {dot} has no segment under it, the array has {rows} rows "
-                    f"of {columns}"
+                    f"dot.cell = '{self.config.dot.cell}': dot {dot} has no segment under it, "
+                    f"array.rows = {rows} and {columns} in each"
                 )
             found[dot] = row * columns + column
         return found

@@ -88,7 +88,9 @@ def _solved(press: ArrayPress, on_step: OnStep | None) -> tuple[Signals, PressRe
 
 def _path(press: ArrayPress) -> Path:
     """Where a press is kept."""
-    return folder() / f"array-{data_hash([source_hash(__name__), input_hash(press.config), mesh_hash(press.mesh)])}.json"
+    return (
+        folder() / f"array-{data_hash([source_hash(__name__), input_hash(press.config), mesh_hash(press.mesh)])}.json"
+    )
 
 
 def signals_of(press: ArrayPress, result: PressResult, solve_s: float) -> Signals:
@@ -123,7 +125,9 @@ def _keep(path: Path, found: Signals) -> None:
 
 
 def _decoded(tree: dict[str, Any]) -> Signals:
-    lists = {key: (tuple if key in TUPLES else np.array)(value) for key, value in tree.items() if isinstance(value, list)}
+    lists = {
+        key: (tuple if key in TUPLES else np.array)(value) for key, value in tree.items() if isinstance(value, list)
+    }
     return Signals(**{**tree, **lists})
 
 

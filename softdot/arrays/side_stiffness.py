@@ -40,7 +40,8 @@ class Likeness:
 class EffectiveSides:
     """The lone segment that stands best for one of the array, beside a free and a clamped one.
 
-    held_layers : which layers its sides are held at. at_limit : the best is at the end of the range that was looked at; it is then as good as free or clamped.
+    held_layers : which layers its sides are held at. at_limit : the best is at the end of the range that was looked at;
+    it is then as good as free or clamped.
     """
 
     label: str
@@ -105,9 +106,7 @@ def effective_sides(matrix: CrosstalkMatrix, follow: Follow) -> dict[str, Effect
     return found
 
 
-def _pressed(
-    case: ArrayCase, boundary: str, held: tuple[LayerName, ...], k: float, follow: Follow
-) -> Signals:
+def _pressed(case: ArrayCase, boundary: str, held: tuple[LayerName, ...], k: float, follow: Follow) -> Signals:
     update = {"boundary": boundary, "held_layers": held, "side_stiffness_N_per_mm3": k}
     alone = case.lone(case.config.segment.model_copy(update=update))
     spring = f" {k:.3g} N/mm3" if boundary == "elastic" else ""

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.array.layout import array_layout
 from geometry.array.checks import check_array
+from geometry.array.layout import array_layout
 from geometry.array.parameters import Array
 from geometry.base import InputError
 from geometry.parameters import Effector, LayerName
@@ -67,6 +67,6 @@ def worth(case: ArrayCase, follow: Follow) -> list[Worth]:
         press = converged(signals(other.press_over(place), follow(name)), f"the press of {place.label}, {name},")
         others = np.abs(np.delete(press.signal_V[-1], number))
         share = 100.0 * float(others.max(initial=0.0)) / abs(float(press.signal_V[-1, number]))
-        at_end = (press.force_N[-1], press.charge_pC[-1, number], press.voltage_V[-1, number])
-        found.append(Worth(name, place.label, *map(float, at_end), share))
+        force_N, charge_pC = float(press.force_N[-1]), float(press.charge_pC[-1, number])
+        found.append(Worth(name, place.label, force_N, charge_pC, float(press.voltage_V[-1, number]), share))
     return found

@@ -37,12 +37,16 @@ if TYPE_CHECKING:
 
 LOG = logging.getLogger(__name__)
 ARRAY = Product(
-    "softdot-array/1", "array.json", frozenset({"array.json", "crosstalk.csv", "report.html", "cad", "pictures", "results"})
+    "softdot-array/1",
+    "array.json",
+    frozenset({"array.json", "crosstalk.csv", "report.html", "cad", "pictures", "results"}),
 )
 HERE = Path(__file__).parent
 
 
-def run_array(config: Config, out: Path, progress: Progress | None = None, with_variants: bool = False) -> dict[str, Any]:
+def run_array(
+    config: Config, out: Path, progress: Progress | None = None, with_variants: bool = False
+) -> dict[str, Any]:
     """Study the array of a configuration into the folder out and return what array.json says.
 
     InputError before any work for what cannot be built or written. Where a press does not converge, StoppedPressError

@@ -22,7 +22,14 @@ SOLID, ROUND = 9, 40
 """Every 9th design is a solid, every 40th has a round effector (pytetwild); the rest are plane-strain slices."""
 ARRAY, FIRST_ARRAY = 45, 9
 """Every 45th design from the 9th, all of them solids, is an array of two segments."""
-ONE_SEGMENTS = {"adhesive-compliance", "delamination", "dimension-reduction", "dot-offset", "elastic-sides", "crosstalk"}
+ONE_SEGMENTS = {
+    "adhesive-compliance",
+    "delamination",
+    "dimension-reduction",
+    "dot-offset",
+    "elastic-sides",
+    "crosstalk",
+}
 """Mechanisms that an array does not take, and one between the halves of a segment."""
 STANDARDS = ("marburg-medium", "ada", "nls", "japan", "en-15823")
 

@@ -98,7 +98,11 @@ REFUSED = {
         {"effector": Effector(shape="block", length_mm=1.0, width_mm=1.0)},
         r"array.shared: names 'effector', whose shape 'block'",
     ),
-    "absent": (Array(shared=ALL), {"effector": None}, r"array.shared: names 'effector', but segment.effector is absent"),
+    "absent": (
+        Array(shared=ALL),
+        {"effector": None},
+        r"array.shared: names 'effector', but segment.effector is absent",
+    ),
     "twice": (Array(shared=("film", "film")), {}, r"array.shared: 'film' is named twice"),
     "elastic rim beside a grid": (
         Array(grid_layers=("film",)),

@@ -110,5 +110,5 @@ def test_elements_grow_away_from_the_pressed_segment():
 def test_a_gap_below_the_dot_is_not_another_mesh():
     one = array_layout(Array(columns=2, rows=1), segment(), Dot())
     dot = resolve_dot(Dot(), one.whole)
-    moved = replace(dot, origin_mm=dot.origin_mm + [0.0, 0.0, 0.2])
+    moved = replace(dot, origin_mm=dot.origin_mm + np.array([0.0, 0.0, 0.2]))
     np.testing.assert_array_equal(array_mesh(one, dot, COARSE).tets, array_mesh(one, moved, COARSE).tets)

@@ -1,4 +1,4 @@
-"""The whole crosstalk matrix of an array of two segments against NGSolve: shared film and media, effectors of their own.
+"""The whole crosstalk matrix of two segments against NGSolve: film and media run through, effectors do not.
 
 The mesh is shared, element integrals, contact and solver are not (see test_against_ngsolve_press.py). Both codes solve
 a half, as the dots stand in the plane y = 0, and the press of the first segment: that of the second is its image.
@@ -72,7 +72,7 @@ def test_matrix_of_two_segments(tmp_path, monkeypatch):
     """Every entry within 2 %, the force within 1 %."""
     monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path))
     case = ArrayCase(config_from(completed(TABLES)))
-    matrix = crosstalk(case, lambda name: lambda step, number, count: None)
+    matrix = crosstalk(case, lambda _name: lambda _step, _number, _count: None)
     electrodes = np.array(case.layout.edges(0))
     force_N, voltages_V = by_ngsolve(case.press_over(case.layout.places[0]), electrodes, tmp_path / "case.npz")
     agrees("array 2 x 1, force (N)", matrix.force_N[0, -1], force_N, 0.01)

@@ -1,4 +1,4 @@
-"""An array where its answer is known: one segment alone in the limits, mirror images, conservation of charge and work."""
+"""Arrays whose answer is known: one segment alone in the limits, mirror images, conservation of charge and work."""
 
 from dataclasses import replace
 

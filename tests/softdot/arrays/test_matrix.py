@@ -26,8 +26,8 @@ def made_up(charges_pC, failure=None) -> Signals:
     )  # fmt: skip
 
 
-def quiet(name):
-    return lambda step, number, count: None
+def quiet(_name):
+    return lambda _step, _number, _count: None
 
 
 def test_mirror_images_are_not_solved_again():
@@ -77,7 +77,7 @@ def test_a_solved_press_is_kept(monkeypatch, tmp_path):
     first = signals(press)
     assert first.failure is None
 
-    def never(*given, **named):
+    def never(*_given, **_named):
         raise AssertionError("solved again")
 
     monkeypatch.setattr(presses_module, "press_segment", never)
@@ -92,7 +92,7 @@ def test_a_solved_press_is_kept(monkeypatch, tmp_path):
 def test_a_press_that_stops_is_told_by_its_segment(monkeypatch):
     """Nothing is made of the others."""
     stopped = replace(made_up([1.0, 1.0]), failure="step 1 of 2 stopped")
-    monkeypatch.setattr("softdot.arrays.matrix.signals", lambda press, on_step: stopped)
+    monkeypatch.setattr("softdot.arrays.matrix.signals", lambda _press, _on_step: stopped)
     with pytest.raises(StoppedPressError, match="the press of segment-r1c1 did not converge: step 1 of 2 stopped"):
         crosstalk(array(), quiet)
 
@@ -104,7 +104,7 @@ REFUSED = {
     "too fine": ({"mesh": {"contact_element_size_mm": 0.004}}, "mesh.contact_element_size_mm = 0.004: means about"),
     "cell too large": (
         {"dot": {"standard": "marburg-medium", "cell": "⠿"}},
-        "dot.cell = '⠿': dot 2 has no segment under it, the array has 1 rows of 2",
+        "dot.cell = '⠿': dot 2 has no segment under it, array.rows = 1 and 2 in each",
     ),
     "a mechanism that moves the dot": (
         {"mechanisms": [{"name": "dot-offset", "component": "dot", "parameters": {"offset_mm": [0.1, 0.0]}}]},
