@@ -37,10 +37,15 @@ class Triangulation:
     part: Ints
 
 
-def refine(start: Triangulation, size: Callable[[Floats], Floats], circle_radius: float | None) -> Triangulation:
+ORIGIN = np.zeros((1, 2))
+
+
+def refine(
+    start: Triangulation, size: Callable[[Floats], Floats], circle_radius: float | None, centres: Floats = ORIGIN
+) -> Triangulation:
     """Bisect until the longest edge of each triangle is at most the size at its centroid.
 
-    circle_radius : the edges between different parts are arcs of this circle about the origin.
+    circle_radius : the edges between different parts are arcs of this circle about the nearest of the centres (n, 2).
     """
     current = start
     while True:
@@ -49,10 +54,10 @@ def refine(start: Triangulation, size: Callable[[Floats], Floats], circle_radius
         marked = longest > size(corner.mean(axis=1)) * (1 + 1e-9)
         if not marked.any():
             return current
-        current = _bisect(current, marked, circle_radius)
+        current = _bisect(current, marked, circle_radius, centres)
 
 
-def _bisect(old: Triangulation, marked: Bools, circle_radius: float | None) -> Triangulation:
+def _bisect(old: Triangulation, marked: Bools, circle_radius: float | None, centres: Floats) -> Triangulation:
     """Cut every marked triangle at least once and close the triangulation (L. Chen, iFEM, 2009)."""
     edges, of_triangle = _edges(old.triangles)
     cut = np.zeros(len(edges), dtype=bool)
@@ -62,7 +67,7 @@ def _bisect(old: Triangulation, marked: Bools, circle_radius: float | None) -> T
         if not open_ones.any():
             break
         cut[of_triangle[open_ones, 0]] = True
-    points, middle = _cut_edges(old, edges, of_triangle, cut, circle_radius)
+    points, middle = _cut_edges(old, edges, of_triangle, cut, circle_radius, centres)
     triangles, part = old.triangles, old.part
     for _ in range(2):  # the children's cut edges are edges of the old triangle, so twice is enough
         triangles, part, of_triangle = _halve(triangles, part, of_triangle, middle)
@@ -77,7 +82,7 @@ def _edges(triangles: Ints) -> tuple[Ints, Ints]:
 
 
 def _cut_edges(
-    old: Triangulation, edges: Ints, of_triangle: Ints, cut: Bools, circle_radius: float | None
+    old: Triangulation, edges: Ints, of_triangle: Ints, cut: Bools, circle_radius: float | None, centres: Floats
 ) -> tuple[Floats, Ints]:
     """All points with the new mid-points, and the number of each edge's mid-point (-1: not cut)."""
     middle = np.full(len(edges), -1, dtype=np.int64)
@@ -89,8 +94,15 @@ def _cut_edges(
             np.minimum.at(low, of_triangle[:, side], old.part)
             np.maximum.at(high, of_triangle[:, side], old.part)
         on_circle = (low != high)[cut]
-        new[on_circle] *= circle_radius / np.linalg.norm(new[on_circle], axis=1, keepdims=True)
+        new[on_circle] = _onto_circle(new[on_circle], circle_radius, centres)
     return np.vstack([old.points, new]), middle
+
+
+def _onto_circle(points: Floats, radius: float, centres: Floats) -> Floats:
+    """Points (m, 2) moved onto the circle about the nearest centre."""
+    away = points[:, None] - centres
+    arm = away[np.arange(len(points)), np.linalg.norm(away, axis=2).argmin(axis=1)]
+    return np.asarray(points + arm * (radius / np.linalg.norm(arm, axis=1, keepdims=True) - 1.0))
 
 
 def _halve(triangles: Ints, part: Ints, of_triangle: Ints, middle: Ints) -> tuple[Ints, Ints, Ints]:
@@ -127,7 +139,7 @@ def start_triangulation(outline: StackOutline, coarse_mm: float) -> Triangulatio
     triangles = crossed(quads)
     part = outline.inside_effector(triangles.mean(axis=1)).astype(np.int64)
     if round_foot:
-        rim, disc = _round_patch(patch, outline.effector_half_x)
+        rim, disc = round_patch(patch, outline.effector_half_x)
         ring = crossed(rim)
         triangles = np.concatenate([triangles, ring, disc])
         part = np.concatenate([part, np.zeros(len(ring), dtype=np.int64), np.ones(len(disc), dtype=np.int64)])
@@ -172,7 +184,7 @@ def crossed(quads: Floats) -> Floats:
     return np.concatenate(sides)
 
 
-def _round_patch(patch: tuple[float, float], radius: float) -> tuple[Floats, Floats]:
+def round_patch(patch: tuple[float, float], radius: float) -> tuple[Floats, Floats]:
     """Quadrilaterals between circle and rectangle, and the triangles of the disc around a square core."""
     t = np.array([-1.0, -0.5, 0.0, 0.5])
     one = np.ones(4)

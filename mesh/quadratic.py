@@ -7,14 +7,14 @@ from geometry.arrays import Floats, Ints
 from geometry.parameters import Segment
 from mesh.build import MeshOptions
 from mesh.layered import twins
-from mesh.outline import RoundSurface, StackOutline, curved_surface, outline
+from mesh.outline import RoundSkin, StackOutline, curved_surface, outline
 from mesh.quality import refuse_inverted, smallest_determinant_ratio
 from mesh.types import TET_FACES, LinearMesh, Planes, TetMesh, boundary_faces, face_neighbours, unique_edges
 
 FLATTEST = 0.1  # a curved element keeps at least this share of its mean Jacobian everywhere
 
 
-def quadratic(linear: LinearMesh, surface: RoundSurface | None) -> tuple[Floats, Ints]:
+def quadratic(linear: LinearMesh, surface: RoundSkin | None) -> tuple[Floats, Ints]:
     """Nodes (n, 3) and tetrahedra (m, 10) in VTK's order.
 
     The mid-side nodes of the skin's edges on the curved surface are projected onto it; where that would
@@ -33,7 +33,7 @@ def quadratic(linear: LinearMesh, surface: RoundSurface | None) -> tuple[Floats,
     return np.vstack([linear.points_mm, middle]), tets
 
 
-def _skin_edges(linear: LinearMesh, tets: Ints, surface: RoundSurface) -> Ints:
+def _skin_edges(linear: LinearMesh, tets: Ints, surface: RoundSkin) -> Ints:
     """Mid-side nodes of the edges of outer facets that lie on the surface."""
     owner, face = boundary_faces(linear.tets)
     facets = tets[owner[:, None], TET_FACES[face]]

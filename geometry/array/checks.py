@@ -2,11 +2,15 @@
 
 from geometry.array.layout import ALONG, ArrayLayout
 from geometry.base import InputError
+from geometry.part_checks import covers_footprint
 from geometry.stack import layers
 
 ROUNDING_MM = 1e-9
 LEAST_GAP_MM = 0.02
 """A narrower gap is no gap: a knife's kerf, and neighbours that bulge would touch, which the model does not know."""
+
+ROUND_SHARE = 0.95
+"""A round effector leaves that much of a rim for elements beside it."""
 
 
 def check_array(layout: ArrayLayout) -> list[str]:
@@ -34,13 +38,18 @@ def _check_segment(layout: ArrayLayout) -> None:
     if segment.bonds:
         raise InputError("segment.bonds: an array has perfect bonds; leave them out")
     effector = segment.effector
-    if effector is not None and effector.shape not in ("layer", "block"):
+    if effector is None or effector.shape == "layer":
+        return
+    if "effector" in layout.array.shared:
         raise InputError(
-            f"segment.effector.shape = '{effector.shape}': an array has effectors of shape 'layer' or 'block'"
+            f"array.shared: names 'effector', whose shape '{effector.shape}' stands on each segment alone; use shape "
+            "'layer'"
         )
-    if effector is not None and effector.shape == "block" and "effector" in layout.array.shared:
+    widest = ROUND_SHARE * min(layout.size_mm)
+    if effector.diameter_mm is not None and effector.diameter_mm > widest + ROUNDING_MM:
         raise InputError(
-            "array.shared: names 'effector', whose shape 'block' stands on each segment alone; use shape 'layer'"
+            f"segment.effector.diameter_mm = {effector.diameter_mm:g}: in an array at most {widest:g}, "
+            f"{ROUND_SHARE:g} of the segment's width"
         )
 
 
@@ -96,8 +105,7 @@ def _check_grid(layout: ArrayLayout) -> None:
     held, boundary = layout.array.grid_layers, layout.segment.boundary
     if held and boundary == "elastic":
         raise InputError("segment.boundary = 'elastic': beside a stiff grid the rim is 'free' or 'clamped'")
-    effector = layout.segment.effector
-    if "effector" in held and effector is not None and layout.foot_mm("effector") != layout.size_mm:
+    if "effector" in held and not covers_footprint(layout.segment):
         raise InputError("array.grid_layers: names 'effector', which is narrower than its segment and meets no grid")
 
 

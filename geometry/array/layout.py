@@ -18,6 +18,7 @@ from geometry.parameters import Dot, Effector, Electrode, LayerName, Segment
 from geometry.stack import layers
 
 ALONG = ("x", "y")
+PATCH = 1.3
 Rectangle = tuple[float, float, float, float]
 """Least and largest x, least and largest y in mm."""
 
@@ -75,6 +76,11 @@ class ArrayLayout:
         )
 
     @property
+    def middles(self) -> Floats:
+        """Of all segments (n, 2), in the order of places."""
+        return np.array([(place.x_mm, place.y_mm) for place in self.places])
+
+    @property
     def half_mm(self) -> tuple[float, float]:
         """Half the size of the whole array in x and y."""
         return tuple(float(self.centres(axis)[-1]) + self.size_mm[axis] / 2 for axis in (0, 1))  # type: ignore[return-value]
@@ -93,11 +99,23 @@ class ArrayLayout:
         return layer not in self.array.shared or layer in self.array.grid_layers
 
     def foot_mm(self, layer: str) -> tuple[float, float]:
-        """Size in x and y of a layer on one segment; that of a block is its own."""
+        """Size in x and y of a layer on one segment; that of an effector narrower than the segment is its own."""
         effector = self.segment.effector
-        if layer == "effector" and effector is not None and effector.shape == "block":
-            return effector.length_mm or self.size_mm[0], effector.width_mm or self.size_mm[1]
-        return self.size_mm
+        if layer != "effector" or effector is None or effector.shape == "layer":
+            return self.size_mm
+        length, width = effector.length_mm or effector.diameter_mm, effector.width_mm or effector.diameter_mm
+        return length or self.size_mm[0], width or self.size_mm[1]
+
+    @property
+    def foot_radius_mm(self) -> float | None:
+        """Of effectors that are cylinders or domes; None for others."""
+        effector = self.segment.effector
+        return None if effector is None or effector.diameter_mm is None else effector.diameter_mm / 2
+
+    @property
+    def patch_mm(self) -> float:
+        """Half the square around a round effector within which its mesh is round."""
+        return min(PATCH * (self.foot_radius_mm or 0.0), *(size / 2 for size in self.size_mm))
 
     def grooves(self, layer: str) -> list[Groove]:
         """Those of one layer."""
@@ -108,7 +126,7 @@ class ArrayLayout:
         half = self.half_mm[axis]
         at = {-half, 0.0, half}
         for layer in layers(self.segment):
-            if self.ends_at_walls(layer.name):
+            if self.ends_at_walls(layer.name) and not (layer.name == "effector" and self.foot_radius_mm is not None):
                 foot = self.foot_mm(layer.name)[axis] / 2
                 at |= {float(c) + side * foot for c in self.centres(axis) for side in (-1, 1)}
             for groove in self.grooves(layer.name):

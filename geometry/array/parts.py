@@ -6,7 +6,7 @@ from typing import Any
 from geometry.array.layout import ArrayLayout, Place, Rectangle
 from geometry.assembly import WALL_MM, case_is_printable, case_solid, dot_solid
 from geometry.dot import DotShape
-from geometry.solids import Part, labelled_part, upright_box
+from geometry.solids import Part, labelled_part, layer_solids, upright_box
 from geometry.stack import Layer, layers
 
 
@@ -54,8 +54,8 @@ def _is_cut(layout: ArrayLayout, name: str) -> bool:
 def _island(layout: ArrayLayout, layer: Layer, place: Place) -> Part:
     from build123d import Pos
 
-    half_x, half_y = (size / 2 for size in layout.foot_mm(layer.name))
-    solid = Pos(place.x_mm, place.y_mm, 0) * upright_box(half_x, half_y, layer.bottom_mm, layer.top_mm)
+    alone = layer_solids(layout.segment, layout.segment.film.thickness_um * 1e-3)[layer.name]
+    solid = Pos(place.x_mm, place.y_mm, 0) * alone
     part = labelled_part(layer.name, solid, layer.material, printable=False)
     return _renamed(part, f"{place.label}-{layer.name}")
 

@@ -1,7 +1,7 @@
 """An array of one configuration and its presses: what is solved, on which mesh, and which presses are images of others.
 
 Every press of an array is a press of one wide segment (geometry.array) on a mesh with its gaps and grooves
-(mesh.array_mesh), by the solver of one segment.
+(mesh.array), by the solver of one segment.
 """
 
 from dataclasses import replace
@@ -16,7 +16,8 @@ from geometry.braille import COLUMN_AND_ROW, dot_offset_mm, dot_standard, raised
 from geometry.checks import check_press_depth, check_segment
 from geometry.dot import DotShape, resolve_dot
 from geometry.parameters import Dot, Segment
-from mesh.array_mesh import array_mesh, expected_elements
+from mesh.array.mesh import array_mesh
+from mesh.array.sizing import expected_elements
 from mesh.types import Planes, TetMesh
 from softdot.checks import Cost, cost_of, refuse_many_elements
 from softdot.config import Config

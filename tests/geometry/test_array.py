@@ -88,10 +88,10 @@ REFUSED = {
         {"film": Film(thickness_um=28.0, electrodes=(Electrode(name="a", size_mm=(1.0, 1.0)),))},
         r"segment.film.electrodes: an array has one electrode",
     ),
-    "dome": (
+    "wide dome": (
         Array(),
-        {"effector": Effector(shape="dome", diameter_mm=2.0)},
-        r"segment.effector.shape = 'dome': an array has effectors of shape 'layer' or 'block'",
+        {"effector": Effector(shape="dome", diameter_mm=2.25)},
+        r"segment.effector.diameter_mm = 2.25: in an array at most 2.185",
     ),
     "block that runs through": (
         Array(shared=ALL),

@@ -9,10 +9,12 @@ from geometry.array.layout import array_layout
 from geometry.array.parameters import Array, Groove
 from geometry.dot import resolve_dot
 from geometry.parameters import Dot, Effector
-from mesh.array_mesh import array_mesh, expected_elements
+from mesh.array.mesh import array_mesh
+from mesh.array.sizing import expected_elements
 from mesh.build import MeshOptions
 from mesh.symmetry import unfolded
 from mesh.types import face_neighbours, signed_volumes
+from solve.fem.kinematics import physical_gradients, quadratic, tetrahedron
 from tests.geometry.test_array import ALL, segment
 
 COARSE = MeshOptions(element_size_mm=0.9, contact_element_size_mm=0.4)
@@ -24,7 +26,10 @@ ARRAYS = {
     "islands": (Array(columns=3, rows=1, shared=()), {}),
     "grid": (Array(columns=2, rows=1, grid_layers=("effector", "medium1", "film")), {}),
     "no effector": (Array(columns=2, rows=1, shared=("film",)), {"effector": None}),
+    "domes": (Array(columns=2, rows=1), {"effector": Effector(shape="dome", diameter_mm=1.6, height_mm=0.5)}),
+    "cylinders": (Array(columns=2, rows=1), {"effector": Effector(shape="cylinder", diameter_mm=1.6)}),
 }
+ROUND = {"domes": 2 * np.pi * 0.5 * (3 * 0.8**2 + 0.5**2) / 6, "cylinders": 2 * np.pi * 0.8**2}
 
 
 def mesh_of(name, planes=()):
@@ -47,13 +52,33 @@ VOLUMES = {  # length x width x height, by hand
 }
 
 
-@pytest.mark.parametrize("name", ARRAYS)
+@pytest.mark.parametrize("name", VOLUMES)
 def test_parts_have_their_exact_volume(name):
     _, found = mesh_of(name)
     volume = signed_volumes(found.points_mm, found.tets[:, :4])
     assert volume.min() > 0.0
     for part, expected in VOLUMES[name].items():
         assert volume[found.region_tets(part)].sum() == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("name", ROUND)
+def test_round_effectors_have_their_volume_and_skin(name):
+    """Curved elements: within 0.5 %, and every node of the skin on a sphere or cylinder around its segment."""
+    one, found = mesh_of(name)
+    _, slope = quadratic(tetrahedron()[0])
+    _, weight = physical_gradients(found.points_mm[found.tets[found.region_tets("effector")]], slope, tetrahedron()[1])
+    assert weight.min() > 0.0
+    assert weight.sum() == pytest.approx(ROUND[name], rel=5e-3)
+    facets = found.facets["contact"]
+    above = facets[(found.points_mm[facets][..., 2] > 2.6).any(axis=1)]
+    skin = found.points_mm[np.unique(above)]
+    middle = np.where(skin[:, 0] > 0.0, one.places[1].x_mm, one.places[0].x_mm)
+    beside = np.hypot(skin[:, 0] - middle, skin[:, 1])
+    if name == "domes":
+        radius = (0.8**2 + 0.5**2) / (2 * 0.5)
+        np.testing.assert_allclose(np.hypot(beside, skin[:, 2] - (3.028 - radius)), radius, atol=1e-6)
+    else:
+        assert (np.isclose(beside, 0.8, atol=1e-6) | np.isclose(skin[:, 2], 3.528)).all()
 
 
 @pytest.mark.parametrize("name", ARRAYS)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mesh.array_mesh import array_mesh
+from mesh.array.mesh import array_mesh
 from mesh.symmetry import unfolded
 from softdot.case import Case
 from solve.press import discretise
@@ -17,12 +17,12 @@ HELD = ("effector", "medium1", "film")
 FINE = {"element_size_mm": 0.6, "contact_element_size_mm": 0.2}
 
 
-def lone(boundary):
-    """One segment of 2.3 mm by the mesher and the pipeline of one segment, and its force (N) and charge (pC)."""
+def lone(boundary, mesh=None, **segment):
+    """Force (N) and charge (pC) of one segment of 2.3 mm by the mesher and the pipeline of one segment."""
     case = Case(
-        segment={"length_mm": 2.3, "width_mm": 2.3, "boundary": boundary, "held_layers": list(HELD)},
+        segment={"length_mm": 2.3, "width_mm": 2.3, "boundary": boundary, "held_layers": list(HELD), **segment},
         press={"indentation_mm": 0.2, "load_steps": 2},
-        mesh={"mesher": "layered", **FINE},
+        mesh=mesh or {"mesher": "layered", **FINE},
     )
     pressed = case.press()
     assert pressed.converged, pressed.failure
@@ -79,6 +79,19 @@ def test_electrodes_share_the_charge_of_the_film():
     together = solved(press).steps[-1].film_charge_C
     assert len(separate) == 2
     assert separate.sum() == pytest.approx(together[0], rel=1e-9)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("shape", ["dome", "cylinder"])
+def test_round_effectors_are_those_of_one_segment(shape):
+    """Extruded here, meshed by pytetwild there; the other effector is not touched."""
+    effector = {"shape": shape, "diameter_mm": 1.6, "height_mm": 0.5, "material": "rubber"}
+    sizes = {"element_size_mm": 0.45, "contact_element_size_mm": 0.15}
+    pair = array(segment={"effector": effector}, mesh=sizes, shared=[])
+    press = solved(pair.press_over(pair.layout.places[0])).steps[-1]
+    force_N, charge_pC = lone("free", mesh={**sizes, "mesher": "pytetwild"}, effector=effector)
+    agrees(f"{shape}, force (N)", press.reaction_force_N, force_N, 0.01)
+    agrees(f"{shape}, charge (pC)", 1e12 * press.film_charge_C[0], charge_pC, 0.015)
 
 
 @pytest.mark.slow
