@@ -24,7 +24,7 @@ Rectangle = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True)
-class Place:
+class SegmentPlace:
     """One segment: its row and column, counted from 1, and its centre in mm."""
 
     row: int
@@ -67,10 +67,10 @@ class ArrayLayout:
         return _centred((cells[:, None] + self.pitch_mm * np.arange(array.columns)).ravel())
 
     @cached_property
-    def places(self) -> tuple[Place, ...]:
+    def places(self) -> tuple[SegmentPlace, ...]:
         """All segments, row by row."""
         return tuple(
-            Place(row, column, float(x), float(y))
+            SegmentPlace(row, column, float(x), float(y))
             for row, y in enumerate(self.centres(1), start=1)
             for column, x in enumerate(self.centres(0), start=1)
         )

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import Any
 
-from geometry.array.layout import ArrayLayout, Place, Rectangle
+from geometry.array.layout import ArrayLayout, Rectangle, SegmentPlace
 from geometry.assembly import WALL_MM, case_is_printable, case_solid, dot_solid
 from geometry.dot import DotShape
 from geometry.solids import Part, labelled_part, layer_solids, upright_box
@@ -34,7 +34,7 @@ def array_parts(layout: ArrayLayout, dot_shape: DotShape) -> tuple[Part, ...]:
     return tuple(parts)
 
 
-def electrode_face(layout: ArrayLayout, place: Place) -> Any:
+def electrode_face(layout: ArrayLayout, place: SegmentPlace) -> Any:
     """The electrode of a segment on top of the film, a build123d Face without thickness."""
     from build123d import Face, Plane
 
@@ -51,7 +51,7 @@ def _is_cut(layout: ArrayLayout, name: str) -> bool:
     return layout.ends_at_walls(name) and not (name == "film" and name in layout.array.shared)
 
 
-def _island(layout: ArrayLayout, layer: Layer, place: Place) -> Part:
+def _island(layout: ArrayLayout, layer: Layer, place: SegmentPlace) -> Part:
     from build123d import Pos
 
     alone = layer_solids(layout.segment, layout.segment.film.thickness_um * 1e-3)[layer.name]

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from geometry.array.checks import check_array
-from geometry.array.layout import ArrayLayout, Place, array_layout
+from geometry.array.layout import ArrayLayout, SegmentPlace, array_layout
 from geometry.base import InputError
 from geometry.braille import COLUMN_AND_ROW, dot_offset_mm, dot_standard, raised_dots
 from geometry.checks import check_press_depth, check_segment
@@ -85,7 +85,7 @@ class ArrayCase:
                 "mesh.element_size_mm and mesh.contact_element_size_mm"
             )
 
-    def press_over(self, place: Place) -> "ArrayPress":
+    def press_over(self, place: SegmentPlace) -> "ArrayPress":
         """One dot alone over one segment. InputError."""
         x, y = self.config.dot.offset_mm
         update = {"cell": None, "cell_dot": 1, "offset_mm": (place.x_mm + x, place.y_mm + y)}

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import minimize_scalar
 
-from geometry.array.layout import ArrayLayout, Place
+from geometry.array.layout import ArrayLayout, SegmentPlace
 from geometry.arrays import Floats
 from geometry.parameters import LayerName
 from softdot.arrays.case import ArrayCase
@@ -53,7 +53,7 @@ class EffectiveSides:
     clamped: Likeness
 
 
-def role(layout: ArrayLayout, place: Place) -> str:
+def role(layout: ArrayLayout, place: SegmentPlace) -> str:
     """Which of ROLES a segment has. In a single row or column the last segments are edges."""
     position = ((place.column, len(layout.centres(0))), (place.row, len(layout.centres(1))))
     return ROLES[sum(count > 1 and at in (1, count) for at, count in position)]
