@@ -12,8 +12,9 @@ from geometry.arrays import Floats
 
 MOST_NAMED = 20
 """Of more segments the matrix has no room for numbers and labels."""
-COLUMNS = 3
-FULL = 100.0
+COLUMNS, WIDE, MAP_IN = 3, 1.5, 4.0
+"""Maps side by side at most, arrays that are so much longer than wide one below the other, and the size of one."""
+FULL, TICKS = 100.0, (-100, -10, -1, 0, 1, 10, 100)
 DARK_PERCENT = 7.0
 """Colours of more are so dark that numbers on them are white."""
 LINEAR_PERCENT = 1.0
@@ -40,7 +41,7 @@ def draw_matrix(labels: Sequence[str], crosstalk_percent: Floats, path: Path) ->
     axes.set_xlabel("segment that is read", fontsize=12, color=INK)
     axes.set_ylabel("segment that is pressed", fontsize=12, color=INK)
     axes.set_title("Crosstalk in % of the pressed segment's voltage", fontsize=13, color=INK)
-    _bar(figure, image, axes)
+    _bar(figure, image, axes, shrink=0.8)
     save(figure, path)
 
 
@@ -50,10 +51,10 @@ def draw_maps(layout: ArrayLayout, pressed: Sequence[int], crosstalk_percent: Fl
     from matplotlib.patches import Circle, Rectangle
 
     half_x, half_y = layout.half_mm
-    columns = min(COLUMNS, len(pressed))
+    columns = min(1 if half_x > WIDE * half_y else COLUMNS, len(pressed))
     lines = -(-len(pressed) // columns)
-    wide = min(3.6, 3.0 * half_x / half_y)
-    size = (columns * wide + 2.4, lines * (wide * half_y / half_x + 0.7) + 0.9)
+    wide = MAP_IN * min(1.0, half_x / half_y) if columns > 1 else 2 * MAP_IN
+    size = (max(columns * wide + 1.0, MAP_IN + 1.0), lines * (wide * half_y / half_x + 0.75) + 1.2)
     figure = Figure(figsize=size, dpi=DPI, facecolor="white", layout="constrained")
     cells = figure.subplots(lines, columns, squeeze=False)
     norm, x_size, y_size = _norm(), *layout.size_mm
@@ -78,7 +79,7 @@ def draw_maps(layout: ArrayLayout, pressed: Sequence[int], crosstalk_percent: Fl
         cell.set_xlabel("x (mm)", fontsize=10, color=INK)
     for line in cells:
         line[0].set_ylabel("y (mm)", fontsize=10, color=INK)
-    _bar(figure, image, list(cells.flat))
+    _bar(figure, image, list(cells.flat), location="bottom", aspect=30)
     save(figure, path)
 
 
@@ -119,9 +120,9 @@ def _colours(norm: Any) -> Any:
     return ScalarMappable(norm, DIVERGING)
 
 
-def _bar(figure: Any, image: Any, axes: Any) -> None:
-    bar = figure.colorbar(image, ax=axes, shrink=0.8, ticks=[-100, -10, -1, 0, 1, 10, 100])
-    bar.ax.set_yticklabels(["−100", "−10", "−1", "0", "1", "10", "100"])
+def _bar(figure: Any, image: Any, axes: Any, **how: Any) -> None:
+    bar = figure.colorbar(image, ax=axes, ticks=list(TICKS), **how)
+    bar.set_ticklabels([f"{tick}".replace("-", "−") for tick in TICKS])
     bar.set_label("% of the pressed segment's voltage", fontsize=10, color=INK)
 
 

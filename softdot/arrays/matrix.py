@@ -38,7 +38,7 @@ class CrosstalkMatrix:
         """The solved press that stands for that of one segment."""
         return self.solved[min(self.case.images(number))]
 
-    def _seen_from(self, number: int) -> list[int]:
+    def seen_from(self, number: int) -> list[int]:
         """For each segment j, the segment of the solved press that is its image when segment number is pressed."""
         columns, rows = len(self.layout.centres(0)), len(self.layout.centres(1))
         stands_for = divmod(min(self.case.images(number)), columns)
@@ -52,7 +52,7 @@ class CrosstalkMatrix:
     def _histories(self, name: str) -> Floats:
         """A quantity (n, s, n) of all presses: pressed segment, step, segment that is read."""
         count = len(self.layout.places)
-        return np.array([getattr(self.press(i), name)[:, self._seen_from(i)] for i in range(count)])
+        return np.array([getattr(self.press(i), name)[:, self.seen_from(i)] for i in range(count)])
 
     @cached_property
     def charge_pC(self) -> Floats:

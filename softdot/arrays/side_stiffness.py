@@ -5,7 +5,7 @@ is a number: the stiffness k of segment.side_stiffness_N_per_mm3, the same on al
 which a lone segment comes nearest to force and voltage of an inner, an edge and a corner segment over the whole press.
 """
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -27,11 +27,12 @@ ROLES = ("inner", "edge", "corner")
 
 @dataclass(frozen=True)
 class Likeness:
-    """How near a lone segment comes: errors of force and voltage at full load, and the root of the mean square of both
-    over the press, each relative to its largest value in the array.
+    """How near a lone segment comes: errors of force, or of depth where a force is prescribed, and of voltage at full
+    load, and the root of the mean square of both over the press, each relative to its largest value in the array.
     """
 
-    force_percent: float
+    force_percent: float | None
+    depth_percent: float | None
     voltage_percent: float
     rms_percent: float
 
@@ -79,13 +80,16 @@ def held_candidates(layout: ArrayLayout) -> list[tuple[LayerName, ...]]:
 
 
 def effective_sides(matrix: CrosstalkMatrix, follow: Follow) -> dict[str, EffectiveSides]:
-    """For each role that the array has. StoppedPressError.
+    """For each role that the array has; none for one segment. StoppedPressError.
 
     Lone segments are pressed over a range of stiffness, for each set of layers that springs may hold. Their force and
     voltage, interpolated over the logarithm of the stiffness, give the best set and stiffness; that one is pressed
     itself, and its errors are the ones that count.
     """
     case = matrix.case
+    if len(matrix.layout.places) == 1:
+        return {}
+    by_force = case.config.press.force_N is not None
     families = {
         held: {k: _pressed(case, "elastic", held, k, follow) for k in STIFFNESSES_N_PER_MM3}
         for held in held_candidates(matrix.layout)
@@ -93,14 +97,20 @@ def effective_sides(matrix: CrosstalkMatrix, follow: Follow) -> dict[str, Effect
     free = _pressed(case, "free", (), 0.0, follow)
     found = {}
     for name, number in representatives(matrix.layout).items():
-        target = _diagonal(matrix, number)
-        best = min((_best(held, lone, target) for held, lone in families.items()), key=lambda one: one.mean_square)
+        target = _response(matrix.press(number), by_force, matrix.seen_from(number)[number])
+        best = min(
+            (
+                _best(held, [_response(one, by_force) for one in lone.values()], target)
+                for held, lone in families.items()
+            ),
+            key=lambda one: one.mean_square,
+        )
         presses = [
             _pressed(case, "elastic", best.held, best.stiffness_N_per_mm3, follow),
             free,
             _pressed(case, "clamped", best.held, 0.0, follow),
         ]
-        likeness = [_likeness(_own(one), target) for one in presses]
+        likeness = [_likeness(_response(one, by_force), target, by_force) for one in presses]
         label = matrix.layout.places[number].label
         found[name] = EffectiveSides(label, best.held, best.stiffness_N_per_mm3, best.at_limit, *likeness)
     return found
@@ -114,14 +124,9 @@ def _pressed(case: ArrayCase, boundary: str, held: tuple[LayerName, ...], k: flo
     return converged(signals(alone.press_over(alone.layout.places[0]), follow(what)), what)
 
 
-def _diagonal(matrix: CrosstalkMatrix, number: int) -> Floats:
-    """Force and voltage (2, s) of a segment that is pressed itself."""
-    return np.stack([matrix.force_N[number], matrix.voltage_V[number, :, number]])
-
-
-def _own(found: Signals) -> Floats:
-    """The same of a lone segment."""
-    return np.stack([found.force_N, found.voltage_V[:, 0]])
+def _response(found: Signals, by_force: bool, number: int = 0) -> Floats:
+    """What answers the load, force or depth, and the voltage of the pressed segment, (2, s)."""
+    return np.stack([found.depth_mm if by_force else found.force_N, found.voltage_V[:, number]])
 
 
 def _errors(one: Floats, target: Floats) -> Floats:
@@ -129,9 +134,11 @@ def _errors(one: Floats, target: Floats) -> Floats:
     return np.asarray((one - target) / np.abs(target).max(axis=1, keepdims=True))
 
 
-def _likeness(one: Floats, target: Floats) -> Likeness:
+def _likeness(one: Floats, target: Floats, by_force: bool) -> Likeness:
     errors = 100.0 * _errors(one, target)
-    return Likeness(float(errors[0, -1]), float(errors[1, -1]), float(np.sqrt(np.mean(errors[:, 1:] ** 2))))
+    answer, voltage = (float(error) for error in errors[:, -1])
+    rms = float(np.sqrt(np.mean(errors[:, 1:] ** 2)))
+    return Likeness(None if by_force else answer, answer if by_force else None, voltage, rms)
 
 
 @dataclass(frozen=True)
@@ -144,10 +151,10 @@ class _Interpolated:
     mean_square: float
 
 
-def _best(held: tuple[LayerName, ...], lone: Mapping[float, Signals], target: Floats) -> _Interpolated:
-    """The stiffness of least mean square error between the smallest and the largest."""
-    decades = np.log10(list(lone))
-    between = PchipInterpolator(decades, np.array([_own(one) for one in lone.values()]))
+def _best(held: tuple[LayerName, ...], lone: Sequence[Floats], target: Floats) -> _Interpolated:
+    """The stiffness of least mean square error between the smallest and the largest; lone : responses (2, s)."""
+    decades = np.log10(STIFFNESSES_N_PER_MM3)
+    between = PchipInterpolator(decades, np.array(lone))
 
     def square(decade: float) -> float:
         return float(np.mean(_errors(between(decade), target) ** 2))

@@ -230,8 +230,9 @@ def short_text(summary: dict[str, Any], output: str) -> str:
     ]
     for role, sides in summary["effective_sides"].items():
         best = sides["best"]
+        answer = "depth" if best["force_percent"] is None else "force"
         lines.append(
-            f"{role} segment: sides of {sides['stiffness_N_per_mm3']:.3g} N/mm3, off by {best['force_percent']:+.1f} % "
-            f"in force and {best['voltage_percent']:+.1f} % in voltage"
+            f"{role} segment: sides of {sides['stiffness_N_per_mm3']:.3g} N/mm3, off by "
+            f"{best[f'{answer}_percent']:+.1f} % in {answer} and {best['voltage_percent']:+.1f} % in voltage"
         )
     return "\n".join([*lines, f"{output}/report.html"])
