@@ -13,7 +13,7 @@ import numpy as np
 from geometry.array.parameters import Array, Groove
 from geometry.arrays import Bools, Floats
 from geometry.base import InputError
-from geometry.braille import DEFAULT_STANDARD, QuantityName, standard
+from geometry.braille import QuantityName, dot_standard
 from geometry.parameters import Dot, Effector, Electrode, LayerName, Segment
 from geometry.stack import layers
 
@@ -203,8 +203,11 @@ def array_layout(array: Array, segment: Segment, dot: Dot) -> ArrayLayout:
 
 
 def _of_standard(quantity: QuantityName, field: str, dot: Dot) -> float:
-    """A pitch of the dot's standard, of the default one where none is named."""
+    """A pitch of the dot's standard, of the default one where nothing is said of the dot."""
+    chosen = dot_standard(dot)
+    if chosen is None:
+        raise InputError(f"{field} is missing: the dot has sizes of its own and no dot.standard with a pitch")
     try:
-        return standard(dot.standard or DEFAULT_STANDARD).nominal_mm(quantity)
+        return chosen.nominal_mm(quantity)
     except InputError as error:
         raise InputError(f"{field} is missing: {error}") from None

@@ -13,13 +13,13 @@ from geometry.array.checks import check_array
 from geometry.array.layout import ArrayLayout, SegmentPlace, array_layout
 from geometry.base import InputError
 from geometry.braille import COLUMN_AND_ROW, dot_offset_mm, dot_standard, raised_dots
-from geometry.checks import check_press_depth, check_segment
+from geometry.checks import check_press_depth, check_pushed_dot, check_segment, press_warnings
 from geometry.dot import DotShape, resolve_dot
 from geometry.parameters import Dot, Segment
 from mesh.array.mesh import array_mesh
 from mesh.array.sizing import expected_elements
 from mesh.types import Planes, TetMesh
-from softdot.checks import Cost, cost_of, refuse_many_elements
+from softdot.checks import Cost, cost_of, design_warnings, held_rim_warnings, refuse_many_elements
 from softdot.config import Config
 from softdot.config.model import model_of
 from solve.materials.film import film_law
@@ -55,15 +55,25 @@ class ArrayCase:
             check_press_depth(self.config.segment, depth)
         if self.config.dot.cell is not None:
             self.under_dots()
+        for press in self.presses:
+            if depth is None:
+                check_pushed_dot(press.config.dot, self.layout.whole)
+            else:
+                warnings += press_warnings(press.dot, self.layout.whole, depth)
+                warnings += held_rim_warnings(self.layout.whole, press.dot, depth)
         refuse_many_elements(max(self._elements), self.config.mesh, False)
-        return warnings
+        return list(dict.fromkeys([*warnings, *design_warnings(self.presses[0].model)]))
+
+    @cached_property
+    def presses(self) -> "list[ArrayPress]":
+        """All that are solved of the array: a dot over one segment each, and the cell where there is one."""
+        alone = [self.press_over(self.layout.places[number]) for number in self.solved]
+        return [*alone, self.press_by_cell()] if self.config.dot.cell is not None else alone
 
     @property
     def _elements(self) -> list[float]:
         """Rough number of elements of each press that is solved. InputError for a dot that overlaps the array."""
-        presses = [self.press_over(self.layout.places[number]) for number in self.solved]
-        presses += [self.press_by_cell()] if self.config.dot.cell is not None else []
-        return [expected_elements(self.layout, press.dot, self.config.mesh, press.planes) for press in presses]
+        return [expected_elements(self.layout, press.dot, self.config.mesh, press.planes) for press in self.presses]
 
     @property
     def cost(self) -> Cost:
@@ -122,8 +132,12 @@ class ArrayCase:
 
     @cached_property
     def mirrors(self) -> Planes:
-        """Axes along which a press of a segment has that of the mirrored segment as its image."""
+        """Axes along which a press of a segment has that of the mirrored segment as its image; none where channels of
+        the amplifiers differ.
+        """
         press = self.press_over(self.layout.places[0])
+        if press.model.physics.crosstalk:
+            return ()
         film = press.model.materials["film"]
         assert isinstance(film, PiezoelectricFilm)
         law = film_law(film, self.config.segment.film.draw_angle_deg)
@@ -148,12 +162,14 @@ class ArrayCase:
         return [number for number in range(len(self.layout.places)) if min(self.images(number)) == number]
 
     def lone(self, segment: Segment) -> "ArrayCase":
-        """One segment alone, on a mesh of the same kind: side conditions are the segment's."""
+        """One segment alone, on a mesh of the same kind: side conditions are the segment's. It has one channel."""
         alone = self.array.model_copy(
             update={"columns": 1, "rows": 1, "cells": 1, "shared": (), "grooves": (), "grid_layers": ()}
         )
         dot = self.config.dot.model_copy(update={"cell": None, "cell_dot": 1})
-        return ArrayCase(self.config.model_copy(update={"array": alone, "segment": segment, "dot": dot}))
+        kept = tuple(one for one in self.config.mechanisms if not one.component.startswith("channel-"))
+        update = {"array": alone, "segment": segment, "dot": dot, "mechanisms": kept}
+        return ArrayCase(self.config.model_copy(update=update))
 
 
 class ArrayPress:

@@ -18,6 +18,7 @@ from geometry.arrays import Floats
 from geometry.cache import data_hash, folder, read_kept, source_hash, write_kept
 from mesh.types import mesh_hash
 from softdot.arrays.case import ArrayPress
+from softdot.checks import result_warnings
 from softdot.config import input_hash
 from solve.model import Readout
 from solve.press import OnStep, press_segment
@@ -88,9 +89,8 @@ def _solved(press: ArrayPress, on_step: OnStep | None) -> tuple[Signals, PressRe
 
 def _path(press: ArrayPress) -> Path:
     """Where a press is kept."""
-    return (
-        folder() / f"array-{data_hash([source_hash(__name__), input_hash(press.config), mesh_hash(press.mesh)])}.json"
-    )
+    key = data_hash([source_hash(__name__), input_hash(press.config), mesh_hash(press.mesh)])
+    return folder() / f"array-{key}.json"
 
 
 def signals_of(press: ArrayPress, result: PressResult, solve_s: float) -> Signals:
@@ -113,7 +113,7 @@ def signals_of(press: ArrayPress, result: PressResult, solve_s: float) -> Signal
         newton_iterations=sum(step.newton_iterations for step in steps),
         max_relative_residual=result.max_relative_residual,
         solve_s=solve_s,
-        warnings=result.warnings,
+        warnings=tuple(result_warnings(model, press.dot, result)),
         failure=result.failure,
     )
 

@@ -9,7 +9,7 @@ from scipy.interpolate import PchipInterpolator
 
 from geometry.arrays import Floats
 from softdot.arrays.case import ArrayCase, ArrayPress
-from softdot.arrays.matrix import CrosstalkMatrix, converged, crosstalk
+from softdot.arrays.matrix import CrosstalkMatrix, StoppedPressError, converged, crosstalk
 from softdot.arrays.presses import Follow, Signals, remembered, signals
 from softdot.arrays.side_stiffness import EffectiveSides, effective_sides, representatives
 from softdot.arrays.variants import Worth, worth
@@ -68,6 +68,8 @@ def study(case: ArrayCase, follow: Follow, stage: Callable[[str], None], with_va
     title = f"The cell {case.config.dot.cell}" if by_cell else f"A dot over {place.label}"
     stage("shown press")
     result = remembered(shown, follow(title))
+    if result.failure is not None:
+        raise StoppedPressError(f"{title} did not converge: {result.failure}")
     stage("matrix")
     matrix = crosstalk(case, follow)
     cell = _cell_press(case, matrix, follow) if by_cell else None

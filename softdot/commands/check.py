@@ -11,7 +11,6 @@ from softdot.console import BAD_INPUT, GOOD, complain, json_text, plain
 if TYPE_CHECKING:
     from softdot.checks import Cost
     from softdot.config import Config
-    from solve.model import Model
 
 FORMAT = "softdot-check/1"
 
@@ -30,7 +29,6 @@ def command(chosen: Namespace) -> int:
 
 def check_file(path: Path, settings: list[str]) -> dict[str, Any]:
     """Mistakes, warnings and the expected cost of a configuration."""
-    from softdot.checks import design_warnings
     from softdot.config import config_from
     from softdot.config.errors import mistakes
     from softdot.config.toml import completed, from_default, read_toml, with_settings
@@ -44,28 +42,27 @@ def check_file(path: Path, settings: list[str]) -> dict[str, Any]:
     summary: dict[str, Any] = {"format": FORMAT, "config": str(path), "mistakes": found}
     if checked is None:
         return summary
-    config, model, warnings, cost = checked
-    told: dict[str, Any] = plain({"warnings": [*warnings, *design_warnings(model)], "expected": vars(cost)})
+    config, warnings, cost = checked
+    told: dict[str, Any] = plain({"warnings": warnings, "expected": vars(cost)})
     return {**summary, **told, "from_default": list(from_default(stated, config.model_dump(mode="json")))}
 
 
-def _segment(config: "Config") -> "tuple[Model, list[str], Cost]":
-    """Model, warnings and cost of a run. InputError."""
+def _segment(config: "Config") -> "tuple[list[str], Cost]":
+    """Warnings and cost of a run. InputError."""
     from softdot.case import Case
-    from softdot.checks import expected_cost
+    from softdot.checks import design_warnings, expected_cost
 
     case = Case(config)
     dot_shape, warnings = case.checked
-    return case.model, warnings, expected_cost(config, dot_shape, case.planes)
+    return [*warnings, *design_warnings(case.model)], expected_cost(config, dot_shape, case.planes)
 
 
-def _array(config: "Config") -> "tuple[Model, list[str], Cost]":
-    """Model, warnings and cost of the crosstalk of an array, whose lone segments come on top. InputError."""
+def _array(config: "Config") -> "tuple[list[str], Cost]":
+    """Warnings and cost of the crosstalk of an array, whose lone segments come on top. InputError."""
     from softdot.arrays.case import ArrayCase
 
     case = ArrayCase(config)
-    warnings = case.checked
-    return case.press_over(case.layout.places[0]).model, warnings, case.cost
+    return case.checked, case.cost
 
 
 def short_text(summary: dict[str, Any]) -> str:

@@ -139,6 +139,9 @@ def test_a_standard_without_a_pitch_is_refused():
     """Small English states a cell pitch only."""
     with pytest.raises(InputError, match=r"array.pitch_mm is missing: .*'small-english'"):
         array_layout(Array(), segment(), Dot(standard="small-english"))
+    with pytest.raises(InputError, match=r"array.pitch_mm is missing: the dot has sizes of its own"):
+        array_layout(Array(), segment(), Dot(radius_mm=0.8))
+    assert array_layout(Array(pitch_mm=2.6), segment(), Dot(radius_mm=0.8)).pitch_mm == 2.6
 
 
 def test_electrodes_that_would_touch_are_told():

@@ -37,6 +37,12 @@ def test_mirror_images_are_not_solved_again():
     assert array(2, 3, segment={"film": {"draw_angle_deg": 30.0}}).solved == list(range(6))
 
 
+def test_channels_that_differ_have_no_images():
+    """An amplifier whose first channel hears the others reads other presses otherwise."""
+    leak = {"name": "crosstalk", "component": "channel-1", "parameters": {"coupling": 0.1}}
+    assert array(2, 3, tables={"mechanisms": [leak]}).solved == list(range(6))
+
+
 def test_a_dot_beside_the_middle_keeps_the_symmetry_across():
     """Moved along x, it stands over a column of its own; rows are images of each other still."""
     assert array(2, 3, tables={"dot": {"offset_mm": [0.3, 0.0]}}).solved == [0, 1, 2, 3]
