@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import csv
-import logging
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -35,7 +34,6 @@ if TYPE_CHECKING:
     from solve.press import OnStep
     from solve.result import Step
 
-LOG = logging.getLogger(__name__)
 ARRAY = Product(
     "softdot-array/1",
     "array.json",
