@@ -123,7 +123,11 @@ def _one_of_several(table):
     """A segment as an array takes it, and not so long that two of them are dear."""
     table["film"].pop("electrodes", None)
     table.pop("bonds", None)
-    return {**table, "length_mm": min(table["length_mm"], 2.5), "width_mm": min(table["width_mm"], 2.5)}
+    for name in ("length_mm", "width_mm"):
+        table[name] = min(table[name], 2.5)
+        if name in table.get("effector", {}):
+            table["effector"][name] = min(table["effector"][name], table[name])
+    return table
 
 
 def _array(draw, segment):
