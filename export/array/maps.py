@@ -1,6 +1,7 @@
 """Pictures of crosstalk: the matrix, the array seen from above for each pressed segment, and its growth with depth."""
 
 from collections.abc import Sequence
+from math import ceil, sqrt
 from pathlib import Path
 from typing import Any
 
@@ -51,7 +52,7 @@ def draw_maps(layout: ArrayLayout, pressed: Sequence[int], crosstalk_percent: Fl
     from matplotlib.patches import Circle, Rectangle
 
     half_x, half_y = layout.half_mm
-    columns = min(1 if half_x > WIDE * half_y else COLUMNS, len(pressed))
+    columns = 1 if half_x > WIDE * half_y else min(COLUMNS, ceil(sqrt(len(pressed))))
     lines = -(-len(pressed) // columns)
     wide = MAP_IN * min(1.0, half_x / half_y) if columns > 1 else 2 * MAP_IN
     size = (max(columns * wide + 1.0, MAP_IN + 1.0), lines * (wide * half_y / half_x + 0.75) + 1.2)
