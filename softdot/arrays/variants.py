@@ -5,15 +5,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from geometry.array.checks import check_array
-from geometry.array.layout import array_layout
-from geometry.array.parameters import Array
+from geometry.array.layout import ArrayLayout, array_layout
+from geometry.array.parameters import Array, Groove
 from geometry.base import InputError
-from geometry.parameters import Effector, LayerName
+from geometry.parameters import LayerName
 from softdot.arrays.case import ArrayCase
 from softdot.arrays.matrix import converged
 from softdot.arrays.presses import Follow, signals
 from softdot.arrays.side_stiffness import representatives
 
+GROOVE_WIDTH, GROOVE_DEPTH = 0.1, 0.75
+"""Of the pitch, and of the thickness of medium 2."""
 MEDIA: tuple[LayerName, ...] = ("film", "medium1", "medium2")
 
 
@@ -33,13 +35,22 @@ class Worth:
     why_not: str | None = None
 
 
-def ways(array: Array, effector: Effector | None) -> dict[str, Array]:
+def ways(layout: ArrayLayout) -> dict[str, Array]:
     """Name -> the array joined in that way, the stated one first."""
+    array, effector, medium2 = layout.array, layout.segment.effector, layout.segment.medium2
+    groove = Groove(
+        layer="medium2",
+        width_mm=round(GROOVE_WIDTH * layout.pitch_mm, 6),
+        depth_mm=round(GROOVE_DEPTH * medium2.thickness_mm, 6),
+    )
     bare = array.model_copy(update={"grooves": (), "grid_layers": ()})
     found = {"as stated": array}
     if effector is not None and effector.shape == "layer":
         found["all layers run through"] = bare.model_copy(update={"shared": ("effector", *MEDIA)})
     found["film and media run through"] = bare.model_copy(update={"shared": MEDIA})
+    found["film and media run through, medium 2 with grooves"] = bare.model_copy(
+        update={"shared": MEDIA, "grooves": (groove,)}
+    )
     found["film and medium 2 run through"] = bare.model_copy(update={"shared": ("film", "medium2")})
     found["only the film runs through"] = bare.model_copy(update={"shared": ("film",)})
     found["nothing runs through"] = bare.model_copy(update={"shared": ()})
@@ -56,7 +67,7 @@ def worth(case: ArrayCase, follow: Follow) -> list[Worth]:
     """Of each way of joining, with the segment nearest to the middle pressed. StoppedPressError."""
     number = next(iter(representatives(case.layout).values()))
     found = []
-    for name, array in ways(case.array, case.config.segment.effector).items():
+    for name, array in ways(case.layout).items():
         other = ArrayCase(case.config.model_copy(update={"array": array}))
         place = case.layout.places[number]
         try:
