@@ -7,7 +7,7 @@ The symmetric start triangulation of the footprint, with the effector's foot res
 Newest-vertex bisection of a triangulation, with one boundary circle that new vertices are put on.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,11 +20,12 @@ from geometry.parameters import Segment
 from mesh.build import MeshOptions
 from mesh.interfaces import MeshedSection, section_with_film, structured
 from mesh.outline import StackOutline, outline
-from mesh.sizing import Sizing, graded, sizing
+from mesh.sizing import Sizing, graded_through, sizing
 from mesh.tetwild import bare_stack
 from mesh.types import TET_FACES, LinearMesh, Planes, boundary_faces, oriented, split_prisms, without_unused
 
 Bools = NDArray[np.bool_]
+SAME_HEIGHT_MM = 1e-9
 
 
 @dataclass(frozen=True)
@@ -36,10 +37,15 @@ class Triangulation:
     part: Ints
 
 
-def refine(start: Triangulation, size: Callable[[Floats], Floats], circle_radius: float | None) -> Triangulation:
+ORIGIN = np.zeros((1, 2))
+
+
+def refine(
+    start: Triangulation, size: Callable[[Floats], Floats], circle_radius: float | None, centres: Floats = ORIGIN
+) -> Triangulation:
     """Bisect until the longest edge of each triangle is at most the size at its centroid.
 
-    circle_radius : the edges between different parts are arcs of this circle about the origin.
+    circle_radius : the edges between different parts are arcs of this circle about the nearest of the centres (n, 2).
     """
     current = start
     while True:
@@ -48,10 +54,10 @@ def refine(start: Triangulation, size: Callable[[Floats], Floats], circle_radius
         marked = longest > size(corner.mean(axis=1)) * (1 + 1e-9)
         if not marked.any():
             return current
-        current = _bisect(current, marked, circle_radius)
+        current = _bisect(current, marked, circle_radius, centres)
 
 
-def _bisect(old: Triangulation, marked: Bools, circle_radius: float | None) -> Triangulation:
+def _bisect(old: Triangulation, marked: Bools, circle_radius: float | None, centres: Floats) -> Triangulation:
     """Cut every marked triangle at least once and close the triangulation (L. Chen, iFEM, 2009)."""
     edges, of_triangle = _edges(old.triangles)
     cut = np.zeros(len(edges), dtype=bool)
@@ -61,7 +67,7 @@ def _bisect(old: Triangulation, marked: Bools, circle_radius: float | None) -> T
         if not open_ones.any():
             break
         cut[of_triangle[open_ones, 0]] = True
-    points, middle = _cut_edges(old, edges, of_triangle, cut, circle_radius)
+    points, middle = _cut_edges(old, edges, of_triangle, cut, circle_radius, centres)
     triangles, part = old.triangles, old.part
     for _ in range(2):  # the children's cut edges are edges of the old triangle, so twice is enough
         triangles, part, of_triangle = _halve(triangles, part, of_triangle, middle)
@@ -76,7 +82,7 @@ def _edges(triangles: Ints) -> tuple[Ints, Ints]:
 
 
 def _cut_edges(
-    old: Triangulation, edges: Ints, of_triangle: Ints, cut: Bools, circle_radius: float | None
+    old: Triangulation, edges: Ints, of_triangle: Ints, cut: Bools, circle_radius: float | None, centres: Floats
 ) -> tuple[Floats, Ints]:
     """All points with the new mid-points, and the number of each edge's mid-point (-1: not cut)."""
     middle = np.full(len(edges), -1, dtype=np.int64)
@@ -88,8 +94,15 @@ def _cut_edges(
             np.minimum.at(low, of_triangle[:, side], old.part)
             np.maximum.at(high, of_triangle[:, side], old.part)
         on_circle = (low != high)[cut]
-        new[on_circle] *= circle_radius / np.linalg.norm(new[on_circle], axis=1, keepdims=True)
+        new[on_circle] = _onto_circle(new[on_circle], circle_radius, centres)
     return np.vstack([old.points, new]), middle
+
+
+def _onto_circle(points: Floats, radius: float, centres: Floats) -> Floats:
+    """Points (m, 2) moved onto the circle about the nearest centre."""
+    away = points[:, None] - centres
+    arm = away[np.arange(len(points)), np.linalg.norm(away, axis=2).argmin(axis=1)]
+    return np.asarray(points + arm * (radius / np.linalg.norm(arm, axis=1, keepdims=True) - 1.0))
 
 
 def _halve(triangles: Ints, part: Ints, of_triangle: Ints, middle: Ints) -> tuple[Ints, Ints, Ints]:
@@ -123,14 +136,14 @@ def start_triangulation(outline: StackOutline, coarse_mm: float) -> Triangulatio
         cells = [c for c in cells if not _within(x, c[0], patch[0]) or not _within(y, c[1], patch[1])]
     around = ((0, 0), (1, 0), (1, 1), (0, 1))
     quads = np.array([[[x[i + di], y[j + dj]] for di, dj in around] for i, j in cells]).reshape(-1, 4, 2)
-    triangles = _crossed(quads)
+    triangles = crossed(quads)
     part = outline.inside_effector(triangles.mean(axis=1)).astype(np.int64)
     if round_foot:
-        rim, disc = _round_patch(patch, outline.effector_half_x)
-        ring = _crossed(rim)
+        rim, disc = round_patch(patch, outline.effector_half_x)
+        ring = crossed(rim)
         triangles = np.concatenate([triangles, ring, disc])
         part = np.concatenate([part, np.zeros(len(ring), dtype=np.int64), np.ones(len(disc), dtype=np.int64)])
-    return _joined(triangles, part)
+    return joined(triangles, part)
 
 
 def _patch(outline: StackOutline) -> tuple[float, float]:
@@ -164,14 +177,14 @@ def _within(lines: Floats, cell: int, patch: float) -> bool:
     return bool(abs(lines[cell] + lines[cell + 1]) / 2 < patch)
 
 
-def _crossed(quads: Floats) -> Floats:
+def crossed(quads: Floats) -> Floats:
     """Four triangles (4 k, 3, 2) of each quadrilateral (k, 4, 2), counter-clockwise, its centre first."""
     centre = quads.mean(axis=1)
     sides = [np.stack([centre, quads[:, i], quads[:, (i + 1) % 4]], axis=1) for i in range(4)]
     return np.concatenate(sides)
 
 
-def _round_patch(patch: tuple[float, float], radius: float) -> tuple[Floats, Floats]:
+def round_patch(patch: tuple[float, float], radius: float) -> tuple[Floats, Floats]:
     """Quadrilaterals between circle and rectangle, and the triangles of the disc around a square core."""
     t = np.array([-1.0, -0.5, 0.0, 0.5])
     one = np.ones(4)
@@ -184,10 +197,10 @@ def _round_patch(patch: tuple[float, float], radius: float) -> tuple[Floats, Flo
     band = np.stack([inner, circle, next_circle, next_inner], axis=1)
     cell = 0.225 * radius * np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
     core = np.array([cell + 0.225 * radius * np.array([i, j]) for i in range(-2, 2) for j in range(-2, 2)])
-    return rim, _crossed(np.concatenate([band, core]))
+    return rim, crossed(np.concatenate([band, core]))
 
 
-def _joined(triangles: Floats, part: Ints) -> Triangulation:
+def joined(triangles: Floats, part: Ints) -> Triangulation:
     """Number the corners of loose triangles (m, 3, 2); corners closer than a nanometre are one."""
     flat = triangles.reshape(-1, 2)
     _, first, number = np.unique(np.round(flat * 1e6), axis=0, return_index=True, return_inverse=True)
@@ -210,8 +223,12 @@ def refuse_dome(segment: Segment) -> None:
         raise InputError("mesh.mesher = layered cannot mesh segment.effector.shape = dome: use pytetwild")
 
 
-def levels(stack: StackOutline, field: Sizing, film_layers: int) -> tuple[Floats, Ints, tuple[str, ...]]:
-    """Heights (k + 1,), the part of each of the k layers, and the names of the parts."""
+def levels(
+    stack: StackOutline, field: Sizing, film_layers: int, breaks: Iterable[float] = ()
+) -> tuple[Floats, Ints, tuple[str, ...]]:
+    """Heights (k + 1,), the part of each of the k layers, and the names of the parts; breaks : heights to go through
+    in the media and the effector.
+    """
     x, y = field.centers_mm[0] if len(field.centers_mm) else (0.0, 0.0)
     x, y = np.clip(x, -stack.half_x, stack.half_x), np.clip(y, -stack.half_y, stack.half_y)
 
@@ -222,13 +239,17 @@ def levels(stack: StackOutline, field: Sizing, film_layers: int) -> tuple[Floats
         at_side = field.at(np.column_stack([np.full_like(z, stack.half_x), np.zeros_like(z), z]))
         return np.minimum(under_dot, at_side)
 
+    def through(bottom: float, top: float) -> Floats:
+        inside = {z for z in breaks if bottom + SAME_HEIGHT_MM < z < top - SAME_HEIGHT_MM}
+        return graded_through([bottom, *sorted(inside), top], size)
+
     pieces = [
-        ("medium2", graded(0.0, stack.film_bottom, size)),
+        ("medium2", through(0.0, stack.film_bottom)),
         ("film", np.linspace(stack.film_bottom, stack.film_top, film_layers + 1)),
-        ("medium1", graded(stack.film_top, stack.medium1_top, size)),
+        ("medium1", through(stack.film_top, stack.medium1_top)),
     ]
     if stack.shape != "none":
-        pieces.append(("effector", graded(stack.medium1_top, stack.top, size)))
+        pieces.append(("effector", through(stack.medium1_top, stack.top)))
     heights = np.concatenate([[0.0], *[z[1:] for _, z in pieces]])
     part = np.concatenate([np.full(len(z) - 1, i, dtype=np.int64) for i, (_, z) in enumerate(pieces)])
     return heights, part, tuple(name for name, _ in pieces)
@@ -241,11 +262,11 @@ def _triangulate(stack: StackOutline, field: Sizing) -> Triangulation:
         at = [np.column_stack([xy, np.full(len(xy), z)]) for z in (stack.film_top, stack.top)]
         return 1.6 * np.minimum(field.at(at[0]), field.at(at[1]))  # right triangles: hypotenuse to mean edge
 
-    start = _beside(start_triangulation(stack, field.coarse_mm), stack.planes)
+    start = beside_planes(start_triangulation(stack, field.coarse_mm), stack.planes)
     return refine(start, size, stack.effector_half_x if stack.shape == "cylinder" else None)
 
 
-def _beside(start: Triangulation, planes: Planes) -> Triangulation:
+def beside_planes(start: Triangulation, planes: Planes) -> Triangulation:
     """The triangles on the positive side of every plane: the start and what bisection makes of it are symmetric."""
     middle = start.points[start.triangles].mean(axis=1)
     kept = (middle[:, list(planes)] > 0.0).all(axis=1)

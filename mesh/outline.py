@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from math import acos, pi, sqrt
-from typing import Literal
+from typing import Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -128,6 +128,19 @@ def _effector(segment: Segment, half_x: float, half_y: float) -> tuple[Shape, fl
     if segment.section == "plane-strain":
         foot_y = half_y
     return effector.shape, foot_x, foot_y, effector.height_mm
+
+
+class RoundSkin(Protocol):
+    """One round surface, or several."""
+
+    def holds(self, points: Floats, tolerance: float = 1e-7) -> NDArray[np.bool_]:
+        """Whether points (n, 3) lie on it within tolerance in mm."""
+
+    def project(self, points: Floats) -> Floats:
+        """The nearest points (n, 3) of it; points in the plane of the foot stay in it."""
+
+    def normals(self, points: Floats) -> Floats:
+        """Unit normals (n, 3), outward."""
 
 
 @dataclass(frozen=True)

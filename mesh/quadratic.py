@@ -7,14 +7,14 @@ from geometry.arrays import Floats, Ints
 from geometry.parameters import Segment
 from mesh.build import MeshOptions
 from mesh.layered import twins
-from mesh.outline import RoundSurface, StackOutline, curved_surface, outline
+from mesh.outline import RoundSkin, StackOutline, curved_surface, outline
 from mesh.quality import refuse_inverted, smallest_determinant_ratio
 from mesh.types import TET_FACES, LinearMesh, Planes, TetMesh, boundary_faces, face_neighbours, unique_edges
 
 FLATTEST = 0.1  # a curved element keeps at least this share of its mean Jacobian everywhere
 
 
-def quadratic(linear: LinearMesh, surface: RoundSurface | None) -> tuple[Floats, Ints]:
+def quadratic(linear: LinearMesh, surface: RoundSkin | None) -> tuple[Floats, Ints]:
     """Nodes (n, 3) and tetrahedra (m, 10) in VTK's order.
 
     The mid-side nodes of the skin's edges on the curved surface are projected onto it; where that would
@@ -33,7 +33,7 @@ def quadratic(linear: LinearMesh, surface: RoundSurface | None) -> tuple[Floats,
     return np.vstack([linear.points_mm, middle]), tets
 
 
-def _skin_edges(linear: LinearMesh, tets: Ints, surface: RoundSurface) -> Ints:
+def _skin_edges(linear: LinearMesh, tets: Ints, surface: RoundSkin) -> Ints:
     """Mid-side nodes of the edges of outer facets that lie on the surface."""
     owner, face = boundary_faces(linear.tets)
     facets = tets[owner[:, None], TET_FACES[face]]
@@ -71,8 +71,8 @@ def named_facets(
     facets = _outer_facets(points_mm, tets, region, names, stack, neighbour)
     if "film" in names:
         film = names.index("film")
-        facets["film-bottom"] = _between(tets, region, neighbour, names.index("medium2"), film)
-        facets["film-top"] = _between(tets, region, neighbour, film, names.index("medium1"))
+        facets["film-bottom"] = between_parts(tets, region, neighbour, names.index("medium2"), film)
+        facets["film-top"] = between_parts(tets, region, neighbour, film, names.index("medium1"))
     return facets
 
 
@@ -107,7 +107,7 @@ def _on_either(coordinate: Floats, half: float) -> NDArray[np.bool_]:
     return np.asarray(_on_plane(coordinate, half) | _on_plane(coordinate, -half))
 
 
-def _between(tets: Ints, region: Ints, neighbour: Ints, lower: int, upper: int) -> Ints:
+def between_parts(tets: Ints, region: Ints, neighbour: Ints, lower: int, upper: int) -> Ints:
     """Facets from one part to the next above it, normal up."""
     other = np.where(neighbour >= 0, region[neighbour], -1)
     owner, face = np.nonzero((region[:, None] == lower) & (other == upper))

@@ -59,6 +59,7 @@ def parser() -> argparse.ArgumentParser:
     _add_prove(commands)
     _add_kit(commands)
     _add_plate(commands)
+    _add_array(commands)
     _add_check(commands)
     _add_new(commands)
     _add_list(commands)
@@ -191,6 +192,21 @@ def _add_plate(commands: Any) -> None:
     plate.add_argument("--margin-mm", type=float, metavar="MM", help="around the text")
     plate.add_argument("--thread", metavar="NAME", help="thread of the force gauge, M6 by default")
     _add_output(plate)
+
+
+def _add_array(commands: Any) -> None:
+    array = commands.add_parser(
+        "array",
+        help="press several segments under shared layers: their crosstalk",
+        description="Press each segment of an array alone: charge and voltage of every segment, and the lone segment "
+        "that stands for one of them. Presses that were solved are kept, so that a second run goes on.",
+        epilog="docs/array.md explains the table [array] and the results. " + EXIT_STATUS,
+    )
+    _add_config(array)
+    array.add_argument(
+        "--variants", action="store_true", help="press the same segments joined in other ways too, for comparison"
+    )
+    _add_output(array)
 
 
 def _add_check(commands: Any) -> None:

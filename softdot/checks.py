@@ -48,6 +48,11 @@ def refuse_huge_mesh(segment: Segment, dot_shape: DotShape, options: MeshOptions
             raise InputError(f"mesh.file = '{options.file}': has {count:.0f} elements, at most {TOO_MANY} are allowed")
         refuse_too_little_memory(count, segment.section == "plane-strain", "file", options.file)
         return
+    refuse_many_elements(count, options, segment.section == "plane-strain")
+
+
+def refuse_many_elements(count: float, options: MeshOptions, is_slice: bool) -> None:
+    """InputError, which names the smallest size, when so many elements are not allowed or do not fit into memory."""
     sizes = options.sizes_mm
     name = min(sizes, key=lambda one: sizes[one])
     if count > TOO_MANY:
@@ -55,7 +60,7 @@ def refuse_huge_mesh(segment: Segment, dot_shape: DotShape, options: MeshOptions
             f"mesh.{name} = {sizes[name]:g}: means about {count:.1g} elements, "
             f"at most {TOO_MANY:.0g} are allowed; use a larger size"
         )
-    refuse_too_little_memory(count, segment.section == "plane-strain", name, sizes[name])
+    refuse_too_little_memory(count, is_slice, name, sizes[name])
 
 
 def expected_tetrahedra(segment: Segment, dot_shape: DotShape, options: MeshOptions, planes: Planes = ()) -> float:
@@ -97,16 +102,20 @@ class Cost:
 
 def expected_cost(config: Config, dot_shape: DotShape, planes: Planes = ()) -> Cost:
     """Cost of a run. Waveforms that are followed in time, slides and mechanisms may take several times as long."""
-    count = expected_tetrahedra(config.segment, dot_shape, config.mesh, planes)
-    unknowns = UNKNOWNS_PER_TETRAHEDRON[config.segment.section] * count
+    return cost_of(expected_tetrahedra(config.segment, dot_shape, config.mesh, planes), config)
+
+
+def cost_of(tetrahedra: float, config: Config, presses: int = 1) -> Cost:
+    """Cost of some presses on meshes of so many elements, and of what is made around them."""
+    unknowns = UNKNOWNS_PER_TETRAHEDRON[config.segment.section] * tetrahedra
     solve_s = ITERATIONS * config.press.load_steps * ITERATION_S * (unknowns / AT_UNKNOWNS) ** EXPONENT
-    time_s = SOLIDS_AND_PICTURES_S + MESH_S_PER_TETRAHEDRON * count + solve_s
+    time_s = SOLIDS_AND_PICTURES_S + presses * (MESH_S_PER_TETRAHEDRON * tetrahedra + solve_s)
     return Cost(
-        tetrahedra=_rounded(count),
+        tetrahedra=_rounded(tetrahedra),
         unknowns=_rounded(unknowns),
         time_s=float(_rounded(time_s)),
         first_run_s=COMPILE_S,
-        memory_GB=round(needed_GB(count, config.segment.section == "plane-strain"), 1),
+        memory_GB=round(needed_GB(tetrahedra, config.segment.section == "plane-strain"), 1),
     )
 
 

@@ -24,6 +24,7 @@ COMMANDS = {
     "prove": "softdot.commands.prove",
     "kit": "softdot.commands.kit",
     "plate": "softdot.commands.plate",
+    "array": "softdot.commands.array",
     "check": "softdot.commands.check",
     "new": "softdot.commands.new",
     "list": "softdot.commands.list",

@@ -141,6 +141,8 @@ class Physics:
     and the dot. prestretch : nominal strain of the film in x and y. contact_charge_pC : charge that the dot leaves on
     the electrodes, all of it at the largest contact area, before that by a power of the area. electronics : stages of
     the amplifier beside those of the read-out. crosstalk : channel (from 1) -> share of the other channels' voltage.
+    separate_channels : each electrode is on an amplifier of its own, against a common ground, where voltages act back
+    on the film; else all electrodes are in parallel on one.
     """
 
     viscosity: Mapping[str, Prony] = field(default_factory=dict)
@@ -157,6 +159,7 @@ class Physics:
     contact_charge_exponent: float = 1.0
     electronics: tuple[Stage, ...] = ()
     crosstalk: Mapping[int, float] = field(default_factory=dict)
+    separate_channels: bool = False
 
     @property
     def follows_time(self) -> bool:

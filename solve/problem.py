@@ -224,7 +224,7 @@ def _number(
         without_pressure=("film", *(name for name, law in laws.items() if law.compressible)),
         electrodes=orbits(electrode_rectangles(segment), tet_mesh.planes),
         two_way=two_way and not virtual_ground,
-        parallel=readout is not None,
+        parallel=readout is not None and not physics.separate_channels,
         approach=force_driven or physics.rig_compliance_mm_per_N > 0.0,
     )
 
@@ -307,16 +307,22 @@ def _bonds(make: Builder, numbers: Numbers) -> Iterator[Term]:
 
 
 def _circuit(make: Builder, film: FilmRegion) -> Iterator[Term]:
-    """The amplifier's input where its voltage acts back on the film."""
-    readout, units = make.readout, make.units
-    if readout is None or make.unknowns.voltage[0] < 0:
+    """The inputs of the amplifiers where their voltages act back on the film.
+
+    Electrodes of one voltage, in parallel or images of each other, have the inputs of all of them: one in parallel, one
+    for each image.
+    """
+    readout, units, dofs = make.readout, make.units, make.unknowns.voltage
+    if readout is None or dofs[0] < 0:
         return
     farad = units.charge / units.voltage
-    share = meshed_share(make.segment, make.tet_mesh)
-    resistance = 1e6 * (readout.input_resistance_MOhm or np.inf) * farad / share
-    input_capacitance = 1e-12 * readout.input_capacitance_pF / farad * share
-    dof = int(make.unknowns.voltage[0])
-    yield Circuit(dof, float(film.capacitance().sum()), input_capacitance, resistance)
+    for dof in np.unique(dofs):
+        joined = dofs == dof
+        inputs = int(joined.sum()) if make.physics.separate_channels else 1
+        share = inputs * meshed_share(make.segment, make.tet_mesh)
+        resistance = 1e6 * (readout.input_resistance_MOhm or np.inf) * farad / share
+        input_capacitance = 1e-12 * readout.input_capacitance_pF / farad * share
+        yield Circuit(int(dof), float(film.capacitance()[joined].sum()), input_capacitance, resistance)
 
 
 def _rig(make: Builder, force_driven: bool) -> Iterator[Term]:

@@ -95,15 +95,20 @@ def _mirrored_patches(patches: tuple[Delamination, ...], axis: int, is_slice: bo
 
 
 def mirrored_dot(dot: DotShape, axis: int) -> bool:
-    """Whether a dot at rest is its own image: it stands on the plane, and its plate is not turned out of it."""
+    """Whether a dot at rest is its own image: its plate is not turned out of the plane, and each ball has its image
+    among the balls.
+    """
     sign = np.ones(3)
     sign[axis] = -1.0
     turned = sign[:, None] * dot.rotation * sign
-    centers = {tuple(center) for center in np.round(dot.centers_xy_mm, 9) + 0.0}
-    images = {tuple(center) for center in np.round(dot.centers_xy_mm * sign[:2], 9) + 0.0}
-    endless = dot.kind == "plate" or (dot.kind == "ridge" and axis == 1)
-    on_plane = endless or abs(dot.origin_mm[axis]) <= SAME_MM
-    return bool(on_plane and np.abs(turned - dot.rotation).max() <= SAME and centers == images)
+    if np.abs(turned - dot.rotation).max() > SAME:
+        return False
+    if dot.kind == "plate" or (dot.kind == "ridge" and axis == 1):
+        return True
+    flat = np.column_stack([dot.centers_xy_mm, np.zeros(len(dot.centers_xy_mm))])
+    tips = dot.origin_mm + flat @ dot.rotation.T
+    apart = np.abs((sign * tips)[:, None] - tips[None]).max(axis=2)
+    return bool((apart.min(axis=1) <= SAME_MM).all())
 
 
 def orbits(rectangles: Floats, planes: Planes) -> Ints:

@@ -4,9 +4,9 @@ from pathlib import Path
 
 HEAD = """# Gallery
 
-Every file is complete: `softdot run examples/NAME.toml -o out` runs it, and `softdot sweep` the one with a table
-`[sweep]`. [Examples](../examples/README.md) gives a number for each design, [Mechanisms](mechanisms.md) the equations
-and the source of each piece of physics.
+Every file is complete: `softdot run examples/NAME.toml -o out` runs it, `softdot sweep` the one with a table `[sweep]`,
+`softdot array` the one with a table `[array]`. [Examples](../examples/README.md) gives a number for each design,
+[Mechanisms](mechanisms.md) the equations and the source of each piece of physics.
 """
 CHAPTERS = {"Designs": "examples", "Mechanisms and materials": "examples/mechanisms"}
 # The pictures of mechanisms have the names of their files; those of designs were made for other documents.

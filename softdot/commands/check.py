@@ -4,9 +4,13 @@ import sys
 from argparse import Namespace
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from softdot.console import BAD_INPUT, GOOD, complain, json_text, plain
+
+if TYPE_CHECKING:
+    from softdot.checks import Cost
+    from softdot.config import Config
 
 FORMAT = "softdot-check/1"
 
@@ -25,26 +29,40 @@ def command(chosen: Namespace) -> int:
 
 def check_file(path: Path, settings: list[str]) -> dict[str, Any]:
     """Mistakes, warnings and the expected cost of a configuration."""
-    from softdot.checks import design_warnings, expected_cost
     from softdot.config import config_from
     from softdot.config.errors import mistakes
     from softdot.config.toml import completed, from_default, read_toml, with_settings
 
     def check(tables: Mapping[str, Any]) -> tuple[Any, ...]:
-        from softdot.case import Case
-
-        case = Case(config_from(completed(tables)))
-        return (case, *case.checked)
+        config = config_from(completed(tables))
+        return (config, *(_segment(config) if config.array is None else _array(config)))
 
     stated = with_settings(read_toml(path), settings)
     found, checked = mistakes(stated, check)
     summary: dict[str, Any] = {"format": FORMAT, "config": str(path), "mistakes": found}
     if checked is None:
         return summary
-    case, dot_shape, warnings = checked
-    cost = expected_cost(case.config, dot_shape, case.planes)
-    told: dict[str, Any] = plain({"warnings": [*warnings, *design_warnings(case.model)], "expected": vars(cost)})
-    return {**summary, **told, "from_default": list(from_default(stated, case.config.model_dump(mode="json")))}
+    config, warnings, cost = checked
+    told: dict[str, Any] = plain({"warnings": warnings, "expected": vars(cost)})
+    return {**summary, **told, "from_default": list(from_default(stated, config.model_dump(mode="json")))}
+
+
+def _segment(config: "Config") -> "tuple[list[str], Cost]":
+    """Warnings and cost of a run. InputError."""
+    from softdot.case import Case
+    from softdot.checks import design_warnings, expected_cost
+
+    case = Case(config)
+    dot_shape, warnings = case.checked
+    return [*warnings, *design_warnings(case.model)], expected_cost(config, dot_shape, case.planes)
+
+
+def _array(config: "Config") -> "tuple[list[str], Cost]":
+    """Warnings and cost of the crosstalk of an array, whose lone segments come on top. InputError."""
+    from softdot.arrays.case import ArrayCase
+
+    case = ArrayCase(config)
+    return case.checked, case.cost
 
 
 def short_text(summary: dict[str, Any]) -> str:

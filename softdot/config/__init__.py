@@ -8,6 +8,7 @@ from typing import Any, Self
 
 from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
+from geometry.array.parameters import Array
 from geometry.base import InputError
 from geometry.fabrication.parameters import Fabrication
 from geometry.parameters import Dot, Segment, Table
@@ -25,6 +26,7 @@ class Config(Table):
 
     segment: Segment = Field(description="the sensor segment")
     materials: dict[str, AnyMaterial] = Field({}, description="materials beside or instead of the built-in ones")
+    array: Array | None = Field(None, description="several segments side by side; leave out for one segment")
     dot: Dot = Field(Dot(), description="the rigid Braille dot")
     press: Press = Field(Press(), description="how the dot is pressed")
     readout: Readout | None = Field(None, description="the amplifier; leave out for open circuit")

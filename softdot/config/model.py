@@ -14,7 +14,10 @@ STIFFEST_BOND_N_PER_MM3 = 1e6  # as in segment.bonds
 
 
 def model_of(config: Config) -> Model:
-    """The model of a configuration. InputError with one sentence for a mechanism that this segment cannot have."""
+    """The model of a configuration. InputError with one sentence for a mechanism that this segment cannot have, and
+    for an array.
+    """
+    refuse_array(config)
     physics = Physics(bonds=declared_bonds(config.segment))
     model = Model(config.segment, config.layer_materials(), config.dot, config.press, config.readout, physics)
     for number, mechanism in enumerate(config.mechanisms):
@@ -31,6 +34,14 @@ def model_of(config: Config) -> Model:
     _refuse_patches_outside(model)
     _refuse_missing_channels(model)
     return model
+
+
+def refuse_array(config: Config) -> None:
+    """InputError where a configuration states an array and one segment is asked for."""
+    if config.array is not None:
+        raise InputError(
+            "array: this is one segment's command; use softdot array, or leave the table out for a segment alone"
+        )
 
 
 def _refuse_missing_layer(key: str, component: str, model: Model) -> None:

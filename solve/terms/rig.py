@@ -110,7 +110,7 @@ SHORT = 1e9  # as good as a short circuit
 
 @dataclass(frozen=True)
 class Circuit(Term):
-    """All electrodes in parallel on one input, in solver units; resistance is one of charge, so in seconds times V."""
+    """Electrodes of one voltage on one input, in solver units; resistance is one of charge, so in seconds times V."""
 
     voltage_dof: int
     film_capacitance: float

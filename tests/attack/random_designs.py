@@ -1,6 +1,7 @@
 """Random designs that a lab might write, over every key of the configuration, on meshes so coarse that they are quick.
 
-Design n carries mechanism n mod 24, a second one that goes round at another pace, and at times a third.
+Design n carries mechanism n mod 24, a second one that goes round at another pace, and at times a third. Some solids are
+arrays, which leave out mechanisms that change the segment, the dot or a bond.
 """
 
 from typing import get_args
@@ -19,6 +20,17 @@ NAMES = tuple(MECHANISMS)
 TOLD_ONLY = ("source", "confidence", "fabrication")
 SOLID, ROUND = 9, 40
 """Every 9th design is a solid, every 40th has a round effector (pytetwild); the rest are plane-strain slices."""
+ARRAY, FIRST_ARRAY = 45, 9
+"""Every 45th design from the 9th, all of them solids, is an array of two segments."""
+ONE_SEGMENTS = {
+    "adhesive-compliance",
+    "delamination",
+    "dimension-reduction",
+    "dot-offset",
+    "elastic-sides",
+    "crosstalk",
+}
+"""Mechanisms that an array does not take, and one between the halves of a segment."""
 STANDARDS = ("marburg-medium", "ada", "nls", "japan", "en-15823")
 
 
@@ -27,15 +39,22 @@ def design(number: int) -> dict:
     draw = Draw(SEED, number)
     names = [NAMES[number % 24], NAMES[(7 * number + number // 24 + 5) % 24]]
     names += [draw.among(NAMES)] if draw.perhaps(0.4) else []
+    several = number % ARRAY == FIRST_ARRAY
+    if several:
+        names = [name for name in names if name not in ONE_SEGMENTS]
     reducible = "dimension-reduction" in names
     round_one = number % ROUND == 1 and not reducible
     solid = round_one or reducible or (number % SOLID == 0 and "inertia" not in names)
     segment = _segment(draw, solid, round_one, reducible, "crosstalk" in names)
+    if several:
+        segment = _one_of_several(segment)
     layers = [name for name in LAYERS if name in segment]
     materials = {f"own-{name}": film_material(draw) if name == "film" else medium_material(draw) for name in layers}
     for name in layers:
         segment[name]["material"] = f"own-{name}"
     dot = _dot(draw, segment, reducible)
+    if several:
+        dot = {"standard": "marburg-medium", "gap_mm": dot["gap_mm"], "offset_mm": [0.05, 0.0]}
     softest = min(modulus_MPa(materials[f"own-{name}"]) for name in layers if name != "film")
     tables = {
         "seed": draw.whole(0, 9),
@@ -47,6 +66,9 @@ def design(number: int) -> dict:
         "mechanisms": _mechanisms(draw, names, segment, dot),
         "fabrication": {},
     }
+    if several:
+        tables["array"] = _array(draw, segment)
+        tables["press"].pop("path_xy_mm", None)
     if draw.perhaps(0.6):
         tables["readout"] = _readout(draw)
     if draw.perhaps(0.3):
@@ -94,6 +116,37 @@ def _segment(draw, solid, round_one, reducible, halves):
                 "shear_stiffness_N_per_mm3": draw.log(5.0, 1e6),
             }
         ]
+    return table
+
+
+def _one_of_several(table):
+    """A segment as an array takes it, and not so long that two of them are dear."""
+    table["film"].pop("electrodes", None)
+    table.pop("bonds", None)
+    for name in ("length_mm", "width_mm"):
+        table[name] = min(table[name], 2.5)
+        if name in table.get("effector", {}):
+            table["effector"][name] = min(table["effector"][name], table[name])
+    return table
+
+
+def _array(draw, segment):
+    """Two segments in a row, a column or two cells of one; at times in a grid, at times with a groove."""
+    size = max(segment["length_mm"], segment["width_mm"])
+    columns, rows, cells = draw.among(((2, 1, 1), (1, 2, 1), (1, 1, 2)))
+    table = {
+        "columns": columns,
+        "rows": rows,
+        "cells": cells,
+        "pitch_mm": size + draw.between(0.1, 0.5),
+        "cell_pitch_mm": size + 0.6,
+        "shared": ["film", "medium2"],
+        "electrode_margin_mm": draw.between(0.0, 0.2),
+    }
+    if draw.perhaps(0.5) and segment["boundary"] != "elastic":
+        table["grid_layers"] = ["medium1", "film"]
+    thickness_mm = segment["medium2"]["thickness_mm"]
+    table["grooves"] = [{"layer": "medium2", "width_mm": 0.2, "depth_mm": draw.between(0.2, 0.8) * thickness_mm}]
     return table
 
 

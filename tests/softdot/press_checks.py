@@ -5,10 +5,13 @@ Nodal forces are summed here from the stress at the quadrature points, the gaps 
 """
 
 from dataclasses import dataclass
+from types import SimpleNamespace
 from unittest.mock import patch
 
 import numpy as np
 
+from softdot.arrays.case import ArrayCase
+from softdot.arrays.presses import signals_of
 from softdot.case import Case
 from softdot.config import config_from
 from solve import press as press_module
@@ -35,8 +38,12 @@ class Pressed:
 
 
 def solved(tables) -> Pressed:
-    """From tables to the result as softdot run goes, without its files. InputError, MeshingError."""
-    case = Case(config_from(tables))
+    """From tables to the result as softdot run goes, without its files; of an array the press of its first segment.
+
+    InputError, MeshingError.
+    """
+    config = config_from(tables)
+    case = Case(config) if config.array is None else first_press(config)
     _ = case.solved_mesh  # sizes for an accuracy are found by presses of their own
     kept = []
     set_up = press_module.set_up
@@ -44,6 +51,25 @@ def solved(tables) -> Pressed:
         result = case.solve()
     voltage = case.amplified(result)
     return Pressed(case.model, case.dot, result, voltage, kept[0].system, kept[0].tet_mesh, kept[0].recorder._last)
+
+
+def first_press(config):
+    """As Case has it, of an array."""
+    array = ArrayCase(config)
+    _ = array.checked
+    press = array.press_over(array.layout.places[0])
+
+    def amplified(result):
+        channels = signals_of(press, result, 0.0).readout_voltage_V
+        return None if channels is None else (channels.sum(axis=1), channels.T)
+
+    return SimpleNamespace(
+        model=press.model,
+        dot=press.dot,
+        solved_mesh=press.mesh,
+        solve=lambda: press_module.press_segment(press.model, press.mesh, dot=press.dot),
+        amplified=amplified,
+    )
 
 
 def wrong(pressed) -> list[str]:

@@ -11,6 +11,7 @@ import pytest
 from pydantic import TypeAdapter
 
 import docs.make_configuration as maker
+import geometry.array.parameters
 import geometry.fabrication.parameters
 import geometry.parameters
 import solve.materials.parameters
@@ -26,8 +27,8 @@ ROOT = Path(__file__).parents[2]
 DOCUMENTS = sorted([*(ROOT / "docs").glob("*.md"), *ROOT.glob("*.md"), ROOT / "examples" / "README.md"])
 SOURCES = ("geometry", "mesh", "solve", "export", "diagnose", "softdot", "docs", "tests", "examples", "benchmarks")
 HOMES = (
-    geometry.parameters, geometry.fabrication.parameters, import_module("mesh.build"), solve.model, solve.mechanisms,
-    solve.materials.parameters,
+    geometry.parameters, geometry.array.parameters, geometry.fabrication.parameters, import_module("mesh.build"),
+    solve.model, solve.mechanisms, solve.materials.parameters,
 )  # fmt: skip
 EXAMPLES = tomllib.loads((ROOT / "docs" / "configuration_examples.toml").read_text("utf-8"))
 

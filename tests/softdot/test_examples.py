@@ -27,7 +27,8 @@ from solve.result import PressResult
 
 FOLDER = Path(__file__).parents[2] / "examples"
 SHORT = FOLDER / "mechanisms"
-RUNS = sorted(path for path in FOLDER.rglob("*.toml") if path.stem != "sweep")  # that one is a space, not a run
+NOT_RUN = ("sweep", "array-cell")  # a space, and several segments
+RUNS = sorted(path for path in FOLDER.rglob("*.toml") if path.stem not in NOT_RUN)
 LAWS = ("mooney-rivlin", "yeoh", "knowles", "ogden", "hyperfoam")
 FACTOR = 337  # the paper's ratio of simulated to measured voltage
 SOLID_MESH = {"element_size_mm": 0.4, "contact_element_size_mm": 0.15}

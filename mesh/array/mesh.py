@@ -1,0 +1,178 @@
+"""The mesh of an array: the footprint of all segments, extruded layer by layer, with gaps and grooves left out.
+
+It is the extrusion of mesh.layered: the same bisection and the same split of prisms. Each triangle of the footprint
+lies either inside a layer or outside it. A dome is extruded too: its heights shrink to nothing at its rim, where the
+nodes of all heights are one, and prisms become pyramids and tetrahedra. A layer that is held at walls inside the array
+(by a stiff grid) has these walls among its facets side-<part>, as its sides at the rim.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from geometry.array.layout import ArrayLayout
+from geometry.arrays import Bools, Floats, Ints
+from geometry.dot import DotShape
+from geometry.stack import layers
+from mesh.array.footprint import footprint, from_middle, on_circles
+from mesh.array.sizing import array_sizing
+from mesh.build import MeshOptions
+from mesh.layered import Triangulation, levels
+from mesh.outline import RoundSurface, curved_surface, outline
+from mesh.quadratic import between_parts, quadratic
+from mesh.quality import refuse_inverted
+from mesh.types import (
+    TET_FACES,
+    LinearMesh,
+    Planes,
+    TetMesh,
+    boundary_faces,
+    face_neighbours,
+    oriented,
+    split_prisms,
+    without_unused,
+)
+
+TOLERANCE_MM = 1e-6
+
+
+@dataclass(frozen=True)
+class RoundSurfaces:
+    """The round skins of all effectors: that of one, one above the middle of each segment (n, 2)."""
+
+    one: RoundSurface
+    centres: Floats
+
+    def _local(self, points: Floats) -> tuple[Floats, Floats]:
+        """Points (n, 3) as seen from the nearest segment, and its middle (n, 3)."""
+        nearest = np.linalg.norm(points[:, None, :2] - self.centres, axis=2).argmin(axis=1)
+        middle = np.column_stack([self.centres[nearest], np.zeros(len(points))])
+        return points - middle, middle
+
+    def holds(self, points: Floats, tolerance: float = 1e-7) -> Bools:
+        """As RoundSurface."""
+        return self.one.holds(self._local(points)[0], tolerance)
+
+    def project(self, points: Floats) -> Floats:
+        """As RoundSurface."""
+        local, middle = self._local(points)
+        return np.asarray(self.one.project(local) + middle)
+
+    def normals(self, points: Floats) -> Floats:
+        """As RoundSurface."""
+        return self.one.normals(self._local(points)[0])
+
+
+def array_mesh(layout: ArrayLayout, dot: DotShape, options: MeshOptions, planes: Planes = ()) -> TetMesh:
+    """Mesh an array under a dot, as far as its mirror planes.
+
+    dot : where and how round the dots are, which is where the mesh is fine. Raises MeshingError when an element is
+    inverted. The layout must have passed its checks.
+    """
+    field = array_sizing(layout, dot, options, planes)
+    grooves = [
+        layer.top_mm - groove.depth_mm for layer in layers(layout.segment) for groove in layout.grooves(layer.name)
+    ]
+    heights, layer_region, names = levels(field.outline, field, options.film_layers, grooves)
+    linear = _extrude(layout, footprint(layout, field), heights, layer_region, names)
+    points, tets = quadratic(linear, _round_skin(layout))
+    facets = _facets(layout, points, tets, linear.region, linear.region_names, planes)
+    twin = np.arange(len(points), dtype=np.int64)
+    thickness = layout.whole.width_mm
+    result = TetMesh(points, tets, linear.region, linear.region_names, facets, twin, thickness, planes)
+    refuse_inverted(result)
+    return result
+
+
+def _round_skin(layout: ArrayLayout) -> RoundSurfaces | None:
+    one = curved_surface(outline(layout.segment))
+    return None if one is None else RoundSurfaces(one, layout.middles)
+
+
+def _extrude(
+    layout: ArrayLayout, foot: Triangulation, heights: Floats, layer_region: Ints, names: tuple[str, ...]
+) -> LinearMesh:
+    """The prisms of all layers where each has material."""
+    points, node = _nodes(layout, foot, heights, layer_region, names)
+    middle = foot.points[foot.triangles].mean(axis=1)
+    tets, region = [], []
+    for layer, part in enumerate(layer_region):
+        height = (heights[layer] + heights[layer + 1]) / 2
+        round_one = names[part] == "effector" and layout.foot_radius_mm is not None
+        present = foot.part == 1 if round_one else layout.holds(names[part], middle, height)
+        base = foot.triangles[present]
+        prisms = split_prisms(node[layer][base], node[layer + 1][base])
+        whole = (np.diff(np.sort(prisms, axis=1), axis=1) > 0).all(axis=1)  # at the rim of a dome some have shrunk
+        tets.append(prisms[whole])
+        region.append(np.full(len(tets[-1]), part, dtype=np.int64))
+    all_tets = np.concatenate(tets)
+    return without_unused(LinearMesh(points, oriented(points, all_tets), np.concatenate(region), names))
+
+
+def _nodes(
+    layout: ArrayLayout, foot: Triangulation, heights: Floats, layer_region: Ints, names: tuple[str, ...]
+) -> tuple[Floats, Ints]:
+    """Points of all levels, and the number (levels, n) of the node over each point of the footprint."""
+    count = len(foot.points)
+    points = np.column_stack([np.tile(foot.points, (len(heights), 1)), np.repeat(heights, count)])
+    node = np.arange(len(points)).reshape(len(heights), count)
+    effector, radius = layout.segment.effector, layout.foot_radius_mm
+    if effector is None or radius is None or effector.shape != "dome":
+        return points, node
+    base = int(np.argmax(layer_region == names.index("effector")))
+    sphere = curved_surface(outline(layout.segment))
+    assert sphere is not None
+    away = np.minimum(from_middle(layout, foot.points), radius)
+    rise = sphere.centre[2] + np.sqrt(sphere.radius**2 - away**2) - heights[base]
+    share = (heights[base:] - heights[base]) / (heights[-1] - heights[base])
+    points[base * count :, 2] = (heights[base] + share[:, None] * np.maximum(rise, 0.0)).ravel()
+    rim = on_circles(layout, foot.points, radius)
+    node[base:, rim] = node[base, rim]
+    return points, node
+
+
+def _facets(
+    layout: ArrayLayout, points: Floats, tets: Ints, region: Ints, names: tuple[str, ...], planes: Planes
+) -> dict[str, Ints]:
+    """The facets of mesh.types.TetMesh by name.
+
+    The dot can touch what faces up of medium 1 and of effectors that are layers, and the whole skin of other effectors.
+    Walls in gaps are sides where the grid holds the layer, else bear no name.
+    """
+    owner, face = boundary_faces(tets)
+    outer, part = tets[owner[:, None], TET_FACES[face]], region[owner]
+    corner = points[outer[:, :3]]
+    flat = np.ptp(corner[..., 2], axis=1) < TOLERANCE_MM
+    on_base = flat & (np.abs(corner[..., 2]).max(axis=1) < TOLERANCE_MM)
+    cut = np.zeros(len(outer), dtype=bool)
+    for axis in planes:
+        cut |= (np.abs(corner[..., axis]) < TOLERANCE_MM).all(axis=1)
+    result = {"contact": outer[_touchable(layout, corner, part, names, flat) & ~cut], "base": outer[on_base]}
+    at_rim = _in_any_plane(corner, layout.half_mm)
+    for number, name in enumerate(names):
+        held = ~flat & ~cut if name in layout.array.grid_layers else at_rim
+        mine = outer[held & (part == number)]
+        if len(mine):
+            result[f"side-{name}"] = mine
+    neighbour, film = face_neighbours(tets[:, :4]), names.index("film")
+    result["film-bottom"] = between_parts(tets, region, neighbour, names.index("medium2"), film)
+    result["film-top"] = between_parts(tets, region, neighbour, film, names.index("medium1"))
+    return result
+
+
+def _touchable(layout: ArrayLayout, corner: Floats, part: Ints, names: tuple[str, ...], flat: Bools) -> Bools:
+    """Outer facets (k, 3, 3) that the dot can touch."""
+    normal_z = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])[:, 2]
+    faces_up = flat & (normal_z > 0.0)
+    skin = [number for number, name in enumerate(names) if name in ("medium1", "effector")]
+    touchable = faces_up & np.isin(part, skin)
+    effector = layout.segment.effector
+    if effector is not None and effector.shape != "layer":
+        touchable |= (part == names.index("effector")) & (faces_up | ~flat)
+    return np.asarray(touchable)
+
+
+def _in_any_plane(corner: Floats, half_mm: tuple[float, float]) -> Bools:
+    """Facets (k, 3, 3) in a plane of the rim."""
+    away = np.abs(np.abs(corner[..., :2]) - np.array(half_mm))
+    return np.asarray((away < TOLERANCE_MM).all(axis=1).any(axis=1))

@@ -1,0 +1,88 @@
+"""Target edge length in an array: fine under the dots, growing away from the segments that they press."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from geometry.array.layout import ArrayLayout, Rectangle
+from geometry.arrays import Floats
+from geometry.dot import DotShape
+from mesh.build import MeshOptions
+from mesh.outline import outline
+from mesh.sizing import GROWTH, RIM, RIM_GROWTH, Sizing, sizing
+from mesh.types import Planes
+
+HYPOTENUSE = 1.6
+"""Longest edge of a right triangle against its mean edge, as in mesh.layered."""
+FAR_GROWTH = 0.25
+"""mm of edge length on the film per mm beside the pressed segment: what reaches a neighbour is smooth."""
+SAMPLES = 20_000
+TRIANGLES = 4.0
+"""Triangles for a square of the edge length, as bisection leaves them: within a factor of 1.5 on arrays of six."""
+
+
+@dataclass(frozen=True)
+class ArraySizing(Sizing):
+    """Fine under the dots and on the film of the segments they press, growing away from these.
+
+    pressed : (k, 4) rectangles x0, x1, y0, y1 of the segments under the dots; ends : (n, 4) the same, of the film,
+    where it ends at walls, else of the whole array.
+    """
+
+    pressed: Floats
+    ends: Floats
+
+    def at(self, points: Floats) -> Floats:
+        """Edge lengths in mm at points (n, 3), shape (n,)."""
+        z = points[:, 2]
+        to_film = np.abs(z - np.clip(z, self.outline.film_bottom, self.outline.film_top))
+        beside = FAR_GROWTH * _outside(points, self.pressed).min(axis=1)
+        film = self.film_mm + GROWTH * to_film + beside
+        to_end = np.abs(_inside(points, self.ends)).min(axis=1)
+        rim = RIM * self.film_mm + RIM_GROWTH * np.hypot(to_film, to_end) + beside
+        contact = self.contact_mm + GROWTH * self._to_contact(points)
+        return np.asarray(np.minimum(np.minimum(np.minimum(contact, film), rim), self.coarse_mm))
+
+    def over(self, xy_mm: Floats) -> Floats:
+        """The finest of skin and film above points (n, 2) of the footprint."""
+        at = [np.column_stack([xy_mm, np.full(len(xy_mm), z)]) for z in (self.outline.film_top, self.outline.top)]
+        return np.asarray(np.minimum(self.at(at[0]), self.at(at[1])))
+
+
+def _inside(points: Floats, rectangles: Floats) -> Floats:
+    """Distance (n, k) of points from the nearest edge of each rectangle, negative outside."""
+    x, y = points[:, :1], points[:, 1:2]
+    x0, x1, y0, y1 = rectangles.T
+    return np.asarray(np.minimum(np.minimum(x - x0, x1 - x), np.minimum(y - y0, y1 - y)), dtype=np.float64)
+
+
+def _outside(points: Floats, rectangles: Floats) -> Floats:
+    """Distance (n, k) of points from each rectangle, zero inside."""
+    x, y = points[:, :1], points[:, 1:2]
+    x0, x1, y0, y1 = rectangles.T
+    beside = np.maximum(np.maximum(x0 - x, x - x1), 0.0), np.maximum(np.maximum(y0 - y, y - y1), 0.0)
+    return np.asarray(np.hypot(*beside), dtype=np.float64)
+
+
+def array_sizing(layout: ArrayLayout, dot: DotShape, options: MeshOptions, planes: Planes) -> ArraySizing:
+    """Sizes under a dot at rest; the segments that it presses are those within the reach of a dot."""
+    half_x, half_y = layout.half_mm
+    base = sizing(outline(layout.whole, planes=planes), dot, options)
+    segments = np.array(layout.rectangles("film"))
+    near = (_outside(base.centers_mm, segments) <= base.reach_mm).any(axis=0)
+    rim: list[Rectangle] = [(-half_x, half_x, -half_y, half_y)]
+    ends = segments if layout.ends_at_walls("film") else np.array(rim)
+    return ArraySizing(**vars(base), pressed=segments[near] if near.any() else segments, ends=ends)
+
+
+def expected_elements(layout: ArrayLayout, dot: DotShape, options: MeshOptions, planes: Planes = ()) -> float:
+    """Rough number of elements: the triangles that the sizes ask for, times the layers, times three."""
+    field = array_sizing(layout, dot, options, planes)
+    stack = field.outline
+    low, high = np.array(stack.low), np.array([stack.half_x, stack.half_y])
+    xy = np.random.default_rng(0).uniform(low, high, (SAMPLES, 2))
+    triangles = float(np.prod(high - low) * np.mean(TRIANGLES / field.over(xy) ** 2))
+    x, y = field.centers_mm.mean(axis=0)
+    z = np.linspace(0.0, stack.top, SAMPLES)
+    through = stack.top * float(np.mean(1.0 / field.at(np.column_stack([np.full_like(z, x), np.full_like(z, y), z]))))
+    return 3.0 * triangles * through

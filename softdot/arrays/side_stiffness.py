@@ -1,0 +1,173 @@
+"""The lone segment with elastic sides that best stands for a segment of an array.
+
+The paper believes the sides of a segment among others to be "something between Free and Clamped". Here that something
+is a number: the stiffness k of segment.side_stiffness_N_per_mm3, the same on all sides and in all directions, with
+which a lone segment comes nearest to force and voltage of an inner, an edge and a corner segment over the whole press.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+from scipy.optimize import minimize_scalar
+
+from geometry.array.layout import ArrayLayout, SegmentPlace
+from geometry.arrays import Floats
+from geometry.parameters import LayerName
+from softdot.arrays.case import ArrayCase
+from softdot.arrays.matrix import CrosstalkMatrix, converged
+from softdot.arrays.presses import Follow, Signals, signals
+
+STIFFNESSES_N_PER_MM3 = (0.01, 0.1, 0.5, 2.0, 10.0, 50.0, 300.0, 3000.0)
+ROLES = ("inner", "edge", "corner")
+"""By the number of directions in which a segment is the last of its row or column."""
+
+
+@dataclass(frozen=True)
+class Likeness:
+    """How near a lone segment comes: errors of force, or of depth where a force is prescribed, and of voltage at full
+    load, and the root of the mean square of both over the press, each relative to its largest value in the array.
+    """
+
+    force_percent: float | None
+    depth_percent: float | None
+    voltage_percent: float
+    rms_percent: float
+
+
+@dataclass(frozen=True)
+class EffectiveSides:
+    """The lone segment that stands best for one of the array, beside a free and a clamped one.
+
+    held_layers : which layers its sides are held at. at_limit : the best is at the end of the range that was looked at;
+    it is then as good as free or clamped.
+    """
+
+    label: str
+    held_layers: tuple[LayerName, ...]
+    stiffness_N_per_mm3: float
+    at_limit: bool
+    best: Likeness
+    free: Likeness
+    clamped: Likeness
+
+
+def role(layout: ArrayLayout, place: SegmentPlace) -> str:
+    """Which of ROLES a segment has. In a single row or column the last segments are edges."""
+    position = ((place.column, len(layout.centres(0))), (place.row, len(layout.centres(1))))
+    return ROLES[sum(count > 1 and at in (1, count) for at, count in position)]
+
+
+def representatives(layout: ArrayLayout) -> dict[str, int]:
+    """For each role that the array has, the number of its segment nearest to the middle."""
+    found: dict[str, int] = {}
+    for number in np.argsort([np.hypot(place.x_mm, place.y_mm) for place in layout.places], kind="stable"):
+        found.setdefault(role(layout, layout.places[number]), int(number))
+    return {name: found[name] for name in ROLES if name in found}
+
+
+def held_candidates(layout: ArrayLayout) -> list[tuple[LayerName, ...]]:
+    """Layers that springs may hold: those of a segment to whose sides something is joined; these without medium 2,
+    which closes a cavity where its sides are held; the film alone, a thousand times stiffer than the rest.
+    """
+    array = layout.array
+    joined = tuple(dict.fromkeys((*array.grid_layers, *array.shared)))
+    without = tuple(name for name in joined if name != "medium2")
+    film = tuple(name for name in joined if name == "film")
+    return list(dict.fromkeys((joined, without, film)))
+
+
+def effective_sides(matrix: CrosstalkMatrix, follow: Follow) -> dict[str, EffectiveSides]:
+    """For each role that the array has; none for one segment. StoppedPressError.
+
+    Lone segments are pressed over a range of stiffness, for each set of layers that springs may hold. Their force and
+    voltage, interpolated over the logarithm of the stiffness, give the best set and stiffness; that one is pressed
+    itself, and its errors are the ones that count.
+    """
+    case = matrix.case
+    if len(matrix.layout.places) == 1:
+        return {}
+    by_force = case.config.press.force_N is not None
+    families = {
+        held: {k: _pressed(case, "elastic", held, k, follow) for k in STIFFNESSES_N_PER_MM3}
+        for held in held_candidates(matrix.layout)
+    }
+    free = _pressed(case, "free", (), 0.0, follow)
+    found = {}
+    for name, number in representatives(matrix.layout).items():
+        target = _response(matrix.press(number), by_force, matrix.seen_from(number)[number])
+        best = min(
+            (
+                _best(held, [_response(one, by_force) for one in lone.values()], target)
+                for held, lone in families.items()
+            ),
+            key=lambda one: one.mean_square,
+        )
+        presses = [
+            _pressed(case, "elastic", best.held, best.stiffness_N_per_mm3, follow),
+            free,
+            _pressed(case, "clamped", best.held, 0.0, follow),
+        ]
+        likeness = [_likeness(_response(one, by_force), target, by_force) for one in presses]
+        label = matrix.layout.places[number].label
+        found[name] = EffectiveSides(label, best.held, best.stiffness_N_per_mm3, best.at_limit, *likeness)
+    return found
+
+
+def _pressed(case: ArrayCase, boundary: str, held: tuple[LayerName, ...], k: float, follow: Follow) -> Signals:
+    update = {"boundary": boundary, "held_layers": held, "side_stiffness_N_per_mm3": k}
+    alone = case.lone(case.config.segment.model_copy(update=update))
+    spring = f" {k:.3g} N/mm3" if boundary == "elastic" else ""
+    what = f"lone segment, {boundary}{spring}, {' '.join(held) or 'no layer'} held"
+    return converged(signals(alone.press_over(alone.layout.places[0]), follow(what)), what)
+
+
+def _response(found: Signals, by_force: bool, number: int = 0) -> Floats:
+    """What answers the load, force or depth, and the voltage of the pressed segment, (2, s)."""
+    return np.stack([found.depth_mm if by_force else found.force_N, found.voltage_V[:, number]])
+
+
+def _errors(one: Floats, target: Floats) -> Floats:
+    """Relative to the largest value of each, (2, s)."""
+    return np.asarray((one - target) / np.abs(target).max(axis=1, keepdims=True))
+
+
+def _likeness(one: Floats, target: Floats, by_force: bool) -> Likeness:
+    errors = 100.0 * _errors(one, target)
+    answer, voltage = (float(error) for error in errors[:, -1])
+    rms = float(np.sqrt(np.mean(errors[:, 1:] ** 2)))
+    return Likeness(None if by_force else answer, answer if by_force else None, voltage, rms)
+
+
+@dataclass(frozen=True)
+class _Interpolated:
+    """The best stiffness for one set of held layers, as far as interpolation tells."""
+
+    held: tuple[LayerName, ...]
+    stiffness_N_per_mm3: float
+    at_limit: bool
+    mean_square: float
+
+
+def _best(held: tuple[LayerName, ...], lone: Sequence[Floats], target: Floats) -> _Interpolated:
+    """The stiffness of least mean square error between the smallest and the largest; lone : responses (2, s)."""
+    decades = np.log10(STIFFNESSES_N_PER_MM3)
+    between = PchipInterpolator(decades, np.array(lone))
+
+    def square(decade: float) -> float:
+        return float(np.mean(_errors(between(decade), target) ** 2))
+
+    trials = np.linspace(decades[0], decades[-1], 201)
+    start = trials[int(np.argmin([square(decade) for decade in trials]))]
+    width = trials[1] - trials[0]
+    bounds = (max(start - width, decades[0]), min(start + width, decades[-1]))
+    found = minimize_scalar(square, bounds=bounds, method="bounded", options={"xatol": 1e-3})
+    at_limit = bool(min(found.x - decades[0], decades[-1] - found.x) < 2e-3)
+    return _Interpolated(held, float(f"{10.0**found.x:.4g}"), at_limit, float(found.fun))
+
+
+def as_dict(sides: EffectiveSides) -> dict[str, Any]:
+    """As array.json has it."""
+    return {**vars(sides), **{name: vars(getattr(sides, name)) for name in ("best", "free", "clamped")}}

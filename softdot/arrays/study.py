@@ -1,0 +1,90 @@
+"""The whole study of an array: its crosstalk, what stands for one of its segments, and the press of a cell."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from geometry.arrays import Floats
+from softdot.arrays.case import ArrayCase, ArrayPress
+from softdot.arrays.matrix import CrosstalkMatrix, StoppedPressError, converged, crosstalk
+from softdot.arrays.presses import Follow, Signals, remembered, signals
+from softdot.arrays.side_stiffness import EffectiveSides, effective_sides, representatives
+from softdot.arrays.variants import Worth, worth
+from solve.result import PressResult
+
+
+@dataclass(frozen=True)
+class CellPress:
+    """All dots of a cell on one plate, beside the sum of the presses of each of them alone.
+
+    superposed_pC : (s, n) sum of the charges of single dots at the same depth; NaN where one was not pressed so deep.
+    """
+
+    cell: str
+    signals: Signals
+    superposed_pC: Floats
+
+    @property
+    def errors_percent(self) -> Floats:
+        """Of superposition at full load, (n,)."""
+        charge = self.signals.charge_pC[-1]
+        return np.asarray(100.0 * (self.superposed_pC[-1] - charge) / np.abs(charge).max())
+
+    def summary(self) -> dict[str, Any]:
+        """The part of array.json that the cell gives."""
+        return {
+            "cell": self.cell,
+            "indentation_mm": self.signals.depth_mm,
+            "reaction_force_N": self.signals.force_N,
+            "charge_pC": self.signals.charge_pC[-1],
+            "voltage_V": self.signals.voltage_V[-1],
+            "superposed_charge_pC": self.superposed_pC[-1],
+            "superposition_error_percent": self.errors_percent,
+        }
+
+
+@dataclass(frozen=True)
+class ArrayStudy:
+    """shown : the press whose fields are drawn and written, with its result and its title."""
+
+    matrix: CrosstalkMatrix
+    sides: dict[str, EffectiveSides]
+    cell: CellPress | None
+    variants: list[Worth]
+    shown: ArrayPress
+    result: PressResult
+    shown_title: str
+
+
+def study(case: ArrayCase, follow: Follow, stage: Callable[[str], None], with_variants: bool) -> ArrayStudy:
+    """Solve everything. StoppedPressError where a press does not converge, InputError, MeshingError."""
+    number = next(iter(representatives(case.layout).values()))
+    place = case.layout.places[number]
+    by_cell = case.config.dot.cell is not None
+    shown = case.press_by_cell() if by_cell else case.press_over(case.layout.places[min(case.images(number))])
+    title = f"The cell {case.config.dot.cell}" if by_cell else f"A dot over {place.label}"
+    stage("shown press")
+    result = remembered(shown, follow(title))
+    if result.failure is not None:
+        raise StoppedPressError(f"{title} did not converge: {result.failure}")
+    stage("matrix")
+    matrix = crosstalk(case, follow)
+    cell = _cell_press(case, matrix, follow) if by_cell else None
+    stage("sides")
+    sides = effective_sides(matrix, follow)
+    if with_variants:
+        stage("variants")
+    return ArrayStudy(matrix, sides, cell, worth(case, follow) if with_variants else [], shown, result, title)
+
+
+def _cell_press(case: ArrayCase, matrix: CrosstalkMatrix, follow: Follow) -> CellPress:
+    cell = case.config.dot.cell or ""
+    found = converged(signals(case.press_by_cell(), follow(f"cell {cell}")), f"the press of the cell {cell}")
+    alone = [
+        PchipInterpolator(matrix.depth_mm[i], matrix.charge_pC[i], extrapolate=False)(found.depth_mm)
+        for i in case.under_dots().values()
+    ]
+    return CellPress(cell, found, np.sum(alone, axis=0))

@@ -1,0 +1,139 @@
+"""Which presses of an array are solved, and how the others follow from them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from geometry.base import InputError
+from softdot.arrays import presses as presses_module
+from softdot.arrays.case import ArrayCase
+from softdot.arrays.matrix import CrosstalkMatrix, StoppedPressError, crosstalk
+from softdot.arrays.presses import Signals, signals
+from softdot.arrays.side_stiffness import representatives, role
+from softdot.config.model import model_of
+from tests.verification.array_cases import array
+
+
+def made_up(charges_pC, failure=None) -> Signals:
+    """A press of one step whose charges are given."""
+    charge = np.array([np.zeros(len(charges_pC)), charges_pC], dtype=float)
+    numbers = {"depth_mm": np.array([0.0, 0.2]), "force_N": np.array([0.0, 0.1]), "readout_voltage_V": None}
+    about = {"planes": (), "unknowns": 1, "newton_iterations": 1, "max_relative_residual": 0.0, "solve_s": 0.0}
+    return Signals(
+        charge_pC=charge, voltage_V=0.05 * charge, capacitance_pF=np.full(len(charges_pC), 20.0), film_strain=0.0,
+        warnings=(), failure=failure, **numbers, **about,
+    )  # fmt: skip
+
+
+def quiet(_name):
+    return lambda _step, _number, _count: None
+
+
+def test_mirror_images_are_not_solved_again():
+    """Two by three: a corner and the middle of a side. A row of five: three. A film drawn aslant: all."""
+    assert array(2, 3).solved == [0, 2]
+    assert array(5, 1).solved == [0, 1, 2]
+    assert array(2, 3, segment={"film": {"draw_angle_deg": 30.0}}).solved == list(range(6))
+
+
+def test_channels_that_differ_have_no_images():
+    """An amplifier whose first channel hears the others reads other presses otherwise."""
+    leak = {"name": "crosstalk", "component": "channel-1", "parameters": {"coupling": 0.1}}
+    assert array(2, 3, tables={"mechanisms": [leak]}).solved == list(range(6))
+
+
+def test_a_dot_beside_the_middle_keeps_the_symmetry_across():
+    """Moved along x, it stands over a column of its own; rows are images of each other still."""
+    assert array(2, 3, tables={"dot": {"offset_mm": [0.3, 0.0]}}).solved == [0, 1, 2, 3]
+
+
+def test_rows_of_the_matrix_are_those_of_the_solved_presses_turned_over():
+    """Columns of the last row read from the other end, by hand."""
+    case = array(3, 1)
+    matrix = CrosstalkMatrix(case, {0: made_up([10.0, 2.0, 1.0]), 1: made_up([3.0, 12.0, 3.0])})
+    np.testing.assert_array_equal(matrix.charge_pC[:, -1], [[10, 2, 1], [3, 12, 3], [1, 2, 10]])
+    np.testing.assert_allclose(matrix.crosstalk_percent[0], [100, 20, 10])
+    np.testing.assert_allclose(matrix.crosstalk_dB[0], [0.0, -13.9794, -20.0], atol=1e-4)
+    assert matrix.largest_crosstalk_percent == pytest.approx(25.0)
+    assert matrix.asymmetry_percent() == pytest.approx(100.0 * 1.0 / 12.0)
+
+
+def test_rows_and_columns_of_two_by_two_follow_from_one_press():
+    """Segments 0 1 / 2 3: the neighbour along x of segment 3 is 2, that along y is 1."""
+    matrix = CrosstalkMatrix(array(2, 2), {0: made_up([10.0, 3.0, 2.0, 1.0])})
+    np.testing.assert_array_equal(matrix.charge_pC[3, -1], [1.0, 2.0, 3.0, 10.0])
+    np.testing.assert_array_equal(matrix.charge_pC[1, -1], [3.0, 10.0, 1.0, 2.0])
+
+
+def test_roles():
+    """Three by three has all; of a row the ends are edges; two by three has no inner segment."""
+    layouts = {shape: array(*shape).layout for shape in ((3, 3), (5, 1), (2, 3))}
+    names = {shape: [role(one, place) for place in one.places] for shape, one in layouts.items()}
+    assert names[3, 3] == ["corner", "edge", "corner", "edge", "inner", "edge", "corner", "edge", "corner"]
+    assert names[5, 1] == ["edge", "inner", "inner", "inner", "edge"]
+    assert set(names[2, 3]) == {"edge", "corner"}
+    assert representatives(layouts[5, 1])["inner"] == 2
+
+
+def test_a_solved_press_is_kept(monkeypatch, tmp_path):
+    """Asked again it is read, and equal; an edited array is solved anew."""
+    monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path))
+    press = array(press={"load_steps": 1}).press_over(array().layout.places[0])
+    first = signals(press)
+    assert first.failure is None
+
+    def never(*_given, **_named):
+        raise AssertionError("solved again")
+
+    monkeypatch.setattr(presses_module, "press_segment", never)
+    again = signals(press)
+    for name, value in vars(first).items():
+        np.testing.assert_array_equal(getattr(again, name), value)
+    other = array(press={"load_steps": 1}, electrode_margin_mm=0.1)
+    with pytest.raises(AssertionError, match="solved again"):
+        signals(other.press_over(other.layout.places[0]))
+
+
+def test_a_press_that_stops_is_told_by_its_segment(monkeypatch):
+    """Nothing is made of the others."""
+    stopped = replace(made_up([1.0, 1.0]), failure="step 1 of 2 stopped")
+    monkeypatch.setattr("softdot.arrays.matrix.signals", lambda _press, _on_step: stopped)
+    with pytest.raises(StoppedPressError, match="the press of segment-r1c1 did not converge: step 1 of 2 stopped"):
+        crosstalk(array(), quiet)
+
+
+REFUSED = {
+    "ridge": ({"dot": {"shape": "ridge"}}, "dot.shape = 'ridge': an array is pressed by round dots"),
+    "slide": ({"press": {"path_xy_mm": [[1.0, 0.0]]}}, "press.path_xy_mm: softdot array presses each segment in turn"),
+    "accuracy": ({"mesh": {"accuracy_percent": 1.0}}, "mesh.accuracy_percent = 1: an array takes element sizes"),
+    "too fine": ({"mesh": {"contact_element_size_mm": 0.004}}, "mesh.contact_element_size_mm = 0.004: means about"),
+    "cell too large": (
+        {"dot": {"standard": "marburg-medium", "cell": "⠿"}},
+        "dot.cell = '⠿': dot 2 has no segment under it, array.rows = 1 and 2 in each",
+    ),
+    "a mechanism that moves the dot": (
+        {"mechanisms": [{"name": "dot-offset", "component": "dot", "parameters": {"offset_mm": [0.1, 0.0]}}]},
+        "mechanisms: 'dot-offset': one of them changes the segment, the dot or a bond",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_an_array_does_not_take_is_refused_by_name(name):
+    changes, sentence = REFUSED[name]
+    tables = {key: value for key, value in changes.items() if key not in ("press", "mesh")}
+    case = array(press=changes.get("press"), mesh=changes.get("mesh"), tables=tables)
+    with pytest.raises(InputError) as refusal:
+        _ = case.checked
+    assert str(refusal.value).startswith(sentence)
+
+
+def test_one_segments_commands_refuse_an_array():
+    with pytest.raises(InputError, match="array: this is one segment's command; use softdot array"):
+        model_of(array().config)
+
+
+def test_a_configuration_without_an_array_is_refused():
+    with pytest.raises(InputError, match="array is missing"):
+        ArrayCase(array().config.model_copy(update={"array": None}))

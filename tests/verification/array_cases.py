@@ -1,0 +1,27 @@
+"""Coarse arrays for verification: the paper's final design on segments of 2.3 mm at the pitch of 2.5 mm."""
+
+from softdot.arrays.case import ArrayCase
+from softdot.config import config_from
+from softdot.config.toml import completed
+from solve.press import press_segment
+
+COARSE = {"element_size_mm": 0.9, "contact_element_size_mm": 0.3}
+
+
+def array(columns=2, rows=1, segment=None, press=None, mesh=None, tables=None, **keys) -> ArrayCase:
+    """keys : of the table [array]."""
+    stated = {
+        "segment": {"length_mm": 2.3, "width_mm": 2.3, "boundary": "free", **(segment or {})},
+        "array": {"columns": columns, "rows": rows, **keys},
+        "press": {"indentation_mm": 0.2, "load_steps": 2, **(press or {})},
+        "mesh": {**COARSE, **(mesh or {})},
+        **(tables or {}),
+    }
+    return ArrayCase(config_from(completed(stated)))
+
+
+def solved(press, mesh=None):
+    """The result of a press of an array, on another mesh where one is given; AssertionError without convergence."""
+    result = press_segment(press.model, press.mesh if mesh is None else mesh, dot=press.dot)
+    assert result.converged, result.failure
+    return result
