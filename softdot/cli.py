@@ -24,6 +24,7 @@ COMMANDS = {
     "prove": "softdot.commands.prove",
     "kit": "softdot.commands.kit",
     "plate": "softdot.commands.plate",
+    "studio": "softdot.commands.studio",
     "check": "softdot.commands.check",
     "new": "softdot.commands.new",
     "list": "softdot.commands.list",

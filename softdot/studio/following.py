@@ -1,0 +1,166 @@
+"""What goes on by itself: each change of a design is drawn and checked, and pressed as soon as the hand rests."""
+
+import asyncio
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field
+from typing import Any
+
+from softdot.studio.comparison import differences
+from softdot.studio.document import Document
+from softdot.studio.processes import InTurn, Pool, ProcessLost, TaskRefused
+
+REST_S = 0.35
+"""The hand rests when it has changed nothing for so long."""
+MOST_CURVES = 6
+Json = dict[str, Any]
+TellTab = Callable[..., None]
+"""The kind of a message, whether it is repeated to a tab that comes back (again), and its content."""
+
+
+@dataclass
+class Known:
+    """What is known of a design. state : of its last check (softdot.studio.work.design.examine).
+
+    curves : presses, the last one last, each with label, quality, numbers and the values of its configuration.
+    history : of the last press, for circuits. pressed : hash of what it depends on.
+    """
+
+    state: Json = field(default_factory=dict)
+    curves: list[Json] = field(default_factory=list)
+    history: bytes | None = None
+    pressed: str | None = None
+
+    @property
+    def is_pressed(self) -> bool:
+        """Whether the last press, or the one under way, is of the present design."""
+        return self.pressed is not None and self.pressed == self.state.get("press_hash")
+
+
+class Follower:
+    """Follows one document. look : processes for what is quick, solve : for presses."""
+
+    def __init__(self, document: Document, look: InTurn, solve: Pool, tell: TellTab) -> None:
+        self.known = Known()
+        self._document, self._look_pool, self._solve_pool, self._tell = document, look, solve, tell
+        self._changed, self._circuit_first = asyncio.Event(), False
+        self._press_task: asyncio.Task[None] | None = None
+        self._task = asyncio.create_task(self._follow())
+
+    def touch(self, circuit_first: bool = False) -> None:
+        """The document has changed; circuit_first : in the amplifier alone, which is answered before the rest."""
+        self._circuit_first = circuit_first
+        self._changed.set()
+
+    def press_again(self) -> None:
+        """Also where the present design is pressed already, or its press was cancelled."""
+        self.cancel_press()
+        self.known.pressed = None
+        self.touch()
+
+    def cancel_press(self) -> None:
+        """End the press; the next change begins another one."""
+        if self._press_task is not None:
+            self._press_task.cancel()
+
+    def close(self) -> None:
+        """End everything."""
+        self._task.cancel()
+        self.cancel_press()
+
+    async def _follow(self) -> None:
+        while True:
+            await self._changed.wait()
+            self._changed.clear()
+            with suppress(TaskRefused, ProcessLost, TimeoutError):
+                await self._look(self._document.text)
+
+    async def _look(self, text: str) -> None:
+        if self._circuit_first:
+            await self._answer_circuit(text)
+        else:
+            parts = await self._quick("design:draw", text)
+            if parts is not None:
+                self._tell("parts", again=True, view=parts)
+        if self._changed.is_set():
+            return
+        known = self.known
+        known.state = await self._quick("design:examine", text)
+        self._tell("state", again=True, **known.state)
+        if not known.is_pressed:
+            self.cancel_press()
+        elif not self._circuit_first:
+            await self._answer_circuit(text)
+        with suppress(TimeoutError):
+            await asyncio.wait_for(self._changed.wait(), REST_S)
+            return
+        if known.state.get("press_hash") is not None and not known.is_pressed:
+            known.pressed = known.state["press_hash"]
+            self._press_task = asyncio.create_task(self._press(text, known.state["values"]))
+
+    async def _quick(self, task: str, *arguments: Any) -> Any:
+        """A short task; the tab is told where it or its process fails."""
+        try:
+            return await self._look_pool.run(task, *arguments)
+        except TimeoutError:
+            self._tell("said", text="this design takes too long to check: its numbers are absurd", bad=True)
+            raise
+        except ProcessLost:
+            self._tell("said", text="the process that checks designs ended and was started again", bad=True)
+            raise
+        except TaskRefused as refused:
+            self._tell("said", text=str(refused), bad=True)
+            raise
+
+    async def _answer_circuit(self, text: str) -> None:
+        known = self.known
+        if known.history is None:
+            return
+        found = await self._quick("press:circuit", text, known.history)
+        known.curves[-1]["numbers"]["readout_voltage_V"] = found and found["readout_voltage_V"]
+        self._tell("circuit", again=True, found=found)
+
+    async def _press(self, text: str, values: Mapping[str, Any]) -> None:
+        """Coarse, then accurate; each is shown as soon as it is there."""
+        label = self._label(values)
+
+        def on_way(told: Json) -> None:
+            if "press" in told:
+                self._show(told["press"], label, values)
+            else:
+                self._tell("progress", task="press", **told["progress"])
+
+        try:
+            for task in ("press:coarse_press", "press:accurate_press"):
+                self._show(await self._solve_pool.run(task, text, tell=on_way), label, values)
+                with suppress(TaskRefused, ProcessLost, TimeoutError):
+                    await self._answer_circuit(self._document.text)
+            self._tell("ended", task="press")
+        except asyncio.CancelledError:
+            self._tell("ended", task="press", said="cancelled")
+            raise
+        except (TaskRefused, ProcessLost) as error:  # not again by itself
+            lost = isinstance(error, ProcessLost)
+            said = "the process of the press ended; the design is as it was" if lost else str(error)
+            self._tell("ended", task="press", said=said, bad=True)
+
+    def _label(self, values: Mapping[str, Any]) -> str:
+        """What distinguishes a press from the one before."""
+        if not self.known.curves:
+            return "first design"
+        changed = differences(self.known.curves[-1]["values"], values)
+        words = [f"{key.removeprefix('segment.')} = {value}" for key, value in changed.items()]
+        return ", ".join(words[:2]) + (f" and {len(words) - 2} more" if len(words) > 2 else "") or "the same again"
+
+    def _show(self, found: Json, label: str, values: Mapping[str, Any]) -> None:
+        """Numbers and fields of a press: the accurate one takes the place of the coarse one."""
+        known = self.known
+        if known.curves and known.curves[-1]["values"] == values:
+            label = known.curves.pop()["label"]
+        curve = {"label": label, "quality": found["quality"], "numbers": found["numbers"], "values": values}
+        known.curves = [*known.curves[1 - MOST_CURVES :], curve]
+        known.history = found["history"]
+        shown = [{name: one[name] for name in ("label", "quality", "numbers")} for one in known.curves]
+        self._tell("curves", again=True, curves=shown)
+        if found["view"] is not None:
+            self._tell("pressed", again=True, view=found["view"])
