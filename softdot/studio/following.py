@@ -76,6 +76,9 @@ class Follower:
                 await self._look(self._document.text)
 
     async def _look(self, text: str) -> None:
+        known, first = self.known, not self.known.state
+        if first:  # the form is there before the parts
+            await self._examine(text)
         if self._circuit_first:
             await self._answer_circuit(text)
         else:
@@ -84,9 +87,8 @@ class Follower:
                 self._tell("parts", again=True, view=parts)
         if self._changed.is_set():
             return
-        known = self.known
-        known.state = await self._quick("design:examine", text)
-        self._tell("state", again=True, **known.state)
+        if not first:
+            await self._examine(text)
         if not known.is_pressed:
             self.cancel_press()
         elif not self._circuit_first:
@@ -97,6 +99,10 @@ class Follower:
         if known.state.get("press_hash") is not None and not known.is_pressed:
             known.pressed = known.state["press_hash"]
             self._press_task = asyncio.create_task(self._press(text, known.state["values"]))
+
+    async def _examine(self, text: str) -> None:
+        self.known.state = await self._quick("design:examine", text)
+        self._tell("state", again=True, **self.known.state)
 
     async def _quick(self, task: str, *arguments: Any) -> Any:
         """A short task; the tab is told where it or its process fails."""

@@ -13,8 +13,8 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Callable, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from importlib import import_module
 from inspect import signature
 from multiprocessing.connection import Connection
@@ -45,8 +45,9 @@ class Worker:
         """warm_up : done before the first task, so that that is quick."""
         context = multiprocessing.get_context("spawn")
         self._connection, theirs = context.Pipe()
-        self.process = context.Process(target=serve_tasks, args=(theirs, os.getpid(), warm_up))
-        self.process.start()
+        self.process = context.Process(target=serve_tasks, args=(theirs, os.getpid(), warm_up), daemon=True)
+        with _deaf():
+            self.process.start()
         theirs.close()
         self._loop = asyncio.get_running_loop()
         self._answer: asyncio.Future[Any] | None = None
@@ -159,11 +160,22 @@ class Pool:
             worker.end()
 
 
+@contextmanager
+def _deaf() -> Iterator[None]:
+    """Processes that are started in this block do not hear Ctrl-C in the terminal: the one that started them ends them."""
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 def serve_tasks(connection: Connection, parent: int, warm_up: str) -> None:
     """In the process: do one task after another until the other end is gone."""
     end_with_parent(parent)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C in the terminal ends the parent, and it these
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # what libraries print is no answer
     with without_collector(), suppress(Exception):
         named(warm_up)()

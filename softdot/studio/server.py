@@ -3,9 +3,8 @@
 import asyncio
 import json
 import signal
-from collections.abc import Awaitable, Callable
+from collections.abc import Callable
 from contextlib import suppress
-from functools import partial
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -31,13 +30,15 @@ LARGEST_MESSAGE = 1 << 20
 LARGEST_HEADER, LARGEST_BODY = 1 << 16, 1 << 16
 """Bytes of what is sent without a key; an upload has a bound of its own."""
 MOST_TABS = 12
+FIRST_TAB_S = 0.5
+"""The tab that waits is answered before the rest is loaded."""
 GRACE_S = 5.0
 """A tab that is loaded again is back within that time; after it its processes end."""
 LONGEST_LOOK_S = 30.0
 """A design that takes longer to draw or to check is refused: its numbers are absurd."""
 
 
-class House:
+class Tabs:
     """All tabs, and what they share."""
 
     def __init__(self, guard: Guard, studio: Studio, start: str) -> None:
@@ -52,7 +53,8 @@ class House:
         return found
 
     async def _warm_up(self) -> None:
-        with suppress(ProcessLost):
+        await asyncio.sleep(FIRST_TAB_S)
+        with suppress(ProcessLost, TimeoutError):
             await self.studio.look.run("design:warm_up")
         self.studio.solve.prepare()
 
@@ -86,22 +88,20 @@ class House:
             session.close()
 
     def close(self) -> None:
-        """End all work."""
+        """Give up all work."""
         for session in self.sessions.values():
             session.close()
-        self.studio.look.end()
-        self.studio.solve.end()
 
 
 class Guarded(RequestHandler):
     """Refuses what the guard refuses, and answers errors with one sentence."""
 
-    house: House
+    tabs: Tabs
     needs_key, needs_origin = True, False
 
-    def initialize(self, house: House) -> None:
+    def initialize(self, tabs: Tabs) -> None:
         """Called by the library for each request."""
-        self.house = house
+        self.tabs = tabs
 
     def set_default_headers(self) -> None:
         """On every answer, also of refusals."""
@@ -111,7 +111,7 @@ class Guarded(RequestHandler):
     def prepare(self) -> None:
         """Before anything of the request is used."""
         key = self.get_query_argument("key", "") if self.needs_key else None
-        refused = self.house.guard.refusal(self.request.headers, key, self.needs_origin)
+        refused = self.tabs.guard.refusal(self.request.headers, key, self.needs_origin)
         if refused is not None:
             raise HTTPError(403, reason="Forbidden", log_message=refused)
 
@@ -121,6 +121,9 @@ class Guarded(RequestHandler):
         said = error.log_message if isinstance(error, HTTPError) else None
         self.set_header("Content-Type", "text/plain; charset=utf-8")
         self.finish(said or {404: "there is nothing at this address"}.get(status_code, "this request was refused"))
+
+    def log_exception(self, *_: Any) -> None:
+        """Nothing: the address of a request holds the key."""
 
     def send_file(self, content: bytes, name: str) -> None:
         """An answer whose kind follows from the ending of its name; others are downloads."""
@@ -158,7 +161,7 @@ class FileHandler(Guarded):
 
     def get(self, token: str) -> None:
         """A download, a picture, or a report, which may do nothing but show itself."""
-        path = next((found for one in self.house.sessions.values() if (found := one.files.get(token))), None)
+        path = next((found for one in self.tabs.sessions.values() if (found := one.files.get(token))), None)
         if path is None or not path.is_file():
             raise HTTPError(404)
         if path.suffix == ".html":
@@ -188,7 +191,7 @@ class UploadHandler(Guarded):
 
     async def post(self) -> None:
         """A line of JSON, [[name, size], ...], and the files one after the other."""
-        session = self.house.sessions.get(self.get_query_argument("tab", ""))
+        session = self.tabs.sessions.get(self.get_query_argument("tab", ""))
         if session is None:
             raise HTTPError(404)
         try:
@@ -222,12 +225,12 @@ class SocketHandler(Guarded, WebSocketHandler):
 
     def check_origin(self, origin: str) -> bool:
         """The guard has checked it; this is asked by the library."""
-        return self.house.guard.refusal({**self.request.headers, "Origin": origin}, None, needs_origin=True) is None
+        return self.tabs.guard.refusal({**self.request.headers, "Origin": origin}, None, needs_origin=True) is None
 
     async def open(self, *_: str) -> None:
         """A tab is there."""
         try:
-            self.session = self.house.session(self.get_query_argument("tab", "") or None)
+            self.session = self.tabs.session(self.get_query_argument("tab", "") or None)
         except InputError as error:
             self._send({"tell": "said", "text": str(error), "bad": True})
             self.close()
@@ -235,7 +238,7 @@ class SocketHandler(Guarded, WebSocketHandler):
         session = self.session
         session.send = self._send
         self._send({"tell": "tab", "name": session.name})
-        form = await asyncio.shield(self.house.form)
+        form = await asyncio.shield(self.tabs.form)
         self._send({"tell": "form", **form})
         session.attach(self._send)
 
@@ -252,16 +255,16 @@ class SocketHandler(Guarded, WebSocketHandler):
     def on_close(self) -> None:
         """A tab is gone, or loads again."""
         if self.session is not None:
-            self.house.left(self.session)
+            self.tabs.left(self.session)
 
     def _send(self, message: dict[str, Any]) -> None:
         with suppress(WebSocketClosedError):
             self.write_message(json.dumps(message))
 
 
-def application(house: House) -> Application:
+def application(tabs: Tabs) -> Application:
     """Every address of the server."""
-    shared = {"house": house}
+    shared = {"tabs": tabs}
     return Application(
         [
             ("/", PageHandler, shared),
@@ -289,14 +292,12 @@ class MissingHandler(Guarded):
         raise HTTPError(404)
 
 
-async def serve(
-    host: str, port: int, start: str, ready: Callable[[str], Awaitable[None] | None], stop: asyncio.Event | None = None
-) -> None:
-    """Serve the page until SIGINT, SIGTERM or stop. ready : called with the address once it answers.
+async def serve(host: str, port: int, start: str, ready: Callable[[str], None]) -> None:
+    """Serve the page until SIGINT or SIGTERM. ready : called with the address once it answers.
 
     start : text of the design with which a tab begins. InputError for an address that cannot be used.
     """
-    stop = stop or asyncio.Event()
+    stop = asyncio.Event()
     try:
         sockets = bind_sockets(port, host)
     except (OSError, UnicodeError) as error:
@@ -305,27 +306,30 @@ async def serve(
     guard = Guard.of(host, sockets[0].getsockname()[1])
     with scratch_folder() as scratch:
         look, solve = InTurn("form:warm_up", LONGEST_LOOK_S), Pool("press:warm_up")
-        look.prepare()
-        house = House(guard, Studio(look, solve, Autosave(folder()), scratch), start)
-        server = HTTPServer(
-            application(house), max_header_size=LARGEST_HEADER, max_body_size=LARGEST_BODY, idle_connection_timeout=60
-        )
-        server.add_sockets(sockets)
-        loop = asyncio.get_running_loop()
-        for number in (signal.SIGINT, signal.SIGTERM):
-            with suppress(NotImplementedError, ValueError, RuntimeError):  # Windows, or not the main thread
-                loop.add_signal_handler(number, stop.set)
         try:
-            name = sorted(guard.hosts)[0] if len(guard.hosts) == 1 else f"127.0.0.1:{sockets[0].getsockname()[1]}"
-            told = ready(f"http://{name}/?key={guard.key}")
-            if told is not None:
-                await told
-            await stop.wait()
+            look.prepare()
+            tabs = Tabs(guard, Studio(look, solve, Autosave(folder()), scratch), start)
+            try:
+                server = HTTPServer(application(tabs), max_header_size=LARGEST_HEADER, max_body_size=LARGEST_BODY)
+                server.add_sockets(sockets)
+                _stop_by_signals(stop)
+                name = f"127.0.0.1:{sockets[0].getsockname()[1]}" if len(guard.hosts) > 1 else next(iter(guard.hosts))
+                ready(f"http://{name}/?key={guard.key}")
+                await stop.wait()
+            finally:
+                tabs.close()
         finally:
-            server.stop()
-            house.close()
+            look.end()
+            solve.end()
+
+
+def _stop_by_signals(stop: asyncio.Event) -> None:
+    """Ctrl-C and SIGTERM set the event, where this is the main thread of a system with signals."""
+    for number in (signal.SIGINT, signal.SIGTERM):
+        with suppress(NotImplementedError, ValueError, RuntimeError):
+            asyncio.get_running_loop().add_signal_handler(number, stop.set)
 
 
 def run(host: str, port: int, start: str, ready: Callable[[str], None]) -> None:
     """As serve, to its end."""
-    asyncio.run(partial(serve, host, port, start, ready)())
+    asyncio.run(serve(host, port, start, ready))

@@ -109,4 +109,3 @@ def warm_up() -> None:
     from solve.readout import recording  # noqa: F401 - loads the filters
 
     draw("")
-    examine("")
