@@ -12,9 +12,11 @@ function softdotViewer(box) {
   const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
   const floats = (text) => new Float32Array(bytes(text).buffer);
   const integers = (text) => new Uint32Array(bytes(text).buffer);
-  const state = { step: 0, mode: "part", cut: true, yaw: 0.5, tilt: 0.3, zoom: 1 };
+  const state = { step: 0, mode: "part", cut: true, yaw: 0.5, tilt: 0.3, zoom: 1.2 };
   let data = null, body = null;
 
+  // What is shown: what was chosen, where the data have it.
+  const mode = () => (data[state.mode] ? state.mode : "part");
   // What can be shown: its unit, on which parts, in which colours; what lies above the film is hidden for the film.
   const onFilm = (part) => part === body.film;
   const modes = {
@@ -54,8 +56,8 @@ function softdotViewer(box) {
   }
 
   function fill() {
-    const { points, region, count } = body, shown = modes[state.mode];
-    const values = body.values[state.mode], map = body.maps[(shown && shown.map) || "colourMap"];
+    const { points, region, count } = body, shown = modes[mode()];
+    const values = body.values[mode()], map = body.maps[(shown && shown.map) || "colourMap"];
     const place = new Float32Array(points.length), colour = new Float32Array(points.length);
     const from = state.step * points.length;
     for (let i = 0; i < place.length; i++) {
@@ -84,7 +86,7 @@ function softdotViewer(box) {
     const ratio = window.devicePixelRatio || 1;
     const width = Math.round(canvas.clientWidth * ratio), height = Math.round(canvas.clientHeight * ratio);
     if (canvas.width !== width || canvas.height !== height) { canvas.width = width; canvas.height = height; }
-    const scale = (2 * 0.95 * state.zoom) / body.size, shown = modes[state.mode], cut = state.cut && !data.slice;
+    const scale = (2 * 0.95 * state.zoom) / body.size, shown = modes[mode()], cut = state.cut && !data.slice;
     const fitted = scale * Math.min(1, width / height);
     painter.clear(width, height, [1, 1, 1]);
     painter.set("turn", turning());
@@ -97,7 +99,7 @@ function softdotViewer(box) {
     if (shown && shown.bare) painter.draw(body.segment, "film");
     painter.set("plane", -1e9);
     if (cut) painter.draw(body.segment, "section");
-    if (state.mode === "part" || state.mode === "stress") {
+    if (!shown || mode() === "stress") {
       painter.set("shift", ...data.dotShift[state.step]);
       painter.draw(cut ? body.dotCut : body.dot, "all");
     }
@@ -108,11 +110,11 @@ function softdotViewer(box) {
   const play = find("button.play");
 
   function describe() {
-    const step = data.steps[state.step], legend = find(".legend"), shown = modes[state.mode];
+    const step = data.steps[state.step], legend = find(".legend"), shown = modes[mode()];
     find(".step-text").textContent = step.indentation.toFixed(3) + " mm, " + step.force.toPrecision(3) + " N";
     legend.style.visibility = shown ? "visible" : "hidden";
     if (!shown) return;
-    const top = (shown.factor * data[state.mode + "Top"]).toPrecision(2), map = body.maps[shown.map || "colourMap"];
+    const top = (shown.factor * data[mode() + "Top"]).toPrecision(2), map = body.maps[shown.map || "colourMap"];
     legend.querySelector(".low").textContent = shown.map ? "−" + top : "0";
     legend.querySelector(".top").textContent = top + " " + shown.unit;
     const stops = [0, 51, 102, 153, 204, 255].map((i) => "rgb(" + map.slice(3 * i, 3 * i + 3).join(",") + ")");
@@ -138,7 +140,6 @@ function softdotViewer(box) {
     data = given;
     load();
     slider.max = String(data.steps.length - 1);
-    if (!data[state.mode]) select.value = state.mode = "part";
     go(data.steps.length - 1);
   }
 

@@ -28,6 +28,8 @@ def command(chosen: Namespace) -> int:
         raise InputError("softdot studio needs more than softdot alone: pip install 'softdot[studio]'") from None
     if not 0 <= chosen.port <= 65535:
         raise InputError(f"--port = {chosen.port}: must be between 0 and 65535; 0 takes a free one")
+    if chosen.host in ("0.0.0.0", "::", ""):
+        raise InputError(f"--host {chosen.host}: name one address of this machine; the page answers under its name alone")
     start = start_text(chosen.config)
     if chosen.host not in LOOPBACK:
         warn([f"--host {chosen.host}: other machines can reach the page, and what is sent is not encrypted"])

@@ -6,6 +6,7 @@ from typing import Any
 
 import tomlkit
 from tomlkit.exceptions import TOMLKitError
+from tomlkit.items import Array, InlineTable
 
 from geometry.base import InputError
 
@@ -85,26 +86,32 @@ class Document:
 
 
 def _put(place: Any, last: str | int, value: Any) -> None:
-    """One value of a table or list; a table among the values becomes a table of its own below a table."""
+    """One value of a table or list; None takes it out."""
     if value is None:
         if isinstance(last, int) or last in place:
             del place[last]
-    elif isinstance(last, int) and last == len(place):
-        place.append(_table(value) if isinstance(value, dict) else value)
+        return
+    if isinstance(value, dict):
+        value = _in_braces(value) if isinstance(place, Array | InlineTable) else _table(value)
+    if isinstance(last, int) and last == len(place):
+        place.append(value)
     else:
-        place[last] = _table(value) if isinstance(value, dict) else value
+        place[last] = value
 
 
 def _table(values: dict[str, Any]) -> Any:
     """A table, its inner tables in braces on one line."""
     made = tomlkit.table()
     for name, value in values.items():
-        if isinstance(value, dict):
-            inner = tomlkit.inline_table()
-            inner.update(value)
-            made[name] = inner
-        else:
-            made[name] = value
+        made[name] = _in_braces(value) if isinstance(value, dict) else value
+    return made
+
+
+def _in_braces(values: dict[str, Any]) -> Any:
+    """A table on one line."""
+    made = tomlkit.inline_table()
+    for name, value in values.items():
+        made[name] = _in_braces(value) if isinstance(value, dict) else value
     return made
 
 

@@ -205,7 +205,7 @@ export class Form {
 
   number(found, path, id) {
     const whole = found.type === "integer", input = element("input", { type: "number", id, step: whole ? "1" : "any", placeholder: found.optional ? "none" : "" });
-    const slider = element("input", { type: "range", min: 0, max: 1000, step: 1, "aria-label": `${dotted(path)}, slider` });
+    const slider = element("input", { type: "range", min: 0, max: 1000, step: 5, "aria-label": `${dotted(path)}, slider` });
     let scale = null, held = false, waiting = null;
     const send = (value, joined) => this.set(path, value, joined);
     input.addEventListener("change", () => send(input.value === "" ? null : Number(input.value), false));

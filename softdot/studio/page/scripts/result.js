@@ -5,7 +5,7 @@ import { duration, element, find, short } from "./dom.js";
 const QUANTITIES = [
   ["reaction_force_N", "Force", "N", "force_percent"],
   ["film_charge_pC", "Charge", "pC", null],
-  ["open_circuit_voltage_V", "Open-circuit voltage", "V", "voltage_percent"],
+  ["open_circuit_voltage_V", "Open circuit", "V", "voltage_percent"],
 ];
 const last = (values) => (values && values.length ? values[values.length - 1] : null);
 
@@ -23,6 +23,7 @@ export function doing(text, busy, bad = false) {
   find("#press .doing").textContent = text;
   find("#press").classList.toggle("bad", bad);
   find("#press .cancel").hidden = !busy;
+  if (busy) find("#press .again").hidden = true;
   if (!busy) find("#press progress").hidden = true;
 }
 
@@ -35,24 +36,25 @@ export function ended(told, state) {
 function plusMinus(numbers, percent, value) {
   const whole = numbers.uncertainty || {}, mesh = numbers.discretisation_error || {};
   if (!percent || value === null) return "";
-  if (whole[percent] !== undefined) return `±${short(Math.abs((whole[percent] / 100) * value))} (${whole[percent].toFixed(0)} %) by materials and mesh, ${mesh[percent].toFixed(1)} % by the mesh`;
-  if (mesh[percent] !== undefined) return `±${mesh[percent].toFixed(1)} % by the mesh alone`;
+  const off = (share) => `±${Number(Math.abs((share / 100) * value).toPrecision(2))}`;
+  if (whole[percent] !== undefined) return `${off(whole[percent])}: materials and mesh; ${off(mesh[percent])}: mesh alone`;
+  if (mesh[percent] !== undefined) return `${off(mesh[percent])}: mesh alone`;
   return "error bars follow";
 }
 
 export function show(list) {
   const now = list[list.length - 1], { numbers } = now, readout = last(numbers.readout_voltage_V);
-  const cards = QUANTITIES.map(([key, title, unit, percent]) => [title, `${short(last(numbers[key]))} ${unit}`, now.quality === "coarse" ? "coarse: some percent off" : plusMinus(numbers, percent, last(numbers[key]))]);
+  const cards = QUANTITIES.map(([key, title, unit, percent]) => [title, `${short(last(numbers[key]))} ${unit}`, now.quality === "coarse" ? "coarse, some percent off" : plusMinus(numbers, percent, last(numbers[key]))]);
   if (readout !== null) cards.push(["At the amplifier", `${short(readout)} V`, ""]);
   const film = numbers.film || {}, capacitance = film.capacitance_pF;
-  cards.push(["Film strain, largest", `${short(100 * film.max_principal_strain)} %`, `${short(film.max_principal_stress_MPa)} MPa; ${short(capacitance)} pF`]);
+  cards.push(["Film strain", `${short(100 * film.max_principal_strain)} %`, `${short(film.max_principal_stress_MPa)} MPa; ${short(capacitance)} pF`]);
   const least = (numbers.sensitivity || {}).least_detectable_indentation_um;
-  if (least !== null && least !== undefined) cards.push(["Least detectable depth", `${short(least)} µm`, `of noise ${short(1e3 * numbers.sensitivity.noise_V)} mV`]);
+  if (least !== null && least !== undefined) cards.push(["Least depth seen", `${short(least)} µm`, `of noise ${short(1e3 * numbers.sensitivity.noise_V)} mV`]);
   find("#numbers").replaceChildren(...cards.map(([title, value, more]) => element("div", {}, element("dt", {}, title), element("dd", {}, value, element("small", {}, more)))));
   find("#curves").replaceChildren(...QUANTITIES.map(([key, title, unit, percent]) => {
     const error = percent && numbers.uncertainty && numbers.uncertainty[percent] ? (numbers.uncertainty[percent] / 100) * Math.abs(last(numbers[key])) : 0;
     const series = list.map((one, i) => ({ x: one.numbers.indentation_mm, y: one.numbers[key], kind: i === list.length - 1 ? "now" : "faint", error: i === list.length - 1 ? error : 0 }));
-    return curves({ title: title === "Open-circuit voltage" ? "Voltage" : title, xLabel: "depth (mm)", yLabel: unit, series });
+    return curves({ title: title === "Open circuit" ? "Open-circuit voltage" : title, xLabel: "depth (mm)", yLabel: unit, series });
   }));
   const named = list.map((one, i) => element("li", { class: i === list.length - 1 ? "now" : "" }, `${one.label}: ${short(last(one.numbers.open_circuit_voltage_V))} V, ${short(last(one.numbers.reaction_force_N))} N` + (one.quality === "coarse" ? " (coarse)" : "") + (one.numbers.solver.converged ? "" : ` – not converged: ${one.numbers.solver.failure}`)));
   find("#designs").replaceChildren(...named);
