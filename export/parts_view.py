@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from export.dot_surface import dot_parts, in_segment_frame
+from export.dot_surface import dot_parts, in_segment_frame, triangle_surface
 from export.viewer_data import colour_maps, packed, rgb
 from geometry.arrays import Floats, Ints
 from geometry.dot import DotShape
@@ -72,9 +72,7 @@ def _surface(solid: Any) -> tuple[Floats, Ints]:
 
 def _behind(points: Floats, triangles: Ints, plane: float) -> Floats:
     """Corners (3 t, 3) of what lies behind the plane y, closed there."""
-    import pyvista
-
-    surface = pyvista.PolyData.from_regular_faces(points, triangles).clean()
+    surface = triangle_surface(points, triangles).clean()
     kept = surface.clip_closed_surface("y", origin=(0.0, plane, 0.0)).triangulate()
     return np.asarray(kept.points[kept.regular_faces], np.float64).reshape(-1, 3)
 
@@ -83,4 +81,4 @@ def _cap(points: Floats, triangles: Ints, plane: float) -> Floats:
     """Corners (3 t, 3) of the face in which the plane y cuts a body."""
     kept = _behind(points, triangles, plane).reshape(-1, 3, 3)
     flat = np.abs(kept[:, :, 1] - plane).max(axis=1) < 1e-6
-    return kept[flat].reshape(-1, 3)
+    return np.asarray(kept[flat].reshape(-1, 3))

@@ -29,7 +29,7 @@ def command(chosen: Namespace) -> int:
     if not 0 <= chosen.port <= 65535:
         raise InputError(f"--port = {chosen.port}: must be between 0 and 65535; 0 takes a free one")
     if chosen.host in ("0.0.0.0", "::", ""):
-        raise InputError(f"--host {chosen.host}: name one address of this machine; the page answers under its name alone")
+        raise InputError(f"--host {chosen.host}: name one address of this machine, under which alone the page answers")
     start = start_text(chosen.config)
     if chosen.host not in LOOPBACK:
         warn([f"--host {chosen.host}: other machines can reach the page, and what is sent is not encrypted"])

@@ -162,7 +162,7 @@ class Pool:
 
 @contextmanager
 def _deaf() -> Iterator[None]:
-    """Processes that are started in this block do not hear Ctrl-C in the terminal: the one that started them ends them."""
+    """Processes that are started in this block do not hear Ctrl-C in the terminal: who started them ends them."""
     if not hasattr(signal, "pthread_sigmask"):  # Windows
         yield
         return

@@ -9,6 +9,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+from tornado.http1connection import HTTP1Connection
 from tornado.httpserver import HTTPServer
 from tornado.netutil import bind_sockets
 from tornado.web import Application, HTTPError, RequestHandler, stream_request_body
@@ -24,8 +25,9 @@ from softdot.studio.uploads import LARGEST_MB, unpack
 
 PAGE = files("softdot.studio").joinpath("page")
 VIEWER = files("export")
-KINDS = {".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".png": "image/png", ".svg": "image/svg+xml"}
-ASSETS = {name: PAGE for name in ("studio.css", "icon.svg")} | {"webgl.js": VIEWER, "viewer.js": VIEWER}
+TEXTS = {".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".svg": "image/svg+xml"}
+KINDS = {ending: f"{kind}; charset=utf-8" for ending, kind in TEXTS.items()} | {".png": "image/png"}
+ASSETS = dict.fromkeys(("studio.css", "icon.svg"), PAGE) | {"webgl.js": VIEWER, "viewer.js": VIEWER}
 LARGEST_MESSAGE = 1 << 20
 LARGEST_HEADER, LARGEST_BODY = 1 << 16, 1 << 16
 """Bytes of what is sent without a key; an upload has a bound of its own."""
@@ -128,7 +130,7 @@ class Guarded(RequestHandler):
     def send_file(self, content: bytes, name: str) -> None:
         """An answer whose kind follows from the ending of its name; others are downloads."""
         kind = KINDS.get(Path(name).suffix)
-        self.set_header("Content-Type", f"{kind}; charset=utf-8" if kind else "application/octet-stream")
+        self.set_header("Content-Type", kind or "application/octet-stream")
         if kind is None:
             self.set_header("Content-Disposition", f'attachment; filename="{name}"')
         self.finish(content)
@@ -182,7 +184,8 @@ class UploadHandler(Guarded):
         length = self.request.headers.get("Content-Length", "")
         if not length.isdecimal() or int(length) > most:
             raise HTTPError(413, log_message=f"a recording may have {LARGEST_MB:.0f} MB here; thin it out")
-        self.request.connection.set_max_body_size(most)  # type: ignore[attr-defined]
+        assert isinstance(self.request.connection, HTTP1Connection)
+        self.request.connection.set_max_body_size(most)
         self._body = bytearray()
 
     def data_received(self, chunk: bytes) -> None:

@@ -203,8 +203,8 @@ class Session:
 
     def _tell_document(self) -> None:
         document = self._document
-        told = {"text": document.text, "undo": document.can_undo, "redo": document.can_redo}
-        self.tell("document", **told, reset=document.text != document.start)
+        undo, redo, reset = document.can_undo, document.can_redo, document.text != document.start
+        self.tell("document", text=document.text, undo=undo, redo=redo, reset=reset)
 
     def _tell_kept(self) -> None:
         self.tell("kept", names=[one["name"] for one in self._kept], rows=compared(self._kept), most=MOST_KEPT)

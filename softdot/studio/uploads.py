@@ -6,6 +6,7 @@ import stat
 import zipfile
 from collections.abc import Iterable
 from pathlib import Path, PurePosixPath
+from typing import IO
 
 from geometry.base import InputError
 
@@ -56,7 +57,7 @@ def _unzip(content: bytes, folder: Path) -> None:
         raise InputError("this zip file is damaged, encrypted or packed in a way that is not read") from None
 
 
-def _copy(stream: "zipfile.ZipExtFile | io.BufferedIOBase", place: Path, room: float) -> int:  # type: ignore[type-arg]
+def _copy(stream: IO[bytes], place: Path, room: float) -> int:
     """Bytes that were written; what a zip file claims of its sizes is not believed."""
     total = 0
     place.parent.mkdir(parents=True, exist_ok=True)

@@ -14,7 +14,9 @@ import pytest
 from geometry.environment import ONE_THREAD
 from tests.softdot.interrupts import heard
 
-CHROMIUM = next((found for name in ("chromium", "chromium-browser", "google-chrome") if (found := shutil.which(name))), None)
+CHROMIUM = next(
+    (found for name in ("chromium", "chromium-browser", "google-chrome") if (found := shutil.which(name))), None
+)
 FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
 QUICK = """\
 # A slice that is pressed in a second.

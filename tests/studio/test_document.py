@@ -46,7 +46,7 @@ def test_missing_tables_are_made_and_keys_are_taken_out():
 
 
 def test_a_list_that_is_stated_in_brackets_grows():
-    document = Document('mechanisms = []\n[segment.film]\nelectrodes = []\n')
+    document = Document("mechanisms = []\n[segment.film]\nelectrodes = []\n")
     document.set(["mechanisms", 0], {"name": "contact-gap", "component": "dot", "parameters": {"gap_mm": 0.05}})
     assert tomllib.loads(document.text)["mechanisms"][0]["parameters"] == {"gap_mm": 0.05}
 
@@ -81,7 +81,9 @@ def test_what_is_kept_for_undo_is_bounded():
     assert document.text == f"seed = {2 * MOST_KEPT - 1}\n"
 
 
-@pytest.mark.parametrize("key", [["segment", "medium1", "thickness_mm", "x"], ["mechanisms", 7, "name"], ["segment", 0]])
+@pytest.mark.parametrize(
+    "key", [["segment", "medium1", "thickness_mm", "x"], ["mechanisms", 7, "name"], ["segment", 0]]
+)
 def test_a_place_that_cannot_be_is_refused_in_one_sentence(key):
     document = Document(TEXT)
     with pytest.raises(InputError, match="there is no such place in this design"):

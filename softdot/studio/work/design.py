@@ -31,7 +31,8 @@ def refuse_files_outside(config: Config) -> None:
     comes from somebody else must not read others.
     """
     waveform = config.press.waveform
-    for key, name in (("mesh.file", config.mesh.file), ("press.waveform.file", waveform and waveform.file)):
+    own = {"mesh.file": config.mesh.file, "press.waveform.file": None if waveform is None else waveform.file}
+    for key, name in own.items():
         if name is None:
             continue
         path = PurePath(name.replace("\\", "/"))

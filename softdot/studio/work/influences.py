@@ -29,7 +29,7 @@ def influences(text: str, tell: Tell) -> dict[str, Any]:
     config = _quick(case.config)
     keys = _keys(config)
     nominal, slopes = KitPress(config).slopes(list(keys))
-    rows = [
+    rows: list[dict[str, Any]] = [
         {
             "label": label,
             "voltage_percent": 100 * LARGER * size * slopes[key].voltage / nominal.voltage,
@@ -37,7 +37,7 @@ def influences(text: str, tell: Tell) -> dict[str, Any]:
         }
         for key, (label, size) in keys.items()
     ]
-    rows.sort(key=lambda row: -abs(float(row["voltage_percent"])))
+    rows.sort(key=lambda row: -abs(row["voltage_percent"]))
     return dict(plain({"rows": rows, "larger_percent": 100 * LARGER}))
 
 

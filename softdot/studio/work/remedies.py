@@ -93,14 +93,14 @@ def _of_the_key(tables: Mapping[str, Any], sentence: str) -> Iterator[tuple[str,
             inside = limit * (1 - JUST_INSIDE)
         elif word == "above" and limit == 0.0:
             inside = 0.1
-        value = int(inside) if inside == int(inside) and word.startswith("at ") else inside
-        yield f"set {bound[1]} to {value:g}", [[key, value]]
+        allowed = int(inside) if inside == int(inside) and word.startswith("at ") else inside
+        yield f"set {bound[1]} to {allowed:g}", [[key, allowed]]
     if meant is not None:
         wrong = list(parsed(meant[1]))
         right = list(parsed(meant[2])) if "." in meant[2] else [*wrong[:-1], meant[2]]
-        value = tables
+        value: Any = tables
         for part in wrong:
-            value = value[part]  # type: ignore[index]
+            value = value[part]
         yield f"call it {meant[2]}", [[wrong, None], [right, value]]
     if ":" in sentence and re.fullmatch(KEY, sentence.split(" ", 1)[0]):
         yield f"take {sentence.split(' ', 1)[0]} out", [[list(parsed(sentence.split(" ", 1)[0])), None]]
