@@ -88,7 +88,7 @@ function softdotViewer(box) {
     if (canvas.width !== width || canvas.height !== height) { canvas.width = width; canvas.height = height; }
     const scale = (2 * 0.95 * state.zoom) / body.size, shown = modes[mode()], cut = state.cut && !data.slice;
     const fitted = scale * Math.min(1, width / height);
-    painter.clear(width, height, [1, 1, 1]);
+    painter.clear(width, height, background());
     painter.set("turn", turning());
     painter.set("centre", ...body.centre);
     painter.set("scale", (fitted * height) / width, fitted);
@@ -103,6 +103,12 @@ function softdotViewer(box) {
       painter.set("shift", ...data.dotShift[state.step]);
       painter.draw(cut ? body.dotCut : body.dot, "all");
     }
+  }
+
+  // The colour that the page gives the canvas; white where it gives none.
+  function background() {
+    const [r, g, b, a] = getComputedStyle(canvas).backgroundColor.match(/[\d.]+/g).map(Number);
+    return a === 0 ? [1, 1, 1] : [r / 255, g / 255, b / 255];
   }
 
   const find = (selector) => box.querySelector(selector);

@@ -10,8 +10,8 @@ from softdot.studio.comparison import differences
 from softdot.studio.document import Document
 from softdot.studio.processes import InTurn, Pool, ProcessLost, TaskRefused
 
-REST_S = 0.35
-"""The hand rests when it has changed nothing for so long."""
+PAUSE_S, REST_S = 0.05, 0.3
+"""A hand that has changed nothing for so long pauses, and the design is checked; then it rests, and it is pressed."""
 MOST_CURVES = 6
 Json = dict[str, Any]
 TellTab = Callable[..., None]
@@ -85,7 +85,7 @@ class Follower:
             parts = await self._quick("design:draw", text)
             if parts is not None:
                 self._tell("parts", again=True, view=parts)
-        if self._changed.is_set():
+        if await self._changes_within(PAUSE_S):
             return
         if not first:
             await self._examine(text)
@@ -93,12 +93,17 @@ class Follower:
             self.cancel_press()
         elif not self._circuit_first:
             await self._answer_circuit(text)
-        with suppress(TimeoutError):
-            await asyncio.wait_for(self._changed.wait(), REST_S)
+        if await self._changes_within(REST_S):
             return
         if known.state.get("press_hash") is not None and not known.is_pressed:
             known.pressed = known.state["press_hash"]
             self._press_task = asyncio.create_task(self._press(text, known.state["values"]))
+
+    async def _changes_within(self, seconds: float) -> bool:
+        """Whether there is another change in that time."""
+        with suppress(TimeoutError):
+            await asyncio.wait_for(self._changed.wait(), seconds)
+        return self._changed.is_set()
 
     async def _examine(self, text: str) -> None:
         self.known.state = await self._quick("design:examine", text)

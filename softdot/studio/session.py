@@ -67,6 +67,8 @@ class Session:
     def tell(self, kind: str, again: bool = False, **content: Any) -> None:
         """A message to the tab; again : repeated to a tab that comes back."""
         message = {"tell": kind, **content}
+        if kind == "curves":
+            self._renew_kept()
         if again:
             self._last[f"{kind} {content.get('task', '')}"] = message
         if self.send is not None:
@@ -205,6 +207,15 @@ class Session:
         document = self._document
         undo, redo, reset = document.can_undo, document.can_redo, document.text != document.start
         self.tell("document", text=document.text, undo=undo, redo=redo, reset=reset)
+
+    def _renew_kept(self) -> None:
+        """The accurate press of a design that was kept with its coarse one takes its place."""
+        now = self._follower.known.curves[-1]
+        same = [one for one in self._kept if one["values"] == now["values"]]
+        for one in same:
+            one["numbers"] = dict(now["numbers"])
+        if same:
+            self._tell_kept()
 
     def _tell_kept(self) -> None:
         self.tell("kept", names=[one["name"] for one in self._kept], rows=compared(self._kept), most=MOST_KEPT)

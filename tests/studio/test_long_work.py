@@ -92,6 +92,7 @@ def test_a_closed_tab_ends_its_work_and_its_design_is_found_by_the_next_start(st
     until(lambda: ticks_in_a_second(workers(running.process.pid)) < 10, 60.0)
     again = open_tab(running.address)
     again.page.locator("#text").fill(QUICK)
+    again.page.locator("#undo:enabled").wait_for()
     again.page.locator("#earlier").select_option(index=1)
     until(lambda: again.text == SLOW_PRESS)
     assert running.end() == 0

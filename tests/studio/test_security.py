@@ -8,15 +8,22 @@ import socket
 import stat
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import pytest
+from tornado.httpclient import AsyncHTTPClient, HTTPRequest
+from tornado.httpserver import HTTPServer
+from tornado.ioloop import IOLoop
+from tornado.netutil import bind_sockets
+from tornado.websocket import websocket_connect
 
 from softdot.commands import studio as command
 from softdot.studio.guard import Guard
-from softdot.studio.server import MOST_TABS
+from softdot.studio.server import MOST_TABS, application
 
 FAR = "http://evil.example"
 LIMIT_MB = 25
+NAMES = "report.html", "kit.zip"
 
 
 def asked(studio, path, method="GET", body=None, **headers):
@@ -187,9 +194,6 @@ def test_an_endless_header_is_cut(studio):
 
 def spoken(studio, *messages, answers):
     """What the socket tells after some messages, the first of each kind in answers."""
-    from tornado.httpclient import HTTPRequest
-    from tornado.ioloop import IOLoop
-    from tornado.websocket import websocket_connect
 
     async def talk():
         tab = getattr(studio, "tab", "")  # the one before comes back
@@ -264,10 +268,6 @@ def test_a_design_of_somebody_else_reads_no_file_outside(studio, name, key):
 
 
 def test_tabs_are_bounded(start_studio):
-    from tornado.httpclient import HTTPRequest
-    from tornado.ioloop import IOLoop
-    from tornado.websocket import websocket_connect
-
     running = start_studio()
 
     async def talk():
@@ -280,6 +280,33 @@ def test_tabs_are_bounded(start_studio):
     assert "close a tab" in told["text"]
     assert closed is None
     assert running.end() == 0
+
+
+def test_a_report_is_shown_in_a_sandbox(tmp_path):
+    """As a page of nowhere: without the studio's origin, and without the net."""
+    (tmp_path / "report.html").write_text("<script>fetch('/')</script>", "utf-8")
+    (tmp_path / "kit.zip").write_bytes(b"PK")
+
+    async def answers():
+        sockets = bind_sockets(0, "127.0.0.1")
+        guard = Guard.of("127.0.0.1", sockets[0].getsockname()[1])
+        made = {f"x/{name}": tmp_path / name for name in ("report.html", "kit.zip", "gone.html")}
+        tabs = SimpleNamespace(guard=guard, sessions={"tab": SimpleNamespace(files=made)})
+        server = HTTPServer(application(tabs))
+        server.add_sockets(sockets)
+        fetch = AsyncHTTPClient().fetch
+        address = f"http://127.0.0.1:{sockets[0].getsockname()[1]}/files/x/"
+        found = [await fetch(f"{address}{name}?key={guard.key}", raise_error=False) for name in (*NAMES, "gone.html")]
+        server.stop()
+        return found
+
+    report, archive, gone = IOLoop().run_sync(answers, timeout=20)
+    policy = report.headers["Content-Security-Policy"]
+    assert policy.startswith("sandbox allow-scripts; default-src 'none'")
+    assert "allow-same-origin" not in policy
+    assert "connect-src" not in policy
+    assert archive.headers["Content-Disposition"] == 'attachment; filename="kit.zip"'
+    assert gone.code == 404
 
 
 def test_mistakes_and_refusals_have_no_traceback(studio):

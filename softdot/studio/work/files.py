@@ -7,7 +7,7 @@ from typing import Any, get_args
 from geometry.base import InputError
 from softdot.studio.processes import Tell
 from softdot.studio.work.design import case_of
-from softdot.studio.work.press import Progress
+from softdot.studio.work.press import TaskProgress
 
 
 def kit(text: str, folder: str, tell: Tell) -> dict[str, Any]:
@@ -16,7 +16,7 @@ def kit(text: str, folder: str, tell: Tell) -> dict[str, Any]:
 
     config, place = case_of(text).config, Path(folder) / "kit"
 
-    class WithFile(Progress):
+    class WithFile(TaskProgress):
         """The kit is there when its tolerances begin."""
 
         def stage(self, name: str) -> None:
@@ -49,7 +49,7 @@ def plate(asked: dict[str, Any], folder: str, tell: Tell) -> dict[str, Any]:
     request = PlateRequest(
         standard, kind, words if kind == "text" else None, width_cells=30 if kind == "text" else None
     )
-    summary = make_plate(request, place, Progress(tell))
+    summary = make_plate(request, place, TaskProgress(tell))
     return {"file": _zipped(place), "said": short_text(summary, "plate").splitlines()[:-1], "warnings": []}
 
 
@@ -58,7 +58,7 @@ def report(text: str, folder: str, tell: Tell) -> dict[str, Any]:
     from softdot.commands.run import run_case, short_text
 
     place = Path(folder) / "run"
-    summary = run_case(case_of(text), place, Progress(tell))
+    summary = run_case(case_of(text), place, TaskProgress(tell))
     solver = summary["solver"]
     said = [] if solver["converged"] else [f"not converged, {solver['failure']}"]
     said += short_text(summary, "run").splitlines()[:-1]

@@ -7,7 +7,7 @@ from softdot.config import Config
 from softdot.console import plain
 from softdot.studio.processes import Tell
 from softdot.studio.work.design import case_of
-from softdot.studio.work.press import COARSE, Progress
+from softdot.studio.work.press import COARSE, TaskProgress
 from softdot.tolerances.budget import budget_of
 from softdot.tolerances.responses import KitPress, coarser
 from softdot.tolerances.tolerances import FACTORS, NAMES, factor_key, has_component
@@ -24,7 +24,7 @@ def influences(text: str, tell: Tell) -> dict[str, Any]:
 
     rows : where a number grows by a tenth, the largest change of the voltage first.
     """
-    case, progress = case_of(text), Progress(tell)
+    case, progress = case_of(text), TaskProgress(tell)
     progress.stage("derivatives")
     config = _quick(case.config)
     keys = _keys(config)
@@ -43,7 +43,7 @@ def influences(text: str, tell: Tell) -> dict[str, Any]:
 
 def tolerances_of_making(text: str, tell: Tell) -> dict[str, Any]:
     """The tolerance budget of the kit, on the mesh of the coarse press."""
-    case, progress = case_of(text), Progress(tell)
+    case, progress = case_of(text), TaskProgress(tell)
     progress.stage("tolerances")
     config = case.config
     half = config.mesh.scaled(COARSE / 2).model_copy(update={"mesher": _quick(config).mesh.mesher})

@@ -14,6 +14,7 @@ from softdot.checks import result_warnings
 from softdot.console import plain
 from softdot.studio.processes import Tell
 from softdot.studio.work.design import case_of, pressed_part
+from softdot.studio.work.remedies import late_remedies
 from softdot.summary import mesh_part, press_part
 from softdot.tolerances.responses import on_larger_elements
 from solve.result import PressResult, Step
@@ -28,14 +29,14 @@ def coarse_press(text: str, tell: Tell) -> dict[str, Any]:
     larger = on_larger_elements(case.config, COARSE)
     try:
         layered = Case(larger.model_copy(update={"mesh": larger.mesh.model_copy(update={"mesher": "layered"})}))
-        return _pressed(layered, Progress(tell), "coarse")
+        return _pressed(layered, TaskProgress(tell), "coarse")
     except (InputError, MeshingError):
-        return _pressed(Case(larger), Progress(tell), "coarse")
+        return _pressed(Case(larger), TaskProgress(tell), "coarse")
 
 
 def accurate_press(text: str, tell: Tell) -> dict[str, Any]:
     """The press of `softdot run`, told as soon as it is there; then returned with its error bars."""
-    case, progress = pressed_part(case_of(text)), Progress(tell)
+    case, progress = pressed_part(case_of(text)), TaskProgress(tell)
     found = _pressed(case, progress, "accurate")
     if found["numbers"]["solver"]["converged"]:
         tell({"press": found})
@@ -44,7 +45,7 @@ def accurate_press(text: str, tell: Tell) -> dict[str, Any]:
     return found
 
 
-def _pressed(case: Case, progress: "Progress", quality: str) -> dict[str, Any]:
+def _pressed(case: Case, progress: "TaskProgress", quality: str) -> dict[str, Any]:
     _ = case.checked
     progress.stage("mesh")
     unknown = case.mesh_quality
@@ -52,7 +53,8 @@ def _pressed(case: Case, progress: "Progress", quality: str) -> dict[str, Any]:
     result = case.press(progress.on_step).result
     amplified = case.amplified(result) or (None, None)
     numbers = {"mesh": mesh_part(unknown, result.unknowns), **press_part(case.model.readout, result, *amplified)}
-    numbers["warnings"] = result_warnings(case.model, case.dot, result)
+    warnings = result_warnings(case.model, case.dot, result)
+    numbers |= {"warnings": warnings, "remedies": late_remedies(case.config, warnings)}
     view = viewer_data(result.tet_mesh, result, case.dot) if len(result.steps) > 1 else None
     return {
         "quality": quality,
@@ -68,7 +70,7 @@ def without_fields(result: PressResult) -> PressResult:
     return replace(result, steps=bare, tet_mesh=None)  # type: ignore[arg-type]
 
 
-class Progress:
+class TaskProgress:
     """Tells the page the stage, how far it is, and the time that is left."""
 
     def __init__(self, tell: Tell) -> None:

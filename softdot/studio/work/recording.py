@@ -8,7 +8,7 @@ import numpy as np
 
 from softdot.console import plain
 from softdot.studio.processes import Tell
-from softdot.studio.work.press import Progress
+from softdot.studio.work.press import TaskProgress
 
 SHOWN = 600
 """Samples of a signal in the page, of each two the smallest and largest of a stretch."""
@@ -57,7 +57,7 @@ def diagnose(folder: str, out: str, quick: bool, tell: Tell) -> dict[str, Any]:
     from softdot.commands.diagnose import Options, run_diagnosis
 
     place = Path(out) / "diagnosis"
-    found = run_diagnosis(Path(folder), place, Options(full_model_s=0.0) if quick else Options(), Progress(tell))
+    found = run_diagnosis(Path(folder), place, Options(full_model_s=0.0) if quick else Options(), TaskProgress(tell))
     improved = place / "improved.toml"
     archive = shutil.make_archive(str(Path(out) / "diagnosis"), "zip", out, "diagnosis")
     return {

@@ -7,7 +7,9 @@ from typing import Any
 
 from geometry.base import InputError
 from softdot.case import Case
+from softdot.config import Config
 from softdot.config.toml import completed, parsed, with_value
+from solve.mechanisms.layers.film_yield import FILM_YIELD
 
 KEY = r"([\w\-.\[\]\"]+)"
 BOUND = re.compile(KEY + r" = \S+: must be (at least|at most|above|below|less than)\D*? ([\d.eE+-]+)")
@@ -23,6 +25,27 @@ def remedies(tables: Mapping[str, Any], told: Sequence[str], check: Check) -> li
     A value of None takes its key out. None for a sentence that no single change mends.
     """
     return [_first_that_mends(tables, sentence, check) for sentence in told]
+
+
+YIELDS = re.compile(r"the film's largest principal stress of \S+ MPa exceeds its yield stress of ([\d.e+-]+) MPa")
+BEYOND = re.compile(r"the strain of ([\d.e+-]+) % in \w+ is beyond the fitted range of its material \(([\d.e+-]+) %\)")
+
+
+def late_remedies(config: Config, warnings: Sequence[str]) -> list[dict[str, Any] | None]:
+    """As remedies, for what only a press tells: the press with the change tells whether it was enough."""
+    return [_late(config, sentence) for sentence in warnings]
+
+
+def _late(config: Config, sentence: str) -> dict[str, Any] | None:
+    """Let a film yield that would; press less deep where a strain is beyond the data, as strain grows with depth."""
+    yields, beyond, depth = YIELDS.match(sentence), BEYOND.match(sentence), config.press.indentation_mm
+    if yields is not None:
+        film = {"name": FILM_YIELD.name, "component": "film", "parameters": {"yield_stress_MPa": float(yields[1])}}
+        return {"says": "let the film yield", "changes": [[["mechanisms", len(config.mechanisms)], film]]}
+    if beyond is not None and depth is not None:
+        less = float(f"{depth * min(1.0, float(beyond[2]) / float(beyond[1])):.2g}")
+        return {"says": f"press {less:g} mm deep", "changes": [[["press", "indentation_mm"], less]]}
+    return None
 
 
 def _first_that_mends(tables: Mapping[str, Any], sentence: str, check: Check) -> dict[str, Any] | None:
@@ -102,5 +125,6 @@ def _of_the_key(tables: Mapping[str, Any], sentence: str) -> Iterator[tuple[str,
         for part in wrong:
             value = value[part]
         yield f"call it {meant[2]}", [[wrong, None], [right, value]]
-    if ":" in sentence and re.fullmatch(KEY, sentence.split(" ", 1)[0]):
-        yield f"take {sentence.split(' ', 1)[0]} out", [[list(parsed(sentence.split(" ", 1)[0])), None]]
+    first = sentence.split(" ", 1)[0]
+    if (":" in sentence or "is not a key" in sentence) and re.fullmatch(KEY, first):
+        yield f"take {first} out", [[list(parsed(first)), None]]
