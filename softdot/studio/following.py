@@ -38,25 +38,28 @@ class Known:
 
 
 class Follower:
-    """Follows one document. look : processes for what is quick, solve : for presses."""
+    """Follows one document. draw, check : processes for what is quick, solve : for presses."""
 
-    def __init__(self, document: Document, look: InTurn, solve: Pool, tell: TellTab) -> None:
+    def __init__(self, document: Document, draw: InTurn, check: InTurn, solve: Pool, tell: TellTab) -> None:
         self.known = Known()
-        self._document, self._look_pool, self._solve_pool, self._tell = document, look, solve, tell
-        self._changed, self._circuit_first = asyncio.Event(), False
+        self._document, self._tell = document, tell
+        self._draw_process, self._check_process, self._solve_pool = draw, check, solve
+        self._undrawn, self._unchecked, self._circuit_first = asyncio.Event(), asyncio.Event(), False
         self._press_task: asyncio.Task[None] | None = None
-        self._task = asyncio.create_task(self._follow())
+        self._tasks = [asyncio.create_task(self._draw()), asyncio.create_task(self._check())]
 
     def touch(self, circuit_first: bool = False) -> None:
         """The document has changed; circuit_first : in the amplifier alone, which is answered before the rest."""
         self._circuit_first = circuit_first
-        self._changed.set()
+        if not circuit_first:
+            self._undrawn.set()
+        self._unchecked.set()
 
     def press_again(self) -> None:
         """Also where the present design is pressed already, or its press was cancelled."""
         self.cancel_press()
         self.known.pressed = None
-        self.touch()
+        self._unchecked.set()
 
     def cancel_press(self) -> None:
         """End the press; the next change begins another one."""
@@ -65,30 +68,36 @@ class Follower:
 
     def close(self) -> None:
         """End everything."""
-        self._task.cancel()
+        for task in self._tasks:
+            task.cancel()
         self.cancel_press()
 
-    async def _follow(self) -> None:
+    async def _draw(self) -> None:
+        """The parts, at every change."""
         while True:
-            await self._changed.wait()
-            self._changed.clear()
+            await self._undrawn.wait()
+            self._undrawn.clear()
+            with suppress(TaskRefused, ProcessLost, TimeoutError):
+                parts = await self._quick(self._draw_process, "design:draw", self._document.text)
+                if parts is not None:
+                    self._tell("parts", again=True, view=parts)
+
+    async def _check(self) -> None:
+        """The rest, when the hand pauses; and the press, when it rests."""
+        while True:
+            await self._unchecked.wait()
+            self._unchecked.clear()
             with suppress(TaskRefused, ProcessLost, TimeoutError):
                 await self._look(self._document.text)
 
     async def _look(self, text: str) -> None:
-        known, first = self.known, not self.known.state
-        if first:  # the form is there before the parts
-            await self._examine(text)
+        known = self.known
         if self._circuit_first:
             await self._answer_circuit(text)
-        else:
-            parts = await self._quick("design:draw", text)
-            if parts is not None:
-                self._tell("parts", again=True, view=parts)
-        if await self._changes_within(PAUSE_S):
+        if known.state and await self._changes_within(PAUSE_S):
             return
-        if not first:
-            await self._examine(text)
+        known.state = await self._quick(self._check_process, "design:examine", text)
+        self._tell("state", again=True, **known.state)
         if not known.is_pressed:
             self.cancel_press()
         elif not self._circuit_first:
@@ -102,17 +111,13 @@ class Follower:
     async def _changes_within(self, seconds: float) -> bool:
         """Whether there is another change in that time."""
         with suppress(TimeoutError):
-            await asyncio.wait_for(self._changed.wait(), seconds)
-        return self._changed.is_set()
+            await asyncio.wait_for(self._unchecked.wait(), seconds)
+        return self._unchecked.is_set()
 
-    async def _examine(self, text: str) -> None:
-        self.known.state = await self._quick("design:examine", text)
-        self._tell("state", again=True, **self.known.state)
-
-    async def _quick(self, task: str, *arguments: Any) -> Any:
+    async def _quick(self, process: InTurn, task: str, *arguments: Any) -> Any:
         """A short task; the tab is told where it or its process fails."""
         try:
-            return await self._look_pool.run(task, *arguments)
+            return await process.run(task, *arguments)
         except TimeoutError:
             self._tell("said", text="this design takes too long to check: its numbers are absurd", bad=True)
             raise
@@ -127,7 +132,7 @@ class Follower:
         known = self.known
         if known.history is None:
             return
-        found = await self._quick("press:circuit", text, known.history)
+        found = await self._quick(self._check_process, "press:circuit", text, known.history)
         known.curves[-1]["numbers"]["readout_voltage_V"] = found and found["readout_voltage_V"]
         self._tell("circuit", again=True, found=found)
 

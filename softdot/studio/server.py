@@ -19,7 +19,7 @@ from geometry.base import InputError
 from geometry.files import scratch_folder
 from softdot.studio.autosave import Autosave, folder, new_name
 from softdot.studio.guard import HEADERS, PAPER_POLICY, Guard
-from softdot.studio.processes import InTurn, Pool, ProcessLost
+from softdot.studio.processes import InTurn, Pool
 from softdot.studio.session import Session, Studio
 from softdot.studio.uploads import LARGEST_MB, unpack
 
@@ -32,8 +32,8 @@ LARGEST_MESSAGE = 1 << 20
 LARGEST_HEADER, LARGEST_BODY = 1 << 16, 1 << 16
 """Bytes of what is sent without a key; an upload has a bound of its own."""
 MOST_TABS = 12
-FIRST_TAB_S = 0.5
-"""The tab that waits is answered before the rest is loaded."""
+FIRST_PARTS_S = 1.0
+"""The tab that waits has its form before another process loads the solver."""
 GRACE_S = 5.0
 """A tab that is loaded again is back within that time; after it its processes end."""
 LONGEST_LOOK_S = 30.0
@@ -49,16 +49,11 @@ class Tabs:
         self.form: asyncio.Future[Any] = asyncio.ensure_future(self._load())
 
     async def _load(self) -> Any:
-        """What the form is made of; then what is drawn with, and a process to press with."""
-        found = await self.studio.look.run("form:form")
-        self._later = asyncio.ensure_future(self._warm_up())
+        """What the form is made of; then a process that draws and one that presses."""
+        found = await self.studio.check.run("form:form")
+        self.studio.draw.prepare()
+        asyncio.get_running_loop().call_later(FIRST_PARTS_S, self.studio.solve.prepare)
         return found
-
-    async def _warm_up(self) -> None:
-        await asyncio.sleep(FIRST_TAB_S)
-        with suppress(ProcessLost, TimeoutError):
-            await self.studio.look.run("design:warm_up")
-        self.studio.solve.prepare()
 
     def session(self, name: str | None) -> Session:
         """The design of a tab that comes back, also after a crash; else a new one. InputError for too many."""
@@ -308,10 +303,11 @@ async def serve(host: str, port: int, start: str, ready: Callable[[str], None]) 
         raise InputError(f"--host {host} --port {port}: cannot be used ({reason})") from None
     guard = Guard.of(host, sockets[0].getsockname()[1])
     with scratch_folder() as scratch:
-        look, solve = InTurn("form:warm_up", LONGEST_LOOK_S), Pool("press:warm_up")
+        draw, check = (InTurn(warm_up, LONGEST_LOOK_S) for warm_up in ("design:warm_up", "form:warm_up"))
+        solve = Pool("press:warm_up")
         try:
-            look.prepare()
-            tabs = Tabs(guard, Studio(look, solve, Autosave(folder()), scratch), start)
+            check.prepare()
+            tabs = Tabs(guard, Studio(draw, check, solve, Autosave(folder()), scratch), start)
             try:
                 server = HTTPServer(application(tabs), max_header_size=LARGEST_HEADER, max_body_size=LARGEST_BODY)
                 server.add_sockets(sockets)
@@ -322,8 +318,8 @@ async def serve(host: str, port: int, start: str, ready: Callable[[str], None]) 
             finally:
                 tabs.close()
         finally:
-            look.end()
-            solve.end()
+            for processes in (draw, check, solve):
+                processes.end()
 
 
 def _stop_by_signals(stop: asyncio.Event) -> None:

@@ -24,9 +24,10 @@ INTO_FOLDER = {"kit": "files:kit", "report": "files:report"}
 
 @dataclass(frozen=True)
 class Studio:
-    """What all tabs share. look : draws, checks and answers for circuits; solve : presses and long work."""
+    """What all tabs share. draw : the parts; check : designs and circuits; solve : presses and long work."""
 
-    look: InTurn
+    draw: InTurn
+    check: InTurn
     solve: Pool
     autosave: Autosave
     scratch: Path
@@ -40,7 +41,7 @@ class Session:
         self.send: Callable[[Json], None] | None = None
         self.files: dict[str, Path] = {}
         self._document = Document(text)
-        self._follower = Follower(self._document, studio.look, studio.solve, self.tell)
+        self._follower = Follower(self._document, studio.draw, studio.check, studio.solve, self.tell)
         self._last: dict[str, Json] = {}
         self._kept: list[Json] = []
         self._recording: Path | None = None

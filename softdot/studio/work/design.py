@@ -105,8 +105,6 @@ def examine(text: str) -> dict[str, Any]:
 
 
 def warm_up() -> None:
-    """Load what a drawn design and an answering circuit take."""
+    """Load what a drawn design takes."""
     load_alone("build123d", *PARTS)
-    from solve.readout import recording  # noqa: F401 - loads the filters
-
     draw("")
