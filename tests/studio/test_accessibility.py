@@ -3,6 +3,7 @@
 import pytest
 
 axe_package = pytest.importorskip("axe_playwright_python.sync_playwright")
+pytestmark = pytest.mark.slow
 SERIOUS = ("serious", "critical")
 
 

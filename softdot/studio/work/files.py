@@ -22,7 +22,8 @@ def kit(text: str, folder: str, tell: Tell) -> dict[str, Any]:
         def stage(self, name: str) -> None:
             """As above."""
             if name == "tolerances":
-                tell({"file": _zipped(place, text), "says": "the kit is ready; its tolerance budget follows"})
+                said = ["the kit is ready; its tolerance budget follows"]
+                tell({"file": _zipped(place, text), "page": str(place / "kit.html"), "said": said})
             super().stage(name)
 
     summary = make_kit(config, place, WithFile(tell))

@@ -208,7 +208,7 @@ export class Form {
     const slider = element("input", { type: "range", min: 0, max: 1000, step: 5, "aria-label": `${dotted(path)}, slider` });
     let scale = null, held = false, waiting = null;
     const send = (value, joined) => this.set(path, value, joined);
-    input.addEventListener("change", () => send(input.value === "" ? null : Number(input.value), false));
+    const typed = typing(input, () => send(input.value === "" ? null : Number(input.value), false));
     slider.addEventListener("input", () => {
       const value = scale.value(Number(slider.value));
       input.value = value;
@@ -222,7 +222,7 @@ export class Form {
       const stated = value !== null && value !== undefined;
       slider.hidden = !stated || typeof value !== "number";
       if (held) return;
-      if (document.activeElement !== input || !stated) input.value = stated ? value : "";
+      if (!typed()) input.value = stated ? value : "";
       if (slider.hidden) return;
       if (!scale || value < scale.low || value > scale.high) scale = scaled(found, value, whole);
       slider.value = scale.place(value);
@@ -254,14 +254,14 @@ export class Form {
   // Texts, and lists of numbers as JSON writes them.
   text(found, path, id) {
     const listed = found.type === "array", input = element("input", { type: "text", id });
-    input.addEventListener("change", () => {
+    const typed = typing(input, () => {
       let value = input.value === "" ? null : input.value;
       if (listed && value !== null) {
         try { value = JSON.parse(/^\s*\[/.test(value) ? value : `[${value}]`); } catch { /* the program says what is wrong */ }
       }
       this.set(path, value);
     });
-    const show = (value) => { if (document.activeElement !== input) input.value = value === null || value === undefined ? "" : listed ? JSON.stringify(value) : value; };
+    const show = (value) => { if (!typed()) input.value = value === null || value === undefined ? "" : listed ? JSON.stringify(value) : value; };
     return { single: true, parts: [input], show };
   }
 
@@ -295,6 +295,14 @@ export class Form {
     });
     return [element("div", { class: "items" }, this.field(where, ["mechanisms", i, "component"]), ...fields)];
   }
+}
+
+// Calls done when a field has been filled; returns whether somebody is typing in it, so that it is left alone.
+function typing(input, done) {
+  let busy = false;
+  input.addEventListener("input", () => { busy = true; });
+  input.addEventListener("change", () => { busy = false; done(); });
+  return () => busy && document.activeElement === input;
 }
 
 // From a place between 0 and 1000 on a slider to a value and back; sizes are spaced by their ratios.

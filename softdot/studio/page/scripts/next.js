@@ -68,7 +68,7 @@ export class Tasks {
     if (result.page && result.file) links.push(link(result.page, "Open the page", { target: "_blank", rel: "noopener noreferrer" }));
     if (result.file) links.push(link(result.file, `Download ${result.file.split("/").pop()}`, { download: true }));
     item.querySelector(".links").replaceChildren(...links);
-    const said = [...(result.said || []), ...(result.says ? [result.says] : []), ...(told.task === "recording" ? [] : result.warnings || []).map((one) => `warning: ${one}`)];
+    const said = [...(result.said || []), ...(told.task === "recording" ? [] : result.warnings || []).map((one) => `warning: ${one}`)];
     item.querySelector(".more").replaceChildren(...said.map((one) => element("p", {}, one)));
     if (told.took_s !== undefined) this.finish(item, `done in ${duration(told.took_s)}`);
   }
