@@ -19,6 +19,8 @@ from playwright.sync_api import Page, sync_playwright
 
 FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
 MOVES, FEW = 200, 20
+LOADED_S = 10.0
+"""After which every process has loaded what it needs."""
 TOLD = """() => {
   window.told = [];
   document.addEventListener("softdot", (event) => window.told.push([event.detail, performance.now()]));
@@ -59,6 +61,15 @@ def memory_MB(process: psutil.Process) -> float:
     return 1e-6 * total
 
 
+def work_s(process: psutil.Process) -> dict[int, float]:
+    """How long a process and those that it started have kept a core, by process number."""
+    found = {}
+    for one in [process, *process.children(recursive=True)]:
+        with suppress(psutil.NoSuchProcess):
+            found[one.pid] = one.cpu_times().user + one.cpu_times().system
+    return found
+
+
 def measured(address: str, process: psutil.Process, started: float) -> dict[str, float]:
     """All figures of one run."""
     with sync_playwright() as engine:
@@ -76,6 +87,7 @@ def measured(address: str, process: psutil.Process, started: float) -> dict[str,
         page.evaluate(TOLD)
         found["coarse press after rest"] = answer_ms(page, THICKNESS, 450, "curves") / 1e3
         page.locator("#press .cancel").click()
+        time.sleep(LOADED_S)
         found |= previews(page, process)
         page.locator("#press .doing", has_text="as softdot run does").wait_for(timeout=300_000)
         found["circuit"] = circuit(page)
@@ -88,13 +100,15 @@ def measured(address: str, process: psutil.Process, started: float) -> dict[str,
 
 def previews(page: Page, process: psutil.Process) -> dict[str, float]:
     """Geometry while a slider moves; memory after a few moves and after many."""
-    times, memory = [], {}
+    times, memory, before = [], {}, work_s(process)
     for number in range(MOVES):
         times.append(answer_ms(page, THICKNESS, 300 + (37 * number) % 400, "parts"))
         if number + 1 in (FEW, MOVES):
             memory[number + 1] = memory_MB(process)
     few, many = memory.values()
+    work = sum(after - before[number] for number, after in work_s(process).items() if number in before)
     return {
+        "work of the studio for each move": work / MOVES,
         "geometry preview, median": statistics.median(times) / 1e3,
         "geometry preview, slowest of ten": statistics.quantiles(times, n=10)[-1] / 1e3,
         "memory after 20 moves (MB)": few,

@@ -22,7 +22,7 @@ TellTab = Callable[..., None]
 class Known:
     """What is known of a design. state : of its last check (softdot.studio.work.design.examine).
 
-    curves : presses, the last one last, each with label, quality, numbers and the values of its configuration.
+    curves : presses, the last one last: label, quality, numbers, values of the configuration, hash of what is pressed.
     history : of the last press, for circuits. pressed : hash of what it depends on.
     """
 
@@ -30,6 +30,13 @@ class Known:
     curves: list[Json] = field(default_factory=list)
     history: bytes | None = None
     pressed: str | None = None
+
+    @property
+    def numbers(self) -> Json | None:
+        """Of the press of the present design, None where there is none yet."""
+        last = self.curves[-1] if self.curves else {"press_hash": None}
+        there = last["press_hash"] is not None and last["press_hash"] == self.state.get("press_hash")
+        return last["numbers"] if there else None
 
     @property
     def is_pressed(self) -> bool:
@@ -106,7 +113,7 @@ class Follower:
             return
         if known.state.get("press_hash") is not None and not known.is_pressed:
             known.pressed = known.state["press_hash"]
-            self._press_task = asyncio.create_task(self._press(text, known.state["values"]))
+            self._press_task = asyncio.create_task(self._press(text, known.pressed, known.state["values"]))
 
     async def _changes_within(self, seconds: float) -> bool:
         """Whether there is another change in that time."""
@@ -132,24 +139,27 @@ class Follower:
         known = self.known
         if known.history is None:
             return
-        found = await self._quick(self._check_process, "press:circuit", text, known.history)
+        try:
+            found = await self._check_process.run("press:circuit", text, known.history)
+        except TaskRefused:  # the design has a mistake, of which its check tells
+            return
         known.curves[-1]["numbers"]["readout_voltage_V"] = found and found["readout_voltage_V"]
         self._tell("circuit", again=True, found=found)
 
-    async def _press(self, text: str, values: Mapping[str, Any]) -> None:
+    async def _press(self, text: str, press_hash: str, values: Mapping[str, Any]) -> None:
         """Coarse, then accurate; each is shown as soon as it is there."""
-        label = self._label(values)
+        curve = {"label": self._label(values), "values": values, "press_hash": press_hash}
 
         def on_way(told: Json) -> None:
             if "press" in told:
-                self._show(told["press"], label, values)
+                self._show(told["press"], curve)
             else:
                 self._tell("progress", task="press", **told["progress"])
 
         try:
             for task in ("press:coarse_press", "press:accurate_press"):
-                self._show(await self._solve_pool.run(task, text, tell=on_way), label, values)
-                with suppress(TaskRefused, ProcessLost, TimeoutError):
+                self._show(await self._solve_pool.run(task, text, tell=on_way), curve)
+                with suppress(ProcessLost, TimeoutError):
                     await self._answer_circuit(self._document.text)
             self._tell("ended", task="press")
         except asyncio.CancelledError:
@@ -168,12 +178,12 @@ class Follower:
         words = [f"{key.removeprefix('segment.')} = {value}" for key, value in changed.items()]
         return ", ".join(words[:2]) + (f" and {len(words) - 2} more" if len(words) > 2 else "") or "the same again"
 
-    def _show(self, found: Json, label: str, values: Mapping[str, Any]) -> None:
+    def _show(self, found: Json, curve: Json) -> None:
         """Numbers and fields of a press: the accurate one takes the place of the coarse one."""
         known = self.known
-        if known.curves and known.curves[-1]["values"] == values:
-            label = known.curves.pop()["label"]
-        curve = {"label": label, "quality": found["quality"], "numbers": found["numbers"], "values": values}
+        if known.curves and known.curves[-1]["press_hash"] == curve["press_hash"]:
+            curve = known.curves.pop()
+        curve = {**curve, "quality": found["quality"], "numbers": found["numbers"]}
         known.curves = [*known.curves[1 - MOST_CURVES :], curve]
         known.history = found["history"]
         shown = [{name: one[name] for name in ("label", "quality", "numbers")} for one in known.curves]

@@ -26,7 +26,7 @@ from geometry.files import end_with_parent
 LOG = logging.getLogger(__name__)
 WORK = "softdot.studio.work"
 Tell = Callable[[dict[str, Any]], None]
-IDLE = 1
+WAITING, MOST_WAITING = 1, 2
 """Processes that wait with everything loaded, so that a press after a cancelled one begins at once."""
 
 
@@ -111,7 +111,9 @@ class InTurn:
 
     async def run(self, task: str, *arguments: Any) -> Any:
         """As Worker.run; where the waiting is cancelled, the process goes on. TimeoutError after longest_s."""
-        return await asyncio.shield(asyncio.create_task(self._run(task, *arguments)))
+        running = asyncio.create_task(self._run(task, *arguments))
+        running.add_done_callback(lambda done: done.cancelled() or done.exception())  # nobody may wait any more
+        return await asyncio.shield(running)
 
     async def _run(self, task: str, *arguments: Any) -> Any:
         async with self._lock:
@@ -126,7 +128,7 @@ class InTurn:
 
 
 class Pool:
-    """Processes that are alike. Each task has one to itself; what is left idle beyond a spare is ended."""
+    """Processes that are alike. Each task has one to itself; one more waits, or two, and the others are ended."""
 
     def __init__(self, warm_up: str) -> None:
         self._warm_up = warm_up
@@ -136,7 +138,7 @@ class Pool:
     def prepare(self) -> None:
         """Start a process that waits for a task, where there is none."""
         self._idle = [worker for worker in self._idle if worker.alive]
-        while len(self._idle) < IDLE:
+        while len(self._idle) < WAITING:
             self._idle.append(Worker(self._warm_up))
 
     async def run(self, task: str, *arguments: Any, tell: Tell = lambda _: None) -> Any:
@@ -144,15 +146,15 @@ class Pool:
         self.prepare()
         worker = self._idle.pop(0)
         self._busy.append(worker)
+        self.prepare()
         try:
             return await worker.run(task, *arguments, tell=tell)
         finally:
             self._busy.remove(worker)
-            if not worker.alive or len(self._idle) >= IDLE:
-                worker.end()
-            else:
+            if worker.alive and len(self._idle) < MOST_WAITING:
                 self._idle.append(worker)
-            self.prepare()
+            else:
+                worker.end()
 
     def end(self) -> None:
         """All of them."""

@@ -46,7 +46,13 @@ class Tabs:
     def __init__(self, guard: Guard, studio: Studio, start: str) -> None:
         self.guard, self.studio, self.start = guard, studio, start
         self.sessions: dict[str, Session] = {}
-        self.form: asyncio.Future[Any] = asyncio.ensure_future(self._load())
+        self._form = asyncio.ensure_future(self._load())
+
+    async def form(self) -> Any:
+        """What the form is made of; asked for again where its process was lost."""
+        if self._form.done() and self._form.exception() is not None:
+            self._form = asyncio.ensure_future(self._load())
+        return await asyncio.shield(self._form)
 
     async def _load(self) -> Any:
         """What the form is made of; then a process that draws and one that presses."""
@@ -236,8 +242,7 @@ class SocketHandler(Guarded, WebSocketHandler):
         session = self.session
         session.send = self._send
         self._send({"tell": "tab", "name": session.name})
-        form = await asyncio.shield(self.tabs.form)
-        self._send({"tell": "form", **form})
+        self._send({"tell": "form", **await self.tabs.form()})
         session.attach(self._send)
 
     def on_message(self, message: str | bytes) -> None:

@@ -144,9 +144,9 @@ class Session:
             raise InputError(f"{MOST_KEPT} designs are compared at most; take one out first")
         if known.state.get("press_hash") is None:
             raise InputError("a design with mistakes cannot be compared")
-        numbers = dict(known.curves[-1]["numbers"]) if known.curves and known.is_pressed else None
         words = str(name)[:60].strip() or f"design {len(self._kept) + 1}"
-        self._kept.append({"name": words, "text": self.text, "values": known.state["values"], "numbers": numbers})
+        kept = {"name": words, "text": self.text, "numbers": known.numbers}
+        self._kept.append(kept | {key: known.state[key] for key in ("values", "press_hash")})
         self._tell_kept()
 
     def do_drop(self, number: int) -> None:
@@ -212,9 +212,9 @@ class Session:
     def _renew_kept(self) -> None:
         """The accurate press of a design that was kept with its coarse one takes its place."""
         now = self._follower.known.curves[-1]
-        same = [one for one in self._kept if one["values"] == now["values"]]
+        same = [one for one in self._kept if one["press_hash"] == now["press_hash"]]
         for one in same:
-            one["numbers"] = dict(now["numbers"])
+            one["numbers"] = now["numbers"]
         if same:
             self._tell_kept()
 

@@ -213,9 +213,9 @@ export class Form {
       const value = scale.value(Number(slider.value));
       input.value = value;
       slider.setAttribute("aria-valuetext", short(value));
-      const joined = held;
+      if (!held) send(value, false);
+      else if (waiting === null) waiting = requestAnimationFrame(() => { waiting = null; send(Number(input.value), true); });
       held = true;
-      if (waiting === null) waiting = requestAnimationFrame(() => { waiting = null; send(Number(input.value), joined); });
     });
     slider.addEventListener("change", () => { held = false; });
     const show = (value) => {
