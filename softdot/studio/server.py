@@ -123,7 +123,8 @@ class Guarded(RequestHandler):
         error = kwargs.get("exc_info", (None, None))[1]
         said = error.log_message if isinstance(error, HTTPError) else None
         self.set_header("Content-Type", "text/plain; charset=utf-8")
-        self.finish(said or {404: "there is nothing at this address"}.get(status_code, "this request was refused"))
+        kinds = {404: "there is nothing at this address", 500: "this failed inside softdot: please report it"}
+        self.finish(said or kinds.get(status_code, "this request was refused"))
 
     def log_exception(self, *_: Any) -> None:
         """Nothing: the address of a request holds the key."""

@@ -193,8 +193,9 @@ class Session:
 
     async def upload(self, unpack: Callable[[Path], Awaitable[Path]]) -> None:
         """A recording: unpack writes it into an empty folder and returns where its rig.toml is. InputError."""
-        self._recording = await unpack(Path(self._new_folder("recording")))
-        self._begin("recording", "recording:read", str(self._recording))
+        self._recording = None  # until it has been read, and so been checked
+        place = await unpack(Path(self._new_folder("recording")))
+        self._begin("recording", "recording:read", str(place))
 
     # What follows from it.
 
@@ -244,6 +245,8 @@ class Session:
         started = time.monotonic()
         try:
             found = await self._studio.solve.run(function, *arguments, tell=on_way)
+            if task == "recording":
+                self._recording = Path(arguments[0])
             self._improved = found.get("improved") or self._improved
             took = time.monotonic() - started
             self.tell("done", again=True, task=task, result=self._offered(found), took_s=took)

@@ -20,6 +20,7 @@ from tornado.websocket import websocket_connect
 from softdot.commands import studio as command
 from softdot.studio.guard import Guard
 from softdot.studio.server import MOST_TABS, application
+from tests.diagnose.rigs import HEAD, RUN, SEGMENT, write_rig
 
 FAR = "http://evil.example"
 LIMIT_MB = 25
@@ -369,3 +370,32 @@ def test_bad_arguments_are_refused_in_one_sentence(tmp_path, arguments, said):
     assert said in done.stderr
     assert "Traceback" not in done.stderr
     assert len([line for line in done.stderr.splitlines() if "warning" not in line]) == 1
+
+
+def test_a_recording_of_somebody_else_reads_no_file_outside(studio, tmp_path):
+    """It is refused when it is read, and is then no recording that could be diagnosed."""
+    rig = write_rig(tmp_path / "rig", HEAD + '[mesh]\nfile = "/etc/passwd"\n' + SEGMENT + RUN)
+    files = [(one.name, one.read_bytes()) for one in rig.iterdir()]
+    body = json.dumps([[name, len(content)] for name, content in files]).encode() + b"\n"
+    body += b"".join(content for _, content in files)
+
+    async def talk():
+        address = f"ws://127.0.0.1:{studio.port}/socket?key={studio.key}&tab={getattr(studio, 'tab', '')}"
+        line = await websocket_connect(HTTPRequest(address, headers={"Origin": origin(studio)}))
+        told = json.loads(await line.read_message())
+        sent = HTTPRequest(
+            f"{origin(studio)}/upload?key={studio.key}&tab={told['name']}", "POST", {"Origin": origin(studio)}, body
+        )
+        assert (await AsyncHTTPClient().fetch(sent)).code == 200
+        while told["tell"] != "ended" or told["task"] != "recording":
+            told = json.loads(await line.read_message())
+        refused = told["said"]
+        await line.write_message(json.dumps({"do": "start", "task": "diagnosis"}))
+        while told["tell"] != "said":
+            told = json.loads(await line.read_message())
+        line.close()
+        return refused, told["text"]
+
+    refused, said = IOLoop().run_sync(talk, timeout=100)
+    assert refused.startswith("mesh.file = '/etc/passwd': must be below the folder")
+    assert said.startswith("there is no recording yet")

@@ -37,7 +37,7 @@ def refuse_files_outside(config: Config) -> None:
             continue
         path = PurePath(name.replace("\\", "/"))
         if path.is_absolute() or ".." in path.parts or ":" in name:
-            raise InputError(f"{key} = '{name[:60]}': it must be below the folder in which the studio was started")
+            raise InputError(f"{key} = '{name[:60]}': must be below the folder in which the studio was started")
 
 
 def pressed_part(case: Case) -> Case:

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from geometry.base import InputError
 from softdot.case import Case
 from softdot.config import Config
 from softdot.console import plain
@@ -29,6 +30,8 @@ def influences(text: str, tell: Tell) -> dict[str, Any]:
     config = _quick(case.config)
     keys = _keys(config)
     nominal, slopes = KitPress(config).slopes(list(keys))
+    if nominal.force == 0.0 or nominal.voltage == 0.0:
+        raise InputError("this press gives no force or no voltage, so that nothing changes it by a share")
     rows: list[dict[str, Any]] = [
         {
             "label": label,

@@ -16,15 +16,18 @@ BOUND = re.compile(KEY + r" = \S+: must be (at least|at most|above|below|less th
 MEANT = re.compile(KEY + r" is not a key; did you mean '([\w.]+)'\?")
 SHARES = 0.95, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1
 JUST_INSIDE = 1e-3
+MOST = 8
+"""Sentences for which changes are tried; each takes some checks of the design."""
 Check = Callable[[Mapping[str, Any]], Case]
 
 
 def remedies(tables: Mapping[str, Any], told: Sequence[str], check: Check) -> list[dict[str, Any] | None]:
     """For each sentence about a design a change that does away with it: {"says", "changes": [[key, value], ...]}.
 
-    A value of None takes its key out. None for a sentence that no single change mends.
+    A value of None takes its key out. None for a sentence that no single change mends, and for those after MOST.
     """
-    return [_first_that_mends(tables, sentence, check) for sentence in told]
+    tried = [_first_that_mends(tables, sentence, check) for sentence in told[:MOST]]
+    return [*tried, *[None for _ in told[MOST:]]]
 
 
 YIELDS = re.compile(r"the film's largest principal stress of \S+ MPa exceeds its yield stress of ([\d.e+-]+) MPa")
