@@ -108,9 +108,14 @@ class Tab:
         self.wrong: list[str] = []
         self.page = context.new_page()
         self.page.on("pageerror", lambda error: self.wrong.append(str(error)))
-        self.page.on("console", lambda said: self.wrong.append(said.text) if said.type == "error" else None)
+        self.page.on("console", self._hear)
         self.page.goto(address)
         self.page.locator("#form .field").first.wait_for()
+
+    def _hear(self, said: Any) -> None:
+        """An error; that a studio which has ended does not answer is none."""
+        if said.type == "error" and "WebSocket connection" not in said.text:
+            self.wrong.append(said.text)
 
     def pressed(self, timeout_s: float = 60.0) -> None:
         """Wait until the accurate press is done."""

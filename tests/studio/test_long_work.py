@@ -81,7 +81,6 @@ def test_no_process_is_left_however_the_command_ends(start_studio, open_tab, num
     assert len(started) >= 3
     assert running.end(number) == (0 if number != signal.SIGKILL else -signal.SIGKILL)
     until(lambda: not any(runs(one) for one in started))
-    tab.wrong.clear()
 
 
 def test_a_closed_tab_ends_its_work_and_its_design_is_found_by_the_next_start(start_studio, open_tab):
@@ -96,7 +95,6 @@ def test_a_closed_tab_ends_its_work_and_its_design_is_found_by_the_next_start(st
     again.page.locator("#earlier").select_option(index=1)
     until(lambda: again.text == SLOW_PRESS)
     assert running.end() == 0
-    again.wrong.clear()
 
 
 def test_the_default_design_gives_the_numbers_of_softdot_run(start_studio, open_tab, tmp_path):
