@@ -1,7 +1,9 @@
 """What the processes answer: drawn parts, remedies that mend, circuits, influences that agree with presses."""
 
 import pickle
+import tomllib
 from importlib.resources import files
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -37,6 +39,14 @@ def test_every_mechanism_can_be_switched_on_with_its_example(name):
         entry = {"name": name, "component": component, "parameters": about["example"]}
         mistakes += [design.examine(changed(text, (["mechanisms", 0], entry)))["mistakes"]]
     assert [] in mistakes
+
+
+def test_examples_of_mechanisms_are_those_of_the_examples():
+    stated = {}
+    for file in sorted(Path("examples/mechanisms").glob("*.toml")):
+        for one in tomllib.loads(file.read_text("utf-8")).get("mechanisms", []):
+            stated.setdefault(one["name"], one.get("parameters", {}))
+    assert {name: dict(kind.example) for name, kind in MECHANISMS.items()} == stated
 
 
 WRONG = {
