@@ -14,6 +14,7 @@ import pytest
 
 from geometry.environment import ONE_THREAD
 from softdot.commands.studio import start_text
+from tests.diagnose.rigs import COUPON, HEAD, write_rig
 from tests.studio.conftest import QUICK
 from tests.studio.test_page import SLIDERS, listen, slide, until
 
@@ -135,3 +136,24 @@ def test_the_kit_of_an_own_design_is_downloaded(start_studio, open_tab, tmp_path
     assert {"kit/kit.json", "kit/kit.html", "kit/kit.step"} <= set(names)
     assert any(name.startswith("kit/parts/") and name.endswith(".stl") for name in names)
     assert running.end() == 0
+
+
+def test_a_recording_is_diagnosed_and_its_improved_model_taken_over(start_studio, open_tab, tmp_path):
+    """A strip of rubber that is stiffer than its rig.toml says, by the tenfold of its noise."""
+    rng = np.random.default_rng(1)
+    time_s = np.arange(0.0, 20.0, 0.05)
+    stretch = 1.0 + 1.5 * np.interp(time_s, [0.0, 10.0, 20.0], [0.0, 1.0, 0.0])
+    stress_MPa = (stretch - stretch**-2) / 3.0 * (1.0 + 0.1 * (stretch**2 + 2.0 / stretch - 3.0))
+    force_N = 10.0 * stress_MPa + 0.02 * rng.standard_normal(len(time_s))
+    columns = {"time_s": time_s, "displacement_mm": 20.0 * (stretch - 1.0), "force_N": force_N}
+    rig = HEAD + COUPON + '[[runs]]\nfile = "pull.csv"\n[runs.noise]\nforce_N = 0.02\n'
+    folder = write_rig(tmp_path / "coupon", rig, pull=columns)
+    tab = open_tab(start_studio().address)
+    tab.page.locator(".folder-file").set_input_files(folder)
+    tab.page.get_by_role("button", name="Quick diagnosis").click(timeout=60_000)
+    tab.says(".verdict", "Left out: the specimen stiffens at large strain", 150.0)
+    assert tab.page.locator("#verdict img").count() >= 3
+    tab.page.get_by_role("button", name="Take the improved model over").click()
+    until(lambda: "as its coupon says" in tab.text)
+    tab.page.get_by_role("button", name="Keep this design").click()
+    tab.says("#compare th", "design 1")

@@ -11,6 +11,7 @@ import pytest
 from softdot import Case, load_config
 from softdot.config import config_from
 from softdot.config.toml import completed, parse_toml
+from softdot.studio.comparison import compared, differences
 from softdot.studio.document import Document
 from softdot.studio.work import design, influences, press
 from softdot.studio.work.form import form
@@ -159,3 +160,17 @@ def test_parts_are_drawn_as_they_are_built():
     assert set(view["names"]) == {"effector", "medium1", "film", "medium2", "case"}
     assert design.draw("[segment") is None
     assert design.draw(DEFAULT.replace("indentation_mm = 0.3", "indentation_mm = -1.0")) is None
+
+
+def test_a_comparison_shows_what_designs_give_and_where_they_differ():
+    thin = {"values": {"segment": {"medium1": {"thickness_mm": 0.4}, "section": "solid"}}, "numbers": None}
+    thick = {
+        "values": {"segment": {"medium1": {"thickness_mm": 0.5}, "section": "solid"}},
+        "numbers": {"open_circuit_voltage_V": [0.0, 9.7], "film": {"max_principal_strain": 0.01}},
+    }
+    rows = {row["label"]: row["cells"] for row in compared([thin, thick])}
+    assert rows["open-circuit voltage"] == [None, 9.7]
+    assert rows["strain of the film"] == [None, 1.0]
+    assert rows["segment.medium1.thickness_mm"] == [0.4, 0.5]
+    assert "segment.section" not in rows
+    assert differences(thin["values"], thick["values"]) == {"segment.medium1.thickness_mm": 0.5}
