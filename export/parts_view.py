@@ -1,6 +1,6 @@
 """The parts at rest for the 3D view, before anything is meshed: their surfaces and the cut through them."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -9,20 +9,20 @@ from export.dot_surface import dot_parts, in_segment_frame, triangle_surface
 from export.viewer_data import colour_maps, packed, rgb
 from geometry.arrays import Floats, Ints
 from geometry.dot import DotShape
-from geometry.solids import PART_COLOURS, Part
+from geometry.solids import PART_COLOURS
 
 CHORD_MM, ANGLE_RAD = 0.02, 0.3
 INSIDE = 1e-3
 """The cut lies a thousandth of the width behind the middle: an exact one would run along edges of the triangles."""
 
 
-def parts_view(parts: Sequence[Part], dot_shape: DotShape) -> dict[str, Any]:
+def parts_view(solids: Mapping[str, Any], dot_shape: DotShape) -> dict[str, Any]:
     """Data of export/viewer.js for one step at rest, as export.viewer_data gives them for a press.
 
-    parts : geometry.assembly.segment_parts. The cut runs through the middle of the dot, or beside it where it lies
-    outside.
+    solids : build123d solids of the layers and the case by their labels. The cut runs through the middle of the dot,
+    or beside it where it lies outside.
     """
-    surfaces = {part.label: _surface(part.solid) for part in parts}
+    surfaces = {label: _surface(solid) for label, solid in solids.items()}
     low, high = _corners(surfaces.values())
     plane = float(np.clip(dot_shape.origin_mm[1] + INSIDE * (high - low)[1], *(0.99 * np.array([low[1], high[1]]))))
     half = 0.5 * (high - low)

@@ -154,7 +154,7 @@ def _cavities(segment: Segment) -> list[tuple[float, float, float]]:
     return runs
 
 
-__all__ = ["Part", "build_parts", "layer_solids", "segment_parts"]
+__all__ = ["Part", "build_parts", "layer_solids"]
 
 
 def build_parts(segment: Segment, dot_shape: DotShape) -> tuple[Part, ...]:
@@ -163,14 +163,11 @@ def build_parts(segment: Segment, dot_shape: DotShape) -> tuple[Part, ...]:
     They are what would be made: a plane-strain section gives the same solids, width_mm wide. The segment and
     the dot must have passed their checks.
     """
-    return (*segment_parts(segment), labelled_part("dot", dot_solid(dot_shape, segment), None, printable=True))
-
-
-def segment_parts(segment: Segment) -> tuple[Part, ...]:
-    """As build_parts, without the dot."""
     solids = layer_solids(segment, segment.film.thickness_um * 1e-3)
     soft = [
         labelled_part(layer.name, solids[layer.name], layer.material, printable=False)
         for layer in reversed(layers(segment))
     ]
-    return (*soft, labelled_part("case", case_solid(segment), None, case_is_printable(segment)))
+    case = labelled_part("case", case_solid(segment), None, case_is_printable(segment))
+    dot = labelled_part("dot", dot_solid(dot_shape, segment), None, printable=True)
+    return (*soft, case, dot)

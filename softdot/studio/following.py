@@ -10,7 +10,7 @@ from softdot.studio.comparison import differences
 from softdot.studio.document import Document
 from softdot.studio.processes import InTurn, Pool, ProcessLost, TaskRefused
 
-PAUSE_S, REST_S = 0.05, 0.3
+PAUSE_S, REST_S = 0.15, 0.2
 """A hand that has changed nothing for so long pauses, and the design is checked; then it rests, and it is pressed."""
 MOST_CURVES = 6
 Json = dict[str, Any]

@@ -53,14 +53,16 @@ def pressed_part(case: Case) -> Case:
 def draw(text: str) -> dict[str, Any] | None:
     """The parts at rest for the 3D view; None for a design that has none, about which examine says why."""
     from export.parts_view import parts_view
-    from geometry.assembly import segment_parts
+    from geometry.assembly import case_solid, layer_solids
     from geometry.checks import check_segment
     from geometry.dot import resolve_dot
 
     try:
         model = case_of(text).model
-        check_segment(model.segment)
-        return parts_view(segment_parts(model.segment), resolve_dot(model.dot, model.segment))
+        segment = model.segment
+        check_segment(segment)
+        solids = {**layer_solids(segment, 1e-3 * segment.film.thickness_um), "case": case_solid(segment)}
+        return parts_view(solids, resolve_dot(model.dot, segment))
     except InputError:
         return None
 
