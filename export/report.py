@@ -73,7 +73,7 @@ def write_report(
         mesh_errors=_mesh_errors(summary),
         pictures=[_picture(name, file, _captions(summary)) for name, file in _in_order(pictures)],
         view=_script_safe(json.dumps(view)) if view else None,
-        viewer=(HERE / "viewer.js").read_text(encoding="utf-8"),
+        viewer="\n".join((HERE / name).read_text(encoding="utf-8") for name in ("webgl.js", "viewer.js")),
         config=json.dumps(summary.get("config", {}), indent=2, ensure_ascii=False),
     )
     write_whole_text(path, page)

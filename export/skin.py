@@ -6,7 +6,7 @@ into small linear ones to be drawn. Units are those that results are shown in.
 
 import functools
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -119,7 +119,7 @@ class Skin:
     """Triangles with their undeformed corners and the fields of each step (s steps).
 
     points_mm : (v, 3); triangles : (t, 3); region : (v,) part of each corner (each belongs to one only).
-    displacement_mm : (s, v, 3); von_mises_MPa, film_strain : (s, v), the latter zero outside the film.
+    displacement_mm : (s, v, 3); the others (s, v), zero outside the film or where the dot does not press.
     """
 
     points_mm: Floats
@@ -128,29 +128,50 @@ class Skin:
     displacement_mm: Floats
     von_mises_MPa: Floats
     film_strain: Floats
+    charge_pC_per_mm2: Floats
+    contact_pressure_MPa: Floats
 
 
 @dataclass(frozen=True)
 class NodalSteps:
-    """Fields at the split nodes: displacement_mm (s, n, 3), von_mises_MPa and film_strain (s, n)."""
+    """Fields at the split nodes: displacement_mm (s, n, 3), the others (s, n)."""
 
     split: SplitNodes
     points_mm: Floats
     displacement_mm: Floats
     von_mises_MPa: Floats
     film_strain: Floats
+    charge_pC_per_mm2: Floats
+    contact_pressure_MPa: Floats
+
+    @property
+    def fields(self) -> tuple[Floats, ...]:
+        """In the order in which a Skin has them."""
+        return (
+            self.displacement_mm,
+            self.von_mises_MPa,
+            self.film_strain,
+            self.charge_pC_per_mm2,
+            self.contact_pressure_MPa,
+        )
 
 
 def nodal_steps(tet_mesh: TetMesh, steps: Sequence[Step]) -> NodalSteps:
     """Gather what the skins show of the given steps, at nodes that belong to one part each."""
-    split = split_nodes(tet_mesh)
-    strain = [film_values(tet_mesh, f.film_tets, largest_principal(f.film_strain)) for f in (s.fields for s in steps)]
+    split, every = split_nodes(tet_mesh), [step.fields for step in steps]
+    strain = [film_values(tet_mesh, f.film_tets, largest_principal(f.film_strain)) for f in every]
+    charge = [film_values(tet_mesh, f.film_tets, f.charge_density_C_per_m2) for f in every]
+    pressure = np.zeros((len(every), len(tet_mesh.points_mm)))
+    for of_step, f in zip(pressure, every, strict=True):
+        of_step[f.contact_nodes] = f.contact_pressure_Pa
     return NodalSteps(
         split,
         tet_mesh.points_mm[split.node],
-        np.stack([s.fields.displacement_m[split.node] for s in steps]) * MM_PER_M,
-        np.stack([spread(split, s.fields.von_mises_Pa) for s in steps]) * MPA_PER_PA,
+        np.stack([f.displacement_m[split.node] for f in every]) * MM_PER_M,
+        np.stack([spread(split, f.von_mises_Pa) for f in every]) * MPA_PER_PA,
         np.stack([spread(split, values) for values in strain]),
+        np.stack([spread(split, values) for values in charge]) * PC_PER_MM2_PER_C_PER_M2,
+        pressure[:, split.node] * MPA_PER_PA,
     )
 
 
@@ -197,10 +218,8 @@ def nearby_plane(tet_mesh: TetMesh, y_mm: float) -> float:
 
 
 def _arrays(nodes: NodalSteps) -> list[Floats]:
-    """Points first, then each step's displacement, stress and strain."""
-    steps = range(len(nodes.displacement_mm))
-    fields = [a[s] for s in steps for a in (nodes.displacement_mm, nodes.von_mises_MPa, nodes.film_strain)]
-    return [nodes.points_mm, *fields]
+    """Points first, then the fields of each step."""
+    return [nodes.points_mm, *(field[s] for s in range(len(nodes.displacement_mm)) for field in nodes.fields)]
 
 
 def _interpolate(weights: Floats, values: Floats, cells: Ints) -> Floats:
@@ -215,31 +234,30 @@ def _from_facets(nodes: NodalSteps, facets: Ints, level: int) -> Skin:
     triangles = (np.arange(len(facets))[:, None, None] * len(weights) + small).reshape(-1, 3)
     points, *fields = (_interpolate(weights, array, facets) for array in _arrays(nodes))
     region = np.repeat(nodes.split.region[facets[:, 0]], len(weights))
-    return _shared(points, triangles, region, fields)
+    return _shared(points, triangles, region, fields, len(nodes.fields))
 
 
 def _welded(nodes: NodalSteps, triangles: Ints, region: Ints, cut: "object") -> Skin:
     """A cut whose corners are given to one part each (parts meet at equal corners)."""
     points = np.asarray(cut.points, np.float64)[triangles].reshape(-1, 3)  # type: ignore[attr-defined]
-    count = 3 * len(nodes.displacement_mm)
+    count = len(nodes.fields) * len(nodes.displacement_mm)
     fields = [np.asarray(cut.point_data[f"f{k}"])[triangles.ravel()] for k in range(count)]  # type: ignore[attr-defined]
-    return _shared(points, np.arange(len(points)).reshape(-1, 3), np.repeat(region, 3), fields)
+    return _shared(points, np.arange(len(points)).reshape(-1, 3), np.repeat(region, 3), fields, len(nodes.fields))
 
 
-def _shared(points: Floats, triangles: Ints, region: Ints, fields: Sequence[Floats]) -> Skin:
-    """Merge corners of equal place (to 0.1 um) and part, drop triangles that vanish by it."""
+def _shared(points: Floats, triangles: Ints, region: Ints, fields: Sequence[Floats], each: int) -> Skin:
+    """Merge corners of equal place (to 0.1 um) and part, drop triangles that vanish by it. each : fields of a step."""
     keys = np.column_stack([np.round(points * 1e4).astype(np.int64), region])
     _, first, inverse = np.unique(keys, axis=0, return_index=True, return_inverse=True)
     triangles = inverse.ravel()[triangles]
     a, b, c = triangles.T
     triangles = triangles[(a != b) & (b != c) & (c != a)]
     fields = [values[first] for values in fields]
-    return Skin(points[first], triangles, region[first], *(np.stack(fields[k::3]) for k in range(3)))
+    return Skin(points[first], triangles, region[first], *(np.stack(fields[k::each]) for k in range(each)))
 
 
 def _facing_front(skin: Skin) -> Skin:
     """Turn triangles so that their normals point to -y."""
     a, b, c = (skin.points_mm[skin.triangles[:, i]] for i in range(3))
     turned = np.cross(b - a, c - a)[:, 1] > 0
-    triangles = np.where(turned[:, None], skin.triangles[:, ::-1], skin.triangles)
-    return Skin(skin.points_mm, triangles, skin.region, skin.displacement_mm, skin.von_mises_MPa, skin.film_strain)
+    return replace(skin, triangles=np.where(turned[:, None], skin.triangles[:, ::-1], skin.triangles))

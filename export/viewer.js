@@ -1,143 +1,76 @@
 "use strict";
-// A small WebGL view of the deformed segment. Data: see export/viewer_data.py.
-(function () {
-  const data = JSON.parse(document.getElementById("view-data").textContent);
-  const box = document.getElementById("view3d");
+// A small WebGL view of the parts and of the deformed segment. Data: see export/viewer_data.py.
+// softdotViewer(box) draws into the canvas of a box and listens to the controls in it; show(data) exchanges the body.
+function softdotViewer(box) {
   const canvas = box.querySelector("canvas");
-  const gl = canvas.getContext("webgl", { antialias: true, preserveDrawingBuffer: true });
-  if (!gl || !gl.getExtension("OES_standard_derivatives") || !gl.getExtension("OES_element_index_uint")) {
-    box.querySelector(".message").textContent =
-      "This browser cannot draw in 3D (no WebGL); the pictures above show the same.";
-    return;
+  const painter = softdotPainter(canvas);
+  if (!painter) {
+    box.querySelector(".message").textContent = "This browser cannot draw in 3D (no WebGL).";
+    return { show() {} };
   }
 
   const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
   const floats = (text) => new Float32Array(bytes(text).buffer);
-  const points = floats(data.points);
-  const displacement = new Int16Array(bytes(data.displacement).buffer);
-  const region = bytes(data.region);
-  const stress = bytes(data.stress);
-  const strain = bytes(data.strain);
-  const colourMap = bytes(data.colourMap);
-  const count = points.length / 3;
-  const film = data.names.indexOf("film");
-  const state = { step: data.steps.length - 1, mode: "part", cut: !data.slice, yaw: 0.5, tilt: 0.3, zoom: 1 };
-
-  // Flat normals come from screen derivatives: no normals need to be stored for each step.
-  const vertexCode = `
-    attribute vec3 place; attribute vec3 rest; attribute vec3 colour; attribute float part;
-    uniform mat3 turn; uniform vec3 centre; uniform vec3 shift; uniform vec2 scale;
-    varying vec3 seen; varying vec3 paint; varying float restY; varying float partOf;
-    void main() {
-      seen = turn * (place + shift - centre);
-      paint = colour; restY = rest.y; partOf = part;
-      gl_Position = vec4(seen.xy * scale, -seen.z * 0.02, 1.0);
-    }`;
-  const fragmentCode = `
-    #extension GL_OES_standard_derivatives : enable
-    precision highp float;
-    uniform float plane; uniform float topPart;
-    varying vec3 seen; varying vec3 paint; varying float restY; varying float partOf;
-    void main() {
-      if (restY < plane || partOf > topPart + 0.5) discard;
-      vec3 normal = normalize(cross(dFdx(seen), dFdy(seen)));
-      float light = 0.55 + 0.45 * abs(dot(normal, normalize(vec3(-0.35, 0.5, 0.8))));
-      gl_FragColor = vec4(paint * light, 1.0);
-    }`;
-
-  function compile(kind, code) {
-    const shader = gl.createShader(kind);
-    gl.shaderSource(shader, code);
-    gl.compileShader(shader);
-    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
-    return shader;
-  }
-
-  const program = gl.createProgram();
-  gl.attachShader(program, compile(gl.VERTEX_SHADER, vertexCode));
-  gl.attachShader(program, compile(gl.FRAGMENT_SHADER, fragmentCode));
-  gl.linkProgram(program);
-  gl.useProgram(program);
-  const uniform = (name) => gl.getUniformLocation(program, name);
-  const uniforms = {};
-  ["turn", "centre", "shift", "scale", "plane", "topPart"].forEach((n) => (uniforms[n] = uniform(n)));
-
-  function buffer(target, content) {
-    const made = gl.createBuffer();
-    gl.bindBuffer(target, made);
-    gl.bufferData(target, content, gl.STATIC_DRAW);
-    return made;
-  }
-
-  function refill(made, content) {
-    gl.bindBuffer(gl.ARRAY_BUFFER, made);
-    gl.bufferData(gl.ARRAY_BUFFER, content, gl.DYNAMIC_DRAW);
-  }
-
-  function attach(name, made, size) {
-    const location = gl.getAttribLocation(program, name);
-    if (location < 0) return;
-    gl.bindBuffer(gl.ARRAY_BUFFER, made);
-    gl.enableVertexAttribArray(location);
-    gl.vertexAttribPointer(location, size, gl.FLOAT, false, 0, 0);
-  }
-
-  function body(rest, parts, lists) {
-    const made = { rest: buffer(gl.ARRAY_BUFFER, rest), place: buffer(gl.ARRAY_BUFFER, rest) };
-    made.colour = buffer(gl.ARRAY_BUFFER, new Float32Array(rest.length));
-    made.part = buffer(gl.ARRAY_BUFFER, parts);
-    made.lists = {};
-    for (const [name, indices] of Object.entries(lists)) {
-      made.lists[name] = { made: buffer(gl.ELEMENT_ARRAY_BUFFER, indices), count: indices.length };
-    }
-    return made;
-  }
-
   const integers = (text) => new Uint32Array(bytes(text).buffer);
-  const segment = body(points, Float32Array.from(region), {
-    outer: integers(data.outer), section: integers(data.section), film: integers(data.film),
-  });
+  const state = { step: 0, mode: "part", cut: true, yaw: 0.5, tilt: 0.3, zoom: 1.2 };
+  let data = null, body = null;
+
+  // What is shown: what was chosen, where the data have it.
+  const mode = () => (data[state.mode] ? state.mode : "part");
+  // What can be shown: its unit, on which parts, in which colours; what lies above the film is hidden for the film.
+  const onFilm = (part) => part === body.film;
+  const modes = {
+    part: null,
+    stress: { unit: "MPa", factor: 1, on: (part) => part !== body.film },
+    strain: { unit: "%", factor: 100, on: onFilm, bare: true },
+    charge: { unit: "pC/mm²", factor: 1, on: onFilm, bare: true, map: "diverging" },
+    pressure: { unit: "MPa", factor: 1, on: (part) => part === data.names.length - 1 },
+  };
 
   function dotBody(corners) {
-    const made = body(corners, new Float32Array(corners.length / 3), {
+    const made = painter.load(corners, new Float32Array(corners.length / 3), {
       all: Uint32Array.from({ length: corners.length / 3 }, (_, i) => i),
     });
-    refill(made.colour, corners.map((_, i) => data.dotColour[i % 3]));
+    painter.refill(made.colour, corners.map((_, i) => data.dotColour[i % 3]));
     return made;
   }
 
-  const dotPoints = floats(data.dotPoints);
-  const dot = dotBody(dotPoints);
-  const dotCut = dotBody(floats(data.dotCut));
-
-  const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
-  [points, dotPoints].forEach((array) => array.forEach((value, i) => {
-    low[i % 3] = Math.min(low[i % 3], value);
-    high[i % 3] = Math.max(high[i % 3], value);
-  }));
-  const centre = low.map((value, i) => (value + high[i]) / 2);
-  const size = Math.hypot(...low.map((value, i) => high[i] - value));
-
-  // Which value colours a corner: null leaves it in the colour of its part.
-  function shade(i) {
-    if (state.mode === "stress" && region[i] !== film) return stress[state.step * count + i];
-    if (state.mode === "strain" && region[i] === film) return strain[state.step * count + i];
-    return null;
+  function load() {
+    const points = floats(data.points), dotPoints = floats(data.dotPoints), region = bytes(data.region);
+    const lists = { outer: integers(data.outer), section: integers(data.section), film: integers(data.film) };
+    if (body) [body.segment, body.dot, body.dotCut].forEach(painter.forget);
+    body = { points, region, count: points.length / 3, film: data.names.indexOf("film"), values: {} };
+    body.displacement = new Int16Array(bytes(data.displacement).buffer);
+    for (const name of Object.keys(modes)) if (data[name]) body.values[name] = bytes(data[name]);
+    body.maps = { colourMap: bytes(data.colourMap), diverging: bytes(data.diverging) };
+    body.segment = painter.load(points, Float32Array.from(region), lists);
+    body.dot = dotBody(dotPoints);
+    body.dotCut = dotBody(floats(data.dotCut));
+    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+    [points, dotPoints].forEach((array) => array.forEach((value, i) => {
+      low[i % 3] = Math.min(low[i % 3], value);
+      high[i % 3] = Math.max(high[i % 3], value);
+    }));
+    body.centre = low.map((value, i) => (value + high[i]) / 2);
+    body.size = Math.hypot(...low.map((value, i) => high[i] - value));
   }
 
   function fill() {
-    const place = new Float32Array(points.length);
-    const colour = new Float32Array(points.length);
+    const { points, region, count } = body, shown = modes[mode()];
+    const values = body.values[mode()], map = body.maps[(shown && shown.map) || "colourMap"];
+    const place = new Float32Array(points.length), colour = new Float32Array(points.length);
     const from = state.step * points.length;
-    for (let i = 0; i < place.length; i++) place[i] = points[i] + data.displacementUnit * displacement[from + i];
+    for (let i = 0; i < place.length; i++) {
+      place[i] = points[i] + data.displacementUnit * body.displacement[from + i];
+    }
     for (let i = 0; i < count; i++) {
-      const value = shade(i);
+      const value = values && shown.on(region[i]) ? values[state.step * count + i] : null;
       for (let k = 0; k < 3; k++) {
-        colour[3 * i + k] = value === null ? data.colours[region[i]][k] : colourMap[3 * value + k] / 255;
+        colour[3 * i + k] = value === null ? data.colours[region[i]][k] : map[3 * value + k] / 255;
       }
     }
-    refill(segment.place, place);
-    refill(segment.colour, colour);
+    painter.refill(body.segment.place, place);
+    painter.refill(body.segment.colour, colour);
     draw();
   }
 
@@ -148,80 +81,114 @@
     return new Float32Array([0, 1, 2].flatMap((column) => rows.map((row) => row[column])));
   }
 
-  function drawList(made, name) {
-    const list = made.lists[name];
-    [["place", 3], ["rest", 3], ["colour", 3], ["part", 1]].forEach(([n, width]) => attach(n, made[n], width));
-    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, list.made);
-    gl.drawElements(gl.TRIANGLES, list.count, gl.UNSIGNED_INT, 0);
-  }
-
   function draw() {
+    if (!body) return;
     const ratio = window.devicePixelRatio || 1;
     const width = Math.round(canvas.clientWidth * ratio), height = Math.round(canvas.clientHeight * ratio);
     if (canvas.width !== width || canvas.height !== height) { canvas.width = width; canvas.height = height; }
-    const scale = (2 * 0.95 * state.zoom) / size;
-    gl.viewport(0, 0, width, height);
-    gl.clearColor(1, 1, 1, 1);
-    gl.enable(gl.DEPTH_TEST);
-    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    gl.uniformMatrix3fv(uniforms.turn, false, turning());
-    gl.uniform3fv(uniforms.centre, centre);
-    gl.uniform2f(uniforms.scale, (scale * height) / width, scale);
-    const cut = state.cut ? data.plane : -1e9;
-    gl.uniform1f(uniforms.plane, cut);
-    gl.uniform1f(uniforms.topPart, state.mode === "strain" ? film : data.names.length);
-    gl.uniform3f(uniforms.shift, 0, 0, 0);
-    drawList(segment, "outer");
-    if (state.mode === "strain") drawList(segment, "film");
-    if (state.cut) {
-      gl.uniform1f(uniforms.plane, -1e9);
-      drawList(segment, "section");
-    }
-    if (state.mode !== "strain") {
-      gl.uniform1f(uniforms.plane, -1e9);
-      gl.uniform3fv(uniforms.shift, data.dotShift[state.step]);
-      drawList(state.cut ? dotCut : dot, "all");
+    const scale = (2 * 0.95 * state.zoom) / body.size, shown = modes[mode()], cut = state.cut && !data.slice;
+    const fitted = scale * Math.min(1, width / height);
+    painter.clear(width, height, background());
+    painter.set("turn", turning());
+    painter.set("centre", ...body.centre);
+    painter.set("scale", (fitted * height) / width, fitted);
+    painter.set("plane", cut ? data.plane : -1e9);
+    painter.set("topPart", shown && shown.bare ? body.film : data.names.length);
+    painter.set("shift", 0, 0, 0);
+    painter.draw(body.segment, "outer");
+    if (shown && shown.bare) painter.draw(body.segment, "film");
+    painter.set("plane", -1e9);
+    if (cut) painter.draw(body.segment, "section");
+    if (!shown || mode() === "stress") {
+      painter.set("shift", ...data.dotShift[state.step]);
+      painter.draw(cut ? body.dotCut : body.dot, "all");
     }
   }
 
+  // The colour that the page gives the canvas; white where it gives none.
+  function background() {
+    const [r, g, b, a] = getComputedStyle(canvas).backgroundColor.match(/[\d.]+/g).map(Number);
+    return a === 0 ? [1, 1, 1] : [r / 255, g / 255, b / 255];
+  }
+
+  const find = (selector) => box.querySelector(selector);
+  const slider = find("input[type=range]"), select = find("select"), cutBox = find("input[type=checkbox]");
+  const play = find("button.play");
+
   function describe() {
-    const step = data.steps[state.step];
-    box.querySelector(".step-text").textContent =
-      step.indentation.toFixed(3) + " mm, " + step.force.toPrecision(3) + " N";
-    const legend = box.querySelector(".legend");
-    const top = { stress: data.stressTop.toPrecision(2) + " MPa", strain: (100 * data.strainTop).toPrecision(2) + " %" };
-    legend.style.visibility = state.mode === "part" ? "hidden" : "visible";
-    legend.querySelector(".top").textContent = top[state.mode] || "";
-    const stops = [0, 51, 102, 153, 204, 255].map((i) => "rgb(" + colourMap.slice(3 * i, 3 * i + 3).join(",") + ")");
+    const step = data.steps[state.step], legend = find(".legend"), shown = modes[mode()];
+    find(".step-text").textContent = step.indentation.toFixed(3) + " mm, " + step.force.toPrecision(3) + " N";
+    legend.style.visibility = shown ? "visible" : "hidden";
+    if (!shown) return;
+    const top = (shown.factor * data[mode() + "Top"]).toPrecision(2), map = body.maps[shown.map || "colourMap"];
+    legend.querySelector(".low").textContent = shown.map ? "−" + top : "0";
+    legend.querySelector(".top").textContent = top + " " + shown.unit;
+    const stops = [0, 51, 102, 153, 204, 255].map((i) => "rgb(" + map.slice(3 * i, 3 * i + 3).join(",") + ")");
     legend.querySelector(".bar").style.background = "linear-gradient(to right," + stops.join(",") + ")";
   }
 
   function update() { describe(); fill(); }
 
-  const slider = box.querySelector("input[type=range]");
-  slider.max = String(data.steps.length - 1);
-  slider.value = String(state.step);
-  slider.addEventListener("input", () => { state.step = Number(slider.value); update(); });
-  box.querySelector("select").addEventListener("change", (event) => { state.mode = event.target.value; update(); });
-  const cutBox = box.querySelector("input[type=checkbox]");
+  function go(step) {
+    state.step = step;
+    slider.value = String(step);
+    update();
+  }
+
+  let ticking = null;
+  function stop() {
+    window.clearInterval(ticking);
+    ticking = null;
+    play.textContent = "Play";
+  }
+
+  function show(given) {
+    data = given;
+    load();
+    slider.max = String(data.steps.length - 1);
+    go(data.steps.length - 1);
+  }
+
+  slider.addEventListener("input", () => data && go(Number(slider.value)));
+  select.addEventListener("change", () => { state.mode = select.value; if (data) update(); });
   cutBox.checked = state.cut;
   cutBox.addEventListener("change", () => { state.cut = cutBox.checked; draw(); });
+  play.addEventListener("click", () => {
+    if (ticking) return stop();
+    play.textContent = "Stop";
+    ticking = window.setInterval(() => data && go((state.step + 1) % data.steps.length), 400);
+  });
 
+  function turn(yaw, tilt) {
+    state.yaw += yaw;
+    state.tilt = Math.max(-1.57, Math.min(1.57, state.tilt + tilt));
+    draw();
+  }
+  function zoom(factor) { state.zoom = Math.max(0.3, Math.min(12, state.zoom * factor)); draw(); }
+  const keys = {
+    ArrowLeft: () => turn(0.1, 0), ArrowRight: () => turn(-0.1, 0), ArrowUp: () => turn(0, 0.1),
+    ArrowDown: () => turn(0, -0.1), "+": () => zoom(1.2), "-": () => zoom(1 / 1.2),
+  };
+  canvas.addEventListener("keydown", (event) => {
+    if (!keys[event.key]) return;
+    keys[event.key]();
+    event.preventDefault();
+  });
   let held = null;
-  canvas.addEventListener("pointerdown", (event) => { held = [event.clientX, event.clientY]; canvas.setPointerCapture(event.pointerId); });
+  canvas.addEventListener("pointerdown", (event) => {
+    held = [event.clientX, event.clientY];
+    canvas.setPointerCapture(event.pointerId);
+  });
   canvas.addEventListener("pointerup", () => { held = null; });
   canvas.addEventListener("pointermove", (event) => {
     if (!held) return;
-    state.yaw -= (event.clientX - held[0]) * 0.008;
-    state.tilt = Math.max(-1.57, Math.min(1.57, state.tilt + (event.clientY - held[1]) * 0.008));
+    turn((held[0] - event.clientX) * 0.008, (event.clientY - held[1]) * 0.008);
     held = [event.clientX, event.clientY];
-    draw();
   });
   canvas.addEventListener("wheel", (event) => {
     event.preventDefault();
-    state.zoom = Math.max(0.3, Math.min(12, state.zoom * Math.exp(-event.deltaY * 0.001)));
-    draw();
+    zoom(Math.exp(-event.deltaY * 0.001));
   }, { passive: false });
   window.addEventListener("resize", draw);
-  update();
-})();
+  return { show, draw };
+}

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from export.cutaway import is_slice
 from export.dot_surface import placed_dot
 from export.skin import MM_PER_M, NodalSteps, Skin, film_top, nearby_plane, nodal_steps, outer_skin, section
-from export.view import COLOUR_MAP
+from export.view import COLOUR_MAP, DIVERGING
 from geometry.dot import DotShape
 from geometry.solids import PART_COLOURS
 from mesh.types import TetMesh
@@ -26,9 +26,10 @@ def viewer_data(tet_mesh: TetMesh, result: PressResult, dot_shape: DotShape) -> 
     """Data of export/viewer.js: plain numbers and base64 of little-endian arrays.
 
     base64 float32: points (v, 3), dotPoints and dotCut (loose triangles); int16: displacement (s, v, 3)
-    in displacementUnit mm; uint8: region (v,), stress and strain (s, v), shares of stressTop and strainTop;
-    uint32: outer, section and film triangles into the same corners.
-    dotShift (s, 3) moves the dot; plane is the cut's y; colours, names and colourMap say how to paint.
+    in displacementUnit mm; uint8: region (v,), stress, strain and pressure (s, v), shares of stressTop, strainTop and
+    pressureTop, and charge (s, v) between -chargeTop and chargeTop; uint32: outer, section and film triangles into the
+    same corners. dotShift (s, 3) moves the dot; plane is the cut's y; colours, names, colourMap and diverging say how
+    to paint.
     """
     chosen = [result.steps[k] for k in _spread_steps(len(result.steps))]
     nodes = nodal_steps(tet_mesh, chosen)
@@ -37,8 +38,8 @@ def viewer_data(tet_mesh: TetMesh, result: PressResult, dot_shape: DotShape) -> 
     return {
         "steps": [_caption(step) for step in chosen],
         "names": list(tet_mesh.region_names),
-        "colours": [_rgb(PART_COLOURS[name]) for name in tet_mesh.region_names],
-        "colourMap": _colour_map(),
+        "colours": [rgb(PART_COLOURS[name]) for name in tet_mesh.region_names],
+        **colour_maps(),
         "plane": plane,
         "slice": is_slice(tet_mesh),
         **_geometry(skins),
@@ -67,7 +68,7 @@ def _geometry(skins: list[Skin]) -> dict[str, Any]:
     """Corners of all skins in one array and the triangles of each."""
     offsets = np.cumsum([0, *(len(skin.points_mm) for skin in skins[:-1])])
     triangles = {
-        name: _pack(skin.triangles + offset, np.uint32)
+        name: packed(skin.triangles + offset, np.uint32)
         for name, skin, offset in zip(("outer", "section", "film"), skins, offsets, strict=True)
     }
     points = np.concatenate([skin.points_mm for skin in skins])
@@ -75,26 +76,36 @@ def _geometry(skins: list[Skin]) -> dict[str, Any]:
     region = np.concatenate([skin.region for skin in skins])
     unit = (float(np.abs(displacement).max()) or 1.0) / 32767
     return {
-        "points": _pack(points, np.float32),
-        "displacement": _pack(np.round(displacement / unit), np.int16),
+        "points": packed(points, np.float32),
+        "displacement": packed(np.round(displacement / unit), np.int16),
         "displacementUnit": unit,
-        "region": _pack(region, np.uint8),
+        "region": packed(region, np.uint8),
         **triangles,
     }
 
 
 def _fields(skins: list[Skin], tet_mesh: TetMesh, peak: FilmPeak) -> dict[str, Any]:
-    """Stress up to the 99th percentile of the soft parts (the film is far stiffer), strain up to the stated largest."""
+    """Stress up to the 99th percentile of the soft parts (the film is far stiffer), strain and charge up to the stated
+    largest.
+    """
     stress = np.concatenate([skin.von_mises_MPa for skin in skins], axis=1)
     strain = np.concatenate([skin.film_strain for skin in skins], axis=1)
+    charge = np.concatenate([skin.charge_pC_per_mm2 for skin in skins], axis=1)
+    pressure = np.concatenate([skin.contact_pressure_MPa for skin in skins], axis=1)
     soft = np.concatenate([skin.region for skin in skins]) != tet_mesh.region_names.index("film")
     stress_top = float(np.percentile(stress[-1, soft], 99)) or 1.0
     strain_top = peak.strain or 1.0
+    charge_top = 1e6 * float(np.abs(peak.charge_density_C_per_m2).max()) or 1.0
+    pressure_top = float(pressure.max()) or 1.0
     return {
-        "stress": _pack(_share(stress, stress_top), np.uint8),
-        "strain": _pack(_share(strain, strain_top), np.uint8),
+        "stress": packed(_share(stress, stress_top), np.uint8),
+        "strain": packed(_share(strain, strain_top), np.uint8),
+        "charge": packed(_share(charge + charge_top, 2 * charge_top), np.uint8),
+        "pressure": packed(_share(pressure, pressure_top), np.uint8),
         "stressTop": stress_top,
         "strainTop": strain_top,
+        "chargeTop": charge_top,
+        "pressureTop": pressure_top,
     }
 
 
@@ -107,10 +118,10 @@ def _dot(tet_mesh: TetMesh, steps: Sequence[Step], dot_shape: DotShape, plane: f
     cut = [part.clip_closed_surface("y", origin=(0.0, plane - slide, 0.0)) for part in whole]
     shift = np.stack([step.dot_position_m * MM_PER_M - first for step in steps])
     return {
-        "dotPoints": _pack(_corners(whole), np.float32),
-        "dotCut": _pack(_corners(cut), np.float32),
+        "dotPoints": packed(_corners(whole), np.float32),
+        "dotCut": packed(_corners(cut), np.float32),
         "dotShift": shift.tolist(),
-        "dotColour": _rgb(PART_COLOURS["dot"]),
+        "dotColour": rgb(PART_COLOURS["dot"]),
     }
 
 
@@ -123,20 +134,24 @@ def _share(values: NDArray[np.float64], top: float) -> NDArray[np.float64]:
     return np.asarray(np.round(255 * np.clip(values / top, 0, 1)))
 
 
-def _pack(values: NDArray[Any], kind: type[np.generic]) -> str:
-    """Base64 of a little-endian array."""
+def packed(values: NDArray[Any], kind: type[np.generic]) -> str:
+    """Base64 of an array of this kind, little-endian."""
     kind_little = np.dtype(kind).newbyteorder("<")
     return base64.b64encode(np.ascontiguousarray(values, kind_little).tobytes()).decode("ascii")
 
 
-def _rgb(colour: str) -> list[float]:
+def rgb(colour: str) -> list[float]:
+    """Red, green and blue from 0 to 1 of a colour that matplotlib knows."""
     from matplotlib.colors import to_rgb
 
     return [round(float(c), 4) for c in to_rgb(colour)]
 
 
-def _colour_map() -> str:
-    """256 RGB triples, the same colour map as in the pictures."""
+def colour_maps() -> dict[str, str]:
+    """256 RGB triples of each of the maps of the pictures."""
     import matplotlib
 
-    return _pack(255 * matplotlib.colormaps[COLOUR_MAP](np.arange(256))[:, :3], np.uint8)
+    maps = {"colourMap": COLOUR_MAP, "diverging": DIVERGING}
+    return {
+        name: packed(255 * matplotlib.colormaps[found](np.arange(256))[:, :3], np.uint8) for name, found in maps.items()
+    }

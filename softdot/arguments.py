@@ -60,6 +60,7 @@ def parser() -> argparse.ArgumentParser:
     _add_kit(commands)
     _add_plate(commands)
     _add_array(commands)
+    _add_studio(commands)
     _add_check(commands)
     _add_new(commands)
     _add_list(commands)
@@ -207,6 +208,22 @@ def _add_array(commands: Any) -> None:
         "--variants", action="store_true", help="press the same segments joined in other ways too, for comparison"
     )
     _add_output(array)
+
+
+def _add_studio(commands: Any) -> None:
+    studio = commands.add_parser(
+        "studio",
+        help="design a segment in the browser, on this machine",
+        description="Open a page in the browser in which a design is changed by hand and pressed at once. It answers "
+        "on this machine only, and only to the address that it prints.",
+        epilog="Needs pip install 'softdot[studio]'; docs/studio.md explains the page. " + EXIT_STATUS,
+    )
+    studio.add_argument("config", nargs="?", metavar="CONFIG.toml", help="default: the final design of the paper")
+    studio.add_argument("--port", type=int, default=0, metavar="N", help="port of the page; default: a free one")
+    studio.add_argument(
+        "--host", default="127.0.0.1", metavar="ADDRESS", help="address of this machine; other than loopback it is open"
+    )
+    studio.add_argument("--no-browser", action="store_true", help="only print the address of the page")
 
 
 def _add_check(commands: Any) -> None:

@@ -42,10 +42,15 @@ def factor_key(config: Config, component: str, factor: str) -> str:
     return f"mechanisms[{len(config.mechanisms) + _components(config).index(component)}].parameters.{factor}"
 
 
+def has_component(config: Config, component: str) -> bool:
+    """Whether a configuration has a component that FACTORS names, with sizes of its own."""
+    if component == "effector":
+        return config.segment.effector is not None
+    return component != "dot" or config.dot.shape != "plate"
+
+
 def _components(config: Config) -> list[str]:
-    absent = {"effector"} if config.segment.effector is None else set()
-    absent |= {"dot"} if config.dot.shape == "plate" else set()
-    return [name for name in FACTORS if name not in absent]
+    return [name for name in FACTORS if has_component(config, name)]
 
 
 NAMES = {"medium1": "medium 1", "medium2": "medium 2"}

@@ -68,6 +68,7 @@ class MechanismType:
     components : where it may sit. parameters : its table, with units, bounds and descriptions.
     switch_on(model, component, values) -> the model with it; ValueError where the model has no such component.
     off : parameters with which it changes nothing, None where no value does (then it is left out instead).
+    example : parameters to begin with, those of examples/mechanisms.
     typical : parameter -> typical values and their source, in words.
     """
 
@@ -76,6 +77,7 @@ class MechanismType:
     parameters: type[Parameters]
     switch_on: Callable[[Model, str, Any], Model]
     off: Mapping[str, Any] | None
+    example: Mapping[str, Any] = field(default_factory=dict)
     typical: Mapping[str, str] = field(default_factory=dict)
     traits: Traits = Traits()
 

@@ -63,6 +63,7 @@ ADHESIVE_COMPLIANCE = register(
         parameters=AdhesiveCompliance,
         switch_on=switch_on,
         off={"normal_stiffness_N_per_mm3": inf, "shear_stiffness_N_per_mm3": inf},
+        example={"thickness_um": 30.0, "youngs_modulus_MPa": 0.15},
         typical={
             "normal_stiffness_N_per_mm3": "from the glue below: 3 to 400",
             "shear_stiffness_N_per_mm3": "0.2 to 35",

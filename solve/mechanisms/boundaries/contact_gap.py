@@ -28,6 +28,7 @@ CONTACT_GAP = register(
         parameters=ContactGap,
         switch_on=switch_on,
         off={"gap_mm": 0.0},
+        example={"gap_mm": 0.05},
         typical={
             "gap_mm": "0.01 to 0.1 (rule of thumb)",
         },

@@ -45,6 +45,7 @@ DELAMINATION = register(
         parameters=DelaminationPatch,
         switch_on=switch_on,
         off={"diameter_mm": 0.0},
+        example={"center_mm": [0.7, 0.0], "diameter_mm": 1.0},
         typical={
             "center_mm": "default [0, 0]",
             "diameter_mm": "must span several facets of the mesh",

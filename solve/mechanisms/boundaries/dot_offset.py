@@ -29,6 +29,7 @@ DOT_OFFSET = register(
         parameters=DotOffset,
         switch_on=switch_on,
         off={"offset_mm": [0.0, 0.0]},
+        example={"offset_mm": [0.4, 0.0]},
         typical={
             "offset_mm": "0.1 to 0.3 by hand (rule of thumb)",
         },

@@ -31,6 +31,7 @@ ELASTIC_SIDES = register(
         parameters=ElasticSides,
         switch_on=switch_on,
         off=None,
+        example={"stiffness_N_per_mm3": 5.0},
         typical={
             "stiffness_N_per_mm3": (
                 "a wall of rubber: modulus over thickness, 5 for 1 MPa and 0.2 mm; a printed frame far more"

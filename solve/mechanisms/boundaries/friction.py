@@ -29,6 +29,7 @@ FRICTION = register(
         parameters=Friction,
         switch_on=switch_on,
         off={"coefficient": 0.0},
+        example={"coefficient": 0.5},
         typical={
             "coefficient": "0.3 to 1 for dry rubber on plastic (rule of thumb); measure it",
         },

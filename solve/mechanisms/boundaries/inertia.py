@@ -28,6 +28,7 @@ INERTIA = register(
         parameters=Inertia,
         switch_on=switch_on,
         off={"moving_mass_g": 0.0},
+        example={"moving_mass_g": 10.0},
         typical={
             "moving_mass_g": "the dot, its holder and half of the beam: 5 to 50 g (rule of thumb)",
         },

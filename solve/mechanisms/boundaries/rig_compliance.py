@@ -28,6 +28,7 @@ RIG_COMPLIANCE = register(
         parameters=RigCompliance,
         switch_on=switch_on,
         off={"compliance_mm_per_N": 0.0},
+        example={"compliance_mm_per_N": 0.005},
         typical={
             "compliance_mm_per_N": (
                 "the paper's acrylic beam (2 × 9 mm, 2.8 GPa) bends 0.02 mm/N at 10 mm free length and 0.5 mm/N at "

@@ -38,6 +38,7 @@ CHARGE_LEAKAGE = register(
         parameters=ChargeLeakage,
         switch_on=switch_on,
         off={"resistance_MOhm": inf},
+        example={"resistance_MOhm": 1000.0},
         typical={
             "resistance_MOhm": (
                 "PVDF has more than 10^13 Ωm (MSI manual, p. 3): some TΩ for 40 mm² of 28 µm. Moisture, solder flux "

@@ -29,6 +29,7 @@ CONTACT_ELECTRIFICATION = register(
         parameters=ContactElectrification,
         switch_on=switch_on,
         off={"charge_pC": 0.0},
+        example={"charge_pC": 4000.0},
         typical={
             "charge_pC": "0.1 to 10 times the signal with an input of gigaohms (rule of thumb); either sign",
             "area_exponent": "1: every spot touched is charged alike; 0.5 to 2 where pressure matters (rule of thumb)",

@@ -32,6 +32,7 @@ CROSSTALK = register(
         parameters=Crosstalk,
         switch_on=switch_on,
         off={"coupling": 0.0},
+        example={"coupling": 0.2},
         typical={
             "coupling": "measure it: drive one channel, read the others",
         },

@@ -50,6 +50,7 @@ LOW_PASS = register(
         parameters=LowPass,
         switch_on=switch_on,
         off={"cutoff_Hz": inf},
+        example={"cutoff_Hz": 60.0, "order": 2},
         typical={
             "cutoff_Hz": "60 Hz in the paper's rig",
             "order": "1 to 8; default 1",

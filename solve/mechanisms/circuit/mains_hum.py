@@ -30,6 +30,7 @@ MAINS_HUM = register(
         parameters=MainsHum,
         switch_on=switch_on,
         off={"amplitude_V": 0.0},
+        example={"frequency_Hz": 50.0, "amplitude_V": 0.05},
         typical={
             "frequency_Hz": "50 or 60; default 50",
             "amplitude_V": "0.01 to 0.5 V for an unshielded film with an input of gigaohms (rule of thumb)",

@@ -29,6 +29,7 @@ PARASITIC_CAPACITANCE = register(
         parameters=ParasiticCapacitance,
         switch_on=switch_on,
         off={"capacitance_pF": 0.0},
+        example={"capacitance_pF": 100.0},
         typical={
             "capacitance_pF": (
                 "oscilloscope input 10 to 20 pF, amplifier up to 100 pF, cable about 100 pF/m (rule of thumb); a "

@@ -29,6 +29,7 @@ PYROELECTRIC_DRIFT = register(
         parameters=PyroelectricDrift,
         switch_on=switch_on,
         off={"temperature_step_K": 0.0},
+        example={"temperature_step_K": 5.0, "time_constant_s": 0.5},
         typical={
             "temperature_step_K": (
                 "a finger is about 10 K warmer than the room (rule of thumb); p: PVDF 30, P(VDF-TrFE) 40 µC/m²K "

@@ -43,6 +43,7 @@ SATURATION = register(
         parameters=SaturationLimit,
         switch_on=switch_on,
         off={"limit_V": inf},
+        example={"limit_V": 10.0},
         typical={
             "limit_V": "the supply of the amplifier; ±10 V is common (rule of thumb)",
             "sharpness": "p above: 2.5 is close to a hyperbolic tangent, 10 to most amplifiers (rule of thumb)",

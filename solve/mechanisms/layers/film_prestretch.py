@@ -28,6 +28,7 @@ FILM_PRESTRETCH = register(
         parameters=FilmPrestretch,
         switch_on=switch_on,
         off={"strain_x": 0.0, "strain_y": 0.0},
+        example={"strain_x": 0.005},
         typical={
             "strain_x": "0.1 to 1 % (rule of thumb); the yield strain is 2 to 3 %",
             "strain_y": "as strain_x",

@@ -37,6 +37,7 @@ FILM_YIELD = register(
         parameters=FilmYield,
         switch_on=switch_on,
         off={"yield_stress_MPa": inf},
+        example={"yield_stress_MPa": 45.0},
         typical={
             "yield_stress_MPa": "45 to 55 along the draw direction (MSI manual, p. 3)",
             "hardening_modulus_MPa": "0, perfectly plastic; default 0",

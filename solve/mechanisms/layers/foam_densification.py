@@ -32,6 +32,7 @@ FOAM_DENSIFICATION = register(
         parameters=FoamDensification,
         switch_on=switch_on,
         off=None,
+        example={"mu_MPa": [0.025], "alpha": [12.0], "poisson_ratio": [0.05]},
         typical={
             "mu_MPa": "0.025 for an open-cell foam of 50 kPa (rule of thumb)",
             "alpha": "8 to 20: soft plateau (rule of thumb); larger means an earlier and flatter plateau",

@@ -67,6 +67,7 @@ HYPERELASTIC_STIFFENING = register(
         parameters=HyperelasticStiffening,
         switch_on=switch_on,
         off={"c20_MPa": 0.0},
+        example={"c20_MPa": 0.1, "c30_MPa": 0.05},
         typical={
             "c10_MPa": "library of silicones: 0.0036 (Ecoflex 00-10) to 0.163 (RTV615)",
             "c01_MPa": "a fifth to a half of c10_MPa (rule of thumb)",

@@ -83,6 +83,7 @@ PROPERTY_ERROR = register(
         parameters=PropertyError,
         switch_on=switch_on,
         off={"modulus_factor": 1.0},
+        example={"modulus_factor": 1.3},
         typical={
             "modulus_factor": (
                 "silicones ±30 %, soft Ecoflex ±50 %: measurements and data sheets differ by up to a factor of 3.5 "

@@ -37,6 +37,7 @@ STRESS_SOFTENING = register(
         parameters=StressSoftening,
         switch_on=switch_on,
         off={"loss_ratio": 0.0},
+        example={"loss_ratio": 0.4},
         typical={
             "loss_ratio": (
                 "0.1 to 0.4 for filled rubber of 5 MPa (rule of thumb); Ecoflex, Sylgard and Smooth-Sil show it "

@@ -45,6 +45,7 @@ VISCOELASTICITY = register(
         parameters=Viscoelasticity,
         switch_on=switch_on,
         off={"relative_moduli": [], "relaxation_times_s": []},
+        example={"relative_moduli": [0.15, 0.15], "relaxation_times_s": [0.1, 1.0]},
         typical={
             "relative_moduli": (
                 "silicones: 0.05, 0.03, 0.02; unfilled natural rubber 2 to 3 % per decade of time, filled 5 to 10 % "

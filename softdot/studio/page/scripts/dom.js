@@ -1,0 +1,33 @@
+// Elements in one call, and numbers as people read them.
+export function element(tag, attributes = {}, ...children) {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (value === null || value === undefined || value === false) continue;
+    if (name.startsWith("on")) made.addEventListener(name.slice(2), value);
+    else if (name === "value" || name === "checked" || name === "disabled") made[name] = value;
+    else made.setAttribute(name, value === true ? "" : value);
+  }
+  made.append(...children.filter((child) => child !== null && child !== undefined));
+  return made;
+}
+
+export const find = (selector) => document.querySelector(selector);
+
+export function short(value) {
+  if (value === null || value === undefined) return "–";
+  if (typeof value !== "number") return typeof value === "string" ? value : JSON.stringify(value);
+  if (value !== 0 && (Math.abs(value) >= 1e5 || Math.abs(value) < 1e-3)) return value.toExponential(2);
+  return String(Number(value.toPrecision(4)));
+}
+
+export function duration(seconds) {
+  return seconds < 90 ? Math.max(1, Math.round(seconds)) + " s" : (seconds / 60).toFixed(1) + " min";
+}
+
+// "thickness_mm" -> ["thickness", "mm"]; the endings come from the program.
+export function worded(key, units) {
+  for (const [ending, unit] of Object.entries(units)) {
+    if (key.endsWith(ending)) return [key.slice(0, -ending.length).replaceAll("_", " "), unit];
+  }
+  return [key.replaceAll("_", " "), ""];
+}

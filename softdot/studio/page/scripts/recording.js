@@ -1,0 +1,81 @@
+// Recordings: what is dropped is sent, shown with its phases, diagnosed.
+import { curves } from "./charts.js";
+import { element, find, worded } from "./dom.js";
+
+const PHASES = ["approach", "loading", "hold", "unloading", "after"];
+const MOST_MB = 25;
+
+async function below(entry, way = "") {
+  if (entry.isFile) {
+    const file = await new Promise((found, lost) => entry.file(found, lost));
+    return [[way + file.name, file]];
+  }
+  const reader = entry.createReader(), all = [];
+  for (;;) {
+    const some = await new Promise((found, lost) => reader.readEntries(found, lost));
+    if (!some.length) break;
+    for (const one of some) all.push(...(await below(one, `${way}${entry.name}/`)));
+  }
+  return all;
+}
+
+// files: [[name, File], ...]; the head of what is sent lists their names and sizes.
+async function send(files, address, say) {
+  const wanted = files.filter(([name]) => /\.(toml|csv|zip)$/i.test(name));
+  const total = wanted.reduce((sum, [, file]) => sum + file.size, 0) / 1e6;
+  if (!wanted.length) return say("There is no recording in it: a recording is a folder with rig.toml and CSV files.", true);
+  if (total > MOST_MB) return say(`This recording has ${total.toFixed(0)} MB, at most ${MOST_MB} MB are read here; thin it out, or use softdot diagnose.`, true);
+  const head = JSON.stringify(wanted.map(([name, file]) => [name, file.size])) + "\n";
+  try {
+    const answer = await fetch(address("/upload"), { method: "POST", body: new Blob([head, ...wanted.map(([, file]) => file)]) });
+    if (!answer.ok) say(await answer.text(), true);
+  } catch {
+    say("The recording could not be sent.", true);
+  }
+  return undefined;
+}
+
+export function prepare(address, say) {
+  const drop = find("#drop");
+  for (const kind of ["dragover", "dragleave", "drop"]) {
+    drop.addEventListener(kind, (event) => { event.preventDefault(); drop.classList.toggle("over", kind === "dragover"); });
+  }
+  drop.addEventListener("drop", async (event) => {
+    const entries = [...event.dataTransfer.items].map((one) => one.webkitGetAsEntry && one.webkitGetAsEntry()).filter(Boolean);
+    const found = entries.length ? (await Promise.all(entries.map((one) => below(one)))).flat() : [...event.dataTransfer.files].map((file) => [file.name, file]);
+    send(found, address, say);
+  });
+  for (const kind of ["folder", "zip"]) {
+    const input = drop.querySelector(`.${kind}-file`);
+    drop.querySelector(`.${kind}`).addEventListener("click", () => input.click());
+    input.addEventListener("change", () => {
+      send([...input.files].map((file) => [file.webkitRelativePath || file.name, file]), address, say);
+      input.value = "";
+    });
+  }
+}
+
+export function show(result, ask, units) {
+  const runs = result.runs.map((run) => element("figure", {}, element("figcaption", {}, element("strong", {}, run.label), ` – driven by ${worded(run.drive, units)[0]}, ${run.samples.toLocaleString("en")} samples`),
+    ...Object.entries(run.channels).map(([name, y]) => {
+      const [title, unit] = worded(name, units);
+      const bands = run.phases.map((phase) => ({ from: phase.from_s, to: phase.to_s, name: phase.name, kind: PHASES.indexOf(phase.name) }));
+      return curves({ title, xLabel: "time (s)", yLabel: unit, series: [{ x: run.time_s, y, kind: "now" }], bands, height: 150, width: 340, marks: false });
+    })));
+  const start = (quick) => element("button", { type: "button", onclick: () => ask({ do: "start", task: "diagnosis", quick }) }, quick ? "Quick diagnosis" : "Diagnosis, checked by the full model");
+  find("#recording").replaceChildren(
+    element("p", {}, `A recording of ${result.of}: ${result.runs.length} run${result.runs.length === 1 ? "" : "s"}. The coloured bands are approach, loading, hold, unloading and after.`),
+    ...result.warnings.map((one) => element("p", { class: "soft" }, `warning: ${one}`)),
+    element("div", { class: "row" }, start(true), start(false)),
+    element("div", { id: "verdict", "aria-live": "polite" }),
+    ...runs,
+  );
+}
+
+export function verdict(result, ask, address) {
+  const place = find("#verdict");
+  if (!place) return;
+  const plots = Object.entries(result.plots || {}).map(([name, token]) => element("figure", {}, element("img", { src: address(`/files/${token}`), alt: `Evidence of the verdict: ${name.replaceAll("-", " ")}` })));
+  const take = result.improved ? element("button", { type: "button", onclick: () => ask({ do: "improve" }) }, "Take the improved model over as the design") : null;
+  place.replaceChildren(element("div", { class: "verdict" }, element("strong", {}, `Verdict: ${result.grade}`), ...result.said.map((one) => element("p", {}, one)), take), ...plots);
+}

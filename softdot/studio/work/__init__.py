@@ -1,0 +1,1 @@
+"""What the studio's processes do: each task takes plain arguments and gives plain data."""

@@ -1,0 +1,122 @@
+"""The press of a design, coarse at once and accurate after that, with how far each can be trusted."""
+
+import pickle
+import time
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from export.viewer_data import viewer_data
+from geometry.base import InputError
+from mesh.types import MeshingError
+from softdot.case import Case
+from softdot.checks import result_warnings
+from softdot.console import plain
+from softdot.studio.processes import Tell
+from softdot.studio.work.design import case_of, pressed_part
+from softdot.studio.work.remedies import late_remedies
+from softdot.summary import mesh_part, press_part
+from softdot.tolerances.responses import on_larger_elements
+from solve.result import PressResult, Step
+
+COARSE = 3.0
+"""Elements of the coarse press against those of the design: a few thousand unknowns."""
+
+
+def coarse_press(text: str, tell: Tell) -> dict[str, Any]:
+    """The press on large elements, extruded where the shape allows it: meshed in no time, some percent off."""
+    case = pressed_part(case_of(text))
+    larger = on_larger_elements(case.config, COARSE)
+    try:
+        layered = Case(larger.model_copy(update={"mesh": larger.mesh.model_copy(update={"mesher": "layered"})}))
+        return _pressed(layered, TaskProgress(tell), "coarse")
+    except (InputError, MeshingError):
+        return _pressed(Case(larger), TaskProgress(tell), "coarse")
+
+
+def accurate_press(text: str, tell: Tell) -> dict[str, Any]:
+    """The press of `softdot run`, told as soon as it is there; then returned with its error bars."""
+    case, progress = pressed_part(case_of(text)), TaskProgress(tell)
+    found = _pressed(case, progress, "accurate")
+    if found["numbers"]["solver"]["converged"]:
+        tell({"press": found})
+        progress.stage("error bars")
+        return {**found, "view": None, "numbers": {**found["numbers"], **plain(case.uncertainty(found["numbers"]))}}
+    return found
+
+
+def _pressed(case: Case, progress: "TaskProgress", quality: str) -> dict[str, Any]:
+    _ = case.checked
+    progress.stage("mesh")
+    unknown = case.mesh_quality
+    progress.stage("press")
+    result = case.press(progress.on_step).result
+    amplified = case.amplified(result) or (None, None)
+    numbers = {"mesh": mesh_part(unknown, result.unknowns), **press_part(case.model.readout, result, *amplified)}
+    warnings = result_warnings(case.model, case.dot, result)
+    numbers |= {"warnings": warnings, "remedies": late_remedies(case.config, warnings)}
+    view = viewer_data(result.tet_mesh, result, case.dot) if len(result.steps) > 1 else None
+    return {
+        "quality": quality,
+        "numbers": plain(numbers),
+        "view": view,
+        "history": pickle.dumps(without_fields(result)),
+    }
+
+
+def without_fields(result: PressResult) -> PressResult:
+    """What a circuit needs of a press: its charges and times, a few kilobytes."""
+    bare = tuple(replace(step, fields=None) for step in result.steps)  # type: ignore[arg-type]
+    return replace(result, steps=bare, tet_mesh=None)  # type: ignore[arg-type]
+
+
+class TaskProgress:
+    """Tells the page the stage, how far it is, and the time that is left."""
+
+    def __init__(self, tell: Tell) -> None:
+        self._tell, self._name, self._start = tell, "", time.monotonic()
+
+    def stage(self, name: str) -> None:
+        """A stage begins."""
+        self._name, self._start = name, time.monotonic()
+        self._tell({"progress": {"stage": name, "done": 0, "count": 0, "left_s": None}})
+
+    def step(self, number: int, count: int, text: str) -> None:
+        """A step of it is done."""
+        spent = time.monotonic() - self._start
+        left = spent * (count - number) / number if number else None
+        told = {"stage": self._name, "done": number, "count": count, "left_s": left, "text": text}
+        self._tell({"progress": told})
+
+    def on_step(self, step: Step, number: int, count: int) -> None:
+        """A load step has converged."""
+        self.step(number, count, f"{1e3 * step.indentation_m:.3f} mm, {step.reaction_force_N:.3g} N")
+
+
+def circuit(text: str, history: bytes) -> dict[str, Any] | None:
+    """What the amplifier of a design makes of a charge that was solved before: voltage at the steps, and over time.
+
+    history : as a press gave it. None where the design has no amplifier.
+    """
+    import numpy as np
+
+    from solve.model import Readout
+    from solve.readout.recording import record
+
+    case, result = case_of(text), pickle.loads(history)
+    amplified = case.amplified(result)
+    if amplified is None:
+        return None
+    wired = np.ones(len(result.capacitance_F))
+    over = record(result, case.model.press, case.model.readout or Readout(), wired, case.model.physics)
+    shown = np.linspace(0, len(over.time_s) - 1, 200).astype(int)
+    told: Mapping[str, Any] = {
+        "readout_voltage_V": amplified[0], "time_s": over.time_s[shown], "voltage_V": over.voltage_V[shown],
+    }  # fmt: skip
+    return dict(plain(told))
+
+
+def warm_up() -> None:
+    """A press of a few elements, which loads the compiled kernels and the solver."""
+    tiny = {"mesher": "layered", "element_size_mm": 1.0, "contact_element_size_mm": 0.5}
+    Case(mesh=tiny, press={"load_steps": 1}).solve()

@@ -1,0 +1,146 @@
+"""A studio in a process of its own, and Debian's Chromium to look at it."""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from geometry.environment import ONE_THREAD
+from tests.softdot.interrupts import heard
+
+CHROMIUM = next(
+    (found for name in ("chromium", "chromium-browser", "google-chrome") if (found := shutil.which(name))), None
+)
+FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
+QUICK = """\
+# A slice that is pressed in a second.
+[segment]
+section = "plane-strain"
+boundary = "free"  # nothing holds the sides
+
+[segment.medium1]
+thickness_mm = 0.5
+
+[segment.film]
+thickness_um = 100.0
+
+[segment.medium2]
+thickness_mm = 1.0
+
+[dot]
+shape = "ridge"
+
+[press]
+indentation_mm = 0.1
+load_steps = 3
+
+[mesh]
+mesher = "layered"
+element_size_mm = 0.4
+contact_element_size_mm = 0.2
+"""
+
+
+class Running:
+    """A studio that has been started. address : of its page, with the key."""
+
+    def __init__(self, folder: Path, text: str, *arguments: str) -> None:
+        (folder / "mine.toml").write_text(text, "utf-8")
+        command = [sys.executable, "-m", "softdot", "studio", "mine.toml", "--no-browser", *arguments]
+        environment = {**os.environ, **ONE_THREAD, "SOFTDOT_STUDIO": str(folder / "designs")}
+        self.folder = folder
+        self.process = subprocess.Popen(
+            command, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+            preexec_fn=heard,
+        )  # fmt: skip
+        assert self.process.stdout is not None
+        self.address = self.process.stdout.readline().split()[-1]
+        self.port = int(self.address.split(":")[2].split("/")[0])
+        self.key = self.address.partition("key=")[2]
+
+    def end(self, number: int = signal.SIGINT) -> int:
+        """The exit status after a signal."""
+        self.process.send_signal(number)
+        return self.process.wait(timeout=20)
+
+
+@pytest.fixture(scope="module")
+def start_studio(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[..., Running]]:
+    """Start one with the text of a design."""
+    started: list[Running] = []
+
+    def start(text: str = QUICK, *arguments: str) -> Running:
+        started.append(Running(tmp_path_factory.mktemp("studio"), text, *arguments))
+        return started[-1]
+
+    yield start
+    for one in started:
+        if one.process.poll() is None:
+            one.end()
+
+
+@pytest.fixture(scope="module")
+def studio(start_studio: Callable[..., Running]) -> Running:
+    return start_studio()
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    if CHROMIUM is None:
+        pytest.skip("Chromium is not installed")
+    playwright = pytest.importorskip("playwright.sync_api")
+    with playwright.sync_playwright() as engine:
+        found = engine.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        yield found
+        found.close()
+
+
+class Tab:
+    """A tab of the page. wrong : what its console complained of."""
+
+    def __init__(self, context: Any, address: str) -> None:
+        self.wrong: list[str] = []
+        self.page = context.new_page()
+        self.page.on("pageerror", lambda error: self.wrong.append(str(error)))
+        self.page.on("console", self._hear)
+        self.page.goto(address)
+        self.page.locator("#form .field").first.wait_for()
+
+    def _hear(self, said: Any) -> None:
+        """An error; that a studio which has ended does not answer is none."""
+        if said.type == "error" and "WebSocket connection" not in said.text:
+            self.wrong.append(said.text)
+
+    def pressed(self, timeout_s: float = 60.0) -> None:
+        """Wait until the accurate press is done."""
+        self.says("#press .doing", "as softdot run does", timeout_s)
+
+    def says(self, selector: str, text: str, timeout_s: float = 20.0) -> None:
+        """Wait until an element holds a text."""
+        self.page.locator(selector).filter(has_text=text).first.wait_for(timeout=1e3 * timeout_s)
+
+    @property
+    def text(self) -> str:
+        """The design as TOML."""
+        return str(self.page.locator("#text").input_value())
+
+
+@pytest.fixture
+def open_tab(browser: Any) -> Iterator[Callable[..., Tab]]:
+    """Open tabs in one window; a page whose console complains fails."""
+    context = browser.new_context(viewport={"width": 1366, "height": 768}, accept_downloads=True)
+    tabs: list[Tab] = []
+
+    def open_one(address: str) -> Tab:
+        tabs.append(Tab(context, address))
+        return tabs[-1]
+
+    yield open_one
+    context.close()
+    assert [said for tab in tabs for said in tab.wrong] == []

@@ -1,0 +1,39 @@
+"""For everybody: no serious finding of axe-core, keys alone suffice, a narrow screen too."""
+
+import pytest
+
+axe_package = pytest.importorskip("axe_playwright_python.sync_playwright")
+pytestmark = pytest.mark.slow
+SERIOUS = ("serious", "critical")
+
+
+@pytest.mark.parametrize(("scheme", "width"), [("light", 1366), ("dark", 1366), ("light", 400)])
+def test_axe_finds_nothing_serious(studio, browser, scheme, width):
+    """bypass_csp : the policy of the page does not let a script be put into it, that of axe-core neither."""
+    context = browser.new_context(color_scheme=scheme, viewport={"width": width, "height": 768}, bypass_csp=True)
+    page = context.new_page()
+    page.goto(studio.address)
+    page.locator("#form .field").first.wait_for()
+    page.locator("#numbers div").first.wait_for(timeout=60_000)
+    page.evaluate("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
+    page.locator("#keep").get_by_role("button").click()
+    page.locator("#compare table").wait_for()
+    found = axe_package.Axe().run(page).response["violations"]
+    told = [(one["id"], [node["html"][:120] for node in one["nodes"][:3]]) for one in found if one["impact"] in SERIOUS]
+    assert told == []
+    across = page.evaluate("document.documentElement.scrollWidth")
+    context.close()
+    assert across <= width
+
+
+def test_every_control_is_reached_by_the_tab_key_alone(studio, open_tab):
+    tab = open_tab(studio.address)
+    seen = set()
+    for _ in range(220):
+        tab.page.keyboard.press("Tab")
+        seen.add(tab.page.evaluate("document.activeElement.id || document.activeElement.textContent.slice(0, 40)"))
+    assert {"import", "export", "find", "text", "Kit to make it", "Each number 10 % larger", "Choose a folder"} <= seen
+    tab.page.locator("canvas").focus()
+    before = tab.page.locator("canvas").screenshot()
+    tab.page.keyboard.press("ArrowLeft")
+    assert tab.page.locator("canvas").screenshot() != before
