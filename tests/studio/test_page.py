@@ -61,6 +61,7 @@ def at_full_load(tab: Tab) -> float:
     return float(said[1]) if said else float("nan")
 
 
+@pytest.mark.slow
 def test_three_sliders_change_the_curves_to_the_numbers_of_a_run(studio, open_tab, tmp_path):
     tab = open_tab(studio.address)
     listen(tab)
