@@ -1,6 +1,6 @@
 """A law that stiffens at large strain, of a medium, a coupon or whatever strains an unknown sensor."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -73,16 +73,7 @@ def _knowles(component: str) -> Candidate:
         b, inverse = float(np.expm1(values[0])) * (1.0 + values[1]), values[1]
         return {"b": b, "n": 1.0 + 1.0 / inverse} if inverse > EXPONENTIAL else {"b": b}
 
-    units = {"b": "", "n": "", "force_ratio": ""}
-    return Candidate(
-        HYPERELASTIC_STIFFENING.name,
-        component,
-        coordinates,
-        parameters,
-        units=units,
-        compared="force_ratio",
-        together="fading",
-    )
+    return _of_layer(component, coordinates, parameters, {"b": "", "n": ""}, "fading")
 
 
 def _yeoh(component: str, material: Yeoh) -> Candidate:
@@ -96,16 +87,7 @@ def _yeoh(component: str, material: Yeoh) -> Candidate:
     def parameters(values: Sequence[float]) -> dict[str, Any]:
         return {"c10_MPa": c10, "c20_MPa": c20 + c10 * values[0], "c30_MPa": c30 + c10 * values[1]}
 
-    units = {"c10_MPa": "MPa", "c20_MPa": "MPa", "c30_MPa": "MPa", "force_ratio": ""}
-    return Candidate(
-        HYPERELASTIC_STIFFENING.name,
-        component,
-        coordinates,
-        parameters,
-        units=units,
-        compared="force_ratio",
-        together="jointly",
-    )
+    return _of_layer(component, coordinates, parameters, dict.fromkeys(("c10_MPa", "c20_MPa", "c30_MPa"), "MPa"))
 
 
 def _ogden(component: str, material: MooneyRivlin | Ogden) -> Candidate:
@@ -120,15 +102,25 @@ def _ogden(component: str, material: MooneyRivlin | Ogden) -> Candidate:
     def parameters(values: Sequence[float]) -> dict[str, Any]:
         return {"mu_MPa": (*mu, 2.0 * shear * values[0] / STEEP), "alpha": (*alpha, STEEP)}
 
-    units = {"mu_MPa": "MPa", "alpha": "", "force_ratio": ""}
+    return _of_layer(component, (coordinate,), parameters, {"mu_MPa": "MPa", "alpha": ""})
+
+
+def _of_layer(
+    component: str,
+    coordinates: tuple[Coordinate, ...],
+    parameters: Callable[[Sequence[float]], dict[str, Any]],
+    units: Mapping[str, str],
+    together: str = "jointly",
+) -> Candidate:
+    """One whose force_ratio a press of the 3D model tells."""
     return Candidate(
         HYPERELASTIC_STIFFENING.name,
         component,
-        (coordinate,),
+        coordinates,
         parameters,
-        units=units,
+        units={**units, "force_ratio": ""},
         compared="force_ratio",
-        together="jointly",
+        together=together,
     )
 
 
