@@ -207,15 +207,23 @@ def agreeing(decision: Decision, held_out: Fit | None) -> Decision:
 
 
 def _with_main_part(findings: Findings, main: MainPart, choice: Choice, rng: np.random.Generator) -> Findings:
-    """What is unexplained as a whole, with its main part; as it was where a true refit does not confirm that."""
-    fits, best = [one.fit for one in main.models], main.models[0]
-    train, held_out = trained_and_held(main.model, main.found, best.fit, np.array([best.gain.mean]))
+    """What is unexplained as a whole, with its main part; as it was where a true refit does not confirm that.
+
+    Of several that are as good the one comes first that then predicts with the least error: what is held out in main
+    was predicted linear about the fit to all.
+    """
+    several = main.models[: len(main.group) if main.nameable else 1]
+    refits = [trained_and_held(main.model, main.found, one.fit, np.array([one.gain.mean])) for one in several]
+    errors = [held_out.nrmse_after if held_out is not None else 0.0 for _, held_out in refits]
+    order = sorted(range(len(several)), key=errors.__getitem__)
+    train, held_out = refits[order[0]]
     if held_out is not None and not confirmed(held_out):
         return findings
     if not main.nameable:
         return _with_kind(findings, main, rng)
-    chances = main.probabilities(rng)
-    models = tuple(_model(main.model, one, float(chances[n]), n in main.group) for n, one in enumerate(main.models))
+    chances, best = main.probabilities(rng), main.models[order[0]]
+    order += [n for n in range(len(main.models)) if n not in main.group]
+    models = tuple(_model(main.model, main.models[n], float(chances[n]), n in main.group) for n in order)
     return replace(
         findings,
         models=models,
@@ -225,7 +233,7 @@ def _with_main_part(findings: Findings, main: MainPart, choice: Choice, rng: np.
         held_out=held_out,
         unnamed=None,
         improved=_improved(main.model, best),
-        information=_information([fits[number] for number in main.group]),
+        information=_information([main.models[n].fit for n in order[: len(main.group)]]),
         remainder=Remainder(main.share, main.left_by_phase),
         reasons=_not_everything(findings, choice, best),
         black_box_gain=0.0,  # of another metric
