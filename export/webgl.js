@@ -63,17 +63,6 @@ function softdotPainter(canvas) {
     gl.vertexAttribPointer(location, size, gl.FLOAT, false, 0, 0);
   }
 
-  function body(rest, parts, lists) {
-    const made = { rest: buffer(gl.ARRAY_BUFFER, rest), place: buffer(gl.ARRAY_BUFFER, rest) };
-    made.colour = buffer(gl.ARRAY_BUFFER, new Float32Array(rest.length));
-    made.part = buffer(gl.ARRAY_BUFFER, parts);
-    made.lists = {};
-    for (const [name, indices] of Object.entries(lists)) {
-      made.lists[name] = { made: buffer(gl.ELEMENT_ARRAY_BUFFER, indices), count: indices.length };
-    }
-    return made;
-  }
-
   function load(rest, parts, lists) {
     const made = { rest: buffer(gl.ARRAY_BUFFER, rest), place: buffer(gl.ARRAY_BUFFER, rest) };
     made.colour = buffer(gl.ARRAY_BUFFER, new Float32Array(rest.length));
