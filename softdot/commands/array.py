@@ -121,7 +121,7 @@ def _summary(config: Config, found: ArrayStudy, warnings: list[str]) -> dict[str
 
 
 def _write(case: Any, found: ArrayStudy, summary: dict[str, Any], folder: Path) -> None:
-    from export.array.cad import write_array_cad
+    from export.cad import write_array_cad
     from export.vtu import write_results
     from geometry.array.parts import array_parts
 
