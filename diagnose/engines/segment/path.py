@@ -183,15 +183,20 @@ def _jointly(coordinates: tuple[Coordinate, ...], pressed: tuple[int, ...], spli
 
 
 def _fading(coordinates: tuple[Coordinate, ...], pressed: tuple[int, ...], splines: list[BSpline]) -> Layout:
-    """The later coordinates mean nothing without the first: they are pressed at its end, and fade with it."""
-    first, end = pressed[0], coordinates[pressed[0]].nodes[-1]
-    points = [_at(coordinates, {first: node}) for node in coordinates[first].nodes]
-    points += [_at(coordinates, {first: end, n: node}) for n in pressed[1:] for node in coordinates[n].nodes]
+    """The later coordinates mean nothing without the first: each is pressed at every node of the first."""
+    first, nodes = pressed[0], coordinates[pressed[0]].nodes
+    points = [_at(coordinates, {first: node}) for node in nodes]
+    points += [
+        _at(coordinates, {first: node, n: later})
+        for n in pressed[1:]
+        for node in nodes
+        for later in coordinates[n].nodes
+    ]
 
     def functions(values: Values) -> Floats:
-        reach = values[first] / end
-        later = [reach * spline(values[n]) for spline, n in zip(splines[1:], pressed[1:], strict=True)]
-        return np.concatenate([splines[0](values[first]), *later])
+        reach = splines[0](values[first])
+        later = [np.outer(reach, spline(values[n])).ravel() for spline, n in zip(splines[1:], pressed[1:], strict=True)]
+        return np.concatenate([reach, *later])
 
     return points, functions
 

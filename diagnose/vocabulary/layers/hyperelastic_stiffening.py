@@ -65,8 +65,8 @@ def _knowles(component: str) -> Candidate:
     Gent's law with the limit J of I1 - 3 has the slope 1 / J at rest.
     """
     coordinates = (
-        Coordinate("log_stiffening", 0.0, HIGHEST, (0.3, 1.2), (0.2 * HIGHEST, 0.45 * HIGHEST, 0.7 * HIGHEST, HIGHEST)),
-        Coordinate("power_law", 0.0, 1.0, (0.3, 1.0), (0.3, 1.0), (True, True)),
+        Coordinate("log_stiffening", 0.0, HIGHEST, (0.3, 1.2), (0.2 * HIGHEST, 0.5 * HIGHEST, HIGHEST)),
+        Coordinate("power_law", 0.0, 1.0, (0.3, 1.0), (1.0,), (True, True)),
     )
 
     def parameters(values: Sequence[float]) -> dict[str, Any]:

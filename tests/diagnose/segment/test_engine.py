@@ -64,6 +64,8 @@ CASES = [
     ("property-error", "film", (0.2, 0.1, 0.3), 0.05, 0.3),
     ("viscoelasticity", "medium2", (0.1, 0.1, 0.05, 0.05, 0.3), 0.1, 0.05),
     ("hyperelastic-stiffening", "effector", (0.3, 0.2), 0.08, 0.05),
+    ("hyperelastic-stiffening", "effector", (1.0, 1.0), 0.08, 0.2),
+    ("foam-densification", "medium2", (0.5, 1.0), 0.08, 0.1),
     ("adhesive-compliance", "bond-film-medium2", (1.2, 2.5), 0.08, 0.05),
     ("elastic-sides", "sides", (2.0,), 0.08, 0.1),
     ("stress-softening", "effector", (0.3,), 0.15, 0.1),
