@@ -1,0 +1,158 @@
+"""The kernel of an array: charge of every segment and force of one dot at any place and depth, and of many at once.
+
+A table of single presses. Where several dots press at once each finds a surface that the others have already pushed
+down, and up beside them: its depth counts from there,
+
+    d_k = D_k - sum over m != k of s(x_m, d_m; x_k),
+
+with the sinking s of the surface at x_k when a dot alone is d_m deep at x_m. Charges and forces at these depths are
+summed. What this misses is the stretch of the film, which is quadratic in what the dots do.
+"""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from geometry.arrays import Bools, Floats, Ints
+from geometry.base import InputError
+
+FORMAT = "softdot-kernel/1"
+NPZ, JSON = "kernel.npz", "kernel.json"
+TABLES = ("x_mm", "y_mm", "depth_mm", "charge_pC", "force_N", "place_x_mm", "place_y_mm", "load_mm", "sinking_mm")
+ROUNDS = 3
+"""Of the depths of dots that press at once; each is about fifty times nearer than the one before."""
+TOO_DEEP_MM = 1e-9
+
+
+@dataclass(frozen=True)
+class ArrayKernel:
+    """Places are of a dot's tip in the frame of the array, whose middle is the origin; depths below its resting top.
+
+    x_mm (a,), y_mm (b,), depth_mm (c,) : axes of charge_pC (a, b, c, n) and force_N (a, b, c), depth from 0.
+    place_x_mm (p,), place_y_mm (q,), load_mm (r,) : axes of sinking_mm (p, q, r, p, q), of the surface at the last two
+    places when a dot presses at the first two. about : what kernel.json says, errors and design among it.
+    """
+
+    x_mm: Floats
+    y_mm: Floats
+    depth_mm: Floats
+    charge_pC: Floats
+    force_N: Floats
+    place_x_mm: Floats
+    place_y_mm: Floats
+    load_mm: Floats
+    sinking_mm: Floats
+    about: dict[str, Any]
+
+    @property
+    def centres_mm(self) -> Floats:
+        """Middles (n, 2) of the segments."""
+        return np.asarray(self.about["centres_mm"], dtype=np.float64)
+
+    @property
+    def capacitance_pF(self) -> Floats:
+        """Of each segment's electrode, (n,)."""
+        return np.asarray(self.about["capacitance_pF"], dtype=np.float64)
+
+    def touches(self, x_mm: Floats, y_mm: Floats, depth_mm: Floats) -> Bools:
+        """Whether dots at these places and depths, any one shape, lie in the table and below the resting top."""
+        inside = (x_mm >= self.x_mm[0]) & (x_mm <= self.x_mm[-1]) & (y_mm >= self.y_mm[0]) & (y_mm <= self.y_mm[-1])
+        return np.asarray(inside & (depth_mm > 0.0))
+
+    def of_one(self, x_mm: Floats, y_mm: Floats, depth_mm: Floats) -> tuple[Floats, Floats]:
+        """Charge (..., n) in pC and force (...) in N of a dot alone, by linear interpolation; 0 where none touches.
+
+        InputError for a depth beyond the table.
+        """
+        touching = self.touches(x_mm, y_mm, depth_mm)
+        charge = np.zeros((*touching.shape, self.charge_pC.shape[-1]))
+        force = np.zeros(touching.shape)
+        if touching.any():
+            at = self._checked(x_mm[touching], y_mm[touching], depth_mm[touching])
+            axes = (self.x_mm, self.y_mm, self.depth_mm)
+            charge[touching] = interpolated(axes, self.charge_pC, at)
+            force[touching] = interpolated(axes, self.force_N, at)
+        return charge, force
+
+    def of_many(self, x_mm: Floats, y_mm: Floats, depth_mm: Floats) -> tuple[Floats, Floats]:
+        """Charge (t, n) in pC and force (t,) in N of up to k dots that press at once; x_mm, y_mm, depth_mm : (t, k).
+
+        NaN stands for no dot. InputError for a depth beyond the table.
+        """
+        given = np.where(self.touches(x_mm, y_mm, depth_mm), depth_mm, 0.0)
+        depth = given
+        for _ in range(ROUNDS if given.shape[1] > 1 else 0):
+            depth = np.where(given > 0.0, np.clip(given - self._sunk(x_mm, y_mm, depth), 0.0, self.depth_mm[-1]), 0.0)
+        charge, force = self.of_one(x_mm, y_mm, depth)
+        self._checked(x_mm[given > 0.0], y_mm[given > 0.0], given[given > 0.0])
+        return charge.sum(axis=1), force.sum(axis=1)
+
+    def _sunk(self, x_mm: Floats, y_mm: Floats, depth_mm: Floats) -> Floats:
+        """By how much the others have pushed the surface down at each dot, (t, k)."""
+        found = np.zeros(depth_mm.shape)
+        sample, first, second = _pairs(depth_mm > 0.0)
+        axes = (self.place_x_mm, self.place_y_mm, self.load_mm, self.place_x_mm, self.place_y_mm)
+        at = [
+            x_mm[sample, second], y_mm[sample, second], depth_mm[sample, second],
+            x_mm[sample, first], y_mm[sample, first],
+        ]  # fmt: skip
+        np.add.at(found, (sample, first), interpolated(axes, self.sinking_mm, at))
+        return found
+
+    def _checked(self, x_mm: Floats, y_mm: Floats, depth_mm: Floats) -> list[Floats]:
+        deepest = float(np.max(depth_mm, initial=0.0))
+        if deepest > self.depth_mm[-1] + TOO_DEEP_MM:
+            raise InputError(f"a dot is {deepest:.4g} mm deep: the kernel ends at {self.depth_mm[-1]:.4g} mm")
+        return [x_mm, y_mm, depth_mm]
+
+    def save(self, folder: Path) -> None:
+        """Write kernel.npz and kernel.json."""
+        tables = {name: getattr(self, name).astype(np.float32) for name in TABLES}
+        with (folder / NPZ).open("wb") as file:
+            np.savez_compressed(file, **tables)  # type: ignore[arg-type]
+        text = json.dumps({"format": FORMAT, **self.about}, indent=1)
+        (folder / JSON).write_text(text, encoding="utf-8")
+
+
+def load_kernel(folder: Path) -> ArrayKernel:
+    """Of a folder of softdot array. InputError for one that holds no kernel, or a broken one."""
+    try:
+        about = json.loads((folder / JSON).read_text("utf-8"))
+        with np.load(folder / NPZ, allow_pickle=False) as file:
+            tables = {name: np.asarray(file[name], dtype=np.float64) for name in TABLES}
+    except FileNotFoundError as error:
+        raise InputError(f"kernel '{folder}': {error.filename} is missing; softdot array --kernel writes it") from None
+    except (OSError, ValueError, KeyError, EOFError) as error:
+        raise InputError(f"kernel '{folder}': cannot be read ({error})") from None
+    if about.get("format") != FORMAT:
+        raise InputError(f"kernel '{folder}': format = {about.get('format')!r}: must be '{FORMAT}'")
+    return ArrayKernel(**tables, about=about)
+
+
+def interpolated(axes: tuple[Floats, ...], table: Floats, at: list[Floats]) -> Floats:
+    """Multilinear in the leading axes of a table, (m, ...) at m points; constant beyond the ends."""
+    low, share = zip(*(_bracket(axis, place) for axis, place in zip(axes, at, strict=True)), strict=True)
+    extra = table.shape[len(axes) :]
+    result = np.zeros((len(at[0]), *extra))
+    for corner in np.ndindex(*(2,) * len(axes)):
+        weight = np.prod([s if up else 1.0 - s for s, up in zip(share, corner, strict=True)], axis=0)
+        index = tuple(one + up for one, up in zip(low, corner, strict=True))
+        result += weight.reshape(-1, *(1,) * len(extra)) * table[index]
+    return result
+
+
+def _bracket(axis: Floats, place: Floats) -> tuple[Ints, Floats]:
+    """Number of the node below and the share of the way to the next one."""
+    number = np.clip(np.searchsorted(axis, place, side="right") - 1, 0, len(axis) - 2)
+    share = (place - axis[number]) / (axis[number + 1] - axis[number])
+    return number, np.clip(share, 0.0, 1.0)
+
+
+def _pairs(touching: Bools) -> tuple[Ints, Ints, Ints]:
+    """Sample, dot and other dot of all ordered pairs of different dots that touch at once; touching : (t, k)."""
+    both = touching[:, :, None] & touching[:, None, :] & ~np.eye(touching.shape[1], dtype=bool)
+    sample, first, second = np.nonzero(both)
+    return sample, first, second
