@@ -28,7 +28,7 @@ from solve.result import PressResult
 
 COARSER = 2.0
 """Element sizes of the presses over the configured ones."""
-STEPS = 5
+STEPS = 4
 """Depths of each press at least."""
 PER_PITCH = 6
 """Intervals of the grid from segment to segment."""
