@@ -1,0 +1,247 @@
+"""Where the array is at each time, found from the voltages alone: speed, offset across the line, yaw, cell after cell.
+
+1. A first speed from the frequency below which half of the power lies, beside that of templates at several speeds.
+2. Around it, speeds and places of the first cells: those whose dots explain most (softdot.reading.fitted). Then offset
+   across the line and yaw the same way.
+3. Along the line in blocks of cells: each block begins where the last ones lead to, and is moved to where its dots
+   explain most.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from geometry.arrays import Floats
+from geometry.base import InputError
+from softdot.reading.cells import DOTS
+from softdot.reading.fitted import CellFit, cell_fit, explained
+from softdot.reading.line import cell_pitch_mm
+from softdot.reading.templates import Posture, averaged, templates
+from softdot.reading.voltages import Reader, Voltages
+
+SLOWEST_MM_PER_S, FASTEST_MM_PER_S, SPEEDS = 0.5, 500.0, 13
+AROUND, SPEED_STEP = 2.2, 0.02
+WINDOW_CELLS, LONGER_CELLS = 8, 20
+PLACE_MM = 0.2
+RIVALS = 6
+OFFSETS_MM, YAWS_DEG = (0.8, 0.4, 0.2, 0.1), (6.0, 3.0, 1.5)
+BLOCK, SHIFT_MM, SHIFT_STEP_MM = 8, 0.7, 0.05
+STRETCH = 0.01
+HOP, REMEMBERED, LEAST_SHARE = 4, 6, 0.05
+"""Cells from block to block, blocks that tell the speed, and what a block must explain of the most to be believed."""
+ONSET_SIGMA = 6.0
+ALIKE = 0.02
+"""Places whose dots explain nearly as much as the best: then dots in the left column are believed."""
+
+
+@dataclass(frozen=True)
+class Track:
+    """passed_s (c,) : when the array's middle passes each cell; fit : of the voltages, averaged to samples heard."""
+
+    fit: CellFit
+    heard: Voltages
+    many: int
+    passed_s: Floats
+
+    @property
+    def posture(self) -> Posture:
+        """Speed, offset and yaw."""
+        return self.fit.templates.posture
+
+    def place_mm(self, time_s: Floats) -> Floats:
+        """Of the array's middle (t,) from that of the first cell, on at the mean speed beyond the ends."""
+        pitch, passed = self.fit.pitch_mm, self.passed_s
+        speed = self.posture.speed_mm_per_s
+        inside = np.interp(time_s, passed, pitch * np.arange(len(passed)))
+        before, behind = np.minimum(time_s - passed[0], 0.0), np.maximum(time_s - passed[-1], 0.0)
+        return np.asarray(inside + speed * (before + behind))
+
+
+def tracked(reader: Reader, heard: Voltages) -> Track:
+    """Of voltages that a sliding array gave. InputError where nothing stands out of their noise."""
+    onset, end = _active(heard)
+    speed = first_speed(reader, heard, onset, end)
+    coarse, many = averaged(heard, speed)
+    posture, middle = _first_cells(reader, coarse, many, (onset, end), speed)
+    fit = cell_fit(reader, templates(reader, posture, heard.step_s, many), coarse)
+    return Track(fit, coarse, many, _along(fit, middle, onset, end))
+
+
+def noise_V(heard: Voltages) -> Floats:
+    """Of each channel (n,): from differences between neighbouring samples, by their median, which signals raise little."""
+    return np.asarray(np.median(np.abs(np.diff(heard.voltage_V, axis=0)), axis=0) / (0.6745 * np.sqrt(2.0)))
+
+
+def _active(heard: Voltages) -> tuple[float, float]:
+    """First and last time at which the voltages stand out of their noise."""
+    count = max(1, len(heard.time_s) // 4000)
+    groups = len(heard.time_s) // count
+    mean = heard.voltage_V[: groups * count].reshape(groups, count, -1).mean(axis=1)
+    mean = mean - np.median(mean, axis=0)
+    noise = np.maximum(1.4826 * np.median(np.abs(mean), axis=0), 1e-12)
+    quiet = np.minimum(noise, noise_V(heard) / np.sqrt(count) + 1e-3 * np.abs(mean).max(axis=0))
+    loud = np.flatnonzero((np.abs(mean) > ONSET_SIGMA * quiet).any(axis=1))
+    if not len(loud) or not np.abs(mean).max() > 0.0:
+        raise InputError("voltages: nothing stands out of their noise; there is no dot to read")
+    return float(heard.time_s[loud[0] * count]), float(heard.time_s[min(loud[-1] * count + count, len(heard.time_s)) - 1])
+
+
+def first_speed(reader: Reader, heard: Voltages, onset: float, end: float) -> float:
+    """The speed at which templates have the same median frequency as the voltages."""
+    inside = (heard.time_s >= onset) & (heard.time_s <= end)
+    measured = _median_Hz(heard.voltage_V[inside], heard.step_s, noise_V(heard))
+    speeds = np.geomspace(SLOWEST_MM_PER_S, FASTEST_MM_PER_S, SPEEDS)
+    known = []
+    for speed in speeds:
+        step = 0.1 / speed
+        voltage = templates(reader, Posture(float(speed)), step).voltage_V
+        known.append(_median_Hz(voltage.reshape(len(voltage), -1), step, np.zeros(1)))
+    return float(np.exp(np.interp(np.log(measured), np.log(np.maximum.accumulate(known)), np.log(speeds))))
+
+
+def _median_Hz(voltage: Floats, step_s: float, noise: Floats) -> float:
+    """Below it lies half of the power of all channels, white noise subtracted."""
+    power = (np.abs(np.fft.rfft(voltage - voltage.mean(axis=0), axis=0)) ** 2).sum(axis=1)
+    power = power - len(voltage) * float((noise**2).sum()) * (voltage.shape[1] if noise.size == 1 else 1.0)
+    total = np.cumsum(power)
+    frequency = np.fft.rfftfreq(len(voltage), step_s)
+    return max(float(frequency[np.argmax(total >= 0.5 * total.max())]), float(frequency[1]))
+
+
+def _first_cells(
+    reader: Reader, heard: Voltages, many: int, active: tuple[float, float], speed: float
+) -> tuple[Posture, float]:
+    """Posture, and when the middle of the first cell of the window is passed."""
+    step = heard.step_s / many
+    window = _cut(heard, active[0], WINDOW_CELLS * cell_pitch_mm(reader.standard) / speed, active[1])
+    speeds = speed * np.exp(np.arange(-np.log(AROUND), np.log(AROUND), SPEED_STEP))
+    rivals = sorted((_best(reader, window, step, many, Posture(float(one))) for one in speeds), key=lambda r: -r.score)
+    longer = _cut(heard, active[0], LONGER_CELLS * cell_pitch_mm(reader.standard) / rivals[0].posture.speed_mm_per_s,
+                  active[1])  # fmt: skip
+    best: _Start | None = None
+    for rival in rivals[:RIVALS]:
+        found = _finer(reader, window, step, many, rival, 0.5 * SPEED_STEP)
+        found = _finer(reader, longer, step, many, found, 0.25 * SPEED_STEP)
+        best = found if best is None or found.score > best.score else best
+    assert best is not None
+    for offset in OFFSETS_MM:
+        for yaw in YAWS_DEG[:2] if offset == OFFSETS_MM[0] else YAWS_DEG[-1:]:
+            best = _turned(reader, longer, step, many, best, offset, yaw)
+    best = _finer(reader, longer, step, many, best, 0.1 * SPEED_STEP)
+    return best.posture, best.middle_s
+
+
+@dataclass(frozen=True)
+class _Start:
+    """A posture, when the first cell is passed with it, and what its dots explain."""
+
+    score: float
+    posture: Posture
+    middle_s: float
+
+
+def _cut(heard: Voltages, onset: float, long_s: float, end: float) -> Voltages:
+    """From before the onset on, as long as said, at most to behind the end."""
+    margin = 0.15 * long_s
+    inside = (heard.time_s >= onset - margin) & (heard.time_s <= min(onset + long_s, end + margin))
+    return Voltages(heard.time_s[inside], heard.voltage_V[inside])
+
+
+def _best(reader: Reader, window: Voltages, step: float, many: int, posture: Posture) -> _Start:
+    """The place of the first cell at which the dots of the window explain most."""
+    fit = cell_fit(reader, templates(reader, posture, step, many), window)
+    first = window.time_s[0]
+    count = max(2, int(np.ceil((window.time_s[-1] - first) / fit.pitch_s)) + 1)
+    starts = first + np.arange(0.0, fit.pitch_s, PLACE_MM / posture.speed_mm_per_s) - 0.5 * fit.pitch_s
+    products = fit.products(starts[:, None] + fit.pitch_s * np.arange(count))
+    score, raised = explained(fit.matrix(count), products.reshape(len(starts), -1))
+    number = _left_of_rivals(score, raised)
+    return _Start(float(score[number]), posture, float(starts[number]))
+
+
+def _left_of_rivals(score: Floats, raised: Floats) -> int:
+    """The best place; of those that are nearly as good the one with most dots in the left columns of their cells."""
+    alike = score >= (1.0 - ALIKE) * score.max()
+    column = raised.reshape(len(raised), -1, 2, DOTS // 2).sum(axis=(1, 3))
+    share = column[:, 0] / np.maximum(column.sum(axis=1), 1.0)
+    return int(np.argmax(np.where(alike, share > share[alike].max() - 0.5, False) * score))
+
+
+def _finer(reader: Reader, window: Voltages, step: float, many: int, start: _Start, by: float) -> _Start:
+    """Speeds on both sides of a start, as long as one is better."""
+    speed = start.posture.speed_mm_per_s
+    tried = [_at(reader, window, step, many, replace(start.posture, speed_mm_per_s=speed * (1.0 + by * k)), start, speed)
+             for k in range(-3, 4)]  # fmt: skip
+    return max(tried, key=lambda one: one.score)
+
+
+def _turned(
+    reader: Reader, window: Voltages, step: float, many: int, start: _Start, offset_mm: float, yaw_deg: float
+) -> _Start:
+    """Offsets and yaws on both sides of a start."""
+    own = start.posture
+    tried = [
+        _at(reader, window, step, many, replace(own, offset_mm=own.offset_mm + i * offset_mm, yaw_deg=own.yaw_deg + j * yaw_deg), start, own.speed_mm_per_s)
+        for i, j in ((0, 0), (1, 0), (-1, 0), (0, 1), (0, -1))
+    ]  # fmt: skip
+    return max(tried, key=lambda one: one.score)
+
+
+def _at(
+    reader: Reader, window: Voltages, step: float, many: int, posture: Posture, start: _Start, speed: float
+) -> _Start:
+    """The best start near a known one, which was found at that speed."""
+    fit = cell_fit(reader, templates(reader, posture, step, many), window)
+    count = max(2, int(np.ceil((window.time_s[-1] - start.middle_s) / fit.pitch_s)) + 1)
+    starts = start.middle_s + np.arange(-8, 9) * SHIFT_STEP_MM / posture.speed_mm_per_s
+    products = fit.products(starts[:, None] + fit.pitch_s * np.arange(count))
+    score, _ = explained(fit.matrix(count), products.reshape(len(starts), -1))
+    number = int(np.argmax(score))
+    return _Start(float(score[number]), posture, float(starts[number]))
+
+
+def _along(fit: CellFit, middle: float, onset: float, end: float) -> Floats:
+    """When each cell is passed, from the first with anything to the last; piecewise linear between middles of blocks."""
+    while middle - fit.pitch_s > onset - 0.5 * fit.pitch_s:
+        middle -= fit.pitch_s
+    pitch, speed = fit.pitch_s, fit.templates.posture.speed_mm_per_s
+    matrix = fit.matrix(BLOCK)
+    shifts = np.arange(-SHIFT_MM, SHIFT_MM + 1e-9, SHIFT_STEP_MM) / speed
+    stretch = 1.0 + STRETCH * np.linspace(-1.0, 1.0, 5)
+    cells = np.arange(BLOCK) - 0.5 * (BLOCK - 1)
+    number, centre, most = 0.5 * (BLOCK - 1), middle + 0.5 * (BLOCK - 1) * pitch, 0.0
+    known: list[tuple[float, float]] = []
+    while centre < end + 0.5 * BLOCK * pitch:
+        times = centre + shifts[None, :, None] + pitch * stretch[:, None, None] * cells
+        score = explained(matrix, fit.products(times).reshape(-1, BLOCK * DOTS))[0].reshape(times.shape[:2])
+        most = max(most, float(score.max()))
+        if score.max() > LEAST_SHARE * most:
+            centre = centre + _peak(shifts, score.max(axis=0))
+            known.append((number, centre))
+            pitch = _pitch_s(known[-REMEMBERED:], pitch)
+        number, centre = number + HOP, centre + HOP * pitch
+    numbers, centres = np.array(known).T
+    first, last = _pitch_s(known[:REMEMBERED], fit.pitch_s), _pitch_s(known[-REMEMBERED:], fit.pitch_s)
+    cell = np.arange(numbers[-1] + BLOCK + 1)
+    time = np.interp(cell, numbers, centres)
+    time += first * np.minimum(cell - numbers[0], 0.0) + last * np.maximum(cell - numbers[-1], 0.0)
+    return np.asarray(time[time < end + 0.5 * fit.pitch_s])
+
+
+def _pitch_s(known: list[tuple[float, float]], before: float) -> float:
+    """From cell to cell, by a straight line through the middles of blocks; what it was before where there is one."""
+    if len(known) < 2:
+        return before
+    numbers, centres = np.array(known).T
+    return float(np.polyfit(numbers - numbers[0], centres - centres[0], 1)[0])
+
+
+def _peak(at: Floats, score: Floats) -> float:
+    """Where a parabola through the largest value and its neighbours is largest."""
+    k = int(np.argmax(score))
+    if not 0 < k < len(at) - 1:
+        return float(at[k])
+    left, mid, right = score[k - 1], score[k], score[k + 1]
+    bend = left - 2.0 * mid + right
+    return float(at[k] + (0.5 * (left - right) / bend * (at[1] - at[0]) if bend < 0.0 else 0.0))
+
