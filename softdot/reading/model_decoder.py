@@ -17,6 +17,7 @@ from softdot.reading.conditions import USUAL_SHARE_OF_DEPTH
 from softdot.reading.fitted import RIDGE, CellFit
 from softdot.reading.line import cells_from, nominal_line
 from softdot.reading.motion import ArrayPath
+from softdot.reading.pressing import PressedCells, most_likely
 from softdot.reading.templates import SAMPLE_MM
 from softdot.reading.track import Track
 from softdot.reading.voltages import Reader, Voltages, alone_pC, averaged_voltages, behind_readout, charges_pC
@@ -35,8 +36,11 @@ class DecodedCells:
     passed_s: Floats
 
 
-def decode(reader: Reader, track: Track) -> DecodedCells:
-    """Cells of tracked voltages."""
+def decode(reader: Reader, seen: Track | PressedCells) -> DecodedCells:
+    """Cells of a slide that was tracked, or of presses."""
+    if isinstance(seen, PressedCells):
+        return trimmed(most_likely(reader, seen), seen.passed_s)
+    track = seen
     dots = raised_dots(amplitudes(track.fit, track.fit.products(track.passed_s)))[0]
     for _ in range(CORRECTIONS):
         before = dots

@@ -39,6 +39,15 @@ class ArrayPath:
     held: float | None = None
 
 
+@dataclass(frozen=True)
+class PressTimes:
+    """A press begins each period_s, the first at time 0; it goes down for down_s and holds for hold_s."""
+
+    period_s: float
+    down_s: float
+    hold_s: float
+
+
 def reach_mm(kernel: ArrayKernel, yaw_deg: float) -> float:
     """Along the line, how far from the array's middle a dot may be and still touch it."""
     half_x, half_y = np.abs(kernel.x_mm).max(), np.abs(kernel.y_mm).max()
@@ -103,14 +112,16 @@ def _slid(
     )  # fmt: skip
 
 
-def press_period_s(conditions: ReadingConditions, pitch: float) -> float:
-    """From one press to the next: down, hold, up, and on to the next cell at the speed."""
-    return 2.0 * conditions.press_s + conditions.hold_s + pitch / conditions.speed_mm_per_s
+def press_times(conditions: ReadingConditions, pitch_mm: float) -> PressTimes:
+    """Down, hold, up, and on to the next cell at the speed."""
+    down, hold = conditions.press_s, conditions.hold_s
+    return PressTimes(2.0 * down + hold + pitch_mm / conditions.speed_mm_per_s, down, hold)
 
 
 def _pressed(count: int, pitch: float, conditions: ReadingConditions, random: np.random.Generator) -> ArrayPath:
     """Set down once a period, lifted while it moves; the middle is off by the same part of a millimetre each time."""
-    period, down, hold = press_period_s(conditions, pitch), conditions.press_s, conditions.hold_s
+    times = press_times(conditions, pitch)
+    period, down, hold = times.period_s, times.down_s, times.hold_s
     step = down / PRESS_STEPS
     time = step * np.arange(int(np.ceil((count + 0.5) * period / step)) + 1)
     number = np.minimum(np.floor(time / period), count - 1)

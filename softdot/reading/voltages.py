@@ -11,9 +11,9 @@ from geometry.braille import BrailleStandard
 from softdot.arrays.kernel import ArrayKernel
 from softdot.reading.conditions import ReadingConditions
 from softdot.reading.line import DotLine
-from softdot.reading.motion import CHUNK, ArrayPath, near
+from softdot.reading.motion import CHUNK, ArrayPath, PressTimes, near
 from solve.model import Physics, Readout
-from solve.readout.amplifier import amplify
+from solve.readout.amplifier import amplify, input_of
 
 MAINS_HZ = 50.0
 FINEST_MM = 0.02
@@ -36,16 +36,15 @@ class Voltages:
 
 @dataclass(frozen=True)
 class Reader:
-    """All that a decoder may know: the kernel, the nominal standard, the read-out, and how the array is moved.
+    """All that a decoder may know: the kernel, the nominal standard, the read-out, and whether the array slides.
 
-    period_s, hold_end_s : of presses, by the machine that sets the array down; None where it slides.
+    presses : when it is set down, as told by the machine that does it; None where it slides.
     """
 
     kernel: ArrayKernel
     standard: BrailleStandard
     readout: Readout
-    period_s: float | None = None
-    hold_end_s: float | None = None
+    presses: PressTimes | None = None
 
 
 def charges_pC(kernel: ArrayKernel, line: DotLine, path: ArrayPath, told: Step | None = None) -> Floats:
@@ -114,3 +113,17 @@ def averaged_voltages(reader: Reader, time_s: Floats, charge_pC: Floats, like: V
     at = like.time_s[0] - 0.5 * (many - 1) * fine + fine * np.arange(many * len(like.time_s))
     voltage = behind_readout(reader, time_s, charge_pC, at)
     return Voltages(like.time_s, voltage.reshape(len(like.time_s), many, -1).mean(axis=1))
+
+
+def charge_again_pC(reader: Reader, heard: Voltages) -> Floats:
+    """Charges (t, n) that gave the voltages, from their first sample on: Q = C V + integral of V / R.
+
+    The inverse of the input of the read-out; what its filters removed stays removed, and noise adds up.
+    """
+    restored = np.empty_like(heard.voltage_V)
+    for j, film in enumerate(reader.kernel.capacitance_pF):
+        capacitance, resistance = input_of(reader.readout, 1e-12 * float(film))
+        voltage = reader.readout.polarity * heard.voltage_V[:, j]
+        leaked = np.concatenate([[0.0], np.cumsum(0.5 * (voltage[1:] + voltage[:-1]))]) * heard.step_s
+        restored[:, j] = 1e12 * (capacitance * voltage + leaked / resistance)
+    return restored
