@@ -25,6 +25,8 @@ CELLS, SEED = 600, 1
 AROUND_MM, STEP_MM = 6.0, 0.5
 PLACE_ERRORS_MM = (-0.15, 0.0, 0.15)
 """Each cell is shown at these places too: a track is not exact."""
+GAP, GAPS = 4, 0.15
+"""Blank cells in a row, and their share: what comes before a line and behind it."""
 HIDDEN, ROUNDS, PENALTY = (64,), 300, 1e-2
 
 
@@ -61,6 +63,7 @@ def _trained(of: _Hashed, presses: bool) -> Any:
     conditions = ReadingConditions(mode="press" if presses else "slide", standard=reader.standard.name)
     conditions = conditions.resolved(reader.kernel)
     cells = random.integers(0, KINDS_OF_CELL, CELLS)
+    cells.reshape(-1, GAP)[random.random(CELLS // GAP) < GAPS] = 0
     line = made_line(cells, reader.standard, conditions, random)
     path = moved(reader.kernel, line, CELLS, reader.standard, conditions, random)
     times = press_times(conditions, cell_pitch_mm(reader.standard)) if presses else None
