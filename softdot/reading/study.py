@@ -21,11 +21,12 @@ from geometry.base import InputError
 from geometry.cache import read_checked, source_hash, write_checked
 from softdot.arrays.kernel import JSON, NPZ, ArrayKernel
 from softdot.console import Logged
-from softdot.reading.cells import cells_of
+from softdot.reading.cells import cells_of, text_of
 from softdot.reading.conditions import BOUNDS, ReadingConditions, standard_of
 from softdot.reading.decoders import named_decoders
 from softdot.reading.job import content, read_line
 from softdot.reading.kernels import opened_kernel
+from softdot.reading.track import NoDotError
 from solve.model import Readout
 
 USUAL_TEXT = (
@@ -33,6 +34,7 @@ USUAL_TEXT = (
     "at 7.45 for Vienna; who knows why? Six big quartz vaults, one jolly wizard."
 )
 HALVINGS, DOUBLINGS = 4, 3
+RATES = ("cell", "character", "word")
 MOST_READINGS = 20_000
 KEYS = ("text", "table", "decoder", "repeats", "accuracy", "combine", "base", "axes")
 
@@ -173,10 +175,13 @@ def read_task(task: StudyTask) -> dict[str, Any]:
         kernel, cells = _kernel(task.folder), cells_of(task.text, task.table)
         readout = Readout.model_validate_json(task.readout)
         reading = read_line(kernel, readout, task.conditions, [task.decoder], _Silent(), cells)
+    except NoDotError:
+        nothing = {"right": 0, "of": len(text_of(cells, task.table))}
+        return {"status": "read", "reason": None, **nothing, "accuracy": dict.fromkeys(RATES, 0.0), "text_read": ""}
     except InputError as error:
         return {"status": "refused", "reason": str(error)}
     told = content(reading, task.text, task.table)
-    rates = {name: told[f"{name}_accuracy"]["value"] for name in ("cell", "character", "word")}
+    rates = {name: told[f"{name}_accuracy"]["value"] for name in RATES}
     counts = {name: told["character_accuracy"][name] for name in ("right", "of")}
     return {"status": "read", "reason": None, **counts, "accuracy": rates, "text_read": told["text_read"]}
 

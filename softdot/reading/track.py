@@ -29,9 +29,14 @@ BLOCK, SHIFT_MM, SHIFT_STEP_MM = 8, 0.7, 0.05
 STRETCH = 0.01
 HOP, REMEMBERED, LEAST_SHARE = 4, 6, 0.05
 """Cells from block to block, blocks that tell the speed, and what a block must explain of the most to be believed."""
-ONSET_SIGMA = 6.0
+ONSET_SIGMA, STRONG = 6.0, 0.9
+AVERAGED, LEAST_GROUPS = (1, 2, 4, 8, 16, 32, 64), 20
 ALIKE = 0.02
 """Places whose dots explain nearly as much as the best: then dots in the left column are believed."""
+
+
+class NoDotError(InputError):
+    """Nothing stands out of the noise."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +63,7 @@ class Track:
 
 
 def tracked(reader: Reader, heard: Voltages) -> Track:
-    """Of voltages that a sliding array gave. InputError where nothing stands out of their noise."""
+    """Of voltages that a sliding array gave. NoDotError where nothing stands out of their noise."""
     onset, end = _active(heard)
     speed = first_speed(reader, heard, onset, end)
     coarse, many = averaged(heard, speed)
@@ -73,17 +78,22 @@ def noise_V(heard: Voltages) -> Floats:
 
 
 def _active(heard: Voltages) -> tuple[float, float]:
-    """First and last time at which the voltages stand out of their noise."""
-    count = max(1, len(heard.time_s) // 4000)
-    groups = len(heard.time_s) // count
-    mean = heard.voltage_V[: groups * count].reshape(groups, count, -1).mean(axis=1)
-    mean = mean - np.median(mean, axis=0)
-    noise = np.maximum(1.4826 * np.median(np.abs(mean), axis=0), 1e-12)
-    quiet = np.minimum(noise, noise_V(heard) / np.sqrt(count) + 1e-3 * np.abs(mean).max(axis=0))
-    loud = np.flatnonzero((np.abs(mean) > ONSET_SIGMA * quiet).any(axis=1))
-    if not len(loud) or not np.abs(mean).max() > 0.0:
-        raise InputError("voltages: nothing stands out of their noise; there is no dot to read")
-    return float(heard.time_s[loud[0] * count]), float(heard.time_s[min(loud[-1] * count + count, len(heard.time_s)) - 1])
+    """First and last time at which means of samples stand out of their noise, over as many as show it best."""
+    noise = np.maximum(noise_V(heard), 1e-6 * np.abs(heard.voltage_V).max() + 1e-15)
+    best, first, last = 0.0, 0, 0
+    for many in AVERAGED:
+        groups = len(heard.time_s) // many
+        if groups < LEAST_GROUPS and many > 1:
+            break
+        mean = heard.voltage_V[: groups * many].reshape(groups, many, -1).mean(axis=1)
+        over = (np.abs(mean - np.median(mean, axis=0)) / (noise / np.sqrt(many))).max(axis=1)
+        loud = np.flatnonzero(over > ONSET_SIGMA)
+        strength = float(np.quantile(over, STRONG))
+        if len(loud) and strength > best:
+            best, first, last = strength, int(loud[0]) * many, min(int(loud[-1] + 1) * many, len(heard.time_s) - 1)
+    if best == 0.0:
+        raise NoDotError("voltages: nothing stands out of their noise; there is no dot to read")
+    return float(heard.time_s[first]), float(heard.time_s[last])
 
 
 def first_speed(reader: Reader, heard: Voltages, onset: float, end: float) -> float:
