@@ -253,7 +253,10 @@ def _add_read(commands: Any) -> None:
         read.add_argument(f"--{name}", type=float, metavar=unit, help=meaning)
     read.add_argument("--seed", type=int, metavar="N", help="of scatter, tremor and noise, 0 by default")
     read.add_argument(
-        "--decoders", default="model,threshold,learned", metavar="NAME,NAME", help="the first one's text is what is read"
+        "--decoders",
+        default="model,threshold,learned",
+        metavar="NAME,NAME",
+        help="the first one's text is what is read",
     )
     read.add_argument("--recording", metavar="FILE.csv", help="decode these voltages: time_s, voltage_1_V, ...")
     read.add_argument("--study", action="store_true", help="how far conditions may go before reading fails")

@@ -43,7 +43,7 @@ def draw_signals(signals: Mapping[str, Any], labels: Sequence[str], path: Path) 
 
 
 def _draw_cells(axes: Any, signals: Mapping[str, Any], shown: slice, pitch_s: float) -> None:
-    """Discs where the read cells have dots; red where the true cell says otherwise, a ring for a dot that was missed."""
+    """Discs where the read cells have dots; red where the true cell has none, a ring for one that was missed."""
     axes.set_axis_off()
     axes.set(ylim=(2.6, -0.6))
     rows = zip(signals["read_time_s"][shown], signals["cell_true"][shown], signals["cell_read"][shown], strict=True)

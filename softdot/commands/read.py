@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 from softdot.console import (
     GOOD,
+    INTERRUPTED,
     Logged,
     Progress,
+    complain,
     installed_version,
     only_the_summary_on_stdout,
     plain,
@@ -94,9 +96,7 @@ def command(chosen: Namespace) -> int:
 
     config = load_config(chosen.config, chosen.set) if chosen.config is not None or chosen.set else None
     if chosen.study or chosen.conditions is not None:
-        from softdot.commands.read_study import study_command
-
-        return study_command(chosen, config)
+        return _study(chosen, config)
     recording = None if chosen.recording is None else Path(chosen.recording)
     with only_the_summary_on_stdout(), progress_of(chosen) as progress:
         summary = run_read(
@@ -104,6 +104,38 @@ def command(chosen: Namespace) -> int:
             chosen.decoders, recording, progress,
         )  # fmt: skip
     show(summary, chosen, short_text)
+    return GOOD
+
+
+def _study(chosen: Namespace, config: Config | None) -> int:
+    """Study into chosen.output; 130 when it was interrupted. InputError."""
+    from dataclasses import replace
+
+    from geometry.base import InputError
+    from softdot.console import progress_of
+    from softdot.reading.kernels import opened_kernel
+    from softdot.reading.study import ReadingStudy, load_study, usual_axes
+    from softdot.reading.study_run import FOLDER, run_reading_study
+
+    if chosen.recording is not None:
+        raise InputError("--recording: a study makes its own voltages; leave it out")
+    kernel = opened_kernel(Path(chosen.kernel), config)
+    base = conditions_of(chosen)
+    usual = ReadingStudy(base, usual_axes(kernel, base))
+    study = usual if chosen.conditions is None else load_study(Path(chosen.conditions), kernel, base)
+    if chosen.text:
+        study = replace(study, text=chosen.text, table=chosen.table)
+    try:
+        with only_the_summary_on_stdout(), progress_of(chosen) as progress:
+            summary = run_reading_study(
+                study, Path(chosen.kernel), Path(chosen.output), config, chosen.workers, progress
+            )
+    except KeyboardInterrupt:
+        if not (Path(chosen.output) / FOLDER).exists():
+            raise
+        complain(f"interrupted; finished readings are kept in '{chosen.output}', the same command continues")
+        return INTERRUPTED
+    show(summary, chosen, _limits_text)
     return GOOD
 
 
@@ -131,3 +163,18 @@ def short_text(summary: dict[str, Any], output: str) -> str:
     if summary["words_per_minute"] is not None:
         lines.append(f"{summary['words_per_minute']:.3g} words a minute, {summary['cells_per_s']:.3g} cells a second")
     return "\n".join([*lines, f"{output}/signals.png"])
+
+
+def _limits_text(summary: dict[str, Any], output: str) -> str:
+    """How far each condition may go."""
+    lines = []
+    for name, limit in summary["limits"].items():
+        if limit["read_up_to"] is None:
+            lines.append(f"{name}: too few characters are read already at the usual value")
+        elif limit["fails_at"] is None:
+            lines.append(f"{name}: read at {limit['read_up_to']:.4g}, the last value that was tried")
+        else:
+            lines.append(f"{name}: read up to {limit['read_up_to']:.4g}, no more at {limit['fails_at']:.4g}")
+    return "\n".join(
+        [f"at least {100 * summary['accuracy']:g} % of the characters:", *lines, f"{output}/reading_study.png"]
+    )

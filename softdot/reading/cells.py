@@ -62,7 +62,7 @@ def text_of(cells: Sequence[int] | Ints, table: str | None = None) -> str:
 
 def _back_translated(called_by: str, cells: str, table: str) -> str:
     if called_by == "louis":
-        import louis
+        import louis  # type: ignore[import-not-found]
 
         try:
             return str(louis.backTranslateString([DISPLAY, table], cells))

@@ -11,12 +11,12 @@ from softdot.console import Progress
 from softdot.reading.cells import braille, text_of
 from softdot.reading.conditions import ReadingConditions, standard_of, standard_warnings
 from softdot.reading.decoders import DECODERS, seen_of
+from softdot.reading.decoders.model import DecodedCells
+from softdot.reading.decoders.pressing import PressedCells
+from softdot.reading.decoders.track import Track
 from softdot.reading.line import cell_pitch_mm, made_line
-from softdot.reading.model_decoder import DecodedCells
 from softdot.reading.motion import ArrayPath, moved, press_times
-from softdot.reading.pressing import PressedCells
 from softdot.reading.score import aligned, scores
-from softdot.reading.track import Track
 from softdot.reading.voltages import Reader, Voltages, recorded
 from solve.model import Readout
 
@@ -129,8 +129,8 @@ def _warnings(reading: LineReading) -> list[str]:
     held = None if reading.path is None else reading.path.held
     if held is not None and held < 1.0:
         told.append(
-            f"the force of {reading.conditions.force_N:g} N was held for {100 * held:.3g} % of the time; else a stop held "
-            f"the array at the depth of {reading.conditions.depth_mm:.3g} mm, where the kernel ends for the highest dot"
+            f"the force of {reading.conditions.force_N:g} N was held for {100 * held:.3g} % of the time; else a stop "
+            f"held the array at the depth of {reading.conditions.depth_mm:.3g} mm, where the kernel ends for the highest dot"
         )
     return told
 
@@ -154,7 +154,7 @@ def signals(reading: LineReading) -> dict[str, Floats]:
         "time_s": heard.time_s,
         "voltage_V": heard.voltage_V,
         "position_mm": _place_mm(reading, pitch),
-        "x_mm": pitch * np.arange(len(read)),
+        "x_mm": pitch * np.arange(len(read), dtype=np.float64),
         "cell_true": np.asarray(known, dtype=np.int64),
         "cell_read": np.asarray(read, dtype=np.int64),
         "read_time_s": np.asarray(at, dtype=np.float64),

@@ -36,8 +36,8 @@ def opened_kernel(folder: Path, config: Config | None = None) -> ArrayKernel:
     _refuse_missing_rows(kernel, where)
     if config is not None and not _same_design(kernel, config):
         raise InputError(
-            f"{where}: config_hash = '{kernel.about['config_hash'][:12]}': is of another design than the configuration, "
-            f"which has '{config_hash(config)[:12]}'; make a kernel of it by softdot array --kernel"
+            f"{where}: config_hash = '{kernel.about['config_hash'][:12]}': is of another design than the configuration "
+            f"with '{config_hash(config)[:12]}'; make a kernel of it by softdot array --kernel"
         )
     return kernel
 
@@ -55,7 +55,7 @@ def _same_design(kernel: ArrayKernel, config: Config) -> bool:
     if config_hash(config) == kernel.about["config_hash"]:
         return True
     own = config_from(kernel.about["config"])
-    return config_hash(config.model_copy(update={"readout": own.readout})) == kernel.about["config_hash"]
+    return bool(config_hash(config.model_copy(update={"readout": own.readout})) == kernel.about["config_hash"])
 
 
 def _refuse_damaged(kernel: ArrayKernel, where: str) -> None:

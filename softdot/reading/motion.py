@@ -103,9 +103,9 @@ def _slid(
     first = -pitch / 2.0 - reach - LEAD_MM - pitch * random.random()
     last = pitch * (count - 0.5) + reach + LEAD_MM
     step = min(STEP_MM / speed, 1.0 / (TREMOR_STEPS * conditions.tremor_Hz))
-    time = step * np.arange(int(np.ceil((last - first) / speed / step)) + 1)
+    time: Floats = step * np.arange(int(np.ceil((last - first) / speed / step)) + 1, dtype=np.float64)
     y, depth = _tremor(len(time), step, conditions, random)
-    reached = (pitch * np.arange(count) - first) / speed
+    reached: Floats = (pitch * np.arange(count, dtype=np.float64) - first) / speed
     return ArrayPath(
         time, first + speed * time, conditions.offset_mm + y, (conditions.depth_mm or 0.0) + depth,
         conditions.yaw_deg, reached,
@@ -123,7 +123,7 @@ def _pressed(count: int, pitch: float, conditions: ReadingConditions, random: np
     times = press_times(conditions, pitch)
     period, down, hold = times.period_s, times.down_s, times.hold_s
     step = down / PRESS_STEPS
-    time = step * np.arange(int(np.ceil((count + 0.5) * period / step)) + 1)
+    time: Floats = step * np.arange(int(np.ceil((count + 0.5) * period / step)) + 1, dtype=np.float64)
     number = np.minimum(np.floor(time / period), count - 1)
     within = time - number * period
     moving = np.clip((within - 2.0 * down - hold) / (period - 2.0 * down - hold), 0.0, 1.0)
@@ -131,7 +131,7 @@ def _pressed(count: int, pitch: float, conditions: ReadingConditions, random: np
     y, depth = _tremor(len(time), step, conditions, random)
     lowered = np.where(share > 0.0, share * ((conditions.depth_mm or 0.0) + depth), -1.0)
     x = pitch * np.minimum(number + moving, count - 1)
-    reached = period * np.arange(count) + down + hold
+    reached: Floats = period * np.arange(count, dtype=np.float64) + down + hold
     return ArrayPath(time, x, conditions.offset_mm + y, lowered, conditions.yaw_deg, reached)
 
 
@@ -197,5 +197,6 @@ def _depth_of_force(
         low, high = np.where(above, low, middle), np.where(above, middle, high)
         side = np.where(above, 1.0, -1.0)
         left = (np.abs(found) > FORCE_TOLERANCE * force_N) & (high - low > DEPTH_TOLERANCE_MM)
-        rows, low, high, f_low, f_high, side = (one[left] for one in (rows, low, high, f_low, f_high, side))
+        rows = rows[left]
+        low, high, f_low, f_high, side = (one[left] for one in (low, high, f_low, f_high, side))
     return depth, at_stop > 0.0

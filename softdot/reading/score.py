@@ -22,7 +22,8 @@ def aligned(true: Sequence[Hashable], read: Sequence[Hashable]) -> list[Pair]:
     far = len(true) + len(read) + 1
     cost: list[dict[int, int]] = [{j: j for j in range(min(half, len(read)) + 1)}]
     for i, one in enumerate(true, 1):
-        above, row = cost[-1], {}
+        above = cost[-1]
+        row: dict[int, int] = {}
         for j in range(max(0, i - half), min(len(read), i + half) + 1):
             new = above.get(j, far) + 1
             if j:

@@ -24,9 +24,9 @@ from softdot.console import Logged
 from softdot.reading.cells import cells_of, text_of
 from softdot.reading.conditions import BOUNDS, ReadingConditions, standard_of
 from softdot.reading.decoders import named_decoders
+from softdot.reading.decoders.track import NoDotError
 from softdot.reading.job import content, read_line
 from softdot.reading.kernels import opened_kernel
-from softdot.reading.track import NoDotError
 from solve.model import Readout
 
 USUAL_TEXT = (
@@ -85,7 +85,7 @@ class Readings:
         found = [self.records[one] for one in repeated(study, conditions)]
         if any(one["status"] != "read" for one in found):
             return None
-        return sum(one["right"] for one in found) / sum(one["of"] for one in found)
+        return float(sum(one["right"] for one in found) / sum(one["of"] for one in found))
 
 
 def usual_axes(kernel: ArrayKernel, base: ReadingConditions) -> dict[str, tuple[float, ...]]:
@@ -132,7 +132,7 @@ def _check(study: ReadingStudy, where: str) -> None:
         if not values:
             raise InputError(f"{where}: axes.{name} = []: needs at least one value")
         for value in values:
-            replace(study.base, **{name: value})
+            with_value(study.base, name, value)
     if not isinstance(study.repeats, int) or not 1 <= study.repeats <= 100:
         raise InputError(f"{where}: repeats = {study.repeats}: must be a whole number from 1 to 100")
     if not 0.0 < study.accuracy <= 1.0:
@@ -150,8 +150,14 @@ def points(study: ReadingStudy) -> list[ReadingConditions]:
         grid = itertools.product(*study.axes.values())
         found = [replace(study.base, **dict(zip(study.axes, values, strict=True))) for values in grid]
     else:
-        found = [replace(study.base, **{name: one}) for name, values in study.axes.items() for one in values]
+        found = [with_value(study.base, name, one) for name, values in study.axes.items() for one in values]
     return list(dict.fromkeys([study.base, *found]))
+
+
+def with_value(conditions: ReadingConditions, name: str, value: float) -> ReadingConditions:
+    """With another value of one condition. InputError for one out of bounds."""
+    changed: dict[str, Any] = {name: value}
+    return replace(conditions, **changed)
 
 
 def repeated(study: ReadingStudy, conditions: ReadingConditions) -> list[ReadingConditions]:
@@ -206,7 +212,7 @@ def keep(folder: Path, key: str, task: StudyTask, record: dict[str, Any]) -> Non
     write_checked(folder / f"{key}.json", {**record, "conditions": asdict(task.conditions)})
 
 
-def limits_of(study: ReadingStudy, readings: Readings) -> Iterator[tuple[str, "Limit"]]:
+def limits_of(study: ReadingStudy, readings: Readings) -> Iterator[tuple[str, "ConditionLimit"]]:
     """How far each condition may go, as far as is known."""
     for name, values in study.axes.items():
         start = getattr(study.base, name)
@@ -218,7 +224,7 @@ def limits_of(study: ReadingStudy, readings: Readings) -> Iterator[tuple[str, "L
 
 
 @dataclass(frozen=True)
-class Limit:
+class ConditionLimit:
     """good : the farthest value that is still read, None where the usual one is not; bad : the nearest that is not.
 
     following : the value to be read next, None where the limit is as narrow as was asked.
@@ -229,7 +235,7 @@ class Limit:
     following: float | None
 
 
-def _limit(study: ReadingStudy, readings: Readings, name: str, ahead: list[float]) -> Limit:
+def _limit(study: ReadingStudy, readings: Readings, name: str, ahead: list[float]) -> ConditionLimit:
     """By all readings of this condition at and behind its usual value."""
     start, sign = ahead[0], 1.0 if ahead[-1] >= ahead[0] else -1.0
     known: dict[float, bool] = {}
@@ -245,12 +251,12 @@ def _limit(study: ReadingStudy, readings: Readings, name: str, ahead: list[float
     good = [value for value in order if known[value] and (bad is None or sign * (bad - value) > 0.0)]
     extra = len(set(known) - set(ahead))
     if not good:
-        return Limit(None, bad, None)
+        return ConditionLimit(None, bad, None)
     if bad is None:
         further = good[-1] + (good[-1] - start or sign)
         further = float(np.clip(further, *BOUNDS[name]))
         done = extra >= DOUBLINGS or further == good[-1]
-        return Limit(good[-1], None, None if done else further)
+        return ConditionLimit(good[-1], None, None if done else further)
     first = next((value for value in order if value not in ahead), None)
     halved = extra >= HALVINGS + (DOUBLINGS if first is not None and sign * (first - ahead[-1]) > 0.0 else 0)
-    return Limit(good[-1], bad, None if halved else 0.5 * (good[-1] + bad))
+    return ConditionLimit(good[-1], bad, None if halved else 0.5 * (good[-1] + bad))

@@ -68,9 +68,7 @@ def alone_pC(kernel: ArrayKernel, line: DotLine, path: ArrayPath) -> Floats:
     return charge
 
 
-def behind_readout(
-    reader: Reader, time_s: Floats, charge_pC: Floats, at_s: Floats, finest_s: float = np.inf
-) -> Floats:
+def behind_readout(reader: Reader, time_s: Floats, charge_pC: Floats, at_s: Floats, finest_s: float = np.inf) -> Floats:
     """Voltages (m, n) at evenly spaced at_s (m,), each electrode with its own capacitance (solve.readout.amplifier).
 
     Between the times of the charges (t, n) these follow a cubic spline, which the read-out sees in steps of at most

@@ -14,11 +14,11 @@ from sklearn.neural_network import MLPClassifier
 from geometry.arrays import Floats
 from softdot.reading.cells import KINDS_OF_CELL
 from softdot.reading.conditions import ReadingConditions
+from softdot.reading.decoders.model import DecodedCells, trimmed
+from softdot.reading.decoders.pressing import PressedCells, pressed
+from softdot.reading.decoders.track import Track
 from softdot.reading.line import cell_pitch_mm, cells_from, made_line, raised
-from softdot.reading.model_decoder import DecodedCells, trimmed
 from softdot.reading.motion import moved, press_times
-from softdot.reading.pressing import PressedCells, pressed
-from softdot.reading.track import Track
 from softdot.reading.voltages import Reader, Voltages, recorded
 
 CELLS, SEED = 600, 1
@@ -36,7 +36,7 @@ def decode(reader: Reader, seen: Track | PressedCells) -> DecodedCells:
     if isinstance(seen, PressedCells):
         features = _of_presses(seen)
     else:
-        middles = cell_pitch_mm(reader.standard) * np.arange(len(seen.passed_s))
+        middles = cell_pitch_mm(reader.standard) * np.arange(len(seen.passed_s), dtype=np.float64)
         features = _around(seen.heard, seen.place_mm(seen.heard.time_s), middles)
     dots = np.asarray(network.predict(features), dtype=bool)
     return trimmed(cells_from(dots), seen.passed_s)
@@ -72,7 +72,7 @@ def _trained(of: _Hashed, presses: bool) -> Any:
         features, shown = _of_presses(pressed(replace(reader, presses=times), heard))[:CELLS], raised(cells)
     else:
         place = np.interp(heard.time_s, path.time_s, path.x_mm)
-        middles = cell_pitch_mm(reader.standard) * np.arange(CELLS)
+        middles = cell_pitch_mm(reader.standard) * np.arange(CELLS, dtype=np.float64)
         features = np.concatenate([_around(heard, place, middles + error) for error in PLACE_ERRORS_MM])
         shown = np.tile(raised(cells), (len(PLACE_ERRORS_MM), 1))
     network = MLPClassifier(HIDDEN, alpha=PENALTY, max_iter=ROUNDS, early_stopping=True, random_state=SEED)

@@ -15,8 +15,8 @@ from scipy.linalg import cho_factor, cho_solve
 
 from geometry.arrays import Floats, Ints
 from softdot.reading.cells import DOTS
+from softdot.reading.decoders.templates import DotTemplates, Lagged
 from softdot.reading.line import cell_pitch_mm, dot_places_mm
-from softdot.reading.templates import DotTemplates, Lagged
 from softdot.reading.voltages import Reader, Voltages
 
 RIDGE = 1e-3
@@ -50,7 +50,9 @@ class CellFit:
 
     def blocks(self, most: int) -> Floats:
         """G between a cell and itself, the next one and so on, (most + 1, 6, 6)."""
-        later = self.pitch_s * np.arange(most + 1)[:, None, None] + self.lag_s[None, None, :] - self.lag_s[None, :, None]
+        later = (
+            self.pitch_s * np.arange(most + 1)[:, None, None] + self.lag_s[None, None, :] - self.lag_s[None, :, None]
+        )
         return self.overlap.at(later, _rows()[:, None], _rows()[None, :])
 
     def matrix(self, count: int) -> Floats:

@@ -1,7 +1,6 @@
-"""softdot read --study: how far the conditions of reading may go, on all cores, resumed where it was stopped."""
+"""A study of reading on all cores: its folder, which keeps what was read, its table and its picture."""
 
 import csv
-from argparse import Namespace
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -9,25 +8,18 @@ from typing import Any
 from geometry.base import InputError
 from geometry.files import release
 from softdot.arrays.kernel import ArrayKernel
-from softdot.commands.read import conditions_of
 from softdot.config import Config
 from softdot.console import (
-    GOOD,
-    INTERRUPTED,
     Logged,
     Progress,
-    complain,
     installed_version,
-    only_the_summary_on_stdout,
     plain,
-    progress_of,
-    show,
     write_json,
 )
 from softdot.output import Product, check_output
+from softdot.reading.conditions import ReadingConditions
 from softdot.reading.kernels import opened_kernel, readout_of
 from softdot.reading.study import (
-    ReadingConditions,
     Readings,
     ReadingStudy,
     StudyTask,
@@ -35,38 +27,17 @@ from softdot.reading.study import (
     kept,
     kernel_hash,
     limits_of,
-    load_study,
     points,
     read_task,
     repeated,
-    usual_axes,
+    with_value,
 )
 
 FOLDER, TABLE, PICTURE = "conditions", "reading_study.csv", "reading_study.png"
-STUDY = Product("softdot-reading-study/1", "reading_study.json", frozenset({"reading_study.json", FOLDER, TABLE, PICTURE}))
+STUDY = Product(
+    "softdot-reading-study/1", "reading_study.json", frozenset({"reading_study.json", FOLDER, TABLE, PICTURE})
+)
 AWAY = "the Dask scheduler disappeared; finished readings are kept, start the study again"
-
-
-def study_command(chosen: Namespace, config: Config | None) -> int:
-    """Study into chosen.output; 130 when it was interrupted. InputError."""
-    if chosen.recording is not None:
-        raise InputError("--recording: a study makes its own voltages; leave it out")
-    kernel = opened_kernel(Path(chosen.kernel), config)
-    base = conditions_of(chosen)
-    usual = ReadingStudy(base, usual_axes(kernel, base))
-    study = usual if chosen.conditions is None else load_study(Path(chosen.conditions), kernel, base)
-    if chosen.text:
-        study = replace(study, text=chosen.text, table=chosen.table)
-    try:
-        with only_the_summary_on_stdout(), progress_of(chosen) as progress:
-            summary = run_reading_study(study, Path(chosen.kernel), Path(chosen.output), config, chosen.workers, progress)
-    except KeyboardInterrupt:
-        if not (Path(chosen.output) / FOLDER).exists():
-            raise
-        complain(f"interrupted; finished readings are kept in '{chosen.output}', the same command continues")
-        return INTERRUPTED
-    show(summary, chosen, short_text)
-    return GOOD
 
 
 def run_reading_study(
@@ -124,7 +95,7 @@ class _Work:
             return []
         limits = dict(limits_of(self._study, self.readings))
         return [
-            replace(self._study.base, **{name: limit.following})
+            with_value(self._study.base, name, limit.following)
             for name, limit in limits.items()
             if limit.following is not None
         ]
@@ -159,7 +130,12 @@ def _summary(study: ReadingStudy, readings: Readings, kernel: ArrayKernel) -> di
     rows = []
     for conditions in dict.fromkeys(replace(one, seed=study.base.seed) for one in readings.records):
         found = [readings.records[one] for one in repeated(study, conditions)]
-        row: dict[str, Any] = {"conditions": conditions.as_dict(), "status": "read", "reason": None, "character_accuracy": None}
+        row: dict[str, Any] = {
+            "conditions": conditions.as_dict(),
+            "status": "read",
+            "reason": None,
+            "character_accuracy": None,
+        }
         failed = next((one for one in found if one["status"] != "read"), None)
         if failed is not None:
             row |= {"status": failed["status"], "reason": failed["reason"]}
@@ -200,7 +176,11 @@ def _write_csv(rows: list[dict[str, Any]], path: Path) -> None:
         for row in rows:
             share = row["character_accuracy"] or {}
             table.writerow(
-                [*row["conditions"].values(), row["status"], *(share.get(key) for key in ("value", "low", "high", "of"))]
+                [
+                    *row["conditions"].values(),
+                    row["status"],
+                    *(share.get(key) for key in ("value", "low", "high", "of")),
+                ]
             )
 
 
@@ -211,9 +191,10 @@ def _draw(summary: dict[str, Any], path: Path) -> None:
     curves = {}
     for name in summary["axes"]:
         alone = [
-            row for row in summary["readings"]
-            if row["character_accuracy"] and all(value == base[key] or key == name for key, value in row["conditions"].items())
-        ]  # fmt: skip
+            row
+            for row in summary["readings"]
+            if row["character_accuracy"] and all(row["conditions"][key] == base[key] for key in base if key != name)
+        ]
         curves[name] = sorted(
             (
                 summary["base"][name] if row["conditions"][name] is None else row["conditions"][name],
@@ -223,16 +204,3 @@ def _draw(summary: dict[str, Any], path: Path) -> None:
         )
     limits = {name: limit["read_up_to"] for name, limit in summary["limits"].items()}
     draw_conditions(curves, summary["accuracy"], limits, path)
-
-
-def short_text(summary: dict[str, Any], output: str) -> str:
-    """How far each condition may go."""
-    lines = []
-    for name, limit in summary["limits"].items():
-        if limit["read_up_to"] is None:
-            lines.append(f"{name}: too few characters are read already at the usual value")
-        elif limit["fails_at"] is None:
-            lines.append(f"{name}: read at {limit['read_up_to']:.4g}, the last value that was tried")
-        else:
-            lines.append(f"{name}: read up to {limit['read_up_to']:.4g}, no more at {limit['fails_at']:.4g}")
-    return "\n".join([f"at least {100 * summary['accuracy']:g} % of the characters:", *lines, f"{output}/{PICTURE}"])

@@ -1,7 +1,7 @@
 """Where the array is at each time, found from the voltages alone: speed, offset across the line, yaw, cell after cell.
 
 1. A first speed from the frequency below which half of the power lies, beside that of templates at several speeds.
-2. Around it, speeds and places of the first cells: those whose dots explain most (softdot.reading.fitted). Then offset
+2. Around it, speeds and places of the first cells: those whose dots explain most (softdot.reading.decoders.fitted). Then offset
    across the line and yaw the same way.
 3. Along the line in blocks of cells: each block begins where the last ones lead to, and is moved to where its dots
    explain most.
@@ -14,9 +14,9 @@ import numpy as np
 from geometry.arrays import Floats
 from geometry.base import InputError
 from softdot.reading.cells import DOTS
-from softdot.reading.fitted import CellFit, cell_fit, explained
+from softdot.reading.decoders.fitted import CellFit, cell_fit, explained
+from softdot.reading.decoders.templates import Posture, averaged, templates
 from softdot.reading.line import cell_pitch_mm
-from softdot.reading.templates import Posture, averaged, templates
 from softdot.reading.voltages import Reader, Voltages
 
 SLOWEST_MM_PER_S, FASTEST_MM_PER_S, SPEEDS = 0.5, 500.0, 13
@@ -73,7 +73,7 @@ def tracked(reader: Reader, heard: Voltages) -> Track:
 
 
 def noise_V(heard: Voltages) -> Floats:
-    """Of each channel (n,): from differences between neighbouring samples, by their median, which signals raise little."""
+    """Of each channel (n,): from differences of neighbouring samples, by their median, which signals raise little."""
     return np.asarray(np.median(np.abs(np.diff(heard.voltage_V, axis=0)), axis=0) / (0.6745 * np.sqrt(2.0)))
 
 
@@ -180,7 +180,7 @@ def _left_of_rivals(score: Floats, raised: Floats) -> int:
 def _finer(reader: Reader, window: Voltages, step: float, many: int, start: _Start, by: float) -> _Start:
     """Speeds on both sides of a start, as long as one is better."""
     speed = start.posture.speed_mm_per_s
-    tried = [_at(reader, window, step, many, replace(start.posture, speed_mm_per_s=speed * (1.0 + by * k)), start, speed)
+    tried = [_at(reader, window, step, many, replace(start.posture, speed_mm_per_s=speed * (1.0 + by * k)), start)
              for k in range(-3, 4)]  # fmt: skip
     return max(tried, key=lambda one: one.score)
 
@@ -190,17 +190,15 @@ def _turned(
 ) -> _Start:
     """Offsets and yaws on both sides of a start."""
     own = start.posture
-    tried = [
-        _at(reader, window, step, many, replace(own, offset_mm=own.offset_mm + i * offset_mm, yaw_deg=own.yaw_deg + j * yaw_deg), start, own.speed_mm_per_s)
+    turned = [
+        replace(own, offset_mm=own.offset_mm + i * offset_mm, yaw_deg=own.yaw_deg + j * yaw_deg)
         for i, j in ((0, 0), (1, 0), (-1, 0), (0, 1), (0, -1))
-    ]  # fmt: skip
-    return max(tried, key=lambda one: one.score)
+    ]
+    return max((_at(reader, window, step, many, one, start) for one in turned), key=lambda one: one.score)
 
 
-def _at(
-    reader: Reader, window: Voltages, step: float, many: int, posture: Posture, start: _Start, speed: float
-) -> _Start:
-    """The best start near a known one, which was found at that speed."""
+def _at(reader: Reader, window: Voltages, step: float, many: int, posture: Posture, start: _Start) -> _Start:
+    """The best start with a posture near a known one."""
     fit = cell_fit(reader, templates(reader, posture, step, many), window)
     count = max(2, int(np.ceil((window.time_s[-1] - start.middle_s) / fit.pitch_s)) + 1)
     starts = start.middle_s + np.arange(-8, 9) * SHIFT_STEP_MM / posture.speed_mm_per_s
@@ -211,7 +209,7 @@ def _at(
 
 
 def _along(fit: CellFit, middle: float, onset: float, end: float) -> Floats:
-    """When each cell is passed, from the first with anything to the last; piecewise linear between middles of blocks."""
+    """When each cell is passed, from the first with anything to the last; linear between middles of blocks."""
     while middle - fit.pitch_s > onset - 0.5 * fit.pitch_s:
         middle -= fit.pitch_s
     pitch, speed = fit.pitch_s, fit.templates.posture.speed_mm_per_s
@@ -254,4 +252,3 @@ def _peak(at: Floats, score: Floats) -> float:
     left, mid, right = score[k - 1], score[k], score[k + 1]
     bend = left - 2.0 * mid + right
     return float(at[k] + (0.5 * (left - right) / bend * (at[1] - at[0]) if bend < 0.0 else 0.0))
-

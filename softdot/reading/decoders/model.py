@@ -1,9 +1,9 @@
 """Decoder "model": the dots that make the voltages most likely, without training.
 
-The amplitudes of all possible dots of the line are one banded least-squares problem (softdot.reading.fitted). A dot is
-raised where its amplitude is above the emptiest place between none and the gain. That dots feel each other is corrected:
-the line that was read, nominal, goes through the kernel as a whole, and what this adds to the sum of single dots is
-subtracted from the voltages before the amplitudes are found again.
+The amplitudes of all possible dots of the line are one banded least-squares problem (softdot.reading.decoders.fitted). A dot is
+raised where its amplitude is above the emptiest place between none and the gain. That dots feel each other is put
+right: the line that was read, nominal, goes through the kernel as a whole, and what this adds to the sum of single dots
+is subtracted from the voltages before the amplitudes are found again.
 """
 
 from dataclasses import dataclass
@@ -14,13 +14,13 @@ from scipy.linalg import solveh_banded
 from geometry.arrays import Bools, Floats, Ints
 from softdot.reading.cells import DOTS
 from softdot.reading.conditions import USUAL_SHARE_OF_DEPTH
-from softdot.reading.fitted import RIDGE, CellFit
+from softdot.reading.decoders.fitted import RIDGE, CellFit
+from softdot.reading.decoders.pressing import PressedCells, most_likely
+from softdot.reading.decoders.templates import SAMPLE_MM
+from softdot.reading.decoders.track import Track
 from softdot.reading.line import cells_from, nominal_line
 from softdot.reading.motion import ArrayPath
-from softdot.reading.pressing import PressedCells, most_likely
-from softdot.reading.templates import SAMPLE_MM
-from softdot.reading.track import Track
-from softdot.reading.voltages import Reader, Voltages, alone_pC, averaged_voltages, behind_readout, charges_pC
+from softdot.reading.voltages import Reader, Voltages, alone_pC, averaged_voltages, charges_pC
 
 CORRECTIONS = 3
 BAND_CELLS = 4
@@ -88,7 +88,11 @@ def _corrected(reader: Reader, track: Track, dots: Bools) -> Bools:
     together = _beside_alone(reader, track, dots)
     products = track.fit.products(track.passed_s)
     extra = CellFit(
-        track.fit.templates, track.fit.overlap, track.fit.templates.matched(together), track.fit.lag_mm, track.fit.pitch_mm
+        track.fit.templates,
+        track.fit.overlap,
+        track.fit.templates.matched(together),
+        track.fit.lag_mm,
+        track.fit.pitch_mm,
     ).products(track.passed_s)
     return raised_dots(amplitudes(track.fit, products - gain * extra))[0]
 

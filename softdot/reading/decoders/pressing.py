@@ -36,7 +36,7 @@ def pressed(reader: Reader, heard: Voltages) -> PressedCells:
     if heard.time_s[-1] < down + hold:
         raise InputError(f"voltages: end after {heard.time_s[-1]:.3g} s, within the first press")
     charge = charge_again_pC(reader, heard)
-    begins = period * np.arange(count)
+    begins: Floats = period * np.arange(count, dtype=np.float64)
     held = begins + down + np.linspace(0.1, 0.9, 9)[:, None] * hold
     before, during = _at(heard, charge, begins[None, :]), _at(heard, charge, held)
     return PressedCells(during.mean(axis=0) - before[0], begins + down + hold)
@@ -51,14 +51,14 @@ def most_likely(reader: Reader, seen: PressedCells) -> Ints:
     """Cells (c,) that make the charges most likely, white noise supposed; neighbours are taken into account."""
     alone = np.zeros(len(seen.charge_pC), dtype=np.int64)
     offset = np.zeros(2)
-    best, gain, _ = _fitted(reader, seen.charge_pC, alone, offset, neighbours=False)
+    best, _, left = _fitted(reader, seen.charge_pC, alone, offset, neighbours=False)
     for by in OFFSETS_MM:
         for step in by * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]]):
             found = _fitted(reader, seen.charge_pC, alone, offset + step, neighbours=False)
-            if found[2] < _fitted(reader, seen.charge_pC, alone, offset, neighbours=False)[2]:
-                offset, (best, gain, _) = offset + step, found
+            if found[2] < left:
+                offset, (best, _, left) = offset + step, found
     for _ in range(PASSES):
-        best, gain, _ = _fitted(reader, seen.charge_pC, best, offset, neighbours=True)
+        best = _fitted(reader, seen.charge_pC, best, offset, neighbours=True)[0]
     return best
 
 
@@ -68,12 +68,19 @@ def _fitted(
     """The best cells (c,), their gain and the squares that are left, with the neighbours as these cells say."""
     if neighbours:
         parts = range(0, len(cells), CHUNK_CELLS)
-        known = np.concatenate([_patterns(reader, cells, np.arange(len(cells))[p : p + CHUNK_CELLS], offset_mm) for p in parts])
+        known = np.concatenate(
+            [_patterns(reader, cells, np.arange(len(cells))[p : p + CHUNK_CELLS], offset_mm) for p in parts]
+        )
     else:
-        known = np.broadcast_to(_patterns(reader, np.zeros(1, np.int64), np.zeros(1, np.int64), offset_mm), (len(cells), KINDS_OF_CELL, charge_pC.shape[1]))
+        known = np.broadcast_to(
+            _patterns(reader, np.zeros(1, np.int64), np.zeros(1, np.int64), offset_mm),
+            (len(cells), KINDS_OF_CELL, charge_pC.shape[1]),
+        )
     along, square = np.einsum("cn,ckn->ck", charge_pC, known), np.einsum("ckn,ckn->ck", known, known)
     total = float((charge_pC**2).sum())
-    gain = float(np.sqrt(np.mean(np.max(charge_pC**2, axis=1)) / max(np.mean(np.max(known[:, -1] ** 2, axis=1)), 1e-300)))
+    gain = float(
+        np.sqrt(np.mean(np.max(charge_pC**2, axis=1)) / max(np.mean(np.max(known[:, -1] ** 2, axis=1)), 1e-300))
+    )
     best = cells
     every = np.arange(len(cells))
     for _ in range(5):

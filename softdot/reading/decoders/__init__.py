@@ -3,17 +3,17 @@
 from collections.abc import Callable
 
 from geometry.base import InputError
-from softdot.reading import learned_decoder, model_decoder, threshold_decoder
-from softdot.reading.model_decoder import DecodedCells
-from softdot.reading.pressing import PressedCells, pressed
-from softdot.reading.track import Track, tracked
+from softdot.reading.decoders import learned, model, threshold
+from softdot.reading.decoders.model import DecodedCells
+from softdot.reading.decoders.pressing import PressedCells, pressed
+from softdot.reading.decoders.track import Track, tracked
 from softdot.reading.voltages import Reader, Voltages
 
 Decoder = Callable[[Reader, Track | PressedCells], DecodedCells]
 DECODERS: dict[str, Decoder] = {
-    "model": model_decoder.decode,
-    "threshold": threshold_decoder.decode,
-    "learned": learned_decoder.decode,
+    "model": model.decode,
+    "threshold": threshold.decode,
+    "learned": learned.decode,
 }
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.ndimage import map_coordinates, spline_filter1d
 from scipy.signal import correlate
 
-from geometry.arrays import Floats
+from geometry.arrays import Floats, Ints
 from softdot.reading.conditions import USUAL_SHARE_OF_DEPTH
 from softdot.reading.line import dot_places_mm
 from softdot.reading.motion import reach_mm
@@ -76,7 +76,7 @@ class Lagged:
     step_s: float
     coefficients: Floats
 
-    def at(self, time_s: Floats, *column: Floats | int) -> Floats:
+    def at(self, time_s: Floats, *column: Ints) -> Floats:
         """Values at times of any shape, of columns (of the table's trailing axes) that fit to it."""
         where = (np.asarray(time_s, dtype=np.float64) - self.first_s) / self.step_s
         places = np.broadcast_arrays(where, *column)
@@ -116,7 +116,7 @@ def templates(reader: Reader, posture: Posture, step_s: float, many: int = 1) ->
     capacitance, resistance = input_of(reader.readout, 1e-12 * float(kernel.capacitance_pF.max()))
     tail = min(TAIL_TIMES * capacitance * resistance, longest)
     before, behind = int(np.ceil(reach / speed / step_s)), int(np.ceil((reach / speed + tail) / step_s))
-    at = step_s * np.arange(-before, behind + 1 + many)
+    at: Floats = step_s * np.arange(-before, behind + 1 + many, dtype=np.float64)
     parts = round(step_s / fine_s)
     time = at[0] + fine_s * np.arange(parts * (len(at) - 1) + 1)
     charge = np.stack([_charge(reader, posture, y, time) for y in _row_places_mm(reader)])
