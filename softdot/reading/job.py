@@ -129,8 +129,9 @@ def _warnings(reading: LineReading) -> list[str]:
     held = None if reading.path is None else reading.path.held
     if held is not None and held < 1.0:
         told.append(
-            f"the force of {reading.conditions.force_N:g} N was held for {100 * held:.3g} % of the time; else a stop "
-            f"held the array at the depth of {reading.conditions.depth_mm:.3g} mm, where the kernel ends for the highest dot"
+            f"the force of {reading.conditions.force_N:g} N was held for {100 * held:.3g} % of the time; else a "
+            f"stop held the array at the depth of {reading.conditions.depth_mm:.3g} mm, where the kernel ends for the "
+            "highest dot"
         )
     return told
 

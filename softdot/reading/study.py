@@ -113,7 +113,8 @@ def load_study(path: Path, kernel: ArrayKernel, base: ReadingConditions) -> Read
         if key not in KEYS:
             raise InputError(f"{where}: '{key}' is not a key; known are {', '.join(KEYS)}")
     try:
-        changed = replace(base, **tables.get("base", {}))
+        stated: dict[str, Any] = tables.get("base", {})
+        changed = replace(base, **stated)
         axes = {name: tuple(float(one) for one in values) for name, values in tables.get("axes", {}).items()}
         study = ReadingStudy(
             changed, axes or usual_axes(kernel, changed),
@@ -148,7 +149,8 @@ def points(study: ReadingStudy) -> list[ReadingConditions]:
     """All conditions that the axes ask for, the usual ones first."""
     if study.combine:
         grid = itertools.product(*study.axes.values())
-        found = [replace(study.base, **dict(zip(study.axes, values, strict=True))) for values in grid]
+        changes: list[dict[str, Any]] = [dict(zip(study.axes, values, strict=True)) for values in grid]
+        found = [replace(study.base, **change) for change in changes]
     else:
         found = [with_value(study.base, name, one) for name, values in study.axes.items() for one in values]
     return list(dict.fromkeys([study.base, *found]))

@@ -1,8 +1,8 @@
 """Where the array is at each time, found from the voltages alone: speed, offset across the line, yaw, cell after cell.
 
 1. A first speed from the frequency below which half of the power lies, beside that of templates at several speeds.
-2. Around it, speeds and places of the first cells: those whose dots explain most (softdot.reading.decoders.fitted). Then offset
-   across the line and yaw the same way.
+2. Around it, speeds and places of the first cells: those whose dots explain most (softdot.reading.decoders.fitted).
+   Then offset across the line and yaw the same way.
 3. Along the line in blocks of cells: each block begins where the last ones lead to, and is moved to where its dots
    explain most.
 """
