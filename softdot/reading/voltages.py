@@ -1,7 +1,7 @@
 """From a path over a line to the voltages that are recorded: the kernel's charges, the read-out, noise and hum."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -38,13 +38,15 @@ class Voltages:
 class Reader:
     """All that a decoder may know: the kernel, the nominal standard, the read-out, and whether the array slides.
 
-    presses : when it is set down, as told by the machine that does it; None where it slides.
+    presses : when it is set down, as told by the machine that does it; None where it slides. passing : charges of dots
+    that are passed, by offset and yaw, which decoders keep here.
     """
 
     kernel: ArrayKernel
     standard: BrailleStandard
     readout: Readout
     presses: PressTimes | None = None
+    passing: dict[tuple[float, float], tuple[Floats, Floats]] = field(default_factory=dict, compare=False, repr=False)
 
 
 def charges_pC(kernel: ArrayKernel, line: DotLine, path: ArrayPath, told: Step | None = None) -> Floats:

@@ -1,9 +1,9 @@
 """Decoder "model": the dots that make the voltages most likely, without training.
 
 The amplitudes of all possible dots of the line are one banded least-squares problem (softdot.reading.decoders.fitted).
-A dot is raised where its amplitude is above the emptiest place between none and the gain. That dots feel each other is put
-right: the line that was read, nominal, goes through the kernel as a whole, and what this adds to the sum of single dots
-is subtracted from the voltages before the amplitudes are found again.
+A dot is raised where its amplitude is above the emptiest place between none and the gain. That dots feel each other is
+put right: the line that was read, nominal, goes through the kernel as a whole, and what this adds to the sum of single
+dots is subtracted from the voltages before the amplitudes are found again.
 """
 
 from dataclasses import dataclass

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from math import cos, radians, sin
 
 import numpy as np
+from scipy.fft import irfft, next_fast_len, rfft
 from scipy.ndimage import map_coordinates, spline_filter1d
-from scipy.signal import correlate
 
 from geometry.arrays import Floats, Ints
 from softdot.reading.conditions import USUAL_SHARE_OF_DEPTH
@@ -17,7 +17,7 @@ from solve.readout.amplifier import input_of
 ROWS = 3
 SAMPLE_MM = 0.1
 """Path to which samples are averaged before they are compared with templates; finer ones say nothing more."""
-FINE_MM = 0.02
+FINE_MM, BESIDE_MM = 0.02, 0.5
 TAIL_TIMES, LONGEST_TAIL_MM = 5.0, 12.0
 """A template goes on for so many time constants of the input, but no further than two cells."""
 
@@ -43,28 +43,20 @@ class DotTemplates:
     def overlap(self) -> "Lagged":
         """Inner products (l, 3, 3) of a dot of the first row with one of the second, lag s later."""
         count = len(self.voltage_V)
-        table = np.zeros((2 * count - 1, ROWS, ROWS))
-        for r in range(ROWS):
-            for s in range(ROWS):
-                table[:, r, s] = sum(
-                    correlate(self.voltage_V[:, r, e], self.voltage_V[:, s, e], method="fft")
-                    for e in range(self.voltage_V.shape[2])
-                )
+        size = next_fast_len(2 * count - 1, real=True)
+        spectrum = rfft(self.voltage_V, size, axis=0)
+        product = np.einsum("fre,fse->frs", spectrum, spectrum.conj())
+        table = np.roll(irfft(product, size, axis=0), count - 1, axis=0)[: 2 * count - 1]
         return lagged(table, -(count - 1) * self.step_s, self.step_s)
 
     def matched(self, heard: Voltages) -> "Lagged":
         """Inner products (l, 3) of the voltages with a dot of each row that is passed at a time."""
-        table = np.stack(
-            [
-                sum(
-                    correlate(heard.voltage_V[:, e], self.voltage_V[:, r, e], method="fft")
-                    for e in range(self.voltage_V.shape[2])
-                )
-                for r in range(ROWS)
-            ],
-            axis=1,
-        )
-        begin = heard.time_s[0] - (len(self.voltage_V) - 1) * self.step_s - self.first_s
+        samples, count = len(heard.time_s), len(self.voltage_V)
+        size = next_fast_len(samples + count - 1, real=True)
+        spectrum, own = rfft(heard.voltage_V, size, axis=0), rfft(self.voltage_V, size, axis=0)
+        product = np.einsum("fe,fre->fr", spectrum, own.conj())
+        table = np.roll(irfft(product, size, axis=0), count - 1, axis=0)[: samples + count - 1]
+        begin = heard.time_s[0] - (count - 1) * self.step_s - self.first_s
         return lagged(table, begin, self.step_s)
 
 
@@ -110,17 +102,14 @@ def templates(reader: Reader, posture: Posture, step_s: float, many: int = 1) ->
     The charge of a dot alone, USUAL_SHARE_OF_DEPTH of the kernel's depth deep, goes through the read-out at the speed.
     """
     speed, kernel = posture.speed_mm_per_s, reader.kernel
-    fine_s = step_s / max(1, int(np.ceil(step_s * speed / FINE_MM)))
-    reach = reach_mm(kernel, posture.yaw_deg) + 0.5
+    place, charge = _passing(reader, posture)
+    reach = float(place[-1])
     longest = LONGEST_TAIL_MM / speed
     capacitance, resistance = input_of(reader.readout, 1e-12 * float(kernel.capacitance_pF.max()))
     tail = min(TAIL_TIMES * capacitance * resistance, longest)
     before, behind = int(np.ceil(reach / speed / step_s)), int(np.ceil((reach / speed + tail) / step_s))
     at: Floats = step_s * np.arange(-before, behind + 1 + many, dtype=np.float64)
-    parts = round(step_s / fine_s)
-    time = at[0] + fine_s * np.arange(parts * (len(at) - 1) + 1)
-    charge = np.stack([_charge(reader, posture, y, time) for y in _row_places_mm(reader)])
-    voltage = np.stack([behind_readout(reader, time, one, at, fine_s) for one in charge], axis=1)
+    voltage = np.stack([behind_readout(reader, place / speed, one, at, FINE_MM / speed) for one in charge], axis=1)
     if many > 1:
         groups = len(at) // many
         voltage = voltage[: groups * many].reshape(groups, many, *voltage.shape[1:]).mean(axis=1)
@@ -128,16 +117,16 @@ def templates(reader: Reader, posture: Posture, step_s: float, many: int = 1) ->
     return DotTemplates(posture, float(at[0]), many * step_s, voltage)
 
 
-def _row_places_mm(reader: Reader) -> Floats:
-    """Places across the line of the three rows."""
-    return dot_places_mm(reader.standard)[:ROWS, 1]
-
-
-def _charge(reader: Reader, posture: Posture, row_mm: float, time_s: Floats) -> Floats:
-    """Charge (t, n) of one dot of a row while the array passes it."""
-    along, across = -posture.speed_mm_per_s * time_s, row_mm - posture.offset_mm
-    angle = radians(posture.yaw_deg)
-    x = cos(angle) * along + sin(angle) * across
-    y = cos(angle) * across - sin(angle) * along
-    depth = np.full(len(time_s), USUAL_SHARE_OF_DEPTH * reader.kernel.depth_mm[-1])
-    return reader.kernel.of_one(x, y, depth)[0]
+def _passing(reader: Reader, posture: Posture) -> tuple[Floats, Floats]:
+    """Places (m,) of the array's middle behind a dot, and charges (3, m, n) of the dots of the rows there."""
+    key = posture.offset_mm, posture.yaw_deg
+    if key not in reader.passing:
+        reach = reach_mm(reader.kernel, posture.yaw_deg) + BESIDE_MM
+        place: Floats = FINE_MM * np.arange(-np.ceil(reach / FINE_MM), np.ceil(reach / FINE_MM) + 1.0)
+        angle = radians(posture.yaw_deg)
+        across = dot_places_mm(reader.standard)[:ROWS, 1, None] - posture.offset_mm
+        x = cos(angle) * -place + sin(angle) * across
+        y = cos(angle) * across + sin(angle) * place
+        depth = np.full(x.shape, USUAL_SHARE_OF_DEPTH * reader.kernel.depth_mm[-1])
+        reader.passing[key] = place, reader.kernel.of_one(x, y, depth)[0]
+    return reader.passing[key]
