@@ -11,9 +11,9 @@ from softdot.console import Progress
 from softdot.reading.cells import braille, text_of
 from softdot.reading.conditions import ReadingConditions, standard_of, standard_warnings
 from softdot.reading.decoders import DECODERS, seen_of
+from softdot.reading.decoders.fitted import Track
 from softdot.reading.decoders.model import DecodedCells
 from softdot.reading.decoders.pressing import PressedCells
-from softdot.reading.decoders.track import Track
 from softdot.reading.line import cell_pitch_mm, made_line
 from softdot.reading.motion import ArrayPath, moved, press_times
 from softdot.reading.score import aligned, scores

@@ -4,9 +4,10 @@ from collections.abc import Callable
 
 from geometry.base import InputError
 from softdot.reading.decoders import learned, model, threshold
+from softdot.reading.decoders.fitted import Track
 from softdot.reading.decoders.model import DecodedCells
 from softdot.reading.decoders.pressing import PressedCells, pressed
-from softdot.reading.decoders.track import Track, tracked
+from softdot.reading.decoders.track import tracked
 from softdot.reading.voltages import Reader, Voltages
 
 Decoder = Callable[[Reader, Track | PressedCells], DecodedCells]

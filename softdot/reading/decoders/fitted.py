@@ -15,7 +15,7 @@ from scipy.linalg import cho_factor, cho_solve
 
 from geometry.arrays import Floats, Ints
 from softdot.reading.cells import DOTS
-from softdot.reading.decoders.templates import DotTemplates, Lagged
+from softdot.reading.decoders.templates import DotTemplates, Lagged, Posture
 from softdot.reading.line import cell_pitch_mm, dot_places_mm
 from softdot.reading.voltages import Reader, Voltages
 
@@ -65,6 +65,29 @@ class CellFit:
                 whole[i + distance, :, i, :] = blocks[distance].T
         matrix = whole.reshape(count * DOTS, count * DOTS)
         return np.asarray(matrix + RIDGE * np.mean(np.diag(matrix)) * np.eye(len(matrix)))
+
+
+@dataclass(frozen=True)
+class Track:
+    """passed_s (c,) : when the array's middle passes each cell; fit : of the voltages, averaged to samples heard."""
+
+    fit: CellFit
+    heard: Voltages
+    many: int
+    passed_s: Floats
+
+    @property
+    def posture(self) -> Posture:
+        """Speed, offset and yaw."""
+        return self.fit.templates.posture
+
+    def place_mm(self, time_s: Floats) -> Floats:
+        """Of the array's middle (t,) from that of the first cell, on at the mean speed beyond the ends."""
+        pitch, passed = self.fit.pitch_mm, self.passed_s
+        speed = self.posture.speed_mm_per_s
+        inside = np.interp(time_s, passed, pitch * np.arange(len(passed)))
+        before, behind = np.minimum(time_s - passed[0], 0.0), np.maximum(time_s - passed[-1], 0.0)
+        return np.asarray(inside + speed * (before + behind))
 
 
 def cell_fit(reader: Reader, templates: DotTemplates, heard: Voltages) -> CellFit:

@@ -14,9 +14,9 @@ from sklearn.neural_network import MLPClassifier
 from geometry.arrays import Floats
 from softdot.reading.cells import KINDS_OF_CELL
 from softdot.reading.conditions import ReadingConditions
+from softdot.reading.decoders.fitted import Track
 from softdot.reading.decoders.model import DecodedCells, trimmed
 from softdot.reading.decoders.pressing import PressedCells, pressed
-from softdot.reading.decoders.track import Track
 from softdot.reading.line import cell_pitch_mm, cells_from, made_line, raised
 from softdot.reading.motion import moved, press_times
 from softdot.reading.voltages import Reader, Voltages, recorded

@@ -9,9 +9,9 @@ from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
 from geometry.arrays import Floats
 from softdot.reading.cells import DOTS
+from softdot.reading.decoders.fitted import Track
 from softdot.reading.decoders.model import DecodedCells, trimmed
 from softdot.reading.decoders.pressing import PressedCells
-from softdot.reading.decoders.track import Track
 from softdot.reading.line import cell_pitch_mm, cells_from, dot_places_mm
 from softdot.reading.voltages import Reader, charge_again_pC
 

@@ -14,7 +14,8 @@ import numpy as np
 from geometry.arrays import Floats
 from geometry.base import InputError
 from softdot.reading.cells import DOTS
-from softdot.reading.decoders.fitted import CellFit, cell_fit, explained
+from softdot.reading.decoders.corrected import left_over
+from softdot.reading.decoders.fitted import CellFit, Track, cell_fit, explained
 from softdot.reading.decoders.templates import Posture, averaged, templates
 from softdot.reading.line import cell_pitch_mm
 from softdot.reading.voltages import Reader, Voltages
@@ -23,7 +24,8 @@ SLOWEST_MM_PER_S, FASTEST_MM_PER_S, SPEEDS = 0.5, 500.0, 13
 AROUND, SPEED_STEP = 2.2, 0.02
 WINDOW_CELLS, LONGER_CELLS = 8, 20
 PLACE_MM = 0.2
-RIVALS = 6
+RIVALS, APART_MM, NEARLY = 3, 1.0, 0.85
+"""Speeds that are followed, how far their two places are apart, and what a rival must explain of the best's."""
 OFFSETS_MM, YAWS_DEG = (0.8, 0.4, 0.2, 0.1), (6.0, 3.0, 1.5)
 BLOCK, SHIFT_MM, SHIFT_STEP_MM = 8, 0.7, 0.05
 STRETCH = 0.01
@@ -37,29 +39,6 @@ ALIKE = 0.02
 
 class NoDotError(InputError):
     """Nothing stands out of the noise."""
-
-
-@dataclass(frozen=True)
-class Track:
-    """passed_s (c,) : when the array's middle passes each cell; fit : of the voltages, averaged to samples heard."""
-
-    fit: CellFit
-    heard: Voltages
-    many: int
-    passed_s: Floats
-
-    @property
-    def posture(self) -> Posture:
-        """Speed, offset and yaw."""
-        return self.fit.templates.posture
-
-    def place_mm(self, time_s: Floats) -> Floats:
-        """Of the array's middle (t,) from that of the first cell, on at the mean speed beyond the ends."""
-        pitch, passed = self.fit.pitch_mm, self.passed_s
-        speed = self.posture.speed_mm_per_s
-        inside = np.interp(time_s, passed, pitch * np.arange(len(passed)))
-        before, behind = np.minimum(time_s - passed[0], 0.0), np.maximum(time_s - passed[-1], 0.0)
-        return np.asarray(inside + speed * (before + behind))
 
 
 def tracked(reader: Reader, heard: Voltages) -> Track:
@@ -125,15 +104,13 @@ def _first_cells(
     step = heard.step_s / many
     window = _cut(heard, active[0], WINDOW_CELLS * cell_pitch_mm(reader.standard) / speed, active[1])
     speeds = speed * np.exp(np.arange(-np.log(AROUND), np.log(AROUND), SPEED_STEP))
-    rivals = sorted((_best(reader, window, step, many, Posture(float(one))) for one in speeds), key=lambda r: -r.score)
-    longer = _cut(heard, active[0], LONGER_CELLS * cell_pitch_mm(reader.standard) / rivals[0].posture.speed_mm_per_s,
-                  active[1])  # fmt: skip
-    best: _Start | None = None
-    for rival in rivals[:RIVALS]:
-        found = _finer(reader, window, step, many, rival, 0.5 * SPEED_STEP)
-        found = _finer(reader, longer, step, many, found, 0.25 * SPEED_STEP)
-        best = found if best is None or found.score > best.score else best
-    assert best is not None
+    starts = [_best(reader, window, step, many, Posture(float(one))) for one in speeds]
+    rivals = _peaks(starts)
+    pitch_s = cell_pitch_mm(reader.standard) / rivals[0].posture.speed_mm_per_s
+    longer = _cut(heard, active[0], LONGER_CELLS * pitch_s, active[1])
+    finer = [_finer(reader, window, step, many, one, 0.5 * SPEED_STEP) for one in rivals]
+    finer = [_finer(reader, longer, step, many, one, 0.25 * SPEED_STEP) for one in finer]
+    best = _most_likely(reader, longer, step, many, finer)
     for offset in OFFSETS_MM:
         for yaw in YAWS_DEG[:2] if offset == OFFSETS_MM[0] else YAWS_DEG[-1:]:
             best = _turned(reader, longer, step, many, best, offset, yaw)
@@ -150,6 +127,28 @@ class _Start:
     middle_s: float
 
 
+def _peaks(starts: list[tuple[_Start, ...]]) -> list[_Start]:
+    """The best places of those speeds whose neighbours are worse, best first."""
+    score = np.array([0.0, *(one[0].score for one in starts), 0.0])
+    peaks = [one for k, one in enumerate(starts, 1) if score[k] >= max(score[k - 1], score[k + 1])]
+    peaks.sort(key=lambda one: -one[0].score)
+    return sorted((place for one in peaks[:RIVALS] for place in one), key=lambda place: -place.score)
+
+
+def _most_likely(reader: Reader, window: Voltages, step: float, many: int, rivals: list[_Start]) -> _Start:
+    """Of rivals that explain nearly as much as the best the one whose dots, all together, leave least."""
+    most = max(one.score for one in rivals)
+    near = [one for one in rivals if one.score > NEARLY * most]
+    if len(near) == 1:
+        return near[0]
+    left = []
+    for one in near:
+        fit = cell_fit(reader, templates(reader, one.posture, step, many), window)
+        count = max(2, int(np.ceil((window.time_s[-1] - one.middle_s) / fit.pitch_s)) + 1)
+        left.append(left_over(reader, Track(fit, window, many, one.middle_s + fit.pitch_s * np.arange(count))))
+    return near[int(np.argmin(left))]
+
+
 def _cut(heard: Voltages, onset: float, long_s: float, end: float) -> Voltages:
     """From before the onset on, as long as said, at most to behind the end."""
     margin = 0.15 * long_s
@@ -157,16 +156,18 @@ def _cut(heard: Voltages, onset: float, long_s: float, end: float) -> Voltages:
     return Voltages(heard.time_s[inside], heard.voltage_V[inside])
 
 
-def _best(reader: Reader, window: Voltages, step: float, many: int, posture: Posture) -> _Start:
-    """The place of the first cell at which the dots of the window explain most."""
+def _best(reader: Reader, window: Voltages, step: float, many: int, posture: Posture) -> tuple[_Start, ...]:
+    """Two places of the first cell, apart, at which the dots of the window explain most."""
     fit = cell_fit(reader, templates(reader, posture, step, many), window)
     first = window.time_s[0]
     count = max(2, int(np.ceil((window.time_s[-1] - first) / fit.pitch_s)) + 1)
     starts = first + np.arange(0.0, fit.pitch_s, PLACE_MM / posture.speed_mm_per_s) - 0.5 * fit.pitch_s
     products = fit.products(starts[:, None] + fit.pitch_s * np.arange(count))
     score, raised = explained(fit.matrix(count), products.reshape(len(starts), -1))
-    number = _left_of_rivals(score, raised)
-    return _Start(float(score[number]), posture, float(starts[number]))
+    first_best = _left_of_rivals(score, raised)
+    apart = np.abs((starts - starts[first_best] + 0.5 * fit.pitch_s) % fit.pitch_s - 0.5 * fit.pitch_s)
+    second = int(np.argmax(np.where(apart * posture.speed_mm_per_s > APART_MM, score, -1.0)))
+    return tuple(_Start(float(score[k]), posture, float(starts[k])) for k in (first_best, second))
 
 
 def _left_of_rivals(score: Floats, raised: Floats) -> int:

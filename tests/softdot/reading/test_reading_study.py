@@ -56,9 +56,9 @@ def test_a_limit_is_bracketed_and_halved():
 
 def test_without_limit_the_last_value_is_told():
     study = ReadingStudy(ReadingConditions(), {"worn": (0.0, 0.5, 1.0)}, repeats=1)
-    limit = found_limits(study, lambda one: True)["worn"]
+    limit = found_limits(study, lambda _: True)["worn"]
     assert (limit.good, limit.bad) == (1.0, None)
-    assert found_limits(study, lambda one: False)["worn"].good is None
+    assert found_limits(study, lambda _: False)["worn"].good is None
 
 
 def test_combined_axes_give_every_combination():
