@@ -40,13 +40,14 @@ def settled(reader: Reader, track: Track) -> Bools:
     return dots
 
 
-def left_over(reader: Reader, track: Track) -> float:
-    """The part of the voltages' squares that the dots which were found leave, with the gain that leaves least."""
-    expected = _line_voltages(reader, track, settled(reader, track), beside_alone=False).voltage_V
+def left_over(reader: Reader, track: Track) -> tuple[Bools, float]:
+    """Dots (c, 6), and the part of the voltages' squares that they leave, with the gain that leaves least."""
+    dots = settled(reader, track)
+    expected = _line_voltages(reader, track, dots, beside_alone=False).voltage_V
     heard = track.heard.voltage_V
     square = max(float((expected**2).sum()), 1e-300)
     along = max(float((expected * heard).sum()), 0.0)
-    return 1.0 - along**2 / square / max(float((heard**2).sum()), 1e-300)
+    return dots, 1.0 - along**2 / square / max(float((heard**2).sum()), 1e-300)
 
 
 def amplitudes(fit: CellFit, products: Floats) -> Floats:

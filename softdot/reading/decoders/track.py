@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from geometry.arrays import Floats
+from geometry.arrays import Bools, Floats
 from geometry.base import InputError
 from softdot.reading.cells import DOTS
 from softdot.reading.decoders.corrected import left_over
@@ -34,7 +34,7 @@ HOP, REMEMBERED, LEAST_SHARE = 4, 6, 0.05
 ONSET_SIGMA, STRONG = 6.0, 0.9
 AVERAGED, LEAST_GROUPS = (1, 2, 4, 8, 16, 32, 64), 20
 ALIKE = 0.02
-"""Places whose dots explain nearly as much as the best: then dots in the left column are believed."""
+"""Places whose dots explain so much less than the best's are as good."""
 
 
 class NoDotError(InputError):
@@ -141,12 +141,14 @@ def _most_likely(reader: Reader, window: Voltages, step: float, many: int, rival
     near = [one for one in rivals if one.score > NEARLY * most]
     if len(near) == 1:
         return near[0]
-    left = []
+    left, columns = [], []
     for one in near:
         fit = cell_fit(reader, templates(reader, one.posture, step, many), window)
         count = max(2, int(np.ceil((window.time_s[-1] - one.middle_s) / fit.pitch_s)) + 1)
-        left.append(left_over(reader, Track(fit, window, many, one.middle_s + fit.pitch_s * np.arange(count))))
-    return near[int(np.argmin(left))]
+        dots, rest = left_over(reader, Track(fit, window, many, one.middle_s + fit.pitch_s * np.arange(count)))
+        left.append(rest)
+        columns.append(_left_share(dots.reshape(1, -1))[0])
+    return near[_or_left_column(1.0 - np.array(left), np.array(columns))]
 
 
 def _cut(heard: Voltages, onset: float, long_s: float, end: float) -> Voltages:
@@ -164,18 +166,26 @@ def _best(reader: Reader, window: Voltages, step: float, many: int, posture: Pos
     starts = first + np.arange(0.0, fit.pitch_s, PLACE_MM / posture.speed_mm_per_s) - 0.5 * fit.pitch_s
     products = fit.products(starts[:, None] + fit.pitch_s * np.arange(count))
     score, raised = explained(fit.matrix(count), products.reshape(len(starts), -1))
-    first_best = _left_of_rivals(score, raised)
+    first_best = _or_left_column(score, _left_share(raised))
     apart = np.abs((starts - starts[first_best] + 0.5 * fit.pitch_s) % fit.pitch_s - 0.5 * fit.pitch_s)
     second = int(np.argmax(np.where(apart * posture.speed_mm_per_s > APART_MM, score, -1.0)))
     return tuple(_Start(float(score[k]), posture, float(starts[k])) for k in (first_best, second))
 
 
-def _left_of_rivals(score: Floats, raised: Floats) -> int:
-    """The best place; of those that are nearly as good the one with most dots in the left columns of their cells."""
-    alike = score >= (1.0 - ALIKE) * score.max()
+def _left_share(raised: Floats | Bools) -> Floats:
+    """Share (m,) of the dots (m, k) of some cells that lie in the left columns."""
     column = raised.reshape(len(raised), -1, 2, DOTS // 2).sum(axis=(1, 3))
-    share = column[:, 0] / np.maximum(column.sum(axis=1), 1.0)
-    return int(np.argmax(np.where(alike, share > share[alike].max() - 0.5, False) * score))
+    return np.asarray(column[:, 0] / np.maximum(column.sum(axis=1), 1.0))
+
+
+def _or_left_column(score: Floats, share: Floats) -> int:
+    """The best; where all its dots lie in right columns, one nearly as good whose dots all lie in the left ones.
+
+    A line with dots in one column alone does not tell which one it is; letters such as a, b, k, l begin at the left.
+    """
+    best = int(np.argmax(score))
+    left = np.flatnonzero((share == 1.0) & (score >= (1.0 - ALIKE) * score[best]))
+    return int(left[np.argmax(score[left])]) if share[best] == 0.0 and len(left) else best
 
 
 def _finer(reader: Reader, window: Voltages, step: float, many: int, start: _Start, by: float) -> _Start:
