@@ -25,6 +25,7 @@ COMMANDS = {
     "kit": "softdot.commands.kit",
     "plate": "softdot.commands.plate",
     "array": "softdot.commands.array",
+    "read": "softdot.commands.read",
     "studio": "softdot.commands.studio",
     "check": "softdot.commands.check",
     "new": "softdot.commands.new",

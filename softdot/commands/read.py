@@ -1,0 +1,180 @@
+"""softdot read: a line of Braille under an array, its voltages, and what decoders make of them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from softdot.console import (
+    GOOD,
+    INTERRUPTED,
+    Logged,
+    Progress,
+    complain,
+    installed_version,
+    only_the_summary_on_stdout,
+    plain,
+    show,
+    warn,
+    write_json,
+)
+from softdot.output import Product, staged_folder
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+
+    from softdot.config import Config
+    from softdot.reading.conditions import ReadingConditions
+
+READING = Product(
+    "softdot-reading/1", "reading.json", frozenset({"reading.json", "signals.npz", "signals.png", "reading.html"})
+)
+USUAL_DECODERS = "model,threshold,learned"
+
+
+def run_read(
+    text: str | None,
+    kernel_folder: Path,
+    out: Path,
+    conditions: ReadingConditions | None = None,
+    config: Config | None = None,
+    table: str | None = None,
+    decoders: str = USUAL_DECODERS,
+    recording: Path | None = None,
+    progress: Progress | None = None,
+) -> dict[str, Any]:
+    """Read a text with the kernel of a folder into the folder out and return what reading.json says.
+
+    text : None or empty only with a recording, whose text nobody knows. table : of liblouis, None for plain English.
+    InputError, before anything is written, for whatever cannot be read.
+    """
+    import numpy as np
+
+    from export.array.signals import draw_signals
+    from softdot.machine import named_when_missing
+    from softdot.reading.cells import cells_of
+    from softdot.reading.conditions import ReadingConditions
+    from softdot.reading.decoders import named_decoders
+    from softdot.reading.job import content, read_line, signals
+    from softdot.reading.kernels import opened_kernel, readout_of
+    from softdot.reading.recorded_file import recorded_voltages
+
+    progress = progress or Logged()
+    with named_when_missing():
+        names = named_decoders(decoders)
+        cells = None if recording is not None and not (text or "").strip() else cells_of(text or "", table)
+        kernel = opened_kernel(kernel_folder, config)
+        heard = None if recording is None else recorded_voltages(recording, len(kernel.centres_mm))
+        with staged_folder(out, READING) as folder:
+            chosen = conditions or ReadingConditions()
+            reading = read_line(kernel, readout_of(kernel, config), chosen, names, progress, cells, heard)
+            progress.stage("export")
+            arrays = signals(reading)
+            summary: dict[str, Any] = plain(
+                {
+                    "format": READING.format,
+                    "softdot_version": installed_version(),
+                    "config_hash": kernel.about["config_hash"],
+                    **content(reading, text if cells is not None else None, table),
+                    "table": table,
+                    "recording": None if recording is None else str(recording),
+                    "config": kernel.about["config"],
+                }
+            )
+            warn(summary["warnings"])
+            with (folder / "signals.npz").open("wb") as file:
+                np.savez_compressed(file, **arrays)  # type: ignore[arg-type]
+            draw_signals(arrays, kernel.about["labels"], folder / "signals.png")
+            write_json(folder / READING.summary, summary)
+    return summary
+
+
+def command(chosen: Namespace) -> int:
+    """Read chosen.text into chosen.output, or study how far conditions may go. InputError."""
+    from softdot.config import load_config
+    from softdot.console import progress_of
+
+    config = load_config(chosen.config, chosen.set) if chosen.config is not None or chosen.set else None
+    if chosen.study or chosen.conditions is not None:
+        return _study(chosen, config)
+    recording = None if chosen.recording is None else Path(chosen.recording)
+    with only_the_summary_on_stdout(), progress_of(chosen) as progress:
+        summary = run_read(
+            chosen.text, Path(chosen.kernel), Path(chosen.output), conditions_of(chosen), config, chosen.table,
+            chosen.decoders, recording, progress,
+        )  # fmt: skip
+    show(summary, chosen, short_text)
+    return GOOD
+
+
+def _study(chosen: Namespace, config: Config | None) -> int:
+    """Study into chosen.output; 130 when it was interrupted. InputError."""
+    from dataclasses import replace
+
+    from geometry.base import InputError
+    from softdot.console import progress_of
+    from softdot.reading.kernels import opened_kernel
+    from softdot.reading.study import ReadingStudy, load_study, usual_axes
+    from softdot.reading.study_run import FOLDER, run_reading_study
+
+    if chosen.recording is not None:
+        raise InputError("--recording: a study makes its own voltages; leave it out")
+    kernel = opened_kernel(Path(chosen.kernel), config)
+    base = conditions_of(chosen)
+    usual = ReadingStudy(base, usual_axes(kernel, base))
+    study = usual if chosen.conditions is None else load_study(Path(chosen.conditions), kernel, base)
+    if chosen.text:
+        study = replace(study, text=chosen.text, table=chosen.table)
+    try:
+        with only_the_summary_on_stdout(), progress_of(chosen) as progress:
+            summary = run_reading_study(
+                study, Path(chosen.kernel), Path(chosen.output), config, chosen.workers, progress
+            )
+    except KeyboardInterrupt:
+        if not (Path(chosen.output) / FOLDER).exists():
+            raise
+        complain(f"interrupted; finished readings are kept in '{chosen.output}', the same command continues")
+        return INTERRUPTED
+    show(summary, chosen, _limits_text)
+    return GOOD
+
+
+def conditions_of(chosen: Namespace) -> ReadingConditions:
+    """The conditions of the command line; what it does not say has its default. InputError."""
+    from dataclasses import fields
+
+    from softdot.reading.conditions import ReadingConditions
+
+    given = {one.name: getattr(chosen, one.name, None) for one in fields(ReadingConditions)}
+    return ReadingConditions(**{name: value for name, value in given.items() if value is not None})
+
+
+def short_text(summary: dict[str, Any], output: str) -> str:
+    """What was read, how well and how fast, in a few lines."""
+    lines = [summary["text_read"]]
+    for name, own in summary["decoders"].items():
+        if "character_accuracy" in own:
+            share = own["character_accuracy"]
+            lines.append(
+                f"{name}: {100 * share['value']:.1f} % of {share['of']} characters "
+                f"({100 * share['low']:.1f} to {100 * share['high']:.1f}), "
+                f"{100 * own['word_accuracy']['value']:.1f} % of words"
+            )
+    if summary["words_per_minute"] is not None:
+        lines.append(f"{summary['words_per_minute']:.3g} words a minute, {summary['cells_per_s']:.3g} cells a second")
+    return "\n".join([*lines, f"{output}/signals.png"])
+
+
+def _limits_text(summary: dict[str, Any], output: str) -> str:
+    """How far each condition may go."""
+    lines = []
+    for name, limit in summary["limits"].items():
+        if limit["read_up_to"] is None:
+            lines.append(f"{name}: too few characters are read already at the usual value")
+        elif limit["fails_at"] is None:
+            lines.append(f"{name}: read at {limit['read_up_to']:.4g}, the last value that was tried")
+        else:
+            lines.append(f"{name}: read up to {limit['read_up_to']:.4g}, no more at {limit['fails_at']:.4g}")
+    return "\n".join(
+        [f"at least {100 * summary['accuracy']:g} % of the characters:", *lines, f"{output}/reading_study.png"]
+    )

@@ -1,0 +1,52 @@
+"""Decoder "threshold": a dot is there where the electrode under its place has charge, above one threshold.
+
+The charge of each electrode is that which gave its voltages, less its least value within a cell pitch. What the model
+knows of crosstalk, of neighbours and of shapes is not used; speed and place are those of the track.
+"""
+
+import numpy as np
+from scipy.ndimage import maximum_filter1d, minimum_filter1d
+
+from geometry.arrays import Floats
+from softdot.reading.cells import DOTS
+from softdot.reading.decoders.fitted import Track
+from softdot.reading.decoders.model import DecodedCells, trimmed
+from softdot.reading.decoders.pressing import PressedCells
+from softdot.reading.line import cell_pitch_mm, cells_from, dot_places_mm
+from softdot.reading.voltages import Reader, charge_again_pC
+
+STEP_MM, PEAK_MM = 0.1, 1.0
+LARGE, HALF = 0.95, 0.5
+"""The threshold is half of what one of twenty places exceeds."""
+
+
+def decode(reader: Reader, seen: Track | PressedCells) -> DecodedCells:
+    """Cells whose electrodes are above the threshold."""
+    level = _pressed_levels(reader, seen) if isinstance(seen, PressedCells) else _slid_levels(reader, seen)
+    dots = level > HALF * np.quantile(level, LARGE)
+    return trimmed(cells_from(dots), seen.passed_s)
+
+
+def _pressed_levels(reader: Reader, seen: PressedCells) -> Floats:
+    """Charge (c, 6) of the electrode nearest to each dot."""
+    gap = dot_places_mm(reader.standard)[:, None] - reader.kernel.centres_mm[None]
+    return seen.charge_pC[:, np.argmin((gap**2).sum(axis=2), axis=1)]
+
+
+def _slid_levels(reader: Reader, seen: Track) -> Floats:
+    """Peaks (c, 6) of the charge as the dot passes under the electrodes of its row, mean of these."""
+    charge, place = charge_again_pC(reader, seen.heard), seen.place_mm(seen.heard.time_s)
+    grid = np.arange(place[0], place[-1], STEP_MM)
+    pitch, dots = cell_pitch_mm(reader.standard), dot_places_mm(reader.standard)
+    centres = reader.kernel.centres_mm
+    middles = pitch * np.arange(len(seen.passed_s))
+    level = np.zeros((len(middles), DOTS))
+    for dot in range(DOTS):
+        across = np.abs(centres[:, 1] - dots[dot, 1])
+        own = np.flatnonzero(across < across.min() + STEP_MM)
+        for electrode in own:
+            even = np.interp(grid, place, charge[:, electrode])
+            above = even - minimum_filter1d(even, round(pitch / STEP_MM) | 1)
+            peak = maximum_filter1d(above, round(PEAK_MM / STEP_MM) | 1)
+            level[:, dot] += np.interp(middles + dots[dot, 0] - centres[electrode, 0], grid, peak) / len(own)
+    return level

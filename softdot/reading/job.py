@@ -1,0 +1,174 @@
+"""The job of softdot read: a text through the voltages and back, and the content of reading.json and signals.npz."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from geometry.arrays import Floats, Ints
+from softdot.arrays.kernel import ArrayKernel
+from softdot.console import Progress
+from softdot.reading.cells import braille, text_of
+from softdot.reading.conditions import ReadingConditions, standard_of, standard_warnings
+from softdot.reading.decoders import DECODERS, seen_of
+from softdot.reading.decoders.fitted import Track
+from softdot.reading.decoders.model import DecodedCells
+from softdot.reading.decoders.pressing import PressedCells
+from softdot.reading.line import cell_pitch_mm, made_line
+from softdot.reading.motion import ArrayPath, moved, press_times
+from softdot.reading.score import aligned, scores
+from softdot.reading.voltages import Reader, Voltages, recorded
+from solve.model import Readout
+
+
+@dataclass(frozen=True)
+class LineReading:
+    """cells_true (c,) or None where nobody knows; path : None for a recording; found : of each decoder, by name."""
+
+    reader: Reader
+    conditions: ReadingConditions
+    cells_true: Ints | None
+    heard: Voltages
+    path: ArrayPath | None
+    seen: Track | PressedCells
+    found: dict[str, DecodedCells]
+
+    @property
+    def first(self) -> DecodedCells:
+        """Of the decoder that was named first."""
+        return next(iter(self.found.values()))
+
+
+def read_line(
+    kernel: ArrayKernel,
+    readout: Readout,
+    conditions: ReadingConditions,
+    names: list[str],
+    progress: Progress,
+    cells: Ints | None,
+    recording: Voltages | None = None,
+) -> LineReading:
+    """Simulate the voltages of cells, or take recorded ones, and decode them. InputError.
+
+    Every decoder is given the reader and the voltages alone.
+    """
+    known = conditions.resolved(kernel)
+    chosen = standard_of(kernel, known.standard)
+    times = press_times(known, cell_pitch_mm(chosen)) if known.mode == "press" else None
+    reader = Reader(kernel, chosen, readout, times)
+    path: ArrayPath | None = None
+    if recording is None:
+        assert cells is not None
+        progress.stage("simulate")
+        random = np.random.default_rng(known.seed)
+        line = made_line(cells, chosen, known, random)
+        path = moved(kernel, line, len(cells), chosen, known, random)
+        heard = recorded(reader, line, path, known, random, lambda done, all_: progress.step(done, all_, ""))
+    else:
+        heard = recording
+    progress.stage("decode")
+    seen = seen_of(reader, heard)
+    found = {}
+    for number, name in enumerate(names, 1):
+        found[name] = DECODERS[name](reader, seen)
+        progress.step(number, len(names), name)
+    return LineReading(reader, known, cells, heard, path, seen, found)
+
+
+def content(reading: LineReading, text: str | None, table: str | None) -> dict[str, Any]:
+    """What reading.json says of a reading, but for format, version and configuration."""
+    first, true = reading.first, reading.cells_true
+    decoders = {name: _scored(true, found, table) for name, found in reading.found.items()}
+    own = next(iter(decoders.values()))
+    seconds = _duration_s(reading)
+    words = len((text_of(first.cells if true is None else true, table)).split())
+    count = len(first.cells) if true is None else len(true)
+    return {
+        "text_true": text,
+        "text_of_cells_true": None if true is None else text_of(true, table),
+        "cells_true": None if true is None else braille(true),
+        "characters": None if true is None else len(text_of(true, table)),
+        **own,
+        "decoder": next(iter(decoders)),
+        "decoders": decoders,
+        "words_per_minute": 60.0 * words / seconds if seconds > 0.0 else None,
+        "cells_per_s": count / seconds if seconds > 0.0 else None,
+        "duration_s": seconds,
+        "conditions": {**reading.conditions.as_dict(), "readout": reading.reader.readout.model_dump(mode="json")},
+        "share_of_time_at_force": None if reading.path is None else reading.path.held,
+        "track": _track(reading.seen),
+        "kernel": {key: value for key, value in reading.reader.kernel.about.items() if key != "config"},
+        "warnings": _warnings(reading),
+    }
+
+
+def _scored(true: Ints | None, found: DecodedCells, table: str | None) -> dict[str, Any]:
+    if true is not None:
+        return scores(true, found.cells, table)
+    return {"text_read": text_of(found.cells, table), "cells_read": braille(found.cells)}
+
+
+def _duration_s(reading: LineReading) -> float:
+    """From the first cell to the last, and as much as one cell takes."""
+    passed = reading.first.passed_s if reading.path is None else reading.path.reached_s
+    if len(passed) < 2:
+        presses = reading.reader.presses
+        if presses is not None:
+            return presses.period_s
+        return cell_pitch_mm(reading.reader.standard) / reading.conditions.speed_mm_per_s
+    return float((passed[-1] - passed[0]) * len(passed) / (len(passed) - 1))
+
+
+def _track(seen: Track | PressedCells) -> dict[str, float] | None:
+    """What the voltages alone told of the motion."""
+    return vars(seen.posture) if isinstance(seen, Track) else None
+
+
+def _warnings(reading: LineReading) -> list[str]:
+    told = standard_warnings(reading.reader.kernel, reading.reader.standard)
+    held = None if reading.path is None else reading.path.held
+    if held is not None and held < 1.0:
+        told.append(
+            f"the force of {reading.conditions.force_N:g} N was held for {100 * held:.3g} % of the time; else a "
+            f"stop held the array at the depth of {reading.conditions.depth_mm:.3g} mm, where the kernel ends for the "
+            "highest dot"
+        )
+    return told
+
+
+def signals(reading: LineReading) -> dict[str, Floats]:
+    """The arrays of signals.npz.
+
+    cell_true is -1 where nobody knows it, cell_read -1 where a cell was missed; cells that were added have no row.
+    """
+    pitch, first, true = cell_pitch_mm(reading.reader.standard), reading.first, reading.cells_true
+    heard = reading.heard
+    if true is None:
+        read, at, known = first.cells, first.passed_s, np.full(len(first.cells), -1)
+    else:
+        pairs = aligned([int(one) for one in true], [int(one) for one in first.cells])
+        partner = {i: j for i, j in pairs if i is not None and j is not None}
+        read = np.array([first.cells[partner[i]] if i in partner else -1 for i in range(len(true))])
+        passed = [first.passed_s[partner[i]] if i in partner else np.nan for i in range(len(true))]
+        at, known = np.array(passed) if reading.path is None else reading.path.reached_s, true
+    return {
+        "time_s": heard.time_s,
+        "voltage_V": heard.voltage_V,
+        "position_mm": _place_mm(reading, pitch),
+        "x_mm": pitch * np.arange(len(read), dtype=np.float64),
+        "cell_true": np.asarray(known, dtype=np.int64),
+        "cell_read": np.asarray(read, dtype=np.int64),
+        "read_time_s": np.asarray(at, dtype=np.float64),
+    }
+
+
+def _place_mm(reading: LineReading, pitch: float) -> Floats:
+    """Where the array's middle is: as simulated, else as it was tracked, from the first cell that was read."""
+    if reading.path is not None:
+        return np.interp(reading.heard.time_s, reading.path.time_s, reading.path.x_mm)
+    if isinstance(reading.seen, Track):
+        place = reading.seen.place_mm(reading.heard.time_s)
+        begin = reading.first.passed_s[0] if len(reading.first.passed_s) else reading.seen.passed_s[0]
+        return np.asarray(place - np.interp(begin, reading.heard.time_s, place))
+    assert reading.reader.presses is not None
+    return np.asarray(pitch * np.floor(reading.heard.time_s / reading.reader.presses.period_s))

@@ -1,0 +1,202 @@
+"""How the array moves over a line: it slides at constant depth or force, or is set down cell by cell.
+
+Tremor is white noise behind a Butterworth low-pass of order two, one for the place across the line and one for depth.
+"""
+
+from dataclasses import dataclass
+from math import cos, radians, sin
+
+import numpy as np
+
+from geometry.arrays import Bools, Floats, Ints
+from geometry.base import InputError
+from geometry.braille import BrailleStandard
+from softdot.arrays.kernel import ArrayKernel
+from softdot.reading.conditions import WIDEST_TREMOR, ReadingConditions
+from softdot.reading.line import DotLine, cell_pitch_mm
+
+STEP_MM = 0.05
+"""Of the path between two states of the array."""
+PRESS_STEPS, TREMOR_STEPS = 40, 20
+LEAD_MM = 3.0
+CHUNK = 20_000
+FORCE_TOLERANCE, DEPTH_TOLERANCE_MM = 1e-4, 1e-9
+
+
+@dataclass(frozen=True)
+class ArrayPath:
+    """Where the array's middle is at times (t,), and how deep a nominal dot under it would be.
+
+    reached_s (c,) : when each cell is read. held : the share of times at which the force was held, None for a depth.
+    """
+
+    time_s: Floats
+    x_mm: Floats
+    y_mm: Floats
+    depth_mm: Floats
+    yaw_deg: float
+    reached_s: Floats
+    held: float | None = None
+
+
+@dataclass(frozen=True)
+class PressTimes:
+    """A press begins each period_s, the first at time 0; it goes down for down_s and holds for hold_s."""
+
+    period_s: float
+    down_s: float
+    hold_s: float
+
+
+def reach_mm(kernel: ArrayKernel, yaw_deg: float) -> float:
+    """Along the line, how far from the array's middle a dot may be and still touch it."""
+    half_x, half_y = np.abs(kernel.x_mm).max(), np.abs(kernel.y_mm).max()
+    angle = radians(yaw_deg)
+    return float(half_x * cos(angle) + half_y * abs(sin(angle)))
+
+
+def near(kernel: ArrayKernel, line: DotLine, path: ArrayPath, span: slice) -> tuple[Floats, Floats, Floats]:
+    """Places x, y in the frame of the array and depths, each (t, k), of the dots near it at the times of a span.
+
+    NaN where there are fewer than k.
+    """
+    middle = path.x_mm[span]
+    reach = reach_mm(kernel, path.yaw_deg)
+    low, high = np.searchsorted(line.x_mm, middle - reach), np.searchsorted(line.x_mm, middle + reach)
+    most = max(1, int((high - low).max(initial=0)))
+    number = low[:, None] + np.arange(most)
+    there = number < high[:, None]
+    number = np.where(there, number, 0)
+    if not len(line.x_mm):
+        empty = np.full((len(middle), 1), np.nan)
+        return empty, empty, empty
+    along = np.where(there, line.x_mm[number] - middle[:, None], np.nan)
+    across = line.y_mm[number] - path.y_mm[span, None]
+    angle = radians(path.yaw_deg)
+    x = cos(angle) * along + sin(angle) * across
+    y = cos(angle) * across - sin(angle) * along
+    depth = path.depth_mm[span, None] + line.extra_mm[number]
+    return x, np.where(there, y, np.nan), np.where(there, depth, np.nan)
+
+
+def moved(
+    kernel: ArrayKernel,
+    line: DotLine,
+    count: int,
+    chosen: BrailleStandard,
+    conditions: ReadingConditions,
+    random: np.random.Generator,
+) -> ArrayPath:
+    """The path over a line of so many cells; conditions : resolved. InputError for a force that no depth gives."""
+    pitch = cell_pitch_mm(chosen)
+    if conditions.mode == "press":
+        return _pressed(count, pitch, conditions, random)
+    path = _slid(count, pitch, reach_mm(kernel, conditions.yaw_deg), conditions, random)
+    return path if conditions.force_N is None else _at_force(kernel, line, path, conditions.force_N)
+
+
+def _slid(
+    count: int, pitch: float, reach: float, conditions: ReadingConditions, random: np.random.Generator
+) -> ArrayPath:
+    """From before the first dot to behind the last; where it begins within a cell pitch is left to chance."""
+    speed = conditions.speed_mm_per_s
+    first = -pitch / 2.0 - reach - LEAD_MM - pitch * random.random()
+    last = pitch * (count - 0.5) + reach + LEAD_MM
+    step = min(STEP_MM / speed, 1.0 / (TREMOR_STEPS * conditions.tremor_Hz))
+    time: Floats = step * np.arange(int(np.ceil((last - first) / speed / step)) + 1, dtype=np.float64)
+    y, depth = _tremor(len(time), step, conditions, random)
+    reached: Floats = (pitch * np.arange(count, dtype=np.float64) - first) / speed
+    return ArrayPath(
+        time, first + speed * time, conditions.offset_mm + y, (conditions.depth_mm or 0.0) + depth,
+        conditions.yaw_deg, reached,
+    )  # fmt: skip
+
+
+def press_times(conditions: ReadingConditions, pitch_mm: float) -> PressTimes:
+    """Down, hold, up, and on to the next cell at the speed."""
+    down, hold = conditions.press_s, conditions.hold_s
+    return PressTimes(2.0 * down + hold + pitch_mm / conditions.speed_mm_per_s, down, hold)
+
+
+def _pressed(count: int, pitch: float, conditions: ReadingConditions, random: np.random.Generator) -> ArrayPath:
+    """Set down once a period, lifted while it moves; the middle is off by the same part of a millimetre each time."""
+    times = press_times(conditions, pitch)
+    period, down, hold = times.period_s, times.down_s, times.hold_s
+    step = down / PRESS_STEPS
+    time: Floats = step * np.arange(int(np.ceil((count + 0.5) * period / step)) + 1, dtype=np.float64)
+    number = np.minimum(np.floor(time / period), count - 1)
+    within = time - number * period
+    moving = np.clip((within - 2.0 * down - hold) / (period - 2.0 * down - hold), 0.0, 1.0)
+    share = np.clip(np.minimum(within / down, (2.0 * down + hold - within) / down), 0.0, 1.0)
+    y, depth = _tremor(len(time), step, conditions, random)
+    lowered = np.where(share > 0.0, share * ((conditions.depth_mm or 0.0) + depth), -1.0)
+    x = pitch * np.minimum(number + moving, count - 1)
+    reached: Floats = period * np.arange(count, dtype=np.float64) + down + hold
+    return ArrayPath(time, x, conditions.offset_mm + y, lowered, conditions.yaw_deg, reached)
+
+
+def _tremor(
+    count: int, step_s: float, conditions: ReadingConditions, random: np.random.Generator
+) -> tuple[Floats, Floats]:
+    """Wobble across the line and of the depth in mm, (t,) each."""
+    if conditions.tremor_um == 0.0:
+        return np.zeros(count), np.zeros(count)
+    from scipy.signal import butter, sosfilt, sosfreqz
+
+    corner = min(conditions.tremor_Hz, 0.45 / step_s)
+    filters = butter(2, corner, fs=1.0 / step_s, output="sos")
+    warm = int(3.0 / (corner * step_s))
+    wobble = sosfilt(filters, random.standard_normal((2, warm + count)), axis=1)[:, warm:]
+    rms = float(np.sqrt(np.mean(np.abs(sosfreqz(filters, 65_536)[1]) ** 2)))
+    wobble = 1e-3 * conditions.tremor_um * np.clip(wobble / rms, -WIDEST_TREMOR, WIDEST_TREMOR)
+    return wobble[0], wobble[1]
+
+
+def _at_force(kernel: ArrayKernel, line: DotLine, path: ArrayPath, force_N: float) -> ArrayPath:
+    """The path with the depth that gives this force, at most that of the path, where a stop holds the array.
+
+    By the Illinois variant of regula falsi (Dowell and Jarratt, BIT 11 (1971) 168), at all times at once.
+    """
+    depth, held = np.zeros(len(path.time_s)), np.zeros(len(path.time_s), dtype=bool)
+    for begin in range(0, len(depth), CHUNK):
+        span = slice(begin, begin + CHUNK)
+        x, y, stop = near(kernel, line, path, span)
+        lifted = stop - path.depth_mm[span, None]
+        depth[span], held[span] = _depth_of_force(kernel, (x, y, lifted), path.depth_mm[span], force_N)
+    if not held.any():
+        raise InputError(
+            f"--force-N = {force_N:g}: is never reached before a dot would be as deep as the kernel ends; give less"
+        )
+    return ArrayPath(
+        path.time_s, path.x_mm, path.y_mm, depth, path.yaw_deg, path.reached_s, float(held.mean())
+    )  # fmt: skip
+
+
+def _depth_of_force(
+    kernel: ArrayKernel, dots: tuple[Floats, Floats, Floats], stop: Floats, force_N: float
+) -> tuple[Floats, Bools]:
+    """Depth (t,) and whether it is above the stop (t,); dots : x, y and extra depth (t, k)."""
+    x, y, extra = dots
+
+    def excess(depth: Floats, rows: Ints) -> Floats:
+        return kernel.of_many(x[rows], y[rows], depth[:, None] + extra[rows])[1] - force_N
+
+    at_stop = excess(stop, np.arange(len(stop)))
+    rows = np.flatnonzero(at_stop > 0.0)
+    depth = stop.copy()
+    low, high = np.full(len(rows), -np.nanmax(extra, initial=0.0)), stop[rows].copy()
+    f_low, f_high = np.full(len(rows), -force_N), at_stop[rows].copy()
+    side = np.zeros(len(rows))
+    while len(rows):
+        middle = np.clip(high - f_high * (high - low) / (f_high - f_low), low, high)
+        found = excess(middle, rows)
+        depth[rows] = middle
+        above = found > 0.0
+        f_low = np.where(above, np.where(side > 0.0, 0.5 * f_low, f_low), found)
+        f_high = np.where(above, found, np.where(side < 0.0, 0.5 * f_high, f_high))
+        low, high = np.where(above, low, middle), np.where(above, middle, high)
+        side = np.where(above, 1.0, -1.0)
+        left = (np.abs(found) > FORCE_TOLERANCE * force_N) & (high - low > DEPTH_TOLERANCE_MM)
+        rows = rows[left]
+        low, high, f_low, f_high, side = (one[left] for one in (low, high, f_low, f_high, side))
+    return depth, at_stop > 0.0

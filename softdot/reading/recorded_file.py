@@ -1,0 +1,56 @@
+"""A recording of an array's voltages: a CSV file with the columns time_s, voltage_1_V, voltage_2_V and so on."""
+
+from io import StringIO
+from pathlib import Path
+
+import numpy as np
+
+from geometry.base import InputError
+from geometry.files import read_text
+from softdot.reading.voltages import Voltages
+
+LEAST_SAMPLES, UNEVEN = 50, 0.2
+"""A sample may be off its even place by this part of the distance to the next."""
+
+
+def recorded_voltages(path: Path, segments: int) -> Voltages:
+    """Of a file; time begins as in the file. InputError for fewer channels than segments and for damaged numbers."""
+    import pandas as pd
+
+    where = f"recording '{path}'"
+    try:
+        table = pd.read_csv(StringIO(read_text(path, "recording")), comment="#", skipinitialspace=True)
+        columns = [str(name).strip() for name in table.columns]
+        table.columns = columns
+        channels = [name for name in columns if name.startswith("voltage_") and name.endswith("_V")]
+        wanted = [f"voltage_{number}_V" for number in range(1, segments + 1)]
+        if "time_s" not in columns:
+            raise InputError(f"{where}: the column time_s is missing")
+        lacking = [name for name in wanted if name not in columns]
+        if lacking:
+            raise InputError(
+                f"{where}: has {len(channels)} channels, the kernel has {segments} segments; {lacking[0]} is missing"
+            )
+        numbers = table[["time_s", *wanted]].to_numpy(dtype=np.float64)
+    except (ValueError, pd.errors.ParserError) as error:
+        raise InputError(f"{where}: cannot be read ({error})") from None
+    if len(numbers) < LEAST_SAMPLES:
+        raise InputError(f"{where}: has {len(numbers)} samples, at least {LEAST_SAMPLES} are needed")
+    if not np.isfinite(numbers).all():
+        row, column = np.argwhere(~np.isfinite(numbers))[0]
+        raise InputError(f"{where}: {['time_s', *wanted][column]} is not finite in line {row + 2}")
+    return _even(numbers[:, 0], numbers[:, 1:], where)
+
+
+def _even(time: np.ndarray, voltage: np.ndarray, where: str) -> Voltages:
+    """At even times. InputError where they are far from it."""
+    step = (time[-1] - time[0]) / (len(time) - 1)
+    even = time[0] + step * np.arange(len(time))
+    if step <= 0.0 or (np.diff(time) <= 0.0).any():
+        raise InputError(f"{where}: time_s must rise from line to line")
+    worst = int(np.argmax(np.abs(time - even)))
+    if abs(time[worst] - even[worst]) > UNEVEN * step:
+        raise InputError(
+            f"{where}: time_s = {time[worst]:g} in line {worst + 2}: samples must be evenly spaced, {step:.4g} s apart"
+        )
+    return Voltages(even, voltage)

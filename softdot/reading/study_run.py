@@ -1,0 +1,206 @@
+"""A study of reading on all cores: its folder, which keeps what was read, its table and its picture."""
+
+import csv
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from geometry.base import InputError
+from geometry.files import release
+from softdot.arrays.kernel import ArrayKernel
+from softdot.config import Config
+from softdot.console import (
+    Logged,
+    Progress,
+    installed_version,
+    plain,
+    write_json,
+)
+from softdot.output import Product, check_output
+from softdot.reading.conditions import ReadingConditions
+from softdot.reading.kernels import opened_kernel, readout_of
+from softdot.reading.study import (
+    Readings,
+    ReadingStudy,
+    StudyTask,
+    keep,
+    kept,
+    kernel_hash,
+    limits_of,
+    points,
+    read_task,
+    repeated,
+    with_value,
+)
+
+FOLDER, TABLE, PICTURE = "conditions", "reading_study.csv", "reading_study.png"
+STUDY = Product(
+    "softdot-reading-study/1", "reading_study.json", frozenset({"reading_study.json", FOLDER, TABLE, PICTURE})
+)
+AWAY = "the Dask scheduler disappeared; finished readings are kept, start the study again"
+
+
+def run_reading_study(
+    study: ReadingStudy,
+    kernel_folder: Path,
+    out: Path,
+    config: Config | None = None,
+    workers: int | None = None,
+    progress: Progress | None = None,
+) -> dict[str, Any]:
+    """Read under all conditions of a study into the folder out and return what reading_study.json says. InputError.
+
+    Readings of an earlier study in out are not made again.
+    """
+    from geometry.files import hold
+    from softdot.sweeps.cluster import local_cluster
+
+    progress = progress or Logged()
+    kernel = opened_kernel(kernel_folder, config)
+    study.base.resolved(kernel)
+    place = check_output(out, STUDY)
+    (place / FOLDER).mkdir(parents=True, exist_ok=True)
+    held = hold(place)
+    if held is None:
+        raise InputError(f"output '{out}': another study is writing it; wait for it or name another folder")
+    try:
+        if not (place / STUDY.summary).exists():
+            write_json(place / STUDY.summary, {"format": STUDY.format, "complete": False})
+        work = _Work(study, kernel_folder, place / FOLDER, readout_of(kernel, config).model_dump_json(), progress)
+        with local_cluster(workers) as client:
+            progress.stage("read")
+            work.done(client, points(study))
+            while following := work.following():
+                work.done(client, following)
+        summary: dict[str, Any] = plain(_summary(study, work.readings, kernel))
+        _write_csv(summary["readings"], place / TABLE)
+        _draw(summary, place / PICTURE)
+        write_json(place / STUDY.summary, summary)
+    finally:
+        release(held)
+    return summary
+
+
+class _Work:
+    """The readings of a study: those of an earlier one, and what is missing by a cluster."""
+
+    def __init__(self, study: ReadingStudy, kernel: Path, folder: Path, readout: str, progress: Progress) -> None:
+        self.readings = Readings()
+        self._study, self._kernel, self._folder, self._readout = study, kernel, folder, readout
+        self._hash, self._progress = kernel_hash(kernel), progress
+
+    def following(self) -> list[ReadingConditions]:
+        """What the limits ask for next; nothing where every combination is read."""
+        if self._study.combine:
+            return []
+        limits = dict(limits_of(self._study, self.readings))
+        return [
+            with_value(self._study.base, name, limit.following)
+            for name, limit in limits.items()
+            if limit.following is not None
+        ]
+
+    def done(self, client: Any, wanted: list[ReadingConditions]) -> None:
+        """Read under these conditions, with all repeats."""
+        from softdot.sweeps.points import all_ended
+
+        tasks = {task.key(self._hash): task for one in wanted for task in map(self._task, repeated(self._study, one))}
+        count = len(self.readings.records) + len(tasks)
+        missing = {}
+        for key, task in tasks.items():
+            if (found := kept(self._folder, key)) is None:
+                missing[key] = task
+            else:
+                self.readings.records[task.conditions] = found
+        self._progress.step(len(self.readings.records), count, "")
+        for key, record in all_ended(client, read_task, {key: (task,) for key, task in missing.items()}, AWAY):
+            if record["status"] in ("read", "refused"):
+                keep(self._folder, key, missing[key], record)
+            self.readings.records[missing[key].conditions] = record
+            self._progress.step(len(self.readings.records), count, record["reason"] or "")
+
+    def _task(self, conditions: ReadingConditions) -> StudyTask:
+        study = self._study
+        return StudyTask(str(self._kernel.resolve()), self._readout, conditions, study.text, study.table, study.decoder)
+
+
+def _summary(study: ReadingStudy, readings: Readings, kernel: ArrayKernel) -> dict[str, Any]:
+    from diagnose.statistics.abstain import wilson_interval
+
+    rows = []
+    for conditions in dict.fromkeys(replace(one, seed=study.base.seed) for one in readings.records):
+        found = [readings.records[one] for one in repeated(study, conditions)]
+        row: dict[str, Any] = {
+            "conditions": conditions.as_dict(),
+            "status": "read",
+            "reason": None,
+            "character_accuracy": None,
+        }
+        failed = next((one for one in found if one["status"] != "read"), None)
+        if failed is not None:
+            row |= {"status": failed["status"], "reason": failed["reason"]}
+        else:
+            right, of = sum(one["right"] for one in found), sum(one["of"] for one in found)
+            low, high = wilson_interval(right, of)
+            row["character_accuracy"] = {"value": right / of, "low": low, "high": high, "right": right, "of": of}
+            row["word_accuracy"] = sum(one["accuracy"]["word"] for one in found) / len(found)
+        rows.append(row)
+    limits = {} if study.combine else {
+        name: {"read_up_to": limit.good, "fails_at": limit.bad} for name, limit in limits_of(study, readings)
+    }  # fmt: skip
+    return {
+        "format": STUDY.format,
+        "complete": True,
+        "softdot_version": installed_version(),
+        "config_hash": kernel.about["config_hash"],
+        "text": study.text,
+        "table": study.table,
+        "decoder": study.decoder,
+        "repeats": study.repeats,
+        "accuracy": study.accuracy,
+        "combine": study.combine,
+        "base": study.base.resolved(kernel).as_dict(),
+        "axes": {name: list(values) for name, values in study.axes.items()},
+        "limits": limits,
+        "readings": rows,
+        "warnings": [f"{one['status']}: {one['reason']}" for one in rows if one["status"] != "read"],
+    }
+
+
+def _write_csv(rows: list[dict[str, Any]], path: Path) -> None:
+    """One row for each condition."""
+    names = list(rows[0]["conditions"])
+    with path.open("w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file)
+        table.writerow([*names, "status", "character_accuracy", "low", "high", "characters"])
+        for row in rows:
+            share = row["character_accuracy"] or {}
+            table.writerow(
+                [
+                    *row["conditions"].values(),
+                    row["status"],
+                    *(share.get(key) for key in ("value", "low", "high", "of")),
+                ]
+            )
+
+
+def _draw(summary: dict[str, Any], path: Path) -> None:
+    from export.array.conditions import draw_conditions
+
+    base = summary["readings"][0]["conditions"]
+    curves = {}
+    for name in summary["axes"]:
+        alone = [
+            row
+            for row in summary["readings"]
+            if row["character_accuracy"] and all(row["conditions"][key] == base[key] for key in base if key != name)
+        ]
+        curves[name] = sorted(
+            (
+                summary["base"][name] if row["conditions"][name] is None else row["conditions"][name],
+                *(row["character_accuracy"][key] for key in ("value", "low", "high")),
+            )
+            for row in alone
+        )
+    limits = {name: limit["read_up_to"] for name, limit in summary["limits"].items()}
+    draw_conditions(curves, summary["accuracy"], limits, path)

@@ -1,0 +1,129 @@
+"""From a path over a line to the voltages that are recorded: the kernel's charges, the read-out, noise and hum."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from geometry.arrays import Floats
+from geometry.braille import BrailleStandard
+from softdot.arrays.kernel import ArrayKernel
+from softdot.reading.conditions import ReadingConditions
+from softdot.reading.line import DotLine
+from softdot.reading.motion import CHUNK, ArrayPath, PressTimes, near
+from solve.model import Physics, Readout
+from solve.readout.amplifier import amplify, input_of
+
+MAINS_HZ = 50.0
+FINEST_MM = 0.02
+"""The read-out is integrated in steps of at most this path: within one the charge is linear."""
+Step = Callable[[int, int], None]
+
+
+@dataclass(frozen=True)
+class Voltages:
+    """What was recorded: voltage_V (t, n) of the segments at evenly spaced time_s (t,)."""
+
+    time_s: Floats
+    voltage_V: Floats
+
+    @property
+    def step_s(self) -> float:
+        """From one sample to the next."""
+        return float(self.time_s[-1] - self.time_s[0]) / (len(self.time_s) - 1)
+
+
+@dataclass(frozen=True)
+class Reader:
+    """All that a decoder may know: the kernel, the nominal standard, the read-out, and whether the array slides.
+
+    presses : when it is set down, as told by the machine that does it; None where it slides. passing : charges of dots
+    that are passed, by offset and yaw, which decoders keep here.
+    """
+
+    kernel: ArrayKernel
+    standard: BrailleStandard
+    readout: Readout
+    presses: PressTimes | None = None
+    passing: dict[tuple[float, float], tuple[Floats, Floats]] = field(default_factory=dict, compare=False, repr=False)
+
+
+def charges_pC(kernel: ArrayKernel, line: DotLine, path: ArrayPath, told: Step | None = None) -> Floats:
+    """Charges (t, n) at the times of the path, of all dots that are near."""
+    charge = np.empty((len(path.time_s), kernel.charge_pC.shape[-1]))
+    for begin in range(0, len(charge), CHUNK):
+        span = slice(begin, begin + CHUNK)
+        charge[span] = kernel.of_many(*near(kernel, line, path, span))[0]
+        if told is not None:
+            told(min(begin + CHUNK, len(charge)), len(charge))
+    return charge
+
+
+def alone_pC(kernel: ArrayKernel, line: DotLine, path: ArrayPath) -> Floats:
+    """Charges (t, n) if no dot felt another one: the sum of what each would give alone."""
+    charge = np.empty((len(path.time_s), kernel.charge_pC.shape[-1]))
+    for begin in range(0, len(charge), CHUNK):
+        span = slice(begin, begin + CHUNK)
+        x, y, depth = near(kernel, line, path, span)
+        charge[span] = kernel.of_one(x, y, depth)[0].sum(axis=1)
+    return charge
+
+
+def behind_readout(reader: Reader, time_s: Floats, charge_pC: Floats, at_s: Floats, finest_s: float = np.inf) -> Floats:
+    """Voltages (m, n) at evenly spaced at_s (m,), each electrode with its own capacitance (solve.readout.amplifier).
+
+    Between the times of the charges (t, n) these follow a cubic spline, which the read-out sees in steps of at most
+    finest_s.
+    """
+    step = (at_s[-1] - at_s[0]) / (len(at_s) - 1)
+    parts = max(1, int(np.ceil(step / finest_s)))
+    time = at_s[0] + step / parts * np.arange(parts * (len(at_s) - 1) + 1)
+    spline = CubicSpline(time_s, 1e-12 * charge_pC)
+    charge = spline(np.clip(time, time_s[0], time_s[-1]))
+    voltages = [
+        amplify(time, np.ascontiguousarray(charge[:, j]), float(1e-12 * farads), reader.readout, Physics())[::parts]
+        for j, farads in enumerate(reader.kernel.capacitance_pF)
+    ]
+    return np.stack(voltages, axis=1)
+
+
+def recorded(
+    reader: Reader,
+    line: DotLine,
+    path: ArrayPath,
+    conditions: ReadingConditions,
+    random: np.random.Generator,
+    told: Step | None = None,
+) -> Voltages:
+    """The voltages of a path over a line with white noise and hum, as they are sampled."""
+    charge = charges_pC(reader.kernel, line, path, told)
+    count = int((path.time_s[-1] - path.time_s[0]) * conditions.sampling_Hz)
+    time = path.time_s[0] + np.arange(count) / conditions.sampling_Hz
+    clean = behind_readout(reader, path.time_s, charge, time, FINEST_MM / conditions.speed_mm_per_s)
+    noise = 1e-3 * conditions.noise_mV * random.standard_normal(clean.shape)
+    phase = 2.0 * np.pi * random.random()
+    hum = 1e-3 * conditions.hum_mV * np.sin(2.0 * np.pi * MAINS_HZ * time + phase)
+    return Voltages(time, clean + noise + hum[:, None])
+
+
+def averaged_voltages(reader: Reader, time_s: Floats, charge_pC: Floats, like: Voltages, many: int) -> Voltages:
+    """Voltages of charges (t, n) at the samples of others, each the mean of so many."""
+    fine = like.step_s / many
+    at = like.time_s[0] - 0.5 * (many - 1) * fine + fine * np.arange(many * len(like.time_s))
+    voltage = behind_readout(reader, time_s, charge_pC, at)
+    return Voltages(like.time_s, voltage.reshape(len(like.time_s), many, -1).mean(axis=1))
+
+
+def charge_again_pC(reader: Reader, heard: Voltages) -> Floats:
+    """Charges (t, n) that gave the voltages, from their first sample on: Q = C V + integral of V / R.
+
+    The inverse of the input of the read-out; what its filters removed stays removed, and noise adds up.
+    """
+    restored = np.empty_like(heard.voltage_V)
+    for j, film in enumerate(reader.kernel.capacitance_pF):
+        capacitance, resistance = input_of(reader.readout, 1e-12 * float(film))
+        voltage = reader.readout.polarity * heard.voltage_V[:, j]
+        leaked = np.concatenate([[0.0], np.cumsum(0.5 * (voltage[1:] + voltage[:-1]))]) * heard.step_s
+        restored[:, j] = 1e12 * (capacitance * voltage + leaked / resistance)
+    return restored

@@ -1,0 +1,61 @@
+"""From charges to voltages and back."""
+
+import numpy as np
+import pytest
+
+from geometry.braille import standard
+from softdot.reading.decoders.templates import Posture, templates
+from softdot.reading.voltages import Reader, Voltages, behind_readout, charge_again_pC
+from solve.model import Readout
+from tests.softdot.reading.lines import NOMINAL, READOUT, simulated
+
+
+def reader(kernel, readout):
+    return Reader(kernel, standard("marburg-medium"), readout)
+
+
+def test_a_charge_that_rises_evenly_leaves_by_the_resistor(kernel):
+    """V = R Q' (1 - exp(-t / RC)); 20 pF of film and 180 pF of cable with 1 GOhm: 0.2 s."""
+    own = reader(kernel, Readout(input_resistance_MOhm=1000.0, input_capacitance_pF=180.0))
+    time = np.linspace(0.0, 1.0, 11)
+    at = np.linspace(0.0, 1.0, 501)
+    voltage = behind_readout(own, time, np.outer(time, np.full(6, 50.0)), at)
+    closed = 1e9 * 50e-12 * -np.expm1(-at / 0.2)
+    np.testing.assert_allclose(voltage, np.repeat(closed[:, None], 6, axis=1), rtol=1e-9, atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    "readout",
+    [READOUT, Readout(), Readout(input_resistance_MOhm=500.0), Readout(mode="charge", feedback_pF=100.0, polarity=-1)],
+)
+def test_the_charge_is_found_again(kernel, readout):
+    own = reader(kernel, readout)
+    at = np.linspace(0.0, 2.0, 4001)
+    charge = 100.0 * np.exp(-(((at[:, None] - np.linspace(0.8, 1.2, 6)) / 0.2) ** 2))
+    again = charge_again_pC(own, Voltages(at, behind_readout(own, at, charge, at)))
+    np.testing.assert_allclose(again, charge, atol=0.5)
+
+
+def test_noise_and_hum_are_as_large_as_stated(kernel):
+    cells = np.array([1])
+    quiet = simulated(kernel, cells, **NOMINAL)[1].voltage_V
+    loud = simulated(kernel, cells, **{**NOMINAL, "noise_mV": 2.0})[1].voltage_V
+    assert (loud - quiet).std() == pytest.approx(2e-3, rel=0.05)
+    humming = simulated(kernel, cells, **{**NOMINAL, "hum_mV": 3.0})[1].voltage_V
+    assert np.abs(humming - quiet).max() == pytest.approx(3e-3, rel=0.02)
+
+
+def test_a_dot_that_passes_twice_as_fast_gives_twice_the_voltage(kernel):
+    """Behind a resistor that lets the charge go at once: V = R dQ/dt."""
+    own = reader(kernel, Readout(input_resistance_MOhm=0.01))
+    slow, fast = (templates(own, Posture(speed), 0.05 / speed).voltage_V for speed in (10.0, 20.0))
+    assert np.abs(fast).max() == pytest.approx(2.0 * np.abs(slow).max(), rel=0.01)
+
+
+def test_voltages_are_the_sum_of_templates_where_dots_are_far_apart(kernel):
+    """One dot in each cell, four cells apart: what a decoder expects is what is heard."""
+    own, heard = simulated(kernel, np.array([1, 0, 0, 0, 4]), **NOMINAL)
+    known = templates(own, Posture(10.0), heard.step_s)
+    assert np.abs(heard.voltage_V).max() == pytest.approx(np.abs(known.voltage_V).max(), rel=0.05)
+    energy = float((heard.voltage_V**2).sum())
+    assert energy == pytest.approx(float((known.voltage_V[:, [0, 2]] ** 2).sum()), rel=0.02)
