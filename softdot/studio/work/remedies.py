@@ -6,7 +6,6 @@ from contextlib import suppress
 from typing import Any
 
 from geometry.base import InputError
-from softdot.case import Case
 from softdot.config import Config
 from softdot.config.toml import completed, parsed, with_value
 from solve.mechanisms.layers.film_yield import FILM_YIELD
@@ -18,7 +17,8 @@ SHARES = 0.95, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1
 JUST_INSIDE = 1e-3
 MOST = 8
 """Sentences for which changes are tried; each takes some checks of the design."""
-Check = Callable[[Mapping[str, Any]], Case]
+Check = Callable[[Mapping[str, Any]], list[str]]
+"""The warnings of a design; InputError for a mistake."""
 
 
 def remedies(tables: Mapping[str, Any], told: Sequence[str], check: Check) -> list[dict[str, Any] | None]:
@@ -61,13 +61,10 @@ def _first_that_mends(tables: Mapping[str, Any], sentence: str, check: Check) ->
 
 def _told(tables: Mapping[str, Any], check: Check) -> list[str]:
     """Every sentence about a design: a mistake, or its warnings."""
-    from softdot.checks import design_warnings
-
     try:
-        case = check(tables)
+        return check(tables)
     except InputError as error:
         return [str(error)]
-    return [*case.checked[1], *design_warnings(case.model)]
 
 
 def _changed(tables: Mapping[str, Any], changes: Sequence[Sequence[Any]]) -> Mapping[str, Any]:

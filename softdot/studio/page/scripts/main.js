@@ -1,4 +1,5 @@
 // The tab: its socket to the program, and who shows what the program tells.
+import * as array from "./array.js";
 import { element, find } from "./dom.js";
 import { Form, filter } from "./form.js";
 import * as next from "./next.js";
@@ -27,6 +28,12 @@ function shown(view, words) {
   viewer.show(view);
   find("#view3d .shown").textContent = words;
   find("#view3d .play").disabled = view.steps.length < 2;
+}
+
+function nothingToPress() {
+  if (!state.ofArray || !state.design.array || state.design.press_hash) return;
+  result.doing("Raise a dot of the cell to press it.", false);
+  find("#press .again").hidden = true;
 }
 
 const hear = {
@@ -62,6 +69,8 @@ const hear = {
         find("#circuit .fields details").open = true;
       }
     }
+    state.ofArray = array.state(told);
+    nothingToPress();
     next.mistakes(told, ask);
     next.warnings(told.mistakes.length ? { warnings: [], remedies: [] } : told, state.late, ask);
     next.cost(told);
@@ -72,6 +81,12 @@ const hear = {
     state.quality = now.quality;
     state.late = (now.numbers.warnings || []).map((text, i) => ({ text, remedy: (now.numbers.remedies || [])[i] }));
     result.show(curves);
+    if (state.design) next.warnings(state.design, state.late, ask);
+  },
+  array({ pressed }) {
+    state.quality = "coarse";
+    state.late = pressed.warnings.map((text) => ({ text, remedy: null }));
+    array.show(pressed);
     if (state.design) next.warnings(state.design, state.late, ask);
   },
   pressed({ view }) {
@@ -85,8 +100,9 @@ const hear = {
     else tasks.progress(told);
   },
   ended(told) {
-    if (told.task === "press") result.ended(told, state);
-    else tasks.ended(told);
+    if (told.task !== "press") return tasks.ended(told);
+    result.ended(told, state);
+    return nothingToPress();
   },
   done(told) {
     tasks.done(told);
@@ -175,4 +191,5 @@ typing();
 files();
 buttons();
 recording.prepare(address, say);
+array.prepare(ask);
 connect();
