@@ -191,7 +191,7 @@ class Follower:
         curve = {**curve, "quality": found["quality"], "numbers": found["numbers"]}
         known.curves = [*known.curves[1 - MOST_CURVES :], curve]
         known.history = found["history"]
-        shown = [{name: one[name] for name in ("label", "quality", "numbers")} for one in known.curves]
+        shown = [{name: one[name] for name in ("label", "quality", "numbers", "press_hash")} for one in known.curves]
         self._tell("curves", again=True, curves=shown)
         if found["view"] is not None:
             self._tell("pressed", again=True, view=found["view"])

@@ -8,6 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from softdot.commands.studio import start_text
+from softdot.config.toml import parse_toml
+from softdot.studio.document import Document
 from softdot.studio.work import design, files, press
 from tests.studio.test_page import until
 
@@ -35,6 +38,25 @@ def test_mistakes_of_an_array_are_told_and_mended():
     assert told["mistakes"] == ["dot.cell = '⠉': dot 4 has no segment under it, array.rows = 2 and 1 in each"]
     assert told["remedies"][0]["changes"] == [[["dot", "cell"], None]]
     assert design.draw(PAIR.replace("length_mm = 2.3", "length_mm = 2.3\nwidth_mm = -1")) is None
+
+
+def test_the_default_design_becomes_an_array_by_its_buttons():
+    """What a switch in the form begins, two gaps and six dots complete."""
+    document = Document(start_text(None))
+    document.set(["array"], {})
+    told = design.examine(document.text)
+    while told["mistakes"]:
+        before = told["mistakes"]
+        for key, value in told["remedies"][0]["changes"]:
+            document.set(key, value)
+        told = design.examine(document.text)
+        assert told["mistakes"] != before
+    segment = parse_toml(document.text, "design")["segment"]
+    assert (segment["length_mm"], segment["width_mm"]) == (2.3, 2.3)
+    document.set(["dot", "cell"], "⠿")
+    told = design.examine(document.text)
+    assert told["mistakes"] == []
+    assert told["press_hash"] is not None
 
 
 def test_an_array_is_drawn_with_all_its_islands():

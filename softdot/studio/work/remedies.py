@@ -13,6 +13,9 @@ from solve.mechanisms.layers.film_yield import FILM_YIELD
 KEY = r"([\w\-.\[\]\"]+)"
 BOUND = re.compile(KEY + r" = \S+: must be (at least|at most|above|below|less than)\D*? ([\d.eE+-]+)")
 MEANT = re.compile(KEY + r" is not a key; did you mean '([\w.]+)'\?")
+GAP = re.compile(KEY + r" = \S+: leaves a gap of \S+ mm along \w at the pitch of ([\d.]+) mm")
+GAP_SHARE = 0.08
+"""Of the pitch: 0.2 mm of 2.5 mm."""
 SHARES = 0.95, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1
 JUST_INSIDE = 1e-3
 MOST = 8
@@ -125,6 +128,10 @@ def _of_the_key(tables: Mapping[str, Any], sentence: str) -> Iterator[tuple[str,
         for part in wrong:
             value = value[part]
         yield f"call it {meant[2]}", [[wrong, None], [right, value]]
+    gap = GAP.match(sentence)
+    if gap is not None:
+        size = float(f"{(1 - GAP_SHARE) * float(gap[2]):.3g}")
+        yield f"set {gap[1]} to {size:g}", [[list(parsed(gap[1])), size]]
     first = sentence.split(" ", 1)[0]
     if (":" in sentence or "is not a key" in sentence) and re.fullmatch(KEY, first):
         yield f"take {first} out", [[list(parsed(first)), None]]

@@ -29,7 +29,8 @@ export function prepare(ask) {
 
 // values: of the design; told: what its check says, which has no array where there is a mistake.
 export function state(told) {
-  const there = Boolean(told.values && told.values.array);
+  if (!told.values) return !find("#array").hidden;
+  const there = Boolean(told.values.array);
   find("#array").hidden = !there;
   find("#result").classList.toggle("of-array", there);
   for (const one of document.querySelectorAll(".alone")) one.hidden = there;

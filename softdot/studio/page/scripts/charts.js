@@ -66,10 +66,10 @@ export function tornado(rows, unit = "%") {
     const wide = (Math.abs(row.value) / most) * (middle - 58), y = i * line + 17;
     chart.append(node("text", { x: middle, y: y - 4, "text-anchor": "middle" }, row.label));
     chart.append(node("rect", { class: row.value < 0 ? "bar minus" : "bar", x: row.value < 0 ? middle - wide : middle, y, width: wide, height: 11, rx: 2 }));
+    chart.append(node("line", { class: "grid", x1: middle, x2: middle, y1: y - 1, y2: y + 12 }));
     const beside = row.value < 0 ? middle - wide - 4 : middle + wide + 4;
     chart.append(node("text", { x: beside, y: y + 10, "text-anchor": row.value < 0 ? "end" : "start" }, `${row.value > 0 ? "+" : "−"}${Math.abs(row.value).toFixed(Math.abs(row.value) < 100 ? 1 : 0)} ${unit}`));
   });
-  chart.append(node("line", { class: "grid", x1: middle, x2: middle, y1: 0, y2: height }));
   return chart;
 }
 

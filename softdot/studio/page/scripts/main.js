@@ -36,6 +36,13 @@ function nothingToPress() {
   find("#press .again").hidden = true;
 }
 
+// Whether the numbers are those of another design than the one in the form.
+function stale() {
+  const old = Boolean(state.shownHash) && !state.ofArray && state.design && state.design.press_hash !== state.shownHash;
+  find("#before").hidden = !old;
+  for (const place of ["#numbers", "#curves"]) find(place).classList.toggle("stale", old);
+}
+
 const hear = {
   tab({ name }) {
     state.tab = name;
@@ -71,6 +78,7 @@ const hear = {
     }
     state.ofArray = array.state(told);
     nothingToPress();
+    stale();
     next.mistakes(told, ask);
     next.warnings(told.mistakes.length ? { warnings: [], remedies: [] } : told, state.late, ask);
     next.cost(told);
@@ -81,6 +89,8 @@ const hear = {
     state.quality = now.quality;
     state.late = (now.numbers.warnings || []).map((text, i) => ({ text, remedy: (now.numbers.remedies || [])[i] }));
     result.show(curves);
+    state.shownHash = now.press_hash;
+    stale();
     if (state.design) next.warnings(state.design, state.late, ask);
   },
   array({ pressed }) {

@@ -1,6 +1,6 @@
 // The right side: warnings, what moves the voltage, work for the bench, comparison.
 import { tornado } from "./charts.js";
-import { duration, element, find, short } from "./dom.js";
+import { breakable, duration, element, find, short } from "./dom.js";
 
 export const TITLES = { kit: "Kit", report: "Report and CAD", plate: "Braille plate", influences: "What moves the voltage", tolerances: "Tolerances", recording: "Recording", diagnosis: "Diagnosis" };
 
@@ -94,8 +94,8 @@ export function kept(told, ask) {
     place.replaceChildren(element("p", { class: "soft" }, `Keep up to ${told.most} designs to see them side by side.`));
     return;
   }
-  const buttons = (i) => element("span", { class: "row" }, element("button", { type: "button", onclick: () => ask({ do: "take", number: i }), "aria-label": `Go on with ${told.names[i]}` }, "Use"), element("button", { type: "button", onclick: () => ask({ do: "drop", number: i }), "aria-label": `Take out ${told.names[i]}` }, "×"));
+  const buttons = (i) => element("span", { class: "pair" }, element("button", { type: "button", onclick: () => ask({ do: "take", number: i }), "aria-label": `Go on with ${told.names[i]}` }, "Use"), element("button", { type: "button", onclick: () => ask({ do: "drop", number: i }), "aria-label": `Take out ${told.names[i]}` }, "×"));
   const head = element("tr", {}, element("td", {}), ...told.names.map((name, i) => element("th", { scope: "col" }, name, buttons(i))));
-  const rows = told.rows.map((row) => element("tr", {}, element("th", { scope: "row" }, row.label + (row.unit ? ` (${row.unit})` : "")), ...row.cells.map((cell) => element("td", {}, short(cell)))));
+  const rows = told.rows.map((row) => element("tr", {}, element("th", { scope: "row" }, ...breakable(row.label + (row.unit ? ` (${row.unit})` : ""))), ...row.cells.map((cell) => element("td", {}, short(cell)))));
   place.replaceChildren(element("div", { class: "wide", tabindex: 0, role: "region", "aria-label": "Compared designs" }, element("table", {}, element("thead", {}, head), element("tbody", {}, ...rows))));
 }
