@@ -79,12 +79,11 @@ def compared(page: Page) -> None:
     """Three designs side by side; the last one is too deep, of which the warnings tell."""
     for depth in ("0.3", "0.2", "0.6"):
         write(page, f"[segment]\nheld_layers = ['medium1', 'film', 'medium2']\n[press]\nindentation_mm = {depth}\n")
-        page.get_by_label("press.indentation_mm, slider").wait_for()
-        page.wait_for_timeout(1500)
+        page.locator("#before:visible").wait_for(timeout=WAIT_MS)
+        page.locator("#before").wait_for(state="hidden", timeout=WAIT_MS)
         page.locator("#keep input").fill(f"{depth} mm deep")
         page.locator("#keep button").click()
         page.locator("#compare th", has_text=f"{depth} mm deep").wait_for()
-    page.locator("#press .cancel").click()
 
 
 def downloads(page: Page) -> None:
@@ -153,7 +152,7 @@ def look(page: Page, stage: str, panels: tuple[str, ...], folder: Path | None) -
         page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
         page.set_viewport_size({"width": width, "height": HEIGHT[width]})
         for panel in panels:
-            page.locator(panel).evaluate("(one) => one.scrollIntoView()")
+            page.locator(panel).evaluate("(one) => { one.scrollIntoView(); one.scrollTop = 0; }")
             page.evaluate("window.dispatchEvent(new Event('resize'))")
             page.wait_for_timeout(400)
             name = CHOSEN.get((stage, panel, scheme, width))

@@ -14,6 +14,9 @@ KEY = r"([\w\-.\[\]\"]+)"
 BOUND = re.compile(KEY + r" = \S+: must be (at least|at most|above|below|less than)\D*? ([\d.eE+-]+)")
 MEANT = re.compile(KEY + r" is not a key; did you mean '([\w.]+)'\?")
 GAP = re.compile(KEY + r" = \S+: leaves a gap of \S+ mm along \w at the pitch of ([\d.]+) mm")
+MISSING = re.compile(r"(segment\.effector\.\w+_mm) is missing: ")
+OF_THE_SEGMENT = 0.8
+"""Size of an effector that has none."""
 GAP_SHARE = 0.08
 """Of the pitch: 0.2 mm of 2.5 mm."""
 SHARES = 0.95, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1
@@ -128,6 +131,11 @@ def _of_the_key(tables: Mapping[str, Any], sentence: str) -> Iterator[tuple[str,
         for part in wrong:
             value = value[part]
         yield f"call it {meant[2]}", [[wrong, None], [right, value]]
+    segment, missing = completed(tables).get("segment", {}), MISSING.match(sentence)
+    if missing is not None and isinstance(segment, dict):
+        sides = [side for name in ("length_mm", "width_mm") if isinstance(side := segment.get(name), int | float)]
+        size = float(f"{OF_THE_SEGMENT * min(sides, default=1.0):.2g}")
+        yield f"set {missing[1]} to {size:g}", [[list(parsed(missing[1])), size]]
     gap = GAP.match(sentence)
     if gap is not None:
         size = float(f"{(1 - GAP_SHARE) * float(gap[2]):.3g}")

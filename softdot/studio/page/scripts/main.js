@@ -30,10 +30,14 @@ function shown(view, words) {
   find("#view3d .play").disabled = view.steps.length < 2;
 }
 
+// Where there is nothing to press, why: it counts more than that the press before was cancelled.
 function nothingToPress() {
-  if (!state.ofArray || !state.design.array || state.design.press_hash) return;
-  result.doing("Raise a dot of the cell to press it.", false);
+  const { mistakes = [], array: cells, press_hash: hash } = state.design || {};
+  if (mistakes.length) result.doing("The design has a mistake; mend it and it is pressed.", false, true);
+  else if (state.ofArray && cells && !hash) result.doing("Raise a dot of the cell to press it.", false);
+  else return;
   find("#press .again").hidden = true;
+  if (mistakes.length && find("#view3d .step-text").textContent) find("#view3d .shown").textContent = "The last design without a mistake.";
 }
 
 // Whether the numbers are those of another design than the one in the form.
@@ -58,6 +62,7 @@ const hear = {
     const text = find("#text");
     if (document.activeElement !== text || !text.dataset.dirty) text.value = told.text;
     state.text = told.text;
+    tasks.follow(told.text);
     for (const name of ["undo", "redo", "reset"]) find(`#${name}`).disabled = !told[name];
   },
   parts({ view }) {
@@ -82,7 +87,6 @@ const hear = {
     next.mistakes(told, ask);
     next.warnings(told.mistakes.length ? { warnings: [], remedies: [] } : told, state.late, ask);
     next.cost(told);
-    if (told.mistakes.length) result.doing("The design has a mistake; mend it and it is pressed.", false, true);
   },
   curves({ curves }) {
     const now = curves[curves.length - 1];

@@ -6,6 +6,12 @@ const PHASES = ["approach", "loading", "hold", "unloading", "after"];
 const WANTED = /\.(toml|csv|zip)$/i;
 const MOST_MB = 25, MOST_FILES = 500;
 
+const EVIDENCE = {
+  where: "Where recordings and simulation differ", run: "A run, recorded and simulated",
+  components: "Which part the excess resembles", gains: "Which explanation predicts best",
+};
+const rank = (name) => Object.keys(EVIDENCE).indexOf(name.split("-")[0]);
+
 // Files of what was dropped, those of folders with their way; one more than are read at most.
 async function below(entry, found, way = "") {
   if (entry.isFile) {
@@ -87,7 +93,10 @@ export function show(result, ask, units) {
 export function verdict(result, ask, address) {
   const place = find("#verdict");
   if (!place) return;
-  const plots = Object.entries(result.plots || {}).map(([name, token]) => element("figure", {}, element("img", { src: address(`/files/${token}`), alt: `Evidence of the verdict: ${name.replaceAll("-", " ")}` })));
+  const plots = Object.entries(result.plots || {}).sort(([a], [b]) => rank(a) - rank(b)).map(([name, token]) => {
+    const [kind, number] = name.split("-"), words = EVIDENCE[kind] + (number ? `, number ${number}` : "");
+    return element("figure", {}, element("figcaption", {}, words), element("img", { src: address(`/files/${token}`), alt: words }));
+  });
   const take = result.improved ? element("button", { type: "button", onclick: () => ask({ do: "improve" }) }, "Take the improved model over as the design") : null;
   place.replaceChildren(element("div", { class: "verdict" }, element("strong", {}, `Verdict: ${result.grade}`), ...result.said.map((one) => element("p", {}, one)), take), ...plots);
 }
