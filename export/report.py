@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from export.page import page_environment
+from export.page import page_environment, script_safe
 from geometry.files import write_whole_text
 
 HERE = Path(__file__).parent
@@ -72,7 +72,7 @@ def write_report(
         steps=step_rows(summary),
         mesh_errors=_mesh_errors(summary),
         pictures=[_picture(name, file, _captions(summary)) for name, file in _in_order(pictures)],
-        view=_script_safe(json.dumps(view)) if view else None,
+        view=script_safe(json.dumps(view)) if view else None,
         viewer="\n".join((HERE / name).read_text(encoding="utf-8") for name in ("webgl.js", "viewer.js")),
         config=json.dumps(summary.get("config", {}), indent=2, ensure_ascii=False),
     )
@@ -190,8 +190,3 @@ def _captions(summary: Mapping[str, Any]) -> dict[str, tuple[str, str]]:
 def _picture(name: str, path: Path, captions: Mapping[str, tuple[str, str]]) -> dict[str, str]:
     title, text = captions.get(name, (name.replace("_", " "), ""))
     return {"title": title, "text": text, "data": base64.b64encode(path.read_bytes()).decode("ascii")}
-
-
-def _script_safe(text: str) -> str:
-    """JSON that cannot end the script element that holds it."""
-    return text.replace("<", "\\u003c")

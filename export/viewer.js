@@ -120,7 +120,7 @@ function softdotViewer(box) {
     find(".step-text").textContent = step.indentation.toFixed(3) + " mm, " + step.force.toPrecision(3) + " N";
     legend.style.visibility = shown ? "visible" : "hidden";
     if (!shown) return;
-    const top = (shown.factor * data[mode() + "Top"]).toPrecision(2), map = body.maps[shown.map || "colourMap"];
+    const top = String(Number((shown.factor * data[mode() + "Top"]).toPrecision(2))), map = body.maps[shown.map || "colourMap"];
     legend.querySelector(".low").textContent = shown.map ? "−" + top : "0";
     legend.querySelector(".top").textContent = top + " " + shown.unit;
     const stops = [0, 51, 102, 153, 204, 255].map((i) => "rgb(" + map.slice(3 * i, 3 * i + 3).join(",") + ")");

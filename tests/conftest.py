@@ -1,7 +1,11 @@
-"""Before any test: one thread for each worker of pytest-xdist, and random examples that depend on their seed alone."""
+"""One thread for each worker of pytest-xdist, random examples that depend on their seed alone, and a browser."""
 
 import os
+import shutil
+from collections.abc import Iterator
+from typing import Any
 
+import pytest
 from hypothesis.internal.conjecture import providers
 
 from geometry.environment import ONE_THREAD
@@ -11,3 +15,20 @@ if "PYTEST_XDIST_WORKER" in os.environ:  # set before a library that reads it is
 
 # Hypothesis mixes in constants of whatever modules are imported, which tests that ran before decide.
 providers.is_local_module_file = lambda _: False
+
+CHROMIUM = next(
+    (found for name in ("chromium", "chromium-browser", "google-chrome") if (found := shutil.which(name))), None
+)
+FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    """Chromium of the system, which draws without a GPU. Tests are skipped without it."""
+    if CHROMIUM is None:
+        pytest.skip("Chromium is not installed")
+    playwright = pytest.importorskip("playwright.sync_api")
+    with playwright.sync_playwright() as engine:
+        found = engine.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        yield found
+        found.close()

@@ -15,3 +15,8 @@ def page_environment(folder: Path) -> "jinja2.Environment":
 
     loader = jinja2.FileSystemLoader([folder, HERE])
     return jinja2.Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
+
+
+def script_safe(text: str) -> str:
+    """JSON that cannot end the script element that holds it."""
+    return text.replace("<", "\\u003c")

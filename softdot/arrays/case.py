@@ -132,17 +132,23 @@ class ArrayCase:
         """Number of the segment under each raised dot of dot.cell, dot 1 over segment r1c1. InputError for a dot that
         has none.
         """
-        columns, rows = len(self.layout.centres(0)), len(self.layout.centres(1))
         found = {}
         for dot in raised_dots(self.config.dot.cell or ""):
-            column, row = COLUMN_AND_ROW[dot]
-            if column >= columns or row >= rows:
+            number = self.under_dot(dot)
+            if number is None:
+                columns, rows = len(self.layout.centres(0)), len(self.layout.centres(1))
                 raise InputError(
                     f"dot.cell = '{self.config.dot.cell}': dot {dot} has no segment under it, "
                     f"array.rows = {rows} and {columns} in each"
                 )
-            found[dot] = row * columns + column
+            found[dot] = number
         return found
+
+    def under_dot(self, dot: int) -> int | None:
+        """Number of the segment under a dot of the first cell, dot 1 over r1c1; None where there is none."""
+        columns, rows = len(self.layout.centres(0)), len(self.layout.centres(1))
+        column, row = COLUMN_AND_ROW[dot]
+        return row * columns + column if column < columns and row < rows else None
 
     @cached_property
     def mirrors(self) -> Planes:

@@ -113,7 +113,7 @@ class Follower:
             return
         if known.state.get("press_hash") is not None and not known.is_pressed:
             known.pressed = known.state["press_hash"]
-            self._press_task = asyncio.create_task(self._press(text, known.pressed, known.state["values"]))
+            self._press_task = asyncio.create_task(self._press(text, known.state))
 
     async def _changes_within(self, seconds: float) -> bool:
         """Whether there is another change in that time."""
@@ -146,9 +146,10 @@ class Follower:
         known.curves[-1]["numbers"]["readout_voltage_V"] = found and found["readout_voltage_V"]
         self._tell("circuit", again=True, found=found)
 
-    async def _press(self, text: str, press_hash: str, values: Mapping[str, Any]) -> None:
+    async def _press(self, text: str, state: Json) -> None:
         """Coarse, then accurate; each is shown as soon as it is there."""
-        curve = {"label": self._label(values), "values": values, "press_hash": press_hash}
+        values = state["values"]
+        curve = {"label": self._label(values), "values": values, "press_hash": state["press_hash"]}
 
         def on_way(told: Json) -> None:
             if "press" in told:
@@ -157,8 +158,12 @@ class Follower:
                 self._tell("progress", task="press", **told["progress"])
 
         try:
-            for task in ("press:coarse_press", "press:accurate_press"):
-                self._show(await self._solve_pool.run(task, text, tell=on_way), curve)
+            for task in state["presses"]:
+                found = await self._solve_pool.run(task, text, tell=on_way)
+                if "array" in found:
+                    self._show_array(found, curve["press_hash"])
+                    continue
+                self._show(found, curve)
                 with suppress(ProcessLost, TimeoutError):
                     await self._answer_circuit(self._document.text)
             self._tell("ended", task="press")
@@ -186,7 +191,13 @@ class Follower:
         curve = {**curve, "quality": found["quality"], "numbers": found["numbers"]}
         known.curves = [*known.curves[1 - MOST_CURVES :], curve]
         known.history = found["history"]
-        shown = [{name: one[name] for name in ("label", "quality", "numbers")} for one in known.curves]
+        shown = [{name: one[name] for name in ("label", "quality", "numbers", "press_hash")} for one in known.curves]
         self._tell("curves", again=True, curves=shown)
+        if found["view"] is not None:
+            self._tell("pressed", again=True, view=found["view"])
+
+    def _show_array(self, found: Json, press_hash: str) -> None:
+        """The press of an array, which has no curves among those of single segments."""
+        self._tell("array", again=True, pressed={**found["array"], "press_hash": press_hash})
         if found["view"] is not None:
             self._tell("pressed", again=True, view=found["view"])

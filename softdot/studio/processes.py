@@ -197,6 +197,7 @@ def named(task: str) -> Callable[..., Any]:
 def _outcome(task: str, arguments: Sequence[Any], tell: Tell) -> tuple[str, Any]:
     """The kind of answer and its content; what went wrong is one sentence, and its traceback a line of the log."""
     from mesh.types import MeshingError
+    from softdot.arrays.matrix import StoppedPressError
     from softdot.machine import without_room
     from solve.solution.linear import LinearSolveError
     from solve.solution.newton import NoEquilibriumError
@@ -210,7 +211,7 @@ def _outcome(task: str, arguments: Sequence[Any], tell: Tell) -> tuple[str, Any]
         return "refused", str(error)
     except MeshingError as error:
         return "refused", f"the mesher failed: {error}"
-    except (LinearSolveError, NoEquilibriumError, StoppedShortError) as error:
+    except (LinearSolveError, NoEquilibriumError, StoppedPressError, StoppedShortError) as error:
         return "refused", f"not converged: {error}"
     except Exception as error:
         LOG.debug("%s failed", task, exc_info=True)

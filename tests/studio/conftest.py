@@ -1,7 +1,6 @@
-"""A studio in a process of its own, and Debian's Chromium to look at it."""
+"""A studio in a process of its own, and tabs of a browser that look at it."""
 
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -14,10 +13,6 @@ import pytest
 from geometry.environment import ONE_THREAD
 from tests.softdot.interrupts import heard
 
-CHROMIUM = next(
-    (found for name in ("chromium", "chromium-browser", "google-chrome") if (found := shutil.which(name))), None
-)
-FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
 QUICK = """\
 # A slice that is pressed in a second.
 [segment]
@@ -88,17 +83,6 @@ def start_studio(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[
 @pytest.fixture(scope="module")
 def studio(start_studio: Callable[..., Running]) -> Running:
     return start_studio()
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    if CHROMIUM is None:
-        pytest.skip("Chromium is not installed")
-    playwright = pytest.importorskip("playwright.sync_api")
-    with playwright.sync_playwright() as engine:
-        found = engine.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
-        yield found
-        found.close()
 
 
 class Tab:

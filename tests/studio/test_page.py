@@ -176,3 +176,35 @@ def test_junk_is_refused_and_the_page_goes_on(studio, open_tab, tmp_path):
     tab.wrong.clear()  # the browser tells its console of the status 400
     tab.page.get_by_label("Close this message").click()
     assert not tab.page.locator("#said").is_visible()
+
+
+def test_a_mistake_leads_to_its_number_also_where_a_search_hides_it(studio, open_tab):
+    tab = open_tab(studio.address)
+    search = tab.page.get_by_label("Find a number")
+    search.fill("medium 2")
+    wanted = tab.page.locator('.field[data-key="segment.medium2.thickness_mm"]')
+    wanted.wait_for()  # the title of its group is enough
+    hidden = tab.page.locator('.field[data-key="segment.medium1.thickness_mm"]')
+    assert not hidden.is_visible()
+    tab.page.locator("#text").fill(QUICK.replace("thickness_mm = 0.5", "thickness_mm = -1.0"))
+    tab.page.get_by_role("button", name="Show the number").click()
+    assert hidden.is_visible()
+    assert search.input_value() == ""
+    assert tab.page.evaluate("document.activeElement.closest('.field').dataset.key") == "segment.medium1.thickness_mm"
+    tab.says("#press .doing", "has a mistake")
+
+
+@pytest.mark.slow
+def test_numbers_and_files_of_the_design_before_say_so(studio, open_tab):
+    tab = open_tab(studio.address)
+    tab.pressed()
+    tab.page.locator("[data-start=influences]").click()
+    tab.says("#tasks li", "done in", 60.0)
+    assert not tab.page.locator("#before").is_visible()
+    assert not tab.page.locator("#tasks .old").is_visible()
+    tab.page.locator("#text").fill(QUICK.replace("0.5", "0.62"))
+    tab.page.locator("#before:visible").wait_for()
+    tab.says("#tasks .old", "has been changed since")
+    tab.page.locator("#before").wait_for(state="hidden", timeout=60_000)
+    tab.page.get_by_role("button", name="Undo").click()
+    tab.page.locator("#tasks .old").wait_for(state="hidden")

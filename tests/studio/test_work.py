@@ -54,6 +54,7 @@ WRONG = {
     "press.indentation_mm = -3: must be above 0": ("indentation_mm = 0.3", "indentation_mm = -3.0"),
     "press.load_steps = 0: must be at least 1": ("load_steps = 6", "load_steps = 0"),
     "segment.film.thicknes_um is not a key": ("thickness_um", "thicknes_um"),
+    "segment.effector.diameter_mm is missing": ('shape = "layer"', 'shape = "dome"'),
     "press.depth is not a key": ("load_steps = 6", "load_steps = 6\ndepth = 1"),
 }
 

@@ -4,8 +4,13 @@ from collections.abc import Mapping
 from pathlib import PurePath
 from typing import Any
 
+from geometry.array.checks import check_array
 from geometry.base import InputError, load_alone
+from geometry.checks import check_segment
+from geometry.dot import DotShape, resolve_dot
+from softdot.arrays.case import ArrayCase
 from softdot.case import Case
+from softdot.checks import design_warnings, expected_cost
 from softdot.config import Config, config_from, input_hash
 from softdot.config.errors import mistakes
 from softdot.config.toml import completed, parse_toml
@@ -13,17 +18,24 @@ from softdot.console import plain
 from softdot.second_process import PARTS
 
 NAME = "design"
+Solids = dict[str, Any]
+DOTS = range(1, 7)
+
+
+def config_of(text: str) -> Config:
+    """The configuration of a design. InputError."""
+    return _config(parse_toml(text, NAME))
+
+
+def _config(tables: Mapping[str, Any]) -> Config:
+    config = config_from(completed(tables))
+    refuse_files_outside(config)
+    return config
 
 
 def case_of(text: str) -> Case:
-    """The case of a design. InputError."""
-    return _case(parse_toml(text, NAME))
-
-
-def _case(tables: Mapping[str, Any]) -> Case:
-    config = config_from(completed(tables))
-    refuse_files_outside(config)
-    return Case(config)
+    """The case of a design of one segment. InputError."""
+    return Case(config_of(text))
 
 
 def refuse_files_outside(config: Config) -> None:
@@ -50,19 +62,89 @@ def pressed_part(case: Case) -> Case:
     return Case(config)
 
 
-def draw(text: str) -> dict[str, Any] | None:
-    """The parts at rest for the 3D view; None for a design that has none, about which examine says why."""
-    from export.parts_view import parts_view
-    from geometry.assembly import case_solid, layer_solids
-    from geometry.checks import check_segment
-    from geometry.dot import resolve_dot
+class SegmentDesign:
+    """A design of one segment, as the page speaks of it."""
 
-    try:
-        model = case_of(text).model
+    presses = ("press:coarse_press", "press:accurate_press")
+
+    def __init__(self, config: Config) -> None:
+        self._case = Case(config)
+
+    @property
+    def warnings(self) -> list[str]:
+        """InputError for what cannot be pressed."""
+        return [*self._case.checked[1], *design_warnings(self._case.model)]
+
+    def told(self) -> dict[str, Any]:
+        """What it costs, and a hash of all that its press depends on."""
+        case = self._case
+        cost = vars(expected_cost(case.config, case.checked[0], case.planes))
+        return {"cost": cost, "press_hash": input_hash(pressed_part(case).config)}
+
+    def solids(self) -> tuple[Solids, DotShape]:
+        """Solids by their labels, and the dot. InputError."""
+        from geometry.assembly import case_solid, layer_solids
+
+        model = self._case.model
         segment = model.segment
         check_segment(segment)
         solids = {**layer_solids(segment, 1e-3 * segment.film.thickness_um), "case": case_solid(segment)}
-        return parts_view(solids, resolve_dot(model.dot, segment))
+        return solids, resolve_dot(model.dot, segment)
+
+
+class ArrayDesign:
+    """A design of an array, which the raised dots of a cell press."""
+
+    presses = ("press:press_of_cell",)
+
+    def __init__(self, config: Config) -> None:
+        self._case = ArrayCase(config)
+
+    @property
+    def warnings(self) -> list[str]:
+        """InputError for what cannot be pressed."""
+        return self._case.checked
+
+    def told(self) -> dict[str, Any]:
+        """What it costs, where its segments lie (mm), which of them is under which dot of the first cell, and a hash of
+        the press; that is None where no dot is raised.
+        """
+        case = self._case
+        cell, layout = case.config.dot.cell, case.layout
+        under = {dot: number for dot in DOTS if (number := case.under_dot(dot)) is not None}
+        segments = {"labels": [place.label for place in layout.places], "centres_mm": layout.middles}
+        about = {**segments, "size_mm": layout.size_mm, "half_mm": layout.half_mm, "cell": cell, "under": under}
+        pressed = None if cell is None else input_hash(case.config)
+        return {"cost": vars(case.cost), "press_hash": pressed, "array": about}
+
+    def solids(self) -> tuple[Solids, DotShape]:
+        """As of a segment: the islands of a layer are one body, and the grid belongs to the case. InputError."""
+        from build123d import Compound
+
+        from geometry.array.parts import array_parts
+
+        case = self._case
+        check_array(case.layout)
+        alone = case.config.dot.cell is None
+        press = case.press_over(case.layout.places[0]) if alone else case.press_by_cell()
+        parts: dict[str, list[Any]] = {}
+        for part in array_parts(case.layout, press.dot):
+            parts.setdefault(part.label.replace("grid", "case").rpartition("-")[2], []).append(part.solid)
+        del parts["dot"]
+        return {name: Compound(solids) for name, solids in parts.items()}, press.dot
+
+
+def design_of(config: Config) -> SegmentDesign | ArrayDesign:
+    """Of the kind that a configuration states. InputError."""
+    return SegmentDesign(config) if config.array is None else ArrayDesign(config)
+
+
+def draw(text: str) -> dict[str, Any] | None:
+    """The parts at rest for the 3D view; None for a design that has none, about which examine says why."""
+    from export.parts_view import parts_view
+
+    try:
+        return parts_view(*design_of(config_of(text)).solids())
     except InputError:
         return None
 
@@ -71,9 +153,9 @@ def examine(text: str) -> dict[str, Any]:
     """What the page says of a design.
 
     values : every key, None where the text is no TOML. mistakes : one sentence each; where there is one, nothing is
-    pressed. remedies : for each mistake or warning. press_hash : of all that the press depends on.
+    pressed. remedies : for each mistake or warning. presses : the tasks that press it. press_hash : of all that the
+    press depends on. array : of an array, where its segments are.
     """
-    from softdot.checks import design_warnings, expected_cost
     from softdot.studio.work.remedies import remedies
 
     try:
@@ -81,29 +163,28 @@ def examine(text: str) -> dict[str, Any]:
     except InputError as error:
         return {"values": None, "stated": None, "mistakes": [str(error)], "warnings": [], "remedies": [None]}
 
-    def check(found: Mapping[str, Any]) -> Case:
-        case = _case(found)
-        _ = case.checked
-        return case
+    def check(found: Mapping[str, Any]) -> tuple[Config, SegmentDesign | ArrayDesign, list[str]]:
+        config = _config(found)
+        design = design_of(config)
+        return config, design, design.warnings
 
-    found, case = mistakes(tables, check)
-    if case is None:
+    found, checked = mistakes(tables, check)
+    if checked is None:
         whole, stated = plain({"values": completed(tables), "stated": tables}).values()
-        tried = remedies(tables, found, check)
+        tried = remedies(tables, found, lambda changed: check(changed)[2])
         return {"values": whole, "stated": stated, "mistakes": found, "warnings": [], "remedies": tried}
-    dot, warnings = case.checked
-    warnings = [*warnings, *design_warnings(case.model)]
+    config, design, warnings = checked
     told: dict[str, Any] = plain(
         {
-            "values": case.config.model_dump(mode="json"),
+            "values": config.model_dump(mode="json"),
             "stated": tables,
             "mistakes": found,
             "warnings": warnings,
-            "cost": vars(expected_cost(case.config, dot, case.planes)),
+            "presses": design.presses,
+            **design.told(),
         }
     )
-    tried = remedies(tables, warnings, check)
-    return {**told, "remedies": tried, "press_hash": input_hash(pressed_part(case).config)}
+    return {**told, "remedies": remedies(tables, warnings, lambda changed: check(changed)[2])}
 
 
 def warm_up() -> None:

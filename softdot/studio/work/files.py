@@ -5,8 +5,9 @@ from pathlib import Path
 from typing import Any, get_args
 
 from geometry.base import InputError
+from softdot.config import Config
 from softdot.studio.processes import Tell
-from softdot.studio.work.design import case_of
+from softdot.studio.work.design import case_of, config_of
 from softdot.studio.work.press import TaskProgress
 
 
@@ -55,14 +56,25 @@ def plate(asked: dict[str, Any], folder: str, tell: Tell) -> dict[str, Any]:
 
 
 def report(text: str, folder: str, tell: Tell) -> dict[str, Any]:
-    """As `softdot run`: the report, CAD files, fields for ParaView and every number."""
+    """As `softdot run`, or `softdot array`: the report, CAD files, fields for ParaView and every number."""
     from softdot.commands.run import run_case, short_text
 
-    place = Path(folder) / "run"
+    config, place = config_of(text), Path(folder) / "run"
+    if config.array is not None:
+        return _report_of_array(config, text, place.with_name("array"), tell)
     summary = run_case(case_of(text), place, TaskProgress(tell))
     solver = summary["solver"]
     said = [] if solver["converged"] else [f"not converged, {solver['failure']}"]
     said += short_text(summary, "run").splitlines()[:-1]
+    page = str(place / "report.html")
+    return {"file": _zipped(place, text), "page": page, "said": said, "warnings": summary["warnings"]}
+
+
+def _report_of_array(config: Config, text: str, place: Path, tell: Tell) -> dict[str, Any]:
+    from softdot.commands.array import run_array, short_text
+
+    summary = run_array(config, place, TaskProgress(tell))
+    said = short_text(summary, "array").splitlines()[:-1]
     page = str(place / "report.html")
     return {"file": _zipped(place, text), "page": page, "said": said, "warnings": summary["warnings"]}
 

@@ -9,11 +9,13 @@ from typing import Any
 from export.viewer_data import viewer_data
 from geometry.base import InputError
 from mesh.types import MeshingError
+from softdot.arrays.case import ArrayCase
+from softdot.arrays.presses import remembered, signals_of
 from softdot.case import Case
 from softdot.checks import result_warnings
 from softdot.console import plain
 from softdot.studio.processes import Tell
-from softdot.studio.work.design import case_of, pressed_part
+from softdot.studio.work.design import case_of, config_of, pressed_part
 from softdot.studio.work.remedies import late_remedies
 from softdot.summary import mesh_part, press_part
 from softdot.tolerances.responses import on_larger_elements
@@ -43,6 +45,30 @@ def accurate_press(text: str, tell: Tell) -> dict[str, Any]:
         progress.stage("error bars")
         return {**found, "view": None, "numbers": {**found["numbers"], **plain(case.uncertainty(found["numbers"]))}}
     return found
+
+
+def press_of_cell(text: str, tell: Tell) -> dict[str, Any]:
+    """The press of an array by the cell of its dots, on large elements: what each segment reads. InputError."""
+    case, progress = ArrayCase(on_larger_elements(config_of(text), COARSE)), TaskProgress(tell)
+    _ = case.checked
+    press = case.press_by_cell()
+    progress.stage("mesh")
+    _ = press.mesh
+    progress.stage("press")
+    result = remembered(press, progress.on_step)
+    found = signals_of(press, result, 0.0)
+    numbers = {
+        "cell": case.config.dot.cell,
+        "depth_mm": found.depth_mm[-1],
+        "force_N": found.force_N[-1],
+        "charge_pC": found.charge_pC[-1],
+        "voltage_V": found.signal_V[-1],
+        "amplified": found.readout_voltage_V is not None,
+        "warnings": found.warnings,
+        "failure": found.failure,
+    }
+    view = viewer_data(result.tet_mesh, result, press.dot) if len(result.steps) > 1 else None
+    return {"array": plain(numbers), "view": view}
 
 
 def _pressed(case: Case, progress: "TaskProgress", quality: str) -> dict[str, Any]:

@@ -6,7 +6,6 @@ from contextlib import suppress
 from typing import Any
 
 from geometry.base import InputError
-from softdot.case import Case
 from softdot.config import Config
 from softdot.config.toml import completed, parsed, with_value
 from solve.mechanisms.layers.film_yield import FILM_YIELD
@@ -14,11 +13,18 @@ from solve.mechanisms.layers.film_yield import FILM_YIELD
 KEY = r"([\w\-.\[\]\"]+)"
 BOUND = re.compile(KEY + r" = \S+: must be (at least|at most|above|below|less than)\D*? ([\d.eE+-]+)")
 MEANT = re.compile(KEY + r" is not a key; did you mean '([\w.]+)'\?")
+GAP = re.compile(KEY + r" = \S+: leaves a gap of \S+ mm along \w at the pitch of ([\d.]+) mm")
+MISSING = re.compile(r"(segment\.effector\.\w+_mm) is missing: ")
+OF_THE_SEGMENT = 0.8
+"""Size of an effector that has none."""
+GAP_SHARE = 0.08
+"""Of the pitch: 0.2 mm of 2.5 mm."""
 SHARES = 0.95, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1
 JUST_INSIDE = 1e-3
 MOST = 8
 """Sentences for which changes are tried; each takes some checks of the design."""
-Check = Callable[[Mapping[str, Any]], Case]
+Check = Callable[[Mapping[str, Any]], list[str]]
+"""The warnings of a design; InputError for a mistake."""
 
 
 def remedies(tables: Mapping[str, Any], told: Sequence[str], check: Check) -> list[dict[str, Any] | None]:
@@ -61,13 +67,10 @@ def _first_that_mends(tables: Mapping[str, Any], sentence: str, check: Check) ->
 
 def _told(tables: Mapping[str, Any], check: Check) -> list[str]:
     """Every sentence about a design: a mistake, or its warnings."""
-    from softdot.checks import design_warnings
-
     try:
-        case = check(tables)
+        return check(tables)
     except InputError as error:
         return [str(error)]
-    return [*case.checked[1], *design_warnings(case.model)]
 
 
 def _changed(tables: Mapping[str, Any], changes: Sequence[Sequence[Any]]) -> Mapping[str, Any]:
@@ -128,6 +131,15 @@ def _of_the_key(tables: Mapping[str, Any], sentence: str) -> Iterator[tuple[str,
         for part in wrong:
             value = value[part]
         yield f"call it {meant[2]}", [[wrong, None], [right, value]]
+    segment, missing = completed(tables).get("segment", {}), MISSING.match(sentence)
+    if missing is not None and isinstance(segment, dict):
+        sides = [side for name in ("length_mm", "width_mm") if isinstance(side := segment.get(name), int | float)]
+        size = float(f"{OF_THE_SEGMENT * min(sides, default=1.0):.2g}")
+        yield f"set {missing[1]} to {size:g}", [[list(parsed(missing[1])), size]]
+    gap = GAP.match(sentence)
+    if gap is not None:
+        size = float(f"{(1 - GAP_SHARE) * float(gap[2]):.3g}")
+        yield f"set {gap[1]} to {size:g}", [[list(parsed(gap[1])), size]]
     first = sentence.split(" ", 1)[0]
     if (":" in sentence or "is not a key" in sentence) and re.fullmatch(KEY, first):
         yield f"take {first} out", [[list(parsed(first)), None]]

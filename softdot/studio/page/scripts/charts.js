@@ -66,9 +66,30 @@ export function tornado(rows, unit = "%") {
     const wide = (Math.abs(row.value) / most) * (middle - 58), y = i * line + 17;
     chart.append(node("text", { x: middle, y: y - 4, "text-anchor": "middle" }, row.label));
     chart.append(node("rect", { class: row.value < 0 ? "bar minus" : "bar", x: row.value < 0 ? middle - wide : middle, y, width: wide, height: 11, rx: 2 }));
+    chart.append(node("line", { class: "grid", x1: middle, x2: middle, y1: y - 1, y2: y + 12 }));
     const beside = row.value < 0 ? middle - wide - 4 : middle + wide + 4;
     chart.append(node("text", { x: beside, y: y + 10, "text-anchor": row.value < 0 ? "end" : "start" }, `${row.value > 0 ? "+" : "−"}${Math.abs(row.value).toFixed(Math.abs(row.value) < 100 ? 1 : 0)} ${unit}`));
   });
-  chart.append(node("line", { class: "grid", x1: middle, x2: middle, y1: 0, y2: height }));
+  return chart;
+}
+
+// An array from above: each segment with a bar as high as its voltage; places: [{label, at: [x, y], volts}], in mm.
+export function segments({ places, dots, size, half }) {
+  const scale = Math.min(64 / Math.min(...size), 560 / (2 * half[0])), margin = 6;
+  const [width, height] = half.map((one) => 2 * one * scale + 2 * margin), [w, h] = size.map((one) => one * scale);
+  const X = (x) => margin + (x + half[0]) * scale, Y = (y) => margin + (y + half[1]) * scale;
+  const most = Math.max(...places.map((one) => Math.abs(one.volts || 0)), 1e-12), room = h - 32;
+  const chart = node("svg", { class: "chart array", viewBox: `0 0 ${width} ${height}`, role: "img" });
+  const said = places.map((one) => `${one.label} ${one.volts === null ? "not pressed yet" : `${short(one.volts)} V`}`).join(", ");
+  chart.append(node("title", {}, `Voltages of the segments: ${said}`));
+  for (const { label, at, volts } of places) {
+    const [left, top] = [X(at[0]) - w / 2, Y(at[1]) - h / 2];
+    chart.append(node("rect", { class: "segment", x: left, y: top, width: w, height: h, rx: 3 }));
+    const tall = (Math.abs(volts || 0) / most) * room;
+    if (volts !== null) chart.append(node("rect", { class: volts < 0 ? "bar minus" : "bar", x: left + w - 16, y: top + 4 + room - tall, width: 10, height: tall }));
+    chart.append(node("text", { x: left + 5, y: top + 14 }, label));
+    if (volts !== null) chart.append(node("text", { class: "title", x: X(at[0]), y: top + h - 9, "text-anchor": "middle" }, `${volts.toPrecision(3)} V`));
+  }
+  for (const [x, y] of dots) chart.append(node("circle", { class: "ring", cx: X(x) - 8, cy: Y(y) - 3, r: 0.15 * h }));
   return chart;
 }

@@ -21,7 +21,12 @@ export function short(value) {
 }
 
 export function duration(seconds) {
-  return seconds < 90 ? Math.max(1, Math.round(seconds)) + " s" : (seconds / 60).toFixed(1) + " min";
+  return seconds < 90 ? Math.max(1, Math.round(seconds)) + "\u00a0s" : (seconds / 60).toFixed(1) + "\u00a0min";
+}
+
+// A dotted key, which a narrow column may break between its words.
+export function breakable(key) {
+  return key.split(/(?<=[._])/).flatMap((part, i) => (i ? [element("wbr"), part] : [part]));
 }
 
 // "thickness_mm" -> ["thickness", "mm"]; the endings come from the program.

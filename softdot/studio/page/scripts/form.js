@@ -134,6 +134,7 @@ export class Form {
     box.replaceChildren(head, ...(control.below || []), hint);
     for (const part of control.parts) if (part.matches("input, select")) part.setAttribute("aria-describedby", hint.id);
     const start = dotted(path);
+    box.dataset.key = start;
     this.follow(box, () => {
       control.show(at(this.values, path));
       const bad = this.mistakes.some((one) => one.startsWith(start) && !/[\w.]/.test(one[start.length] || " "));
@@ -320,10 +321,19 @@ function scaled(found, value, whole) {
   return { low: a, high: b, value: (place) => rounded(inner + ((b - inner) * place) / 1000), place: (one) => (1000 * (one - inner)) / (b - inner) };
 }
 
+// Whether a word occurs in a field or in the title of a group that holds it.
+function found(field, wanted) {
+  if (field.textContent.toLowerCase().includes(wanted)) return true;
+  for (let group = field.closest("details"); group; group = group.parentElement.closest("details")) {
+    if (group.querySelector("summary").textContent.toLowerCase().includes(wanted)) return true;
+  }
+  return false;
+}
+
 // Hide what a word does not occur in; what is found is opened.
 export function filter(root, word) {
   const wanted = word.trim().toLowerCase();
-  for (const field of root.querySelectorAll(".field")) field.hidden = wanted !== "" && !field.textContent.toLowerCase().includes(wanted) && !field.querySelector(".field:not([hidden])");
+  for (const field of root.querySelectorAll(".field")) field.hidden = wanted !== "" && !found(field, wanted) && !field.querySelector(".field:not([hidden])");
   for (const group of [...root.querySelectorAll("details")].reverse()) {
     if (group.wasOpen === undefined) group.wasOpen = group.open;
     const some = group.querySelector(".field:not([hidden])");
@@ -331,4 +341,20 @@ export function filter(root, word) {
     group.open = wanted === "" ? group.wasOpen : Boolean(some);
     if (wanted === "") delete group.wasOpen;
   }
+}
+
+// The field of the key with which a sentence begins, null where there is none.
+export function named(root, sentence) {
+  const key = sentence.split(/[ :]/, 1)[0];
+  return [...root.querySelectorAll(".field[data-key]")].find((one) => one.dataset.key === key) || null;
+}
+
+// Open what hides a field and go there.
+export function go(field) {
+  const search = document.querySelector("#find");
+  search.value = "";
+  search.dispatchEvent(new Event("input"));
+  for (let group = field.closest("details"); group; group = group.parentElement.closest("details")) group.open = true;
+  field.scrollIntoView({ block: "center" });
+  field.querySelector("input, select").focus();
 }

@@ -1,4 +1,5 @@
 // The tab: its socket to the program, and who shows what the program tells.
+import * as array from "./array.js";
 import { element, find } from "./dom.js";
 import { Form, filter } from "./form.js";
 import * as next from "./next.js";
@@ -29,6 +30,23 @@ function shown(view, words) {
   find("#view3d .play").disabled = view.steps.length < 2;
 }
 
+// Where there is nothing to press, why: it counts more than that the press before was cancelled.
+function nothingToPress() {
+  const { mistakes = [], array: cells, press_hash: hash } = state.design || {};
+  if (mistakes.length) result.doing("The design has a mistake; mend it and it is pressed.", false, true);
+  else if (state.ofArray && cells && !hash) result.doing("Raise a dot of the cell to press it.", false);
+  else return;
+  find("#press .again").hidden = true;
+  if (mistakes.length && find("#view3d .step-text").textContent) find("#view3d .shown").textContent = "The last design without a mistake.";
+}
+
+// Whether the numbers are those of another design than the one in the form.
+function stale() {
+  const old = Boolean(state.shownHash) && !state.ofArray && state.design && state.design.press_hash !== state.shownHash;
+  find("#before").hidden = !old;
+  for (const place of ["#numbers", "#curves"]) find(place).classList.toggle("stale", old);
+}
+
 const hear = {
   tab({ name }) {
     state.tab = name;
@@ -44,6 +62,7 @@ const hear = {
     const text = find("#text");
     if (document.activeElement !== text || !text.dataset.dirty) text.value = told.text;
     state.text = told.text;
+    tasks.follow(told.text);
     for (const name of ["undo", "redo", "reset"]) find(`#${name}`).disabled = !told[name];
   },
   parts({ view }) {
@@ -62,16 +81,26 @@ const hear = {
         find("#circuit .fields details").open = true;
       }
     }
+    state.ofArray = array.state(told);
+    nothingToPress();
+    stale();
     next.mistakes(told, ask);
     next.warnings(told.mistakes.length ? { warnings: [], remedies: [] } : told, state.late, ask);
     next.cost(told);
-    if (told.mistakes.length) result.doing("The design has a mistake; mend it and it is pressed.", false, true);
   },
   curves({ curves }) {
     const now = curves[curves.length - 1];
     state.quality = now.quality;
     state.late = (now.numbers.warnings || []).map((text, i) => ({ text, remedy: (now.numbers.remedies || [])[i] }));
     result.show(curves);
+    state.shownHash = now.press_hash;
+    stale();
+    if (state.design) next.warnings(state.design, state.late, ask);
+  },
+  array({ pressed }) {
+    state.quality = "coarse";
+    state.late = pressed.warnings.map((text) => ({ text, remedy: null }));
+    array.show(pressed);
     if (state.design) next.warnings(state.design, state.late, ask);
   },
   pressed({ view }) {
@@ -85,8 +114,9 @@ const hear = {
     else tasks.progress(told);
   },
   ended(told) {
-    if (told.task === "press") result.ended(told, state);
-    else tasks.ended(told);
+    if (told.task !== "press") return tasks.ended(told);
+    result.ended(told, state);
+    return nothingToPress();
   },
   done(told) {
     tasks.done(told);
@@ -175,4 +205,5 @@ typing();
 files();
 buttons();
 recording.prepare(address, say);
+array.prepare(ask);
 connect();

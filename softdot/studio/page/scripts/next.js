@@ -1,12 +1,17 @@
 // The right side: warnings, what moves the voltage, work for the bench, comparison.
 import { tornado } from "./charts.js";
-import { duration, element, find, short } from "./dom.js";
+import { breakable, duration, element, find, short } from "./dom.js";
+import { go, named } from "./form.js";
 
 export const TITLES = { kit: "Kit", report: "Report and CAD", plate: "Braille plate", influences: "What moves the voltage", tolerances: "Tolerances", recording: "Recording", diagnosis: "Diagnosis" };
 
+const OF_DESIGN = ["kit", "report", "influences", "tolerances"];
+
 function mending(sentence, remedy, ask) {
   const button = remedy && element("button", { type: "button", onclick: () => ask({ do: "change", changes: remedy.changes }) }, `Mend it: ${remedy.says}`);
-  return element("li", {}, sentence, button);
+  const field = named(find("#form"), sentence);
+  const there = field && element("button", { type: "button", onclick: () => go(field) }, "Show the number");
+  return element("li", {}, sentence, element("span", { class: "row" }, button, there));
 }
 
 export function mistakes(state, ask) {
@@ -45,15 +50,27 @@ export class Tasks {
 
   item(task) {
     if (!this.items[task]) {
-      this.items[task] = element("li", {}, element("strong", {}, TITLES[task] || task), element("p", { class: "state" }), element("progress", { max: 1, "aria-label": `Progress: ${TITLES[task]}` }), element("p", { class: "links" }), element("div", { class: "more" }), element("button", { type: "button", onclick: () => this.ask({ do: "cancel", task }) }, "Cancel"));
+      this.items[task] = element("li", {}, element("strong", {}, TITLES[task] || task), element("p", { class: "state" }), element("p", { class: "old", hidden: true }, "The design has been changed since."), element("progress", { max: 1, "aria-label": `Progress: ${TITLES[task]}` }), element("p", { class: "links" }), element("div", { class: "more" }), element("button", { type: "button", onclick: () => this.ask({ do: "cancel", task }) }, "Cancel"));
       find("#tasks").prepend(this.items[task]);
     }
     return this.items[task];
   }
 
+  // text: of the present design; what was made of another one says so.
+  follow(text) {
+    this.text = text;
+    for (const [task, item] of Object.entries(this.items)) {
+      item.querySelector(".old").hidden = !OF_DESIGN.includes(task) || item.madeOf === undefined || item.madeOf === text;
+    }
+  }
+
   progress(told) {
     const item = this.item(told.task), bar = item.querySelector("progress");
     item.classList.remove("bad");
+    if (told.stage === "start") {
+      item.madeOf = this.text;
+      item.querySelector(".old").hidden = true;
+    }
     const left = told.left_s && told.count ? `, ${duration(told.left_s)} left` : "";
     item.querySelector(".state").textContent = `${told.stage}${told.count ? ` ${told.done} of ${told.count}` : ""}${told.text ? `: ${told.text}` : ""}${left}`;
     item.querySelector("button").hidden = false;
@@ -94,8 +111,8 @@ export function kept(told, ask) {
     place.replaceChildren(element("p", { class: "soft" }, `Keep up to ${told.most} designs to see them side by side.`));
     return;
   }
-  const buttons = (i) => element("span", { class: "row" }, element("button", { type: "button", onclick: () => ask({ do: "take", number: i }), "aria-label": `Go on with ${told.names[i]}` }, "Use"), element("button", { type: "button", onclick: () => ask({ do: "drop", number: i }), "aria-label": `Take out ${told.names[i]}` }, "×"));
+  const buttons = (i) => element("span", { class: "pair" }, element("button", { type: "button", onclick: () => ask({ do: "take", number: i }), "aria-label": `Go on with ${told.names[i]}` }, "Use"), element("button", { type: "button", onclick: () => ask({ do: "drop", number: i }), "aria-label": `Take out ${told.names[i]}` }, "×"));
   const head = element("tr", {}, element("td", {}), ...told.names.map((name, i) => element("th", { scope: "col" }, name, buttons(i))));
-  const rows = told.rows.map((row) => element("tr", {}, element("th", { scope: "row" }, row.label + (row.unit ? ` (${row.unit})` : "")), ...row.cells.map((cell) => element("td", {}, short(cell)))));
+  const rows = told.rows.map((row) => element("tr", {}, element("th", { scope: "row" }, ...breakable(row.label + (row.unit ? ` (${row.unit})` : ""))), ...row.cells.map((cell) => element("td", {}, short(cell)))));
   place.replaceChildren(element("div", { class: "wide", tabindex: 0, role: "region", "aria-label": "Compared designs" }, element("table", {}, element("thead", {}, head), element("tbody", {}, ...rows))));
 }

@@ -3,27 +3,41 @@ import { curves } from "./charts.js";
 import { element, find, worded } from "./dom.js";
 
 const PHASES = ["approach", "loading", "hold", "unloading", "after"];
-const MOST_MB = 25;
+const WANTED = /\.(toml|csv|zip)$/i;
+const MOST_MB = 25, MOST_FILES = 500;
 
-async function below(entry, way = "") {
+const EVIDENCE = {
+  where: "Where recordings and simulation differ", run: "A run, recorded and simulated",
+  components: "Which part the excess resembles", gains: "Which explanation predicts best",
+};
+const rank = (name) => Object.keys(EVIDENCE).indexOf(name.split("-")[0]);
+
+// Files of what was dropped, those of folders with their way; one more than are read at most.
+async function below(entry, found, way = "") {
   if (entry.isFile) {
-    const file = await new Promise((found, lost) => entry.file(found, lost));
-    return [[way + file.name, file]];
+    if (WANTED.test(entry.name)) found.push([way + entry.name, await new Promise((given, lost) => entry.file(given, lost))]);
+    return;
   }
-  const reader = entry.createReader(), all = [];
-  for (;;) {
-    const some = await new Promise((found, lost) => reader.readEntries(found, lost));
+  const reader = entry.createReader();
+  while (found.length <= MOST_FILES) {
+    const some = await new Promise((given, lost) => reader.readEntries(given, lost));
     if (!some.length) break;
-    for (const one of some) all.push(...(await below(one, `${way}${entry.name}/`)));
+    for (const one of some) await below(one, found, `${way}${entry.name}/`);
   }
-  return all;
+}
+
+async function dropped(entries) {
+  const found = [];
+  for (const one of entries) await below(one, found);
+  return found;
 }
 
 // files: [[name, File], ...]; the head of what is sent lists their names and sizes.
 async function send(files, address, say) {
-  const wanted = files.filter(([name]) => /\.(toml|csv|zip)$/i.test(name));
+  const wanted = files.filter(([name]) => WANTED.test(name));
   const total = wanted.reduce((sum, [, file]) => sum + file.size, 0) / 1e6;
   if (!wanted.length) return say("There is no recording in it: a recording is a folder with rig.toml and CSV files.", true);
+  if (wanted.length > MOST_FILES) return say(`There are more than ${MOST_FILES} files in it, which are not read; drop the folder of one recording.`, true);
   if (total > MOST_MB) return say(`This recording has ${total.toFixed(0)} MB, at most ${MOST_MB} MB are read here; thin it out, or use softdot diagnose.`, true);
   const head = JSON.stringify(wanted.map(([name, file]) => [name, file.size])) + "\n";
   try {
@@ -42,8 +56,12 @@ export function prepare(address, say) {
   }
   drop.addEventListener("drop", async (event) => {
     const entries = [...event.dataTransfer.items].map((one) => one.webkitGetAsEntry && one.webkitGetAsEntry()).filter(Boolean);
-    const found = entries.length ? (await Promise.all(entries.map((one) => below(one)))).flat() : [...event.dataTransfer.files].map((file) => [file.name, file]);
-    send(found, address, say);
+    const files = [...event.dataTransfer.files].map((file) => [file.name, file]);
+    try {
+      await send(entries.length ? await dropped(entries) : files, address, say);
+    } catch {
+      say("What was dropped cannot be read.", true);
+    }
   });
   for (const kind of ["folder", "zip"]) {
     const input = drop.querySelector(`.${kind}-file`);
@@ -75,7 +93,10 @@ export function show(result, ask, units) {
 export function verdict(result, ask, address) {
   const place = find("#verdict");
   if (!place) return;
-  const plots = Object.entries(result.plots || {}).map(([name, token]) => element("figure", {}, element("img", { src: address(`/files/${token}`), alt: `Evidence of the verdict: ${name.replaceAll("-", " ")}` })));
+  const plots = Object.entries(result.plots || {}).sort(([a], [b]) => rank(a) - rank(b)).map(([name, token]) => {
+    const [kind, number] = name.split("-"), words = EVIDENCE[kind] + (number ? `, number ${number}` : "");
+    return element("figure", {}, element("figcaption", {}, words), element("img", { src: address(`/files/${token}`), alt: words }));
+  });
   const take = result.improved ? element("button", { type: "button", onclick: () => ask({ do: "improve" }) }, "Take the improved model over as the design") : null;
   place.replaceChildren(element("div", { class: "verdict" }, element("strong", {}, `Verdict: ${result.grade}`), ...result.said.map((one) => element("p", {}, one)), take), ...plots);
 }

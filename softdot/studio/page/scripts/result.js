@@ -30,6 +30,7 @@ export function doing(text, busy, bad = false) {
 export function ended(told, state) {
   find("#press .again").hidden = !told.said;
   if (told.said) doing(told.said === "cancelled" ? "The press was cancelled." : told.said, false, Boolean(told.bad));
+  else if (state.ofArray) doing("Pressed on large elements. Report and CAD is softdot array, as fine as the design asks for.", false);
   else doing(state.quality === "accurate" ? "Pressed, as softdot run does." : "Pressed.", false);
 }
 
