@@ -147,7 +147,13 @@ def with_about(
         "pitch_mm": layout.pitch_mm,
         "capacitance_pF": capacitance_pF.tolist(),
         "standard": case.config.dot.standard,
-        "dot": {"radius_mm": dot.radius_mm, "height_mm": dot.height_mm},
+        "dot": {
+            "radius_mm": dot.radius_mm,
+            "height_mm": dot.height_mm,
+            "base_diameter_mm": 2.0 * float(np.sqrt(max(dot.radius_mm**2 - (dot.radius_mm - dot.height_mm) ** 2, 0.0)))
+            if dot.foot_mm == 0.0
+            else 2.0 * dot.radius_mm,
+        },
         "units": UNITS,
         "kernel_error": worst(checks),
         "checks": [vars(one) for one in checks],
