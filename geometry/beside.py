@@ -1,4 +1,4 @@
-"""A process beside this one that does one call after another, on a core that this one leaves free.
+"""A process beside this one that does one call after another, on a core that this one leaves free; and several of them.
 
 Calls and answers are pickled through its standard input and output. Started with one argument: the process number of
 its parent. It ends with its parent, however that ends.
@@ -9,11 +9,13 @@ import pickle
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import contextmanager
-from threading import Event
+from concurrent.futures import Future, ThreadPoolExecutor, wait
+from contextlib import ExitStack, contextmanager
+from queue import Empty, SimpleQueue
+from threading import Event, Thread
 from typing import Any
 
+from geometry.environment import ONE_THREAD
 from geometry.files import end_with_parent, sweep_scratch
 
 Ask = Callable[..., "Future[Any]"]
@@ -55,6 +57,46 @@ def _answer(process: "subprocess.Popen[bytes]", over: Event, function: Callable[
     if not done:
         raise value
     return value
+
+
+def each_beside(function: Callable[[Any], Any], items: Mapping[str, Any], count: int) -> Iterator[tuple[str, Any]]:
+    """Name and answer of each item as it is done by one of this many processes of one thread each, in the order given.
+
+    What the function raises is raised here.
+    """
+    waiting: SimpleQueue[tuple[str, Any]] = SimpleQueue()
+    done: SimpleQueue[tuple[str, Future[Any]]] = SimpleQueue()
+    for item in items.items():
+        waiting.put(item)
+    over = Event()
+    with ExitStack() as processes:
+        try:
+            for _ in range(count):
+                ask = processes.enter_context(beside(ONE_THREAD))
+                Thread(target=_feed, args=(ask, function, waiting, done, over), daemon=True).start()
+            for _ in items:
+                name, future = done.get()
+                yield name, future.result()
+        finally:
+            over.set()
+
+
+def _feed(
+    ask: Ask,
+    function: Callable[[Any], Any],
+    waiting: "SimpleQueue[tuple[str, Any]]",
+    done: "SimpleQueue[tuple[str, Future[Any]]]",
+    over: Event,
+) -> None:
+    """One process's share of the items."""
+    while not over.is_set():
+        try:
+            name, item = waiting.get_nowait()
+        except Empty:
+            return
+        future = ask(function, item)
+        wait((future,))
+        done.put((name, future))
 
 
 def work() -> None:

@@ -206,8 +206,17 @@ def _add_array(commands: Any) -> None:
     )
     _add_config(array)
     array.add_argument(
-        "--variants", action="store_true", help="press the same segments joined in other ways too, for comparison"
+        "--variants",
+        dest="parts",
+        action="append_const",
+        const="variants",
+        default=[],
+        help="press the same segments joined in other ways too, for comparison",
     )
+    array.add_argument(
+        "--kernel", dest="parts", action="append_const", const="kernel",
+        help="write the kernel: charge of every segment against place and depth of a dot, as softdot read needs it",
+    )  # fmt: skip
     _add_output(array)
 
 

@@ -95,6 +95,20 @@ class ArrayCase:
                 "mesh.element_size_mm and mesh.contact_element_size_mm"
             )
 
+    def refuse_kernel(self) -> None:
+        """InputError for what a kernel, a table over depth without time, does not hold."""
+        if self.config.press.indentation_mm is None:
+            raise InputError("press.force_N: a kernel is a table over depth; give press.indentation_mm instead")
+        if self.config.dot.shape != "cap" or self.config.dot.tilt_deg != (0.0, 0.0) or self.config.dot.gap_mm:
+            raise InputError(
+                "dot.tilt_deg, dot.gap_mm: a kernel is of an upright dot that just touches; leave them out"
+            )
+        if self.presses[0].model.follows_time:
+            raise InputError(
+                "mechanisms: a kernel is a table over depth without time; leave out those that remember, slip or move, "
+                "and the coupling of the read-out"
+            )
+
     def press_over(self, place: SegmentPlace) -> "ArrayPress":
         """One dot alone over one segment. InputError."""
         x, y = self.config.dot.offset_mm

@@ -10,9 +10,11 @@ summed. What this misses is the stretch of the film, which is quadratic in what 
 """
 
 import json
+import zlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -112,7 +114,7 @@ class ArrayKernel:
         """Write kernel.npz and kernel.json."""
         tables = {name: getattr(self, name).astype(np.float32) for name in TABLES}
         with (folder / NPZ).open("wb") as file:
-            np.savez_compressed(file, **tables)  # type: ignore[arg-type]
+            np.savez_compressed(file, **tables)
         text = json.dumps({"format": FORMAT, **self.about}, indent=1)
         (folder / JSON).write_text(text, encoding="utf-8")
 
@@ -125,7 +127,7 @@ def load_kernel(folder: Path) -> ArrayKernel:
             tables = {name: np.asarray(file[name], dtype=np.float64) for name in TABLES}
     except FileNotFoundError as error:
         raise InputError(f"kernel '{folder}': {error.filename} is missing; softdot array --kernel writes it") from None
-    except (OSError, ValueError, KeyError, EOFError) as error:
+    except (OSError, ValueError, KeyError, EOFError, BadZipFile, zlib.error) as error:
         raise InputError(f"kernel '{folder}': cannot be read ({error})") from None
     if about.get("format") != FORMAT:
         raise InputError(f"kernel '{folder}': format = {about.get('format')!r}: must be '{FORMAT}'")

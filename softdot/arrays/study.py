@@ -1,19 +1,24 @@
 """The whole study of an array: its crosstalk, what stands for one of its segments, and the press of a cell."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, Literal
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from geometry.arrays import Floats
+from geometry.base import Report
 from softdot.arrays.case import ArrayCase, ArrayPress
+from softdot.arrays.kernel import ArrayKernel
+from softdot.arrays.kernel_errors import KernelCheck, kernel_of
 from softdot.arrays.matrix import CrosstalkMatrix, StoppedPressError, converged, crosstalk
 from softdot.arrays.presses import Follow, Signals, remembered, signals
 from softdot.arrays.side_stiffness import EffectiveSides, effective_sides, representatives
 from softdot.arrays.variants import Worth, worth
 from solve.result import PressResult
+
+Part = Literal["variants", "kernel"]
 
 
 @dataclass(frozen=True)
@@ -57,10 +62,17 @@ class ArrayStudy:
     shown: ArrayPress
     result: PressResult
     shown_title: str
+    kernel: ArrayKernel | None
+    checks: list[KernelCheck]
 
 
-def study(case: ArrayCase, follow: Follow, stage: Callable[[str], None], with_variants: bool) -> ArrayStudy:
-    """Solve everything. StoppedPressError where a press does not converge, InputError, MeshingError."""
+def study(
+    case: ArrayCase, follow: Follow, stage: Callable[[str], None], told: Report, parts: frozenset[Part]
+) -> ArrayStudy:
+    """Solve everything; parts : what is asked for beside the matrix.
+
+    StoppedPressError where a press does not converge, InputError, MeshingError.
+    """
     number = next(iter(representatives(case.layout).values()))
     place = case.layout.places[number]
     by_cell = case.config.dot.cell is not None
@@ -75,9 +87,16 @@ def study(case: ArrayCase, follow: Follow, stage: Callable[[str], None], with_va
     cell = _cell_press(case, matrix, follow) if by_cell else None
     stage("sides")
     sides = effective_sides(matrix, follow)
-    if with_variants:
+    variants: list[Worth] = []
+    if "variants" in parts:
         stage("variants")
-    return ArrayStudy(matrix, sides, cell, worth(case, follow) if with_variants else [], shown, result, title)
+        variants = worth(case, follow)
+    found = ArrayStudy(matrix, sides, cell, variants, shown, result, title, None, [])
+    if "kernel" not in parts:
+        return found
+    stage("kernel")
+    kernel, checks = kernel_of(case, matrix, told)
+    return replace(found, kernel=kernel, checks=checks)
 
 
 def _cell_press(case: ArrayCase, matrix: CrosstalkMatrix, follow: Follow) -> CellPress:

@@ -28,8 +28,10 @@ from softdot.output import Product, staged_folder
 if TYPE_CHECKING:
     from argparse import Namespace
 
+    from geometry.base import Report
+    from softdot.arrays.kernel import ArrayKernel
     from softdot.arrays.presses import Follow
-    from softdot.arrays.study import ArrayStudy
+    from softdot.arrays.study import ArrayStudy, Part
     from softdot.config import Config
     from solve.press import OnStep
     from solve.result import Step
@@ -37,15 +39,18 @@ if TYPE_CHECKING:
 ARRAY = Product(
     "softdot-array/1",
     "array.json",
-    frozenset({"array.json", "crosstalk.csv", "report.html", "cad", "pictures", "results"}),
+    frozenset(
+        {"array.json", "crosstalk.csv", "report.html", "cad", "pictures", "results", "kernel.npz", "kernel.json"}
+    ),
 )
 HERE = Path(__file__).parent
 
 
 def run_array(
-    config: Config, out: Path, progress: Progress | None = None, with_variants: bool = False
+    config: Config, out: Path, progress: Progress | None = None, parts: frozenset[Part] = frozenset()
 ) -> dict[str, Any]:
-    """Study the array of a configuration into the folder out and return what array.json says.
+    """Study the array of a configuration into the folder out and return what array.json says; parts : asked for beside
+    the matrix.
 
     InputError before any work for what cannot be built or written. Where a press does not converge, StoppedPressError
     or MeshingError: nothing is written, and presses that were solved are kept in the cache.
@@ -60,11 +65,13 @@ def run_array(
         check_folder()
         case = ArrayCase(config)
         warnings = case.checked
+        if "kernel" in parts:
+            case.refuse_kernel()
         ensure_rendering()
         with staged_folder(out, ARRAY) as folder:
             warn(warnings)
             begun = time.perf_counter()
-            found = study(case, following(progress), progress.stage, with_variants)
+            found = study(case, following(progress), progress.stage, progress_of_presses(progress), parts)
             solve_s = time.perf_counter() - begun
             progress.stage("export")
             summary: dict[str, Any] = plain({**_summary(config, found, warnings), "timing_s": {"solve": solve_s}})
@@ -85,8 +92,14 @@ def following(progress: Progress) -> Follow:
     return follow
 
 
+def progress_of_presses(progress: Progress) -> Report:
+    """Tell each press of the kernel that is done."""
+    return lambda name, number, count: progress.step(number, count, name)
+
+
 def _summary(config: Config, found: ArrayStudy, warnings: list[str]) -> dict[str, Any]:
     """The content of array.json but for its times."""
+    from softdot.arrays.kernel_errors import worst
     from softdot.arrays.side_stiffness import ROLES, as_dict
     from softdot.config import config_hash
 
@@ -109,6 +122,8 @@ def _summary(config: Config, found: ArrayStudy, warnings: list[str]) -> dict[str
         "effective_sides": {role: as_dict(sides) for role, sides in found.sides.items()},
         "cell_press": None if found.cell is None else found.cell.summary(),
         "variants": [vars(one) for one in found.variants],
+        "kernel_error": worst(found.checks) if found.checks else None,
+        "kernel_checks": [vars(one) for one in found.checks],
         "solver": {
             "presses": len(matrix.solved),
             "unknowns": max(press.unknowns for press in presses),
@@ -124,10 +139,15 @@ def _write(case: Any, found: ArrayStudy, summary: dict[str, Any], folder: Path) 
     from export.cad import write_array_cad
     from export.vtu import write_results
     from geometry.array.parts import array_parts
+    from softdot.arrays.kernel_errors import with_about
 
     write_array_cad(case.layout, array_parts(case.layout, found.shown.dot), folder / "cad")
     write_results(found.result.tet_mesh, found.result, found.shown.dot, folder / "results")
     _write_csv(found, folder / "crosstalk.csv")
+    if found.kernel is not None:
+        said = {key: summary[key] for key in ("softdot_version", "config_hash", "config")}
+        capacitance = found.matrix.press(0).capacitance_pF
+        with_about(found.kernel, case, capacitance, found.checks, said).save(folder)
     captions = _draw(found, folder / "pictures")
     _write_report(found, summary, captions, folder)
 
@@ -179,7 +199,7 @@ def _draw(found: ArrayStudy, folder: Path) -> list[tuple[str, str, str]]:
     pressed = f"{found.shown_title}, {1e3 * last.indentation_m:.3g} mm deep with {last.reaction_force_N:.3g} N"
     draw_parts(scene, pressed, folder / "deformed.png")
     save(film_figure(found.result.tet_mesh, last, found.result.film_peak), folder / "film.png")
-    return [
+    captions = [
         ("matrix.png", "The matrix.", "Each row is a press of one segment; colours are logarithmic above 1 %."),
         ("maps.png", "Where it goes.", "The array from above; the disc marks the pressed segment. "
          "Presses that are mirror images of these are left out."),
@@ -187,6 +207,22 @@ def _draw(found: ArrayStudy, folder: Path) -> list[tuple[str, str, str]]:
         ("deformed.png", "The array cut open.", f"{pressed}."),
         ("film.png", "The film.", f"Strain and charge density; {pressed}."),
     ]  # fmt: skip
+    if found.kernel is not None:
+        captions.append(_draw_kernel(found, found.kernel, folder))
+    return captions
+
+
+def _draw_kernel(found: ArrayStudy, kernel: ArrayKernel, folder: Path) -> tuple[str, str, str]:
+    from export.array.kernel_map import draw_kernel
+    from softdot.arrays.side_stiffness import representatives
+
+    layout = found.matrix.layout
+    number = next(iter(representatives(layout).values()))
+    label, depth = layout.places[number].label, kernel.depth_mm[-1]
+    told = (kernel.x_mm, kernel.y_mm, kernel.charge_pC[:, :, -1, number], kernel.force_N[:, :, -1])
+    draw_kernel(layout, *told, label, folder / "kernel.png")
+    text = f"What {label} reads of a dot at every place, {depth:.3g} mm deep, and the force on the dot."
+    return "kernel.png", "The kernel.", text
 
 
 def _write_report(
@@ -212,7 +248,7 @@ def command(chosen: Namespace) -> int:
     config = load_config(chosen.config, chosen.set)
     try:
         with only_the_summary_on_stdout(), progress_of(chosen) as progress:
-            summary = run_array(config, Path(chosen.output), progress, chosen.variants)
+            summary = run_array(config, Path(chosen.output), progress, frozenset(chosen.parts))
     except (StoppedPressError, MeshingError) as error:
         complain(f"{error}; nothing was written, presses that were solved are kept in the cache")
         return NOT_CONVERGED
@@ -232,5 +268,10 @@ def short_text(summary: dict[str, Any], output: str) -> str:
         lines.append(
             f"{role} segment: sides of {sides['stiffness_N_per_mm3']:.3g} N/mm3, off by "
             f"{best[f'{answer}_percent']:+.1f} % in {answer} and {best['voltage_percent']:+.1f} % in voltage"
+        )
+    if summary["kernel_error"]:
+        error = summary["kernel_error"]
+        lines.append(
+            f"kernel: charges within {error['charge_percent']:.2g} %, force within {error['force_percent']:.2g} %"
         )
     return "\n".join([*lines, f"{output}/report.html"])

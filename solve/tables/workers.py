@@ -2,18 +2,13 @@
 
 import os
 from collections.abc import Iterator, Sequence
-from concurrent.futures import wait
-from contextlib import ExitStack
-from queue import Empty, SimpleQueue
-from threading import Event, Thread
 from typing import Any
 
 import numpy as np
 
 from geometry.arrays import Floats
 from geometry.base import Report
-from geometry.beside import Ask, beside
-from geometry.environment import ONE_THREAD
+from geometry.beside import each_beside
 from solve.solution.newton import NoEquilibriumError
 from solve.tables import job as job_files
 from solve.tables.job import RETURN, Job, Reduction
@@ -78,30 +73,4 @@ def _pressed(jobs: dict[str, Job | Reduction]) -> Iterator[tuple[str, Any]]:
         for name, job in jobs.items():
             yield name, answer(job)
         return
-    waiting: SimpleQueue[tuple[str, Job | Reduction]] = SimpleQueue()
-    done: SimpleQueue[tuple[str, Any]] = SimpleQueue()
-    for item in jobs.items():
-        waiting.put(item)
-    over = Event()
-    with ExitStack() as processes:
-        try:
-            for _ in range(count):
-                ask = processes.enter_context(beside(ONE_THREAD))
-                Thread(target=_feed, args=(ask, waiting, done, over), daemon=True).start()
-            for _ in jobs:
-                name, future = done.get()
-                yield name, future.result()
-        finally:
-            over.set()
-
-
-def _feed(ask: Ask, waiting: "SimpleQueue[Any]", done: "SimpleQueue[Any]", over: Event) -> None:
-    """One worker's share of the jobs."""
-    while not over.is_set():
-        try:
-            name, job = waiting.get_nowait()
-        except Empty:
-            return
-        future = ask(answer, job)
-        wait((future,))
-        done.put((name, future))
+    yield from each_beside(answer, jobs, count)

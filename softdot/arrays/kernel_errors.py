@@ -1,0 +1,170 @@
+"""How far a kernel is from the whole array: presses at other places and depths, and of cells of one to six dots.
+
+Each press is solved as a whole and laid beside the kernel at all its load steps. The error of the charges is the
+largest difference of any segment, of the largest charge of that press; that of the force is relative to its last one.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from geometry.arrays import Floats
+from geometry.base import Report
+from softdot.arrays.case import ArrayCase
+from softdot.arrays.kernel import ArrayKernel
+from softdot.arrays.kernel_presses import KernelTask, all_pressed, by_one_dot, filled, grid_of
+from softdot.arrays.matrix import CrosstalkMatrix
+from softdot.config import Config
+
+DOTS = 6
+PLACES, SHALLOWEST = 4, 0.6
+"""Presses at places by chance, and the least depth of them as a share of the kernel's."""
+MESH = "the same press on the configured mesh"
+SEED = 0
+
+
+@dataclass(frozen=True)
+class KernelCheck:
+    """One press beside the kernel. dots : how many; x_mm, y_mm : of the first one."""
+
+    what: str
+    dots: int
+    x_mm: float
+    y_mm: float
+    depth_mm: float
+    charge_percent: float
+    force_percent: float
+
+
+def check(
+    kernel: ArrayKernel, what: str, places_mm: Floats, depth_mm: Floats, charge_pC: Floats, force_N: Floats
+) -> KernelCheck:
+    """Lay a press (s,) by dots at places (k, 2) beside the kernel."""
+    shape = (len(depth_mm), len(places_mm))
+    x, y = (np.broadcast_to(places_mm[:, axis], shape) for axis in (0, 1))
+    charge, force = kernel.of_many(x, y, np.broadcast_to(depth_mm[:, None], shape))
+    return KernelCheck(
+        what,
+        len(places_mm),
+        float(places_mm[0, 0]),
+        float(places_mm[0, 1]),
+        float(depth_mm[-1]),
+        float(100.0 * np.abs(charge - charge_pC).max() / np.abs(charge_pC).max()),
+        float(100.0 * np.abs(force - force_N).max() / np.abs(force_N).max()),
+    )
+
+
+def by_chance(case: ArrayCase, places: int, cells: int) -> dict[str, Config]:
+    """Name -> press at places over the segments, and by this many cells of each number of dots, beside their segments.
+
+    Depths are by chance too. Cells are pressed only where the array has a segment for each dot of them.
+    """
+    random, found = np.random.default_rng(SEED), {}
+    half = np.array(case.layout.half_mm)
+    for number in range(places):
+        x, y = random.uniform(-half, half)
+        found[f"one dot, {number + 1}"] = _at_depth(by_one_dot(case, float(x), float(y)), random)
+    if len(case.layout.centres(0)) < 2 or len(case.layout.centres(1)) < 3:
+        return found
+    for count in range(1, DOTS + 1):
+        for number in range(cells):
+            dots = sorted(int(dot) for dot in random.choice(DOTS, count, replace=False) + 1)
+            shift = random.uniform(-0.5, 0.5, 2) * case.layout.pitch_mm
+            found[f"{count} dots, {number + 1}"] = _at_depth(by_cell(case, dots, shift), random)
+    return found
+
+
+def by_cell(case: ArrayCase, dots: list[int], shift_mm: Floats) -> Config:
+    """A press of the kernel by a cell of these dots whose middle is this far from that of the array's first cell."""
+    sign = chr(0x2800 + sum(1 << (dot - 1) for dot in dots))
+    shifted = case.config.dot.model_copy(update={"cell": sign, "cell_dot": dots[0], "offset_mm": tuple(shift_mm)})
+    dot = ArrayCase(case.config.model_copy(update={"dot": shifted})).press_by_cell().config.dot
+    return by_one_dot(case, 0.0, 0.0).model_copy(update={"dot": dot})
+
+
+def _at_depth(config: Config, random: np.random.Generator) -> Config:
+    depth = float((config.press.indentation_mm or 0.0) * random.uniform(SHALLOWEST, 1.0))
+    return config.model_copy(update={"press": config.press.model_copy(update={"indentation_mm": depth})})
+
+
+def measured(kernel: ArrayKernel, presses: Mapping[str, Config], told: Report) -> list[KernelCheck]:
+    """Each press solved and laid beside the kernel. StoppedPressError."""
+    tasks = {name: KernelTask(config, ((0.0,), (0.0,))) for name, config in presses.items()}
+    solved = all_pressed(tasks, told)
+    return [
+        check(kernel, name, places_of(task), solved[name].depth_mm, solved[name].charge_pC, solved[name].force_N)
+        for name, task in tasks.items()
+    ]
+
+
+def places_of(task: KernelTask) -> Floats:
+    """Of the dots of a press, (k, 2) in mm."""
+    dot = task.press.dot
+    return np.asarray(dot.origin_mm[:2] + dot.centers_xy_mm)
+
+
+def beside_matrix(kernel: ArrayKernel, matrix: CrosstalkMatrix) -> list[KernelCheck]:
+    """The presses of the matrix, which are on the configured mesh."""
+    case = matrix.case
+    found = []
+    for number in matrix.solved:
+        place, press = case.layout.places[number], matrix.press(number)
+        at = np.array([[place.x_mm, place.y_mm]]) + case.config.dot.offset_mm
+        found.append(check(kernel, f"{place.label}, {MESH}", at, press.depth_mm, press.charge_pC, press.force_N))
+    return found
+
+
+def kernel_of(case: ArrayCase, matrix: CrosstalkMatrix, told: Report) -> tuple[ArrayKernel, list[KernelCheck]]:
+    """The kernel of an array with its errors; about is left to be filled. StoppedPressError."""
+    grid = grid_of(case)
+    tasks = grid.tasks()
+    names = {f"kernel, {index}": index for index in tasks}
+    presses = all_pressed({name: tasks[index] for name, index in names.items()}, told)
+    kernel = filled(grid, {names[name]: press for name, press in presses.items()})
+    return kernel, [*measured(kernel, by_chance(case, PLACES, 1), told), *beside_matrix(kernel, matrix)]
+
+
+UNITS = {
+    "x_mm, y_mm": "place of the dot's tip, the middle of the array is the origin",
+    "depth_mm": "of the tip below the resting top of the array",
+    "charge_pC": "[x, y, depth, segment]",
+    "force_N": "[x, y, depth]",
+    "place_x_mm, place_y_mm, load_mm": "axes of sinking_mm: place and depth of a dot, place of the surface",
+    "sinking_mm": "[x, y, depth, x, y] of the surface beside a dot",
+}
+
+
+def with_about(
+    kernel: ArrayKernel, case: ArrayCase, capacitance_pF: Floats, checks: list[KernelCheck], said: Mapping[str, object]
+) -> ArrayKernel:
+    """What kernel.json says: where the segments are, the dot, units, and the errors; said : what the command adds."""
+    layout, dot = case.layout, case.press_over(case.layout.places[0]).dot
+    about = {
+        "labels": [place.label for place in layout.places],
+        "centres_mm": layout.middles.tolist(),
+        "size_mm": list(layout.size_mm),
+        "pitch_mm": layout.pitch_mm,
+        "capacitance_pF": capacitance_pF.tolist(),
+        "standard": case.config.dot.standard,
+        "dot": {
+            "radius_mm": dot.radius_mm,
+            "height_mm": dot.height_mm,
+            "base_diameter_mm": 2.0 * float(np.sqrt(max(dot.radius_mm**2 - (dot.radius_mm - dot.height_mm) ** 2, 0.0)))
+            if dot.foot_mm == 0.0
+            else 2.0 * dot.radius_mm,
+        },
+        "units": UNITS,
+        "kernel_error": worst(checks),
+        "checks": [vars(one) for one in checks],
+        **said,
+    }
+    return replace(kernel, about=about)
+
+
+def worst(checks: list[KernelCheck]) -> dict[str, float]:
+    """The largest errors of all presses."""
+    return {
+        "force_percent": max(one.force_percent for one in checks),
+        "charge_percent": max(one.charge_percent for one in checks),
+    }
