@@ -15,7 +15,7 @@ from softdot.reading.motion import CHUNK, ArrayPath, PressTimes, near
 from solve.model import Physics, Readout
 from solve.readout.amplifier import amplify, input_of
 
-MAINS_HZ = 50.0
+MAINS_HZ, LEAST_PERIODS = 50.0, 50
 FINEST_MM = 0.02
 """The read-out is integrated in steps of at most this path: within one the charge is linear."""
 Step = Callable[[int, int], None]
@@ -105,6 +105,19 @@ def recorded(
     phase = 2.0 * np.pi * random.random()
     hum = 1e-3 * conditions.hum_mV * np.sin(2.0 * np.pi * MAINS_HZ * time + phase)
     return Voltages(time, clean + noise + hum[:, None])
+
+
+def without_mains(heard: Voltages) -> Voltages:
+    """Voltages less the sine of the mains that fits each channel best; as they are where they last less than a second.
+
+    Of a signal as long as T this takes what lies within about 1 / T of that frequency.
+    """
+    if heard.time_s[-1] - heard.time_s[0] < LEAST_PERIODS / MAINS_HZ or heard.step_s > 0.4 / MAINS_HZ:
+        return heard
+    phase = 2.0 * np.pi * MAINS_HZ * heard.time_s
+    waves = np.stack([np.sin(phase), np.cos(phase)], axis=1)
+    found = np.linalg.lstsq(waves, heard.voltage_V, rcond=None)[0]
+    return Voltages(heard.time_s, heard.voltage_V - waves @ found)
 
 
 def averaged_voltages(reader: Reader, time_s: Floats, charge_pC: Floats, like: Voltages, many: int) -> Voltages:

@@ -8,7 +8,7 @@ from softdot.reading.decoders.fitted import Track
 from softdot.reading.decoders.model import DecodedCells
 from softdot.reading.decoders.pressing import PressedCells, pressed
 from softdot.reading.decoders.track import tracked
-from softdot.reading.voltages import Reader, Voltages
+from softdot.reading.voltages import Reader, Voltages, without_mains
 
 Decoder = Callable[[Reader, Track | PressedCells], DecodedCells]
 DECODERS: dict[str, Decoder] = {
@@ -29,4 +29,5 @@ def named_decoders(names: str) -> list[str]:
 
 def seen_of(reader: Reader, heard: Voltages) -> Track | PressedCells:
     """What all decoders begin with. InputError where there is nothing to read."""
-    return tracked(reader, heard) if reader.presses is None else pressed(reader, heard)
+    quiet = without_mains(heard)
+    return tracked(reader, quiet) if reader.presses is None else pressed(reader, quiet)

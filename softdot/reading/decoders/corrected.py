@@ -1,9 +1,9 @@
 """All possible dots of a line at once, each feeling the others: amplitudes, which dots are raised, what is left over.
 
 The amplitudes are one banded least-squares problem (softdot.reading.decoders.fitted). A dot is raised where its
-amplitude is above the emptiest place between none and the gain. That dots feel each other is put right: the line that
-was read, nominal, goes through the kernel as a whole, and what this adds to the sum of single dots is subtracted from
-the voltages before the amplitudes are found again.
+amplitude is above a place between none and the gain that follows from their spreads. That dots feel each other is put
+right: the line that was read, nominal, goes through the kernel as a whole, and what this adds to the sum of single dots
+is subtracted from the voltages before the amplitudes are found again.
 """
 
 from dataclasses import replace
@@ -22,8 +22,9 @@ from softdot.reading.voltages import Reader, Voltages, alone_pC, averaged_voltag
 
 CORRECTIONS = 3
 BAND_CELLS = 4
-PLACES, WIDTH, USUAL = np.linspace(0.25, 0.65, 41), 0.08, 0.45
-"""Where between none and the gain a dot may begin to be raised; amplitudes so near count against a place."""
+LARGE, SMALL, LOWEST = 0.98, 0.3, 0.2
+"""Share of the dots below the large amplitudes; of the gain, what counts as small, and what no dot is below."""
+SPREAD_OF_MEDIAN = 1.4826  # standard deviation of a normal distribution over its median absolute deviation
 
 
 def settled(reader: Reader, track: Track) -> Bools:
@@ -67,12 +68,23 @@ def amplitudes(fit: CellFit, products: Floats) -> Floats:
 
 def raised_dots(amplitude: Floats) -> tuple[Bools, float]:
     """Which dots (c, 6) are there, and the gain: the median amplitude of those above half of the larger ones."""
-    large = np.quantile(amplitude, 0.98)
+    large = np.quantile(amplitude, LARGE)
     gain = float(np.median(amplitude[amplitude > 0.5 * large])) if large > 0.0 else 1.0
     share = amplitude / gain
-    crowd = (np.abs(share.ravel()[:, None] - PLACES) < WIDTH).sum(axis=0) / np.sqrt(max(share.size, 1))
-    place = PLACES[np.argmin(crowd + 0.5 * np.abs(PLACES - USUAL))]
-    return np.asarray(share > place), gain
+    return np.asarray(share > _place_between(share)), gain
+
+
+def _place_between(share: Floats) -> float:
+    """As many standard deviations above none as below the gain, for the spreads that both sides show.
+
+    That of none is the larger one of the negative amplitudes, which noise makes, and of the small ones.
+    """
+    small, high = np.abs(share[share < SMALL]), share[share > 0.5]
+    negative = share[share < 0.0]
+    none = max(SPREAD_OF_MEDIAN * float(np.median(small)) if len(small) else 0.0,
+               float(np.sqrt(np.mean(negative**2))) if len(negative) else 0.0)  # fmt: skip
+    full = SPREAD_OF_MEDIAN * float(np.median(np.abs(high - 1.0))) if len(high) else 0.0
+    return float(np.clip(none / max(none + full, 1e-12), LOWEST, 0.5))
 
 
 def _line_voltages(reader: Reader, track: Track, dots: Bools, beside_alone: bool) -> Voltages:

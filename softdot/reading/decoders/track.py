@@ -145,7 +145,8 @@ def _most_likely(reader: Reader, window: Voltages, step: float, many: int, rival
     for one in near:
         fit = cell_fit(reader, templates(reader, one.posture, step, many), window)
         count = max(2, int(np.ceil((window.time_s[-1] - one.middle_s) / fit.pitch_s)) + 1)
-        dots, rest = left_over(reader, Track(fit, window, many, one.middle_s + fit.pitch_s * np.arange(count)))
+        passed: Floats = one.middle_s + fit.pitch_s * np.arange(count, dtype=np.float64)
+        dots, rest = left_over(reader, Track(fit, window, many, passed))
         left.append(rest)
         columns.append(_left_share(dots.reshape(1, -1))[0])
     return near[_or_left_column(1.0 - np.array(left), np.array(columns))]
