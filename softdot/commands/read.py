@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from softdot.reading.conditions import ReadingConditions
 
 READING = Product(
-    "softdot-reading/1", "reading.json", frozenset({"reading.json", "signals.npz", "signals.png", "reading.html"})
+    "softdot-reading/1", "reading.json", frozenset({"reading.json", "signals.npz", "signals.png", "report.html"})
 )
 USUAL_DECODERS = "model,threshold,learned"
 
@@ -50,14 +50,16 @@ def run_read(
     """
     import numpy as np
 
+    from export.array.reading_page import write_reading_page
     from export.array.signals import draw_signals
     from softdot.machine import named_when_missing
     from softdot.reading.cells import cells_of
     from softdot.reading.conditions import ReadingConditions
     from softdot.reading.decoders import named_decoders
-    from softdot.reading.job import content, read_line, signals
+    from softdot.reading.job import content, read_line
     from softdot.reading.kernels import opened_kernel, readout_of
     from softdot.reading.recorded_file import recorded_voltages
+    from softdot.reading.signals import shown_signals, signals
 
     progress = progress or Logged()
     with named_when_missing():
@@ -85,6 +87,8 @@ def run_read(
             with (folder / "signals.npz").open("wb") as file:
                 np.savez_compressed(file, **arrays)  # type: ignore[arg-type]
             draw_signals(arrays, kernel.about["labels"], folder / "signals.png")
+            if cells is not None:
+                write_reading_page(folder / "report.html", summary, shown_signals(reading))
             write_json(folder / READING.summary, summary)
     return summary
 
@@ -162,7 +166,8 @@ def short_text(summary: dict[str, Any], output: str) -> str:
             )
     if summary["words_per_minute"] is not None:
         lines.append(f"{summary['words_per_minute']:.3g} words a minute, {summary['cells_per_s']:.3g} cells a second")
-    return "\n".join([*lines, f"{output}/signals.png"])
+    page = "signals.png" if summary["text_true"] is None else "report.html"
+    return "\n".join([*lines, f"{output}/{page}"])
 
 
 def _limits_text(summary: dict[str, Any], output: str) -> str:

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
+from geometry.arrays import Ints
 from softdot.arrays.kernel import ArrayKernel
 from softdot.console import Progress
 from softdot.reading.cells import braille, text_of
@@ -14,21 +14,22 @@ from softdot.reading.decoders import DECODERS, seen_of
 from softdot.reading.decoders.fitted import Track
 from softdot.reading.decoders.model import DecodedCells
 from softdot.reading.decoders.pressing import PressedCells
-from softdot.reading.line import cell_pitch_mm, made_line
+from softdot.reading.line import DotLine, cell_pitch_mm, made_line
 from softdot.reading.motion import ArrayPath, moved, press_times
-from softdot.reading.score import aligned, scores
+from softdot.reading.score import scores
 from softdot.reading.voltages import Reader, Voltages, recorded
 from solve.model import Readout
 
 
 @dataclass(frozen=True)
 class LineReading:
-    """cells_true (c,) or None where nobody knows; path : None for a recording; found : of each decoder, by name."""
+    """cells_true (c,) : None where nobody knows; line, path : None for a recording; found : by name of the decoder."""
 
     reader: Reader
     conditions: ReadingConditions
     cells_true: Ints | None
     heard: Voltages
+    line: DotLine | None
     path: ArrayPath | None
     seen: Track | PressedCells
     found: dict[str, DecodedCells]
@@ -56,6 +57,7 @@ def read_line(
     chosen = standard_of(kernel, known.standard)
     times = press_times(known, cell_pitch_mm(chosen)) if known.mode == "press" else None
     reader = Reader(kernel, chosen, readout, times)
+    line: DotLine | None = None
     path: ArrayPath | None = None
     if recording is None:
         assert cells is not None
@@ -72,7 +74,7 @@ def read_line(
     for number, name in enumerate(names, 1):
         found[name] = DECODERS[name](reader, seen)
         progress.step(number, len(names), name)
-    return LineReading(reader, known, cells, heard, path, seen, found)
+    return LineReading(reader, known, cells, heard, line, path, seen, found)
 
 
 def content(reading: LineReading, text: str | None, table: str | None) -> dict[str, Any]:
@@ -134,41 +136,3 @@ def _warnings(reading: LineReading) -> list[str]:
             "highest dot"
         )
     return told
-
-
-def signals(reading: LineReading) -> dict[str, Floats]:
-    """The arrays of signals.npz.
-
-    cell_true is -1 where nobody knows it, cell_read -1 where a cell was missed; cells that were added have no row.
-    """
-    pitch, first, true = cell_pitch_mm(reading.reader.standard), reading.first, reading.cells_true
-    heard = reading.heard
-    if true is None:
-        read, at, known = first.cells, first.passed_s, np.full(len(first.cells), -1)
-    else:
-        pairs = aligned([int(one) for one in true], [int(one) for one in first.cells])
-        partner = {i: j for i, j in pairs if i is not None and j is not None}
-        read = np.array([first.cells[partner[i]] if i in partner else -1 for i in range(len(true))])
-        passed = [first.passed_s[partner[i]] if i in partner else np.nan for i in range(len(true))]
-        at, known = np.array(passed) if reading.path is None else reading.path.reached_s, true
-    return {
-        "time_s": heard.time_s,
-        "voltage_V": heard.voltage_V,
-        "position_mm": _place_mm(reading, pitch),
-        "x_mm": pitch * np.arange(len(read), dtype=np.float64),
-        "cell_true": np.asarray(known, dtype=np.int64),
-        "cell_read": np.asarray(read, dtype=np.int64),
-        "read_time_s": np.asarray(at, dtype=np.float64),
-    }
-
-
-def _place_mm(reading: LineReading, pitch: float) -> Floats:
-    """Where the array's middle is: as simulated, else as it was tracked, from the first cell that was read."""
-    if reading.path is not None:
-        return np.interp(reading.heard.time_s, reading.path.time_s, reading.path.x_mm)
-    if isinstance(reading.seen, Track):
-        place = reading.seen.place_mm(reading.heard.time_s)
-        begin = reading.first.passed_s[0] if len(reading.first.passed_s) else reading.seen.passed_s[0]
-        return np.asarray(place - np.interp(begin, reading.heard.time_s, place))
-    assert reading.reader.presses is not None
-    return np.asarray(pitch * np.floor(reading.heard.time_s / reading.reader.presses.period_s))

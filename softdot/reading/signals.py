@@ -1,0 +1,79 @@
+"""The arrays of a reading: what signals.npz keeps, and what its page plays."""
+
+from typing import Any
+
+import numpy as np
+
+from geometry.arrays import Floats
+from softdot.reading.cells import braille
+from softdot.reading.decoders.fitted import Track
+from softdot.reading.job import LineReading
+from softdot.reading.line import cell_pitch_mm, nominal_line
+from softdot.reading.score import aligned
+
+
+def signals(reading: LineReading) -> dict[str, Floats]:
+    """The arrays of signals.npz.
+
+    cell_true is -1 where nobody knows it, cell_read -1 where a cell was missed; cells that were added have no row.
+    """
+    pitch, first, true = cell_pitch_mm(reading.reader.standard), reading.first, reading.cells_true
+    heard = reading.heard
+    if true is None:
+        read, at, known = first.cells, first.passed_s, np.full(len(first.cells), -1)
+    else:
+        pairs = aligned([int(one) for one in true], [int(one) for one in first.cells])
+        partner = {i: j for i, j in pairs if i is not None and j is not None}
+        read = np.array([first.cells[partner[i]] if i in partner else -1 for i in range(len(true))])
+        passed = [first.passed_s[partner[i]] if i in partner else np.nan for i in range(len(true))]
+        at, known = np.array(passed) if reading.path is None else reading.path.reached_s, true
+    return {
+        "time_s": heard.time_s,
+        "voltage_V": heard.voltage_V,
+        "position_mm": _place_mm(reading, pitch),
+        "x_mm": pitch * np.arange(len(read), dtype=np.float64),
+        "cell_true": np.asarray(known, dtype=np.int64),
+        "cell_read": np.asarray(read, dtype=np.int64),
+        "read_time_s": np.asarray(at, dtype=np.float64),
+    }
+
+
+def _place_mm(reading: LineReading, pitch: float) -> Floats:
+    """Where the array's middle is: as simulated, else as it was tracked, from the first cell that was read."""
+    if reading.path is not None:
+        return np.interp(reading.heard.time_s, reading.path.time_s, reading.path.x_mm)
+    if isinstance(reading.seen, Track):
+        place = reading.seen.place_mm(reading.heard.time_s)
+        begin = reading.first.passed_s[0] if len(reading.first.passed_s) else reading.seen.passed_s[0]
+        return np.asarray(place - np.interp(begin, reading.heard.time_s, place))
+    assert reading.reader.presses is not None
+    return np.asarray(pitch * np.floor(reading.heard.time_s / reading.reader.presses.period_s))
+
+
+def shown_signals(reading: LineReading) -> dict[str, Any]:
+    """What the page of a reading plays (export.array.reading_page), of a reading whose true cells are known.
+
+    The dots are those of the line, with their heights; of a recording those that the standard has for its cells.
+    """
+    kept, true = signals(reading), reading.cells_true
+    assert true is not None
+    line = nominal_line(true, reading.reader.standard) if reading.line is None else reading.line
+    height = reading.reader.standard.nominal_mm("height_mm")
+    read = [braille([cell]) if cell >= 0 else "" for cell in kept["cell_read"]]
+    number = np.arange(len(true))
+    passed = np.isfinite(kept["read_time_s"])
+    at = (
+        np.interp(number, number[passed], kept["read_time_s"][passed])
+        if passed.any()
+        else number * reading.heard.step_s
+    )
+    return {
+        **{name: kept[name] for name in ("time_s", "voltage_V", "position_mm")},
+        "cell_x_mm": kept["x_mm"],
+        "cell_true": np.array([braille([cell]) for cell in true]),
+        "cell_read": np.array(read),
+        "read_time_s": np.maximum.accumulate(at),
+        "dot_x_mm": line.x_mm,
+        "dot_y_mm": line.y_mm,
+        "dot_height_mm": np.maximum(height + line.extra_mm, 0.0),
+    }
