@@ -24,8 +24,6 @@ FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader
 WAIT_MS = 900_000
 LOOKS = [(scheme, width) for width in (1366, 400) for scheme in ("light", "dark")]
 HEIGHT = {1366: 768, 400: 860}
-COLOURS = 128
-"""Of a picture: a page has few, and a third of the size."""
 
 
 def pressed(page: Page) -> None:
@@ -143,7 +141,7 @@ CHOSEN = {
 def save(page: Page, path: Path) -> None:
     """A screenshot with a palette."""
     shot = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
-    shot.quantize(COLOURS, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).save(path, optimize=True)
+    shot.quantize(256, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(path, optimize=True)
 
 
 def look(page: Page, stage: str, panels: tuple[str, ...], folder: Path | None) -> None:
