@@ -96,12 +96,18 @@ def content(reading: LineReading, text: str | None, table: str | None) -> dict[s
         "words_per_minute": 60.0 * words / seconds if seconds > 0.0 else None,
         "cells_per_s": count / seconds if seconds > 0.0 else None,
         "duration_s": seconds,
-        "conditions": {**reading.conditions.as_dict(), "readout": reading.reader.readout.model_dump(mode="json")},
+        "conditions": {**reading.conditions.as_dict(), **_readout(reading.reader.readout)},
         "share_of_time_at_force": None if reading.path is None else reading.path.held,
         "track": _track(reading.seen),
         "kernel": {key: value for key, value in reading.reader.kernel.about.items() if key != "config"},
         "warnings": _warnings(reading),
     }
+
+
+def _readout(readout: Readout) -> dict[str, Any]:
+    """What is stated of the amplifier, beside the other conditions."""
+    stated = readout.model_dump(mode="json", exclude_none=True)
+    return {f"readout_{name}": value for name, value in stated.items()}
 
 
 def _scored(true: Ints | None, found: DecodedCells, table: str | None) -> dict[str, Any]:

@@ -28,7 +28,7 @@ def test_a_folder_says_what_was_read(written):
     assert told["cells_per_s"] == pytest.approx(10.0 / 6.0)
     assert set(told["decoders"]) == {"model", "threshold"}
     assert told["conditions"]["noise_mV"] == 1.0
-    assert told["conditions"]["readout"]["input_resistance_MOhm"] == 10.0
+    assert told["conditions"]["readout_input_resistance_MOhm"] == 10.0
     assert (written / "signals.png").stat().st_size > 10_000
     with np.load(written / "signals.npz") as file:
         arrays = dict(file)
@@ -117,5 +117,5 @@ def test_the_configuration_of_the_kernel_may_bring_its_readout(kernel_folder, tm
     out = tmp_path / "out"
     assert main([*command, "--kernel", str(kernel_folder), "--decoders", "model", "-q", "-o", str(out)]) == 0
     told = json.loads((out / "reading.json").read_text("utf-8"))
-    assert told["conditions"]["readout"]["input_resistance_MOhm"] == 50.0
+    assert told["conditions"]["readout_input_resistance_MOhm"] == 50.0
     assert told["text_read"] == TEXT
