@@ -13,8 +13,7 @@ MODES: tuple[Mode, ...] = get_args(Mode)
 WIDEST_SIGMA = 2.5
 """Scatter of dots is cut there: a standard's range is taken for this many standard deviations to each side."""
 HEIGHT_SCATTER_MM, POSITION_SCATTER_MM = 0.015, 0.03
-"""Where the standard states no range: a fiftieth of a millimetre is what embossers are set by, so these are below it
-in height and above in place."""
+"""Assumed where the standard states no range; no source gives them."""
 USUAL_SHARE_OF_DEPTH = 0.75
 PITCH_TOLERANCE_MM = 0.01
 WIDEST_TREMOR = 4.0  # RMS, where the wobble is cut

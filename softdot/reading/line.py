@@ -66,8 +66,8 @@ def made_line(
 ) -> DotLine:
     """The dots of cells (c,) as they were made and worn; conditions : resolved.
 
-    Heights and places scatter normally, cut at WIDEST_SIGMA. The diameter of the base is not varied: beside a dot's
-    height, which says how deep it is, the curvature of its tip changes what it presses in the second order only.
+    Heights and places scatter normally, cut at WIDEST_SIGMA. The diameter of the base is not varied: by Hertz a base
+    0.05 mm wider changes the force by 2 to 3 %, as a height of 0.004 mm more does.
     """
     line = nominal_line(cells, chosen)
     count = len(line.x_mm)

@@ -71,6 +71,19 @@ def test_a_missing_dot_is_read_as_missing(kernel):
     assert read(reader, heard).tolist() == [63, 31, 63, 27]
 
 
+def test_worn_dots_and_hum_are_read_through(kernel):
+    """A third of the dots a tenth of a millimetre lower, and a hum ten times the noise."""
+    cells = cells_of(TEXT)
+    reader, heard = simulated(kernel, cells, worn=0.3, hum_mV=10.0)
+    assert share(cells, read(reader, heard)) > 0.95
+
+
+def test_a_line_with_dots_in_one_column_is_read_as_its_left_one(kernel):
+    """Nothing tells the columns apart."""
+    reader, heard = simulated(kernel, cells_of("label".replace("e", "k")))
+    assert text_of(read(reader, heard)) == "labkl"
+
+
 @pytest.mark.parametrize("name", ["threshold", "learned"])
 def test_the_other_decoders_read_a_plain_line(kernel, name, monkeypatch):
     monkeypatch.setattr(learned, "CELLS", 320)
