@@ -109,7 +109,10 @@ def verdict(page: Page) -> None:
 
 
 def array(page: Page) -> None:
-    """Three dots of a cell on six segments."""
+    """Three dots of a cell on six segments, in a tab that has done nothing else."""
+    page.evaluate("sessionStorage.clear()")
+    page.reload()
+    design(page)
     write(page, ARRAY.replace("⠿", "⠙"))
     page.locator("#array figcaption", has_text="at open circuit").wait_for(timeout=WAIT_MS)
 
