@@ -54,15 +54,24 @@ function softdotReading(root, data) {
     }
   }
 
-  // A canvas as sharp as the screen, in pixels of the page.
+  // A canvas as sharp as the screen, empty, in pixels of the page. Its size is asked for and set when it changes alone:
+  // either makes the browser lay out the whole text.
   function cleared(canvas, height) {
-    const ratio = window.devicePixelRatio || 1, width = canvas.clientWidth;
-    canvas.style.height = height + "px";
-    canvas.width = Math.round(width * ratio);
-    canvas.height = Math.round(height * ratio);
-    const pen = canvas.getContext("2d");
-    pen.scale(ratio, ratio);
+    const ratio = window.devicePixelRatio || 1, width = state.width, pen = canvas.getContext("2d");
+    const [wide, tall] = [Math.round(width * ratio), Math.round(height * ratio)];
+    if (canvas.width !== wide || canvas.height !== tall) {
+      canvas.style.height = height + "px";
+      canvas.width = wide;
+      canvas.height = tall;
+    }
+    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+    pen.clearRect(0, 0, width, height);
     return [pen, width];
+  }
+
+  function measure() {
+    state.width = line.clientWidth;
+    draw();
   }
 
   function disc(pen, x, y, radius, filled) {
@@ -112,7 +121,7 @@ function softdotReading(root, data) {
 
   function drawLine() {
     const colours = state.colours, tall = 2 * half[1], spare = 30;
-    const size = Math.max(6, Math.min(22, line.clientWidth / (2 * half[0] + 12)));
+    const size = Math.max(6, Math.min(22, state.width / (2 * half[0] + 12)));
     const height = Math.round((tall + 2.5) * size + spare), middle = (height - spare) / 2;
     const [pen, width] = cleared(line, height), here = place(), across = width / 2 / size;
     const at = (x, y) => [width / 2 + (x - here) * size, middle + y * size];
@@ -124,7 +133,7 @@ function softdotReading(root, data) {
       if (reads[k] > state.now || Math.abs(data.cellX[k] - here) > across + 3) continue;
       drawRead(pen, colours, at(data.cellX[k], 0)[0], height - 9, k, "20px 'DejaVu Sans', 'Apple Braille', 'Segoe UI Symbol', sans-serif");
     }
-    line.setAttribute("aria-label", "The line of dots under the array, whose middle is at " + here.toFixed(1) + " mm; "
+    if (!state.playing) line.setAttribute("aria-label", "The line of dots under the array, whose middle is at " + here.toFixed(1) + " mm; "
       + data.labels.map((label, k) => label + " " + number(present(k)) + " " + word).join(", "));
   }
 
@@ -217,6 +226,7 @@ function softdotReading(root, data) {
     window.cancelAnimationFrame(state.tick);
     window.clearTimeout(state.later);
     play.textContent = "Play";
+    draw();
   }
 
   // Where motion is not wanted, from cell to cell.
@@ -249,12 +259,13 @@ function softdotReading(root, data) {
   });
   play.addEventListener("click", toggle);
   scrub.addEventListener("input", () => go(begin + (Number(scrub.value) / 1000) * (end - begin)));
-  window.addEventListener("resize", draw);
+  window.addEventListener("resize", measure);
   dark.addEventListener("change", () => { learnColours(); draw(); });
   find(".moving").hidden = false;
   document.querySelector(".still").hidden = true;
   find(".scale").textContent = "Numbers in the squares are in " + word + "; each lane of voltages is from " + number(least) + " to " + number(most) + " " + word + ".";
   learnColours();
+  state.width = line.clientWidth;
   go(reads.length ? reads[0] + 1e-5 : begin);
   return { go };
 }

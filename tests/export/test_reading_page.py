@@ -68,7 +68,9 @@ def signals_of(true, read, rate=RATE):
     for (x, y), high in zip(place, height, strict=True):
         for segment, (across, along) in enumerate(CENTRES):
             if abs(y - along) < 0.1:
-                voltage[:, segment] += high * np.exp(-(((position + across - x) / 0.8) ** 2))
+                first, last = np.searchsorted(position, [x - across - 4.0, x - across + 4.0])
+                away = position[first:last] + across - x
+                voltage[first:last, segment] += high * np.exp(-((away / 0.8) ** 2))
     return {
         "time_s": time,
         "voltage_V": voltage,
