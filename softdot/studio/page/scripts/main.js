@@ -77,6 +77,7 @@ const hear = {
       state.circuit.update(told.values, told.stated, told.mistakes);
       if (first) {
         find("#form").replaceChildren(...state.form.whole());
+        filter(find("#form"), find("#find").value); // typed before there was a form
         find("#circuit .fields").replaceChildren(state.circuit.table(state.form.about.schema.properties.readout, ["readout"]));
         find("#circuit .fields details").open = true;
       }
