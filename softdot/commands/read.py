@@ -179,7 +179,8 @@ def _limits_text(summary: dict[str, Any], output: str) -> str:
         elif limit["fails_at"] is None:
             lines.append(f"{name}: read at {limit['read_up_to']:.4g}, the last value that was tried")
         else:
-            lines.append(f"{name}: read up to {limit['read_up_to']:.4g}, no more at {limit['fails_at']:.4g}")
+            why = "cannot be" if limit["refused"] else "no more"
+            lines.append(f"{name}: read up to {limit['read_up_to']:.4g}, {why} at {limit['fails_at']:.4g}")
     return "\n".join(
         [f"at least {100 * summary['accuracy']:g} % of the characters:", *lines, f"{output}/reading_study.png"]
     )

@@ -101,9 +101,9 @@ class ReadingConditions:
                 f"--depth-mm = {depth:g}: with scatter and tremor a dot could be {depth + margin:.4g} mm deep, and the "
                 f"kernel ends at {deepest:.4g} mm; give at most {most:.4g}"
             )
-        if depth >= height:
+        if depth >= nominal:  # of nominal dots: lower ones leave the plate where it is
             raise InputError(
-                f"--depth-mm = {depth:g}: the plate would touch the array, as its dots are {height:g} mm high"
+                f"--depth-mm = {depth:g}: the plate would touch the array, as its dots are {nominal:g} mm high"
             )
         return replace(known, depth_mm=most if self.force_N is not None else depth)
 

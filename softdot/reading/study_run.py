@@ -146,7 +146,11 @@ def _summary(study: ReadingStudy, readings: Readings, kernel: ArrayKernel) -> di
             row["word_accuracy"] = sum(one["accuracy"]["word"] for one in found) / len(found)
         rows.append(row)
     limits = {} if study.combine else {
-        name: {"read_up_to": limit.good, "fails_at": limit.bad} for name, limit in limits_of(study, readings)
+        name: {
+            "read_up_to": limit.good,
+            "fails_at": limit.bad,
+            "refused": limit.bad is not None and readings.share(study, with_value(study.base, name, limit.bad)) is None,
+        } for name, limit in limits_of(study, readings)
     }  # fmt: skip
     return {
         "format": STUDY.format,
