@@ -35,7 +35,8 @@ def draw_conditions(
         axes.set_ylabel("characters not read (%)", fontsize=10, color=INK)
         axes.grid(alpha=0.3)
         axes.spines[["top", "right"]].set_visible(False)
-        axes.set_ylim(-2.0, max(10.0, 1.1 * float(error.max(initial=0.0))))
+        top = max(10.0, 1.1 * float(error.max(initial=0.0)))
+        axes.set_ylim(-0.03 * top, top)
     for axes in list(figure.axes)[len(curves) :]:
         axes.set_axis_off()
     save(figure, path)
