@@ -18,8 +18,10 @@ from softdot.arrays.matrix import CrosstalkMatrix
 from softdot.config import Config
 
 DOTS = 6
-PLACES, SHALLOWEST = 4, 0.6
-"""Presses at places by chance, and the least depth of them as a share of the kernel's."""
+PLACES, SHALLOWEST, BESIDE = 4, 0.6, 1.0 / 3.0
+"""Presses at places by chance, the least depth of them as a share of the kernel's, and how far cells are beside their
+segments at most, in pitches: dots that hang over the rim are no part of a kernel.
+"""
 MESH = "the same press on the configured mesh"
 SEED = 0
 
@@ -70,8 +72,8 @@ def by_chance(case: ArrayCase, places: int, cells: int) -> dict[str, Config]:
     for count in range(1, DOTS + 1):
         for number in range(cells):
             dots = sorted(int(dot) for dot in random.choice(DOTS, count, replace=False) + 1)
-            shift = random.uniform(-0.5, 0.5, 2) * case.layout.pitch_mm
-            found[f"{count} dots, {number + 1}"] = _at_depth(by_cell(case, dots, shift), random)
+            shift = random.uniform(-BESIDE, BESIDE, 2) * case.layout.pitch_mm
+            found[f"cell of {count}, {number + 1}"] = _at_depth(by_cell(case, dots, shift), random)
     return found
 
 
@@ -119,7 +121,8 @@ def kernel_of(case: ArrayCase, matrix: CrosstalkMatrix, told: Report) -> tuple[A
     """The kernel of an array with its errors; about is left to be filled. StoppedPressError."""
     grid = grid_of(case)
     tasks = grid.tasks()
-    names = {f"kernel, {index}": index for index in tasks}
+    x, y = grid.nodes_mm
+    names = {f"a dot at {x[i]:.2f}, {y[j]:.2f} mm": (i, j) for i, j in tasks}
     presses = all_pressed({name: tasks[index] for name, index in names.items()}, told)
     kernel = filled(grid, {names[name]: press for name, press in presses.items()})
     return kernel, [*measured(kernel, by_chance(case, PLACES, 1), told), *beside_matrix(kernel, matrix)]

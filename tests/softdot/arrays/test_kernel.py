@@ -130,9 +130,9 @@ def test_cells_by_chance_stand_where_their_dots_are_said_to_be():
     configs = by_chance(case, 2, 1)
     assert [name for name in configs if name.startswith("one")] == ["one dot, 1", "one dot, 2"]
     for count in range(1, 7):
-        places = places_of(KernelTask(configs[f"{count} dots, 1"], ((0.0,), (0.0,))))
+        places = places_of(KernelTask(configs[f"cell of {count}, 1"], ((0.0,), (0.0,))))
         assert places.shape == (count, 2)
-        # the dots of a cell lie on a grid of 2.5 mm, 1.25 mm at most beside the middles of the segments
+        # the dots of a cell lie on a grid of 2.5 mm, 0.83 mm at most beside the middles of the segments
         away = places[:, None] - case.layout.middles
         shift = away[0][np.hypot(*away[0].T).argmin()]
         np.testing.assert_allclose(np.abs(away - shift).max(axis=2).min(axis=1), 0.0, atol=1e-9)
