@@ -1,5 +1,7 @@
 """For everybody: no serious finding of axe-core, keys alone suffice, a narrow screen too."""
 
+import time
+
 import pytest
 
 from tests.studio.test_array import PAIR
@@ -51,7 +53,11 @@ def test_every_control_is_reached_by_the_tab_key_alone(studio, open_tab):
         tab.page.keyboard.press("Tab")
         seen.add(tab.page.evaluate("document.activeElement.id || document.activeElement.textContent.slice(0, 40)"))
     assert {"import", "export", "find", "text", "Kit to make it", "Each number 10 % larger", "Choose a folder"} <= seen
+    tab.pressed()  # before, there may be nothing to turn
     tab.page.locator("canvas").focus()
     before = tab.page.locator("canvas").screenshot()
     tab.page.keyboard.press("ArrowLeft")
-    assert tab.page.locator("canvas").screenshot() != before
+    end = time.monotonic() + 10.0  # the next frame may be late
+    while (after := tab.page.locator("canvas").screenshot()) == before and time.monotonic() < end:
+        tab.page.wait_for_timeout(100)
+    assert after != before
