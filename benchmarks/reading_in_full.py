@@ -11,7 +11,6 @@ makes of them.
 """
 
 import argparse
-import os
 import time
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -21,6 +20,8 @@ import numpy as np
 from geometry.arrays import Floats
 from geometry.beside import each_beside
 from geometry.braille import dot_offset_mm, raised_dots, standard
+from geometry.environment import usable_cores
+from mesh.array.mesh import array_mesh
 from softdot.arrays.case import ArrayCase, ArrayPress
 from softdot.arrays.kernel import load_kernel
 from softdot.config import Config, config_from
@@ -49,10 +50,10 @@ def charges(press: FullPress) -> tuple[float, Floats, Floats, Floats]:
         return press.x_mm, np.zeros(1), np.zeros((1, count)), np.zeros(1)
     x, y = (float(v) for v in press.dots_mm[0])
     one = press.config.dot.model_copy(update={"cell": None, "cell_dot": 1, "offset_mm": (x, y)})
-    made = ArrayPress(ArrayCase(press.config), one)
-    dot = replace(made.dot, centers_xy_mm=press.dots_mm - press.dots_mm[0])
-    made.__dict__["dot"] = dot  # all dots of the line, where the configuration knows those of one cell
-    result = press_segment(made.model, made.mesh, dot=dot)
+    case = ArrayCase(press.config)
+    made = ArrayPress(case, one)
+    dot = replace(made.dot, centers_xy_mm=press.dots_mm - press.dots_mm[0])  # all dots of the line, not of one cell
+    result = press_segment(made.model, array_mesh(case.layout, dot, press.config.mesh, ()), dot=dot)
     if result.failure is not None:
         raise RuntimeError(f"x = {press.x_mm:.3g} mm: {result.failure}")
     steps = result.steps
@@ -114,7 +115,7 @@ def main() -> None:
         dots = places - [x, chosen.offset_mm]
         presses[str(number)] = FullPress(config, float(x), dots[(np.abs(dots) < half).all(axis=1)])
     begun, found = time.perf_counter(), {}
-    for name, answer in each_beside(charges, presses, os.cpu_count() or 1):
+    for name, answer in each_beside(charges, presses, usable_cores()):
         found[int(name)] = answer
         print(f"{len(found)} of {len(presses)}: x = {answer[0]:.2f} mm, {answer[3][-1]:.3f} N", flush=True)
     most = STEPS + 1

@@ -140,6 +140,12 @@ class DotShape:
     origin_mm: NDArray[np.float64]
     rotation: NDArray[np.float64]
 
+    @property
+    def base_diameter_mm(self) -> float:
+        """Of the cap, or of its foot, where it stands on the plate; 0 for a plate."""
+        below = min(self.height_mm, self.radius_mm)
+        return 2.0 * float(np.sqrt(below * (2.0 * self.radius_mm - below)))
+
 
 def resolve_dot(dot: Dot, segment: Segment) -> DotShape:
     """The exact dot at rest over a segment: nothing given means a cap of Marburg Medium.

@@ -1,4 +1,6 @@
-"""Pictures of crosstalk: the matrix, the array seen from above for each pressed segment, and its growth with depth."""
+"""Pictures of an array's answer: the matrix of crosstalk, the array from above for each pressed segment, growth with
+depth, and the kernel.
+"""
 
 from collections.abc import Sequence
 from math import ceil, sqrt
@@ -20,6 +22,8 @@ DARK_PERCENT = 7.0
 """Colours of more are so dark that numbers on them are white."""
 LINEAR_PERCENT = 1.0
 """Below this colours are linear, above logarithmic: a neighbour's tenth and a far segment's hundredth both show."""
+LEVELS = 21
+"""Of the colours of a kernel."""
 
 
 def draw_matrix(labels: Sequence[str], crosstalk_percent: Floats, path: Path) -> None:
@@ -106,6 +110,30 @@ def draw_growth(
         axes.grid(alpha=0.3)
         axes.spines[["top", "right"]].set_visible(False)
         axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]), top=axes.get_ylim()[1] * 1.05)
+    save(figure, path)
+
+
+def draw_kernel(
+    layout: ArrayLayout, x_mm: Floats, y_mm: Floats, charge_pC: Floats, force_N: Floats, title: str, path: Path
+) -> None:
+    """Charge of one segment (a, b) and force (a, b) over the place of the dot, with the segments. Writes a PNG."""
+    from matplotlib.figure import Figure
+    from matplotlib.patches import Rectangle
+
+    figure = Figure(figsize=(9.0, 5.6), dpi=DPI, facecolor="white", layout="constrained")
+    largest = float(np.abs(charge_pC).max())
+    maps = (
+        (f"Charge of {title}, pC", charge_pC, DIVERGING, np.linspace(-largest, largest, LEVELS)),
+        ("Force, N", force_N, "viridis", np.linspace(0.0, float(force_N.max()), LEVELS)),
+    )
+    for axes, (name, values, colours, levels) in zip(figure.subplots(1, 2), maps, strict=True):
+        image = axes.contourf(x_mm, y_mm, values.T, levels=levels, cmap=colours)
+        for place in layout.places:
+            corner = (place.x_mm - layout.size_mm[0] / 2, place.y_mm - layout.size_mm[1] / 2)
+            axes.add_patch(Rectangle(corner, *layout.size_mm, fill=False, edgecolor=INK, lw=0.7))
+        axes.set(aspect="equal", xlabel="x of the dot (mm)", ylabel="y of the dot (mm)")
+        axes.set_title(name, fontsize=11, color=INK)
+        figure.colorbar(image, ax=axes, shrink=0.85)
     save(figure, path)
 
 

@@ -97,12 +97,15 @@ class ArrayCase:
 
     def refuse_kernel(self) -> None:
         """InputError for what a kernel, a table over depth without time, does not hold."""
+        dot, force = self.config.dot, self.config.press.force_N
         if self.config.press.indentation_mm is None:
-            raise InputError("press.force_N: a kernel is a table over depth; give press.indentation_mm instead")
-        if self.config.dot.shape != "cap" or self.config.dot.tilt_deg != (0.0, 0.0) or self.config.dot.gap_mm:
             raise InputError(
-                "dot.tilt_deg, dot.gap_mm: a kernel is of an upright dot that just touches; leave them out"
+                f"press.force_N = {force}: a kernel is a table over depth; give press.indentation_mm instead"
             )
+        if dot.tilt_deg != (0.0, 0.0):
+            raise InputError(f"dot.tilt_deg = {list(dot.tilt_deg)}: a kernel is of an upright dot; must be [0, 0]")
+        if dot.gap_mm:
+            raise InputError(f"dot.gap_mm = {dot.gap_mm:g}: depths of a kernel begin at the touch; must be 0")
         if self.presses[0].model.follows_time:
             raise InputError(
                 "mechanisms: a kernel is a table over depth without time; leave out those that remember, slip or move, "

@@ -153,9 +153,7 @@ def with_about(
         "dot": {
             "radius_mm": dot.radius_mm,
             "height_mm": dot.height_mm,
-            "base_diameter_mm": 2.0 * float(np.sqrt(max(dot.radius_mm**2 - (dot.radius_mm - dot.height_mm) ** 2, 0.0)))
-            if dot.foot_mm == 0.0
-            else 2.0 * dot.radius_mm,
+            "base_diameter_mm": dot.base_diameter_mm,
         },
         "units": UNITS,
         "kernel_error": worst(checks),

@@ -5,20 +5,20 @@ images of each other are pressed once. Between the nodes the table is interpolat
 1970, 589, as modified by MATLAB's makima), onto axes so fine that what reads it may interpolate linearly.
 """
 
-import io
-import os
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import pairwise, product
+from pathlib import Path
 
 import numpy as np
 from scipy.interpolate import Akima1DInterpolator, LinearNDInterpolator, NearestNDInterpolator, PchipInterpolator
 
-from geometry.arrays import Floats, Ints
+from geometry.arrays import Floats
 from geometry.base import Report
 from geometry.beside import each_beside
-from geometry.cache import data_hash, folder, read_kept, source_hash, write_kept
+from geometry.cache import data_hash, folder, read_arrays, source_hash, write_arrays
+from geometry.environment import usable_cores
 from softdot.arrays.case import ArrayCase, ArrayPress
 from softdot.arrays.kernel import ArrayKernel
 from softdot.arrays.matrix import StoppedPressError
@@ -34,6 +34,9 @@ PER_PITCH = 6
 """Intervals of the grid from segment to segment."""
 FINE_MM, FINE_STEPS = 0.1, 20
 """Spacing of the table in x and y at most, and its intervals over the depth."""
+
+
+KEPT = ("depth_mm", "force_N", "charge_pC", "sinking_mm")
 
 
 @dataclass(frozen=True)
@@ -83,21 +86,22 @@ def by_one_dot(case: ArrayCase, x_mm: float, y_mm: float) -> Config:
     )
 
 
+def recalled(task: KernelTask) -> KernelPress | None:
+    """A press that was solved before."""
+    return read_arrays(_path(task), lambda arrays: KernelPress(**{name: arrays[name] for name in KEPT}))
+
+
 def pressed(task: KernelTask) -> KernelPress:
-    """Solve a press, or take it from the cache. InputError, MeshingError."""
-    key = data_hash([source_hash(__name__), input_hash(task.config), task.nodes_mm])
-    path = folder() / f"kernel-{key}.npz"
-    kept = read_kept(path)
-    if kept is not None:
-        with np.load(io.BytesIO(kept), allow_pickle=False) as file:
-            return KernelPress(**{name: file[name] for name in file.files})
+    """Solve a press; one that converges is kept. InputError, MeshingError."""
     found = _solved(task)
     if not found.failure:
-        content = io.BytesIO()
-        np.savez(content, **{name: value for name, value in vars(found).items() if name != "failure"})
-        with suppress(OSError):
-            write_kept(path, content.getvalue())
+        with suppress(OSError):  # a cache that cannot be written is no cache
+            write_arrays(_path(task), {name: getattr(found, name) for name in KEPT})
     return found
+
+
+def _path(task: KernelTask) -> Path:
+    return folder() / f"kernel-{data_hash([source_hash(__name__), input_hash(task.config), task.nodes_mm])}.npz"
 
 
 def _solved(task: KernelTask) -> KernelPress:
@@ -200,12 +204,13 @@ def grid_of(case: ArrayCase) -> KernelGrid:
 
 def all_pressed(tasks: Mapping[str, KernelTask], told: Report) -> dict[str, KernelPress]:
     """Each task solved, on all cores. StoppedPressError for one that does not converge; the others are kept."""
-    found = {}
-    for number, (name, press) in enumerate(each_beside(pressed, tasks, os.cpu_count() or 1), start=1):
+    found = {name: press for name, task in tasks.items() if (press := recalled(task)) is not None}
+    left = {name: task for name, task in tasks.items() if name not in found}
+    for name, press in each_beside(pressed, left, min(usable_cores(), len(left))):
         if press.failure:
             raise StoppedPressError(f"{tasks[name].where} did not converge: {press.failure}")
         found[name] = press
-        told(name, number, len(tasks))
+        told(name, len(found), len(tasks))
     return found
 
 
@@ -230,5 +235,5 @@ def filled(grid: KernelGrid, presses: Mapping[GridNode, KernelPress]) -> ArrayKe
 
 
 def _fine(nodes: tuple[float, ...]) -> Floats:
-    count: Ints | int = int(np.ceil((nodes[-1] - nodes[0]) / FINE_MM - 1e-9))
+    count = int(np.ceil((nodes[-1] - nodes[0]) / FINE_MM - 1e-9))
     return np.linspace(nodes[0], nodes[-1], count + 1)

@@ -1,6 +1,5 @@
 """The whole study of an array: its crosstalk, what stands for one of its segments, and the press of a cell."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
@@ -8,7 +7,6 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from geometry.arrays import Floats
-from geometry.base import Report
 from softdot.arrays.case import ArrayCase, ArrayPress
 from softdot.arrays.kernel import ArrayKernel
 from softdot.arrays.kernel_errors import KernelCheck, kernel_of
@@ -16,6 +14,7 @@ from softdot.arrays.matrix import CrosstalkMatrix, StoppedPressError, converged,
 from softdot.arrays.presses import Follow, Signals, remembered, signals
 from softdot.arrays.side_stiffness import EffectiveSides, effective_sides, representatives
 from softdot.arrays.variants import Worth, worth
+from softdot.console import Progress
 from solve.result import PressResult
 
 Part = Literal["variants", "kernel"]
@@ -53,7 +52,10 @@ class CellPress:
 
 @dataclass(frozen=True)
 class ArrayStudy:
-    """shown : the press whose fields are drawn and written, with its result and its title."""
+    """shown : the press whose fields are drawn and written, with its result and its title.
+
+    kernel, checks : where they were asked for, the kernel and its errors beside presses of the whole array.
+    """
 
     matrix: CrosstalkMatrix
     sides: dict[str, EffectiveSides]
@@ -66,9 +68,7 @@ class ArrayStudy:
     checks: list[KernelCheck]
 
 
-def study(
-    case: ArrayCase, follow: Follow, stage: Callable[[str], None], told: Report, parts: frozenset[Part]
-) -> ArrayStudy:
+def study(case: ArrayCase, follow: Follow, progress: Progress, parts: frozenset[Part]) -> ArrayStudy:
     """Solve everything; parts : what is asked for beside the matrix.
 
     StoppedPressError where a press does not converge, InputError, MeshingError.
@@ -78,24 +78,24 @@ def study(
     by_cell = case.config.dot.cell is not None
     shown = case.press_by_cell() if by_cell else case.press_over(case.layout.places[min(case.images(number))])
     title = f"The cell {case.config.dot.cell}" if by_cell else f"A dot over {place.label}"
-    stage("shown press")
+    progress.stage("shown press")
     result = remembered(shown, follow(title))
     if result.failure is not None:
         raise StoppedPressError(f"{title} did not converge: {result.failure}")
-    stage("matrix")
+    progress.stage("matrix")
     matrix = crosstalk(case, follow)
     cell = _cell_press(case, matrix, follow) if by_cell else None
-    stage("sides")
+    progress.stage("sides")
     sides = effective_sides(matrix, follow)
     variants: list[Worth] = []
     if "variants" in parts:
-        stage("variants")
+        progress.stage("variants")
         variants = worth(case, follow)
     found = ArrayStudy(matrix, sides, cell, variants, shown, result, title, None, [])
     if "kernel" not in parts:
         return found
-    stage("kernel")
-    kernel, checks = kernel_of(case, matrix, told)
+    progress.stage("kernel")
+    kernel, checks = kernel_of(case, matrix, lambda name, number, count: progress.step(number, count, name))
     return replace(found, kernel=kernel, checks=checks)
 
 

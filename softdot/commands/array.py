@@ -28,7 +28,6 @@ from softdot.output import Product, staged_folder
 if TYPE_CHECKING:
     from argparse import Namespace
 
-    from geometry.base import Report
     from softdot.arrays.kernel import ArrayKernel
     from softdot.arrays.presses import Follow
     from softdot.arrays.study import ArrayStudy, Part
@@ -71,7 +70,7 @@ def run_array(
         with staged_folder(out, ARRAY) as folder:
             warn(warnings)
             begun = time.perf_counter()
-            found = study(case, following(progress), progress.stage, progress_of_presses(progress), parts)
+            found = study(case, following(progress), progress, parts)
             solve_s = time.perf_counter() - begun
             progress.stage("export")
             summary: dict[str, Any] = plain({**_summary(config, found, warnings), "timing_s": {"solve": solve_s}})
@@ -90,11 +89,6 @@ def following(progress: Progress) -> Follow:
         return on_step
 
     return follow
-
-
-def progress_of_presses(progress: Progress) -> Report:
-    """Tell each press of the kernel that is done."""
-    return lambda name, number, count: progress.step(number, count, name)
 
 
 def _summary(config: Config, found: ArrayStudy, warnings: list[str]) -> dict[str, Any]:
@@ -213,7 +207,7 @@ def _draw(found: ArrayStudy, folder: Path) -> list[tuple[str, str, str]]:
 
 
 def _draw_kernel(found: ArrayStudy, kernel: ArrayKernel, folder: Path) -> tuple[str, str, str]:
-    from export.array.kernel_map import draw_kernel
+    from export.array.maps import draw_kernel
     from softdot.arrays.side_stiffness import representatives
 
     layout = found.matrix.layout

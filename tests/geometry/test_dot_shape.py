@@ -16,6 +16,7 @@ def test_radius_of_a_spherical_cap(segment, base, height, radius):
     shape = resolve_dot(Dot(base_diameter_mm=base, height_mm=height), segment)
     assert shape.radius_mm == pytest.approx(radius, abs=6e-4)
     assert shape.foot_mm == 0.0
+    assert shape.base_diameter_mm == pytest.approx(base)
 
 
 def test_nothing_given_is_a_marburg_cap(segment):
@@ -32,6 +33,7 @@ def test_a_cap_that_would_undercut_is_a_hemisphere_on_a_foot(segment):
     shape = resolve_dot(Dot(base_diameter_mm=1.6, height_mm=0.9), segment)
     assert (shape.radius_mm, shape.height_mm) == (0.8, 0.9)
     assert shape.foot_mm == pytest.approx(0.1)
+    assert shape.base_diameter_mm == pytest.approx(1.6)
 
 
 @pytest.mark.parametrize("kind", ["cap", "ridge"])

@@ -52,8 +52,10 @@ class _Hashed:
         return id(self.reader.kernel)
 
     def __eq__(self, other: object) -> bool:
-        own = self.reader
-        return isinstance(other, _Hashed) and own.kernel is other.reader.kernel and own.readout == other.reader.readout
+        if not isinstance(other, _Hashed):
+            return False
+        own, its = self.reader, other.reader
+        return own.kernel is its.kernel and (own.readout, own.standard) == (its.readout, its.standard)
 
 
 @lru_cache(maxsize=4)

@@ -14,8 +14,8 @@ import numpy as np
 from geometry.arrays import Bools, Floats
 from geometry.base import InputError
 from softdot.reading.cells import DOTS
-from softdot.reading.decoders.corrected import left_over
 from softdot.reading.decoders.fitted import CellFit, Track, cell_fit, explained
+from softdot.reading.decoders.model import left_over
 from softdot.reading.decoders.templates import Posture, averaged, templates
 from softdot.reading.line import cell_pitch_mm
 from softdot.reading.voltages import Reader, Voltages

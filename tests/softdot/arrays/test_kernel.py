@@ -138,6 +138,21 @@ def test_cells_by_chance_stand_where_their_dots_are_said_to_be():
         np.testing.assert_allclose(np.abs(away - shift).max(axis=2).min(axis=1), 0.0, atol=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("setting", "sentence"),
+    [
+        ("dot.gap_mm=0.1", r"dot\.gap_mm = 0\.1: depths of a kernel begin at the touch"),
+        ("dot.tilt_deg=[1.0, 0.0]", r"dot\.tilt_deg = \[1\.0, 0\.0\]: a kernel is of an upright dot"),
+        ("press.force_N=0.2", r"press\.force_N = 0\.2: a kernel is a table over depth"),
+    ],
+)
+def test_what_a_table_over_depth_does_not_hold_is_refused(tmp_path, setting, sentence):
+    path = tmp_path / "array.toml"
+    path.write_text(CELL.read_text("utf-8").replace("indentation_mm = 0.3\n", ""), "utf-8")
+    with pytest.raises(InputError, match=sentence):
+        ArrayCase(load_config(path, [setting])).refuse_kernel()
+
+
 @pytest.mark.slow
 def test_a_kernel_foretells_presses_that_took_no_part_in_it():
     settings = [
