@@ -24,6 +24,7 @@ PUBLISHED = (
     "examples/**/*.md",
     "examples/**/*.py",
     "examples/**/*.toml",
+    "examples/**/*.txt",
     "examples/**/*.ipynb",
 )
 GALLERY = "docs/gallery.md"
