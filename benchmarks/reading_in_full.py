@@ -49,10 +49,11 @@ def charges(press: FullPress) -> tuple[float, Floats, Floats, Floats]:
     if not len(press.dots_mm):
         return press.x_mm, np.zeros(1), np.zeros((1, count)), np.zeros(1)
     x, y = (float(v) for v in press.dots_mm[0])
-    one = press.config.dot.model_copy(update={"cell": None, "cell_dot": 1, "offset_mm": (x, y)})
+    one = press.config.dot.lone(offset_mm=(x, y))
     case = ArrayCase(press.config)
     made = ArrayPress(case, one)
-    dot = replace(made.dot, centers_xy_mm=press.dots_mm - press.dots_mm[0])  # all dots of the line, not of one cell
+    tips = np.column_stack([press.dots_mm - press.dots_mm[0], np.zeros(len(press.dots_mm))])
+    dot = replace(made.dot, tips_mm=tips)  # all dots of the line, not of one cell
     result = press_segment(made.model, array_mesh(case.layout, dot, press.config.mesh, ()), dot=dot)
     if result.failure is not None:
         raise RuntimeError(f"x = {press.x_mm:.3g} mm: {result.failure}")

@@ -30,14 +30,14 @@ def dot_parts(dot_shape: DotShape, half_size_mm: tuple[float, float], facets: in
     half = np.asarray(half_size_mm)
     if dot_shape.kind == "plate":
         return [_box(-half, half, 0.0)]
-    reach = 1.1 * np.array([1.0, 0.0 if dot_shape.kind == "ridge" else 1.0]) * _base_radius(dot_shape)
-    low = np.minimum(-half, dot_shape.centers_xy_mm.min(axis=0) - reach)
-    high = np.maximum(half, dot_shape.centers_xy_mm.max(axis=0) + reach)
-    profile = _profile(dot_shape, facets // 2)
+    reach = 1.1 * np.array([1.0, 0.0 if dot_shape.kind == "ridge" else 1.0]) * dot_shape.base_diameter_mm / 2
+    centers = dot_shape.tips_mm[:, :2]
+    low, high = np.minimum(-half, centers.min(axis=0) - reach), np.maximum(half, centers.max(axis=0) + reach)
+    profiles = [_profile(dot_shape, tip[2], facets // 2) for tip in dot_shape.tips_mm]
     if dot_shape.kind == "ridge":
-        dots = [_ridge(profile, center[0], low[1], high[1]) for center in dot_shape.centers_xy_mm]
+        dots = [_ridge(profile, x, low[1], high[1]) for profile, (x, _) in zip(profiles, centers, strict=True)]
     else:
-        dots = [_revolved(profile, center, facets) for center in dot_shape.centers_xy_mm]
+        dots = [_revolved(profile, center, facets) for profile, center in zip(profiles, centers, strict=True)]
     return [*dots, _box(low, high, dot_shape.height_mm)]
 
 
@@ -62,19 +62,13 @@ def in_segment_frame(dot_shape: DotShape, points_mm: Floats, origin_mm: Floats) 
     return np.asarray(origin_mm + points_mm @ dot_shape.rotation.T)
 
 
-def _base_radius(dot_shape: DotShape) -> float:
-    """Radius where the dot meets its plate, in mm."""
-    depth = min(dot_shape.height_mm, dot_shape.radius_mm)
-    return float(np.sqrt(depth * (2 * dot_shape.radius_mm - depth)))
-
-
-def _profile(dot_shape: DotShape, count: int) -> Floats:
-    """Meridian from the tip to the plate, (p, 2) radius and height in mm."""
-    radius = dot_shape.radius_mm
-    opening = np.arccos(1 - min(dot_shape.height_mm, radius) / radius)
+def _profile(dot_shape: DotShape, tip_mm: float, count: int) -> Floats:
+    """Meridian from a tip at z = tip_mm to the plate, (p, 2) radius and z in mm."""
+    radius, height = dot_shape.radius_mm, dot_shape.height_mm - tip_mm
+    opening = np.arccos(1 - min(height, radius) / radius)
     angle = np.linspace(0.0, opening, count)
-    arc = np.column_stack([radius * np.sin(angle), radius * (1 - np.cos(angle))])
-    if dot_shape.height_mm <= radius:
+    arc = np.column_stack([radius * np.sin(angle), tip_mm + radius * (1 - np.cos(angle))])
+    if height <= radius:
         return arc
     return np.vstack([arc, [radius, dot_shape.height_mm]])
 

@@ -29,18 +29,12 @@ def dot_solid(dot_shape: DotShape, segment: Segment) -> Any:
     plate = _box(low, high, face, face + PLATE_THICKNESS_MM)
     solid = plate
     if dot_shape.kind != "plate":
-        dots = [_bump(dot_shape, center, low[1], high[1]) for center in dot_shape.centers_xy_mm]
+        dots = [_bump(dot_shape, tip, low[1], high[1]) for tip in dot_shape.tips_mm]
         solid = plate.fuse(*dots).solid()
     rotation, origin = dot_shape.rotation, dot_shape.origin_mm
     place = Plane(origin=tuple(origin), x_dir=tuple(rotation[:, 0]), z_dir=tuple(rotation[:, 2])).location
     assert isinstance(solid, Solid)
     return place * solid
-
-
-def base_radius_mm(dot_shape: DotShape) -> float:
-    """Radius (half the width of a ridge) where the dot meets its plate, in mm."""
-    depth = min(dot_shape.height_mm, dot_shape.radius_mm)
-    return float(np.sqrt(depth * (2 * dot_shape.radius_mm - depth)))
 
 
 def _plate_corners(dot_shape: DotShape, segment: Segment) -> tuple[Floats, Floats]:
@@ -49,8 +43,8 @@ def _plate_corners(dot_shape: DotShape, segment: Segment) -> tuple[Floats, Float
     signs = product((-1, 1), (-1, 1), (0, 1))
     scale = np.array([segment.length_mm / 2, segment.width_mm / 2, top])
     corners = (np.array(list(signs)) * scale - dot_shape.origin_mm) @ dot_shape.rotation
-    reach = base_radius_mm(dot_shape)
-    points = np.vstack([corners[:, :2], dot_shape.centers_xy_mm - reach, dot_shape.centers_xy_mm + reach])
+    centers, reach = dot_shape.tips_mm[:, :2], dot_shape.base_diameter_mm / 2
+    points = np.vstack([corners[:, :2], centers - reach, centers + reach])
     return points.min(axis=0) - PLATE_MARGIN_MM, points.max(axis=0) + PLATE_MARGIN_MM
 
 
@@ -64,14 +58,15 @@ def cap_solid(radius_mm: float, height_mm: float, foot_mm: float) -> Any:
     return cap.fuse(upright_cylinder(radius_mm, equator, height_mm)).solid() if foot_mm > 0.0 else cap
 
 
-def _bump(dot_shape: DotShape, center: Floats, low_y: float, high_y: float) -> Any:
+def _bump(dot_shape: DotShape, tip: Floats, low_y: float, high_y: float) -> Any:
     """One cap on its foot, or one ridge over the whole plate, in the dot frame."""
     from build123d import Pos
 
     if dot_shape.kind == "ridge":
         return _ridge(dot_shape, low_y, high_y)
-    cap = cap_solid(dot_shape.radius_mm, dot_shape.height_mm, dot_shape.foot_mm)
-    return Pos(center[0], center[1], 0) * cap
+    height = dot_shape.height_mm - tip[2]
+    cap = cap_solid(dot_shape.radius_mm, height, max(0.0, height - dot_shape.radius_mm))
+    return Pos(*tip) * cap
 
 
 def _ridge(dot_shape: DotShape, low_y: float, high_y: float) -> Any:
@@ -82,7 +77,7 @@ def _ridge(dot_shape: DotShape, low_y: float, high_y: float) -> Any:
     equator = min(radius, face)
     lying = Pos(0, high_y, radius) * Rot(90, 0, 0) * Solid.make_cylinder(radius, high_y - low_y)
     ridge = lying & _box(np.array([-2 * radius, low_y]), np.array([2 * radius, high_y]), -radius, equator)
-    if dot_shape.foot_mm > 0.0:
+    if face > radius:
         foot = _box(np.array([-radius, low_y]), np.array([radius, high_y]), equator, face)
         return ridge.solid().fuse(foot).solid()
     return ridge.solid()

@@ -198,27 +198,42 @@ def _from_radius(radius_mm: float, dot: Dot) -> DotSize:
 Floats = NDArray[np.float64]
 
 
-def cell_centers(dot: Dot) -> Floats:
-    """Axes (n, 2) of the raised dots against the pressed one, which comes first, in mm. InputError."""
+def cell_tips(dot: Dot, height_mm: float) -> tuple[Floats, float]:
+    """Tips (n, 3) of the raised dots from that of the pressed one, which comes first, z towards the plate, and the
+    height of the pressed one, in mm. InputError.
+
+    height_mm : of all dots where the cell does not state their own.
+    """
     if dot.cell is None:
-        return refuse_cell_of(dot)
+        return refuse_cell_of(dot, height_mm)
     raised = raised_dots(dot.cell)
     if dot.cell_dot not in raised:
         known = ", ".join(map(str, raised)) or "none"
         raise InputError(f"dot.cell_dot = {dot.cell_dot}: not raised in dot.cell = '{dot.cell}', which has {known}")
+    heights = dot.cell_heights_mm or (height_mm,) * len(raised)
+    if len(heights) != len(raised):
+        raise InputError(
+            f"dot.cell_heights_mm = {list(heights)}: dot.cell = '{dot.cell}' has {len(raised)} raised dots; "
+            "give as many heights"
+        )
     pitch = _pitch_mm(dot)
-    pressed = dot_offset_mm(dot.cell_dot, pitch)
-    others = [dot_offset_mm(number, pitch) - pressed for number in raised if number != dot.cell_dot]
-    return np.array([np.zeros(2), *others])
+    tops = {n: np.append(dot_offset_mm(n, pitch), -height) for n, height in zip(raised, heights, strict=True)}
+    pressed = tops.pop(dot.cell_dot)
+    return np.array([np.zeros(3), *(top - pressed for top in tops.values())]), -float(pressed[2])
 
 
-def refuse_cell_of(dot: Dot) -> Floats:
-    """The one axis (1, 2) of a dot without a cell. InputError when a cell is asked for."""
+def refuse_cell_of(dot: Dot, height_mm: float) -> tuple[Floats, float]:
+    """The one tip (1, 3) of a dot without a cell, and its height. InputError when a cell is asked for."""
     if dot.cell is not None:
         raise InputError(f"dot.cell = '{dot.cell}': a cell has dots of dot.shape = 'cap', not '{dot.shape}'")
     if dot.cell_dot != 1:
         raise InputError(f"dot.cell_dot = {dot.cell_dot}: has a meaning only together with dot.cell")
-    return np.zeros((1, 2))
+    if dot.cell_heights_mm:
+        raise InputError(
+            f"dot.cell_heights_mm = {list(dot.cell_heights_mm)}: has a meaning only together with dot.cell; "
+            "dot.height_mm is the height of one dot"
+        )
+    return np.zeros((1, 3)), height_mm
 
 
 def _pitch_mm(dot: Dot) -> float:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.base import InputError
-from geometry.braille import SIZES, DotSize, cell_centers, dot_size, refuse_cell_of
+from geometry.braille import SIZES, DotSize, cell_tips, dot_size, refuse_cell_of
 from geometry.parameters import Dot, Segment
 from geometry.stack import bodies, layers
 
@@ -40,8 +40,8 @@ def rotation_of(tilt_deg: tuple[float, float]) -> Floats:
 
 
 def rest_origin(shape: "DotShape", segment: Segment, offset_mm: tuple[float, float]) -> Floats:
-    """Position (3,) of the tip at rest in mm; the origin in shape is not used."""
-    top = layers(segment)[-1].top_mm
+    """Position (3,) of the pressed dot's tip at rest in mm; the origin in shape is not used."""
+    top = layers(segment)[-1].top_mm - float(shape.tips_mm[:, 2].min())  # a higher dot of its cell touches first
     ball = np.array([*offset_mm, top + shape.radius_mm])
     origin = ball - shape.rotation @ [0.0, 0.0, shape.radius_mm]
     if shape.kind == "plate":
@@ -76,10 +76,10 @@ def overlap_at_rest(shape: "DotShape", segment: Segment) -> Overlap:
     face = float(normal @ shape.origin_mm) + shape.height_mm
     solids = bodies(segment)
     deepest = Overlap("plate", max(body.reach(normal) for body in solids) - face)
-    along = shape.radius_mm + np.linspace(0.0, shape.foot_mm, FOOT_SAMPLES if shape.foot_mm else 1)
-    for center in shape.centers_xy_mm[1:]:
-        for z in along:
-            ball = shape.origin_mm + shape.rotation @ [*center, z]
+    for tip in shape.tips_mm[1:]:
+        foot = max(0.0, shape.height_mm - tip[2] - shape.radius_mm)
+        for z in shape.radius_mm + np.linspace(0.0, foot, FOOT_SAMPLES if foot else 1):
+            ball = shape.origin_mm + shape.rotation @ np.add(tip, [0.0, 0.0, z])
             depth = float(shape.radius_mm - min(body.distance(ball) for body in solids))
             if depth > deepest.depth_mm:
                 deepest = Overlap("neighbouring dot", depth)
@@ -124,10 +124,9 @@ class DotShape:
 
     kind : "cap", "ridge" (cylinder along y) or "plate".
     radius_mm : of the sphere or cylinder (unused for a plate).
-    height_mm : height of the plate's face over the tip; 0 for a plate.
-    foot_mm : length of the cylindrical foot between the sphere's equator and the plate; 0 unless the
-        height exceeds the radius.
-    centers_xy_mm : (n, 2) axes of the dots in the dot frame; the pressed dot first, at (0, 0).
+    height_mm : height of the plate's face over the tip of the pressed dot; 0 for a plate.
+    tips_mm : (n, 3) tips of the dots in the dot frame; the pressed dot first, at 0; lower dots have z above 0. All are
+        balls of the same radius, on a cylindrical foot where they rise from the plate by more than that.
     origin_mm : (3,) position of the dot frame's origin in the segment frame at rest, just touching.
     rotation : (3, 3) x_segment = origin + rotation @ x_dot.
     """
@@ -135,15 +134,19 @@ class DotShape:
     kind: Literal["cap", "ridge", "plate"]
     radius_mm: float
     height_mm: float
-    foot_mm: float
-    centers_xy_mm: NDArray[np.float64]
+    tips_mm: NDArray[np.float64]
     origin_mm: NDArray[np.float64]
     rotation: NDArray[np.float64]
 
     @property
+    def heights_mm(self) -> Floats:
+        """Of each dot over the plate (n,)."""
+        return np.asarray(self.height_mm - self.tips_mm[:, 2])
+
+    @property
     def base_diameter_mm(self) -> float:
-        """Of the cap, or of its foot, where it stands on the plate; 0 for a plate."""
-        below = min(self.height_mm, self.radius_mm)
+        """Of the widest cap, or its foot, where it stands on the plate; 0 for a plate."""
+        below = min(float(self.heights_mm.max()), self.radius_mm)
         return 2.0 * float(np.sqrt(below * (2.0 * self.radius_mm - below)))
 
 
@@ -159,9 +162,8 @@ def resolve_dot(dot: Dot, segment: Segment) -> DotShape:
     """
     _refuse_out_of_plane(dot, segment)
     size = _plate_size(dot) if dot.shape == "plate" else dot_size(dot)
-    centers = cell_centers(dot) if dot.shape == "cap" else refuse_cell_of(dot)
-    sizes = (size.radius_mm, size.height_mm, size.foot_mm)
-    turned = DotShape(dot.shape, *sizes, centers, np.zeros(3), rotation_of(dot.tilt_deg))
+    tips, height = cell_tips(dot, size.height_mm) if dot.shape == "cap" else refuse_cell_of(dot, size.height_mm)
+    turned = DotShape(dot.shape, size.radius_mm, height, tips, np.zeros(3), rotation_of(dot.tilt_deg))
     origin = rest_origin(turned, segment, dot.offset_mm) + np.array([0.0, 0.0, dot.gap_mm])
     rest = replace(turned, origin_mm=origin)
     refuse_overlap(rest, segment, dot)

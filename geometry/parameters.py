@@ -4,7 +4,7 @@ Origin: centre of the base of medium 2. x along the length, y along the width,
 z from the base towards the dot. Lengths in millimetres, the film in micrometres.
 """
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -108,3 +108,10 @@ class Dot(Table):
     gap_mm: NonNegative = Field(0.0, description="gap between the dot at rest and its first touch")
     cell: str | None = Field(None, description="a Braille character: its other dots surround the pressed one")
     cell_dot: Annotated[int, Field(ge=1, le=8)] = Field(1, description="which dot of the cell is pressed")
+    cell_heights_mm: tuple[Positive, ...] = Field(
+        (), description="height of each raised dot of the cell, in the order of their numbers; none: the standard's"
+    )
+
+    def lone(self, **changes: Any) -> Self:
+        """One dot of the same kind without a cell; changes : of other keys."""
+        return self.model_copy(update={"cell": None, "cell_dot": 1, "cell_heights_mm": (), **changes})

@@ -108,7 +108,7 @@ def key(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes = 
 
 def _places(dot: DotShape) -> tuple[Any, Any, Any]:
     """The arrays of a dot."""
-    return np.asarray(dot.centers_xy_mm), np.asarray(dot.origin_mm), np.asarray(dot.rotation)
+    return np.asarray(dot.tips_mm), np.asarray(dot.origin_mm), np.asarray(dot.rotation)
 
 
 def remembered(name: str, make: Callable[[], LinearMesh]) -> LinearMesh:

@@ -78,8 +78,7 @@ def sizing(outline: StackOutline, dot: DotShape, options: MeshOptions) -> Sizing
     sum of the curvatures of dot and dome, plus one element.
     """
     film_mm = options.film_element_size_mm or sqrt(options.contact_element_size_mm * options.element_size_mm)
-    flat = np.column_stack([dot.centers_xy_mm, np.zeros(len(dot.centers_xy_mm))])
-    centers = (np.asarray(dot.origin_mm) + flat @ np.asarray(dot.rotation).T)[:, :2]
+    centers = (dot.origin_mm + dot.tips_mm @ dot.rotation.T)[:, :2]
     curvature = 0.0 if dot.kind == "plate" else 1.0 / dot.radius_mm
     if outline.shape == "dome":
         curvature += 1.0 / outline.dome_radius

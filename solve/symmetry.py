@@ -105,8 +105,7 @@ def mirrored_dot(dot: DotShape, axis: int) -> bool:
         return False
     if dot.kind == "plate" or (dot.kind == "ridge" and axis == 1):
         return True
-    flat = np.column_stack([dot.centers_xy_mm, np.zeros(len(dot.centers_xy_mm))])
-    tips = dot.origin_mm + flat @ dot.rotation.T
+    tips = dot.origin_mm + dot.tips_mm @ dot.rotation.T
     apart = np.abs((sign * tips)[:, None] - tips[None]).max(axis=2)
     return bool((apart.min(axis=1) <= SAME_MM).all())
 

@@ -115,8 +115,7 @@ class ArrayCase:
     def press_over(self, place: SegmentPlace) -> "ArrayPress":
         """One dot alone over one segment. InputError."""
         x, y = self.config.dot.offset_mm
-        update = {"cell": None, "cell_dot": 1, "offset_mm": (place.x_mm + x, place.y_mm + y)}
-        return ArrayPress(self, self.config.dot.model_copy(update=update))
+        return ArrayPress(self, self.config.dot.lone(offset_mm=(place.x_mm + x, place.y_mm + y)))
 
     def press_by_cell(self) -> "ArrayPress":
         """All dots of dot.cell on one plate, dot 1 over segment r1c1, the others at the pitch of the standard.
@@ -189,9 +188,8 @@ class ArrayCase:
         alone = self.array.model_copy(
             update={"columns": 1, "rows": 1, "cells": 1, "shared": (), "grooves": (), "grid_layers": ()}
         )
-        dot = self.config.dot.model_copy(update={"cell": None, "cell_dot": 1})
         kept = tuple(one for one in self.config.mechanisms if not one.component.startswith("channel-"))
-        update = {"array": alone, "segment": segment, "dot": dot, "mechanisms": kept}
+        update = {"array": alone, "segment": segment, "dot": self.config.dot.lone(), "mechanisms": kept}
         return ArrayCase(self.config.model_copy(update=update))
 
 

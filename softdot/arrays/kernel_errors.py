@@ -80,7 +80,7 @@ def by_chance(case: ArrayCase, places: int, cells: int) -> dict[str, Config]:
 def by_cell(case: ArrayCase, dots: list[int], shift_mm: Floats) -> Config:
     """A press of the kernel by a cell of these dots whose middle is this far from that of the array's first cell."""
     sign = chr(0x2800 + sum(1 << (dot - 1) for dot in dots))
-    shifted = case.config.dot.model_copy(update={"cell": sign, "cell_dot": dots[0], "offset_mm": tuple(shift_mm)})
+    shifted = case.config.dot.lone(cell=sign, cell_dot=dots[0], offset_mm=tuple(shift_mm))
     dot = ArrayCase(case.config.model_copy(update={"dot": shifted})).press_by_cell().config.dot
     return by_one_dot(case, 0.0, 0.0).model_copy(update={"dot": dot})
 
@@ -103,7 +103,7 @@ def measured(kernel: ArrayKernel, presses: Mapping[str, Config], told: Report) -
 def places_of(task: KernelTask) -> Floats:
     """Of the dots of a press, (k, 2) in mm."""
     dot = task.press.dot
-    return np.asarray(dot.origin_mm[:2] + dot.centers_xy_mm)
+    return np.asarray(dot.origin_mm[:2] + dot.tips_mm[:, :2])
 
 
 def beside_matrix(kernel: ArrayKernel, matrix: CrosstalkMatrix) -> list[KernelCheck]:

@@ -76,10 +76,9 @@ def by_one_dot(case: ArrayCase, x_mm: float, y_mm: float) -> Config:
     """A press of the kernel: on a coarser mesh, by one dot at a place in the frame of the array."""
     config = case.config
     sizes = {name: COARSER * getattr(config.mesh, name) for name in ("element_size_mm", "contact_element_size_mm")}
-    dot = {"cell": None, "cell_dot": 1, "offset_mm": (x_mm, y_mm)}
     return config.model_copy(
         update={
-            "dot": config.dot.model_copy(update=dot),
+            "dot": config.dot.lone(offset_mm=(x_mm, y_mm)),
             "mesh": config.mesh.model_copy(update=sizes),
             "press": config.press.model_copy(update={"load_steps": max(STEPS, config.press.load_steps)}),
         }

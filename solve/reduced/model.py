@@ -233,7 +233,7 @@ def structure(physics: Physics) -> str:
 def key(case: "ReductionTask", check: bool) -> str:
     """Hash of mesh, segment, materials, dot, depth, relaxing layers, physics and the solver's own source."""
     dot = case.dot
-    places = (np.asarray(array).tolist() for array in (dot.centers_xy_mm, dot.origin_mm, dot.rotation))
+    places = (np.asarray(array).tolist() for array in (dot.tips_mm, dot.origin_mm, dot.rotation))
     content = {
         "segment": case.segment.model_dump(mode="json"),
         "materials": {name: material.model_dump(mode="json") for name, material in case.materials.items()},

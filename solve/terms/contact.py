@@ -37,8 +37,8 @@ class RigidDot:
         local = (points - self.shape.origin_mm / self.unit_mm - move) @ rotation
         gap, normal, hessian = self._plate(local)
         if self.shape.kind != "plate":
-            for centre in self.shape.centers_xy_mm / self.unit_mm:
-                other = self._bump(local, centre)
+            for tip in self.shape.tips_mm / self.unit_mm:
+                other = self._bump(local, tip)
                 nearer = other[0] < gap
                 gap = np.where(nearer, other[0], gap)
                 normal = np.where(nearer[:, None], other[1], normal)
@@ -49,16 +49,16 @@ class RigidDot:
         gap = self.shape.height_mm / self.unit_mm - local[:, 2]
         return gap, np.tile([0.0, 0.0, -1.0], (len(local), 1)), np.zeros((len(local), 3, 3))
 
-    def _bump(self, local: Floats, centre: Floats) -> tuple[Floats, Floats, Floats]:
+    def _bump(self, local: Floats, tip: Floats) -> tuple[Floats, Floats, Floats]:
         """One ball, or one cylinder along y, with its foot: the distance to its axis minus the radius."""
         radius = self.shape.radius_mm / self.unit_mm
         free = np.ones((len(local), 3))  # directions in which the distance to the axis varies
-        nearest = np.column_stack([np.tile(centre, (len(local), 1)), np.full(len(local), radius)])
+        middle = np.add(tip, [0.0, 0.0, radius])
         if self.shape.kind == "ridge":
             free[:, 1] = 0.0
-        if self.shape.foot_mm > 0.0:
-            free[local[:, 2] > radius, 2] = 0.0
-        arm = (local - nearest) * free
+        if self.shape.height_mm / self.unit_mm > middle[2]:  # a cylindrical foot from the equator to the plate
+            free[local[:, 2] > middle[2], 2] = 0.0
+        arm = (local - middle) * free
         length = np.maximum(np.linalg.norm(arm, axis=1), 1e-12 * radius)
         normal = arm / length[:, None]
         projector = free[:, :, None] * np.eye(3) - normal[:, :, None] * normal[:, None, :]

@@ -185,6 +185,8 @@ def _dot(draw, segment, reducible):
         table["standard"] = draw.among(STANDARDS)
         if table["shape"] == "cap" and across and draw.perhaps(0.5):
             table |= {"cell": "⠿", "cell_dot": draw.whole(1, 6)}
+            if draw.perhaps(0.3):
+                table["cell_heights_mm"] = [draw.between(0.35, 0.55) for _ in range(6)]
     return table
 
 

@@ -90,8 +90,7 @@ def box_dot(kind: str = "cap") -> DotShape:
         kind=kind,  # type: ignore[arg-type]
         radius_mm=DOT_RADIUS_MM,
         height_mm=0.5,
-        foot_mm=0.0,
-        centers_xy_mm=np.zeros((1, 2)),
+        tips_mm=np.zeros((1, 3)),
         origin_mm=np.array([0.0, 0.0, HEIGHT_MM]),
         rotation=np.eye(3),
     )

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from geometry.base import InputError
+from geometry.braille import dot_size
 from geometry.dot import resolve_dot
 from geometry.parameters import Dot
 
@@ -15,7 +16,7 @@ from geometry.parameters import Dot
 def test_radius_of_a_spherical_cap(segment, base, height, radius):
     shape = resolve_dot(Dot(base_diameter_mm=base, height_mm=height), segment)
     assert shape.radius_mm == pytest.approx(radius, abs=6e-4)
-    assert shape.foot_mm == 0.0
+    assert dot_size(Dot(base_diameter_mm=base, height_mm=height)).foot_mm == 0.0
     assert shape.base_diameter_mm == pytest.approx(base)
 
 
@@ -24,37 +25,55 @@ def test_nothing_given_is_a_marburg_cap(segment):
     assert shape.kind == "cap"
     assert shape.radius_mm == 0.8125  # (0.75^2 + 0.5^2) / (2 * 0.5)
     assert shape.height_mm == 0.5
-    assert shape.centers_xy_mm.tolist() == [[0.0, 0.0]]
+    assert shape.tips_mm.tolist() == [[0.0, 0.0, 0.0]]
     assert shape.origin_mm == pytest.approx([0.0, 0.0, 3.528])
     assert np.array_equal(shape.rotation, np.eye(3))
 
 
 def test_a_cap_that_would_undercut_is_a_hemisphere_on_a_foot(segment):
-    shape = resolve_dot(Dot(base_diameter_mm=1.6, height_mm=0.9), segment)
+    dot = Dot(base_diameter_mm=1.6, height_mm=0.9)
+    shape = resolve_dot(dot, segment)
     assert (shape.radius_mm, shape.height_mm) == (0.8, 0.9)
-    assert shape.foot_mm == pytest.approx(0.1)
+    assert dot_size(dot).foot_mm == pytest.approx(0.1)
     assert shape.base_diameter_mm == pytest.approx(1.6)
 
 
 @pytest.mark.parametrize("kind", ["cap", "ridge"])
 def test_a_radius_alone_stands_out_by_itself(segment, kind):
+    size = dot_size(Dot(shape=kind, radius_mm=1.15))
+    assert (size.radius_mm, size.height_mm, size.foot_mm) == (1.15, 1.15, 0.0)
     shape = resolve_dot(Dot(shape=kind, radius_mm=1.15), segment)
-    assert (shape.radius_mm, shape.height_mm, shape.foot_mm) == (1.15, 1.15, 0.0)
+    assert (shape.radius_mm, shape.height_mm) == (1.15, 1.15)
 
 
-def test_a_radius_with_a_height_may_be_larger_or_smaller(segment):
-    shallow = resolve_dot(Dot(shape="ridge", radius_mm=3.0, height_mm=0.5), segment)
+def test_a_radius_with_a_height_may_be_larger_or_smaller():
+    shallow = dot_size(Dot(shape="ridge", radius_mm=3.0, height_mm=0.5))
     assert (shallow.radius_mm, shallow.height_mm, shallow.foot_mm) == (3.0, 0.5, 0.0)
-    tall = resolve_dot(Dot(radius_mm=0.5, height_mm=0.75), segment)
+    tall = dot_size(Dot(radius_mm=0.5, height_mm=0.75))
     assert (tall.radius_mm, tall.height_mm, tall.foot_mm) == (0.5, 0.75, 0.25)
 
 
 def test_neighbours_lie_around_the_pressed_dot(segment):
     shape = resolve_dot(Dot(cell="⠿", cell_dot=5, standard="nls"), segment)
     p = 2.34  # dot 5: right column, middle row
-    others = {(-p, p), (-p, 0.0), (-p, -p), (0.0, p), (0.0, -p)}
-    assert shape.centers_xy_mm[0].tolist() == [0.0, 0.0]
-    assert {tuple(np.round(c, 12) + 0.0) for c in shape.centers_xy_mm[1:]} == others
+    others = {(-p, p, 0.0), (-p, 0.0, 0.0), (-p, -p, 0.0), (0.0, p, 0.0), (0.0, -p, 0.0)}
+    assert shape.tips_mm[0].tolist() == [0.0, 0.0, 0.0]
+    assert {tuple(np.round(c, 12) + 0.0) for c in shape.tips_mm[1:]} == others
+
+
+def test_each_dot_of_a_cell_may_have_its_own_height(segment):
+    """Of dots 1, 2 and 3 the second is 0.1 mm lower, the third 0.05 mm higher; all stand on one plate."""
+    dot = Dot(cell="⠇", cell_dot=1, standard="marburg-medium", cell_heights_mm=(0.5, 0.4, 0.55))
+    shape = resolve_dot(dot, segment)
+    assert shape.tips_mm == pytest.approx(np.array([[0.0, 0.0, 0.0], [0.0, 2.5, 0.1], [0.0, 5.0, -0.05]]))
+    assert shape.heights_mm == pytest.approx([0.5, 0.4, 0.55])
+    assert shape.radius_mm == resolve_dot(Dot(), segment).radius_mm
+
+
+def test_the_highest_dot_of_a_cell_touches_first(segment):
+    """The pressed dot, 0.05 mm lower, keeps that distance at rest."""
+    dot = Dot(cell="⠃", standard="marburg-medium", cell_heights_mm=(0.5, 0.55))
+    assert resolve_dot(dot, segment).origin_mm == pytest.approx([0.0, 0.0, 3.528 + 0.05])
 
 
 REFUSED = {
@@ -103,6 +122,15 @@ REFUSED = {
     "unknown standard": (
         Dot(standard="marburg"),
         "dot.standard = 'marburg': no such Braille standard; did you mean 'marburg-medium'?",
+    ),
+    "too few heights": (
+        Dot(cell="⠇", standard="nls", cell_heights_mm=(0.5, 0.4)),
+        "dot.cell_heights_mm = [0.5, 0.4]: dot.cell = '⠇' has 3 raised dots; give as many heights",
+    ),
+    "heights without cell": (
+        Dot(cell_heights_mm=(0.4,)),
+        "dot.cell_heights_mm = [0.4]: has a meaning only together with dot.cell; dot.height_mm is the height of "
+        "one dot",
     ),
     "upended": (Dot(tilt_deg=(0.0, 90.0)), "dot.tilt_deg[1] = 90: must be above -90 and below 90"),
 }

@@ -51,7 +51,7 @@ def segment(effector: str = "layer", section: str = "solid") -> Segment:
 def dot(of: Segment, x_mm: float = 0.0) -> DotShape:
     top = 2.028 + (of.effector.height_mm if of.effector else 0.0)
     kind = "ridge" if of.section == "plane-strain" else "cap"
-    return DotShape(kind, 0.9, 0.5, 0.0, np.zeros((1, 2)), np.array([x_mm, 0.0, top]), np.eye(3))
+    return DotShape(kind, 0.9, 0.5, np.zeros((1, 3)), np.array([x_mm, 0.0, top]), np.eye(3))
 
 
 def options(mesher: str, **changes: object) -> MeshOptions:

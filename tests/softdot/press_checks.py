@@ -132,11 +132,11 @@ def distance_m(dot, points, position):
     if dot.kind == "plate":
         return plate
     radius = 1e-3 * dot.radius_mm
-    up = local[:, 2] - radius
-    if dot.foot_mm > 0.0:
-        up = np.minimum(up, 0.0)
     nearest = plate
-    for x, y in 1e-3 * dot.centers_xy_mm:
+    for x, y, z in 1e-3 * dot.tips_mm:
+        up = local[:, 2] - z - radius
+        if dot.height_mm - 1e3 * z > dot.radius_mm:
+            up = np.minimum(up, 0.0)
         across = local[:, 0] - x if dot.kind == "ridge" else np.hypot(local[:, 0] - x, local[:, 1] - y)
         nearest = np.minimum(nearest, np.hypot(across, up) - radius)
     return nearest

@@ -16,7 +16,7 @@ def one_tetrahedron() -> TetMesh:
 
 def cap_of_height(height_mm: float) -> DotShape:
     """A spherical cap at rest over the origin."""
-    return DotShape("cap", 0.8, height_mm, 0.0, np.zeros((1, 2)), np.zeros(3), np.eye(3))
+    return DotShape("cap", 0.8, height_mm, np.zeros((1, 3)), np.zeros(3), np.eye(3))
 
 
 def step_at(depth_mm: float, stretch: float = 1.0) -> Step:

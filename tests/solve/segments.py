@@ -45,7 +45,7 @@ def ridge(stack: Segment, radius_mm: float = 1.15) -> DotShape:
 
 def _dot(kind, radius_mm, height_mm, stack, x, y) -> DotShape:
     top = layers(stack)[-1].top_mm
-    return DotShape(kind, radius_mm, height_mm, 0.0, np.zeros((1, 2)), np.array([x, y, top]), np.eye(3))
+    return DotShape(kind, radius_mm, height_mm, np.zeros((1, 3)), np.array([x, y, top]), np.eye(3))
 
 
 def coarse_mesh(stack: Segment, dot: DotShape, options: MeshOptions = COARSE):

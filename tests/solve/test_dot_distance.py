@@ -9,14 +9,13 @@ from solve.terms.contact import RigidDot
 AT_REST = np.zeros(3)
 
 
-def dot(kind="cap", radius=0.8, height=0.5, foot=0.0, centers=((0.0, 0.0),), rotation=None):
+def dot(kind="cap", radius=0.8, height=0.5, tips=((0.0, 0.0, 0.0),), rotation=None):
     return RigidDot(
         DotShape(
             kind,
             radius,
             height,
-            foot,
-            np.array(centers),
+            np.array(tips),
             np.array([0.1, 0.2, 3.0]),
             np.eye(3) if rotation is None else rotation,
         ),
@@ -41,12 +40,18 @@ def test_sphere_plate_and_ridge():
 
 
 def test_foot_of_a_tall_dot_is_a_cylinder():
-    assert gap(dot(radius=0.8, height=1.5, foot=0.7), (1.2, 0.2, 3.9)) == pytest.approx(0.3)
+    assert gap(dot(radius=0.8, height=1.5), (1.2, 0.2, 3.9)) == pytest.approx(0.3)
 
 
 def test_neighbours_of_a_cell_take_part():
-    cell = dot(centers=((0.0, 0.0), (2.5, 0.0)))
+    cell = dot(tips=((0.0, 0.0, 0.0), (2.5, 0.0, 0.0)))
     assert gap(cell, (2.6, 0.2, 2.9)) == pytest.approx(0.1)
+
+
+def test_a_lower_neighbour_is_farther_away():
+    cell = dot(tips=((0.0, 0.0, 0.0), (2.5, 0.0, 0.1)))
+    assert gap(cell, (2.6, 0.2, 2.9)) == pytest.approx(0.2)
+    assert gap(cell, (2.9, 0.2, 3.1)) == pytest.approx(np.hypot(0.3, 0.8) - 0.8)
 
 
 TILTED = np.array([[0.8, 0.0, 0.6], [0.0, 1.0, 0.0], [-0.6, 0.0, 0.8]])
@@ -54,7 +59,7 @@ TILTED = np.array([[0.8, 0.0, 0.6], [0.0, 1.0, 0.0], [-0.6, 0.0, 0.8]])
 
 @pytest.mark.parametrize(
     "rigid",
-    [dot(), dot("ridge"), dot(radius=0.8, height=1.5, foot=0.7), dot(rotation=TILTED), dot("plate", rotation=TILTED)],
+    [dot(), dot("ridge"), dot(radius=0.8, height=1.5), dot(rotation=TILTED), dot("plate", rotation=TILTED)],
 )
 def test_derivatives(rigid):
     points = np.array([[0.3, 0.1, 2.9], [-0.4, 0.5, 3.05], [1.6, 0.4, 4.3]])

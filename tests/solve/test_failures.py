@@ -34,7 +34,7 @@ def dot(kind: str, stack: Segment, x: float = 0.0, height_mm: float = 1.0) -> Do
     """A ridge of 1 mm radius, or a plate, at rest on the slab."""
     origin = np.array([x, 0.0, layers(stack)[-1].top_mm])
     height_mm = 0.0 if kind == "plate" else height_mm
-    return DotShape(kind, 1.0, height_mm, max(0.0, height_mm - 1.0), np.zeros((1, 2)), origin, np.eye(3))
+    return DotShape(kind, 1.0, height_mm, np.zeros((1, 3)), origin, np.eye(3))
 
 
 def stopped(stack: Segment, shape: DotShape, press: Press, medium=SOFT):

@@ -21,7 +21,7 @@ def rigid(kind="cap", rotation=None):
     """A dot of radius 0.8 that rests on the patch's middle."""
     turn = np.eye(3) if rotation is None else rotation
     height = 0.0 if kind == "plate" else 0.5
-    return RigidDot(DotShape(kind, 0.8, height, 0.0, np.zeros((1, 2)), np.array([0.5, 0.5, 0.0]), turn), 1.0)
+    return RigidDot(DotShape(kind, 0.8, height, np.zeros((1, 3)), np.array([0.5, 0.5, 0.0]), turn), 1.0)
 
 
 def patch():

@@ -36,7 +36,7 @@ class DraggedBlock:
         surface = np.unique(facets)
         contact = np.full(len(points), -1)
         contact[surface] = count + np.arange(len(surface))
-        dot = DotShape("ridge", radius, radius, 0.0, np.zeros((1, 2)), np.array([0.0, 0.0, top]), np.eye(3))
+        dot = DotShape("ridge", radius, radius, np.zeros((1, 3)), np.array([0.0, 0.0, top]), np.eye(3))
         none = np.zeros((0, 4), int)
         unknowns = Unknowns(numbers, none, none, contact, -1)
         self.contact = contact_facets(points, facets, unknowns, RigidDot(dot, 1.0))

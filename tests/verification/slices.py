@@ -24,7 +24,7 @@ DEPTH_MM = 0.2
 
 def plate(stack: Segment) -> DotShape:
     """A flat dot on the top."""
-    return DotShape("plate", 0.0, 0.0, 0.0, np.zeros((1, 2)), np.array([0.0, 0.0, layers(stack)[-1].top_mm]), np.eye(3))
+    return DotShape("plate", 0.0, 0.0, np.zeros((1, 3)), np.array([0.0, 0.0, layers(stack)[-1].top_mm]), np.eye(3))
 
 
 def foams() -> dict:

@@ -69,6 +69,17 @@ def test_half_an_array_is_the_whole():
     np.testing.assert_allclose(half.film_charge_C, whole.film_charge_C, rtol=1e-6)
 
 
+def test_dots_of_a_cell_press_by_their_own_heights():
+    """Islands: the dot that is 0.06 mm lower presses its segment as one dot does that is pressed 0.06 mm less."""
+    dots = {"cell": "⠉", "standard": "marburg-medium", "cell_heights_mm": [0.5, 0.44]}
+    pair = array(shared=[], pitch_mm=2.5, tables={"dot": dots})
+    both, deep = (solved(press).steps[-1] for press in (pair.press_by_cell(), pair.press_over(pair.layout.places[0])))
+    less = array(shared=[], pitch_mm=2.5, press={"indentation_mm": pair.config.press.indentation_mm - 0.06})
+    shallow = solved(less.press_over(less.layout.places[1])).steps[-1]
+    np.testing.assert_allclose(both.film_charge_C, [deep.film_charge_C[0], shallow.film_charge_C[1]], rtol=5e-3)
+    assert both.reaction_force_N == pytest.approx(deep.reaction_force_N + shallow.reaction_force_N, rel=5e-3)
+
+
 def test_electrodes_share_the_charge_of_the_film():
     """Electrodes without a gap collect together what one electrode over everything does."""
     case = array(segment={"length_mm": 2.5, "width_mm": 2.5}, shared=["effector", "medium1", "film", "medium2"])

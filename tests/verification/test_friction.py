@@ -31,7 +31,7 @@ def neo_hookean(shear, poisson_ratio):
 def rigid(kind, centre, radius=0.6):
     """A dot whose tip touches the point centre (3,); a cap is half a ball."""
     height = 0.0 if kind == "plate" else radius
-    return RigidDot(DotShape(kind, radius, height, 0.0, np.zeros((1, 2)), np.array(centre, float), np.eye(3)), 1.0)
+    return RigidDot(DotShape(kind, radius, height, np.zeros((1, 3)), np.array(centre, float), np.eye(3)), 1.0)
 
 
 @dataclass

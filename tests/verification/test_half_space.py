@@ -39,7 +39,7 @@ def hertz(size: float) -> np.ndarray:
     inner = np.concatenate([np.linspace(0.0, 0.8, 6), [0.86, 0.9, 0.94], edge, [1.1, 1.16]])
     shape = cylinder(size, inner, 0.1)
     body, prescribed = body_on_smooth_base(shape, size)
-    sphere = DotShape("cap", RADIUS, RADIUS, 0.0, np.zeros((1, 2)), np.zeros(3), np.eye(3))
+    sphere = DotShape("cap", RADIUS, RADIUS, np.zeros((1, 3)), np.zeros(3), np.eye(3))
     facets = shape.facets(lambda x: (x[:, 2] == 0.0) & (np.hypot(x[:, 0], x[:, 1]) < 1.3))
     contact = body.add_contact(facets, RigidDot(sphere, 1.0))
     body.solve(prescribed, move=[0.0, 0.0, -DEPTH])

@@ -79,7 +79,7 @@ def test_a_plate_presses_uniformly_on_a_distorted_block(name):
     shape = distorted()
     law = MEDIA[name].law
     body = solid_body(shape.points, law, shape.tets)
-    plate = DotShape("plate", 0.0, 0.0, 0.0, np.zeros((1, 2)), np.array([0.0, 0.0, 1.0]), np.eye(3))
+    plate = DotShape("plate", 0.0, 0.0, np.zeros((1, 3)), np.array([0.0, 0.0, 1.0]), np.eye(3))
     contact = body.add_contact(shape.facets(lambda x: x[:, 2] == 1.0), RigidDot(plate, 1.0))
     prescribed = body.free()
     for axis in range(3):

@@ -58,7 +58,7 @@ def test_plate(held, tmp_path, monkeypatch):
         monkeypatch.setattr(f"solve.{module}.tetrahedron", lambda: tetrahedron(5))
     stack = segment(boundary="clamped" if held else "free", held_layers=held or ("film",))
     top = np.array([0.0, 0.0, layers(stack)[-1].top_mm])
-    plate = DotShape("plate", 1.0, 0.0, 0.0, np.zeros((1, 2)), top, np.eye(3))
+    plate = DotShape("plate", 1.0, 0.0, np.zeros((1, 3)), top, np.eye(3))
     tet_mesh = build(stack, plate, COARSE)
     result = press_segment(stack, materials(), plate, Press(indentation_mm=DEPTH_MM, load_steps=1), tet_mesh)
     ours = result.steps[-1]

@@ -20,7 +20,7 @@ def force(radius: float, depth: float) -> float:
     r = np.concatenate([np.linspace(0.0, 1.4 * a, 12), 1.4 * a + graded(0.0, 6.0 - 1.4 * a, 0.12 * a, 1.5)[1:]])
     shape = disc(r, np.linspace(0.0, np.pi / 2, 4), -graded(0.0, 1.0, 0.1, 0.3)[::-1])
     body = solid_body(shape.points, LAW, shape.tets)
-    sphere = DotShape("cap", radius, radius, 0.0, np.zeros((1, 2)), np.zeros(3), np.eye(3))
+    sphere = DotShape("cap", radius, radius, np.zeros((1, 3)), np.zeros(3), np.eye(3))
     facets = shape.facets(lambda x: (x[:, 2] == 0.0) & (np.hypot(x[:, 0], x[:, 1]) < 1.6 * a))
     contact = body.add_contact(facets, RigidDot(sphere, 1.0))
     prescribed = body.free()
