@@ -1,7 +1,7 @@
 """A recording folder of a case: rig.toml with what the experimenter believes, and one CSV file per run."""
 
 import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -26,6 +26,8 @@ def rig_text(bench: Bench) -> str:
             own.append(f"input_capacitance_pF = {bench.amplifier.capacitance_pF + run.added_pF:g}")
         if own:
             lines.append(f"readout = {{ {', '.join(own)} }}")
+        if bench.made.electrodes:
+            lines.append(f"dot_offset_mm = [{run.place_mm:g}, 0.0]")
         lines += ["[runs.nuisance]", *(f"{name} = {width:g}" for name, width in bench.nuisance), ""]
     return "\n".join(lines)
 
@@ -44,6 +46,7 @@ def _segment(bench: Bench) -> list[str]:
     for layer in made.layers:
         if isinstance(layer, Film):
             lines += ["[segment.film]", f"thickness_um = {1e3 * layer.thickness_mm:g}", 'material = "pvdf"', ""]
+            lines += _electrodes(bench)
         elif isinstance(layer, Layer):
             size = "height_mm" if layer.name == "effector" else "thickness_mm"
             lines += [
@@ -60,6 +63,15 @@ def _segment(bench: Bench) -> list[str]:
                 "density_kg_m3 = 1000.0", "",
             ]  # fmt: skip
     return lines
+
+
+def _electrodes(bench: Bench) -> Iterator[str]:
+    for number, (low, high) in enumerate(bench.made.electrodes, start=1):
+        yield "[[segment.film.electrodes]]"
+        yield f'name = "channel {number}"'
+        yield f"center_mm = [{0.5 * (low + high):g}, 0.0]"
+        yield f"size_mm = [{high - low:g}, {bench.made.width_mm:g}]"
+        yield ""
 
 
 def _name(layer: Layer | Film) -> str:
