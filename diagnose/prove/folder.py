@@ -18,7 +18,7 @@ def files(bench: Bench, runs: Sequence[Signals]) -> Mapping[str, str]:
 
 def rig_text(bench: Bench) -> str:
     """rig.toml of a bench."""
-    lines = ['format = "softdot-recording/1"', "", *_segment(bench), *_dot(bench), *_amplifier(bench)]
+    lines = ['format = "softdot-recording/1"', "", *_segment(bench), *_dot(bench), *_amplifier(bench), *_mesh(bench)]
     for number, run in enumerate(bench.runs, start=1):
         lines += ["[[runs]]", f'file = "press-{number:02d}.csv"', f'label = "{run.label}"', 'drive = "displacement_mm"']
         own = [] if run.resistance_MOhm is None else [f"input_resistance_MOhm = {run.resistance_MOhm:g}"]
@@ -90,6 +90,13 @@ def _amplifier(bench: Bench) -> list[str]:
     if amplifier.resistance_MOhm is not None:
         lines.append(f"input_resistance_MOhm = {amplifier.resistance_MOhm:g}")
     return [*lines, f"low_pass_Hz = {own.cutoff_Hz:g}", f"filter_order = {own.order}", ""]
+
+
+def _mesh(bench: Bench) -> list[str]:
+    if bench.mesh_mm is None:
+        return []
+    size, at_dot = bench.mesh_mm
+    return ["[mesh]", f"element_size_mm = {size:g}", f"contact_element_size_mm = {at_dot:g}", ""]
 
 
 def _csv(run: Signals) -> str:

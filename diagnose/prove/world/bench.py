@@ -113,6 +113,7 @@ def _rounded(share: Floats) -> Floats:
 class Bench:
     """nuisance : name -> one sigma, as in rig.toml. noise : one sigma as a share of the largest signal of a channel.
 
+    mesh_mm : sizes of elements and of those at the dot that the experimenter chose; None for none.
     peak_V, peak_N : about the largest signals, to scale noise and effects. force : whether a load cell is there.
     """
 
@@ -126,6 +127,7 @@ class Bench:
     noise: float = 0.004
     rate_Hz: float = 250.0
     force: bool = True
+    mesh_mm: tuple[float, float] | None = None
 
     @property
     def deepest_mm(self) -> float:
@@ -234,7 +236,7 @@ PITCH_MM = 2.5
 ROW = Bench(
     "row-free",
     Made(
-        (Layer("medium2", 1.5, 0.5), Film(), Layer("medium1", 0.6, 2.0), Layer("effector", 0.8, 1.0)),
+        (Layer("medium2", 1.5, 0.5), Film(), Layer("medium1", 0.8, 1.5)),
         3.0 * PITCH_MM,
         10.0,
         "ridge",
@@ -246,15 +248,16 @@ ROW = Bench(
     (
         Run("first, fast", 0.25, 0.12, 0.5, place_mm=-PITCH_MM),
         Run("second, fast", 0.25, 0.12, 0.5),
-        Run("third, fast", 0.25, 0.12, 0.5, place_mm=PITCH_MM),
         Run("first, slow and shallow", 0.16, 0.5, 0.4, place_mm=-PITCH_MM),
         Run("second, long hold", 0.2, 0.2, 1.6),
-        Run("third, other resistor", 0.25, 0.2, 0.5, resistance_MOhm=500.0, place_mm=PITCH_MM),
+        Run("first, other resistor", 0.25, 0.2, 0.5, resistance_MOhm=500.0, place_mm=-PITCH_MM),
+        Run("second, half depth", 0.125, 0.2, 0.4),
     ),
     NUISANCE,
-    21.7,
-    4.3,
+    25.0,
+    5.4,
     noise=0.002,
+    mesh_mm=(0.6, 0.2),
 )
-"""Three electrodes in a row under a film that runs through: each run presses over one of them."""
+"""Three electrodes in a row under layers that run through: each run presses over the first or the second of them."""
 BENCHES = {bench.name: bench for bench in (CLAMPED, FREE, SOLID, VOLTAGE_ONLY, ROW)}

@@ -25,7 +25,7 @@ SHORT = Made(
 
 
 def tied(stray, amplifier=AMPLIFIER):
-    """Two channels of 100 pF, with 5 GOhm unless said otherwise; charge of 500 pC comes smoothly to the first within 40 ms."""
+    """Two channels of 100 pF, with 5 GOhm unless said otherwise; 500 pC come smoothly to the first within 40 ms."""
     rise = np.clip((TIME - TOUCH_S) / 0.04, 0.0, 1.0)
     charge = np.column_stack([500.0 * rise**2 * (3.0 - 2.0 * rise), 0.0 * TIME])
     return voltages(amplifier, Wiring((stray,)), TIME, charge, (60.0, 60.0), 0.0).T
