@@ -321,8 +321,9 @@ def _circuit(make: Builder, film: FilmRegion) -> Iterator[Term]:
         joined = dofs == dof
         inputs = int(joined.sum()) if inputs_apart else 1
         share = inputs * meshed_share(make.segment, make.tet_mesh)
-        leak_uS = np.mean([make.physics.channel_leak_uS.get(number, 0.0) for number in np.flatnonzero(joined) + 1])
-        conductance_uS = 1.0 / (readout.input_resistance_MOhm or np.inf) + (leak_uS if inputs_apart else 0.0)
+        channel = int(np.flatnonzero(joined)[0]) + 1  # its images have the same
+        leak_uS = make.physics.channel_leak_uS.get(channel, 0.0) if inputs_apart else 0.0
+        conductance_uS = 1.0 / (readout.input_resistance_MOhm or np.inf) + leak_uS
         resistance = (1e6 / conductance_uS if conductance_uS else np.inf) * farad / share
         input_capacitance = 1e-12 * readout.input_capacitance_pF / farad * share
         yield Circuit(int(dof), float(film.capacitance()[joined].sum()), input_capacitance, resistance)

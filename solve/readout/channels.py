@@ -2,7 +2,7 @@
 
 Voltage mode, with the capacitance C_i of film and input, the resistance R_i and the mutual capacitances C_ij of inputs:
     C_i V_i' + sum_j C_ij (V_i' - V_j') = Q_i' - V_i / R_i
-which is reciprocal (Paul, Introduction to Electromagnetic Compatibility, 2nd ed. 2006, section 9.3). With the symmetric
+which is reciprocal (Paul, Introduction to Electromagnetic Compatibility, 2nd ed. 2006, chapter 9). With the symmetric
 matrices C and G of it, the modes of G x = a C x, with x' C x = 1, do not act on each other:
     y' = x . Q' - a y,    V = sum of x y
 and each of them is integrated exactly for charges that are linear between the samples. The inputs of charge amplifiers
