@@ -28,6 +28,7 @@ from softdot.commands.new import (  # noqa: E402
 )
 from solve.materials.parameters import library_tables  # noqa: E402
 from solve.mechanisms import MECHANISMS  # noqa: E402
+from solve.mechanisms.base import in_short  # noqa: E402
 
 Json = dict[str, Any]
 
@@ -192,16 +193,10 @@ def _range(quantity: Quantity) -> str:
 def mechanism_table() -> str:
     """Every mechanism name that the schema knows."""
     rows = [
-        [f"`{name}`", ", ".join(_short(kind.components)), ", ".join(kind.parameters.model_fields) or "none"]
+        [f"`{name}`", ", ".join(in_short(kind.components)), ", ".join(kind.parameters.model_fields) or "none"]
         for name, kind in MECHANISMS.items()
     ]
     return _table(["name", "component", "parameters"], rows)
-
-
-def _short(components: tuple[str, ...]) -> tuple[str, ...]:
-    """Numbered channels as one."""
-    numbered = [one for one in components if one.startswith("channel-")]
-    return (f"{numbered[0]} to {numbered[-1]}",) if numbered else components
 
 
 def with_block(text: str, name: str, block: str) -> str:

@@ -153,9 +153,11 @@ def _add_prove(commands: Any) -> None:
     )
     prove.add_argument("--cases", type=int, required=True, metavar="N", help="how many recordings")
     prove.add_argument("--seed", type=int, default=0, metavar="S", help="of the cases")
-    prove.add_argument("--rigs", metavar="NAME,NAME", help="from ridge-clamped, ridge-free, dot-clamped; default: all")
+    rigs = "from ridge-clamped, ridge-free, dot-clamped, which are the default, and row-free with three channels"
+    prove.add_argument("--rigs", metavar="NAME,NAME", help=rigs)
     kinds = "from none, single, pair, left-out, outside, ambiguous; default: all"
     prove.add_argument("--kinds", metavar="KIND,KIND", help=kinds)
+    prove.add_argument("--mechanisms", metavar="NAME,NAME", help="known effects are of these; default: all")
     prove.add_argument("--staged", action="store_true", help="the first eight mechanisms only")
     prove.add_argument("--details", action="store_true", help="rigs with small flaws that no mechanism describes")
     prove.add_argument("--workers", type=int, metavar="N", help="number of processes; one per core by default")

@@ -159,7 +159,8 @@ class Case:
     @property
     def is_amplified(self) -> bool:
         """Whether something stands between the film and what is read."""
-        return bool(self.model.readout or self.model.physics.electronics or self.model.physics.crosstalk)
+        physics = self.model.physics
+        return bool(self.model.readout or physics.electronics or physics.of_channels)
 
     def amplified(self, result: PressResult) -> tuple[Floats, Floats] | None:
         """Voltage in V at each step: electrodes in parallel (s,), each alone (e, s); None without an amplifier."""

@@ -141,6 +141,8 @@ class Physics:
     and the dot. prestretch : nominal strain of the film in x and y. contact_charge_pC : charge that the dot leaves on
     the electrodes, all of it at the largest contact area, before that by a power of the area. electronics : stages of
     the amplifier beside those of the read-out. crosstalk : channel (from 1) -> share of the other channels' voltage.
+    mutual_pF : two channels -> capacitance between their inputs; channel_leak_uS : channel -> conductance parallel to
+    its input; channel_electronics : channel -> stages beside those of all. They need an amplifier for each electrode.
     separate_channels : each electrode is on an amplifier of its own, against a common ground, where voltages act back
     on the film; else all electrodes are in parallel on one.
     """
@@ -159,7 +161,20 @@ class Physics:
     contact_charge_exponent: float = 1.0
     electronics: tuple[Stage, ...] = ()
     crosstalk: Mapping[int, float] = field(default_factory=dict)
+    mutual_pF: Mapping[tuple[int, int], float] = field(default_factory=dict)
+    channel_leak_uS: Mapping[int, float] = field(default_factory=dict)
+    channel_electronics: Mapping[int, tuple[Stage, ...]] = field(default_factory=dict)
     separate_channels: bool = False
+
+    @property
+    def of_channels(self) -> tuple[tuple[str, int], ...]:
+        """In words, what is of single channels, each with the highest of the channels that it needs."""
+        return (
+            *((f"crosstalk into 'channel-{n}'", n) for n in self.crosstalk),
+            *((f"crosstalk between 'channel-{i}' and 'channel-{j}'", max(i, j)) for i, j in self.mutual_pF),
+            *((f"a leak of 'channel-{n}'", n) for n in self.channel_leak_uS),
+            *((f"a filter of 'channel-{n}'", n) for n in self.channel_electronics),
+        )
 
     @property
     def follows_time(self) -> bool:

@@ -24,13 +24,14 @@ from solve.materials.inelastic import Inelastic
 from solve.materials.laws import MediumLaw
 from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.model import BondLine, Delamination, Physics, Readout
+from solve.readout.channels import mutual_F
 from solve.symmetry import electrode_rectangles, images, orbits
 from solve.system import System, Units
 from solve.terms.contact import RigidDot, contact_facets
 from solve.terms.film import FilmRegion, film_region
 from solve.terms.friction import FrictionalContact
 from solve.terms.jump import opening_nodes, unilateral_interface
-from solve.terms.rig import Circuit, RigTerm
+from solve.terms.rig import Circuit, RigTerm, Tied
 from solve.terms.solid import SolidRegion, solid_region
 from solve.terms.springs import bond, side_springs
 
@@ -315,14 +316,23 @@ def _circuit(make: Builder, film: FilmRegion) -> Iterator[Term]:
     readout, units, dofs = make.readout, make.units, make.unknowns.voltage
     if readout is None or dofs[0] < 0:
         return
-    farad = units.charge / units.voltage
+    farad, inputs_apart = units.charge / units.voltage, make.physics.separate_channels
     for dof in np.unique(dofs):
         joined = dofs == dof
-        inputs = int(joined.sum()) if make.physics.separate_channels else 1
+        inputs = int(joined.sum()) if inputs_apart else 1
         share = inputs * meshed_share(make.segment, make.tet_mesh)
-        resistance = 1e6 * (readout.input_resistance_MOhm or np.inf) * farad / share
+        channel = int(np.flatnonzero(joined)[0]) + 1  # its images have the same
+        leak_uS = make.physics.channel_leak_uS.get(channel, 0.0) if inputs_apart else 0.0
+        conductance_uS = 1.0 / (readout.input_resistance_MOhm or np.inf) + leak_uS
+        resistance = (1e6 / conductance_uS if conductance_uS else np.inf) * farad / share
         input_capacitance = 1e-12 * readout.input_capacitance_pF / farad * share
         yield Circuit(int(dof), float(film.capacitance()[joined].sum()), input_capacitance, resistance)
+    if inputs_apart and make.physics.mutual_pF:
+        known, of = np.unique(dofs, return_inverse=True)
+        joined_by = np.eye(len(known))[of]
+        share = meshed_share(make.segment, make.tet_mesh) / farad
+        matrix = joined_by.T @ mutual_F(make.physics.mutual_pF, len(dofs)) @ joined_by
+        yield Tied(known, share * matrix)
 
 
 def _rig(make: Builder, force_driven: bool) -> Iterator[Term]:

@@ -39,6 +39,7 @@ def _is_mirrored(model: Model, dot: DotShape, axis: int) -> bool:
     return (
         mirrored_law(film_law(film, model.segment.film.draw_angle_deg), axis)
         and electrode_images(electrode_rectangles(model.segment), axis) is not None
+        and _mirrored_inputs(model, axis)
         and _mirrored_patches(model.physics.delaminations, axis, model.segment.section == "plane-strain")
         and mirrored_dot(dot, axis)
         and all(point[axis] == 0.0 for point in model.press.path_xy_mm)
@@ -80,6 +81,18 @@ def electrode_images(rectangles: Floats, axis: int) -> Ints | None:
     image[:, [2 * axis, 2 * axis + 1]] = -rectangles[:, [2 * axis + 1, 2 * axis]]
     same = np.array([[np.allclose(one, other, rtol=0.0, atol=SAME_MM) for other in rectangles] for one in image])
     return np.asarray(same.argmax(axis=1)) if same.any(axis=1).all() else None
+
+
+def _mirrored_inputs(model: Model, axis: int) -> bool:
+    """Whether amplifiers of electrodes that act back on the film are their own images."""
+    physics, image = model.physics, electrode_images(electrode_rectangles(model.segment), axis)
+    if not physics.separate_channels or image is None:
+        return image is not None
+    of = {number + 1: int(other) + 1 for number, other in enumerate(image)}
+    tied = {(of[i], of[j]) if of[i] < of[j] else (of[j], of[i]): value for (i, j), value in physics.mutual_pF.items()}
+    return tied == dict(physics.mutual_pF) and {of[n]: g for n, g in physics.channel_leak_uS.items()} == dict(
+        physics.channel_leak_uS
+    )
 
 
 def _mirrored_patches(patches: tuple[Delamination, ...], axis: int, is_slice: bool) -> bool:

@@ -26,6 +26,19 @@ Relative = Sequence[float]
 """One sigma per channel, in the order of the samples' channels."""
 
 
+def of_the_film(signals: Sequence[Signals]) -> list[Signals]:
+    """The signals that a model's own error is relative to: each its own, of several voltages the largest of its run.
+
+    They come from one field of stress, whose error an electrode that collects next to nothing has as well.
+    """
+    found: list[Signals] = []
+    for of_run in signals:
+        voltages = [values for name, values in of_run.items() if name.startswith("voltage")]
+        largest = max(voltages, key=lambda values: float(np.abs(values).max(initial=0.0)), default=np.zeros(0))
+        found.append({name: largest if name.startswith("voltage") else values for name, values in of_run.items()})
+    return found
+
+
 def columns(samples: Samples, signals: Sequence[Signals], relative: Relative) -> tuple[Floats, Floats]:
     """Columns (n, k) and their prior sigmas (k,): each block times low cosines, and each channel as a whole."""
     found: list[Floats] = []

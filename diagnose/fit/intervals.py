@@ -53,7 +53,7 @@ def _law_may_differ(fit: Fitted) -> Fitted:
 def _model_may_err(model: ObservedModel, fit: Fitted) -> Fitted:
     """With an error over depth that no further run averages out, as all have it. A name needs no such allowance."""
     shown = model.signals(fit.system.values, fit.settings)
-    columns, sigma = discrepancy.repeated(model.samples, shown, relative(model))
+    columns, sigma = discrepancy.repeated(model.samples, discrepancy.of_the_film(shown), relative(model))
     return replace(fit, system=fit.system.with_nuisance_columns(columns, sigma))
 
 

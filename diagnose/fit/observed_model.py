@@ -25,6 +25,7 @@ CLOCKS = ("lag_s", "clock_ratio")
 class Nuisance:
     """One number that floats. run : whose it is, None where all runs share it.
 
+    channel : whose it is, where each of several voltages has its own; else None.
     sigma : of its prior, inf for none. candidate : through which the engine answers, None for what happens behind it.
     coordinate : its number there.
     """
@@ -34,6 +35,11 @@ class Nuisance:
     sigma: float
     candidate: Candidate | None = None
     coordinate: int = 0
+    channel: str | None = None
+
+    def acts_on(self, channel: str) -> bool:
+        """Whether a channel has it, as far as that is told apart."""
+        return self.channel in (None, channel)
 
 
 def nuisances(recording: Recording, engine: Engine) -> tuple[Nuisance, ...]:
@@ -43,7 +49,7 @@ def nuisances(recording: Recording, engine: Engine) -> tuple[Nuisance, ...]:
     for number, run in enumerate(recording.runs):
         for name, sigma in run.nuisance.items():
             if behind(run, name):
-                found.append(Nuisance(name, number, sigma))
+                found += [Nuisance(name, number, sigma, channel=channel) for channel in owners(run, name)]
             elif name in GAINS or name in OFFSETS or name in CLOCKS:
                 candidate = engine.nuisance(name)
                 found += [Nuisance(name, number, sigma, candidate)] if candidate is not None else []
@@ -64,6 +70,13 @@ def behind(run: Run, name: str) -> bool:
     if unit is not None:
         return any(channel.endswith(f"_{unit}") for channel in run.answers)
     return name in CLOCKS
+
+
+def owners(run: Run, name: str) -> Sequence[str | None]:
+    """Channels of a run that have a nuisance behind the model each for itself: several amplifiers differ."""
+    unit = GAINS.get(name) or OFFSETS.get(name)
+    own = len(run.voltages) > 1 and (unit == "V" or name == "lag_s")
+    return run.voltages if own else [None]
 
 
 def late(run: Run, channel: str) -> bool:
@@ -106,9 +119,13 @@ def _slope(run: Run, values: Floats) -> Floats:
     return slope
 
 
-def by_name(all_of_them: Sequence[Nuisance], values: Floats, run: int) -> dict[str, float]:
-    """Values of the nuisances behind the model in one run."""
-    return {n.name: float(v) for n, v in zip(all_of_them, values, strict=True) if n.run == run and n.candidate is None}
+def by_name(all_of_them: Sequence[Nuisance], values: Floats, run: int, channel: str) -> dict[str, float]:
+    """Values of the nuisances behind the model in one channel of one run."""
+    return {
+        nuisance.name: float(value)
+        for nuisance, value in zip(all_of_them, values, strict=True)
+        if nuisance.run == run and nuisance.candidate is None and nuisance.acts_on(channel)
+    }
 
 
 def slope_by_step(change: Callable[[float], Floats], step: float, length: int) -> Floats:
@@ -190,8 +207,8 @@ class ObservedModel:
 
     def _shown(self, run: int, values: Floats, settings: Sequence[Setting]) -> dict[str, Floats]:
         raw = self.predicted(run, [*self._settings(run, values), *settings])
-        own = by_name(self.nuisances, values, run)
-        return {name: observed(self.runs[run], name, raw[name], own) for name in self.runs[run].answers}
+        of, told = self.runs[run], (self.nuisances, values, run)
+        return {name: observed(of, name, raw[name], by_name(*told, name)) for name in of.answers}
 
     def _settings(self, run: int, values: Floats) -> list[Setting]:
         """Nuisances that the engine answers to."""
@@ -205,8 +222,12 @@ class ObservedModel:
     def _behind(self, nuisance: Nuisance, values: Floats, shown: Sequence[Signals]) -> Floats:
         """Column (n,) of a nuisance behind the model."""
         assert nuisance.run is not None
-        run, own = self.runs[nuisance.run], by_name(self.nuisances, values, nuisance.run)
-        column = {name: tangent(run, name, shown[nuisance.run][name], nuisance.name, own) for name in run.answers}
+        run, told = self.runs[nuisance.run], (self.nuisances, values, nuisance.run)
+        column = {
+            name: tangent(run, name, shown[nuisance.run][name], nuisance.name, by_name(*told, name))
+            for name in run.answers
+            if nuisance.acts_on(name)
+        }
         return self.of_run(nuisance.run, {name: values for name, values in column.items() if values is not None})
 
     def _through(

@@ -11,7 +11,7 @@ import numpy as np
 from diagnose.fit import discrepancy
 from diagnose.fit.descent import Place, descended, descent, fitted_jointly, settings
 from diagnose.fit.discrepancy import FORM_ERROR
-from diagnose.fit.observed_model import ObservedModel, by_name, late
+from diagnose.fit.observed_model import Nuisance, ObservedModel, late
 from diagnose.fit.samples import Samples
 from diagnose.fit.system import LinearisedSystem, Quadratic, linearised
 from diagnose.forward import Candidate, Setting
@@ -171,17 +171,20 @@ def _aligned(model: ObservedModel, values: Floats) -> Floats:
         if nuisance.name == "lag_s" and nuisance.run is not None:
             run = model.runs[nuisance.run]
             if nuisance.sigma > 2.0 * run.step_s:
-                values[number] = _best_lag(model, nuisance.run, nuisance.sigma, values)
+                values[number] = _best_lag(model, nuisance, values)
     return values
 
 
-def _best_lag(model: ObservedModel, number: int, sigma: float, values: Floats) -> float:
-    """The lag at which a run's late channels correlate best with their prediction, under its prior's reach."""
+def _best_lag(model: ObservedModel, nuisance: Nuisance, values: Floats) -> float:
+    """The lag at which the channels that have it correlate best with their prediction, under its prior's reach."""
+    number = nuisance.run
+    assert number is not None
     run = model.runs[number]
     raw = model.signals(values)[number]
-    start = by_name(model.nuisances, values, number).get("lag_s", 0.0)
-    grid = start + np.linspace(-3.0, 3.0, LAGS) * sigma
-    channels = [b for b in model.samples.blocks if b.run == number and late(run, b.channel)]
+    start = float(values[model.nuisances.index(nuisance)])
+    grid = start + np.linspace(-3.0, 3.0, LAGS) * nuisance.sigma
+    own = [b for b in model.samples.blocks if b.run == number and late(run, b.channel)]
+    channels = [block for block in own if nuisance.acts_on(block.channel)]
 
     def likeness(lag: float) -> float:
         total = 0.0

@@ -162,7 +162,9 @@ def linearised(
     shown = model.signals(values, settings)
     predicted = samples.coefficients(shown)
     tangents = model.tangents(values, settings)
-    numerical, numerical_sigma = discrepancy.columns(samples, shown, own)
+    film = discrepancy.of_the_film(shown)
+    numerical, numerical_sigma = discrepancy.columns(samples, film, own)
+    own_error = discrepancy.allowance(samples, samples.coefficients(film), own)
     nuisance_design, sigma = [tangents, numerical], [model.sigma, numerical_sigma]
     effect, unit_form_variance, laws = np.zeros(len(samples)), np.zeros(len(samples)), 0
     if settings:
@@ -176,7 +178,7 @@ def linearised(
     return LinearisedSystem(
         values,
         samples.recorded - predicted + tangents @ values,
-        1.0 + discrepancy.allowance(samples, predicted, own) + drive_noise(samples, shown) + model.tolerance,
+        1.0 + own_error + drive_noise(samples, shown) + model.tolerance,
         unit_form_variance,
         np.column_stack([columns if informative is None else columns[informative] for columns in nuisance_design]),
         np.concatenate(sigma),

@@ -11,7 +11,7 @@ import numpy as np
 from diagnose.figures import figure, p_equals, part, percent
 from diagnose.findings import Detection, Findings, Fit, FittedModel, Remainder
 from diagnose.fit.intervals import intervals, points
-from diagnose.fit.observed_model import ObservedModel
+from diagnose.fit.observed_model import Nuisance, ObservedModel
 from diagnose.fit.refit import Fitted, fitted_baseline
 from diagnose.fit.samples import Samples
 from diagnose.fit.system import LinearisedSystem
@@ -83,6 +83,7 @@ def _strained(model: ObservedModel, baseline: LinearisedSystem) -> list[str]:
         deviations = abs(value) / nuisance.sigma
         if deviations > FAR:
             of = "all runs" if nuisance.run is None else f"run '{model.runs[nuisance.run].label}'"
+            of += "" if nuisance.channel is None else f" ({nuisance.channel})"
             far.setdefault(nuisance.name, []).append((deviations, value, of))
     said = []
     for name, each in far.items():
@@ -278,9 +279,16 @@ def _detection(model: ObservedModel, found: Checked) -> Detection:
 
 
 def _nuisances(model: ObservedModel, values: Floats) -> dict[str, tuple[float, float]]:
-    """Name, or "name of run" -> value and prior sigma."""
-    labels = [n.name if n.run is None else f"{n.name} of {model.runs[n.run].label}" for n in model.nuisances]
+    """Name, "name of run" or "name of run, channel" -> value and prior sigma."""
+    labels = [_label(nuisance, model) for nuisance in model.nuisances]
     return {label: (float(v), float(s)) for label, v, s in zip(labels, values, model.sigma, strict=True)}
+
+
+def _label(nuisance: Nuisance, model: ObservedModel) -> str:
+    if nuisance.run is None:
+        return nuisance.name
+    channel = "" if nuisance.channel is None else f", {nuisance.channel}"
+    return f"{nuisance.name} of {model.runs[nuisance.run].label}{channel}"
 
 
 def labelled(model: ObservedModel, values: Floats, settings: Sequence[Setting]) -> Mapping[str, Signals]:

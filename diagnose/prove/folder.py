@@ -1,7 +1,7 @@
 """A recording folder of a case: rig.toml with what the experimenter believes, and one CSV file per run."""
 
 import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -18,7 +18,7 @@ def files(bench: Bench, runs: Sequence[Signals]) -> Mapping[str, str]:
 
 def rig_text(bench: Bench) -> str:
     """rig.toml of a bench."""
-    lines = ['format = "softdot-recording/1"', "", *_segment(bench), *_dot(bench), *_amplifier(bench)]
+    lines = ['format = "softdot-recording/1"', "", *_segment(bench), *_dot(bench), *_amplifier(bench), *_mesh(bench)]
     for number, run in enumerate(bench.runs, start=1):
         lines += ["[[runs]]", f'file = "press-{number:02d}.csv"', f'label = "{run.label}"', 'drive = "displacement_mm"']
         own = [] if run.resistance_MOhm is None else [f"input_resistance_MOhm = {run.resistance_MOhm:g}"]
@@ -26,6 +26,8 @@ def rig_text(bench: Bench) -> str:
             own.append(f"input_capacitance_pF = {bench.amplifier.capacitance_pF + run.added_pF:g}")
         if own:
             lines.append(f"readout = {{ {', '.join(own)} }}")
+        if bench.made.electrodes:
+            lines.append(f"dot_offset_mm = [{run.place_mm:g}, 0.0]")
         lines += ["[runs.nuisance]", *(f"{name} = {width:g}" for name, width in bench.nuisance), ""]
     return "\n".join(lines)
 
@@ -44,6 +46,7 @@ def _segment(bench: Bench) -> list[str]:
     for layer in made.layers:
         if isinstance(layer, Film):
             lines += ["[segment.film]", f"thickness_um = {1e3 * layer.thickness_mm:g}", 'material = "pvdf"', ""]
+            lines += _electrodes(bench)
         elif isinstance(layer, Layer):
             size = "height_mm" if layer.name == "effector" else "thickness_mm"
             lines += [
@@ -62,6 +65,15 @@ def _segment(bench: Bench) -> list[str]:
     return lines
 
 
+def _electrodes(bench: Bench) -> Iterator[str]:
+    for number, (low, high) in enumerate(bench.made.electrodes, start=1):
+        yield "[[segment.film.electrodes]]"
+        yield f'name = "channel {number}"'
+        yield f"center_mm = [{0.5 * (low + high):g}, 0.0]"
+        yield f"size_mm = [{high - low:g}, {bench.made.width_mm:g}]"
+        yield ""
+
+
 def _name(layer: Layer | Film) -> str:
     return layer.name if isinstance(layer, Layer) else "film"
 
@@ -78,6 +90,13 @@ def _amplifier(bench: Bench) -> list[str]:
     if amplifier.resistance_MOhm is not None:
         lines.append(f"input_resistance_MOhm = {amplifier.resistance_MOhm:g}")
     return [*lines, f"low_pass_Hz = {own.cutoff_Hz:g}", f"filter_order = {own.order}", ""]
+
+
+def _mesh(bench: Bench) -> list[str]:
+    if bench.mesh_mm is None:
+        return []
+    size, at_dot = bench.mesh_mm
+    return ["[mesh]", f"element_size_mm = {size:g}", f"contact_element_size_mm = {at_dot:g}", ""]
 
 
 def _csv(run: Signals) -> str:

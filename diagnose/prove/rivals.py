@@ -137,8 +137,9 @@ def _leakage(bench: Bench, runs: Sequence[Signals]) -> Opinion:
         return replace(baseline(bench), leak_MOhm=float(10.0**log_MOhm))
 
     def error(log_MOhm: float) -> float:
-        residuals = _residuals(bench, runs, record(with_leak(log_MOhm), bench))["voltage_V"]
-        return float(sum(np.sum(r[_halves(bench, n, runs[n]["time_s"])[0]] ** 2) for n, r in enumerate(residuals)))
+        found = _residuals(bench, runs, record(with_leak(log_MOhm), bench))
+        residuals = [(n, r) for name in bench.voltages for n, r in enumerate(found[name])]
+        return float(sum(np.sum(r[_halves(bench, n, runs[n]["time_s"])[0]] ** 2) for n, r in residuals))
 
     bounds = np.log10([SMALLEST_MOHM, LARGEST_MOHM])
     best = minimize_scalar(error, bounds=tuple(bounds), method="bounded", options={"xatol": 0.02})
@@ -155,7 +156,8 @@ def _sparse(bench: Bench, runs: Sequence[Signals], model: Sequence[Signals]) -> 
     after, weights = {}, dict.fromkeys(TERMS, 0.0)
     for name, residuals in before.items():
         sigma = noise_of(bench)[name]
-        terms = [_less_gain(bench, n, model[n], name, _terms(bench, run, model[n])) for n, run in enumerate(runs)]
+        found_terms = [_terms(bench, run, model[n], name) for n, run in enumerate(runs)]
+        terms = [_less_gain(bench, n, model[n], name, own) for n, own in enumerate(found_terms)]
         inputs = np.concatenate([t[first] for t, first in zip(terms, firsts, strict=True)])
         target = np.concatenate([r[first] for r, first in zip(residuals, firsts, strict=True)]) / sigma
         fitted = STLSQ(threshold=SPARSE, alpha=1e-3).fit(inputs, target[:, None]).coef_.ravel()
@@ -168,8 +170,12 @@ def _sparse(bench: Bench, runs: Sequence[Signals], model: Sequence[Signals]) -> 
     return Opinion(had > WORTH * left, named, left)
 
 
-def _terms(bench: Bench, run: Signals, model: Signals) -> Floats:
-    """Integral of the expected V (a leak draws V / R), u, u^2, u^3, du/dt and the largest u so far; all about 1."""
+def _terms(bench: Bench, run: Signals, model: Signals, channel: str) -> Floats:
+    """Integral of the expected V (a leak draws V / R), u, u^2, u^3, du/dt and the largest u so far; all about 1.
+
+    V is that of the channel; of a force, of all channels together.
+    """
     features, step = _features(bench, run), run["time_s"][1] - run["time_s"][0]
-    u, drawn = features[:, 0], step * np.cumsum(model["voltage_V"]) / bench.peak_V
+    drawn_by = [channel] if channel in bench.voltages else bench.voltages
+    u, drawn = features[:, 0], step * np.cumsum(sum(model[name] for name in drawn_by)) / bench.peak_V
     return np.column_stack([drawn, u, u**2, u**3, features[:, 1], features[:, 2]])

@@ -40,7 +40,8 @@ def asked_run(bench: Bench, experiment: Mapping[str, Any], wave: str) -> Run | N
     like = next(run for run in bench.runs if run.label == experiment["as_in"])
     time_s, path_mm = np.loadtxt(wave.splitlines(), delimiter=",", skiprows=1, unpack=True)
     added_pF = changes.get(CAPACITANCE, bench.amplifier.capacitance_pF) - bench.amplifier.capacitance_pF
-    return traced("as asked for", time_s, path_mm, changes.get(RESISTOR, like.resistance_MOhm), added_pF)
+    resistance = changes.get(RESISTOR, like.resistance_MOhm)
+    return traced("as asked for", time_s, path_mm, resistance, added_pF, like.place_mm)
 
 
 def with_asked(

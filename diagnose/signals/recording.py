@@ -34,6 +34,9 @@ class RunTable(Table):
     label: str | None = Field(None, description="name in the report; none: the name of the file")
     drive: Drive = Field("displacement_mm", description="which measured column drives the simulation")
     dot_offset_mm: tuple[Finite, Finite] = Field((0.0, 0.0), description="position of the dot, x and y")
+    over: tuple[int, int] | None = Field(
+        None, description="row and column, from 1, of the segment of [array] that the dot stands over"
+    )
     temperature_C: Finite | None = Field(None, description="room temperature during this run")
     readout: dict[str, Any] = Field({}, description="keys of [readout] that differ in this run")
     nuisance: dict[str, Positive] = Field(

@@ -7,6 +7,7 @@ from diagnose.figures import figure
 from diagnose.findings import FittedModel, Interval
 from diagnose.forward import Candidate, Setting
 from diagnose.vocabulary.base import vocabulary
+from solve.mechanisms.base import channels_of
 
 WHERE = {
     "effector": "the effector",
@@ -29,12 +30,15 @@ SYMBOLS = {"MOhm": "MΩ", "um": "µm", "N_per_mm3": "N/mm³", "mm_per_N": "mm/N"
 
 def component_words(component: str) -> str:
     """medium1 -> medium 1; a name without words of its own stays, without hyphens."""
-    return WHERE.get(component, component.replace("-", " "))
+    channels = [f"channel {number}" for number in channels_of(component)]
+    return listed(channels) if channels else WHERE.get(component, component.replace("-", " "))
 
 
 def mechanism_words(mechanism: str, component: str) -> str:
     """What happens where, as half a sentence."""
     known = vocabulary().get(mechanism)
+    if known is not None and known.words_of_two and len(two := channels_of(component)) > 1:
+        return known.words_of_two.format(*(f"channel {number}" for number in two))
     words = mechanism.replace("-", " ") + " of {}" if known is None else known.words
     return words.format(component_words(component))
 

@@ -1,9 +1,10 @@
 """What only a diagnosis knows of a mechanism: its candidates and its words; and what candidates of a rig depend on."""
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib import import_module
+from itertools import combinations
 from math import asinh
 from pkgutil import walk_packages
 from typing import TYPE_CHECKING
@@ -13,7 +14,7 @@ import numpy as np
 from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
 from solve.materials.parameters import Material, PiezoelectricFilm
-from solve.mechanisms.base import BONDS, MechanismType
+from solve.mechanisms.base import BONDS, CHANNELS, MechanismType
 from solve.model import Model, Readout
 
 if TYPE_CHECKING:
@@ -28,7 +29,8 @@ class Scene:
     """model : as rig.toml has it, declared mechanisms switched on.
 
     readouts : the amplifier of each run. depth_mm : deepest press. force_N, voltage_V : largest recorded; 0 where none
-    was. step_s, duration_s : sampling step and length of the runs. mains_Hz : of the hum, one per run its share.
+    was. step_s, duration_s : sampling step and length of the runs. channels : electrodes, each with an
+    amplifier. mains_Hz : of the hum, one per run its share. share : of the film that it speaks of.
     """
 
     model: Model
@@ -40,6 +42,7 @@ class Scene:
     duration_s: float
     channels: int = 1
     mains_Hz: float = 50.0
+    share: float = 1.0
 
     @property
     def bonds(self) -> tuple[str, ...]:
@@ -61,7 +64,22 @@ class Scene:
     def capacitance_pF(self) -> float:
         """Of film and input together, the least of the runs."""
         inputs = [readout.input_capacitance_pF for readout in self.readouts if readout.mode == "voltage"]
-        return film_capacitance_pF(self.model) + min(inputs, default=0.0)
+        return self.share * film_capacitance_pF(self.model) + min(inputs, default=0.0)
+
+    @property
+    def of_each_channel(self) -> "Scene":
+        """The same for one of its channels, whose film is its share of the whole."""
+        return replace(self, channels=1, share=self.share / self.channels)
+
+    @property
+    def numbered(self) -> tuple[str, ...]:
+        """Components of single channels, none where there is only one."""
+        return CHANNELS[: self.channels] if self.channels > 1 else ()
+
+    @property
+    def paired(self) -> tuple[str, ...]:
+        """Components of two channels."""
+        return tuple(f"{one}-{other}" for one, other in combinations(self.numbered, 2))
 
     @property
     def conductance_uS(self) -> float:
@@ -138,6 +156,7 @@ class Vocabulary:
     undone_by : what a bench can change so that it does not act: words and keys; None where nothing is known.
     below_one : a quantity that is derived from the values, and the words for what happens where it is below 1.
     kind : a sentence that is true of every mechanism of its kind, "" where it has no relatives.
+    words_of_two : the same as words for a pair of channels, with {} for both; "" where it sits at none.
     """
 
     mechanism: MechanismType
@@ -148,6 +167,7 @@ class Vocabulary:
     undone_by: tuple[str, dict[str, str]] | None = None
     below_one: tuple[str, str] | None = None
     kind: str = ""
+    words_of_two: str = ""
 
 
 VOCABULARY: dict[str, Vocabulary] = {}

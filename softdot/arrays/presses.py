@@ -97,7 +97,7 @@ def signals_of(press: ArrayPress, result: PressResult, solve_s: float) -> Signal
     """The numbers of a result."""
     model = press.model
     amplified = None
-    if model.readout is not None or model.physics.electronics or model.physics.crosstalk:
+    if model.readout is not None or model.physics.electronics or model.physics.of_channels:
         amplified = channel_voltages(result, model.press, model.readout or Readout(), model.physics).T
     steps = result.steps
     return Signals(

@@ -60,12 +60,13 @@ def _standards() -> list[dict[str, Any]]:
 
 def _mechanisms() -> list[dict[str, Any]]:
     from solve.mechanisms import MECHANISMS
+    from solve.mechanisms.base import in_short
 
     return [
         {
             "name": name, "is": (kind.parameters.__doc__ or "").split("\n")[0],
             "values": {key: field.description or "" for key, field in kind.parameters.model_fields.items()},
-            "components": ", ".join(kind.components),
+            "components": ", ".join(in_short(kind.components)),
             "source": f"docs/mechanisms.md#{name}: equation, source and typical values",
         }
         for name, kind in MECHANISMS.items()

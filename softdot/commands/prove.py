@@ -11,7 +11,9 @@ from typing import Any
 
 from diagnose.prove.score import Score
 from diagnose.prove.trial import Terms, tried
+from diagnose.prove.world.bench import BENCHES
 from diagnose.prove.world.cases import KINDS, Case, plan
+from diagnose.prove.world.effects import EFFECTS, KNOWN, STAGED, fits
 from geometry.base import InputError
 from geometry.cache import check_folder, data_hash, source_hash
 from softdot import proof as proof_files
@@ -41,9 +43,11 @@ def command(chosen: Namespace) -> int:
 
     rigs = tuple(chosen.rigs.split(",")) if chosen.rigs else RIGS
     kinds = tuple(chosen.kinds.split(",")) if chosen.kinds else KINDS
+    mechanisms = tuple(chosen.mechanisms.split(",")) if chosen.mechanisms else ()
     request = Request(
-        chosen.cases, chosen.seed, rigs, chosen.staged, chosen.workers, kinds, chosen.scheduler, details=chosen.details
-    )
+        chosen.cases, chosen.seed, rigs, chosen.staged, chosen.workers, kinds, chosen.scheduler,
+        details=chosen.details, mechanisms=mechanisms,
+    )  # fmt: skip
     try:
         with only_the_summary_on_stdout(), progress_of_points(chosen) as progress:
             summary = run_proof(request, Path(chosen.output), progress)
@@ -83,6 +87,7 @@ def prove_case(case: Case, terms: Terms, place: Path, program: str) -> dict[str,
 
 RIDGES = ("ridge-clamped", "ridge-free")
 RIGS = (*RIDGES, "dot-clamped")
+SEVERAL_CHANNELS = ("row-free",)
 AWAY = "the Dask scheduler disappeared; finished cases are kept, start the proof again"
 
 
@@ -92,6 +97,7 @@ class Request:
 
     kinds : of cases; each case is the same as among all kinds. scheduler : address of a Dask cluster that sees the same
     folders; None for processes of this computer. details : whether every rig has flaws that no mechanism describes.
+    mechanisms : to which the known effects are restricted, () for all.
     """
 
     cases: int
@@ -103,6 +109,7 @@ class Request:
     scheduler: str | None = None
     limit_s: float = 3600.0
     details: bool = False
+    mechanisms: tuple[str, ...] = ()
 
 
 def run_proof(request: Request, out: Path, progress: Progress | None = None) -> dict[str, Any]:
@@ -113,7 +120,9 @@ def run_proof(request: Request, out: Path, progress: Progress | None = None) -> 
     _check(request)
     check_folder()
     place, program = proof_files.check(out), program_hash()
-    cases = plan(request.cases, request.seed, request.rigs, request.staged, request.kinds, request.details)
+    cases = plan(
+        request.cases, request.seed, request.rigs, request.staged, request.kinds, request.details, request.mechanisms
+    )
     found = {case.name: record for case in cases if (record := proof_files.kept(place, case, program)) is not None}
     missing = [case for case in cases if case.name not in found]
     progress = progress or Logged()
@@ -134,11 +143,22 @@ def _check(request: Request) -> None:
     if request.seed < 0:
         raise InputError(f"--seed {request.seed}: must not be negative")
     for rig in request.rigs:
-        if rig not in RIGS:
-            raise InputError(f"--rigs '{rig}': must be of {', '.join(RIGS)}")
+        if rig not in (*RIGS, *SEVERAL_CHANNELS):
+            raise InputError(f"--rigs '{rig}': must be of {', '.join((*RIGS, *SEVERAL_CHANNELS))}")
+    for name in request.mechanisms:
+        can = _hidden(request)
+        if name not in can:
+            raise InputError(f"--mechanisms '{name}': must be of those that these rigs can hide: {', '.join(can)}")
     for kind in request.kinds:
         if kind not in KINDS:
             raise InputError(f"--kinds '{kind}': must be of {', '.join(KINDS)}")
+
+
+def _hidden(request: Request) -> list[str]:
+    """Mechanisms that one of the rigs can hide."""
+    names = KNOWN[:STAGED] if request.staged else KNOWN
+    able = [name for name in names if any(fits(name, BENCHES[rig]) for rig in request.rigs)]
+    return list(dict.fromkeys(EFFECTS[name].mechanism for name in able))
 
 
 def _tried(
@@ -172,7 +192,7 @@ def _finished(request: Request, place: Path, records: Sequence[Mapping[str, Any]
     summary: dict[str, Any] = plain({
         "format": proof_files.FORMAT, "complete": True, "softdot_version": installed_version(),
         "cases": request.cases, "seed": request.seed, "rigs": list(request.rigs), "staged": request.staged,
-        "kinds": list(request.kinds), "details": request.details,
+        "kinds": list(request.kinds), "details": request.details, "mechanisms": list(request.mechanisms),
         "ended": dict(Counter(record["status"] for record in records)), "reused": reused,
         "reasons": sorted({record["reason"] for record in records if record["reason"]}),
         "rates": tally(scores), "rivals": rival_rates(records), "hardware": hardware(),

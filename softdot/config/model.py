@@ -86,9 +86,9 @@ def _refuse_patches_outside(model: Model) -> None:
 
 def _refuse_missing_channels(model: Model) -> None:
     channels = max(1, len(model.segment.film.electrodes))
-    for channel in model.physics.crosstalk:
+    for what, channel in model.physics.of_channels:
         if channel > channels or channels == 1:
             raise InputError(
-                f"mechanisms: crosstalk into 'channel-{channel}' needs that electrode and another one; "
+                f"mechanisms: {what} needs that electrode and another one; "
                 f"segment.film.electrodes has {len(model.segment.film.electrodes)}"
             )

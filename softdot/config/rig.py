@@ -13,6 +13,7 @@ from diagnose.signals.recording import Recording, RigTables, Run, RunTable
 from geometry.base import InputError
 from geometry.parameters import Table
 from softdot.config import Config, config_from, with_built_in_constants
+from softdot.config.array_rig import as_one_segment
 from softdot.config.errors import refuse_absurd_numbers, sentence, without_round_off
 from softdot.config.toml import read_toml
 from solve.materials.parameters import AnyMaterial, Material, find_material
@@ -40,7 +41,8 @@ class Bench(Table):
 
 @dataclass(frozen=True)
 class Rig:
-    """rig.toml and the samples it names. config : None where there is no segment; then bench says the rest.
+    """rig.toml and the samples it names. config : None where there is no segment; then bench says the rest. Of an
+    array it is the one wide segment.
 
     tables : rig.toml as read. materials : the user's own.
     """
@@ -82,7 +84,8 @@ def _believed(tables: Mapping[str, Any]) -> tuple[RigTables, Config | None, Benc
     own = _checked(RigTables, {key: tables[key] for key in OWN & tables.keys()})
     rest = {key: value for key, value in tables.items() if key not in OWN}
     if own.specimen is None and own.geometry == "known":
-        config = config_from(rest)
+        config, runs = as_one_segment(config_from(rest), own.runs)
+        own = own.model_copy(update={"runs": runs})
         bench = Bench(materials=config.materials, readout=config.readout, seed=config.seed)
     else:
         config, bench = None, _bench(rest, own)

@@ -13,7 +13,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from geometry.base import nearest
 from geometry.parameters import Table
-from solve.mechanisms.base import MECHANISMS, Traits, register
+from solve.mechanisms.base import MECHANISMS, Traits, in_short, register
 from solve.mechanisms.layers.viscoelasticity import VISCOELASTICITY
 from solve.model import Model
 
@@ -34,7 +34,9 @@ class Mechanism(Table):
     name: str = Field(
         VISCOELASTICITY.name, description="which physics", json_schema_extra={"enum": list[Any](MECHANISMS)}
     )
-    component: str = Field("medium2", description="where: a layer, a bond, sides, dot, rig, readout or channel-N")
+    component: str = Field(
+        "medium2", description="where: a layer, a bond, sides, dot, rig, readout, channel-N or channel-N-channel-M"
+    )
     parameters: dict[str, Any] = Field({}, description="its numbers, by name with their unit")
 
     @model_validator(mode="after")
@@ -43,7 +45,9 @@ class Mechanism(Table):
             raise ValueError(f"name = '{self.name}': {nearest(self.name, MECHANISMS)}")
         kind = MECHANISMS[self.name]
         if self.component not in kind.components:
-            raise ValueError(f"component = '{self.component}': {self.name} acts on {', '.join(kind.components)}")
+            raise ValueError(
+                f"component = '{self.component}': {self.name} acts on {', '.join(in_short(kind.components))}"
+            )
         for name in self.parameters:
             if name not in kind.parameters.model_fields:
                 allowed = ", ".join(kind.parameters.model_fields) or "no parameters"

@@ -1,7 +1,9 @@
 """What a mechanism is: its parameters, where it may sit, how it is switched on in a model, and its traits."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import combinations
+from re import findall
 from typing import Annotated, Any
 
 from pydantic import Field, field_validator
@@ -14,9 +16,23 @@ from solve.model import Model, Readout
 MEDIA = ("effector", "medium1", "medium2")
 BONDS = ("bond-effector-medium1", "bond-medium1-film", "bond-film-medium2", "bond-base")
 CHANNELS = tuple(f"channel-{n}" for n in range(1, 17))
+CHANNEL_PAIRS = tuple(f"{one}-{other}" for one, other in combinations(CHANNELS, 2))
 Strain = Annotated[float, Field(gt=-0.2, lt=0.2, allow_inf_nan=False)]
 Moduli = tuple[Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False)], ...]
 Terms = tuple[Finite, ...]
+
+
+def channels_of(component: str) -> tuple[int, ...]:
+    """channel-2 -> (2,), channel-1-channel-2 -> (1, 2); none of a component that is neither."""
+    return tuple(map(int, findall(r"channel-(\d+)", component)))
+
+
+def in_short(components: Sequence[str]) -> list[str]:
+    """Components for a reader: sixteen channels, or all pairs of them, as one."""
+    numbered = [one for one in CHANNELS if one in components]
+    paired = [one for one in CHANNEL_PAIRS if one in components]
+    rest = [one for one in components if not channels_of(one)]
+    return rest + [f"{found[0]} to {found[-1]}" for found in (numbered, paired) if found]
 
 
 class Parameters(Table):

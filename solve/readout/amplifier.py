@@ -33,13 +33,17 @@ def input_of(readout: Readout, film_capacitance_F: float) -> tuple[float, float]
     return capacitance, 1e6 * (readout.input_resistance_MOhm or np.inf)
 
 
-def stages(readout: Readout, physics: Physics) -> list[Stage]:
-    """Everything behind the input, in order; of one place those of the read-out come first."""
+def stages(readout: Readout, physics: Physics, channel: int = 0) -> list[Stage]:
+    """Everything behind the input, in order; of one place those of the read-out come first.
+
+    channel : from 1, whose own stages come last of their place; 0 for an amplifier of all electrodes.
+    """
     order = readout.filter_order
     limit = [] if readout.limit_V is None else [Saturation(readout.limit_V)]
     low = [] if readout.low_pass_Hz is None else [Filter(readout.low_pass_Hz, order)]
     high = [] if readout.high_pass_Hz is None else [Filter(readout.high_pass_Hz, order, "high")]
-    return sorted([*limit, *low, *high, *physics.electronics], key=lambda stage: stage.place)
+    own = physics.channel_electronics.get(channel, ())
+    return sorted([*limit, *low, *high, *physics.electronics, *own], key=lambda stage: stage.place)
 
 
 @nb.njit(cache=True)

@@ -11,7 +11,8 @@ from scipy.interpolate import PchipInterpolator
 
 from geometry.arrays import Floats
 from solve.model import Physics, Press, Readout, Waveform
-from solve.readout.amplifier import amplify, mixed_channels
+from solve.readout.amplifier import amplify
+from solve.readout.channels import amplify_channels
 from solve.readout.filters import SAMPLES
 from solve.result import PressResult
 from solve.solution.schedule import corners_s, duration_s, fraction
@@ -36,16 +37,31 @@ def readout_voltage(result: PressResult, press: Press, readout: Readout, physics
 
 def channel_voltages(result: PressResult, press: Press, readout: Readout, physics: Physics | None = None) -> Floats:
     """Voltage (e, s) of every electrode behind an amplifier of its own, crosstalk between the channels included."""
-    physics = physics or Physics()
-    alone = [record(result, press, readout, share, physics) for share in np.eye(len(result.capacitance_F))]
-    voltage = np.array([_at_steps(result, recording) for recording in alone])
-    return mixed_channels(voltage, physics)
+    return np.array([_at_steps(result, one) for one in record_channels(result, press, readout, physics)])
+
+
+def record_channels(
+    result: PressResult, press: Press, readout: Readout, physics: Physics | None = None
+) -> list[ReadoutRecording]:
+    """The whole recording of a press by an amplifier for each electrode."""
+    each = [_charge(result, press, alone) for alone in np.eye(len(result.capacitance_F))]
+    time, _, progress = each[0]
+    charges = np.column_stack([charge for _, charge, _ in each])
+    voltages = amplify_channels(time, charges, result.capacitance_F, readout, physics or Physics())
+    return [ReadoutRecording(time, voltage, progress) for voltage in voltages]
 
 
 def record(
     result: PressResult, press: Press, readout: Readout, wired: Floats, physics: Physics | None = None
 ) -> ReadoutRecording:
     """The whole recording of a press; wired : (e,) 1 for the electrodes on this amplifier, else 0."""
+    time, charge, progress = _charge(result, press, wired)
+    capacitance = float(result.capacitance_F @ wired)
+    return ReadoutRecording(time, amplify(time, charge, capacitance, readout, physics or Physics()), progress)
+
+
+def _charge(result: PressResult, press: Press, wired: Floats) -> tuple[Floats, Floats, Floats]:
+    """Times (n,), the charge of these electrodes and the load steps done by then, each (n,)."""
     time, progress = _timetable(press)
     if result.follows_time:
         trace = result.trace
@@ -56,8 +72,7 @@ def record(
     else:
         steps = np.array([step.film_charge_C @ wired for step in result.steps])
         charge = _interpolated(np.arange(len(steps), dtype=float), steps, progress)
-    capacitance = float(result.capacitance_F @ wired)
-    return ReadoutRecording(time, amplify(time, charge, capacitance, readout, physics or Physics()), progress)
+    return time, charge, progress
 
 
 def _at_steps(result: PressResult, recording: ReadoutRecording) -> Floats:

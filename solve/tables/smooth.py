@@ -34,7 +34,8 @@ LITTLE = 0.1  # of the largest charge per force: a charge that changes sign is n
 class Smooth:
     """logarithms : of force and of area over that of the share. per_force : each charge over the share, C per N.
 
-    first : share below which the power law goes on. error : (2 + e,) one standard error of the curves, relative.
+    first : share below which the power law goes on. error : (2 + e,) one standard error of the curves, relative, of
+    charges to the largest of them.
     """
 
     logarithms: tuple[Polynomial, Polynomial]
@@ -61,7 +62,8 @@ def smooth(shares: Sequence[float], outputs: Floats) -> Smooth:
     found = Smooth((logarithms[0], logarithms[1]), tuple(per_force), float(x[0]), np.zeros(y.shape[1]))
     curves = found.at(x)
     size = np.abs(curves)
-    size[:, 2:] = np.maximum(size[:, 2:], LITTLE * size[:, :1] * np.abs(curves[:, 2:] / curves[:, :1]).max(axis=0))
+    size[:, 2:] = size[:, 2:].max(axis=1, keepdims=True)
+    size[:, 2:] = np.maximum(size[:, 2:], LITTLE * size[:, :1] * np.abs(curves[:, 2:] / curves[:, :1]).max())
     waves = ((weight[:, None] * (y - curves) / np.maximum(size, 1e-300)) ** 2).sum(axis=0) / (weight**2).sum()
     terms = np.array([len(curve) for curve in (*logarithms, *per_force)])
     return replace(found, error=np.sqrt(waves * terms / len(x)))
@@ -89,7 +91,7 @@ SEEN: Floats = np.linspace(0.2, 1.0, 9)
 
 
 def accuracy(middle: Smooth, fine: Smooth, ratio: float) -> dict[str, float]:
-    """One sigma of force, voltage and displacement, each relative to itself.
+    """One sigma of force, voltage and displacement, each relative to itself; voltages to the largest of them.
 
     middle, fine : presses on two meshes; ratio : finer over coarser element size. Where the error falls with the
     square of the size, that of the finer mesh is r^2 / (1 - r^2) of the difference (Richardson); beside it stands the
@@ -97,7 +99,9 @@ def accuracy(middle: Smooth, fine: Smooth, ratio: float) -> dict[str, float]:
     """
     left = ratio**2 / (1.0 - ratio**2)
     at_middle, at_fine = middle.at(SEEN), fine.at(SEEN)
-    size = np.maximum(np.abs(at_fine), SMALL_CHARGE * np.abs(at_fine).max(axis=0))
+    size = np.abs(at_fine)
+    size[:, 2:] = size[:, 2:].max(axis=1, keepdims=True)
+    size = np.maximum(size, SMALL_CHARGE * size.max(axis=0))
     off = np.hypot(left * (np.abs(at_fine - at_middle) / np.maximum(size, 1e-300)).max(axis=0), fine.error)
     steepness = np.log(at_fine[-1, 0] / at_fine[0, 0])  # over the depths seen: a force error is a smaller one of depth
     errors = {"force_N": off[0], "voltage_V": off[2:].max(), "displacement_mm": off[0] / max(steepness, 1.0)}

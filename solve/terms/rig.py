@@ -21,6 +21,9 @@ For a charge that is linear over the step the exact update is (as in amplifier.l
     Q_s - Q_s,old - C (V - exp(-a) V_old) / phi = 0,      a = dt / (R C),    phi = (1 - exp(-a)) / a.
 The film's elements contribute Q_s - C_f V to the row of their voltage; this term adds the rest, so that the tangent
 stays symmetric. R = inf with C_in = 0 is open circuit: the total charge stays zero.
+
+Capacitances between inputs take a charge M V more, with M the matrix of them: it leaves the film as the rest does, so
+that the charge which the circuit remembers is Q_s - M V.
 """
 
 from collections.abc import Iterator
@@ -146,3 +149,21 @@ class Circuit(Term):
     def advance(self, trial: Trial, history: History) -> History:
         """Charge and voltage at the converged state."""
         return self._balance(trial, history)[0], float(trial.x[self.voltage_dof])
+
+
+@dataclass(frozen=True)
+class Tied(Term):
+    """Inputs that capacitances tie together; matrix : (k, k) of them between k voltages, in solver units."""
+
+    voltage_dofs: Ints
+    matrix: Floats
+
+    @property
+    def groups(self) -> tuple[Ints, ...]:
+        """The voltages."""
+        return (self.voltage_dofs[None, :],)
+
+    def elements(self, trial: Trial, history: History) -> Iterator[Block]:
+        """What they take from the rows of the voltages."""
+        charge = self.matrix @ trial.x[self.voltage_dofs]
+        yield Block(0, slice(0, 1), -self.matrix[None], -charge[None])

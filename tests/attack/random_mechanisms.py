@@ -43,7 +43,7 @@ def mechanism(draw, name, segment, dot) -> dict | None:
         "rig-compliance": lambda: ("rig", {"compliance_mm_per_N": draw.log(1e-3, 1.0)}),
         "film-prestretch": lambda: ("film", {"strain_x": draw.log(1e-4, 0.02), "strain_y": draw.sign(1e-4, 1e-3)}),
         "inertia": lambda: ("rig", {"moving_mass_g": draw.log(0.1, 100.0)}),
-        "crosstalk": lambda: (draw.among(("channel-1", "channel-2")), {"coupling": draw.sign(0.01, 0.5)}),
+        "crosstalk": lambda: _crosstalk(draw),
         "property-error": lambda: _property(draw, media, dot),
         "dimension-reduction": lambda: ("dot", {}),
     }
@@ -59,6 +59,13 @@ def _bonded(segment):
     """The compliant bond that the segment declares, if any: only such a one can relax."""
     names = {"medium1": "bond-medium1-film", "film": "bond-film-medium2", "medium2": "bond-base"}
     return [names[bond["between"][0]] for bond in segment.get("bonds", [])]
+
+
+def _crosstalk(draw):
+    """Of one channel or of two."""
+    if draw.perhaps(0.5):
+        return "channel-1-channel-2", {"capacitance_pF": draw.log(0.1, 100.0)}
+    return draw.among(("channel-1", "channel-2")), {"coupling": draw.sign(0.01, 0.5)}
 
 
 def _low_pass(draw):

@@ -73,6 +73,9 @@ def choices(segment, dot):
     yield st.sampled_from(bonds[:3]).flatmap(lambda where: switch("delamination", where, patch))
     if segment["film"].get("electrodes"):
         yield switch("crosstalk", "channel-2", {"coupling": between(-0.5, 0.5)})
+        yield switch("crosstalk", "channel-1-channel-2", {"capacitance_pF": between(0.0, 100.0)})
+        yield switch("charge-leakage", "channel-1", {"resistance_MOhm": between(1.0, 1e4)})
+        yield switch("low-pass", "channel-2", {"cutoff_Hz": between(10.0, 1e3)})
     if dot["shape"] != "plate":
         yield switch("property-error", "dot", {"radius_factor": FACTOR})
     if dot["shape"] == "cap" and dot["offset_mm"][1] == 0.0 and dot["tilt_deg"][0] == 0.0:

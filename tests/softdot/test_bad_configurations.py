@@ -116,6 +116,16 @@ CASES = {
         "mechanisms: viscoelasticity of 'bond-film-medium2' needs a compliant bond there; "
         "add adhesive-compliance or segment.bonds"
     ),
+    "[[mechanisms]]\nname = 'crosstalk'\ncomponent = 'channel-2-channel-3'\nparameters = {capacitance_pF = 9}": (
+        "mechanisms: crosstalk between 'channel-2' and 'channel-3' needs that electrode and another one; "
+        "segment.film.electrodes has 0"
+    ),
+    "[[mechanisms]]\nname = 'crosstalk'\ncomponent = 'channel-2-channel-3'\nparameters = {coupling = 0.1}": (
+        "mechanisms[0].parameters.coupling = 0.1: is of one channel, two take capacitance_pF"
+    ),
+    "[[mechanisms]]\nname = 'low-pass'\ncomponent = 'channel-2'\nparameters = {cutoff_Hz = 9}": (
+        "mechanisms: a filter of 'channel-2' needs that electrode and another one; segment.film.electrodes has 0"
+    ),
     "[[mechanisms]]\nname = 'crosstalk'\ncomponent = 'channel-2'\nparameters = {coupling = 0.1}": (
         "mechanisms: crosstalk into 'channel-2' needs that electrode and another one; segment.film.electrodes has 0"
     ),

@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 
+from solve.model import Physics, Readout
 from solve.readout.amplifier import leaky_integral
-from solve.terms.rig import Circuit
+from solve.readout.channels import input_voltages
+from solve.terms.rig import Circuit, Tied
 from tests.solve.trial import trial
 
 C_FILM, C_INPUT = 3.0, 2.0
@@ -70,3 +72,26 @@ def test_long_at_rest_it_is_discharged():
     block = next(iter(circuit(3.0).elements(trial(np.zeros((1, 3)), [0.0], np.inf), (7.0, 2.0))))
     assert block.residuals[0, 0] == 0.0
     assert block.matrices[0, 0, 0] < -1e8
+
+
+@pytest.mark.parametrize(("resistance", "error"), [(np.inf, 1e-12), (0.3, 2e-4)])
+def test_tied_inputs_are_the_channels_of_the_read_out(resistance, error):
+    """Two films whose charges flow into circuits with a capacitance between them, against the exact modes of both."""
+    time = np.linspace(0.0, 1.0, 401)
+    charge = np.column_stack([np.sin(3.0 * time), 0.2 * time])
+    circuits = [Circuit(n, C_FILM, C_INPUT, resistance) for n in (0, 1)]
+    tied = Tied(np.array([0, 1]), 0.8 * np.array([[1.0, -1.0], [-1.0, 1.0]]))
+    history, found = [one.start() for one in circuits], [np.zeros(2)]
+    for q, dt in zip(charge[1:], np.diff(time), strict=True):
+        state = trial(np.zeros((1, 3)), [0.0, 0.0], dt)
+        blocks = [next(iter(one.elements(state, known))) for one, known in zip(circuits, history, strict=True)]
+        tangent = np.diag([block.matrices[0, 0, 0] - C_FILM for block in blocks])
+        tangent += next(iter(tied.elements(state, None))).matrices[0]
+        voltage = np.linalg.solve(tangent, -(q + [block.residuals[0, 0] for block in blocks]))
+        state = trial(np.zeros((1, 3)), voltage, dt)
+        history = [one.advance(state, known) for one, known in zip(circuits, history, strict=True)]
+        found.append(voltage)
+    readout = Readout(input_resistance_MOhm=1e-6 * resistance if resistance < np.inf else None)
+    readout = readout.model_copy(update={"input_capacitance_pF": 1e12 * C_INPUT})
+    exact = input_voltages(time, charge, np.full(2, C_FILM), readout, Physics(mutual_pF={(1, 2): 0.8e12}))
+    assert np.abs(np.array(found) - exact.T).max() < error

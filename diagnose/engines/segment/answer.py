@@ -12,7 +12,8 @@ from diagnose.signals.phases import Segmentation
 from diagnose.signals.recording import Run
 from geometry.arrays import Bools, Floats
 from solve.model import Model, Physics, Readout
-from solve.readout.amplifier import amplify, mixed_channels, other_charge_C
+from solve.readout.amplifier import amplify, other_charge_C
+from solve.readout.channels import amplify_channels
 from solve.reduced.fit import ResponseTable
 from solve.reduced.kernels import BY_DEPTH, BY_FORCE, TOO_DEEP, follow
 from solve.reduced.model import branches, sensed
@@ -127,10 +128,5 @@ def amplified(
     if len(names) == 1:
         told = (time_s, charge.sum(axis=1), float(film.electrodes[:, 0].sum()), readout, on.physics)
         return {names[0]: amplify(*told)}
-    alone = np.array(
-        [
-            amplify(time_s, np.ascontiguousarray(own), float(capacitance), readout, on.physics)
-            for own, capacitance in zip(charge.T, film.electrodes[:, 0], strict=True)
-        ]
-    )
-    return dict(zip(names, mixed_channels(alone, on.physics), strict=True))
+    voltages = amplify_channels(time_s, charge, film.electrodes[:, 0], readout, on.physics)
+    return dict(zip(names, voltages, strict=True))

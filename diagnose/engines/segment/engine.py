@@ -17,6 +17,7 @@ from diagnose.engines.segment import full
 from diagnose.engines.segment.answer import Drive, FilmPlate, Mechanics, drive_of, mechanics, shown
 from diagnose.engines.segment.path import with_history
 from diagnose.engines.segment.prepared import ZERO, Prepared, nuisance
+from diagnose.engines.segment.stands import Stands
 from diagnose.forward import Candidate, Setting, Signals
 from diagnose.signals.recording import Recording, Run
 from diagnose.vocabulary.base import Scene, candidates_of_segment
@@ -111,13 +112,17 @@ class SegmentEngine:
         refuse(model, recording)
         self.model, self.recording = model, recording
         self.drives = [drive_of(*pair) for pair in zip(recording.runs, recording.phases, strict=True)]
-        self.prepared: Prepared = Prepared(model, mesh_settings, recording, report)
-        self.prepared.add((), [run.dot_offset_mm for run in recording.runs], report)
-        self.accuracy = self.prepared.accuracy
+        self.stands = Stands(model, mesh_settings, recording, report)
+        self.accuracy = self.stands.accuracy
         self._last: tuple[Asked, ResponseTable] | None = None
         self.candidates: tuple[Candidate, ...] = tuple(
             with_derived(c, self.prepared) for c in candidates_of_segment(self.scene)
         )
+
+    @property
+    def prepared(self) -> Prepared:
+        """What was pressed where the first run presses."""
+        return self.stands.at(self.recording.runs[0].dot_offset_mm)[0]
 
     @cached_property
     def scene(self) -> Scene:
@@ -138,7 +143,7 @@ class SegmentEngine:
     @property
     def shortfalls(self) -> tuple[str, ...]:
         """Candidates that the 3D model could not press as it should."""
-        return tuple(self.prepared.shortfalls.values())
+        return self.stands.shortfalls
 
     def nuisance(self, name: str) -> Candidate | None:
         """See diagnose.forward.Engine; also "offset_mm", the error of the first touch where a displacement drives."""
@@ -152,7 +157,7 @@ class SegmentEngine:
 
     def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
         """Press what these candidates need. NoEquilibriumError."""
-        self.prepared.add(candidates, (), report)
+        self.stands.add(candidates, report)
         self._last = None
 
     def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
@@ -186,15 +191,16 @@ class SegmentEngine:
 
     def solve(self, run: int, mechanisms: Sequence[Mechanism], report: Report) -> Signals:
         """Every answer of a run by the 3D model along its own drive. ValueError, NoEquilibriumError."""
-        base, asked, drive = self.prepared, self.recording.runs[run], self.drives[run]
-        believed = replace(base.moved(asked.dot_offset_mm), readout=self._readout(asked))
+        asked, drive = self.recording.runs[run], self.drives[run]
+        base, beside = self.stands.at(asked.dot_offset_mm)
+        believed = replace(base.moved(beside), readout=self._readout(asked))
         on = with_mechanisms(believed, mechanisms)
         elastic, values = replace(on, physics=replace(on.physics, viscosity={})), self._driven(drive, on, ())
 
         def shape(fit: ResponseTable) -> full.Shape:
             return lambda of, values: mechanics(fit, base.depth_mm, base.relaxing, of, values, elastic)
 
-        tet_mesh = mesh_of(on, self.model, base.tet_mesh, base.options)
+        tet_mesh = mesh_of(on, base.model, base.tet_mesh, base.options)
         task = full.Task(asked, drive, values, on, tet_mesh, self._film(on), shape(base.raw), shape(base.fit))
         return full.solve(task, report)
 
@@ -210,7 +216,7 @@ class SegmentEngine:
 
     def _mechanics(self, run: Run, drive: Drive, values: Floats, on: Model, settings: Sequence[Setting]) -> Mechanics:
         """Path, force and charge. What depends on the path acts back on a compliant drive: a fixed point."""
-        base, fit = self.prepared, self._fit(run, on, settings)
+        (base, _), fit = self.stands.at(run.dot_offset_mm), self._fit(run, on, settings)
         found = mechanics(fit, base.depth_mm, base.relaxing, drive, values, on)
         histories = base.histories(settings)
         if not histories:
@@ -228,11 +234,11 @@ class SegmentEngine:
 
     def _fit(self, run: Run, on: Model, settings: Sequence[Setting]) -> ResponseTable:
         """The table with all that changes it; kept, as runs share it."""
-        base = self.prepared
+        base, beside = self.stands.at(run.dot_offset_mm)
         factor = _d31(on) / _d31(self.model)
         asked = run.dot_offset_mm, list(settings), factor
         if self._last is None or self._last[0] != asked:
-            change = base.change(run.dot_offset_mm, settings)
+            change = base.change(beside, settings)
             same = change is None and factor == 1.0
             nothing = base.nothing if change is None else change
             self._last = asked, base.fit if same else changed(base.fit, base.depths, nothing, factor)

@@ -227,9 +227,7 @@ class Prepared:
 
     def moved(self, place: Place) -> Model:
         """The model with the dot at a place, from where it stands."""
-        x, y = self.model.dot.offset_mm
-        dot = self.model.dot.model_copy(update={"offset_mm": (x + place[0], y + place[1])})
-        return replace(self.model, dot=dot)
+        return moved(self.model, place)
 
     def _jobs(self, candidate: Candidate) -> Iterator[tuple[Name, tuple[Job, int]]]:
         """Presses by name, each with the number of its mesh: 0 for the diagnosis mesh, 1 for the middle one."""
@@ -278,6 +276,12 @@ class Prepared:
         if name not in self._changes:
             raise ValueError(f"{what} was not prepared")
         return self._changes[name]
+
+
+def moved(model: Model, place: Place) -> Model:
+    """A model with the dot at a place, from where it stands."""
+    x, y = model.dot.offset_mm
+    return replace(model, dot=model.dot.model_copy(update={"offset_mm": (x + place[0], y + place[1])}))
 
 
 def _all_there(outputs: list[Floats]) -> list[Floats]:

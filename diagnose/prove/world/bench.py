@@ -19,7 +19,8 @@ ROUNDED = 2.0  # samples: one sigma
 class Run:
     """count presses to depth_mm: rise_s up, hold_s, rise_s down, pause_s clear of the segment; lead_s of rest first.
 
-    resistance_MOhm : input of the amplifier, None for that of the rig. added_pF : across the input.
+    resistance_MOhm : input of the amplifier, None for that of the rig. added_pF : across the input. place_mm : of the
+    dot along x, from where it stands by the rig.
     """
 
     label: str
@@ -31,6 +32,7 @@ class Run:
     count: int = 2
     lead_s: float = 1.0
     pause_s: float = 0.8
+    place_mm: float = 0.0
 
     @property
     def length_s(self) -> float:
@@ -90,12 +92,14 @@ class Traced(Run):
         return np.asarray(np.maximum(np.searchsorted(touches, time_s, "right") - 1, 0), dtype=np.float64)
 
 
-def traced(label: str, asked_s: Floats, asked_mm: Floats, resistance_MOhm: float | None, added_pF: float) -> Traced:
+def traced(
+    label: str, asked_s: Floats, asked_mm: Floats, resistance_MOhm: float | None, added_pF: float, place_mm: float
+) -> Traced:
     """A run along a path (n,) that touches at least once."""
     touch_s = float(asked_s[np.argmax(asked_mm > 0.0)])
     return Traced(
         label, float(asked_mm.max()), 0.0, 0.0, resistance_MOhm, added_pF, lead_s=touch_s, asked_s=asked_s,
-        asked_mm=asked_mm,
+        asked_mm=asked_mm, place_mm=place_mm,
     )  # fmt: skip
 
 
@@ -109,6 +113,7 @@ def _rounded(share: Floats) -> Floats:
 class Bench:
     """nuisance : name -> one sigma, as in rig.toml. noise : one sigma as a share of the largest signal of a channel.
 
+    mesh_mm : sizes of elements and of those at the dot that the experimenter chose; None for none.
     peak_V, peak_N : about the largest signals, to scale noise and effects. force : whether a load cell is there.
     """
 
@@ -122,6 +127,7 @@ class Bench:
     noise: float = 0.004
     rate_Hz: float = 250.0
     force: bool = True
+    mesh_mm: tuple[float, float] | None = None
 
     @property
     def deepest_mm(self) -> float:
@@ -132,6 +138,12 @@ class Bench:
     def film_pF(self) -> float:
         """Capacitance of the film."""
         return self.made.capacitance_pF
+
+    @property
+    def voltages(self) -> tuple[str, ...]:
+        """Names of the voltage channels."""
+        count = len(self.made.electrodes)
+        return tuple(f"voltage_{n}_V" for n in range(1, count + 1)) or ("voltage_V",)
 
 
 NUISANCE = (
@@ -220,4 +232,32 @@ VOLTAGE_ONLY = replace(
     nuisance=tuple(one for one in NUISANCE if one[0] not in ("force_gain", "offset_N")),
 )
 """No load cell and no resistor: nothing tells a cable's capacitance from a film of less charge."""
-BENCHES = {bench.name: bench for bench in (CLAMPED, FREE, SOLID, VOLTAGE_ONLY)}
+PITCH_MM = 2.5
+ROW = Bench(
+    "row-free",
+    Made(
+        (Layer("medium2", 1.5, 0.5), Film(), Layer("medium1", 0.8, 1.5)),
+        3.0 * PITCH_MM,
+        10.0,
+        "ridge",
+        1.15,
+        fine=0.5,  # elements of half the size change force and charge by 0.1 %
+        electrodes=tuple((n * PITCH_MM - 1.15, n * PITCH_MM + 1.15) for n in (-1, 0, 1)),
+    ),
+    Amplifier(5_000.0, 100.0, (Filter(60.0, 2, "butterworth"),)),
+    (
+        Run("first, fast", 0.25, 0.12, 0.5, place_mm=-PITCH_MM),
+        Run("second, fast", 0.25, 0.12, 0.5),
+        Run("first, slow and shallow", 0.16, 0.5, 0.4, place_mm=-PITCH_MM),
+        Run("second, long hold", 0.2, 0.2, 1.6),
+        Run("first, other resistor", 0.25, 0.2, 0.5, resistance_MOhm=500.0, place_mm=-PITCH_MM),
+        Run("second, half depth", 0.125, 0.2, 0.4),
+    ),
+    NUISANCE,
+    25.0,
+    5.4,
+    noise=0.002,
+    mesh_mm=(0.6, 0.2),
+)
+"""Three electrodes in a row under layers that run through: each run presses over the first or the second of them."""
+BENCHES = {bench.name: bench for bench in (CLAMPED, FREE, SOLID, VOLTAGE_ONLY, ROW)}

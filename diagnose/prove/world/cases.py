@@ -11,7 +11,6 @@ from diagnose.prove.world.bench import BENCHES, VOLTAGE_ONLY, Bench, Run
 from diagnose.prove.world.details import Details
 from diagnose.prove.world.effects import EFFECTS, KNOWN, STAGED, UNKNOWN, applied, fits
 from diagnose.prove.world.laws import Floats
-from diagnose.prove.world.noise import noises
 from diagnose.prove.world.reality import (
     PER_RUN,
     Judge,
@@ -20,6 +19,8 @@ from diagnose.prove.world.reality import (
     baseline,
     channels,
     judge_of,
+    keys,
+    noise_law,
     noise_of,
     record,
     shares,
@@ -108,9 +109,15 @@ def plan(
     staged: bool = True,
     kinds: tuple[str, ...] = KINDS,
     details: bool = False,
+    mechanisms: tuple[str, ...] = (),
 ) -> list[Case]:
-    """The first count cases of some kinds; all follow a fixed pattern, mechanisms, sizes and rigs take turns."""
-    known = KNOWN[:STAGED] if staged else KNOWN
+    """The first count cases of some kinds; all follow a fixed pattern, mechanisms, sizes and rigs take turns.
+
+    mechanisms : to which the known effects are restricted; () for all. ValueError where no rig can have one of them.
+    """
+    known = tuple(name for name in (KNOWN[:STAGED] if staged else KNOWN) if _asked(name, mechanisms, rigs))
+    if not known:
+        raise ValueError("none of these rigs can have one of these mechanisms")
     turns = dict.fromkeys(KINDS, 0)
     cases: list[Case] = []
     for number, kind in enumerate(cycle(PATTERN), start=1):
@@ -120,6 +127,12 @@ def plan(
             cases.append(replace(_case(number, seed, kind, turns[kind], rigs, known), details=details))
         turns[kind] += 1
     return cases
+
+
+def _asked(name: str, mechanisms: tuple[str, ...], rigs: tuple[str, ...]) -> bool:
+    """Whether an effect is of these mechanisms and one of the rigs has as many channels as it needs."""
+    most = max(len(BENCHES[rig].made.electrodes) for rig in rigs)
+    return EFFECTS[name].channels <= most and (not mechanisms or EFFECTS[name].mechanism in mechanisms)
 
 
 def _case(number: int, seed: int, kind: str, turn: int, rigs: tuple[str, ...], known: tuple[str, ...]) -> Case:
@@ -154,9 +167,16 @@ def concealed(case: Case) -> tuple[Truth, list[Signals]]:
     values = {name: EFFECTS[name].truth(bench, s) for name, s in strengths.items()}
     values = {name: {**one, **_force_ratio(name, bench, plainly, reality)} for name, one in values.items()}
     per_run = {f"{run} | {channel}": share for (run, channel), share in shares(left, bench).items()}
-    named = {key if isinstance(key, str) else f"{key[0]} of run {key[1]}": value for key, value in nuisance.items()}
+    named = {_nuisance_name(key): value for key, value in nuisance.items()}
     truth = Truth(case, strengths, values, named, judge.rms(left), float(np.linalg.norm(left)), per_run)
     return truth, [_noisy(run, bench, rng) for run in record(reality, bench)]
+
+
+def _nuisance_name(key: Any) -> str:
+    if isinstance(key, str):
+        return key
+    name, run, *channel = key
+    return f"{name} of run {run}" + "".join(f", channel {number + 1}" for number in channel)
 
 
 def pressed_again(case: Case, run: Run) -> Signals:
@@ -166,9 +186,11 @@ def pressed_again(case: Case, run: Run) -> Signals:
     """
     bench, first = BENCHES[case.bench], np.random.default_rng([case.seed, case.number])
     rng = np.random.default_rng([case.seed, case.number, AGAIN])
-    known = {key: value for key, value in _nuisance(bench, first).items() if isinstance(key, str)}
+    known: dict[Any, float] = {k: value for k, value in _nuisance(bench, first).items() if isinstance(k, str)}
     here = [(name, width) for name, width in bench.nuisance if name in PER_RUN]
-    own = {(name, len(bench.runs)): width * float(rng.standard_normal()) for name, width in here}
+    one = replace(bench, runs=(run,))
+    numbered = [((name, len(bench.runs), *key[2:]), width) for name, width in here for key in keys(name, one)]
+    own = {key: width * float(rng.standard_normal()) for key, width in numbered}
     believed = replace(baseline(bench), nuisance=known | own, details=_details(case))
     reality = applied(believed, bench, _strengths(case))
     return _noisy(record(reality, replace(bench, runs=(*bench.runs, run)))[-1], bench, rng)
@@ -191,7 +213,7 @@ def _nuisance(bench: Bench, rng: np.random.Generator) -> dict[Any, float]:
     specimen = int(rng.integers(SPECIMENS))
     for column, (name, width) in enumerate(bench.nuisance):
         if name in PER_RUN:
-            drawn |= {(name, run): width * float(rng.standard_normal()) for run in range(len(bench.runs))}
+            drawn |= {key: width * float(rng.standard_normal()) for key in keys(name, bench)}
         else:
             drawn[name] = width * float(pool[specimen, column])
     return drawn
@@ -225,7 +247,7 @@ def _noisy(run: Signals, bench: Bench, rng: np.random.Generator) -> Signals:
     count = len(run["time_s"])
     noisy["displacement_mm"] = run["displacement_mm"] + DISPLACEMENT_NOISE_MM * rng.standard_normal(count)
     for name in channels(bench):
-        noisy[name] = run[name] + noise_of(bench)[name] * noises()[name].draw(rng, count)
+        noisy[name] = run[name] + noise_of(bench)[name] * noise_law(name).draw(rng, count)
     return noisy
 
 

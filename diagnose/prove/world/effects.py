@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from diagnose.prove.world.bench import Bench
+from diagnose.prove.world.channels import Stray
 from diagnose.prove.world.laws import Damage, Film, Glue, Layer, Made, Spectrum, relaxation
 from diagnose.prove.world.noise import Filter
 from diagnose.prove.world.reality import Reality, baseline
@@ -24,7 +25,8 @@ class Effect:
     """mechanism, component : as the vocabulary names them; mechanism "" for what it does not know.
 
     change : (reality, bench, strength) -> reality. truth : (bench, strength) -> true values by name in the verdict.
-    form : how the law differs from that of the diagnosis, "" where nature leaves no choice.
+    form : how the law differs from that of the diagnosis, "" where nature leaves no choice. channels : how many
+    electrodes with amplifiers of their own it needs, 0 where it is of all alike.
     """
 
     name: str
@@ -34,6 +36,7 @@ class Effect:
     truth: Callable[[Bench, float], dict[str, float]] = lambda _bench, _s: {}
     most: float = 20.0
     form: str = ""
+    channels: int = 0
 
 
 def _layer(made: Made, name: str, **changes: Any) -> Made:
@@ -53,6 +56,34 @@ def _leak(reality: Reality, bench: Bench, s: float) -> Reality:
 
 def _leak_MOhm(bench: Bench, s: float) -> float:
     return (bench.amplifier.resistance_MOhm or 10_000.0) / s
+
+
+def _leak_of(channel: int) -> Callable[[Reality, Bench, float], Reality]:
+    def change(reality: Reality, bench: Bench, s: float) -> Reality:
+        leaks = {**reality.wiring.leak_MOhm, channel: _leak_MOhm(bench, s)}
+        return replace(reality, wiring=replace(reality.wiring, leak_MOhm=leaks))
+
+    return change
+
+
+def _slow_of(channel: int) -> Callable[[Reality, Bench, float], Reality]:
+    def change(reality: Reality, bench: Bench, s: float) -> Reality:
+        slow = {**reality.wiring.slow, channel: Filter(_corner_Hz(s), 4)}
+        return replace(reality, wiring=replace(reality.wiring, slow=slow))
+
+    return change
+
+
+def _tied(one: int, other: int) -> Callable[[Reality, Bench, float], Reality]:
+    def change(reality: Reality, bench: Bench, s: float) -> Reality:
+        stray = Stray((one, other), _stray_pF(bench, s))
+        return replace(reality, wiring=replace(reality.wiring, strays=(*reality.wiring.strays, stray)))
+
+    return change
+
+
+def _stray_pF(bench: Bench, s: float) -> float:
+    return 0.01 * s * (bench.film_pF / len(bench.voltages) + bench.amplifier.capacitance_pF)
 
 
 def _parasitic(reality: Reality, bench: Bench, s: float) -> Reality:
@@ -194,6 +225,20 @@ def _is(name: str, scale: float, start: float = 0.0) -> Callable[[Bench, float],
     return lambda _bench, s: {name: start + scale * s}
 
 
+def _crosstalk(one: int, other: int) -> Effect:
+    """Between two channels, numbered from 1."""
+    return Effect(
+        f"crosstalk-{one}-{other}",
+        "crosstalk",
+        f"channel-{one}-channel-{other}",
+        _tied(one - 1, other - 1),
+        lambda b, s: {"capacitance_pF": _stray_pF(b, s)},
+        60.0,
+        form="behind a resistance where a capacitance alone is fitted",
+        channels=max(one, other),
+    )
+
+
 BESSEL_FORM = "Bessel of order four where order two is fitted"
 FRACTIONAL_FORM = "fractional Zener where Prony is fitted"
 FOAM_FORM = "compressible neo-Hooke where a hyperfoam is fitted"
@@ -263,6 +308,16 @@ LISTED = (
         FOAM_FORM,
     ),
     Effect("mass", "inertia", "rig", _field("mass_g", 200.0), _is("moving_mass_g", 200.0), 20.0),
+    *(_crosstalk(one, other) for one, other in ((1, 2), (2, 3), (1, 3))),
+    Effect(
+        "leakage-2",
+        "charge-leakage",
+        "channel-2",
+        _leak_of(1),
+        lambda b, s: {"resistance_MOhm": _leak_MOhm(b, s)},
+        channels=2,
+    ),
+    Effect("low-pass-3", "low-pass", "channel-3", _slow_of(2), form=BESSEL_FORM, most=8.0, channels=3),
     Effect("fatigue", "", "film", _field("fatigue", 0.01), most=30.0),
     Effect("warm-gain", "", "readout", _field("drift", 0.05), most=20.0),
     Effect("clock-jump", "", "readout", _field("jump_s", 0.004), most=20.0),
@@ -289,6 +344,8 @@ def fits(name: str, bench: Bench) -> bool:
     if name in ("elastic-case", "stretched") and not held:
         return False
     if name == "leakage" and bench.amplifier.resistance_MOhm is None:
+        return False
+    if EFFECTS[name].channels > len(bench.made.electrodes):
         return False
     belief = baseline(bench)
     return bench.made.dot == "ridge" or EFFECTS[name].change(belief, bench, 1.0).made == bench.made

@@ -7,6 +7,7 @@ functions (Simo, Taylor and Pister 1985), so that no pressure is left as an unkn
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,8 +55,8 @@ def grid(made: Made) -> Grid:
     whole = made.offset_mm != 0.0
     ridge = made.dot == "ridge"
     places = _to_side if ridge else _about_dot
-    x = places(made.length_mm / 2.0, made.fine)
-    if whole:
+    x = places(made.length_mm / 2.0, made.fine) if not made.electrodes else _between_edges(made)
+    if whole and not made.electrodes:
         x = np.concatenate([-x[:0:-1], x])
     across = [] if ridge else [places(made.width_mm / 2.0, made.fine)]
     mesh = (MeshQuad if ridge else MeshHex).init_tensor(x, *across, levels)
@@ -68,6 +69,31 @@ def _to_side(end: float, fine: float) -> Floats:
     """0 to end, finer towards the side, where the stress of a held film is singular."""
     even = np.linspace(0.0, 1.0, max(2, round(end * fine / AXIAL_MM)) + 1)
     return np.asarray(end * (1.0 - (1.0 - even) ** TO_SIDES))
+
+
+def _between_edges(made: Made) -> Floats:
+    """Lines at the edges of electrodes, and between them in sizes that grow from the ridge and from the sides.
+
+    From 0 on where the ridge is in the middle, else over the whole length.
+    """
+    end, start = made.length_mm / 2.0, 0.0 if made.offset_mm == 0.0 else -made.length_mm / 2.0
+    edges = sorted({start, end, *(edge for strip in made.electrodes for edge in strip if edge > start)})
+    pieces = [np.array([start])]
+    for low, high in pairwise(edges):
+        x = np.linspace(low, high, PIECE)
+        from_dot, from_side = np.abs(x - made.offset_mm), end - np.abs(x)
+        size = np.minimum(AXIAL_MM + GROWS * np.maximum(from_dot - STRIP_MM, 0.0), SIDE_MM + SIDE_GROWS * from_side)
+        density = 1.0 / np.minimum(size, WIDEST_MM)
+        passed = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(x))])
+        count = max(2, round(made.fine * passed[-1]))
+        pieces.append(np.interp(np.linspace(0.0, passed[-1], count + 1), passed, x)[1:])
+    return np.concatenate(pieces)
+
+
+STRIP_MM, GROWS, WIDEST_MM = 0.8, 0.06, 0.12
+"""About a ridge over one of several electrodes: half width of the fine part, growth of sizes from there, the widest."""
+SIDE_MM, SIDE_GROWS = 0.01, 0.2
+PIECE = 401
 
 
 def _about_dot(end: float, fine: float) -> Floats:
@@ -103,12 +129,13 @@ Indices = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Part:
-    """One layer. nodes : (m, a); gradient : (m, q, a, d); weight : (m, q); linear : (m, q, d + 1)."""
+    """One layer. nodes : (m, a); gradient : (m, q, a, d); weight, x : (m, q); linear : (m, q, d + 1)."""
 
     layer: Layer | Film | Glue
     nodes: Indices
     gradient: Floats
     weight: Floats
+    x: Floats
     linear: Floats
 
     @property
@@ -194,5 +221,6 @@ def parts(made_layers: tuple[Layer | Film | Glue, ...], mesh: Grid) -> tuple[lis
         inside = mesh.part == number
         arms = where[inside] - where[inside].mean(axis=1, keepdims=True)
         linear = np.concatenate([np.ones((*arms.shape[:2], 1)), arms / np.abs(arms).max()], axis=2)
-        found.append(Part(layer, nodes[inside], gradient[inside], weight[inside], linear))
+        x = where[inside][..., 0]
+        found.append(Part(layer, nodes[inside], gradient[inside], weight[inside], x, linear))
     return found, basis.doflocs.T

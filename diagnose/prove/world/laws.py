@@ -75,6 +75,7 @@ class Made:
     """A stack from the base up; the film lies among the layers by name "film". spring : sides, N/mm3; None: rigid.
 
     dot : "ridge" (plane strain, force for width_mm) or "cap" (a quarter in 3D). fine : elements are this much smaller.
+    electrodes : from and to along x, growing, each over the whole width, of a ridge; none: one all over the film.
     """
 
     layers: tuple[Layer | Film | Glue, ...]
@@ -85,6 +86,12 @@ class Made:
     offset_mm: float = 0.0
     spring_N_per_mm3: float | None = None
     fine: float = 1.0
+    electrodes: tuple[tuple[float, float], ...] = ()
+
+    @property
+    def strips(self) -> tuple[tuple[float, float], ...]:
+        """From and to along x of every electrode."""
+        return self.electrodes or ((-self.length_mm / 2.0, self.length_mm / 2.0),)
 
     @property
     def film(self) -> Film:
@@ -98,9 +105,21 @@ class Made:
 
     @property
     def capacitance_pF(self) -> float:
-        """Of the undeformed film, electrodes all over it."""
+        """Of the undeformed film under all electrodes."""
+        return sum(self.capacitances_pF)
+
+    @property
+    def capacitances_pF(self) -> tuple[float, ...]:
+        """Of the undeformed film under each electrode."""
         film = self.film
-        return 8.8541878128e-3 * film.relative_permittivity * self.length_mm * self.width_mm / film.thickness_mm
+        per_mm = 8.8541878128e-3 * film.relative_permittivity * self.width_mm / film.thickness_mm
+        return tuple(per_mm * (high - low) for low, high in self.strips)
+
+    @property
+    def mirrored(self) -> "Made":
+        """Its image in x = 0, electrodes growing along x again: the last one is the image of the first."""
+        strips = tuple((-high, -low) for low, high in reversed(self.electrodes))
+        return replace(self, offset_mm=-self.offset_mm, electrodes=strips)
 
     @property
     def remembers(self) -> bool:

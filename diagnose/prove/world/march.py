@@ -25,7 +25,7 @@ LONGEST, GROWTH, SHORTEST_S = 0.5, 1.5, 0.006
 
 @dataclass(frozen=True)
 class Course:
-    """force_N, charge_pC, area_mm2, each (t,)."""
+    """force_N (t,), charge_pC (t, e) of each electrode, area_mm2 (t,)."""
 
     force_N: Floats
     charge_pC: Floats
@@ -55,6 +55,9 @@ def table(made: Made, depth_mm: float) -> Table:
     """Pressed once to a depth. ValueError for what has a memory; RuntimeError without equilibrium."""
     if made.remembers:
         raise ValueError("what remembers has no table over depth")
+    if made.offset_mm < 0.0 and made.electrodes:  # solved once for both sides
+        image = table(made.mirrored, depth_mm)
+        return replace(image, course=replace(image.course, charge_pC=image.course.charge_pC[:, ::-1]))
     points = depth_mm * np.linspace(0.0, 1.0, POINTS[made.dot] + 1) ** GRADING
     kept = _kept(f"table-{_program()}-{made.key()}-{depth_mm:.6f}")
     course = kept.read() or kept.write(_pressed(made, points, np.ones(len(points))))
@@ -111,14 +114,14 @@ def _moved(stack: Stack, state: State, depth_mm: float, step_s: float) -> State:
 def _course(answers: Sequence[Answer], zero: Answer) -> Course:
     return Course(
         np.array([a.force_N for a in answers]),
-        np.array([a.charge_pC - zero.charge_pC for a in answers]),
+        np.array([np.subtract(a.charges_pC, zero.charges_pC) for a in answers]),
         np.array([a.area_mm2 for a in answers]),
     )
 
 
 def _spline(depth_mm: Floats, values: Floats) -> CubicSpline:
     """From rest at the touch. A monotonic interpolant would be 1.3 % off a cap's charge between ten depths."""
-    return CubicSpline(depth_mm, values, bc_type=((1, 0.0), "not-a-knot"))
+    return CubicSpline(depth_mm, values, bc_type=((1, np.zeros(values.shape[1:])), "not-a-knot"))
 
 
 @cache

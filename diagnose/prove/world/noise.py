@@ -6,7 +6,7 @@ From charge to voltage by the trapezoidal rule on a finer grid, and filters of a
 import os
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Literal
@@ -115,17 +115,26 @@ class Amplifier:
         """Voltage (t,) for the charge (t,) of the film at even times (t,), from rest."""
         rate = FINER * (len(time_s) - 1) / (time_s[-1] - time_s[0])
         fine = time_s[0] + np.arange(FINER * (len(time_s) - 1) + 1) / rate
-        voltage = self._input(CubicSpline(time_s, charge_pC)(fine), film_pF, rate)
-        angle = 2.0 * np.pi * HUM_HZ * fine
-        voltage += self.hum_V * (np.sin(angle + hum_phase) + HARMONIC * np.sin(3.0 * (angle + hum_phase)))
+        voltage = self.input_V(CubicSpline(time_s, charge_pC)(fine), film_pF, rate)
+        return self.behind(voltage, fine, rate, hum_phase)[::FINER]
+
+    def behind(self, voltage: Floats, fine_s: Floats, rate_Hz: float, hum_phase: float) -> Floats:
+        """Voltage (n,) behind everything that follows the input, on its own fine grid (n,)."""
+        angle = 2.0 * np.pi * HUM_HZ * fine_s
+        voltage = voltage + self.hum_V * (np.sin(angle + hum_phase) + HARMONIC * np.sin(3.0 * (angle + hum_phase)))
         if self.limit_V is not None:
             voltage = _softly_clipped(voltage, self.limit_V)
         for one in self.filters:
-            voltage = one.applied(voltage, rate)
-        return np.asarray(voltage[::FINER])
+            voltage = one.applied(voltage, rate_Hz)
+        return np.asarray(voltage)
 
-    def _input(self, charge_pC: Floats, film_pF: float, rate_Hz: float) -> Floats:
-        """(C_f + C) V' = Q' - V / R; MOhm times pF is microseconds."""
+    def leaking(self, resistance_MOhm: float | None) -> "Amplifier":
+        """With a resistance beside that of its input; None for none."""
+        conductance = sum(1.0 / r for r in (self.resistance_MOhm, resistance_MOhm) if r is not None)
+        return replace(self, resistance_MOhm=1.0 / conductance if conductance else None)
+
+    def input_V(self, charge_pC: Floats, film_pF: float, rate_Hz: float) -> Floats:
+        """Of the fine grid (n,): (C_f + C) V' = Q' - V / R; MOhm times pF is microseconds."""
         capacitance = film_pF + self.capacitance_pF
         half = 0.0 if self.resistance_MOhm is None else 0.5e6 / (rate_Hz * self.resistance_MOhm * capacitance)
         gain = 1.0 / (capacitance * (1.0 + half))

@@ -21,10 +21,11 @@ from scipy.interpolate import PchipInterpolator
 from scipy.special import erfc
 
 from diagnose.prove.world.bench import BENCHES, Bench, Run
+from diagnose.prove.world.channels import Wiring, voltages
 from diagnose.prove.world.details import Details
 from diagnose.prove.world.laws import Floats, Layer, Made
 from diagnose.prove.world.march import Course, Table, table, through_time
-from diagnose.prove.world.noise import Amplifier, noises
+from diagnose.prove.world.noise import Amplifier, Autoregression, noises
 
 NODES = 0.25, 0.5
 FAINT = 0.02
@@ -70,7 +71,7 @@ def scaled_memory(made: Made, time: Floats, path: Floats, elastic: Course, nomin
     def scaled(name: str) -> Floats:
         own, base = getattr(elastic, name), getattr(nominal, name)
         solved = [getattr(course, name) - base[marks] for course in (near, far)]
-        return _scaled(own, base, PchipInterpolator(time[marks], _parabola(value, *solved))(time))
+        return _scaled(own, base, PchipInterpolator(time[marks], _parabola(value, *solved), axis=0)(time))
 
     return Course(np.where(path > 0.0, scaled("force_N"), 0.0), scaled("charge_pC"), elastic.area_mm2)
 
@@ -101,8 +102,8 @@ class Reality:
     time (s) of a half-space that warms. touch_pC : charge left by the touch at the largest area. sensitivity : of the
     film, on all its constants d. fatigue : share of its charge that the film loses from one press to the next.
     drift : relative change of the gain over a minute. jump_s : the clock of the voltage jumps by this in the middle
-    of every run. pickup : volt per mm/s. nuisance : name, or (name, number of run), -> value. details : flaws of the
-    rig, which no mechanism describes.
+    of every run. pickup : volt per mm/s. wiring : of several channels. nuisance : name, or (name, number of run), or
+    (name, number of run, channel), -> value. details : flaws of the rig, which no mechanism describes.
     """
 
     made: Made
@@ -118,12 +119,14 @@ class Reality:
     drift: float = 0.0
     jump_s: float = 0.0
     pickup: float = 0.0
+    wiring: Wiring = field(default_factory=Wiring)
     nuisance: Mapping[Any, float] = field(default_factory=dict)
     details: Details | None = None
 
-    def of(self, name: str, run: int) -> float:
-        """A nuisance of a run."""
-        return self.nuisance.get((name, run), self.nuisance.get(name, 0.0))
+    def of(self, name: str, run: int, channel: int = 0) -> float:
+        """A nuisance of a run and, where each has its own, of a channel."""
+        known = self.nuisance
+        return known.get((name, run, channel), known.get((name, run), known.get(name, 0.0)))
 
 
 def baseline(bench: Bench) -> Reality:
@@ -134,11 +137,19 @@ def baseline(bench: Bench) -> Reality:
 def record(reality: Reality, bench: Bench) -> list[Signals]:
     """Signals of every run without noise: time_s, displacement_mm, force_N (when measured), voltage_V."""
     real = replace(reality, made=with_scatter(reality))
-    known = table(forgetful(real.made), DEEPER * bench.deepest_mm)
-    nominal = table(forgetful(reality.made), DEEPER * bench.deepest_mm) if reality.made.remembers else known
-    return [
-        _run(real, bench, run, number, Mechanics(reality.made, known, nominal)) for number, run in enumerate(bench.runs)
-    ]
+    places = {run.place_mm for run in bench.runs}
+    of = {place: _mechanics(_at(reality.made, place), _at(real.made, place), bench) for place in places}
+    return [_run(real, bench, run, number, of[run.place_mm]) for number, run in enumerate(bench.runs)]
+
+
+def _at(made: Made, place_mm: float) -> Made:
+    return replace(made, offset_mm=made.offset_mm + place_mm)
+
+
+def _mechanics(made: Made, scattered: Made, bench: Bench) -> "Mechanics":
+    depth_mm = DEEPER * bench.deepest_mm
+    known = table(forgetful(scattered), depth_mm)
+    return Mechanics(made, known, table(forgetful(made), depth_mm) if made.remembers else known)
 
 
 DEEPER = 1.05
@@ -181,18 +192,21 @@ def _run(reality: Reality, bench: Bench, run: Run, number: int, mechanics: Mecha
     course = mechanics.course(time, _path(reality, surface, mechanics.known))
     force = course.force_N if details is None else details.force(stage, course.force_N)
     force = force + 1e-6 * reality.mass_g * run.acceleration_mm_per_s2(time)
-    charge = reality.sensitivity * course.charge_pC * (1.0 - reality.fatigue) ** run.presses_before(time)
-    charge += _warmth(reality, run, time) + reality.touch_pC * _touched(course)
-    voltage = _amplifier(reality, run).voltage(time, charge, reality.made.capacitance_pF, 1.7 * number)
-    voltage += reality.pickup * run.speed_mm_per_s(time)
-    voltage *= 1.0 + reality.drift * time / 60.0 * (number + 1)
-    voltage = voltage if details is None else details.voltage(time, voltage, bench.peak_V, number)
-    late = reality.of("lag_s", number) + np.where(time > 0.5 * time[-1], reality.jump_s, 0.0)
-    voltage = np.interp(time - late, time, voltage)
+    charge = reality.sensitivity * course.charge_pC * ((1.0 - reality.fatigue) ** run.presses_before(time))[:, None]
+    films = np.array(reality.made.capacitances_pF)
+    other = _warmth(reality, run, time) + reality.touch_pC * _touched(course)
+    charge = charge + other[:, None] * films / films.sum()
+    amplified = voltages(_amplifier(reality, run), reality.wiring, time, charge, tuple(films), 1.7 * number)
     signals = {"time_s": time, "displacement_mm": run.depth(time)}
     if bench.force:
         signals["force_N"] = (1.0 + reality.of("force_gain", number)) * force + reality.of("offset_N", number)
-    signals["voltage_V"] = (1.0 + reality.of("gain", number)) * voltage + reality.of("offset_V", number)
+    for channel, (name, voltage) in enumerate(zip(bench.voltages, amplified.T, strict=True)):
+        voltage = voltage + reality.pickup * run.speed_mm_per_s(time)
+        voltage = voltage * (1.0 + reality.drift * time / 60.0 * (number + 1))
+        voltage = voltage if details is None else details.voltage(time, voltage, bench.peak_V, number)
+        late = reality.of("lag_s", number, channel) + np.where(time > 0.5 * time[-1], reality.jump_s, 0.0)
+        voltage = np.interp(time - late, time, voltage)
+        signals[name] = (1.0 + reality.of("gain", number, channel)) * voltage + reality.of("offset_V", number, channel)
     return signals
 
 
@@ -224,29 +238,45 @@ def _touched(course: Course) -> Floats:
 def _amplifier(reality: Reality, run: Run) -> Amplifier:
     """With the resistor and the capacitor of this run and the leak beside them."""
     have = run.resistance_MOhm if run.resistance_MOhm is not None else reality.amplifier.resistance_MOhm
-    conductance = sum(1.0 / r for r in (have, reality.leak_MOhm) if r is not None)
     capacitance = reality.amplifier.capacitance_pF + run.added_pF
-    resistance = 1.0 / conductance if conductance else None
-    return replace(reality.amplifier, resistance_MOhm=resistance, capacitance_pF=capacitance)
+    return replace(reality.amplifier, resistance_MOhm=have, capacitance_pF=capacitance).leaking(reality.leak_MOhm)
 
 
 PER_RUN = {"gain", "force_gain", "lag_s", "offset_V", "offset_N", "offset_mm"}
+PER_CHANNEL = {"gain", "lag_s", "offset_V"}
+"""Of these, what each of several channels has for itself."""
+
+
+def keys(name: str, bench: Bench) -> list[Any]:
+    """Under which the numbers of one nuisance are kept."""
+    if name not in PER_RUN:
+        return [name]
+    runs, count = range(len(bench.runs)), len(bench.voltages)
+    if name in PER_CHANNEL and count > 1:
+        return [(name, run, channel) for run in runs for channel in range(count)]
+    return [(name, run) for run in runs]
 
 
 def whitened(signals: Sequence[Signals], bench: Bench) -> Floats:
     """All answers of all runs, one after the other, in units of the innovations of their noise."""
-    parts = [noises()[name].whitened(run[name]) / noise_of(bench)[name] for run in signals for name in channels(bench)]
+    sigma = noise_of(bench)
+    parts = [noise_law(name).whitened(run[name]) / sigma[name] for run in signals for name in channels(bench)]
     return np.concatenate(parts)
 
 
 def channels(bench: Bench) -> tuple[str, ...]:
     """Answers that this bench records."""
-    return ("force_N", "voltage_V") if bench.force else ("voltage_V",)
+    return ("force_N", *bench.voltages) if bench.force else bench.voltages
 
 
 def noise_of(bench: Bench) -> Mapping[str, float]:
     """One sigma of each channel."""
-    return {"force_N": bench.noise * bench.peak_N, "voltage_V": bench.noise * bench.peak_V}
+    return {"force_N": bench.noise * bench.peak_N, **dict.fromkeys(bench.voltages, bench.noise * bench.peak_V)}
+
+
+def noise_law(channel: str) -> Autoregression:
+    """Of a channel: all voltages have the same."""
+    return noises()["voltage_V" if channel.startswith("voltage") else channel]
 
 
 @dataclass(frozen=True)
@@ -261,7 +291,7 @@ class Judge:
         belief = baseline(self.bench)
         base, columns = whitened(record(belief, self.bench), self.bench), []
         for name, width in self.bench.nuisance:
-            for key in [(name, run) for run in range(len(self.bench.runs))] if name in PER_RUN else [name]:
+            for key in keys(name, self.bench):
                 there = record(replace(belief, nuisance={key: width}), self.bench)
                 columns.append(whitened(there, self.bench) - base)
         return np.stack(columns, axis=1)

@@ -1,5 +1,6 @@
 """Equilibrium of a stack under a rigid ridge or cap: Newton's method, contact by a stiff wall at integration points."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,7 +9,7 @@ from numpy.typing import NDArray
 from skfem import ElementHex2, ElementQuad2, FacetBasis  # type: ignore[import-untyped]
 
 from diagnose.prove.world import laws
-from diagnose.prove.world.grid import Grid, Indices, grid, parts
+from diagnose.prove.world.grid import Grid, Indices, Part, grid, parts
 from diagnose.prove.world.laws import Film, Floats, Layer, Made, Memory
 
 try:
@@ -38,11 +39,16 @@ class State:
 
 @dataclass(frozen=True)
 class Answer:
-    """Of the whole stack: force in N, charge of the film in pC, touched area in mm2."""
+    """Of the whole stack: force in N, charge in pC of each electrode, touched area in mm2."""
 
     force_N: float
-    charge_pC: float
+    charges_pC: tuple[float, ...]
     area_mm2: float
+
+    @property
+    def charge_pC(self) -> float:
+        """Of all electrodes."""
+        return sum(self.charges_pC)
 
 
 @dataclass(frozen=True)
@@ -160,11 +166,23 @@ class Stack:
         film = next(part for part in self.parts if isinstance(part.layer, Film))
         stress = laws.film_stress(self.made.film, film.deformed(state.u))[0]
         density = np.einsum("nii,i->n", stress, np.array(self.made.film.d)) / self.made.film.thickness_mm
+        collected = density * film.weight.ravel()
         return Answer(
             float(self.scale * (push * normal[..., -1]).sum()),
-            float(self.scale * (density * film.weight.ravel()).sum()),
+            tuple(float(self.scale * (collected * share).sum()) for share in self._shares(film)),
             float(self.scale * self.top.weight[gap < 0.0].sum()),
         )
+
+    def _shares(self, film: Part) -> Iterator[Floats]:
+        """Of what is at the points of the film (n,), the share that each electrode collects.
+
+        Of the half of a ridge in the middle an electrode has its own part and the image of the other one.
+        """
+        x = film.x.ravel()
+        for low, high in self.made.strips:
+            inside = ((x >= low) & (x <= high)).astype(np.float64)
+            image = inside if self.grid.whole else ((-x >= low) & (-x <= high)).astype(np.float64)
+            yield 0.5 * (inside + image)
 
     def _free(self) -> Indices:
         """Unknowns that may move: neither base, nor held sides without springs, nor across a plane of symmetry."""

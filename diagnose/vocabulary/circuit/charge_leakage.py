@@ -12,14 +12,16 @@ from solve.mechanisms.circuit.charge_leakage import CHARGE_LEAKAGE
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Where the input's impedance counts."""
+    """Where the input's impedance counts: of all channels together, or of one."""
     if scene.voltage_mode:
-        yield from (_leakage(scene, component) for component in CHARGE_LEAKAGE.components)
+        yield from (_leakage(scene, component) for component in ("readout", "film"))
+        yield from (_leakage(scene.of_each_channel, channel) for channel in scene.numbered)
 
 
 def of_unknown_geometry(scene: Scene, recording: Recording) -> Iterator[Candidate]:
-    """As of a segment; what shows is the time constant."""
-    yield from (_with_time_constant(scene, one) for one in of_segment(scene))
+    """Of all channels together; what shows is the time constant."""
+    if scene.voltage_mode:
+        yield from (_with_time_constant(scene, _leakage(scene, component)) for component in ("readout", "film"))
 
 
 def _leakage(scene: Scene, component: str) -> Candidate:

@@ -16,16 +16,17 @@ ONE_STAGE = 1e-3  # Q^2 below which the second stage is too fast to be seen
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
-    """Of any amplifier."""
-    yield _low_pass(scene)
+    """Of any amplifier: of all channels together, or of one."""
+    yield _low_pass(scene, "readout")
+    yield from (_low_pass(scene, channel) for channel in scene.numbered)
 
 
 def of_unknown_geometry(scene: Scene, recording: Recording) -> Iterator[Candidate]:
-    """As of a segment."""
-    yield _low_pass(scene)
+    """Of all channels together."""
+    yield _low_pass(scene, "readout")
 
 
-def _low_pass(scene: Scene) -> Candidate:
+def _low_pass(scene: Scene, component: str) -> Candidate:
     """H(s) = exp(-s d D) / (1 + s T + k s^2 T^2) with T = (1 - d) D; k = Q^2 of order two.
 
     D is the delay of what changes slowly, whatever k and d: from what one sample shows to the length of a run. k = 0
@@ -46,7 +47,7 @@ def _low_pass(scene: Scene) -> Candidate:
         return {"cutoff_Hz": corner_Hz, "order": 2, "quality": quality, "delay_s": delay_s}
 
     units = {"cutoff_Hz": "Hz", "order": "", "quality": "", "delay_s": "s"}
-    return Candidate(LOW_PASS.name, "readout", (time, second, dead), parameters, units=units)
+    return Candidate(LOW_PASS.name, component, (time, second, dead), parameters, units=units)
 
 
 register(

@@ -9,10 +9,13 @@ from pydantic import Field
 
 from geometry.parameters import Positive
 from solve.mechanisms.base import (
+    CHANNELS,
     MechanismType,
     Parameters,
     Traits,
+    channels_of,
     register,
+    with_physics,
     with_readout,
 )
 from solve.model import Model, Readout
@@ -25,7 +28,12 @@ class ChargeLeakage(Parameters):
 
 
 def switch_on(model: Model, component: str, values: ChargeLeakage) -> Model:
-    """The model with this physics at a component."""
+    """The model with this physics at a component: an input of its own where that is a channel."""
+    if component in CHANNELS:
+        (channel,) = channels_of(component)
+        known = model.physics.channel_leak_uS
+        leaks = {**known, channel: known.get(channel, 0.0) + 1.0 / values.resistance_MOhm}
+        return with_physics(model, channel_leak_uS=leaks)
     have = (model.readout or Readout()).input_resistance_MOhm
     conductance = 1.0 / values.resistance_MOhm + (1.0 / have if have is not None else 0.0)
     return with_readout(model, input_resistance_MOhm=1.0 / conductance)
@@ -34,7 +42,7 @@ def switch_on(model: Model, component: str, values: ChargeLeakage) -> Model:
 CHARGE_LEAKAGE = register(
     MechanismType(
         name="charge-leakage",
-        components=("readout", "film"),
+        components=("readout", "film", *CHANNELS),
         parameters=ChargeLeakage,
         switch_on=switch_on,
         off={"resistance_MOhm": inf},

@@ -10,9 +10,11 @@ from pydantic import Field, model_validator
 
 from geometry.parameters import NonNegative, Positive
 from solve.mechanisms.base import (
+    CHANNELS,
     MechanismType,
     Parameters,
     Traits,
+    channels_of,
     register,
     with_physics,
 )
@@ -40,13 +42,17 @@ class LowPass(Parameters):
 def switch_on(model: Model, component: str, values: LowPass) -> Model:
     """The model with this physics at a component."""
     own = Filter(values.cutoff_Hz, values.order, quality=values.quality, delay_s=values.delay_s)
+    if component in CHANNELS:
+        (channel,) = channels_of(component)
+        known = model.physics.channel_electronics
+        return with_physics(model, channel_electronics={**known, channel: (*known.get(channel, ()), own)})
     return with_physics(model, electronics=(*model.physics.electronics, own))
 
 
 LOW_PASS = register(
     MechanismType(
         name="low-pass",
-        components=("readout",),
+        components=("readout", *CHANNELS),
         parameters=LowPass,
         switch_on=switch_on,
         off={"cutoff_Hz": inf},

@@ -1,11 +1,12 @@
 """What the instruments show: tangents are slopes, and the vector keeps energies."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 
-from diagnose.fit.discrepancy import allowance, columns, drive_noise
+from diagnose.fit.discrepancy import allowance, columns, drive_noise, of_the_film
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.refit import fitted_baseline
 from diagnose.fit.samples import Samples
@@ -127,3 +128,56 @@ def test_live_rows_hold_the_sensitivities():
     live = informative_rows(model.samples, linearised(model, zero), [effect[:, None]])
     assert np.abs(effect[~live]).max() < 1.0
     assert live.sum() < 0.9 * len(live)
+
+
+class TwoChannels(ToyEngine):
+    """A second electrode that collects a tenth of the first one's charge."""
+
+    def predict(self, run, settings):
+        found = self.imagine(self.recording.runs[run], settings)
+        return {"force_N": found["force_N"], "voltage_1_V": found["voltage_V"], "voltage_2_V": 0.1 * found["voltage_V"]}
+
+
+@cache
+def two_channels():
+    recording = small(3, Sensor(leak=0.5), runs=2, rate=400.0, nuisance={**NUISANCE, "force_gain": 0.02})
+    runs = []
+    for run in recording.runs:
+        parts = {}
+        for name in ("channels", "valid", "saturated"):
+            own = dict(getattr(run, name))
+            voltage = own.pop("voltage_V")
+            parts[name] = {
+                **own,
+                "voltage_1_V": voltage,
+                "voltage_2_V": 0.1 * voltage if name == "channels" else voltage,
+            }
+        runs.append(replace(run, **parts))
+    recording = replace(recording, runs=tuple(runs))
+    return ObservedModel(Samples(recording, noise_models(recording)), TwoChannels(recording))
+
+
+def test_several_channels_have_gain_lag_and_offset_each_for_itself():
+    model = two_channels()
+    owners = [(n.name, n.run, n.channel) for n in model.nuisances]
+    for name in ("gain", "lag_s", "offset_V"):
+        assert {channel for one, run, channel in owners if (one, run) == (name, 0)} == {"voltage_1_V", "voltage_2_V"}
+    assert ("force_gain", 0, None) in owners
+    number = owners.index(("gain", 0, "voltage_2_V"))
+    values = np.zeros(len(owners))
+    before = model.signals(values)
+    values[number] = 0.1
+    after = model.signals(values)
+    np.testing.assert_allclose(after[0]["voltage_2_V"], 1.1 * before[0]["voltage_2_V"])
+    np.testing.assert_array_equal(after[0]["voltage_1_V"], before[0]["voltage_1_V"])
+    np.testing.assert_array_equal(after[1]["voltage_2_V"], before[1]["voltage_2_V"])
+    slope = model.vector(values) - model.vector(np.zeros(len(owners)))
+    np.testing.assert_allclose(model.tangents(np.zeros(len(owners)))[:, number] * 0.1, slope, atol=1e-9)
+
+
+def test_the_error_of_the_model_is_that_of_the_film_also_where_an_electrode_collects_little():
+    shown = two_channels().signals(np.zeros(len(two_channels().nuisances)))
+    for own, film in zip(shown, of_the_film(shown), strict=True):
+        np.testing.assert_array_equal(film["voltage_2_V"], own["voltage_1_V"])
+        np.testing.assert_array_equal(film["voltage_1_V"], own["voltage_1_V"])
+        np.testing.assert_array_equal(film["force_N"], own["force_N"])

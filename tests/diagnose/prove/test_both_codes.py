@@ -1,5 +1,7 @@
 """The diagnosis' table and the hidden world, two codes with nothing in common, on the same presses."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -65,3 +67,25 @@ def test_a_medium_of_twice_the_modulus_changes_force_and_charge_alike(tmp_path):
     before, after = hidden(bench.made, depths), hidden(twice_as_stiff, depths)
     true = np.column_stack([np.log(after[:, 0] / before[:, 0]), (after[:, 1] - before[:, 1]) / before[:, 0]])
     assert np.all(np.abs(mine / true - 1.0) < 0.04)  # the diagnosis mesh itself would be 5 % off at the first depth
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("place_mm", sorted({run.place_mm for run in BENCHES["row-free"].runs}))
+def test_force_and_every_charge_of_several_electrodes_agree_wherever_the_dot_stands(place_mm, tmp_path):
+    """Charges within the stated error of the largest of them, as the model's error is one of the film."""
+    bench = BENCHES["row-free"]
+    told = engine_of(bench, tmp_path)
+    prepared, _ = told.stands.at((place_mm, 0.0))
+    depths = SHARES * bench.deepest_mm
+    table, of = prepared.fit.table[:, 0], np.linspace(0.0, prepared.depth_mm, len(prepared.fit.table))
+    mine = np.column_stack([np.interp(depths, of, table[:, n]) for n in (0, 2, 3, 4)])
+    stack = Stack(replace(bench.made, offset_mm=place_mm))
+    state, true = stack.rest(), []
+    for depth in depths:
+        state = stack.press(state, float(depth), 1.0)
+        answer = stack.answer(state)
+        true.append((answer.force_N, *(1e-12 * charge for charge in answer.charges_pC)))
+    true = np.array(true)
+    allowed = 3.0 * np.array([told.accuracy["force_N"], *3 * [told.accuracy["voltage_V"]]])
+    size = np.column_stack([true[:, 0], *3 * [np.abs(true[:, 1:]).max(axis=1)]])
+    assert np.all(np.abs(mine - true) < allowed * size)

@@ -67,6 +67,17 @@ def test_without_effects_there_is_no_curve_to_draw(tmp_path):
     assert "detection.png" not in (out / "proof.md").read_text(encoding="utf-8")
 
 
+@pytest.mark.usefixtures("tried")
+def test_one_mechanism_on_the_rig_with_channels(tmp_path):
+    out = tmp_path / "proof"
+    command = ["prove", "--cases", "3", "--rigs", "row-free", "--kinds", "single", "--mechanisms", "crosstalk"]
+    assert main([*command, "-o", str(out)]) == 0
+    cases = [json.loads(path.read_text("utf-8")) for path in sorted((out / "cases").iterdir())]
+    hidden = {tuple(one["case"]["effects"]) for one in cases}
+    assert hidden == {("crosstalk-1-2",), ("crosstalk-2-3",), ("crosstalk-1-3",)}
+    assert json.loads((out / "proof.json").read_text("utf-8"))["mechanisms"] == ["crosstalk"]
+
+
 def test_a_proof_that_was_stopped_goes_on(tried, tmp_path):
     command = ["prove", "--staged", "--rigs", RIDGES, "-o", str(tmp_path / "proof"), "--cases"]
     assert main([*command, "10"]) == 0
@@ -82,6 +93,8 @@ def test_a_proof_that_was_stopped_goes_on(tried, tmp_path):
         (["--cases", "1", "--seed", "-1"], "--seed -1: must not be negative"),
         (["--cases", "1", "--rigs", "table"], "--rigs 'table': must be of ridge-clamped"),
         (["--cases", "1", "--kinds", "triple"], "--kinds 'triple': must be of none"),
+        (["--cases", "1", "--mechanisms", "crosstalk"], "--mechanisms 'crosstalk': must be of those that these rigs"),
+        (["--cases", "1", "--mechanisms", "friction"], "can hide: charge-leakage, low-pass"),
         (["--cases", "1", "--workers", "0"], "--workers 0: must be at least 1"),
         (["--cases", "1", "--scheduler", "here"], "--scheduler 'here': must be tcp://HOST:PORT"),
     ],

@@ -16,7 +16,7 @@ from diagnose.prove.world.march import Course, Table
 @pytest.fixture(autouse=True)
 def linear_press(monkeypatch):
     depth = np.linspace(0.0, 0.3, 5)
-    known = Table(depth, Course(30.0 * depth, 4e4 * depth, depth))
+    known = Table(depth, Course(30.0 * depth, 4e4 * depth[:, None], depth))
     monkeypatch.setattr(reality, "table", lambda _made, _depth: known)
     rivals._believed.cache_clear()
     yield

@@ -11,7 +11,7 @@ from diagnose.vocabulary.base import candidates_of_segment as candidates
 from diagnose.vocabulary.layers.property_error import nuisance
 from diagnose.vocabulary.layers.viscoelasticity import relaxed_fraction
 from solve.mechanisms import MECHANISMS, with_mechanisms
-from solve.mechanisms.base import BONDS, MEDIA
+from solve.mechanisms.base import BONDS, MEDIA, channels_of
 from solve.model import Readout
 from solve.readout.stages import Saturation
 from tests.diagnose.segment.rigs import LEAKY, model
@@ -44,8 +44,9 @@ FULL = scene(channels=2, segment=segment(bonds=GLUED, film={"thickness_um": 28.0
 def test_a_rig_with_everything_admits_the_whole_vocabulary():
     wanted = {(name, component) for name, kind in MECHANISMS.items() for component in kind.components}
     absent = {("viscoelasticity", bond) for bond in BONDS if bond != "bond-film-medium2"}  # perfect: no jump to relax
-    absent |= {("crosstalk", f"channel-{n}") for n in range(3, 17)}
+    absent |= {(name, one) for name, one in wanted if max(channels_of(one), default=0) > 2}
     assert names(FULL) == wanted - absent
+    assert ("crosstalk", "channel-1-channel-2") in names(FULL)
 
 
 def test_without_an_effector_nothing_is_looked_for_in_it():
@@ -61,6 +62,18 @@ def test_a_charge_amplifier_has_no_leaking_input():
     charge = Readout(mode="charge", feedback_pF=100.0)
     found = {mechanism for mechanism, _ in names(scene(readouts=(charge,)))}
     assert not found & {"charge-leakage", "parasitic-capacitance"}
+
+
+def test_inputs_at_virtual_ground_tie_no_two_channels():
+    charge = Readout(mode="charge", feedback_pF=100.0)
+    found = {component for mechanism, component in names(scene((charge,), channels=3)) if mechanism == "crosstalk"}
+    assert found == {"channel-1", "channel-2", "channel-3"}
+
+
+def test_every_pair_of_three_channels_is_a_candidate_once():
+    found = {component for mechanism, component in names(scene(channels=3)) if mechanism == "crosstalk"}
+    pairs = {"channel-1-channel-2", "channel-1-channel-3", "channel-2-channel-3"}
+    assert found - {"channel-1", "channel-2", "channel-3"} == pairs
 
 
 def test_one_channel_hears_no_other():

@@ -11,7 +11,15 @@ from diagnose.findings import Fit, Interval, LocatedExcess, Remainder
 from diagnose.forward import Candidate, Coordinate, Setting
 from diagnose.next_press.choose import next_press
 from diagnose.verdict.content import verdict, where_words
-from diagnose.verdict.names import WHERE, in_common, interval_words, listed, mechanism_words, setting_words
+from diagnose.verdict.names import (
+    WHERE,
+    component_words,
+    in_common,
+    interval_words,
+    listed,
+    mechanism_words,
+    setting_words,
+)
 from diagnose.verdict.words import sentences
 from diagnose.vocabulary.base import vocabulary
 from solve.mechanisms import MECHANISMS
@@ -158,6 +166,13 @@ def test_every_mechanism_and_component_has_words():
     components = {part for kind in MECHANISMS.values() for part in kind.components if not part.startswith("channel")}
     assert components <= WHERE.keys()
     assert mechanism_words("crosstalk", "channel-2") == "other channels couple into channel 2"
+
+
+def test_crosstalk_between_two_channels_names_both():
+    said = mechanism_words("crosstalk", "channel-2-channel-3")
+    assert said.startswith("channel 2 and channel 3 couple into each other")
+    assert component_words("channel-2-channel-3") == "channel 2 and channel 3"
+    assert mechanism_words("charge-leakage", "channel-12") == "charge leaks through channel 12"
 
 
 @pytest.mark.parametrize(("ratio", "said"), [(2.0, "stiffens at large strain"), (0.5, "gives way, at large strain")])

@@ -1,0 +1,51 @@
+"""Where the dot stands in the runs, and what was pressed there.
+
+A film with one electrode is pressed where rig.toml puts the dot; another place is a change of that press, as of any
+candidate. Of several electrodes one collects next to nothing until the dot stands over it, and no factor makes the one
+charge of the other: there each place has tables of its own, as have all candidates at it.
+"""
+
+from collections.abc import Mapping, Sequence
+
+from diagnose.engines.segment.prepared import Place, Prepared, moved
+from diagnose.forward import Candidate
+from diagnose.signals.recording import Recording
+from geometry.base import Report
+from solve.model import Model
+from solve.tables.rig_mesh import MeshSettings
+
+HOME: Place = (0.0, 0.0)
+
+
+class Stands:
+    """accuracy : see diagnose.forward.Engine, the worst of all places."""
+
+    def __init__(self, model: Model, options: MeshSettings, recording: Recording, report: Report) -> None:
+        places = list(dict.fromkeys(run.dot_offset_mm for run in recording.runs))
+        self._apart = len(model.segment.film.electrodes) > 1
+        homes = places if self._apart else [HOME]
+        self._at: Mapping[Place, Prepared] = {
+            home: Prepared(moved(model, home), options, recording, report) for home in homes
+        }
+        if not self._apart:
+            self._at[HOME].add((), places, report)
+        each = [prepared.accuracy for prepared in self._at.values()]
+        self.accuracy = {name: max(one[name] for one in each) for name in each[0]}
+
+    def at(self, place: Place) -> tuple[Prepared, Place]:
+        """What was pressed, and how far from there the dot stands. ValueError where nothing was."""
+        if not self._apart:
+            return self._at[HOME], place
+        if place not in self._at:
+            raise ValueError(f"a dot at {place} mm was not prepared")
+        return self._at[place], HOME
+
+    def add(self, candidates: Sequence[Candidate], report: Report) -> None:
+        """Press what these candidates need, wherever the dot stands. NoEquilibriumError."""
+        for prepared in self._at.values():
+            prepared.add(candidates, (), report)
+
+    @property
+    def shortfalls(self) -> tuple[str, ...]:
+        """What could not be pressed as it should, each sentence once."""
+        return tuple(dict.fromkeys(said for one in self._at.values() for said in one.shortfalls.values()))

@@ -1,0 +1,55 @@
+"""An array that a recording was made of, as the one wide segment that it is where all its layers run through."""
+
+from collections.abc import Sequence
+
+from diagnose.signals.recording import RunTable
+from geometry.array.checks import check_array
+from geometry.array.layout import ArrayLayout, array_layout
+from geometry.base import InputError
+from geometry.stack import layers
+from softdot.config import Config
+
+
+def as_one_segment(config: Config, runs: Sequence[RunTable]) -> tuple[Config, tuple[RunTable, ...]]:
+    """The configuration with an electrode on each segment, and runs whose dot stands over the one that they press.
+
+    Both as they are where there is no array. InputError for a run over a segment that is not there, and for an array
+    with islands, grooves or a grid: those are in no mesh of one segment.
+    """
+    if config.array is None:
+        for number, run in enumerate(runs):
+            if run.over is not None:
+                raise InputError(
+                    f"runs[{number}].over = {list(run.over)}: there is no [array], which has such segments"
+                )
+        return config, tuple(runs)
+    layout = array_layout(config.array, config.segment, config.dot)
+    check_array(layout)
+    _refuse_what_ends(layout)
+    whole = config.model_copy(update={"array": None, "segment": layout.whole})
+    return whole, tuple(_placed(run, number, layout) for number, run in enumerate(runs))
+
+
+def _refuse_what_ends(layout: ArrayLayout) -> None:
+    """Diagnoses press one segment."""
+    for name in ("grooves", "grid_layers"):
+        if getattr(layout.array, name):
+            raise InputError(f"array.{name}: a diagnosis takes arrays whose layers run through without them")
+    islands = [f"'{layer.name}'" for layer in layers(layout.segment) if layout.ends_at_walls(layer.name)]
+    if islands:
+        raise InputError(
+            f"array.shared: leaves out {', '.join(islands)}, but a diagnosis takes arrays whose layers all run through"
+        )
+
+
+def _placed(run: RunTable, number: int, layout: ArrayLayout) -> RunTable:
+    if run.over is None:
+        return run
+    found = [place for place in layout.places if (place.row, place.column) == run.over]
+    if not found:
+        rows, columns = layout.places[-1].row, layout.places[-1].column
+        raise InputError(
+            f"runs[{number}].over = {list(run.over)}: must be a row from 1 to {rows} and a column from 1 to {columns}"
+        )
+    x, y = run.dot_offset_mm
+    return run.model_copy(update={"dot_offset_mm": (x + found[0].x_mm, y + found[0].y_mm)})

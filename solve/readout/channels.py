@@ -1,0 +1,72 @@
+"""Several electrodes, each on an amplifier of its own, whose inputs stray capacitances tie together.
+
+Voltage mode, with the capacitance C_i of film and input, the resistance R_i and the mutual capacitances C_ij of inputs:
+    C_i V_i' + sum_j C_ij (V_i' - V_j') = Q_i' - V_i / R_i
+which is reciprocal (Paul, Introduction to Electromagnetic Compatibility, 2nd ed. 2006, chapter 9). With the symmetric
+matrices C and G of it, the modes of G x = a C x, with x' C x = 1, do not act on each other:
+    y' = x . Q' - a y,    V = sum of x y
+and each of them is integrated exactly for charges that are linear between the samples. The inputs of charge amplifiers
+are virtual grounds: a capacitance between them carries nothing.
+"""
+
+from collections.abc import Mapping
+
+import numpy as np
+from scipy.linalg import eigh
+
+from geometry.arrays import Floats
+from solve.model import Physics, Readout
+from solve.readout.amplifier import input_of, leaky_integral, mixed_channels, stages
+
+
+def amplify_channels(
+    time_s: Floats, charge_C: Floats, capacitance_F: Floats, readout: Readout, physics: Physics
+) -> Floats:
+    """Voltage (e, t) of every channel from the short-circuit charges (t, e) of electrodes with capacitances (e,).
+
+    From rest at times (t,). What leaks from one input, ties two together, filters one channel or mixes what they give
+    is in the physics, with channels numbered from 1.
+    """
+    alone = []
+    for number, voltage in enumerate(input_voltages(time_s, charge_C, capacitance_F, readout, physics), start=1):
+        for stage in stages(readout, physics, number):
+            voltage = stage.applied(time_s, voltage)
+        alone.append(readout.polarity * voltage)
+    return mixed_channels(np.array(alone), physics)
+
+
+def input_voltages(
+    time_s: Floats, charge_C: Floats, capacitance_F: Floats, readout: Readout, physics: Physics
+) -> Floats:
+    """Voltage (e, t) at every input. ValueError for a pair with a channel that is not there."""
+    inputs = [input_of(readout, float(one)) for one in capacitance_F]
+    if readout.mode == "charge":
+        charges = zip(charge_C.T, inputs, strict=True)
+        return np.array([leaky_integral(time_s, np.ascontiguousarray(q), c, r) for q, (c, r) in charges])
+    leak = [1e-6 * physics.channel_leak_uS.get(number, 0.0) for number in range(1, len(inputs) + 1)]
+    conductance = np.array([1.0 / r for _, r in inputs]) + leak
+    capacitance = np.array([c for c, _ in inputs])
+    if not physics.mutual_pF:
+        told = zip(charge_C.T, capacitance, conductance, strict=True)
+        return np.array([leaky_integral(time_s, np.ascontiguousarray(q), c, _resistance(g)) for q, c, g in told])
+    rate, shape = eigh(np.diag(conductance), np.diag(capacitance) + mutual_F(physics.mutual_pF, len(inputs)))
+    driven = np.ascontiguousarray((charge_C @ shape).T)
+    modes = [leaky_integral(time_s, own, 1.0, _resistance(a)) for own, a in zip(driven, rate, strict=True)]
+    return np.asarray(shape @ np.array(modes))
+
+
+def mutual_F(mutual_pF: Mapping[tuple[int, int], float], channels: int) -> Floats:
+    """What capacitances between channels, numbered from 1, add to the matrix (e, e). ValueError for one that is not."""
+    added = np.zeros((channels, channels))
+    for (one, other), value in mutual_pF.items():
+        if max(one, other) > channels:
+            raise ValueError(f"there is no channel {max(one, other)}: there are {channels}")
+        way = np.zeros(channels)
+        way[one - 1], way[other - 1] = 1.0, -1.0
+        added += 1e-12 * value * np.outer(way, way)
+    return added
+
+
+def _resistance(conductance: float) -> float:
+    """Infinite for none; round-off makes no resistance negative."""
+    return 1.0 / conductance if conductance > 0.0 else np.inf
