@@ -97,13 +97,15 @@ def rival_rates(records: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
 
 
 def _of_rival(name: str, records: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    asked = [r for r in records if name in r["rivals"]]
+
     def rate(kinds: tuple[str, ...], least: float, holds: Any) -> dict[str, Any]:
-        inside = [r for r in records if r["truth"]["kind"] in kinds and r["truth"]["whitened_rms"] >= least]
+        inside = [r for r in asked if r["truth"]["kind"] in kinds and r["truth"]["whitened_rms"] >= least]
         return counted(inside, lambda r: holds(r["rivals"][name], r))
 
     clear = [
         r["rivals"][name]["after"]
-        for r in records
+        for r in asked
         if r["truth"]["kind"] == SINGLE and r["truth"]["whitened_rms"] >= CLEAR
     ]
     return {

@@ -15,6 +15,7 @@ import numpy as np
 
 from diagnose.engines.segment import full
 from diagnose.engines.segment.answer import Drive, FilmPlate, Mechanics, drive_of, mechanics, shown
+from diagnose.engines.segment.declared import always_on, readout_behind, without_path
 from diagnose.engines.segment.path import with_history
 from diagnose.engines.segment.prepared import ZERO, Prepared, nuisance
 from diagnose.engines.segment.stands import Stands
@@ -38,11 +39,6 @@ def refuse(model: Model, recording: Recording) -> None:
     film, physics = model.materials["film"], model.physics
     if isinstance(film, PiezoelectricFilm) and film.coupling == "two-way":
         raise InputError("coupling = 'two-way': a diagnosis needs a film whose voltage does not act back")
-    for one in model.mechanisms:
-        if one.traits.path_dependent and not one.is_off:
-            raise InputError(
-                f"mechanisms: '{one.name}' is a candidate of a diagnosis and cannot be declared; leave it out"
-            )
     if physics.viscosity and physics.prestretch != (0.0, 0.0):
         raise InputError("mechanisms: a diagnosis accepts declared viscoelasticity or film-prestretch, but not both")
     for run in recording.runs:
@@ -110,13 +106,16 @@ class SegmentEngine:
 
     def __init__(self, model: Model, mesh_settings: MeshSettings, recording: Recording, report: Report) -> None:
         refuse(model, recording)
-        self.model, self.recording = model, recording
+        self.declared = always_on(model)
+        self.model, self.recording = without_path(model), recording
         self.drives = [drive_of(*pair) for pair in zip(recording.runs, recording.phases, strict=True)]
-        self.stands = Stands(model, mesh_settings, recording, report)
+        self.stands = Stands(self.model, mesh_settings, recording, report)
+        self.stands.add([setting.candidate for setting in self.declared], report)
         self.accuracy = self.stands.accuracy
         self._last: tuple[Asked, ResponseTable] | None = None
+        stated = {setting.candidate.name for setting in self.declared}
         self.candidates: tuple[Candidate, ...] = tuple(
-            with_derived(c, self.prepared) for c in candidates_of_segment(self.scene)
+            with_derived(c, self.prepared) for c in candidates_of_segment(self.scene) if c.name not in stated
         )
 
     @property
@@ -181,7 +180,7 @@ class SegmentEngine:
         ahead_s: float,
     ) -> Signals:
         """Named channels of a run."""
-        settings = [setting for setting in settings if any(setting.values)]
+        settings = [*self.declared, *(setting for setting in settings if any(setting.values))]
         direct = [s.candidate.switched_on(s.values) for s in settings if s.candidate.traits.acts_on_tables]
         on = with_mechanisms(replace(self.model, readout=self._readout(run)), direct)
         values = self._driven(drive, on, settings)
@@ -194,7 +193,8 @@ class SegmentEngine:
         asked, drive = self.recording.runs[run], self.drives[run]
         base, beside = self.stands.at(asked.dot_offset_mm)
         believed = replace(base.moved(beside), readout=self._readout(asked))
-        on = with_mechanisms(believed, mechanisms)
+        stated = [setting.candidate.switched_on(setting.values) for setting in self.declared]
+        on = with_mechanisms(believed, [*stated, *mechanisms])
         elastic, values = replace(on, physics=replace(on.physics, viscosity={})), self._driven(drive, on, ())
 
         def shape(fit: ResponseTable) -> full.Shape:
@@ -205,7 +205,7 @@ class SegmentEngine:
         return full.solve(task, report)
 
     def _readout(self, run: Run) -> Readout | None:
-        return run.readout if run.readout is not None else self.model.readout
+        return readout_behind(self.model, run.readout)
 
     def _driven(self, drive: Drive, on: Model, settings: Sequence[Setting]) -> Floats:
         """The drive (t,) from the first touch of a model, in mm, or in N."""

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from diagnose.prove import rivals
+from diagnose.prove.localised import _taken_in
 from diagnose.prove.world import reality
 from diagnose.prove.world.bench import CLAMPED
 from diagnose.prove.world.cases import _noisy
@@ -41,6 +42,25 @@ def test_a_leak_is_what_the_stubborn_one_is_right_about():
     assert said["gaussian process"].detected
     assert said["gaussian process"].named is None
     assert said["always leakage"].after == pytest.approx(1.0, abs=0.05)
+
+
+def test_local_terms_are_taken_in_only_where_there_is_something():
+    none = rivals.opinions(CLAMPED.name, recorded())["localised sparse regression"]
+    assert (none.detected, none.named) == (False, None)
+    runs = recorded()
+    stiff = [{**run, "force_N": run["force_N"] + 200.0 * run["displacement_mm"].clip(0.0) ** 3} for run in runs]
+    said = rivals.opinions(CLAMPED.name, stiff)["localised sparse regression"]
+    assert said.named == ("hyperelastic-stiffening", "medium1")
+    assert said.after == pytest.approx(1.0, abs=0.05)
+
+
+def test_forward_selection_takes_the_true_column_and_its_squares():
+    """Of orthonormal columns each takes the square of its own weight; noise of one takes none in."""
+    random = np.random.default_rng(4)
+    columns = np.linalg.qr(random.standard_normal((400, 6)))[0]
+    found = _taken_in(columns, 30.0 * columns[:, 2] - 20.0 * columns[:, 5] + random.standard_normal(400))
+    assert list(found) == [2, 5]
+    assert found[2] == pytest.approx(900.0, rel=0.2)
 
 
 @pytest.mark.skipif(find_spec("pysindy") is None, reason="pysindy is not installed")

@@ -1,0 +1,43 @@
+"""What rig.toml states of the physics, on top of the tables of a press that keeps to one path.
+
+Friction, softening and yield are pressed as they are for a candidate, against the same segment without them: each is a
+candidate with one value, 1, which is always on. What acts on the read-out acts on that of every run, as runs may state
+amplifiers of their own.
+"""
+
+from dataclasses import replace
+
+from diagnose.forward import Candidate, Coordinate, Setting
+from solve.mechanisms import Mechanism, with_mechanisms
+from solve.model import Model, Readout
+
+STATED = Coordinate("stated", 0.0, 1.0, (1.0,), nodes=(1.0,))
+
+
+def path_dependent(model: Model) -> tuple[Mechanism, ...]:
+    """Those of a model that depend on the path."""
+    return tuple(one for one in model.mechanisms if one.traits.path_dependent and not one.is_off)
+
+
+def without_path(model: Model) -> Model:
+    """The model without them."""
+    declared = path_dependent(model)
+    physics = replace(model.physics, friction=0.0, softening={}, film_yield=None)
+    return replace(model, physics=physics, mechanisms=tuple(one for one in model.mechanisms if one not in declared))
+
+
+def always_on(model: Model) -> tuple[Setting, ...]:
+    """The same as settings."""
+    return tuple(Setting(_stated(one), (1.0,)) for one in path_dependent(model))
+
+
+def _stated(mechanism: Mechanism) -> Candidate:
+    return Candidate(mechanism.name, mechanism.component, (STATED,), lambda _: dict(mechanism.parameters))
+
+
+def readout_behind(model: Model, readout: Readout | None) -> Readout | None:
+    """The read-out of a run with what the model's mechanisms make of it; None: the model's own."""
+    if readout is None:
+        return model.readout
+    electrical = [one for one in model.mechanisms if one.traits.electrical]
+    return with_mechanisms(replace(model, readout=readout), electrical).readout

@@ -1,0 +1,76 @@
+"""What rig.toml states acts as the same physics does that a diagnosis found, so that improved.toml is believed."""
+
+import tomllib
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import tomlkit
+
+from diagnose.forward import Setting
+from diagnose.signals.recording import Recording
+from softdot.commands.diagnose import engine_for
+from softdot.commands.verdict_page import improved_text
+from softdot.config import config_from
+from softdot.config.rig import RIG_FILE, Bench, Rig
+from tests.diagnose.segment import rigs
+
+TABLES = {
+    **rigs.TABLES,
+    "mesh": {"element_size_mm": 0.9, "contact_element_size_mm": 0.35},
+    "readout": {"input_resistance_MOhm": 1000.0, "input_capacitance_pF": 100.0},
+}
+
+
+def runs():
+    """Two presses behind the amplifier of TABLES, of other depths and speeds."""
+    shallow = rigs.press(np.arange(0.0, 1.6, 0.002), depth_mm=0.15, rise_s=0.1, hold_s=0.6)
+    return rigs.run(label="deep"), rigs.run(values=shallow, label="shallow")
+
+
+def rig(folder, tables):
+    (folder / RIG_FILE).write_text(tomlkit.dumps(tables), "utf-8")
+    return Rig(folder, tables, config_from(tables), Bench(), Recording(runs()))
+
+
+def improved(folder, of, setting):
+    """The engine of the rig that improved.toml describes once this setting was named."""
+    named = SimpleNamespace(best=SimpleNamespace(settings=(setting,)))
+    tables = tomllib.loads(improved_text(rig(folder, TABLES), of, named))
+    del tables["press"]
+    return engine_for(rig(folder, tables), rigs.silent)
+
+
+@pytest.fixture(scope="module")
+def believed(tmp_path_factory):
+    """The engine of the rig without any of it."""
+    return engine_for(rig(tmp_path_factory.mktemp("believed"), TABLES), rigs.silent)
+
+
+STATED = {
+    "a leak": ("charge-leakage", "readout"),
+    "the capacitance of a cable": ("parasitic-capacitance", "readout"),
+    "a low-pass": ("low-pass", "readout"),
+    "friction": ("friction", "dot"),
+    "a medium that softens": ("stress-softening", "medium2"),
+}
+
+
+@pytest.mark.parametrize(("mechanism", "component"), STATED.values(), ids=STATED)
+def test_what_was_found_and_what_is_stated_give_the_same_signals(believed, tmp_path, mechanism, component):
+    """At a value that was pressed, so that nothing is interpolated."""
+    chosen = rigs.candidate(believed, mechanism, component)
+    believed.prepare([chosen], rigs.silent)
+    found = Setting(chosen, tuple(one.nodes[-1] if one.nodes else one.starts[0] for one in chosen.coordinates))
+    stated = improved(tmp_path, believed, found)
+    for number in range(2):
+        without, one, other = (of.predict(number, on) for of, on in ((believed, []), (believed, [found]), (stated, [])))
+        for name, signal in one.items():
+            assert np.abs(other[name] - signal).max() < 1e-4 * np.abs(signal).max()
+        assert any(np.abs(one[name] - without[name]).max() > 0.02 * np.abs(without[name]).max() for name in one)
+
+
+def test_what_is_stated_is_no_candidate_too(tmp_path):
+    tables = {**TABLES, "mechanisms": [{"name": "friction", "component": "dot", "parameters": {"coefficient": 0.5}}]}
+    stated = engine_for(rig(tmp_path, tables), rigs.silent)
+    assert not any(candidate.mechanism == "friction" for candidate in stated.candidates)
