@@ -47,13 +47,15 @@ def run_reading_study(
     config: Config | None = None,
     workers: int | None = None,
     progress: Progress | None = None,
+    scheduler: str | None = None,
 ) -> dict[str, Any]:
     """Read under all conditions of a study into the folder out and return what reading_study.json says. InputError.
 
-    Readings of an earlier study in out are not made again.
+    On one process per core, as many as workers, or on the Dask cluster of a scheduler, whose workers find the kernel
+    under the same path. Readings of an earlier study in out are not made again.
     """
     from geometry.files import hold
-    from softdot.sweeps.cluster import local_cluster
+    from softdot.sweeps.cluster import existing_cluster, local_cluster
 
     progress = progress or Logged()
     kernel = opened_kernel(kernel_folder, config)
@@ -67,7 +69,7 @@ def run_reading_study(
         if not (place / STUDY.summary).exists():
             write_json(place / STUDY.summary, {"format": STUDY.format, "complete": False})
         work = _Work(study, kernel_folder, place / FOLDER, readout_of(kernel, config).model_dump_json(), progress)
-        with local_cluster(workers) as client:
+        with local_cluster(workers) if scheduler is None else existing_cluster(scheduler) as client:
             progress.stage("read")
             work.done(client, points(study))
             while following := work.following():

@@ -30,8 +30,8 @@ from softdot.reading.kernels import checked_kernel, readout_of
 from softdot.reading.motion import near
 from softdot.reading.score import scores
 
-COARSE = KernelDetail(coarser=3.0, steps=3, per_pitch=3)
-"""24 presses for a cell of six. docs/design_by_reading.md says how far it is from the usual kernel."""
+COARSE = KernelDetail(coarser=4.0, steps=3, per_pitch=2)
+"""20 presses for a cell of six. docs/design_by_reading.md says how far it is from the usual kernel."""
 SHALLOWEST, HALVINGS = 0.1, 5
 """Of the deepest depth; the least one is then known to 8 %."""
 EVERY = 5
@@ -78,7 +78,7 @@ def design_record(task: DesignTask) -> dict[str, Any]:
 
 
 def _failed(status: str, reason: str, begun: float) -> dict[str, Any]:
-    nothing = {"readings": [], "least": None, "seconds": time.perf_counter() - begun}
+    nothing: dict[str, Any] = {"readings": [], "least": None, "seconds": time.perf_counter() - begun}
     return {"status": status, "reason": " ".join(reason.split()), **nothing}
 
 

@@ -103,9 +103,8 @@ def front(designs: list[dict[str, Any]]) -> list[bool]:
 
 def design_row(design: dict[str, Any]) -> dict[str, Any]:
     """One row of designs.csv: what it is, how it ended, and the reading with the least force."""
-    least = {key: value for key, value in (design["least"] or {}).items()}
     told = ("status", "reason", "compared", "best", "front", "seconds", "config_hash")
-    return {"name": design["name"], **design["values"], **{key: design[key] for key in told}, **least}
+    return {"name": design["name"], **design["values"], **{key: design[key] for key in told}, **(design["least"] or {})}
 
 
 def reading_rows(designs: list[dict[str, Any]]) -> list[dict[str, Any]]:

@@ -8,8 +8,6 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from geometry.base import InputError
 from geometry.cache import read_checked, source_hash, write_checked
 from geometry.files import hold, release
@@ -45,8 +43,7 @@ class AskedReading:
     conditions: ReadingConditions
 
     def __post_init__(self) -> None:
-        """InputError for a depth or force, which the search finds, and for presses, whose force changes all the time.
-        """
+        """InputError for a depth or force, which the search finds, and for presses, whose force is no steady one."""
         for name in ("depth_mm", "force_N"):
             if getattr(self.conditions, name) is not None:
                 option = f"--{name.replace('_', '-')}"

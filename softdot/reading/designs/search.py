@@ -41,7 +41,8 @@ def propose(
     gain = np.ones(len(pool))
     if len(read) >= FEWEST:
         gain = expected_gain(axes, known, forces_N, np.array([_shares(axes, row) for row in pool]))
-    places, chosen = _features(axes, known), []
+    places = _features(axes, known)
+    chosen: list[tuple[Any, ...]] = []
     for number in np.argsort(-gain, kind="stable"):
         place = _features(axes, np.array([_shares(axes, pool[number])]))
         if len(chosen) < count and np.linalg.norm(places - place, axis=1).min() > APART:
@@ -92,9 +93,7 @@ def _features(axes: Sequence[Axis], shares: Floats) -> Floats:
     return np.hstack(columns)
 
 
-def expected_gain(
-    axes: Sequence[Axis], known: Floats, forces_N: Sequence[float | None], wanted: Floats
-) -> Floats:
+def expected_gain(axes: Sequence[Axis], known: Floats, forces_N: Sequence[float | None], wanted: Floats) -> Floats:
     """Expected improvement (m,) of the logarithm of the least force at shares wanted (m, d) by that at known (n, d)."""
     from sklearn.exceptions import ConvergenceWarning
     from sklearn.gaussian_process import GaussianProcessRegressor
@@ -122,4 +121,4 @@ def pareto(values: Floats) -> Bools:
     """
     no_more = (values[:, None] <= values[None]).all(axis=2)
     less = (values[:, None] < values[None]).any(axis=2)
-    return ~(no_more & less).any(axis=0)
+    return np.asarray(~(no_more & less).any(axis=0))
