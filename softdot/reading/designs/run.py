@@ -157,7 +157,7 @@ class DesignWork:
         self._progress.step(len(self.found.records), count, "")
         tasks = {name: (self._task(one),) for name, one in missing.items()}
         for name, record in all_ended(self._client, design_record, tasks, AWAY):
-            whole = {"readings": [], "least": None, **record}  # of a worker that died there is a reason alone
+            whole = {"readings": [], "least": None, "seconds": None, **record}  # a worker that died tells nothing
             self.found.records[name] = self._keep(missing[name], whole)
             self._progress.step(len(self.found.records), count, _in_short(name, whole))
 
