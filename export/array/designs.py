@@ -47,10 +47,18 @@ def draw_designs(designs: Sequence[Mapping[str, Any]], accuracy: float, path: Pa
         axes.set_title(title, fontsize=12, color=INK)
         axes.grid(alpha=0.3, which="both")
         axes.spines[["top", "right"]].set_visible(False)
-        axes.xaxis.set_major_formatter("{x:g}")
-    trade.yaxis.set_major_formatter("{x:g}")
-    trade.legend(fontsize=9, frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2)
+        _plain(axes.xaxis)
+    _plain(trade.yaxis)
+    figure.legend(*trade.get_legend_handles_labels(), fontsize=9.5, frameon=False, loc="outside lower center", ncols=3)
     save(figure, path)
+
+
+def _plain(axis: Any) -> None:
+    """Plain numbers, between powers of ten too where the axis is short."""
+    from matplotlib.ticker import LogFormatter
+
+    axis.set_major_formatter("{x:g}")
+    axis.set_minor_formatter(LogFormatter(labelOnlyBase=False, minor_thresholds=(2, 0.6)))
 
 
 def _styles(designs: Sequence[Mapping[str, Any]]) -> dict[str, dict[str, Any]]:
