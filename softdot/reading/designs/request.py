@@ -49,7 +49,7 @@ class DesignSearch(Table):
         return self
 
 
-class _File(Table):
+class _SearchFile(Table):
     search: DesignSearch = DesignSearch()
 
 
@@ -130,9 +130,9 @@ def load_request(path: Path, settings: Sequence[str] = ()) -> DesignRequest:
 def _search(tables: Mapping[str, Any]) -> DesignSearch:
     own = {"search": tables.get("search", {})}
     try:
-        return _File.model_validate_json(json.dumps(own, default=str), strict=True).search
+        return _SearchFile.model_validate_json(json.dumps(own, default=str), strict=True).search
     except ValidationError as error:
-        raise InputError(sentence(error, own, _File)) from None
+        raise InputError(sentence(error, own, _SearchFile)) from None
 
 
 def _compared(base: Mapping[str, Any], number: int, one: ComparedDesign) -> TriedDesign:
