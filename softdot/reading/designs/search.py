@@ -15,7 +15,7 @@ from scipy.stats import norm, qmc
 from geometry.arrays import Bools, Floats
 from softdot.sweeps.space import Axis, at, share_of
 
-FEWEST = 4
+FEWEST = 3
 """Designs that read, below which the next ones fill the space instead."""
 WORSE = 1.5
 """What a design that does not read, or cannot be solved, counts as: so many times the largest force of all."""

@@ -274,7 +274,7 @@ def test_a_press_that_stops_is_told(monkeypatch):
         ("accuracy = 0.99", "accuracy = 1.5", "search.accuracy = 1.5"),
         ("paper's final design, rim between", "paper's final design, free", "search.compared"),
         ('"segment.side_stiffness_N_per_mm3" = 75.0', '"segment.side_stifness" = 75.0', "search.compared[1]"),
-        ("indentation_mm = 0.3", "force_N = 0.3", "press.force_N = 0.3: a kernel is a table over depth"),
+        ("indentation_mm = 0.3", "force_N = 0.3", "press.force_N = 0.3: give either"),
     ],
 )
 def test_bad_designs_are_one_sentence(tmp_path, capfd, old, new, sentence):
