@@ -1,5 +1,7 @@
 """The coarse kernel of the search for designs beside presses that softdot array --kernel makes: at every EVERY-th of
-its places, on its mesh, python -m benchmarks.design_kernel CONFIG.toml OUT.json EVERY
+its places, on its mesh.
+
+    python -m benchmarks.design_kernel CONFIG.toml OUT.json EVERY [KEY=VALUE ...]
 
 The difference of force and of each segment's charge is told at each load step, in percent of the force and of the
 largest charge of that step; places beyond those of the coarse kernel are left to its interpolation.
@@ -34,9 +36,9 @@ def differences(kernel: ArrayKernel, task: KernelTask, press: KernelPress) -> di
     }
 
 
-def main(config: str, out: str, every: str) -> None:
+def main(config: str, out: str, every: str, *settings: str) -> None:
     """Press, compare, and write OUT.json with the root mean squares at each load step."""
-    case = ArrayCase(load_config(config))
+    case = ArrayCase(load_config(config, settings))
     kernel = coarse_kernel(case.config)
     rows = []
     for task in list(grid_of(case).tasks().values())[:: int(every)]:
@@ -44,7 +46,7 @@ def main(config: str, out: str, every: str) -> None:
         print(rows[-1], flush=True)
     names = ("force_percent", "charge_percent")
     rms = {name: np.sqrt(np.mean(np.square([row[name] for row in rows]), axis=0)).tolist() for name in names}
-    Path(out).write_text(json.dumps({"config": config, "rms": rms, "places": rows}, indent=1), "utf-8")
+    Path(out).write_text(json.dumps({"config": config, "settings": settings, "rms": rms, "places": rows}, indent=1), "utf-8")
     print(rms)
 
 
