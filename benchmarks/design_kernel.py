@@ -46,7 +46,9 @@ def main(config: str, out: str, every: str, *settings: str) -> None:
         print(rows[-1], flush=True)
     names = ("force_percent", "charge_percent")
     rms = {name: np.sqrt(np.mean(np.square([row[name] for row in rows]), axis=0)).tolist() for name in names}
-    Path(out).write_text(json.dumps({"config": config, "settings": settings, "rms": rms, "places": rows}, indent=1), "utf-8")
+    Path(out).write_text(
+        json.dumps({"config": config, "settings": settings, "rms": rms, "places": rows}, indent=1), "utf-8"
+    )
     print(rms)
 
 

@@ -54,11 +54,12 @@ def draw_designs(designs: Sequence[Mapping[str, Any]], accuracy: float, path: Pa
 
 
 def _plain(axis: Any) -> None:
-    """Plain numbers, between powers of ten too where the axis is short."""
-    from matplotlib.ticker import LogFormatter
+    """Plain numbers, three to a power of ten."""
+    from matplotlib.ticker import LogLocator, NullFormatter
 
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axis.set_major_formatter("{x:g}")
-    axis.set_minor_formatter(LogFormatter(labelOnlyBase=False, minor_thresholds=(2, 0.6)))
+    axis.set_minor_formatter(NullFormatter())
 
 
 def _styles(designs: Sequence[Mapping[str, Any]]) -> dict[str, dict[str, Any]]:
