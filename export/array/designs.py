@@ -125,7 +125,7 @@ def write_designs_page(path: Path, summary: Mapping[str, Any], picture: Path) ->
         read=[(one, _cells(one["least"])) for one in _by_force(summary["designs"])],
         silent=[one for one in summary["designs"] if one["status"] == "solved" and one["least"] is None],
         failed=[one for one in summary["designs"] if one["status"] != "solved"],
-        number=number,
+        worded=worded,
         picture=base64.b64encode(picture.read_bytes()).decode("ascii"),
     )  # fmt: skip
     write_whole_text(path, page)
@@ -137,4 +137,18 @@ def _by_force(designs: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
 
 
 def _cells(least: Mapping[str, Any]) -> list[str]:
-    return [f"{scale * least[key]:.3g}" if scale != 100.0 else f"{scale * least[key]:.2f}" for key, _, scale in COLUMNS]
+    numbers = [(scale * least[key], scale == 100.0) for key, _, scale in COLUMNS]
+    return [f"{value:.2f}" if share else number(value, 3) for value, share in numbers]
+
+
+def worded(value: Any) -> str:
+    """A value of an axis for people: tables and lists without brackets.
+
+    >>> worded({"shape": "layer", "height_mm": 0.4})
+    'shape layer, height_mm 0.4'
+    """
+    if isinstance(value, Mapping):
+        return ", ".join(f"{key} {worded(inner)}" for key, inner in value.items())
+    if isinstance(value, list | tuple):
+        return " + ".join(f"({worded(one)})" if isinstance(one, Mapping) else worded(one) for one in value) or "none"
+    return str(number(value)) if isinstance(value, int | float) else str(value)

@@ -20,7 +20,7 @@ import numpy as np
 from geometry.base import InputError
 from geometry.cache import read_checked, source_hash, write_checked
 from softdot.arrays.kernel import JSON, NPZ, ArrayKernel
-from softdot.console import Logged
+from softdot.console import Untold
 from softdot.reading.cells import cells_of, text_of
 from softdot.reading.conditions import BOUNDS, ReadingConditions, standard_of
 from softdot.reading.decoders import named_decoders
@@ -183,7 +183,7 @@ def read_task(task: StudyTask) -> dict[str, Any]:
     try:
         kernel, cells = _kernel(task.folder), cells_of(task.text, task.table)
         readout, names = Readout.model_validate_json(task.readout), named_decoders(task.decoder)
-        reading = read_line(kernel, readout, task.conditions, names, _Silent(), cells)
+        reading = read_line(kernel, readout, task.conditions, names, Untold(), cells)
     except NoDotError:
         nothing = {"right": 0, "of": len(text_of(cells, task.table)), "accuracy": dict.fromkeys(RATES, 0.0)}
         return {"status": "read", "reason": None, **nothing, "text_read": "", "decoders": dict.fromkeys(names, nothing)}
@@ -199,16 +199,6 @@ def _numbers(told: Mapping[str, Any]) -> dict[str, Any]:
     """Of one decoder: characters that were right, of how many, and all rates."""
     counts = {name: told["character_accuracy"][name] for name in ("right", "of")}
     return {**counts, "accuracy": {name: told[f"{name}_accuracy"]["value"] for name in RATES}}
-
-
-class _Silent(Logged):
-    """Tells nothing: a study tells how many readings are done."""
-
-    def stage(self, name: str) -> None:
-        """Nothing."""
-
-    def step(self, number: int, count: int, text: str) -> None:
-        """Nothing."""
 
 
 def kept(folder: Path, key: str) -> dict[str, Any] | None:

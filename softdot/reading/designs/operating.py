@@ -21,7 +21,7 @@ from softdot.arrays.kernel import ArrayKernel
 from softdot.arrays.kernel_errors import with_about
 from softdot.arrays.kernel_presses import KernelDetail, KernelPress, filled, grid_of, pressed, recalled
 from softdot.config import Config, config_hash
-from softdot.console import Logged, installed_version
+from softdot.console import Untold, installed_version
 from softdot.reading.cells import cells_of, text_of
 from softdot.reading.conditions import ReadingConditions
 from softdot.reading.decoders.track import NoDotError
@@ -141,7 +141,7 @@ def reading_at(kernel: ArrayKernel, task: DesignTask, depth_mm: float) -> dict[s
         conditions = replace(task.conditions, depth_mm=depth_mm, seed=task.conditions.seed + number)
         of += length
         try:
-            reading = read_line(kernel, readout_of(kernel, None), conditions, [task.decoder], _Untold(), cells)
+            reading = read_line(kernel, readout_of(kernel, None), conditions, [task.decoder], Untold(), cells)
         except NoDotError:  # nothing stands out of the noise
             break
         right += scores(cells, reading.first.cells, task.table)["character_accuracy"]["right"]
@@ -161,16 +161,6 @@ def reading_at(kernel: ArrayKernel, task: DesignTask, depth_mm: float) -> dict[s
         "peak_force_N": None if force is None else float(force.max()),
         "crosstalk_percent": crosstalk_percent(kernel, depth_mm),
     }
-
-
-class _Untold(Logged):
-    """Tells nothing: a search tells how many designs are done."""
-
-    def stage(self, name: str) -> None:
-        """Nothing."""
-
-    def step(self, number: int, count: int, text: str) -> None:
-        """Nothing."""
 
 
 def forces_N(kernel: ArrayKernel, reading: LineReading) -> Floats:

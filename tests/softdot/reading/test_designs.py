@@ -10,6 +10,7 @@ from geometry.base import InputError
 from softdot.arrays.case import ArrayCase
 from softdot.cli import main
 from softdot.config import config_hash, load_config
+from softdot.console import Untold
 from softdot.reading.conditions import ReadingConditions
 from softdot.reading.designs import operating
 from softdot.reading.designs.operating import DesignTask, crosstalk_percent, depths, design_record, reading_at
@@ -33,9 +34,7 @@ def task(text="dots", **changed):
 
 def better(one, other):
     """By definition: as small in all, and smaller in one."""
-    return all(a <= b for a, b in zip(one, other, strict=True)) and any(
-        a < b for a, b in zip(one, other, strict=True)
-    )
+    return all(a <= b for a, b in zip(one, other, strict=True)) and any(a < b for a, b in zip(one, other, strict=True))
 
 
 @pytest.mark.parametrize("columns", [2, 3])
@@ -188,7 +187,7 @@ class Workers:
 def search_with(workers, request, folder, monkeypatch):
     monkeypatch.setattr("softdot.sweeps.points.all_ended", workers.all_ended)
     folder.mkdir(exist_ok=True)
-    return searched(DesignWork(request, ASKED, folder, None, operating._Untold()))
+    return searched(DesignWork(request, ASKED, folder, None, Untold()))
 
 
 def test_a_kernel_that_fails_is_recorded_and_stops_no_other(tmp_path, monkeypatch):
@@ -331,7 +330,7 @@ def test_designs_are_pressed_read_and_kept(tmp_path):
     text = text.replace("[mesh]\nelement_size_mm = 0.5\ncontact_element_size_mm = 0.15\n", TINY.lstrip())
     for old, new in (("points = 4", "points = 1"), ("rounds = 2", "rounds = 0"), ("repeats = 2", "repeats = 1")):
         text = text.replace(old, new)
-    cut = text.index('[[search.compared]]\nname = "paper\'s final design, rim')
+    cut = text.index("[[search.compared]]\nname = \"paper's final design, rim")
     path, out = tmp_path / "designs.toml", tmp_path / "out"
     path.write_text(text[:cut], "utf-8")
     command = ["read", "soft dots, read by touch", "--design", str(path), "--workers", "1", "-q", "-o", str(out)]
