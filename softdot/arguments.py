@@ -256,7 +256,9 @@ def _add_read(commands: Any) -> None:
     read.add_argument("text", nargs="?", help="the text, or Unicode Braille cells; may be left out with --recording")
     read.add_argument("config", nargs="?", metavar="CONFIG.toml", help="the design of the kernel, with its [readout]")
     _add_set(read)
-    read.add_argument("--kernel", required=True, metavar="FOLDER", help="with kernel.npz and kernel.json")
+    read.add_argument(
+        "--kernel", metavar="FOLDER", help="with kernel.npz and kernel.json; must be given but with --design"
+    )
     read.add_argument("--standard", metavar="NAME", help="a Braille standard of the kernel's pitch; default: its own")
     read.add_argument("--table", metavar="TABLE", help="translate with this table of liblouis, such as en-ueb-g2.ctb")
     read.add_argument("--mode", choices=("slide", "press"), help="slide along the line, or press cell by cell")
@@ -272,7 +274,11 @@ def _add_read(commands: Any) -> None:
     read.add_argument("--recording", metavar="FILE.csv", help="decode these voltages: time_s, voltage_1_V, ...")
     read.add_argument("--study", action="store_true", help="how far conditions may go before reading fails")
     read.add_argument("--conditions", metavar="FILE.toml", help="a study of these conditions")
-    read.add_argument("--workers", type=int, metavar="N", help="processes of a study; one per core by default")
+    read.add_argument("--design", metavar="DESIGNS.toml", help="search for the array that reads with the least force")
+    read.add_argument(
+        "--workers", type=int, metavar="N", help="processes of a study or search; one per core by default"
+    )
+    read.add_argument("--scheduler", metavar="ADDRESS", help="an existing Dask scheduler, tcp://host:8786, for these")
     _add_output(read)
 
 

@@ -209,6 +209,16 @@ class Logged:
             LOG.info("%s %d of %d%s", self._name, number, count, f": {text}" if text else "")
 
 
+class Untold(Logged):
+    """Tells nothing: of many jobs one tells how many are done."""
+
+    def stage(self, name: str) -> None:
+        """Nothing."""
+
+    def step(self, number: int, count: int, text: str) -> None:
+        """Nothing."""
+
+
 @contextmanager
 def progress_of(chosen: Namespace) -> Iterator[Progress]:
     """Bars where standard error is a terminal and --quiet was not given, else lines alone."""

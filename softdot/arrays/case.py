@@ -11,6 +11,7 @@ import numpy as np
 
 from geometry.array.checks import check_array
 from geometry.array.layout import ArrayLayout, SegmentPlace, array_layout
+from geometry.arrays import Floats
 from geometry.base import InputError
 from geometry.braille import COLUMN_AND_ROW, dot_offset_mm, dot_standard, raised_dots
 from geometry.checks import check_press_depth, check_pushed_dot, check_segment, press_warnings
@@ -22,7 +23,7 @@ from mesh.types import Planes, TetMesh
 from softdot.checks import Cost, cost_of, design_warnings, held_rim_warnings, refuse_many_elements
 from softdot.config import Config
 from softdot.config.model import model_of
-from solve.materials.film import film_law
+from solve.materials.film import FilmLaw, film_law
 from solve.materials.parameters import PiezoelectricFilm
 from solve.model import Model
 from solve.symmetry import meshed_planes, mirrored_dot, mirrored_law
@@ -153,6 +154,21 @@ class ArrayCase:
         return row * columns + column if column < columns and row < rows else None
 
     @cached_property
+    def _film_law(self) -> FilmLaw:
+        """Of the film in the axes of the array. InputError."""
+        film = self.press_over(self.layout.places[0]).model.materials["film"]
+        assert isinstance(film, PiezoelectricFilm)
+        return film_law(film, self.config.segment.film.draw_angle_deg)
+
+    @property
+    def capacitance_pF(self) -> Floats:
+        """eps A / t of each segment's electrode, (n,). InputError."""
+        length, width = (1e-3 * (size - 2.0 * self.array.electrode_margin_mm) for size in self.layout.size_mm)
+        thickness = 1e-6 * self.config.segment.film.thickness_um
+        one = 1e12 * self._film_law.permittivity * length * width / thickness
+        return np.full(len(self.layout.places), one)
+
+    @cached_property
     def mirrors(self) -> Planes:
         """Axes along which a press of a segment has that of the mirrored segment as its image; none where channels of
         the amplifiers differ.
@@ -160,12 +176,9 @@ class ArrayCase:
         press = self.press_over(self.layout.places[0])
         if press.model.physics.crosstalk:
             return ()
-        film = press.model.materials["film"]
-        assert isinstance(film, PiezoelectricFilm)
-        law = film_law(film, self.config.segment.film.draw_angle_deg)
         place = self.layout.places[0]
         at_origin = replace(press.dot, origin_mm=press.dot.origin_mm - [place.x_mm, place.y_mm, 0.0])
-        return tuple(axis for axis in (0, 1) if mirrored_law(law, axis) and mirrored_dot(at_origin, axis))
+        return tuple(axis for axis in (0, 1) if mirrored_law(self._film_law, axis) and mirrored_dot(at_origin, axis))
 
     def images(self, number: int) -> list[int]:
         """Numbers of the segments whose presses are images of that of one, itself first."""

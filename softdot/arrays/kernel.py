@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 from zipfile import BadZipFile
 
+import numba as nb
 import numpy as np
 
 from geometry.arrays import Bools, Floats, Ints
@@ -137,13 +138,30 @@ def load_kernel(folder: Path) -> ArrayKernel:
 def interpolated(axes: tuple[Floats, ...], table: Floats, at: list[Floats]) -> Floats:
     """Multilinear in the leading axes of a table, (m, ...) at m points; constant beyond the ends."""
     low, share = zip(*(_bracket(axis, place) for axis, place in zip(axes, at, strict=True)), strict=True)
-    extra = table.shape[len(axes) :]
-    result = np.zeros((len(at[0]), *extra))
-    for corner in np.ndindex(*(2,) * len(axes)):
-        weight = np.prod([s if up else 1.0 - s for s, up in zip(share, corner, strict=True)], axis=0)
-        index = tuple(one + up for one, up in zip(low, corner, strict=True))
-        result += weight.reshape(-1, *(1,) * len(extra)) * table[index]
-    return result
+    sizes, extra = table.shape[: len(axes)], table.shape[len(axes) :]
+    rows = np.ascontiguousarray(table.reshape(int(np.prod(sizes)), -1), dtype=np.float64)
+    apart = np.cumprod((1, *sizes[:0:-1]))[::-1]
+    result = np.zeros((len(at[0]), rows.shape[1]))
+    add_corners(rows, np.array(low), np.array(share), np.ascontiguousarray(apart), result)
+    return result.reshape(-1, *extra)
+
+
+@nb.njit(cache=True)
+def add_corners(rows, low, share, apart, result):  # type: ignore[no-untyped-def]
+    """Add to result (m, e) the corners of the box around each point, weighed by its shares (k, m) of the way.
+
+    rows (n, e) : the table, whose nodes along axis a are apart[a] rows apart; low (k, m) : numbers of the nodes below.
+    """
+    for point in range(low.shape[1]):
+        for corner in range(1 << low.shape[0]):
+            weight, row = 1.0, 0
+            for axis in range(low.shape[0]):
+                up = corner >> axis & 1
+                weight *= share[axis, point] if up else 1.0 - share[axis, point]
+                row += (low[axis, point] + up) * apart[axis]
+            if weight != 0.0:
+                for column in range(rows.shape[1]):
+                    result[point, column] += weight * rows[row, column]
 
 
 def _bracket(axis: Floats, place: Floats) -> tuple[Ints, Floats]:

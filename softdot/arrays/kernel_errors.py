@@ -156,7 +156,7 @@ def with_about(
             "base_diameter_mm": dot.base_diameter_mm,
         },
         "units": UNITS,
-        "kernel_error": worst(checks),
+        "kernel_error": worst(checks) if checks else None,
         "checks": [vars(one) for one in checks],
         **said,
     }

@@ -26,16 +26,24 @@ from softdot.config import Config, input_hash
 from solve.press import press_segment
 from solve.result import PressResult
 
-COARSER = 2.0
-"""Element sizes of the presses over the configured ones."""
-STEPS = 4
-"""Depths of each press at least."""
-PER_PITCH = 6
-"""Intervals of the grid from segment to segment."""
 FINE_MM, FINE_STEPS = 0.1, 20
 """Spacing of the table in x and y at most, and its intervals over the depth."""
 
 
+@dataclass(frozen=True)
+class KernelDetail:
+    """How fine a kernel is.
+
+    coarser : element sizes of its presses over the configured ones; steps : depths of each press at least; per_pitch :
+    intervals of the grid from segment to segment.
+    """
+
+    coarser: float = 2.0
+    steps: int = 4
+    per_pitch: int = 6
+
+
+USUAL_DETAIL = KernelDetail()
 KEPT = ("depth_mm", "force_N", "charge_pC", "sinking_mm")
 
 
@@ -72,15 +80,16 @@ class KernelTask:
         return ArrayPress(ArrayCase(self.config), self.config.dot)
 
 
-def by_one_dot(case: ArrayCase, x_mm: float, y_mm: float) -> Config:
+def by_one_dot(case: ArrayCase, x_mm: float, y_mm: float, detail: KernelDetail = USUAL_DETAIL) -> Config:
     """A press of the kernel: on a coarser mesh, by one dot at a place in the frame of the array."""
     config = case.config
-    sizes = {name: COARSER * getattr(config.mesh, name) for name in ("element_size_mm", "contact_element_size_mm")}
+    names = ("element_size_mm", "contact_element_size_mm")
+    sizes = {name: detail.coarser * getattr(config.mesh, name) for name in names}
     return config.model_copy(
         update={
             "dot": config.dot.lone(offset_mm=(x_mm, y_mm)),
             "mesh": config.mesh.model_copy(update=sizes),
-            "press": config.press.model_copy(update={"load_steps": max(STEPS, config.press.load_steps)}),
+            "press": config.press.model_copy(update={"load_steps": max(detail.steps, config.press.load_steps)}),
         }
     )
 
@@ -132,7 +141,7 @@ def sinking_mm(result: PressResult, step: int, nodes_mm: tuple[tuple[float, ...]
     return np.asarray(found.reshape([len(axis) for axis in nodes_mm]))
 
 
-def grid_mm(case: ArrayCase, axis: int) -> tuple[float, ...]:
+def grid_mm(case: ArrayCase, axis: int, per_pitch: int = USUAL_DETAIL.per_pitch) -> tuple[float, ...]:
     """Nodes along x or y: over the segments and the gaps between them to the rim, and as far beyond as a dot touches.
 
     Beyond the rim none is pressed: the edge under the dot gives way at once, and the walls below it touch too.
@@ -140,9 +149,9 @@ def grid_mm(case: ArrayCase, axis: int) -> tuple[float, ...]:
     middles = case.layout.centres(axis)
     edge, pitch = case.layout.half_mm[axis], case.layout.pitch_mm
     between = np.concatenate(
-        [np.linspace(a, b, 1 + round(PER_PITCH * (b - a) / pitch)) for a, b in pairwise(middles)] or [middles]
+        [np.linspace(a, b, 1 + round(per_pitch * (b - a) / pitch)) for a, b in pairwise(middles)] or [middles]
     )
-    outer = np.linspace(middles[-1], edge, 1 + max(2, round(PER_PITCH * (edge - middles[-1]) / pitch)))[1:]
+    outer = np.linspace(middles[-1], edge, 1 + max(2, round(per_pitch * (edge - middles[-1]) / pitch)))[1:]
     half = np.concatenate([between[between >= -1e-9], outer, [edge + reach_mm(case)]])
     return tuple(float(value) for value in np.unique(np.round(np.concatenate([-half, half]), 9) + 0.0))
 
@@ -159,10 +168,11 @@ GridNode = tuple[int, int]
 
 @dataclass(frozen=True)
 class KernelGrid:
-    """Where a kernel is pressed. nodes_mm : axes; mirrors : axes along which places are images of each other."""
+    """Where a kernel is pressed, and how finely. nodes_mm : axes."""
 
     case: ArrayCase
     nodes_mm: tuple[tuple[float, ...], tuple[float, ...]]
+    detail: KernelDetail
 
     def stands_for(self, index: GridNode) -> GridNode:
         """The node that is pressed for one, the last of its images."""
@@ -181,7 +191,7 @@ class KernelGrid:
         """The presses that are solved, by their nodes."""
         x, y = self.nodes_mm
         return {
-            (i, j): KernelTask(by_one_dot(self.case, x[i], y[j]), self.nodes_mm)
+            (i, j): KernelTask(by_one_dot(self.case, x[i], y[j], self.detail), self.nodes_mm)
             for i, j in dict.fromkeys(map(self.stands_for, self.all))
         }
 
@@ -196,9 +206,9 @@ class KernelGrid:
         return KernelPress(press.depth_mm, press.force_N, charge.reshape(len(charge), -1), sinking)
 
 
-def grid_of(case: ArrayCase) -> KernelGrid:
+def grid_of(case: ArrayCase, detail: KernelDetail = USUAL_DETAIL) -> KernelGrid:
     """The grid of an array."""
-    return KernelGrid(case, (grid_mm(case, 0), grid_mm(case, 1)))
+    return KernelGrid(case, (grid_mm(case, 0, detail.per_pitch), grid_mm(case, 1, detail.per_pitch)), detail)
 
 
 def all_pressed(tasks: Mapping[str, KernelTask], told: Report) -> dict[str, KernelPress]:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from softdot.console import (
     GOOD,
     INTERRUPTED,
+    NOT_CONVERGED,
     Logged,
     Progress,
     complain,
@@ -94,10 +96,15 @@ def run_read(
 
 
 def command(chosen: Namespace) -> int:
-    """Read chosen.text into chosen.output, or study how far conditions may go. InputError."""
+    """Read chosen.text into chosen.output, study how far conditions may go, or search for a design. InputError."""
+    from geometry.base import InputError
     from softdot.config import load_config
     from softdot.console import progress_of
 
+    if chosen.design is not None:
+        return _design(chosen)
+    if chosen.kernel is None:
+        raise InputError("--kernel is missing: softdot array --kernel writes the folder that a line is read with")
     config = load_config(chosen.config, chosen.set) if chosen.config is not None or chosen.set else None
     if chosen.study or chosen.conditions is not None:
         return _study(chosen, config)
@@ -116,7 +123,6 @@ def _study(chosen: Namespace, config: Config | None) -> int:
     from dataclasses import replace
 
     from geometry.base import InputError
-    from softdot.console import progress_of
     from softdot.reading.kernels import opened_kernel
     from softdot.reading.study import ReadingStudy, load_study, usual_axes
     from softdot.reading.study_run import FOLDER, run_reading_study
@@ -129,18 +135,65 @@ def _study(chosen: Namespace, config: Config | None) -> int:
     study = usual if chosen.conditions is None else load_study(Path(chosen.conditions), kernel, base)
     if chosen.text:
         study = replace(study, text=chosen.text, table=chosen.table)
-    try:
-        with only_the_summary_on_stdout(), progress_of(chosen) as progress:
-            summary = run_reading_study(
-                study, Path(chosen.kernel), Path(chosen.output), config, chosen.workers, progress
-            )
-    except KeyboardInterrupt:
-        if not (Path(chosen.output) / FOLDER).exists():
-            raise
-        complain(f"interrupted; finished readings are kept in '{chosen.output}', the same command continues")
+    summary = _resumable(
+        chosen,
+        FOLDER,
+        lambda progress: run_reading_study(
+            study, Path(chosen.kernel), Path(chosen.output), config, chosen.workers, progress, chosen.scheduler
+        ),
+    )
+    if summary is None:
         return INTERRUPTED
     show(summary, chosen, _limits_text)
     return GOOD
+
+
+def _resumable(chosen: Namespace, folder: str, work: Callable[[Progress], dict[str, Any]]) -> dict[str, Any] | None:
+    """What work returns; None where it was interrupted, after a sentence that says what is kept in folder."""
+    from softdot.console import progress_of
+
+    try:
+        with only_the_summary_on_stdout(), progress_of(chosen) as progress:
+            return work(progress)
+    except KeyboardInterrupt:
+        if not (Path(chosen.output) / folder).exists():
+            raise
+        complain(f"interrupted; what was finished is kept in '{chosen.output}', the same command continues")
+        return None
+
+
+def _design(chosen: Namespace) -> int:
+    """Search into chosen.output; 3 when no design could be solved, 130 when it was interrupted. InputError."""
+    from geometry.base import InputError
+    from softdot.reading.decoders import named_decoders
+    from softdot.reading.designs.request import load_request
+    from softdot.reading.designs.run import FOLDER, AskedReading, run_designs
+    from softdot.reading.study import USUAL_TEXT
+
+    for name in ("kernel", "config", "recording", "conditions"):
+        if getattr(chosen, name) is not None:
+            raise InputError(f"--design: makes its own kernels and voltages; leave {_called(name)} out")
+    if chosen.study:
+        raise InputError("--design: is another search than --study; give one of them")
+    decoder = named_decoders(chosen.decoders)[0]
+    request = load_request(Path(chosen.design), chosen.set)
+    asked = AskedReading(chosen.text or USUAL_TEXT, chosen.table, decoder, conditions_of(chosen))
+    summary = _resumable(
+        chosen,
+        FOLDER,
+        lambda progress: run_designs(request, asked, Path(chosen.output), chosen.workers, chosen.scheduler, progress),
+    )
+    if summary is None:
+        return INTERRUPTED
+    show(summary, chosen, _designs_text)
+    if any(one["status"] == "solved" for one in summary["designs"]):
+        return GOOD
+    complain(f"not one of {len(summary['designs'])} designs could be solved; reasons are in '{chosen.output}'")
+    return NOT_CONVERGED
+
+
+def _called(name: str) -> str:
+    return "CONFIG.toml" if name == "config" else f"--{name}"
 
 
 def conditions_of(chosen: Namespace) -> ReadingConditions:
@@ -184,3 +237,17 @@ def _limits_text(summary: dict[str, Any], output: str) -> str:
     return "\n".join(
         [f"at least {100 * summary['accuracy']:g} % of the characters:", *lines, f"{output}/reading_study.png"]
     )
+
+
+def _designs_text(summary: dict[str, Any], output: str) -> str:
+    """Which design reads with the least force, and the compared ones."""
+    lines = [f"at least {100 * summary['accuracy']:g} % of {summary['characters']} characters:"]
+    for one in summary["designs"]:
+        if one["best"] or one["compared"]:
+            least = one["least"]
+            told = "does not read" if least is None else (
+                f"{1e3 * least['mean_force_N']:.3g} mN on average, {1e3 * least['peak_force_N']:.3g} mN at most, "
+                f"{least['depth_mm']:.3g} mm deep, crosstalk {least['crosstalk_percent']:.3g} %"
+            )  # fmt: skip
+            lines.append(f"{one['name']}{' (least force)' if one['best'] else ''}: {told}")
+    return "\n".join([*lines, f"{output}/report.html"])

@@ -32,13 +32,19 @@ def opened_kernel(folder: Path, config: Config | None = None) -> ArrayKernel:
             f"{where}: softdot_version = '{kernel.about['softdot_version']}': this is {installed_version()}; make the "
             "kernel again by softdot array --kernel"
         )
-    _refuse_damaged(kernel, where)
-    _refuse_missing_rows(kernel, where)
+    checked_kernel(kernel, where)
     if config is not None and not _same_design(kernel, config):
         raise InputError(
             f"{where}: config_hash = '{kernel.about['config_hash'][:12]}': is of another design than the configuration "
             f"with '{config_hash(config)[:12]}'; make a kernel of it by softdot array --kernel"
         )
+    return kernel
+
+
+def checked_kernel(kernel: ArrayKernel, where: str) -> ArrayKernel:
+    """The same kernel. InputError, which begins with where, for one that is damaged or cannot read a line."""
+    _refuse_damaged(kernel, where)
+    _refuse_missing_rows(kernel, where)
     return kernel
 
 

@@ -20,7 +20,7 @@ import numpy as np
 from geometry.base import InputError
 from geometry.cache import read_checked, source_hash, write_checked
 from softdot.arrays.kernel import JSON, NPZ, ArrayKernel
-from softdot.console import Logged
+from softdot.console import Untold
 from softdot.reading.cells import cells_of, text_of
 from softdot.reading.conditions import BOUNDS, ReadingConditions, standard_of
 from softdot.reading.decoders import named_decoders
@@ -43,8 +43,8 @@ KEYS = ("text", "table", "decoder", "repeats", "accuracy", "combine", "base", "a
 class ReadingStudy:
     """axes : condition -> values; combine : every combination of them, else one after the other beside the base.
 
-    accuracy : share of the characters that must be read; repeats : seeds for each condition, whose characters are
-    counted together.
+    decoder : one or several, as --decoders; the first decides. accuracy : share of the characters that must be read;
+    repeats : seeds for each condition, whose characters are counted together.
     """
 
     base: ReadingConditions
@@ -138,8 +138,7 @@ def _check(study: ReadingStudy, where: str) -> None:
         raise InputError(f"{where}: repeats = {study.repeats}: must be a whole number from 1 to 100")
     if not 0.0 < study.accuracy <= 1.0:
         raise InputError(f"{where}: accuracy = {study.accuracy}: must be above 0 and at most 1")
-    if len(named_decoders(study.decoder)) != 1:
-        raise InputError(f"{where}: decoder = '{study.decoder}': must be one")
+    named_decoders(study.decoder)
     if (count := len(points(study)) * study.repeats) > MOST_READINGS:
         raise InputError(f"{where}: has {count} readings, at most {MOST_READINGS} are allowed")
     cells_of(study.text, study.table)
@@ -178,30 +177,28 @@ def _kernel(folder: str) -> ArrayKernel:
 
 
 def read_task(task: StudyTask) -> dict[str, Any]:
-    """The record of one reading: status "read" with its numbers, or "refused" with the reason. Raises no InputError."""
+    """The record of one reading: status "read" with the numbers of the first decoder, and of each by its name, or
+    "refused" with the reason. Raises no InputError.
+    """
     try:
         kernel, cells = _kernel(task.folder), cells_of(task.text, task.table)
-        readout = Readout.model_validate_json(task.readout)
-        reading = read_line(kernel, readout, task.conditions, [task.decoder], _Silent(), cells)
+        readout, names = Readout.model_validate_json(task.readout), named_decoders(task.decoder)
+        reading = read_line(kernel, readout, task.conditions, names, Untold(), cells)
     except NoDotError:
-        nothing = {"right": 0, "of": len(text_of(cells, task.table))}
-        return {"status": "read", "reason": None, **nothing, "accuracy": dict.fromkeys(RATES, 0.0), "text_read": ""}
+        nothing = {"right": 0, "of": len(text_of(cells, task.table)), "accuracy": dict.fromkeys(RATES, 0.0)}
+        return {"status": "read", "reason": None, **nothing, "text_read": "", "decoders": dict.fromkeys(names, nothing)}
     except InputError as error:
         return {"status": "refused", "reason": str(error)}
     told = content(reading, task.text, task.table)
-    rates = {name: told[f"{name}_accuracy"]["value"] for name in RATES}
+    decoders = {name: _numbers(own) for name, own in told["decoders"].items()}
+    first = decoders[told["decoder"]]
+    return {"status": "read", "reason": None, **first, "text_read": told["text_read"], "decoders": decoders}
+
+
+def _numbers(told: Mapping[str, Any]) -> dict[str, Any]:
+    """Of one decoder: characters that were right, of how many, and all rates."""
     counts = {name: told["character_accuracy"][name] for name in ("right", "of")}
-    return {"status": "read", "reason": None, **counts, "accuracy": rates, "text_read": told["text_read"]}
-
-
-class _Silent(Logged):
-    """Tells nothing: a study tells how many readings are done."""
-
-    def stage(self, name: str) -> None:
-        """Nothing."""
-
-    def step(self, number: int, count: int, text: str) -> None:
-        """Nothing."""
+    return {**counts, "accuracy": {name: told[f"{name}_accuracy"]["value"] for name in RATES}}
 
 
 def kept(folder: Path, key: str) -> dict[str, Any] | None:

@@ -18,6 +18,7 @@ from softdot.console import (
 )
 from softdot.output import Product, check_output
 from softdot.reading.conditions import ReadingConditions
+from softdot.reading.decoders import named_decoders
 from softdot.reading.kernels import opened_kernel, readout_of
 from softdot.reading.study import (
     Readings,
@@ -47,13 +48,15 @@ def run_reading_study(
     config: Config | None = None,
     workers: int | None = None,
     progress: Progress | None = None,
+    scheduler: str | None = None,
 ) -> dict[str, Any]:
     """Read under all conditions of a study into the folder out and return what reading_study.json says. InputError.
 
-    Readings of an earlier study in out are not made again.
+    On one process per core, as many as workers, or on the Dask cluster of a scheduler, whose workers find the kernel
+    under the same path. Readings of an earlier study in out are not made again.
     """
     from geometry.files import hold
-    from softdot.sweeps.cluster import local_cluster
+    from softdot.sweeps.cluster import existing_cluster, local_cluster
 
     progress = progress or Logged()
     kernel = opened_kernel(kernel_folder, config)
@@ -67,7 +70,7 @@ def run_reading_study(
         if not (place / STUDY.summary).exists():
             write_json(place / STUDY.summary, {"format": STUDY.format, "complete": False})
         work = _Work(study, kernel_folder, place / FOLDER, readout_of(kernel, config).model_dump_json(), progress)
-        with local_cluster(workers) as client:
+        with local_cluster(workers) if scheduler is None else existing_cluster(scheduler) as client:
             progress.stage("read")
             work.done(client, points(study))
             while following := work.following():
@@ -125,8 +128,6 @@ class _Work:
 
 
 def _summary(study: ReadingStudy, readings: Readings, kernel: ArrayKernel) -> dict[str, Any]:
-    from diagnose.statistics.abstain import wilson_interval
-
     rows = []
     for conditions in dict.fromkeys(replace(one, seed=study.base.seed) for one in readings.records):
         found = [readings.records[one] for one in repeated(study, conditions)]
@@ -135,14 +136,16 @@ def _summary(study: ReadingStudy, readings: Readings, kernel: ArrayKernel) -> di
             "status": "read",
             "reason": None,
             "character_accuracy": None,
+            "decoders": {},
         }
         failed = next((one for one in found if one["status"] != "read"), None)
         if failed is not None:
             row |= {"status": failed["status"], "reason": failed["reason"]}
         else:
-            right, of = sum(one["right"] for one in found), sum(one["of"] for one in found)
-            low, high = wilson_interval(right, of)
-            row["character_accuracy"] = {"value": right / of, "low": low, "high": high, "right": right, "of": of}
+            row["character_accuracy"] = _counted(found)
+            row["decoders"] = {
+                name: _counted([one["decoders"][name] for one in found]) for name in named_decoders(study.decoder)
+            }
             row["word_accuracy"] = sum(one["accuracy"]["word"] for one in found) / len(found)
         rows.append(row)
     limits = {} if study.combine else {
@@ -171,21 +174,26 @@ def _summary(study: ReadingStudy, readings: Readings, kernel: ArrayKernel) -> di
     }
 
 
+def _counted(found: list[dict[str, Any]]) -> dict[str, Any]:
+    """Characters that were right of all repeats together, with Wilson's 95 % interval."""
+    from diagnose.statistics.abstain import wilson_interval
+
+    right, of = sum(one["right"] for one in found), sum(one["of"] for one in found)
+    low, high = wilson_interval(right, of)
+    return {"value": right / of, "low": low, "high": high, "right": right, "of": of}
+
+
 def _write_csv(rows: list[dict[str, Any]], path: Path) -> None:
-    """One row for each condition."""
-    names = list(rows[0]["conditions"])
+    """One row for each condition, with the rates of the first decoder and those of each by its name."""
+    names, told = list(rows[0]["conditions"]), ("value", "low", "high", "of")
+    decoders = list(dict.fromkeys(name for row in rows for name in row["decoders"]))
     with path.open("w", newline="", encoding="utf-8") as file:
         table = csv.writer(file)
-        table.writerow([*names, "status", "character_accuracy", "low", "high", "characters"])
+        table.writerow([*names, "status", "character_accuracy", "low", "high", "characters", *decoders])
         for row in rows:
             share = row["character_accuracy"] or {}
-            table.writerow(
-                [
-                    *row["conditions"].values(),
-                    row["status"],
-                    *(share.get(key) for key in ("value", "low", "high", "of")),
-                ]
-            )
+            each = [row["decoders"][name]["value"] if name in row["decoders"] else None for name in decoders]
+            table.writerow([*row["conditions"].values(), row["status"], *map(share.get, told), *each])
 
 
 def _draw(summary: dict[str, Any], path: Path) -> None:

@@ -159,6 +159,18 @@ def at(axis: Axis, share: float) -> Any:
     return min(max(float(f"{value:.12g}"), low), high)
 
 
+def share_of(axis: Axis, value: Any) -> float:
+    """The share, 0 to 1, of an axis at which it has a value; the middle of its share for one in a list.
+
+    >>> share_of(Axis(key="a", low=1.0, high=100.0, scale="log"), 10.0)
+    0.5
+    """
+    if axis.values is not None:
+        return (axis.values.index(value) + 0.5) / len(axis.values)
+    low, high = float(axis.low or 0.0), float(axis.high or 0.0)
+    return math.log(value / low) / math.log(high / low) if axis.scale == "log" else (value - low) / (high - low)
+
+
 def _unit_cube(sweep: Sweep) -> Floats:
     """Points (n, d) in the unit cube.
 

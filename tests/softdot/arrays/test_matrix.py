@@ -79,9 +79,11 @@ def test_roles():
 def test_a_solved_press_is_kept(monkeypatch, tmp_path):
     """Asked again it is read, and equal; an edited array is solved anew."""
     monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path))
-    press = array(press={"load_steps": 1}).press_over(array().layout.places[0])
+    case = array(press={"load_steps": 1}, electrode_margin_mm=0.2)
+    press = case.press_over(case.layout.places[0])
     first = signals(press)
     assert first.failure is None
+    np.testing.assert_allclose(case.capacitance_pF, first.capacitance_pF)  # eps A / t of what the margin leaves
 
     def never(*_given, **_named):
         raise AssertionError("solved again")

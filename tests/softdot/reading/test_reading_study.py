@@ -72,6 +72,7 @@ def test_combined_axes_give_every_combination():
         ("repeat = 3", "'repeat' is not a key; known are text"),
         ("[axes]\ncolour = [1]", "axes.colour is no condition with a number"),
         ("[axes]\nnoise_mV = [-1]", "--noise-mV = -1: must be from 0"),
+        ('decoder = "oracle"', "'oracle' is none of model"),
         ("accuracy = 2.0", "accuracy = 2.0: must be above 0"),
         ("[base]\nspeed = 3", "unexpected keyword argument 'speed'"),
     ],
@@ -94,6 +95,27 @@ def test_a_reading_is_kept_by_all_it_depends_on(kernel_folder, tmp_path):
     keep(tmp_path, task.key(name), task, record)
     assert kept(tmp_path, task.key(name))["text_read"] == "dots"
     assert kept(tmp_path, other.key(name)) is None
+
+
+def test_several_decoders_read_the_same_voltages(kernel_folder):
+    """The first one is what decides; what each of them makes of the voltages is what it makes of them alone."""
+    both, alone = (
+        read_task(
+            StudyTask(str(kernel_folder), READOUT.model_dump_json(), ReadingConditions(), "dots read", None, names)
+        )
+        for names in ("threshold,model", "model")
+    )
+    assert list(both["decoders"]) == ["threshold", "model"]
+    assert both["decoders"]["model"] == alone["decoders"]["model"]
+    assert (both["right"], both["of"]) == (both["decoders"]["threshold"]["right"], 9)
+
+
+def test_where_no_dot_is_found_no_decoder_read_anything(kernel_folder):
+    conditions = ReadingConditions(noise_mV=1e6)
+    task = StudyTask(str(kernel_folder), READOUT.model_dump_json(), conditions, "dots", None, "model,threshold")
+    record = read_task(task)
+    assert (record["status"], record["of"]) == ("read", 4)
+    assert [one["right"] for one in record["decoders"].values()] == [record["right"], record["right"]]
 
 
 def test_what_is_refused_says_why(kernel_folder):

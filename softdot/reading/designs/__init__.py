@@ -1,0 +1,1 @@
+"""Design by reading: which array reads a line of Braille with the least force."""

@@ -1,0 +1,130 @@
+"""What a search for designs writes: summary, tables, picture, page, and the best design as a configuration."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from geometry.files import write_whole_text
+from softdot.config import config_hash
+from softdot.console import installed_version, plain, write_json
+from softdot.reading.cells import cells_of, text_of
+from softdot.reading.designs.operating import COARSE
+from softdot.reading.designs.request import DesignRequest, TriedDesign, tables_of
+from softdot.reading.designs.search import pareto
+from softdot.sweeps.space import sampling_warnings
+
+if TYPE_CHECKING:
+    from softdot.reading.designs.run import AskedReading, DesignRecords
+
+FORMAT = "softdot-designs/1"
+AIMS = ("mean_force_N", "crosstalk_percent", "error")
+"""What is to be small, of every reading."""
+
+
+def finish(place: Path, request: DesignRequest, asked: "AskedReading", found: "DesignRecords") -> dict[str, Any]:
+    """Write everything into the folder place, the summary last, and return what it says."""
+    from export.array.designs import draw_designs, write_designs_page
+    from softdot.sweeps.table import write_csv, write_table
+
+    summary: dict[str, Any] = plain(summary_of(request, asked, found))
+    designs = summary["designs"]
+    rows = [design_row(one) for one in designs]
+    write_table(place / "designs.parquet", rows)
+    write_csv(place / "designs.csv", rows)
+    write_csv(place / "readings.csv", reading_rows(designs))
+    draw_designs(designs, summary["accuracy"], place / "pareto.png")
+    write_designs_page(place / "report.html", summary, place / "pareto.png")
+    write_whole_text(place / "designs.toml", request.text)
+    best = place / "best.toml"
+    if found.best is None:
+        best.unlink(missing_ok=True)
+    else:
+        write_whole_text(best, best_text(request, found.best, summary["best"]["least"]))
+    write_json(place / "design.json", summary)
+    return summary
+
+
+def summary_of(request: DesignRequest, asked: "AskedReading", found: "DesignRecords") -> dict[str, Any]:
+    """The content of design.json."""
+    search, sweep = request.search, request.space.sweep
+    length = len(text_of(cells_of(asked.text, asked.table), asked.table))
+    designs = [_told(one, request, found) for one in found.designs]
+    for design, on_front in zip(designs, front(designs), strict=True):
+        design["front"] = on_front
+    best = next((one for one in designs if one["best"]), None)
+    return {
+        "format": FORMAT,
+        "complete": True,
+        "softdot_version": installed_version(),
+        "text": asked.text,
+        "table": asked.table,
+        "decoder": asked.decoder,
+        "characters": length * search.repeats,
+        "repeats": search.repeats,
+        "accuracy": search.accuracy,
+        "conditions": asked.conditions.as_dict(),
+        "kernel": vars(COARSE),
+        "sampling": sweep.sampling,
+        "seed": sweep.seed,
+        "rounds": search.rounds,
+        "best": best,
+        "designs": designs,
+        "warnings": [*sampling_warnings(sweep), *_warnings(designs)],
+    }
+
+
+def _told(design: TriedDesign, request: DesignRequest, found: "DesignRecords") -> dict[str, Any]:
+    record = found.records[design.name]
+    return {
+        "name": design.name,
+        "compared": design in request.compared,
+        "best": design is found.best,
+        "values": dict(design.values),
+        "config_hash": None if design.config is None else config_hash(design.config),
+        **{key: value for key, value in record.items() if key not in ("name", "values")},
+    }
+
+
+def _warnings(designs: list[dict[str, Any]]) -> list[str]:
+    return [f"{one['name']}: {one['status']}, {one['reason']}" for one in designs if one["status"] != "solved"]
+
+
+def front(designs: list[dict[str, Any]]) -> list[bool]:
+    """Which designs no other one beats in both force and crosstalk where it just reads."""
+    read = [k for k, one in enumerate(designs) if one["least"] is not None]
+    found = [False] * len(designs)
+    values = [[designs[k]["least"][name] for name in AIMS[:2]] for k in read]
+    if read:
+        for k, on_front in zip(read, pareto(np.array(values)), strict=True):
+            found[k] = bool(on_front)
+    return found
+
+
+def design_row(design: dict[str, Any]) -> dict[str, Any]:
+    """One row of designs.csv: what it is, how it ended, and the reading with the least force."""
+    told = ("status", "reason", "compared", "best", "front", "seconds", "config_hash")
+    return {"name": design["name"], **design["values"], **{key: design[key] for key in told}, **(design["least"] or {})}
+
+
+def reading_rows(designs: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """One row for each design and depth; pareto : whether no other one has less force, crosstalk and error."""
+    rows = [
+        {"name": design["name"], **reading, "error": 1.0 - reading["accuracy"]}
+        for design in designs
+        for reading in design["readings"]
+        if reading["mean_force_N"] is not None
+    ]
+    best = pareto(np.array([[row[name] for name in AIMS] for row in rows]).reshape(-1, len(AIMS)))
+    return [{**row, "pareto": bool(on_front)} for row, on_front in zip(rows, best, strict=True)]
+
+
+def best_text(request: DesignRequest, design: TriedDesign, least: dict[str, Any]) -> str:
+    """The configuration of a design as TOML, for softdot array."""
+    import tomlkit
+
+    said = (
+        f"# {design.name}: {100.0 * least['accuracy']:.2f} % of {least['of']} characters with "
+        f"{1e3 * least['mean_force_N']:.3g} mN on average, {least['depth_mm']:.3g} mm deep, by a coarse kernel.\n\n"
+    )
+    return said + tomlkit.dumps(tables_of(request.base, design.values))

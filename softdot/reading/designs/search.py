@@ -1,0 +1,124 @@
+"""Which designs are tried next, and which are better than all others in something.
+
+The logarithm of the least force is modelled by a Gaussian process over the axes of the space, and the designs with
+the largest expected improvement (Jones, Schonlau and Welch, J. Global Optim. 13, 1998, 455) are tried next. A choice
+from a list is a corner of a simplex, so that no two values of it are nearer than others.
+"""
+
+import warnings
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from scipy.stats import norm, qmc
+
+from geometry.arrays import Bools, Floats
+from softdot.sweeps.space import Axis, at, share_of
+
+FEWEST = 3
+"""Designs that read, below which the next ones fill the space instead."""
+WORSE = 1.5
+"""What a design that does not read, or cannot be solved, counts as: so many times the largest force of all."""
+SPREAD, NEAR, STEP, SWITCH = 9, 512, 0.12, 0.2
+"""2^SPREAD candidates all over the space and NEAR beside the best design: steps along axes, and the share of its
+choices that change."""
+APART = 0.1
+NOISE = 4e-3
+"""Variance of the logarithm of the least force by halving alone, in units of that between designs."""
+
+
+def propose(
+    axes: Sequence[Axis], rows: Sequence[Sequence[Any]], forces_N: Sequence[float | None], count: int, seed: int
+) -> list[tuple[Any, ...]]:
+    """Values of the axes of the designs to be tried next, at most count; equal calls give equal designs.
+
+    rows : values of the axes of the designs so far; forces_N : their least forces, None where one does not read.
+    """
+    known = np.array([[share_of(axis, value) for axis, value in zip(axes, row, strict=True)] for row in rows])
+    read = [number for number, force in enumerate(forces_N) if force is not None]
+    best = known[min(read, key=lambda number: forces_N[number] or 0.0)] if read else None
+    pool = [rounded(axes, shares) for shares in candidates(axes, best, seed)]
+    gain = np.ones(len(pool))
+    if len(read) >= FEWEST:
+        gain = expected_gain(axes, known, forces_N, np.array([_shares(axes, row) for row in pool]))
+    places = _features(axes, known)
+    chosen: list[tuple[Any, ...]] = []
+    for number in np.argsort(-gain, kind="stable"):
+        place = _features(axes, np.array([_shares(axes, pool[number])]))
+        if len(chosen) < count and np.linalg.norm(places - place, axis=1).min() > APART:
+            chosen.append(pool[number])
+            places = np.vstack([places, place])
+    return chosen
+
+
+def _shares(axes: Sequence[Axis], row: Sequence[Any]) -> list[float]:
+    return [share_of(axis, value) for axis, value in zip(axes, row, strict=True)]
+
+
+def candidates(axes: Sequence[Axis], best: Floats | None, seed: int) -> Floats:
+    """Shares (n, d) of the axes: Sobol points all over the space, and steps by chance from the best design (d,)."""
+    random = np.random.default_rng(seed)
+    spread = qmc.Sobol(len(axes), seed=random).random_base2(SPREAD)
+    if best is None:
+        return np.asarray(spread)
+    near = np.clip(best + STEP * random.standard_normal((NEAR, len(axes))), 0.0, 1.0)
+    switched = random.random(near.shape) < SWITCH
+    elsewhere = random.random(near.shape)
+    for number, axis in enumerate(axes):
+        if axis.values is not None:
+            near[:, number] = np.where(switched[:, number], elsewhere[:, number], best[number])
+    return np.concatenate([spread, near])
+
+
+def rounded(axes: Sequence[Axis], shares: Floats) -> tuple[Any, ...]:
+    """Values at shares (d,) of the axes, numbers between low and high to two digits, as one would make them."""
+    return tuple(_rounded(axis, at(axis, float(share))) for axis, share in zip(axes, shares, strict=True))
+
+
+def _rounded(axis: Axis, value: Any) -> Any:
+    if axis.values is not None:
+        return value
+    return min(max(float(f"{value:.2g}"), float(axis.low or 0.0)), float(axis.high or 0.0))
+
+
+def _features(axes: Sequence[Axis], shares: Floats) -> Floats:
+    """Shares (n, d) of axes of numbers, and a corner of a simplex with edges of 1 for each choice, (n, f)."""
+    columns = []
+    for number, axis in enumerate(axes):
+        if axis.values is None:
+            columns.append(shares[:, [number]])
+        else:
+            choice = np.minimum((shares[:, number] * len(axis.values)).astype(int), len(axis.values) - 1)
+            columns.append(np.eye(len(axis.values))[choice] / np.sqrt(2.0))
+    return np.hstack(columns)
+
+
+def expected_gain(axes: Sequence[Axis], known: Floats, forces_N: Sequence[float | None], wanted: Floats) -> Floats:
+    """Expected improvement (m,) of the logarithm of the least force at shares wanted (m, d) by that at known (n, d)."""
+    from sklearn.exceptions import ConvergenceWarning
+    from sklearn.gaussian_process import GaussianProcessRegressor
+    from sklearn.gaussian_process.kernels import ConstantKernel, DotProduct, Matern, WhiteKernel
+
+    largest = WORSE * max(force for force in forces_N if force is not None)
+    target = np.log([largest if force is None else force for force in forces_N])
+    trend = ConstantKernel(0.1, (1e-4, 1e2)) * DotProduct(1.0, "fixed")
+    deviation = ConstantKernel(0.1, (1e-4, 1e2)) * Matern(1.0, (0.3, 10.0), nu=2.5)
+    process = GaussianProcessRegressor(trend + deviation + WhiteKernel(NOISE, "fixed"), normalize_y=True)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ConvergenceWarning)  # a scale at its bound is an answer too
+        process.fit(_features(axes, known), target)
+    mean, deviation_of = process.predict(_features(axes, wanted), return_std=True)
+    below = target.min() - mean
+    score = below / deviation_of
+    return np.asarray(below * norm.cdf(score) + deviation_of * norm.pdf(score))
+
+
+def pareto(values: Floats) -> Bools:
+    """Which of the points (n, k) no other one is better than: as small in all and smaller in one.
+
+    >>> pareto(np.array([[1.0, 2.0], [2.0, 1.0], [2.0, 2.0]])).tolist()
+    [True, True, False]
+    """
+    no_more = (values[:, None] <= values[None]).all(axis=2)
+    less = (values[:, None] < values[None]).any(axis=2)
+    return np.asarray(~(no_more & less).any(axis=0))
