@@ -119,6 +119,8 @@ def _one_by_one_onto_base(contents: Contents) -> list[WorkStep]:
     layout = contents.flat.layout
     back, side = layout.back_end - layout.frame.along / 2, layout.half_body - layout.frame.across / 2
     front = layout.body_end - layout.frame.along / 2
+    sides = ((back, "away from the cable"), (side, "on both sides"), (front, "towards the cable"))
+    stands_out = ", ".join(f"{far:.3g} mm {where}" for far, where in sides if far > 1e-6)
     medium2 = "Set medium 2 on it; its edges lie along the inner edge of the groove."
     if "medium2" in contents.spaced:
         medium2 = _between_strips(contents, "medium2", "on the base", "along the inner edge of the groove")
@@ -137,9 +139,8 @@ def _one_by_one_onto_base(contents: Contents) -> list[WorkStep]:
             (
                 f"Lay {_adhesive(contents, 'medium2-film')} on medium 2 and peel off "
                 f"{_their(contents, 'medium2-film')}.",
-                f"Hold the film by its head, top face up, the tab over the shelf. It stands out by {back:.3g} mm away "
-                f"from the cable, {side:.3g} mm on both sides and {front:.3g} mm towards the cable: look from above "
-                "and from the sides.",
+                f"Hold the film by its head, top face up, the tab over the shelf. It stands out by "
+                f"{stands_out}: look from above and from the sides.",
                 "Lower the film from the side of the tab and rub it down from the middle outwards with a soft stick. "
                 "Measure the capacitances again: they must not have changed.",
             ),
@@ -168,11 +169,14 @@ def _whole_into_frame(contents: Contents) -> WorkStep:
 def _one_by_one(contents: Contents) -> list[WorkStep]:
     """The flange of the film is clamped between body and ring, so that the upper layers come last."""
     rings = {one.name.rpartition("-")[2] for one in _rings(contents)}
-    lower, upper = "", ""
+    lower, upper, body, ring = "", "", contents.frame.body, contents.frame.ring
     if "lower" in rings:
-        lower = "Rub adhesive-flange-lower onto the underside of the film's flange, its window under the electrode. "
+        window = "windows" if body is not None and len(body.feet) > 1 else "window"
+        under = "electrodes" if contents.device.is_array else "electrode"
+        lower = f"Rub adhesive-flange-lower onto the underside of the film's flange, its {window} under the {under}. "
     if "upper" in rings:
-        upper = "Rub adhesive-flange-upper onto the top of the flange. "
+        over = ", its bars between the electrodes" if len(ring[0].feet) > 1 else ""
+        upper = f"Rub adhesive-flange-upper onto the top of the flange{over}. "
     rim = contents.frame.half_along - contents.flat.layout.back_end
     edge = f"lies {rim:.3g} mm inside the edge of the frame" if rim > 0.05 else "is flush with the edge of the frame"
     return [

@@ -57,7 +57,7 @@ class FrameLayout:
     film_bottom, film_top : heights. body : around medium 2, None where nothing is held. ring : above the film,
     empty where it is not needed. half_along, half_across : half the outer sizes, half_across with the lugs.
     pitch : between devices, 0 for a single one. screws_across : distance of the screws from the axis.
-    half_tab : half the width of the film's tab.
+    half_tab : half the width of the film's tab. room_for_tab : of the footprint, of an array that of its film.
     """
 
     frame: ExitFrame
@@ -70,6 +70,7 @@ class FrameLayout:
     pitch: float
     screws_across: float
     half_tab: float
+    room_for_tab: float
 
     @property
     def size_between(self) -> float:
@@ -109,6 +110,7 @@ def frame_layout(device: Device, fabrication: Fabrication) -> FrameLayout:
         pitch=pitch,
         screws_across=inner_across + lug / 2,
         half_tab=film.half_tab,
+        room_for_tab=frame.across if film.lattice is None else 2 * film.half_body,
     )
 
 
@@ -174,12 +176,12 @@ def _check_keys(fabrication: Fabrication, printer: PrinterProfile) -> None:
 
 
 def _check_cable(layout: FrameLayout, fabrication: Fabrication, printer: PrinterProfile) -> None:
-    """The tab is narrower than the footprint, its channel leaves a floor and the shelf has room for a tie."""
-    widest = layout.frame.across - 2 * TAB_CLEARANCE_MM
+    """The tab is narrow enough, its channel leaves a floor and the shelf has room for a tie."""
+    widest = layout.room_for_tab - 2 * TAB_CLEARANCE_MM
     if 2 * layout.half_tab > widest + ROUNDING_MM:
         side = "" if fabrication.tab_width_mm else "; the leads need it, so let the cable leave on a longer side"
         raise InputError(
-            f"fabrication.tab_width_mm = {2 * layout.half_tab:g}: must be at most {widest:.3g}, the footprint at "
+            f"fabrication.tab_width_mm = {2 * layout.half_tab:g}: must be at most {widest:.3g}, the width at "
             f"cable_exit = '{fabrication.cable_exit}' less {TAB_CLEARANCE_MM:g} mm on each side{side}"
         )
     refuse_thin(

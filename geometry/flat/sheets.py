@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from geometry.base import InputError
-from geometry.fabrication.clamp_frame import check_tab, frame_layout
+from geometry.fabrication.clamp_frame import WallRun, check_tab, frame_layout
 from geometry.fabrication.device import Device
 from geometry.fabrication.parameters import Fabrication, sheet_components
 from geometry.fabrication.part import ROUNDING_MM
@@ -179,7 +179,7 @@ def _lead_dimensions(window: Outline) -> tuple[Dimension, ...]:
 
 
 PAD = "Bonds {where}: rub it onto the lower one, peel off the liner."
-RING = "Rub it onto the flange of the film, {where}; the window leaves the pressed part free."
+RING = "Rub it onto the flange of the film, {where}; the {left} free."
 
 
 JOINTS = (
@@ -242,36 +242,46 @@ def _pad(name: str, title: str, cut: Outline | Circle, where: str, count: int, f
 
 def _rings(device: Device, fabrication: Fabrication, layout: FilmLayout, panel: Panel) -> list[FlatPattern]:
     case = frame_layout(device, fabrication)
-    faces = []
+    faces: list[tuple[str, WallRun, str]] = []
     if case.body is not None:
-        faces.append(("lower", case.body.gap, "on the face towards the body of the frame"))
+        faces.append(("lower", case.body, "on the face towards the body of the frame"))
     if case.ring:
-        faces.append(("upper", case.ring[0].gap, "on the face towards the ring of the frame"))
-    return [_ring(name, gap, where, fabrication, layout, panel) for name, gap, where in faces if gap < layout.flange]
+        faces.append(("upper", case.ring[0], "on the face towards the ring of the frame"))
+    return [
+        _ring(name, run, where, fabrication, layout, panel) for name, run, where in faces if run.gap < layout.flange
+    ]
 
 
-def _ring(name: str, gap: float, where: str, fabrication: Fabrication, layout: FilmLayout, panel: Panel) -> FlatPattern:
+def _ring(
+    name: str, run: WallRun, where: str, fabrication: Fabrication, layout: FilmLayout, panel: Panel
+) -> FlatPattern:
+    """As wide as the film, with the openings of the frame as windows; between them it bonds the film to a grid."""
     end, half, back = layout.body_end, layout.half_body, layout.back_end
-    inner_u, inner_v = layout.frame.along / 2 + gap, layout.frame.across / 2 + gap
+    gap = run.gap
+    windows = [((u0 - gap, u1 + gap), (v0 - gap, v1 + gap)) for u0, u1, v0, v1 in run.feet]
+    (inner_u, inner_v), several = windows[0], len(windows) > 1
+    rub = RING.format(
+        where=where, left="windows leave the pressed parts" if several else "window leaves the pressed part"
+    )
     return FlatPattern(
         name=f"adhesive-flange-{name}",
         title=f"Adhesive: {name} ring on the film's flange",
         material="double-sided adhesive sheet",
         thickness_mm=fabrication.adhesive_thickness_mm,
         count=devices(fabrication),
-        instruction=f"Pin its panel onto that of the film before the film is cut out. {RING.format(where=where)}",
+        instruction=f"Pin its panel onto that of the film before the film is cut out. {rub}",
         cuts=(
             *panel.cuts,
             rectangle("CUT", (-back, end), (-half, half)),
-            rectangle("CUT", (-inner_u, inner_u), (-inner_v, inner_v), hole=True),
+            *(rectangle("CUT", u, v, hole=True) for u, v in windows),
         ),
         marks=(panel.words(f"RING, {name}"),),
         dimensions=(
             *panel.dimensions,
             Dimension((-back, half), (end, half), "x", 1.2),
             Dimension((-back, -half), (-back, half), "y", -1.4),
-            Dimension((-inner_u, -inner_v), (inner_u, -inner_v), "x", -2.2),
-            Dimension((inner_u, -inner_v), (inner_u, inner_v), "y", 2.2),
+            Dimension((inner_u[0], inner_v[0]), (inner_u[1], inner_v[0]), "x", -2.2),
+            Dimension((inner_u[1], inner_v[0]), (inner_u[1], inner_v[1]), "y", 2.2),
         ),
         kerf_mm=fabrication.kerf_mm,
     )

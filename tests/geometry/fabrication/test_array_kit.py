@@ -41,7 +41,7 @@ def fabrication(**keys) -> Fabrication:
 
 ARRAYS = {
     "cell": ({}, {}),
-    "grid": ({"rows": 1, **GRID}, {"size": 2.0}),
+    "grid": ({"columns": 1, "rows": 2, **GRID}, {"size": 2.0}),
     "domes over grooves": ({"rows": 2, **GROOVE}, {"effector": DOME}),
     "cell in a grid": (GRID, {"size": 2.0}),
     "only the film runs through": ({"columns": 3, "rows": 1, "shared": ("film",)}, {"made": {"cable_exit": "+y"}}),
@@ -149,6 +149,19 @@ def test_the_grid_is_a_glue_line_away_from_every_segment():
             assert volume(ring.intersect(wall)) == pytest.approx(wall.volume)
 
 
+def test_the_film_is_bonded_to_the_bars_of_the_grid():
+    """The upper ring of adhesive has a window for each opening of the frame's ring, the lower one a single window."""
+    device, _ = kit_of("grid")
+    patterns = {one.name: one for one in flat_kit(device, fabrication()).patterns}
+    upper, lower = (
+        [cut for cut in patterns[f"adhesive-flange-{side}"].cuts if cut.hole and not hasattr(cut, "radius")]
+        for side in ("upper", "lower")
+    )
+    assert [window.area_mm2 for window in upper] == pytest.approx([(2.0 + 2 * GLUE) ** 2] * 2)
+    half_x, half_y = device.layout.half_mm
+    assert [window.area_mm2 for window in lower] == pytest.approx([4 * (half_x + AIR) * (half_y + AIR)])
+
+
 def test_medium_2_that_runs_through_a_grid_has_one_opening_with_air():
     device, solids = kit_of("grid")
     body = next(part for part in solids.parts if part.label == "frame-body").solid
@@ -233,7 +246,7 @@ REFUSED = {
         {"grid_layers": ("film",)}, {}, {}, r"array.grid_layers = \['film'\]: the bars .* would cut medium1"
     ),
     "leads wider than a short side": (
-        {"columns": 5, "rows": 1}, {}, {}, r"tab_width_mm = 3.6: must be at most 1.7.*the cable leave on a longer side"
+        {"columns": 20, "rows": 1}, {}, {}, r"tab_width_mm = 12.6: must be at most 12.*cable leave on a longer side"
     ),
     "far too many": ({"columns": 8, "rows": 8}, {}, {}, r"margin_mm = 0: .* 0 traces .* no margin is enough, so give"),
 }  # fmt: skip

@@ -124,7 +124,7 @@ def test_whole_kit_of_a_pair(tmp_path, capsys):
     """With moulds, pictures and the budget of a lone segment, which is the budget of that segment itself."""
     from matplotlib.image import imread
 
-    path, out = written(tmp_path, SMALL + '\n[fabrication]\ncable_exit = "+y"\n'), tmp_path / "out"
+    path, out = written(tmp_path, SMALL), tmp_path / "out"
     assert main(["kit", path, "-q", "--json", "-o", str(out)]) == 0
     told = json.loads(capsys.readouterr().out)
     assert told["failure"] is None
