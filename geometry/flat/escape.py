@@ -135,7 +135,9 @@ class Lattice:
         for (rank, file), way in self.ways.items():
             u0, u1, v0, v1 = self.at(rank, file)
             if way.side == "ahead":
-                points: list[Point] = [(u1, (v0 + v1) / 2)]
+                # beside the trace of the common electrode, which leaves at the lower corner
+                clear = min(v0 + self.width + self._middle(0), v1 - self.width / 2)
+                points: list[Point] = [(u1, max((v0 + v1) / 2, clear))]
             elif way.side == "beside":
                 u = u1 - self.width / 2
                 points = [(u, v1 if way.channel > file else v0), (u, lanes[rank, file])]

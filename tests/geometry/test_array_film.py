@@ -28,6 +28,7 @@ ARRAYS = {
     "column of four, one behind the other": ({"columns": 1, "rows": 4}, {"cable_exit": "+y", **FINE}),
     "three by three": ({"columns": 3, "electrode_margin_mm": 0.25}, {}),
     "clamped": ({"columns": 3, "electrode_margin_mm": 0.25}, {"film_flange_mm": 1.0}),
+    "narrow electrodes": ({"columns": 1, "rows": 3, "electrode_margin_mm": 0.8}, {}),
     "five by five": ({"columns": 5, "rows": 5, "electrode_margin_mm": 0.2}, {"cable_exit": "-y", **FINE}),
     "six by three": ({"columns": 6, "electrode_margin_mm": 0.3}, FINE),
 }  # fmt: skip
