@@ -70,6 +70,8 @@ def short_text(summary: dict[str, Any], output: str) -> str:
     """What there is to make, what matters most, and where to look."""
     lines = [f"{len(summary['parts'])} parts to print, {len(summary['flat_patterns'])} to cut"]
     budget = summary["tolerance_budget"]
+    if budget and summary["config"]["array"] is not None:
+        lines.append(f"tolerances of {summary['tolerance_budget_of']}:")
     for row in budget["rows"][:ROWS] if budget else []:
         change = f"{row['voltage_percent']:+.0f} % voltage, {row['force_percent']:+.0f} % force"
         lines.append(f"{row['label']} ±{row['plus_minus']:.3g} {row['unit']}: {change}")
@@ -142,6 +144,7 @@ def summary_of(contents: Contents, state: str, failure: str | None) -> dict[str,
         "steps": [{"title": step.title, "actions": step.actions} for step in steps(contents)],
         "checks": [asdict(check) for check in checks(contents)],
         "tolerance_budget": contents.budget,
+        "tolerance_budget_of": contents.pressed,
     }  # fmt: skip
 
 

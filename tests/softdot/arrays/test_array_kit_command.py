@@ -74,6 +74,7 @@ def test_the_page_speaks_of_the_array_and_says_whose_budget_it_shows(summary):
     assert "an array of 6 segments" in page
     assert "Traces and pads" in page
     assert "This budget is that of one segment of the array alone, free at its own sides" in page
+    assert summary["tolerance_budget_of"] == "one segment of the array alone, free at its own sides"
     assert not any(check["what"].startswith("first press: the cap") for check in summary["checks"])
     assert any("beyond the free rim" in warning for warning in summary["warnings"])
 
