@@ -175,7 +175,7 @@ def _one_by_one(contents: Contents) -> list[WorkStep]:
         under = "electrodes" if contents.device.is_array else "electrode"
         lower = f"Rub adhesive-flange-lower onto the underside of the film's flange, its {window} under the {under}. "
     if "upper" in rings:
-        over = ", its bars between the electrodes" if len(ring[0].feet) > 1 else ""
+        over = ", its narrow webs between the electrodes" if len(ring[0].feet) > 1 else ""
         upper = f"Rub adhesive-flange-upper onto the top of the flange{over}. "
     rim = contents.frame.half_along - contents.flat.layout.back_end
     edge = f"lies {rim:.3g} mm inside the edge of the frame" if rim > 0.05 else "is flush with the edge of the frame"
