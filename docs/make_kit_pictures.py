@@ -14,6 +14,7 @@ import pyvista as pv
 DOCS = Path(__file__).resolve().parent
 sys.path.insert(0, str(DOCS.parent))  # the rooms of this repository, whatever is installed
 
+from geometry.fabrication.device import lone_device  # noqa: E402
 from geometry.fabrication.kit import solid_kit  # noqa: E402
 from geometry.fabrication.parameters import Fabrication  # noqa: E402
 from geometry.fabrication.part import FabricationPart  # noqa: E402
@@ -56,7 +57,7 @@ def _segment(effector: Effector, boundary: str) -> Segment:
 
 
 def _parts(segment: Segment, fabrication: Fabrication) -> dict[str, FabricationPart]:
-    return {part.label: part for part in solid_kit(segment, fabrication).parts}
+    return {part.label: part for part in solid_kit(lone_device(segment), fabrication).parts}
 
 
 def _of(part: FabricationPart, shift: Shift = HERE) -> Item:

@@ -169,7 +169,7 @@ def _add_kit(commands: Any) -> None:
     kit = commands.add_parser(
         "kit",
         help="write a fabrication kit: moulds, frame, cut files, build sheet",
-        description="Write everything that a workshop needs to make the simulated segment.",
+        description="Write everything that a workshop needs to make the simulated segment or array.",
         epilog=EXIT_STATUS,
     )
     _add_config(kit)

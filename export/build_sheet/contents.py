@@ -2,20 +2,20 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import cos, radians, sin
 from typing import Any
 
 import numpy as np
 
 from export.printability import Printability
 from geometry.fabrication.clamp_frame import FrameLayout, frame_layout
-from geometry.fabrication.kit import SolidKit
+from geometry.fabrication.device import Device
+from geometry.fabrication.kit import SolidKit, jig_device, stacked_tops
 from geometry.fabrication.parameters import Fabrication
 from geometry.fabrication.part import FabricationPart
 from geometry.flat.pattern import FlatPattern
 from geometry.flat.sheets import FlatKit
+from geometry.flat.spacers import spaced_layers
 from geometry.parameters import Segment
-from geometry.solids import layer_solids
 from geometry.stack import Box, Disc, Dome, Layer, bodies, layers
 
 NAMES = {"medium1": "medium 1", "medium2": "medium 2"}
@@ -25,13 +25,14 @@ RESIN_G_CM3 = 1.15
 
 @dataclass(frozen=True)
 class Contents:
-    """densities_g_cm3 : by layer. permittivity : relative, of the film. printability : one for each printed part.
+    """device : what is made. densities_g_cm3 : by layer.
+    permittivity : relative, of the film. printability : one for each printed part.
 
     budget : the tolerance budget as it stands in kit.json, None where there is none, and budget_note says why;
-    press : what is pressed, in words.
+    press : what is pressed, in words. pressed : what the budget is of, in words.
     """
 
-    segment: Segment
+    device: Device
     fabrication: Fabrication
     solid: SolidKit
     flat: FlatKit
@@ -41,17 +42,23 @@ class Contents:
     budget: Mapping[str, Any] | None
     budget_note: str
     press: str
+    pressed: str
     warnings: tuple[str, ...]
 
     @property
+    def segment(self) -> Segment:
+        """One of its segments."""
+        return self.device.segment
+
+    @property
     def copies(self) -> int:
-        """Segments of one array."""
+        """Devices of one clamp frame."""
         return self.fabrication.array[0] * self.fabrication.array[1]
 
     @property
     def frame(self) -> FrameLayout:
         """Sizes of the clamp frame."""
-        return frame_layout(self.segment, self.fabrication)
+        return frame_layout(self.device, self.fabrication)
 
     @property
     def layers(self) -> tuple[Layer, ...]:
@@ -60,9 +67,28 @@ class Contents:
 
     @property
     def centers(self) -> list[tuple[float, float]]:
-        """Places of the segments of the array, x and y."""
-        turn = radians(self.frame.frame.turn_deg)
-        return [(u * cos(turn) - v * sin(turn), u * sin(turn) + v * cos(turn)) for u, v in self.frame.centers]
+        """Places of the devices of one frame, x and y."""
+        return [self.frame.frame.placed_point(place) for place in self.frame.centers]
+
+    @property
+    def stacked(self) -> dict[str, float]:
+        """Name -> height over the floor of the jig of the layers that are stacked in it."""
+        return stacked_tops(self.device, self.fabrication)
+
+    @property
+    def in_jig(self) -> Device:
+        """What is stacked in the jig at once."""
+        return jig_device(self.device, self.fabrication)
+
+    @property
+    def spaced(self) -> list[str]:
+        """Layers of islands that strips keep apart while they are bonded."""
+        return spaced_layers(self.device)
+
+    @property
+    def what(self) -> str:
+        """The device in a word."""
+        return "array" if self.device.is_array else "segment"
 
     def part(self, label: str) -> FabricationPart | None:
         """A printed part by its label."""
@@ -91,9 +117,10 @@ class Item:
 
 @dataclass(frozen=True)
 class Component:
-    """A layer of the finished segment: sizes, volume and mass of one."""
+    """A layer of the finished device: sizes, volume and mass of one piece, and how many pieces there are."""
 
     name: str
+    pieces: int
     material: str
     made: str
     size: str
@@ -108,12 +135,10 @@ def bill(contents: Contents) -> list[Item]:
 
 def components(contents: Contents) -> list[Component]:
     """The layers from the top down."""
-    segment = contents.segment
-    solids = layer_solids(segment, segment.film.thickness_um * 1e-3)
     cast = {pour.component: pour for pour in contents.solid.pours}
     found = []
     for layer in reversed(contents.layers):
-        solid = solids[layer.name]
+        solid = contents.device.piece(layer.name)
         size, volume = solid.bounding_box().size, float(solid.volume)
         thick = f"{1e3 * size.Z:.3g} µm" if layer.name == "film" else f"{size.Z:.4g} mm"
         made, density = "cut from sheet", contents.densities_g_cm3[layer.name]
@@ -121,12 +146,19 @@ def components(contents: Contents) -> list[Component]:
             pour = cast[layer.name]
             made, density = f"cast from {pour.recipe}", 1e3 * pour.poured_mass_g / pour.poured_volume_mm3
         made = "cut from film" if layer.name == "film" else made
-        effector = segment.effector
+        effector = contents.segment.effector
         around = layer.name == "effector" and effector is not None and effector.shape in ("cylinder", "dome")
         wide = f"{size.X:.4g} mm across" if around else f"{size.X:.4g} × {size.Y:.4g} mm"
-        size_text = f"{wide}, {thick}{' high' if around else ''}"
-        found.append(Component(spoken(layer.name), layer.material, made, size_text, volume, density * volume))
+        size_text = f"{wide}, {thick}{' high' if around else ''}{_grooved(contents, layer.name)}"
+        pieces = contents.device.pieces(layer.name)
+        found.append(Component(spoken(layer.name), pieces, layer.material, made, size_text, volume, density * volume))
     return found
+
+
+def _grooved(contents: Contents, name: str) -> str:
+    """The grooves of a layer, to follow its size."""
+    grooves = contents.device.layout.grooves(name)
+    return "".join(f", grooves {one.width_mm:g} mm wide and {one.depth_mm:g} mm deep" for one in grooves)
 
 
 def _cast(contents: Contents) -> list[Item]:
@@ -182,7 +214,7 @@ def _small(contents: Contents) -> list[Item]:
         found.append(Item(f"screws for {hole:g} mm holes, each with a nut", length, None, "close the frame"))
     found += [
         Item(f"dowel pins of {made.pin_diameter_mm:g} mm", "2", None, "registration holes of film, masks and rings"),
-        Item("crimp contacts, or copper tape with conductive glue", f"{len(contents.flat.metals)}", None, "pads"),
+        _contacts(contents),
         Item("cable tie, at most 1.5 × 3 mm", "1", None, "holds the tab on the shelf"),
     ]
     if contents.solid.pours:
@@ -197,9 +229,22 @@ def _small(contents: Contents) -> list[Item]:
         found.append(Item("flexible adhesive, thin", gap, None, "sides of the held layers"))
     found.append(Item("etch resist and etchant, or silver ink", "", None, "electrodes"))
     found.append(Item("laser cutter or knife plotter; isopropanol, lint-free cloth, tweezers", "", None, "cutting"))
-    found.append(Item("shielded cable, voltmeter or amplifier with more than 1 GΩ", "1", None, "read-out"))
+    channels = f"{len(contents.flat.metals) - 1}"
+    found.append(Item("shielded cable, voltmeter or amplifier with more than 1 GΩ", channels, None, "read-out"))
     found.append(Item("calliper or thickness gauge to 0.01 mm, capacitance meter to 1 pF", "", None, "checks"))
     return found
+
+
+FINEST_CRIMP_MM = 2.0
+
+
+def _contacts(contents: Contents) -> Item:
+    """Of the pads: a common electrode lies on the other face, so a connector needs contacts on both."""
+    count, pitch = len(contents.flat.metals), contents.fabrication.pad_pitch_mm
+    if pitch >= FINEST_CRIMP_MM:
+        return Item("crimp contacts, or copper tape with conductive glue", f"{count}", None, "pads")
+    what = f"ZIF connector, {pitch:g} mm pitch, contacts on both faces, and a stiffener for the head"
+    return Item(what, f"1 of {count} contacts", None, "pads")
 
 
 GAUGE = "Use a thickness gauge that barely presses, or a microscope with a scale: a calliper squeezes soft rubber."
@@ -225,7 +270,8 @@ class Gauging:
 def gauging(contents: Contents, name: str) -> Gauging:
     """A layer other than the film."""
     layer = next(one for one in contents.layers if one.name == name)
-    body, size = bodies(contents.segment)[-1], layer.thickness_mm
+    source, size = contents.device.source(name), layer.thickness_mm
+    body = bodies(source)[-1]
     if name == "effector" and isinstance(body, Disc | Dome):
         across = 2 * float(body.reach(np.array([1.0, 0.0, 0.0])))
         foot = ("diameter of its foot", f"{across:.4g} mm")
@@ -237,7 +283,7 @@ def gauging(contents: Contents, name: str) -> Gauging:
     keep, sides = f"that are {size:.4g} mm thick at all four corners", None
     if name == "effector" and isinstance(body, Box):
         length, width = 2 * body.half_x, 2 * body.half_y
-        if (length, width) != (contents.segment.length_mm, contents.segment.width_mm):
+        if (length, width) != (source.length_mm, source.width_mm):
             sides = ("length (x) and width (y) of its foot", f"{length:.4g} × {width:.4g} mm")
             keep += f", and {length:.4g} × {width:.4g} mm wide"
     return Gauging("box", "thickness", size, "at its four corners", sides, "at a corner", keep)

@@ -12,7 +12,7 @@ from export.cut_files import STYLES
 from export.page import page_environment
 from export.report import number
 from geometry.files import write_whole_text
-from geometry.flat.electrodes import stray_area_mm2
+from geometry.flat.electrodes import Metal, stray_area_mm2, stray_areas_mm2
 
 VACUUM_PF_PER_MM = 8.8541878128e-3
 SHEET_OHM = {"NiAl": 3.0, "silver ink": 0.1}
@@ -41,14 +41,57 @@ def checks(contents: Contents) -> list[Check]:
 
 def capacitance_pF(contents: Contents) -> list[tuple[str, float]]:
     """Of every top electrode against the common one: relative permittivity times area over thickness."""
-    per_mm2 = VACUUM_PF_PER_MM * contents.permittivity / (1e-3 * contents.segment.film.thickness_um)
-    tops = [metal for metal in contents.flat.metals if metal.face == "top"]
-    return [(metal.name, per_mm2 * (metal.rect[1] - metal.rect[0]) * (metal.rect[3] - metal.rect[2])) for metal in tops]
+    per_mm2 = _capacitance_pF_per_mm2(contents)
+    return [(metal.name, per_mm2 * _area_mm2(metal)) for metal in contents.flat.metals if metal.face == "top"]
+
+
+def _capacitance_pF_per_mm2(contents: Contents) -> float:
+    return VACUUM_PF_PER_MM * contents.permittivity / (1e-3 * contents.segment.film.thickness_um)
+
+
+def _area_mm2(metal: Metal) -> float:
+    return (metal.rect[1] - metal.rect[0]) * (metal.rect[3] - metal.rect[2])
+
+
+@dataclass(frozen=True)
+class RoutedTrace:
+    """From an electrode to its pad. face : "top" or "bottom".
+
+    length_mm, squares : of the lead without its pad; resistance_ohm : by metal, at most.
+    parasitic_area_mm2, parasitic_capacitance_pF : where it lies over metal of the other face.
+    """
+
+    pad: int
+    electrode: str
+    face: str
+    length_mm: float
+    squares: float
+    resistance_ohm: dict[str, float]
+    parasitic_area_mm2: float
+    parasitic_capacitance_pF: float
+
+
+def traces(contents: Contents) -> list[RoutedTrace]:
+    """In the order of the pads."""
+    stray, per_mm2 = stray_areas_mm2(contents.flat.metals), _capacitance_pF_per_mm2(contents)
+    found = [
+        RoutedTrace(
+            pad=metal.pad,
+            electrode=metal.name,
+            face=metal.face,
+            length_mm=metal.length,
+            squares=metal.squares,
+            resistance_ohm={name: metal.squares * ohm for name, ohm in SHEET_OHM.items()},
+            parasitic_area_mm2=stray.get(metal.name, 0.0),
+            parasitic_capacitance_pF=per_mm2 * stray.get(metal.name, 0.0),
+        )
+        for metal in contents.flat.metals
+    ]
+    return sorted(found, key=lambda trace: trace.pad)
 
 
 def _printed(contents: Contents) -> list[Check]:
     """Sizes of printed parts on which others depend."""
-    along, across = contents.segment.length_mm, contents.segment.width_mm
     found = []
     for pour in contents.solid.pours:
         gauge = gauging(contents, pour.component)
@@ -60,9 +103,12 @@ def _printed(contents: Contents) -> list[Check]:
     frame = contents.frame
     for label, run in (("frame-body", frame.body), ("frame-ring", frame.ring[-1] if frame.ring else None)):
         if run is not None:
-            size = f"{along + 2 * run.gap:.4g} × {across + 2 * run.gap:.4g} mm"
+            one, which = contents.device.stack, "opening"
+            if len(run.feet) > 1:
+                one, which = contents.segment, f"each of the {len(run.feet)} openings"
+            size = f"{one.length_mm + 2 * run.gap:.4g} × {one.width_mm + 2 * run.gap:.4g} mm"
             tight = "file it wider: a layer that is too tight bulges"
-            found.append(Check(f"opening of {label} at its top, x × y", size, tight))
+            found.append(Check(f"{which} of {label} at its top, x × y", size, tight))
     return found
 
 
@@ -84,18 +130,18 @@ def _thicknesses(contents: Contents) -> list[Check]:
 
 def _electrical(contents: Contents) -> list[Check]:
     stray = stray_area_mm2(contents.flat.metals)
-    area = sum((m.rect[1] - m.rect[0]) * (m.rect[3] - m.rect[2]) for m in contents.flat.metals if m.face == "top")
-    more = f", and {100 * stray / area:.2g} % more where leads cross the common electrode" if stray > 0.0 else ""
-    found = [
-        Check(
-            f"capacitance of electrode '{name}' against the common one, 1 kHz, cable subtracted",
-            f"{expected:.3g} pF{more}",
-            "too high: metal is left beside the electrode; too low: a lead is broken or the film is thicker",
-        )
-        for name, expected in capacitance_pF(contents)
-    ]
+    area = sum(_area_mm2(metal) for metal in contents.flat.metals if metal.face == "top")
+    more = f", and {100 * stray / area:.2g} % more where leads cross the common electrode" if stray > 1e-9 else ""
+    against = "against the common one, 1 kHz, cable subtracted"
+    otherwise = "too high: metal is left beside the electrode; too low: a lead is broken or the film is thicker"
+    expected = capacitance_pF(contents)
+    if contents.device.is_array:
+        what = [(f"capacitance of each of the {len(expected)} electrodes {against}", expected[0][1])]
+    else:
+        what = [(f"capacitance of electrode '{name}' {against}", value) for name, value in expected]
+    found = [Check(words, f"{value:.3g} pF{more}", otherwise) for words, value in what]
     squares = max(metal.squares for metal in contents.flat.metals)
-    most = ", ".join(f"{squares * ohm:.2g} Ω for {metal}" for metal, ohm in SHEET_OHM.items())
+    most = ", ".join(f"{number(squares * ohm, 2)} Ω for {metal}" for metal, ohm in SHEET_OHM.items())
     found += [
         Check(f"resistance from pad to electrode, {squares:.0f} squares", f"at most {most}", "a lead is scratched"),
         Check("resistance between the pads", "no reading (above 100 MΩ)", "metal bridges the cut edge: trim it"),
@@ -111,7 +157,7 @@ def _stack(contents: Contents) -> list[Check]:
     lines = contents.fabrication.adhesive_thickness_mm * (3 if contents.segment.effector is None else 4)
     return [
         Check(
-            f"height of the finished segment above the underside of its {carrier}{where}",
+            f"height of the finished {contents.what} above the underside of its {carrier}{where}",
             f"{segment_top + floor:.4g} mm, and up to {lines:.2g} mm more for the adhesive",
             "there is dirt or a bubble between two layers",
         )
@@ -120,6 +166,14 @@ def _stack(contents: Contents) -> list[Check]:
 
 def _press(contents: Contents) -> list[Check]:
     budget = contents.budget
+    if contents.device.is_array:
+        return [
+            Check(
+                "first press: each segment in turn, with all pads read",
+                "the largest voltage at its own pad; softdot array computes all of them",
+                "another pad answers most: two leads are exchanged; two answer alike: metal bridges them",
+            )
+        ]
     if budget is None:
         return []
     total = budget["root_sum_square"]
@@ -151,6 +205,7 @@ def write_page(contents: Contents, heading: Mapping[str, Any], pictures: Path, p
         components=components(contents),
         checks=checks(contents),
         steps=steps(contents),
+        traces=traces(contents),
         layers=STYLES,
         resin=RESIN_G_CM3,
         picture=_Pictures(pictures),

@@ -12,9 +12,9 @@ from export.cut_files import draw_cut_file
 from export.printability import draw_findings
 from export.printability.measure import surface_of
 from export.view import DPI, INK, DrawnBody, View, frame, name_parts, page, render
-from geometry.fabrication.kit import stacked_tops
+from geometry.fabrication.device import Device
 from geometry.flat.pattern import Outline
-from geometry.solids import PART_COLOURS, layer_solids
+from geometry.solids import PART_COLOURS
 
 ABOVE = View(28.0, 32.0)
 FACET_DEG, SHARPNESS, MARGIN_PX = 25.0, 1.5, 30
@@ -115,6 +115,8 @@ def _anchor(surface: Any, view: View) -> Any:
 
 APART = 1.1
 """Between things that are drawn apart, in widths of the segment."""
+MOST_APART = 1.0
+"""In heights of the device, for wide ones."""
 MOULD_APART = 0.6
 """In widths of the mould."""
 METAL_COLOUR, METAL_MM = "#e3a93c", 0.004
@@ -141,24 +143,35 @@ class Drawer:
 
     def __init__(self, contents: Contents, folder: Path) -> None:
         self.contents, self.folder = contents, folder
-        segment = contents.segment
-        solids = layer_solids(segment, segment.film.thickness_um * 1e-3)
-        self.single = {
-            layer.name: [solid_thing(solids[layer.name], PART_COLOURS[layer.name], spoken(layer.name))]
-            for layer in contents.layers
-        }
+        self.single = self._soft(contents.device)
         self.single["film"] = self._film()
         self.places = contents.centers
         self.layers = {name: self._everywhere(group) for name, group in self.single.items()}
         self.printed = {part.label: solid_thing(part.solid, part.colour, part.label) for part in contents.solid.parts}
-        self.space = APART * max(segment.length_mm, segment.width_mm)
+        sizes = contents.device.stack.length_mm, contents.device.stack.width_mm
+        self.space = APART * min(max(sizes), MOST_APART * contents.layers[-1].top_mm)
+
+    def _soft(self, device: Device) -> dict[str, Group]:
+        """The pieces of each layer, the first one with its name."""
+        return {
+            layer.name: [
+                solid_thing(solid, PART_COLOURS[layer.name], "" if number else spoken(layer.name))
+                for number, solid in enumerate(device.solids(layer.name))
+            ]
+            for layer in self.contents.layers
+        }
 
     def whole(self) -> None:
         """All that stays in the finished segment: pulled apart upwards, and with its front half cut away."""
         stack = self._stack()
         self._draw(_apart(stack, self.space), "What you build, taken apart", "exploded")
-        opened = [[thing.cut_open(self.places[0][1]) for thing in group] for group in stack]
-        self._draw(opened, "Cut through the segment", "section")
+        opened = [[thing.cut_open(self.cut_y) for thing in group] for group in stack]
+        self._draw(opened, f"Cut through the {self.contents.what}", "section")
+
+    @property
+    def cut_y(self) -> float:
+        """Where it is cut: through the middle of a row of segments."""
+        return self.places[0][1] + float(self.contents.device.layout.centres(1)[0])
 
     def moulds(self) -> None:
         """One picture for each cast component."""
@@ -171,9 +184,11 @@ class Drawer:
 
     def jig(self) -> None:
         """What is stacked in the corner of the jig, each thing over the one below."""
-        tops = stacked_tops(self.contents.segment, self.contents.fabrication)
+        tops, single = self.contents.stacked, self.single
+        if self.contents.in_jig is not self.contents.device:
+            single = self._soft(self.contents.in_jig)
         base = next(layer.bottom_mm for layer in self.contents.layers if layer.name == next(iter(tops)))
-        stack = [_lifted(self.single[name], -base) for name in tops]
+        stack = [_lifted(single[name], -base) for name in tops]
         locator = [[thing] for label, thing in self.printed.items() if label == "jig-locator"]
         stack[-1:-1] = locator
         raised = [_lifted(group, (number + 1) * self.space) for number, group in enumerate(stack)]

@@ -98,6 +98,10 @@ class ArrayLayout:
         """Whether a layer ends at the edges of each segment: an island, or one that the grid holds."""
         return layer not in self.array.shared or layer in self.array.grid_layers
 
+    def is_cut(self, layer: str) -> bool:
+        """Whether a layer is one solid a segment. A film that runs through passes a grid as one sheet."""
+        return self.ends_at_walls(layer) and not (layer == "film" and layer in self.array.shared)
+
     def foot_mm(self, layer: str) -> tuple[float, float]:
         """Size in x and y of a layer on one segment; that of an effector narrower than the segment is its own."""
         effector = self.segment.effector

@@ -18,7 +18,7 @@ def array_parts(layout: ArrayLayout, dot_shape: DotShape) -> tuple[Part, ...]:
     """
     parts = []
     for layer in reversed(layers(layout.segment)):
-        if _is_cut(layout, layer.name):
+        if layout.is_cut(layer.name):
             parts += [_island(layout, layer, place) for place in layout.places]
         else:
             parts.append(labelled_part(layer.name, _through(layout, layer), layer.material, printable=False))
@@ -46,11 +46,6 @@ def electrode_face(layout: ArrayLayout, place: SegmentPlace) -> Any:
     return face
 
 
-def _is_cut(layout: ArrayLayout, name: str) -> bool:
-    """Whether a layer is one solid a segment."""
-    return layout.ends_at_walls(name) and not (name == "film" and name in layout.array.shared)
-
-
 def _island(layout: ArrayLayout, layer: Layer, place: SegmentPlace) -> Part:
     from build123d import Pos
 
@@ -67,16 +62,23 @@ def _renamed(part: Part, label: str) -> Part:
 
 def _through(layout: ArrayLayout, layer: Layer) -> Any:
     """A layer over the whole array, without its grooves; one that these cut through is a compound of solids."""
-    half_x, half_y = layout.half_mm
-    solid = upright_box(half_x, half_y, layer.bottom_mm, layer.top_mm)
+    solid = upright_box(*layout.half_mm, layer.bottom_mm, layer.top_mm)
+    for groove in groove_solids(layout, layer):
+        solid = solid - groove
+    return solid
+
+
+def groove_solids(layout: ArrayLayout, layer: Layer) -> list[Any]:
+    """What the grooves take away from a layer that runs through: boxes over the whole array."""
+    found, whole = [], [(-half, half) for half in layout.half_mm]
     for groove in layout.grooves(layer.name):
         bottom, half = layer.top_mm - groove.depth_mm, groove.width_mm / 2
         for axis in (0, 1):
             for seam in layout.seams(axis):
-                along = [(-half_x, half_x), (-half_y, half_y)]
+                along = list(whole)
                 along[axis] = (seam - half, seam + half)
-                solid = solid - _box((*along[0], *along[1]), bottom, layer.top_mm)
-    return solid
+                found.append(_box((*along[0], *along[1]), bottom, layer.top_mm))
+    return found
 
 
 def grid_solid(layout: ArrayLayout) -> Any:
@@ -85,7 +87,7 @@ def grid_solid(layout: ArrayLayout) -> Any:
     wall = max(WALL_MM, *(gap for gap in layout.gap_mm if gap < half_x + half_y))
     grid: Any = None
     for layer in layers(layout.segment):
-        if layer.name not in layout.array.grid_layers or not _is_cut(layout, layer.name):
+        if layer.name not in layout.array.grid_layers or not layout.is_cut(layer.name):
             continue
         slab = upright_box(half_x + wall, half_y + wall, layer.bottom_mm, layer.top_mm)
         for rectangle in layout.rectangles(layer.name):

@@ -5,6 +5,7 @@ from typing import Any
 
 from geometry.base import InputError
 from geometry.fabrication.cavity import check_mould_sizes, styled_cavity
+from geometry.fabrication.device import Device
 from geometry.fabrication.mould import LID_MM, Mould, mould_of
 from geometry.fabrication.parameters import CastComponent, Fabrication, cast_components
 from geometry.fabrication.part import (
@@ -17,7 +18,6 @@ from geometry.fabrication.part import (
     volume,
     without,
 )
-from geometry.parameters import Segment
 
 
 @dataclass(frozen=True)
@@ -189,16 +189,16 @@ class CastingKit:
     checks: tuple[CavityCheck, ...]
 
 
-def casting_kit(segment: Segment, fabrication: Fabrication) -> CastingKit:
-    """Moulds and pours of a segment that has passed its checks.
+def casting_kit(device: Device, fabrication: Fabrication) -> CastingKit:
+    """Moulds and pours of a device that has passed its checks.
 
     InputError for what cannot be cast, printed or taken out of its mould, and for a cavity that deviates from
     the design by more than tolerance_mm.
     """
-    components = cast_components(segment, fabrication)
+    components = cast_components(device.segment, fabrication)
     if components:
         check_mould_sizes(fabrication, printer_profile(fabrication.printer))
-    cavities = [styled_cavity(one.name, segment, one.recipe.shrinkage, fabrication) for one in components]
+    cavities = [styled_cavity(one.name, device, one.recipe.shrinkage, fabrication) for one in components]
     moulds = [
         mould_of(component.name, style, cavity, fabrication)
         for component, (style, cavity) in zip(components, cavities, strict=True)

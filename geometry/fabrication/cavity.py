@@ -5,10 +5,9 @@ from math import asin, degrees, radians, sqrt, tan
 from typing import Any, Literal
 
 from geometry.base import InputError
+from geometry.fabrication.device import Device
 from geometry.fabrication.parameters import Fabrication
-from geometry.fabrication.part import PrinterProfile, printer_profile, refuse_small_keys, refuse_thin, scaled
-from geometry.parameters import Segment
-from geometry.solids import layer_solids
+from geometry.fabrication.part import PrinterProfile, printer_profile, refuse_small_keys, refuse_thin, scaled, without
 from geometry.stack import Box, Disc, Dome, bodies
 
 
@@ -21,6 +20,7 @@ class Cavity:
     solid : what is hollow in the mould.
     size_x, size_y : of the opening.
     shape : "box", "disc" or "dome".
+    counts : cavities of the mould in x and y.
     """
 
     designed: Any
@@ -31,38 +31,70 @@ class Cavity:
     height: float
     shape: str
     shrinkage: float
+    counts: tuple[int, int]
 
 
-def cavity_of(name: str, segment: Segment, shrinkage: float, draft_deg: float, fabrication: Fabrication) -> Cavity:
+def cavity_of(name: str, device: Device, shrinkage: float, draft_deg: float, fabrication: Fabrication) -> Cavity:
     """The cavity of a component; the draft, in degrees, leaves a dome as it is.
 
     Draft leaves the section at mid-height as designed, so that the deviation is as small as it can be.
     """
-    designed = designed_part(name, segment, fabrication)
-    enlarged = scaled(designed, 1.0 / (1.0 - shrinkage))
-    shape, size = _shape(name, segment), enlarged.bounding_box().size
+    designed = designed_part(name, device, fabrication)
+    growth = 1.0 / (1.0 - shrinkage)
+    enlarged = scaled(designed, growth)
+    shape, size = _shape(name, device), enlarged.bounding_box().size
     widening = draft_widening(shape, size.Z, draft_deg)
+    solid = enlarged
+    if widening > 0.0:
+        solid = without(_drafted(shape, size, widening), ridges(name, device, growth, draft_deg))
     return Cavity(
         designed=designed,
         enlarged=enlarged,
-        solid=_drafted(shape, size, widening) if widening > 0.0 else enlarged,
+        solid=solid,
         size_x=size.X + 2 * widening,
         size_y=size.Y + 2 * widening,
         height=size.Z,
         shape=shape,
         shrinkage=shrinkage,
+        counts=_counts(name, device, fabrication),
     )
 
 
-def designed_part(name: str, segment: Segment, fabrication: Fabrication) -> Any:
-    """The part on the floor of its mould: with lid_face = 'base' it stands on its head."""
+def _counts(name: str, device: Device, fabrication: Fabrication) -> tuple[int, int]:
+    """One for each island of an array, in rows and columns as they will lie."""
+    if device.pieces(name) > 1:
+        return len(device.layout.centres(0)), len(device.layout.centres(1))
+    return fabrication.cavities or ((1, 1) if device.is_array else (2, 2))
+
+
+def designed_part(name: str, device: Device, fabrication: Fabrication) -> Any:
+    """One piece on the floor of its mould: with lid_face = 'base' it stands on its head."""
     from build123d import Pos, Rot
 
-    solid = layer_solids(segment, segment.film.thickness_um * 1e-3)[name]
+    solid = device.piece(name)
     low = solid.bounding_box().min.Z
     if fabrication.lid_face == "top":
         return Pos(0, 0, -low) * solid
     return Pos(0, 0, solid.bounding_box().max.Z) * Rot(180, 0, 0) * solid
+
+
+def ridges(name: str, device: Device, growth: float, draft_deg: float) -> list[Any]:
+    """What forms the grooves of a layer on the floor of its mould, with draft, beyond the sides of the cavity."""
+    from build123d import Plane, Pos, Solid, Wire
+
+    layout, found = device.layout, []
+    for groove in layout.grooves(name):
+        depth, lean = growth * groove.depth_mm, tan(radians(draft_deg)) * growth * groove.depth_mm / 2
+        for axis in (0, 1):
+            long = 2 * growth * layout.half_mm[1 - axis] + 2.0
+            for seam in layout.seams(axis):
+                wires = []
+                for z, wide in ((0.0, lean), (depth, -lean)):
+                    sizes = (growth * groove.width_mm + 2 * wide, long)
+                    wires.append(Wire.make_rect(*(sizes if axis == 0 else sizes[::-1]), Plane((0, 0, z))))
+                place = (growth * seam, 0.0) if axis == 0 else (0.0, -growth * seam)
+                found.append(Pos(*place, 0) * Solid.make_loft(wires, ruled=True))
+    return found
 
 
 def draft_widening(shape: str, height: float, draft_deg: float) -> float:
@@ -75,8 +107,8 @@ def draft_deviation(shape: str, height: float, draft_deg: float) -> float:
     return draft_widening(shape, height, draft_deg) * (sqrt(2.0) if shape == "box" else 1.0)
 
 
-def _shape(name: str, segment: Segment) -> str:
-    body = bodies(segment)[-1] if name == "effector" else Box(1.0, 1.0, 0.0, 1.0)
+def _shape(name: str, device: Device) -> str:
+    body = bodies(device.source(name))[-1] if name == "effector" else Box(1.0, 1.0, 0.0, 1.0)
     return {Box: "box", Disc: "disc", Dome: "dome"}[type(body)]
 
 
@@ -98,13 +130,13 @@ LEAST_DRAFT_DEG = 1.0
 """Of a wall that the part slides along when it leaves the mould: 1 to 3 degrees are the rule of the trade."""
 
 
-def styled_cavity(name: str, segment: Segment, shrinkage: float, fabrication: Fabrication) -> tuple[Style, Cavity]:
+def styled_cavity(name: str, device: Device, shrinkage: float, fabrication: Fabrication) -> tuple[Style, Cavity]:
     """The style of the mould of a component and its cavity. InputError for a mould that cannot be opened.
 
     A dome opens by itself towards its base. Walls of boxes and cylinders need draft in one plate, and none in
     a split mould, whose bars are drawn off sideways.
     """
-    plain = cavity_of(name, segment, shrinkage, 0.0, fabrication)
+    plain = cavity_of(name, device, shrinkage, 0.0, fabrication)
     _refuse_shallow(name, plain, printer_profile(fabrication.printer))
     _refuse_large_vents(name, plain, fabrication)
     if plain.shape == "dome":
@@ -114,9 +146,11 @@ def styled_cavity(name: str, segment: Segment, shrinkage: float, fabrication: Fa
     fits = fabrication.draft_deg >= LEAST_DRAFT_DEG and deviation <= fabrication.tolerance_mm
     if fabrication.mould_style == "open" and not fits:
         _refuse_open(name, deviation, fabrication)
+    if device.layout.grooves(name):
+        _check_grooves(name, device, fits and fabrication.mould_style != "split", fabrication)
     if fabrication.mould_style == "split" or not fits:
         return "split", plain
-    return "open", cavity_of(name, segment, shrinkage, fabrication.draft_deg, fabrication)
+    return "open", cavity_of(name, device, shrinkage, fabrication.draft_deg, fabrication)
 
 
 def least_draft_deg(cavity: Any, height: float) -> float:
@@ -166,6 +200,32 @@ def _refuse_undercut(name: str, cavity: Cavity) -> None:
             f"fabrication.lid_face = 'top': the {cavity.shape} of segment.{name} would be an undercut, its walls "
             f"close towards the lid by up to {-draft:.0f} degrees where the limit is 0; lid_face = 'base' parts "
             "the mould at its base"
+        )
+
+
+def _check_grooves(name: str, device: Device, opens: bool, fabrication: Fabrication) -> None:
+    """Ridges that can be printed, with draft, on the floor of an open mould."""
+    printer = printer_profile(fabrication.printer)
+    for number, groove in enumerate(device.layout.array.grooves):
+        field = f"array.grooves[{number}]"
+        if groove.layer != name:
+            continue
+        if fabrication.lid_face == "top":
+            raise InputError(
+                f"fabrication.lid_face = 'top': the ridges that form {field} stand on the floor; use 'base'"
+            )
+        if not opens:
+            raise InputError(
+                f"{field}.layer = '{name}': its ridges need an open mould, which mould_style = "
+                f"'{fabrication.mould_style}' with draft_deg = {fabrication.draft_deg:g} and tolerance_mm = "
+                f"{fabrication.tolerance_mm:g} does not give {name}"
+            )
+        refuse_thin(
+            f"{field}.width_mm = {groove.width_mm:g}: its mould has a ridge",
+            groove.width_mm,
+            printer["supported_wall_mm"],
+            f"the {printer.process.upper()} limit for the supported wall",
+            "make the groove wider",
         )
 
 

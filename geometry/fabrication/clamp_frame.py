@@ -3,11 +3,14 @@
 How wide the clamp frame is at each height, seen from the cable: x points to where it leaves. Millimetres.
 """
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
 
+from geometry.array.layout import Rectangle
 from geometry.base import InputError
+from geometry.fabrication.device import Device, ExitFrame, held_names
 from geometry.fabrication.parameters import Fabrication
 from geometry.fabrication.part import (
     PROCESSES,
@@ -23,40 +26,8 @@ from geometry.fabrication.part import (
     refuse_thin,
     without,
 )
-from geometry.parameters import Segment
-from geometry.part_checks import covers_footprint
-from geometry.stack import Layer, layers
-
-TURNS_DEG = {"+x": 0.0, "+y": 90.0, "-x": 180.0, "-y": 270.0}
-
-
-@dataclass(frozen=True)
-class ExitFrame:
-    """along, across : sizes of the footprint in x (towards the cable) and y of this frame.
-
-    count_along, count_across : segments of the array. turn_deg : about z, back into the segment's frame.
-    """
-
-    along: float
-    across: float
-    count_along: int
-    count_across: int
-    turn_deg: float
-
-    def placed(self, solid: Any) -> Any:
-        """A solid of this frame in the frame of the segment."""
-        from build123d import Rot
-
-        return Rot(0, 0, self.turn_deg) * solid
-
-
-def exit_frame(segment: Segment, fabrication: Fabrication) -> ExitFrame:
-    """The frame of fabrication.cable_exit."""
-    sizes, counts = (segment.length_mm, segment.width_mm), fabrication.array
-    if fabrication.cable_exit.endswith("y"):
-        sizes, counts = (sizes[1], sizes[0]), (counts[1], counts[0])
-    return ExitFrame(*sizes, *counts, TURNS_DEG[fabrication.cable_exit])
-
+from geometry.flat.film import FilmLayout, film_layout
+from geometry.stack import layers
 
 TAB_CLEARANCE_MM = 0.3
 """On each side of the film's tab: the smallest loose clearance (addema.se, layerx3d.in, forgelabs.com)."""
@@ -68,11 +39,15 @@ LUG_MARGIN_MM = 1.5
 
 @dataclass(frozen=True)
 class WallRun:
-    """Heights between which the opening is wider than the footprint by the gap on each side, in mm."""
+    """Heights between which each opening is wider than what stands in it by the gap on each side, in mm.
+
+    feet : what stands in the openings, seen from the cable; several where bars of a grid stand between them.
+    """
 
     bottom: float
     top: float
     gap: float
+    feet: tuple[Rectangle, ...]
 
 
 @dataclass(frozen=True)
@@ -81,7 +56,8 @@ class FrameLayout:
 
     film_bottom, film_top : heights. body : around medium 2, None where nothing is held. ring : above the film,
     empty where it is not needed. half_along, half_across : half the outer sizes, half_across with the lugs.
-    pitch : between segments, 0 for a single one. screws_across : distance of the screws from the axis.
+    pitch : between devices, 0 for a single one. screws_across : distance of the screws from the axis.
+    half_tab : half the width of the film's tab. room_for_tab : of the footprint, of an array that of its film.
     """
 
     frame: ExitFrame
@@ -93,32 +69,35 @@ class FrameLayout:
     half_across: float
     pitch: float
     screws_across: float
+    half_tab: float
+    room_for_tab: float
 
     @property
     def size_between(self) -> float:
-        """The larger size of the footprint in the directions that have neighbours; a single segment may have any."""
+        """The larger size of the footprint in the directions that have neighbours; a single device may have any."""
         counted = ((self.frame.count_along, self.frame.along), (self.frame.count_across, self.frame.across))
         sizes = [size for count, size in counted if count > 1]
         return max(sizes or [size for _, size in counted])
 
     @property
     def centers(self) -> list[tuple[float, float]]:
-        """Places of the segments."""
+        """Places of the devices."""
         counts = (self.frame.count_along, self.frame.count_across)
         along, across = ([(k - (count - 1) / 2) * self.pitch for k in range(count)] for count in counts)
         return list(product(along, across))
 
 
-def frame_layout(segment: Segment, fabrication: Fabrication) -> FrameLayout:
-    """The layout for a segment that has passed its checks."""
-    frame, stack = exit_frame(segment, fabrication), {layer.name: layer for layer in layers(segment)}
-    held = held_names(segment)
-    ring = _closed_ring(segment, held, fabrication)
-    body = WallRun(0.0, stack["film"].bottom_mm, _gap("medium2", held, fabrication)) if held else None
+def frame_layout(device: Device, fabrication: Fabrication) -> FrameLayout:
+    """The layout for a device that has passed its checks."""
+    film, stack = film_layout(device, fabrication), {layer.name: layer for layer in layers(device.segment)}
+    frame, held = film.frame, held_names(device.stack)
+    ring = _closed_ring(device, held, frame, fabrication)
+    body = _run("medium2", device, held, frame, fabrication) if held else None
     pitch = fabrication.pitch_mm or 0.0
-    widest = widest_gap(body, ring)
-    half_along = ((frame.count_along - 1) * pitch + frame.along) / 2 + widest + fabrication.wall_mm
-    inner_across = ((frame.count_across - 1) * pitch + frame.across) / 2 + widest + fabrication.wall_mm
+    traces = film.beyond if film.lattice is not None else 0.0
+    beside = max(widest_gap(body, ring) + fabrication.wall_mm, traces)
+    half_along = ((frame.count_along - 1) * pitch + frame.along) / 2 + beside
+    inner_across = ((frame.count_across - 1) * pitch + frame.across) / 2 + beside
     lug = fabrication.screw_diameter_mm + 2 * LUG_MARGIN_MM
     return FrameLayout(
         frame=frame,
@@ -130,64 +109,59 @@ def frame_layout(segment: Segment, fabrication: Fabrication) -> FrameLayout:
         half_across=inner_across + lug,
         pitch=pitch,
         screws_across=inner_across + lug / 2,
+        half_tab=film.half_tab,
+        room_for_tab=frame.across if film.lattice is None else 2 * film.half_body,
     )
 
 
 def widest_gap(body: WallRun | None, ring: tuple[WallRun, ...]) -> float:
-    """The widest gap beside a segment in mm, at any height; 0 without walls."""
+    """The widest gap beside a layer in mm, at any height; 0 without walls."""
     return max((run.gap for run in (body, *ring) if run is not None), default=0.0)
 
 
-def held_names(segment: Segment) -> set[str]:
-    """Names of the layers whose sides the frame holds."""
-    if segment.boundary == "free":
-        return set()
-    names = {layer.name for layer in layers(segment)} & set(segment.held_layers)
-    return names if covers_footprint(segment) else names - {"effector"}
-
-
-def _closed_ring(segment: Segment, held: set[str], fabrication: Fabrication) -> tuple[WallRun, ...]:
+def _closed_ring(device: Device, held: set[str], frame: ExitFrame, fabrication: Fabrication) -> tuple[WallRun, ...]:
     """Openings above the film up to the highest held layer, or around medium 1 where only the film is held."""
-    above = [layer for layer in layers(segment) if layer.name in ("medium1", "effector")]
-    kept = [layer for layer in above if layer.name in held]
+    above = [layer.name for layer in layers(device.segment) if layer.name in ("medium1", "effector")]
+    kept = [name for name in above if name in held]
     if kept:
         above = above[: above.index(kept[-1]) + 1]
     elif "film" in held:
         above = above[:1]
     else:
         above = []
-    return _merged([(layer, _gap(layer.name, held, fabrication)) for layer in above])
-
-
-def _merged(openings: list[tuple[Layer, float]]) -> tuple[WallRun, ...]:
     runs: list[WallRun] = []
-    for layer, gap in openings:
-        if runs and runs[-1].gap == gap:
-            runs[-1] = WallRun(runs[-1].bottom, layer.top_mm, gap)
-        else:
-            runs.append(WallRun(layer.bottom_mm, layer.top_mm, gap))
+    for run in (_run(name, device, held, frame, fabrication) for name in above):
+        if runs and (runs[-1].gap, runs[-1].feet) == (run.gap, run.feet):
+            run = replace(run, bottom=runs.pop().bottom)
+        runs.append(run)
     return tuple(runs)
 
 
-def _gap(name: str, held: set[str], fabrication: Fabrication) -> float:
-    return fabrication.glue_gap_mm if name in held else fabrication.side_clearance_mm
+def _run(name: str, device: Device, held: set[str], frame: ExitFrame, fabrication: Fabrication) -> WallRun:
+    """The openings around one layer: one for each piece where the grid holds it or, above the film, clamps that."""
+    layer = next(one for one in layers(device.segment) if one.name == name)
+    gap = fabrication.glue_gap_mm if name in held else fabrication.side_clearance_mm
+    clamps = name == "medium1" and device.layout.is_cut(name) and "film" in device.layout.array.grid_layers
+    feet = device.feet(name) if device.in_grid(name) or clamps else device.feet_of_stack
+    return WallRun(layer.bottom_mm, layer.top_mm, gap, tuple(map(frame.seen, feet)))
 
 
-def check_frame(segment: Segment, layout: FrameLayout, fabrication: Fabrication) -> None:
+def check_frame(device: Device, layout: FrameLayout, fabrication: Fabrication) -> None:
     """InputError with the limit that a wall, ledge, hole or flange breaks."""
     printer = printer_profile(fabrication.printer)
     _check_keys(fabrication, printer)
     _check_pitch(layout, fabrication, printer)
+    _check_grid(device, layout, printer)
     _check_cable(layout, fabrication, printer)
     for run in layout.ring:
         refuse_thin(
-            f"segment.held_layers = {list(segment.held_layers)}: the clamp frame needs a ledge",
+            f"segment.held_layers = {list(device.stack.held_layers)}: the clamp frame needs a ledge",
             run.top - run.bottom,
             printer["supported_wall_mm"],
             f"the {printer.process.upper()} limit for the supported wall",
             "hold a thicker layer or several neighbours",
         )
-    _check_flange(segment, layout, fabrication)
+    _check_flange(device, layout, fabrication)
 
 
 def _check_keys(fabrication: Fabrication, printer: PrinterProfile) -> None:
@@ -202,12 +176,13 @@ def _check_keys(fabrication: Fabrication, printer: PrinterProfile) -> None:
 
 
 def _check_cable(layout: FrameLayout, fabrication: Fabrication, printer: PrinterProfile) -> None:
-    """The tab is narrower than the footprint, its channel leaves a floor and the shelf has room for a tie."""
-    widest = layout.frame.across - 2 * TAB_CLEARANCE_MM
-    if fabrication.tab_width_mm > widest + ROUNDING_MM:
+    """The tab is narrow enough, its channel leaves a floor and the shelf has room for a tie."""
+    widest = layout.room_for_tab - 2 * TAB_CLEARANCE_MM
+    if 2 * layout.half_tab > widest + ROUNDING_MM:
+        side = "" if fabrication.tab_width_mm else "; the leads need it, so let the cable leave on a longer side"
         raise InputError(
-            f"fabrication.tab_width_mm = {fabrication.tab_width_mm:g}: must be at most {widest:.3g}, the footprint at "
-            f"cable_exit = '{fabrication.cable_exit}' less {TAB_CLEARANCE_MM:g} mm on each side"
+            f"fabrication.tab_width_mm = {2 * layout.half_tab:g}: must be at most {widest:.3g}, the width at "
+            f"cable_exit = '{fabrication.cable_exit}' less {TAB_CLEARANCE_MM:g} mm on each side{side}"
         )
     refuse_thin(
         f"fabrication.tab_slot_mm = {fabrication.tab_slot_mm:g}: the shelf under the tab has a thickness",
@@ -244,36 +219,82 @@ def _check_pitch(layout: FrameLayout, fabrication: Fabrication, printer: Printer
     )
 
 
-def _check_flange(segment: Segment, layout: FrameLayout, fabrication: Fabrication) -> None:
+def _check_grid(device: Device, layout: FrameLayout, printer: PrinterProfile) -> None:
+    """The bars between the openings of one device are what its gaps leave beside the glue."""
+    for run in (layout.body, *layout.ring):
+        if run is None or len(run.feet) == 1:
+            continue
+        gap = min(one for one in device.layout.gap_mm if one < float("inf"))
+        segments = device.layout
+        least = printer["supported_wall_mm"]
+        refuse_thin(
+            f"array.grid_layers = {list(segments.array.grid_layers)}: gaps of {gap:.3g} mm between segments with "
+            f"{run.gap:g} mm on each side leave bars",
+            gap - 2 * run.gap,
+            least,
+            f"the {printer.process.upper()} limit for the supported wall",
+            f"at the pitch of {segments.pitch_mm:g} mm a segment may be at most "
+            f"{max(segments.pitch_mm - least - 2 * run.gap, 0.0):.3g} mm wide",
+        )
+
+
+def check_tab(film: FilmLayout, case: FrameLayout, fabrication: Fabrication) -> None:
+    """InputError for a tab that does not fit its film or its frame."""
+    if film.half_tab > film.half_body + ROUNDING_MM:
+        raise InputError(
+            f"fabrication.tab_width_mm = {2 * film.half_tab:g}: the film is only {2 * film.half_body:g} mm "
+            "wide there; must be at most that"
+        )
+    if film.frame.count_along > 1:
+        raise InputError(
+            f"fabrication.array = {list(fabrication.array)}: with cable_exit = '{fabrication.cable_exit}' the tab of "
+            "one segment would lie on the next one; put the segments side by side as seen from the cable"
+        )
+    needed = case.half_along - film.frame.along / 2
+    if fabrication.tab_length_mm < needed - ROUNDING_MM:
+        raise InputError(
+            f"fabrication.tab_length_mm = {fabrication.tab_length_mm:g}: the tab would end inside the frame, whose "
+            f"outside is {needed:.3g} mm from the footprint; must be at least that"
+        )
+
+
+def _check_flange(device: Device, layout: FrameLayout, fabrication: Fabrication) -> None:
     """The flange of a held film lies on the body beside medium 2."""
     room = layout.half_along - layout.frame.along / 2 - (layout.frame.count_along - 1) * layout.pitch / 2
-    if "film" in held_names(segment) and fabrication.film_flange_mm > room + ROUNDING_MM:
+    if "film" in held_names(device.stack) and fabrication.film_flange_mm > room + ROUNDING_MM:
         raise InputError(
             f"fabrication.film_flange_mm = {fabrication.film_flange_mm:g}: the frame has only {room:.3g} mm beside "
             f"the footprint; must be at most that, or give a thicker wall than wall_mm = {fabrication.wall_mm:g}"
         )
 
 
-def frame_parts(segment: Segment, fabrication: Fabrication) -> tuple[FabricationPart, ...]:
+def frame_parts(device: Device, fabrication: Fabrication) -> tuple[FabricationPart, ...]:
     """Body and ring of the clamp frame, or the open base where no sides are held. InputError for impossible ones.
 
     The film lies on the body, whose top is the top of medium 2; the ring closes over its flange.
     """
-    layout = frame_layout(segment, fabrication)
-    check_frame(segment, layout, fabrication)
-    fine = PROCESSES[fabrication.printer]
+    layout = frame_layout(device, fabrication)
+    check_frame(device, layout, fabrication)
+    fine, what = PROCESSES[fabrication.printer], "array" if device.is_array else "segment"
     if layout.body is None:
         solid = layout.frame.placed(_base(layout, fabrication))
-        purpose = "Carries the free segment, which is glued inside the groove; the tab is tied down on the shelf."
+        purpose = f"Carries the free {what}, which is glued inside the groove; the tab is tied down on the shelf."
         return (fabrication_part("base", solid, "frame", purpose, fine),)
     body = layout.frame.placed(_body(layout, layout.body, fabrication))
-    purpose = "Carries the segment; the film's flange lies on its top and its tab is tied down on the shelf."
+    purpose = f"Carries the {what}; the film's flange lies on its top and its tab is tied down on the shelf."
+    purpose = _with_bars(purpose, [layout.body])
     parts = [fabrication_part("frame-body", body, "frame", purpose, fine)]
     if layout.ring:
         ring = layout.frame.placed(_ring(layout, fabrication))
         purpose = "Is screwed onto the body, clamps the film and holds the sides of the layers above it with glue."
+        purpose = _with_bars(purpose, layout.ring)
         parts.append(fabrication_part("frame-ring", ring, "frame", purpose, fine))
     return tuple(parts)
+
+
+def _with_bars(purpose: str, runs: Sequence[WallRun]) -> str:
+    """The purpose of a part that is the stiff grid too."""
+    return purpose.replace(".", "; its bars are the stiff grid.") if any(len(run.feet) > 1 for run in runs) else purpose
 
 
 def _body(layout: FrameLayout, opening: WallRun, fabrication: Fabrication) -> Any:
@@ -319,9 +340,13 @@ def _around(x: float, y: float, half_x: float, half_y: float, tall: tuple[float,
 
 
 def _openings(layout: FrameLayout, run: WallRun, beyond: float) -> list[Any]:
-    """One for each segment; cut beyond an open top, so that no skin is left there."""
-    half_x, half_y = layout.frame.along / 2 + run.gap, layout.frame.across / 2 + run.gap
-    return [_around(x, y, half_x, half_y, (run.bottom, run.top + beyond)) for x, y in layout.centers]
+    """One for each foot; cut beyond an open top, so that no skin is left there."""
+    tall, gap = (run.bottom, run.top + beyond), run.gap
+    return [
+        box((x + u0 - gap, x + u1 + gap), (y + v0 - gap, y + v1 + gap), tall)
+        for x, y in layout.centers
+        for u0, u1, v0, v1 in run.feet
+    ]
 
 
 def _screw_holes(layout: FrameLayout, fabrication: Fabrication) -> list[Any]:
@@ -331,10 +356,10 @@ def _screw_holes(layout: FrameLayout, fabrication: Fabrication) -> list[Any]:
 
 
 def _tab_channels(layout: FrameLayout, fabrication: Fabrication) -> list[Any]:
-    """One for each row of segments, from its middle to the shelf."""
-    half = fabrication.tab_width_mm / 2 + TAB_CLEARANCE_MM
+    """One for each row of devices, from its footprint to the shelf."""
+    half = layout.half_tab + TAB_CLEARANCE_MM
     tall = (layout.film_bottom - fabrication.tab_slot_mm, layout.film_bottom + 1.0)
-    near = min(x for x, _ in layout.centers)
+    near = min(x for x, _ in layout.centers) + layout.frame.along / 2
     rows = sorted({y for _, y in layout.centers})
     return [box((near, layout.half_along + 1.0), (y - half, y + half), tall) for y in rows]
 
@@ -343,7 +368,7 @@ def _tie_slots(layout: FrameLayout, fabrication: Fabrication) -> list[Any]:
     """Two slots beside the tabs, half-way along the shelf."""
     middle, (long, wide) = layout.half_along + fabrication.shelf_mm / 2, TIE_MM
     rows = [y for _, y in layout.centers]
-    inner = max(rows) + fabrication.tab_width_mm / 2 + 2 * TAB_CLEARANCE_MM
+    inner = max(rows) + layout.half_tab + 2 * TAB_CLEARANCE_MM
     tall = (-fabrication.floor_mm - 1.0, layout.film_top + 1.0)
     spans = ((inner, inner + wide), (-inner - wide, -inner))
     return [box((middle - long / 2, middle + long / 2), span, tall) for span in spans]

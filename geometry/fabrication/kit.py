@@ -1,4 +1,4 @@
-"""All solids of the fabrication kit of one segment, with the assembly jig in which its layers are stacked."""
+"""All solids of the fabrication kit of a device, with the assembly jig in which its layers are stacked."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -6,10 +6,23 @@ from typing import Any
 import numpy as np
 
 from geometry.fabrication.casting import CavityCheck, Pour, casting_kit
-from geometry.fabrication.clamp_frame import ExitFrame, exit_frame, frame_parts, held_names
+from geometry.fabrication.clamp_frame import frame_parts
+from geometry.fabrication.device import Device, ExitFrame, exit_frame, lone_device
 from geometry.fabrication.parameters import Fabrication, sheet_components
-from geometry.fabrication.part import PROCESSES, FabricationPart, box, fabrication_part, joined, pin, post, without
-from geometry.parameters import Segment
+from geometry.fabrication.part import (
+    PROCESSES,
+    ROUNDING_MM,
+    FabricationPart,
+    box,
+    fabrication_part,
+    joined,
+    pin,
+    post,
+    printer_profile,
+    refuse_thin,
+    without,
+)
+from geometry.flat.film import film_layout
 from geometry.part_checks import covers_footprint
 from geometry.stack import Box, bodies, layers
 
@@ -22,13 +35,14 @@ REACH_MM = 4.0
 LOCATOR_MM = 1.2
 
 
-def jig_parts(segment: Segment, fabrication: Fabrication) -> tuple[FabricationPart, ...]:
-    """The jig, and the locator where the effector is narrower than the footprint.
+def jig_parts(device: Device, fabrication: Fabrication) -> tuple[FabricationPart, ...]:
+    """The jig, and the locator where effectors are narrower than their segments.
 
-    They lie in the frame of the segment but for the height: the floor of the jig is at z = 0.
+    They lie in the axes of what is stacked but for the height: the floor of the jig is at z = 0.
     """
-    frame, tops = exit_frame(segment, fabrication), stacked_tops(segment, fabrication)
-    narrow = not covers_footprint(segment)
+    tops, stacked = stacked_tops(device, fabrication), jig_device(device, fabrication)
+    frame = exit_frame(stacked.stack, fabrication)
+    narrow = not covers_footprint(device.segment)
     stops = list(tops.values())[-2 if narrow else -1]
     jig = joined(_corner(frame, stops, fabrication), _steps(tops, frame, fabrication))
     if narrow:
@@ -42,21 +56,47 @@ def jig_parts(segment: Segment, fabrication: Fabrication) -> tuple[FabricationPa
     fine = PROCESSES[fabrication.printer]
     parts = [fabrication_part("jig", frame.placed(jig), "jig", purpose, fine)]
     if narrow:
-        plate = frame.placed(_locator(segment, frame, stops, fabrication))
-        purpose = "Lies on the jig's stops and pins and centres the effector on medium 1."
+        _check_locator(stacked, fabrication)
+        plate = _locator(stacked, frame, stops, fabrication)
+        what = "the effectors" if stacked.is_array else "the effector"
+        purpose = f"Lies on the jig's stops and pins and centres {what} on medium 1."
         parts.append(fabrication_part("jig-locator", plate, "jig", purpose, fine))
     return tuple(parts)
 
 
-def stacked_tops(segment: Segment, fabrication: Fabrication) -> dict[str, float]:
+def stacked_tops(device: Device, fabrication: Fabrication) -> dict[str, float]:
     """Name -> height over the floor of the jig, in mm, of the layers that are stacked there, in order.
 
-    A film with a flange does not go into the corner: then the jig takes what lies above the film, and the frame
-    takes the rest.
+    A film that reaches beyond the footprint does not go into the corner: then the jig takes what lies above the film,
+    and frame or base take the rest.
     """
-    flanged = "film" in held_names(segment) and fabrication.film_flange_mm > 0.0
-    stack = [layer for layer in layers(segment) if not flanged or layer.name in ("medium1", "effector")]
+    wide = film_layout(device, fabrication).beyond > ROUNDING_MM
+    stack = [layer for layer in layers(device.segment) if not wide or layer.name in ("medium1", "effector")]
     return {layer.name: layer.top_mm - stack[0].bottom_mm for layer in stack}
+
+
+def jig_device(device: Device, fabrication: Fabrication) -> Device:
+    """What is stacked in the jig at once: all, or one segment where all layers that are stacked there are islands."""
+    islands = all(device.layout.is_cut(name) for name in stacked_tops(device, fabrication))
+    return lone_device(device.segment) if islands else device
+
+
+def _check_locator(device: Device, fabrication: Fabrication) -> None:
+    """Walls between the holes of neighbouring effectors."""
+    if not device.is_array:
+        return
+    layout, printer = device.layout, printer_profile(fabrication.printer)
+    foot = layout.foot_mm("effector")
+    gap = min(
+        layout.gap_mm[axis] + layout.size_mm[axis] - foot[axis] for axis in (0, 1) if len(layout.centres(axis)) > 1
+    )
+    refuse_thin(
+        f"segment.effector: effectors {gap:.3g} mm apart leave walls between the holes of the locator",
+        gap - 2 * fabrication.glue_gap_mm,
+        printer["supported_wall_mm"],
+        f"the {printer.process.upper()} limit for the supported wall",
+        "make the effectors narrower or array.pitch_mm larger",
+    )
 
 
 def _corner(frame: ExitFrame, stops: float, fabrication: Fabrication) -> Any:
@@ -102,25 +142,30 @@ def _pins(frame: ExitFrame, fabrication: Fabrication) -> list[tuple[float, float
     return [(x, -half - thick / 2), (x, half + _reach(fabrication) / 2)]
 
 
-def _locator(segment: Segment, frame: ExitFrame, stops: float, fabrication: Fabrication) -> Any:
+def _locator(device: Device, frame: ExitFrame, stops: float, fabrication: Fabrication) -> Any:
+    """The plate in the axes of the device."""
     thick, reach, tall = _thick(fabrication), _reach(fabrication), (stops, stops + LOCATOR_MM)
     low_x, low_y = -frame.along / 2 - thick, -frame.across / 2 - thick
     plate = box((low_x, frame.along / 2 + reach), (low_y, frame.across / 2 + reach), tall)
     through = (tall[0] - 1.0, tall[1] + 1.0)
     hole = fabrication.pin_diameter_mm + 2 * fabrication.pin_clearance_mm
     holes = [post(x, y, through, hole) for x, y in _pins(frame, fabrication)]
-    return without(plate, [*holes, _effector_hole(segment, frame, through, fabrication)])
+    return without(frame.placed(without(plate, holes)), _effector_holes(device, through, fabrication))
 
 
-def _effector_hole(segment: Segment, frame: ExitFrame, through: tuple[float, float], fabrication: Fabrication) -> Any:
-    """The outline of the effector's foot, wider by the glue gap on each side."""
-    body, gap = bodies(segment)[-1], fabrication.glue_gap_mm
+def _effector_holes(device: Device, through: tuple[float, float], fabrication: Fabrication) -> list[Any]:
+    """The outline of each effector's foot, wider by the glue gap on each side."""
+    body, gap = bodies(device.segment)[-1], fabrication.glue_gap_mm
     if isinstance(body, Box):
-        halves = (body.half_x + gap, body.half_y + gap)
-        half_x, half_y = halves if frame.turn_deg in (0.0, 180.0) else halves[::-1]
-        return box((-half_x, half_x), (-half_y, half_y), through)
+        return [
+            box((x0 - gap, x1 + gap), (y0 - gap, y1 + gap), through) for x0, x1, y0, y1 in _effector_feet(device, body)
+        ]
     radius = float(body.reach(np.array([1.0, 0.0, 0.0])))
-    return post(0.0, 0.0, through, 2 * (radius + gap))
+    return [post(x, y, through, 2 * (radius + gap)) for x, y in device.layout.middles]
+
+
+def _effector_feet(device: Device, body: Box) -> list[tuple[float, float, float, float]]:
+    return [(x - body.half_x, x + body.half_x, y - body.half_y, y + body.half_y) for x, y in device.layout.middles]
 
 
 @dataclass(frozen=True)
@@ -138,13 +183,13 @@ class SolidKit:
     cut_from_sheet: tuple[str, ...]
 
 
-def solid_kit(segment: Segment, fabrication: Fabrication) -> SolidKit:
-    """Moulds, clamp frame or base, and jig of a segment that has passed its checks.
+def solid_kit(device: Device, fabrication: Fabrication) -> SolidKit:
+    """Moulds, clamp frame or base, and jig of a device that has passed its checks.
 
     InputError with one sentence for what cannot be made, before any mould is built.
     """
-    cut = sheet_components(segment, fabrication)
-    held = frame_parts(segment, fabrication)
-    cast = casting_kit(segment, fabrication)
-    parts = (*cast.parts, *held, *jig_parts(segment, fabrication))
+    cut = sheet_components(device.segment, fabrication)
+    held, jig = frame_parts(device, fabrication), jig_parts(device, fabrication)
+    cast = casting_kit(device, fabrication)
+    parts = (*cast.parts, *held, *jig)
     return SolidKit(parts, cast.pours, cast.checks, cut)

@@ -36,7 +36,7 @@ class Gang:
 
 
 def gang_of(cavity: Cavity, style: Style, fabrication: Fabrication) -> Gang:
-    """The layout of fabrication.cavities cavities: each has a land around it, then an overflow channel."""
+    """The layout of the cavities: each has a land around it, then an overflow channel."""
     around = 2 * fabrication.land_mm + fabrication.overflow_mm
     hole = fabrication.pin_diameter_mm + 2 * fabrication.pin_clearance_mm
     lug = hole + 2 * PIN_MARGIN_MM
@@ -44,7 +44,7 @@ def gang_of(cavity: Cavity, style: Style, fabrication: Fabrication) -> Gang:
     # each bar of a split mould carries pins
     narrowest = lug if style == "split" else 0.0
     pitch_y = max(cavity.size_y + around, narrowest)
-    columns, rows = fabrication.cavities
+    columns, rows = cavity.counts
     channels_x = (columns * pitch_x + fabrication.overflow_mm) / 2
     channels_y = (rows * pitch_y + fabrication.overflow_mm) / 2
     return Gang(

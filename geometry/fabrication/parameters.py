@@ -65,7 +65,11 @@ class Fabrication(Table):
     lid_face: Literal["base", "top"] = Field(
         "base", description="which face of a component is cast against the smooth lid"
     )
-    cavities: tuple[Count, Count] = Field((2, 2), description="cavities of one mould in x and y")
+    cavities: tuple[Count, Count] | None = Field(
+        None,
+        description="cavities of one mould in x and y; none: 2 and 2, 1 and 1 for a layer that runs through an array. "
+        "Islands of an array have one each",
+    )
     mould_wall_mm: Size = Field(4.0, description="around the cavities and under them")
     land_mm: Size = Field(1.0, description="flat rim between a cavity and the overflow channel")
     overflow_mm: Size = Field(1.5, description="width of the overflow channels")
@@ -88,7 +92,16 @@ class Fabrication(Table):
     )
     screw_diameter_mm: Size = Field(2.2, description="clearance holes of the screws that close the frame")
     cable_exit: Direction = Field("+x", description="side at which the film's tab leaves the frame")
-    tab_width_mm: Size = Field(1.6, description="width of the film's tab")
+    tab_width_mm: Size | None = Field(
+        None, description="width of the film's tab; none: 1.6, or as much as its traces need"
+    )
+    trace_width_mm: Size = Field(0.3, description="least width of the traces from electrodes to pads")
+    trace_gap_mm: Size = Field(
+        0.2, description="least bare film between metal of one face; between the leads on the tab half as much again"
+    )
+    pad_pitch_mm: Annotated[float, Field(ge=0.5, le=10)] = Field(
+        2.54, description="from pad to pad of the connector: 2.54 crimp contacts, 1 or 0.5 ZIF connectors"
+    )
     film_flange_mm: Gap = Field(
         0.8, description="film beyond the footprint on each side, clamped in the frame; only where the film is held"
     )

@@ -1,6 +1,6 @@
 """A flat pattern: closed lines on named layers, with the dimensions that a bench needs; kerf compensation."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import cos, hypot, pi, radians, sin
 from typing import Literal
@@ -121,6 +121,11 @@ class FlatPattern:
         return found
 
     @property
+    def on_panel(self) -> bool:
+        """Whether it lies on a panel with registration holes."""
+        return sum(isinstance(cut, Circle) and cut.hole for cut in self.cuts) > 1
+
+    @property
     def size_mm(self) -> Point:
         """Of the sheet that it needs, x and y, cuts included."""
         xs, ys = zip(*self.points, strict=True)
@@ -186,15 +191,36 @@ def _turned_dimension(one: Dimension, quarter: int) -> Dimension:
 
 
 def gap_mm(one: Sequence[Point], other: Sequence[Point]) -> float:
+    """Distance of two convex polygons; where they touch or overlap the separation along a normal, zero or negative."""
+    apart = _separation(one, other)
+    if apart <= 0.0:
+        return apart
+    pairs = ((one, other), (other, one))
+    return min(_to_segment(p, a, b) for first, second in pairs for p in first for a, b in _edges(second))
+
+
+def _edges(polygon: Sequence[Point]) -> Iterator[tuple[Point, Point]]:
+    return zip(polygon, (*polygon[1:], polygon[0]), strict=True)
+
+
+def _separation(one: Sequence[Point], other: Sequence[Point]) -> float:
     """Largest separation of two convex polygons along a normal of their edges; negative where they overlap."""
     found = -float("inf")
     for first, second in ((one, other), (other, one)):
-        for a, b in zip(first, (*first[1:], first[0]), strict=True):
+        for a, b in _edges(first):
             length = hypot(b[0] - a[0], b[1] - a[1])
             n = ((b[1] - a[1]) / length, (a[0] - b[0]) / length)
             reach = max(n[0] * p[0] + n[1] * p[1] for p in first)
             found = max(found, min(n[0] * p[0] + n[1] * p[1] for p in second) - reach)
     return found
+
+
+def _to_segment(p: Point, a: Point, b: Point) -> float:
+    """Distance of a point from the line between two others."""
+    along = (b[0] - a[0], b[1] - a[1])
+    share = ((p[0] - a[0]) * along[0] + (p[1] - a[1]) * along[1]) / (along[0] ** 2 + along[1] ** 2)
+    share = min(max(share, 0.0), 1.0)
+    return hypot(p[0] - a[0] - share * along[0], p[1] - a[1] - share * along[1])
 
 
 def shared_area_mm2(one: Sequence[Point], other: Sequence[Point]) -> float:

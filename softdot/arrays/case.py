@@ -47,15 +47,20 @@ class ArrayCase:
         return array_layout(self.array, self.config.segment, self.config.dot)
 
     @cached_property
-    def checked(self) -> list[str]:
-        """What a user should know about this design. InputError for what cannot be built or solved."""
+    def built(self) -> list[str]:
+        """What a user should know about what is built. InputError for what cannot be built or pressed at all."""
         warnings = [*check_segment(self.config.segment), *check_array(self.layout)]
         self._refuse_what_is_one_segments()
-        depth = self.config.press.indentation_mm
-        if depth is not None:
-            check_press_depth(self.config.segment, depth)
+        if self.config.press.indentation_mm is not None:
+            check_press_depth(self.config.segment, self.config.press.indentation_mm)
         if self.config.dot.cell is not None:
             self.under_dots()
+        return warnings
+
+    @cached_property
+    def checked(self) -> list[str]:
+        """What a user should know about this design. InputError for what cannot be built or solved."""
+        warnings, depth = [*self.built], self.config.press.indentation_mm
         for press in self.presses:
             if depth is None:
                 check_pushed_dot(press.config.dot, self.layout.whole)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from export.build_sheet.contents import Contents, bill, components
-from export.build_sheet.page import capacitance_pF, checks, write_page
+from export.build_sheet.page import capacitance_pF, checks, traces, write_page
 from export.build_sheet.pictures import draw_all
 from export.build_sheet.steps import steps
 from export.cad import write_3mf, write_step, write_stl
@@ -15,11 +15,13 @@ from export.cut_files import write_cut_files
 from export.printability import check_part, printer_profile
 from export.view import ensure_rendering
 from geometry.base import InputError
+from geometry.fabrication.device import Device, array_device, lone_device
 from geometry.fabrication.kit import solid_kit
-from geometry.fabrication.part import FabricationPart
+from geometry.fabrication.part import ROUNDING_MM, FabricationPart
 from geometry.flat.pattern import FlatPattern, compensated
-from geometry.flat.sheets import flat_kit
+from geometry.flat.sheets import FlatKit, flat_kit
 from mesh.types import MeshingError
+from softdot.arrays.case import ArrayCase
 from softdot.case import Case
 from softdot.checks import design_warnings
 from softdot.config import Config, config_hash
@@ -68,6 +70,8 @@ def short_text(summary: dict[str, Any], output: str) -> str:
     """What there is to make, what matters most, and where to look."""
     lines = [f"{len(summary['parts'])} parts to print, {len(summary['flat_patterns'])} to cut"]
     budget = summary["tolerance_budget"]
+    if budget and summary["config"]["array"] is not None:
+        lines.append(f"tolerances of {summary['tolerance_budget_of']}:")
     for row in budget["rows"][:ROWS] if budget else []:
         change = f"{row['voltage_percent']:+.0f} % voltage, {row['force_percent']:+.0f} % force"
         lines.append(f"{row['label']} ±{row['plus_minus']:.3g} {row['unit']}: {change}")
@@ -133,10 +137,14 @@ def summary_of(contents: Contents, state: str, failure: str | None) -> dict[str,
         "pours": [asdict(pour) for pour in contents.solid.pours],
         "cavity_checks": [asdict(one) for one in contents.solid.cavity_checks],
         "flat_patterns": [_flat(pattern) for pattern in contents.flat.patterns],
-        "film": {"capacitance_pF": dict(capacitance_pF(contents))},
+        "film": {
+            "capacitance_pF": dict(capacitance_pF(contents)),
+            "traces": [asdict(trace) for trace in traces(contents)],
+        },
         "steps": [{"title": step.title, "actions": step.actions} for step in steps(contents)],
         "checks": [asdict(check) for check in checks(contents)],
         "tolerance_budget": contents.budget,
+        "tolerance_budget_of": contents.pressed,
     }  # fmt: skip
 
 
@@ -170,11 +178,10 @@ def make_kit(config: Config, out: Path, progress: Progress | None = None) -> dic
     """
     progress = progress or Logged()
     with named_when_missing():
-        case = Case(config)
-        _, warnings = case.checked
+        warnings = _checked(config)
         ensure_rendering()
         with staged_folder(out, KIT) as folder:
-            contents = contents_of(config, [*warnings, *design_warnings(case.model)])
+            contents = contents_of(config, warnings)
             warn(list(contents.warnings))
             progress.stage("export")
             _write_parts(contents, folder)
@@ -194,11 +201,35 @@ def _kit_json(out: Path) -> str | None:
         return None
 
 
+def _checked(config: Config) -> list[str]:
+    """What a user should know about the design. InputError for what cannot be built, or pressed for the budget."""
+    array = [] if config.array is None else ArrayCase(config).built
+    case = Case(budget_config(config))
+    return list(dict.fromkeys([*array, *case.checked[1], *design_warnings(case.model)]))
+
+
+def device_of(config: Config) -> Device:
+    """What the kit makes: one segment, or the array of the table [array]. InputError for what a kit cannot make."""
+    if config.array is None:
+        return lone_device(config.segment)
+    return array_device(ArrayCase(config).layout, config.fabrication)
+
+
+def budget_config(config: Config) -> Config:
+    """What the tolerance budget presses: of an array one segment alone, held where a grid holds it."""
+    if config.array is None:
+        return config
+    segment, held = config.segment, config.array.grid_layers
+    if held:
+        segment = segment.model_copy(update={"boundary": "clamped", "held_layers": held})
+    return ArrayCase(config).lone(segment).config.model_copy(update={"array": None})
+
+
 def contents_of(config: Config, warnings: list[str]) -> Contents:
     """All but the budget. InputError."""
-    segment, fabrication = config.segment, config.fabrication
-    flat = flat_kit(segment, fabrication)  # the quicker one first: it refuses too
-    solid = solid_kit(segment, fabrication)
+    fabrication, device = config.fabrication, device_of(config)
+    flat = flat_kit(device, fabrication)  # the quicker one first: it refuses too
+    solid = solid_kit(device, fabrication)
     profile, materials = printer_profile(fabrication.printer), config.layer_materials()
     film = materials["film"]
     assert isinstance(film, PiezoelectricFilm)
@@ -206,7 +237,7 @@ def contents_of(config: Config, warnings: list[str]) -> Contents:
     printability = tuple(check_part(part.label, part.solid, profile) for part in solid.parts)
     unprintable = [f"{answer.label}: {answer.advice}" for answer in printability if not answer.printable]
     return Contents(
-        segment=segment,
+        device=device,
         fabrication=fabrication,
         solid=solid,
         flat=flat,
@@ -215,15 +246,35 @@ def contents_of(config: Config, warnings: list[str]) -> Contents:
         printability=printability,
         budget=None,
         budget_note="",
-        press=pressed(config),
-        warnings=(*warnings, *notes, *unprintable),
+        press=pressed(budget_config(config)),
+        pressed=_pressed_segment(config),
+        warnings=(*warnings, *_loose_film(device, flat), *notes, *unprintable),
     )
+
+
+def _loose_film(device: Device, flat: FlatKit) -> list[str]:
+    """What the simulation of a free rim does not know."""
+    if device.stack.boundary != "free" or flat.layout.beyond < ROUNDING_MM:
+        return []
+    return [
+        f"the film reaches up to {flat.layout.beyond:.3g} mm beyond the free rim, for the traces that go around the "
+        "array; the simulated film ends at the rim"
+    ]
+
+
+def _pressed_segment(config: Config) -> str:
+    """What the budget is of, in words."""
+    if config.array is None:
+        return "the segment"
+    held = config.array.grid_layers
+    sides = f"held at {', '.join(held)} as by the grid" if held else f"{config.segment.boundary} at its own sides"
+    return f"one segment of the array alone, {sides}"
 
 
 def _outcome(config: Config, progress: Progress) -> BudgetOutcome:
     """The tolerance budget, or why there is none."""
     try:
-        return BudgetOutcome("complete", budget=plain(budget_of(config, progress.step).as_dict()))
+        return BudgetOutcome("complete", budget=plain(budget_of(budget_config(config), progress.step).as_dict()))
     except (InputError, LinearSolveError, MeshingError, StoppedShortError) as error:
         return failed(error)
 

@@ -7,7 +7,7 @@ import pytest
 import pyvista
 
 from export.build_sheet.contents import gauging
-from export.build_sheet.page import checks
+from export.build_sheet.page import checks, traces
 from export.build_sheet.pictures import ABOVE, _anchor
 from export.build_sheet.steps import steps
 from geometry.base import InputError
@@ -45,13 +45,40 @@ MORE = {
 }  # fmt: skip
 
 
-def config_of(effector, segment, fabrication):
+CELL = {"length_mm": 2.3, "width_mm": 2.3, "boundary": "free"}
+ONE_IN_A_GRID = {"length_mm": 2.0, "width_mm": 2.0, "boundary": "free"}
+SHEETS = {"routes": {"effector": "sheet", "medium1": "sheet", "medium2": "sheet"}}
+BARS = {"grid_layers": ["effector", "medium1", "film"], "shared": ["film", "medium2"]}
+GROOVES = [{"layer": "medium2", "width_mm": 0.5, "depth_mm": 1.5}]
+ALL = ["effector", "medium1", "film", "medium2"]
+ARRAYS = {
+    "cell": (EFFECTORS["layer"], CELL, SHEETS, {}),
+    "grid": (EFFECTORS["layer"], ONE_IN_A_GRID, SHEETS, BARS),
+    "islands": (EFFECTORS["layer"], CELL, {**SHEETS, "cable_exit": "+y"}, {"shared": ["film"]}),
+    "row": (EFFECTORS["layer"], CELL, {**SHEETS, "cable_exit": "-y"}, {"columns": 5, "rows": 1, "shared": ["film"]}),
+    "without effector": (None, CELL, {"routes": {"medium1": "sheet", "medium2": "sheet"}}, {}),
+}
+MORE_ARRAYS = {
+    "cast": (EFFECTORS["layer"], CELL, {}, {}),
+    "domes over grooves, two cells": (EFFECTORS["dome"] | {"diameter_mm": 1.6, "height_mm": 0.6},
+                                      CELL, {"cable_exit": "+y"}, {"cells": 2, "grooves": GROOVES}),
+    "cylinders, clamped": (EFFECTORS["cylinder"], {**CELL, "boundary": "clamped"}, {}, {}),
+    "blocks in a grid": ({"shape": "block", "length_mm": 1.2, "width_mm": 1.0, "height_mm": 0.6}, ONE_IN_A_GRID, {},
+                         {"grid_layers": ["medium1", "film", "medium2"], "shared": ["film"]}),
+    "one layer over all": (EFFECTORS["layer"], {**CELL, "boundary": "clamped"}, {"pad_pitch_mm": 1.0}, {"shared": ALL}),
+    "split moulds": (EFFECTORS["layer"], CELL, {"mould_style": "split"}, {"shared": ["film"]}),
+    "a grid at the effectors": (EFFECTORS["layer"], ONE_IN_A_GRID, {}, {"grid_layers": ["effector"]}),
+}  # fmt: skip
+
+
+def config_of(effector, segment, fabrication, array=None):
     layers = {
         "medium1": {"thickness_mm": 0.5, "material": "dragon-skin-30"}, "film": {"thickness_um": 28.0},
         "medium2": {"thickness_mm": 2.0, "material": "ecoflex-00-50"},
     }  # fmt: skip
     tables = {**layers, **segment} | ({} if effector is None else {"effector": effector})
-    return config_from({"segment": tables, "fabrication": fabrication})
+    several = {} if array is None else {"array": array, "dot": {"standard": "marburg-medium"}}
+    return config_from({"segment": tables, "fabrication": fabrication, **several})
 
 
 def contents_for(design):
@@ -121,6 +148,26 @@ def test_every_instruction_fits_its_shape(contents):
 
 def test_every_instruction_names_what_is_there(contents):
     refuse_parts_that_are_not_there(contents)
+
+
+@pytest.mark.parametrize("name", [*ARRAYS, *(pytest.param(one, marks=pytest.mark.slow) for one in MORE_ARRAYS)])
+def test_arrays_of_all_kinds(name):
+    found = contents_for((ARRAYS | MORE_ARRAYS)[name])
+    refuse_unprintable(found)
+    refuse_what_the_shape_has_not(found)
+    refuse_parts_that_are_not_there(found)
+    refuse_pieces_that_are_miscounted(found)
+    assert [trace.pad for trace in traces(found)] == list(range(1, len(found.flat.metals) + 1))
+
+
+def refuse_pieces_that_are_miscounted(contents):
+    """A pattern of several pieces is spoken of as several, and spacers are cut where something is set between them."""
+    text = " ".join(sentences(contents))
+    counts = {pattern.name: pattern.count for pattern in contents.flat.patterns}
+    laid = re.findall(r"Lay (?:the (\d+) pieces of )?(adhesive-[\w-]+\w)", text)
+    assert laid
+    assert all(int(count or 1) == counts[name] for count, name in laid)
+    assert ("draw the strips out" in text) == any(one.name.startswith("spacer") for one in contents.flat.patterns)
 
 
 def test_a_narrow_effector_is_centred_and_not_pushed_against_the_stops(contents):

@@ -8,6 +8,7 @@ import pytest
 from svgpathtools import parse_path
 
 from export.cut_files import STYLES, draw_cut_file, write_cut_files
+from geometry.fabrication.device import lone_device
 from geometry.fabrication.parameters import Fabrication
 from geometry.flat.sheets import flat_kit
 from geometry.parameters import Film, Medium, Segment
@@ -20,7 +21,7 @@ KERF = 0.2
 def patterns():
     sponge = Medium(thickness_mm=2.0, material="sponge")
     segment = Segment(medium1=Medium(thickness_mm=0.5), film=Film(thickness_um=28.0), medium2=sponge)
-    return {p.name: p for p in flat_kit(segment, Fabrication(kerf_mm=KERF)).patterns}
+    return {p.name: p for p in flat_kit(lone_device(segment), Fabrication(kerf_mm=KERF)).patterns}
 
 
 @pytest.fixture(scope="module")

@@ -5,6 +5,7 @@ from math import pi
 import pytest
 
 from geometry.base import InputError
+from geometry.fabrication.device import lone_device
 from geometry.fabrication.parameters import Fabrication
 from geometry.flat.electrodes import stray_area_mm2
 from geometry.flat.pattern import Label, gap_mm, shared_area_mm2
@@ -31,12 +32,12 @@ def by_name(kit):
 
 def test_film_is_footprint_flange_tab_and_head(segment):
     """Body 2.5 + 2 x 0.8 squared, tab 1.6 wide up to 12 beyond the footprint, head 6.15 by 2.54 + 1.5 + 4 x 0.15."""
-    outline = by_name(flat_kit(segment, Fabrication()))["film"].cuts[-1]
+    outline = by_name(flat_kit(lone_device(segment), Fabrication()))["film"].cuts[-1]
     assert outline.area_mm2 == pytest.approx(4.1**2 + (12.0 - 0.8) * 1.6 + 6.15 * 4.64)
 
 
 def test_free_film_has_no_flange_and_no_ring(make_segment):
-    kit = flat_kit(make_segment(boundary="free"), Fabrication())
+    kit = flat_kit(lone_device(make_segment(boundary="free")), Fabrication())
     assert by_name(kit)["film"].cuts[-1].area_mm2 == pytest.approx(2.5**2 + 12.0 * 1.6 + 6.15 * 4.64)
     assert not [name for name in by_name(kit) if name.startswith("adhesive-flange")]
 
@@ -44,7 +45,7 @@ def test_free_film_has_no_flange_and_no_ring(make_segment):
 @pytest.mark.parametrize("way", EXITS)
 def test_active_film_is_where_both_faces_have_metal(make_segment, way):
     """The electrodes of the configuration overlap the common one entirely; no lead overlaps another on the tab."""
-    kit = flat_kit(side_by_side(make_segment, way), Fabrication(cable_exit=way, tab_width_mm=2.4))
+    kit = flat_kit(lone_device(side_by_side(make_segment, way)), Fabrication(cable_exit=way, tab_width_mm=2.4))
     *tops, bottom = kit.metals
     assert {metal.name for metal in tops} == {"left", "right"}
     for top in tops:
@@ -61,7 +62,7 @@ def corners(rect):
 
 
 def test_whole_electrode_has_the_area_of_the_footprint_and_nothing_more(segment):
-    top, bottom = metals = flat_kit(segment, Fabrication()).metals
+    top, bottom = metals = flat_kit(lone_device(segment), Fabrication()).metals
     assert top.rect == bottom.rect == (-1.25, 1.25, -1.25, 1.25)
     assert stray_area_mm2(metals) == 0.0
 
@@ -70,20 +71,20 @@ def test_a_lead_over_the_common_electrode_counts_as_stray_film(make_segment):
     """The upper one ends 0.5 mm earlier: its lead, 0.5 mm wide and straight, crosses the common electrode there."""
     pair = (Electrode(name="short", center_mm=(-0.25, 0.7), size_mm=(1.3, 0.8)), TWO[1])
     segment = make_segment(film=Film(thickness_um=28.0, electrodes=pair))
-    metals = flat_kit(segment, Fabrication(tab_width_mm=2.4)).metals
-    whole = flat_kit(side_by_side(make_segment), Fabrication(tab_width_mm=2.4)).metals
+    metals = flat_kit(lone_device(segment), Fabrication(tab_width_mm=2.4)).metals
+    whole = flat_kit(lone_device(side_by_side(make_segment)), Fabrication(tab_width_mm=2.4)).metals
     assert stray_area_mm2(metals) - stray_area_mm2(whole) == pytest.approx(0.5 * 0.5)
 
 
 def test_leads_of_one_face_keep_their_distance(make_segment):
-    one, other, _ = flat_kit(side_by_side(make_segment), Fabrication(tab_width_mm=2.4)).metals
+    one, other, _ = flat_kit(lone_device(side_by_side(make_segment)), Fabrication(tab_width_mm=2.4)).metals
     assert min(gap_mm(a, b) for a in one.lead for b in other.lead) >= 0.2
 
 
 @pytest.mark.parametrize("way", EXITS)
 def test_metal_ends_before_the_edge_of_the_film(make_segment, way):
     """Both outlines span a box; that of the metal lies inside, bare film all around but at free edges."""
-    pattern = by_name(flat_kit(make_segment(), Fabrication(cable_exit=way)))["film"]
+    pattern = by_name(flat_kit(lone_device(make_segment()), Fabrication(cable_exit=way)))["film"]
     film = pattern.cuts[-1].points
     for metal in (mark for mark in pattern.marks if mark.layer.startswith("ELECTRODE")):
         for axis in (0, 1):
@@ -93,19 +94,19 @@ def test_metal_ends_before_the_edge_of_the_film(make_segment, way):
 
 def test_words_run_along_the_panel(make_segment):
     for way, upright in (("+x", False), ("-x", False), ("+y", True), ("-y", True)):
-        marks = by_name(flat_kit(make_segment(), Fabrication(cable_exit=way)))["film"].marks
+        marks = by_name(flat_kit(lone_device(make_segment()), Fabrication(cable_exit=way)))["film"].marks
         assert [mark.upright for mark in marks if isinstance(mark, Label)] == [upright]
 
 
 def test_tab_points_to_the_cable(segment):
     for way, axis, sign in (("+x", 0, 1), ("-x", 0, -1), ("+y", 1, 1), ("-y", 1, -1)):
-        points = by_name(flat_kit(segment, Fabrication(cable_exit=way)))["film"].cuts[-1].points
+        points = by_name(flat_kit(lone_device(segment), Fabrication(cable_exit=way)))["film"].cuts[-1].points
         far = max(points, key=lambda p: abs(p[0]) + abs(p[1]))
         assert sign * far[axis] == pytest.approx(1.25 + 12.0 + 6.15)
 
 
 def test_turned_over_about_the_tab_the_lower_mask_lies_on_the_lower_electrode(segment):
-    patterns = by_name(flat_kit(segment, Fabrication()))
+    patterns = by_name(flat_kit(lone_device(segment), Fabrication()))
     bottom = next(mark for mark in patterns["film"].marks if mark.layer == "ELECTRODE-BOTTOM")
     window = patterns["mask-bottom"].cuts[-1]
     assert {(x, -y) for x, y in window.points} == set(bottom.points)
@@ -113,7 +114,10 @@ def test_turned_over_about_the_tab_the_lower_mask_lies_on_the_lower_electrode(se
 
 def test_registration_holes_fit_the_pins_and_each_other(segment):
     """Diameter of the pins and twice their clearance, on the axis of the tab, at the same places on every panel."""
-    circles = [[cut for cut in one.cuts if hasattr(cut, "radius")] for one in flat_kit(segment, Fabrication()).patterns]
+    circles = [
+        [cut for cut in one.cuts if hasattr(cut, "radius")]
+        for one in flat_kit(lone_device(segment), Fabrication()).patterns
+    ]
     holes = [found for found in circles if sum(circle.hole for circle in found) > 1]
     assert len(holes) == 5
     assert all(pair == holes[0] for pair in holes)
@@ -124,7 +128,9 @@ def test_registration_holes_fit_the_pins_and_each_other(segment):
 def test_draw_direction_lies_as_in_the_configuration(make_segment):
     """Whatever the exit: the arrow is drawn in the axes of the segment."""
     for way in EXITS:
-        kit = flat_kit(make_segment(film=Film(thickness_um=28.0, draw_angle_deg=90.0)), Fabrication(cable_exit=way))
+        kit = flat_kit(
+            lone_device(make_segment(film=Film(thickness_um=28.0, draw_angle_deg=90.0))), Fabrication(cable_exit=way)
+        )
         shaft = by_name(kit)["film"].marks[-1].points
         tips = max(shaft, key=lambda p: p[1]), min(shaft, key=lambda p: p[1])
         assert tips[0][0] == pytest.approx(tips[1][0])
@@ -159,11 +165,11 @@ def test_draw_direction_lies_as_in_the_configuration(make_segment):
 def test_what_cannot_be_cut_is_refused_with_its_limit(make_segment, made, electrodes, sentence):
     film = Film(thickness_um=28.0, electrodes=electrodes)
     with pytest.raises(InputError, match=sentence):
-        flat_kit(make_segment(film=film), Fabrication(**made))
+        flat_kit(lone_device(make_segment(film=film)), Fabrication(**made))
 
 
 def test_an_electrode_beside_the_tab_has_no_way_out_of_a_free_film(make_segment):
     aside = (Electrode(name="corner", center_mm=(1.0, 1.0), size_mm=(0.5, 0.5)),)
     segment = make_segment(boundary="free", film=Film(thickness_um=28.0, electrodes=aside))
     with pytest.raises(InputError, match="'corner' ends 0 mm from the edge of the film and beside the tab"):
-        flat_kit(segment, Fabrication())
+        flat_kit(lone_device(segment), Fabrication())

@@ -4,6 +4,7 @@ from math import pi
 
 import pytest
 
+from geometry.fabrication.device import lone_device
 from geometry.fabrication.parameters import Fabrication
 from geometry.flat.pattern import (
     Circle,
@@ -25,7 +26,7 @@ SQUARE = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))
 
 def test_right_angles_grow_by_perimeter_and_four_corners(segment):
     """A polygon of right angles that is moved outwards by d: area A + P d + 4 d^2, perimeter P + 8 d."""
-    for cut in flat_kit(segment, Fabrication()).patterns[0].cuts:
+    for cut in flat_kit(lone_device(segment), Fabrication()).patterns[0].cuts:
         if isinstance(cut, Outline):
             moved = Outline("CUT", offset(cut.points, 0.05))
             assert moved.area_mm2 == pytest.approx(cut.area_mm2 + 0.05 * cut.length_mm + 4 * 0.05**2)
@@ -55,7 +56,7 @@ def test_convex_polygons_share_and_keep_apart():
 
 
 def test_four_quarter_turns_are_none(segment):
-    pattern = flat_kit(segment, Fabrication()).patterns[0]
+    pattern = flat_kit(lone_device(segment), Fabrication()).patterns[0]
     once = turned(pattern, 90.0)
     assert turned(once, 270.0) == pattern
     assert once.size_mm == pytest.approx(pattern.size_mm[::-1])
@@ -72,7 +73,7 @@ def test_sheet_cut_media_have_the_outline_of_their_layer(make_segment):
     """A round effector is a circle, with the cable at y an oblong footprint stays oblong along x."""
     made = Fabrication(cable_exit="+y", routes={"medium1": "sheet", "effector": "sheet"})
     effector = Effector(shape="cylinder", diameter_mm=1.4, height_mm=0.8)
-    patterns = {p.name: p for p in flat_kit(make_segment(length_mm=4.0, effector=effector), made).patterns}
+    patterns = {p.name: p for p in flat_kit(lone_device(make_segment(length_mm=4.0, effector=effector)), made).patterns}
     assert patterns["sheet-effector"].cuts[0].length_mm == pytest.approx(pi * 1.4)
     assert patterns["sheet-medium1"].size_mm == pytest.approx((4.1, 2.6))
     assert patterns["sheet-medium1"].thickness_mm == pytest.approx(0.5)
@@ -80,6 +81,6 @@ def test_sheet_cut_media_have_the_outline_of_their_layer(make_segment):
 
 def test_rings_have_the_opening_of_the_frame_as_window(segment):
     """Lower: 0.3 mm of air beside the free medium 2; upper: 0.05 mm of glue beside what the ring holds."""
-    patterns = {p.name: p for p in flat_kit(segment, Fabrication()).patterns}
+    patterns = {p.name: p for p in flat_kit(lone_device(segment), Fabrication()).patterns}
     windows = [patterns[f"adhesive-flange-{name}"].cuts[-1].area_mm2 for name in ("lower", "upper")]
     assert windows == pytest.approx([3.1**2, 2.6**2])

@@ -15,7 +15,7 @@ def kit(text: str, folder: str, tell: Tell) -> dict[str, Any]:
     """As `softdot kit`. The file is told of before the tolerance budget is known, and then replaced."""
     from softdot.commands.kit import make_kit, short_text
 
-    config, place = case_of(text).config, Path(folder) / "kit"
+    config, place = config_of(text), Path(folder) / "kit"
 
     class WithFile(TaskProgress):
         """The kit is there when its tolerances begin."""

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import pytest
 
+from geometry.fabrication.device import lone_device
 from geometry.fabrication.kit import SolidKit, solid_kit
 from geometry.fabrication.parameters import CastingNumbers, Fabrication
 from geometry.parameters import Effector, Film, Medium, Segment
@@ -47,7 +48,7 @@ DESIGNS: dict[str, tuple[Segment, Fabrication]] = {
 @pytest.fixture(scope="session", params=DESIGNS)
 def design(request: pytest.FixtureRequest) -> Design:
     segment, fabrication = DESIGNS[request.param]
-    return Design(segment, fabrication, solid_kit(segment, fabrication))
+    return Design(segment, fabrication, solid_kit(lone_device(segment), fabrication))
 
 
 @pytest.fixture(scope="session")

@@ -4,6 +4,7 @@ import pytest
 from build123d import Solid
 
 from geometry.fabrication.clamp_frame import frame_parts
+from geometry.fabrication.device import lone_device
 from geometry.fabrication.parameters import Fabrication
 from geometry.fabrication.part import box, volume
 from geometry.parameters import Effector
@@ -13,7 +14,7 @@ GLUE, AIR = 0.05, 0.3
 
 
 def parts_of(segment, **keys):
-    return {part.label: part for part in frame_parts(segment, Fabrication(**keys))}
+    return {part.label: part for part in frame_parts(lone_device(segment), Fabrication(**keys))}
 
 
 def apart(part, layer: Solid) -> float:

@@ -3,6 +3,7 @@
 import pytest
 from build123d import Pos
 
+from geometry.fabrication.device import lone_device
 from geometry.fabrication.kit import jig_parts, stacked_tops
 from geometry.fabrication.parameters import Fabrication
 from geometry.fabrication.part import box, volume
@@ -13,7 +14,7 @@ CYLINDER = Effector(shape="cylinder", diameter_mm=1.6, height_mm=0.7)
 
 
 def parts_of(segment, **keys):
-    return {part.label: part.solid for part in jig_parts(segment, Fabrication(**keys))}
+    return {part.label: part.solid for part in jig_parts(lone_device(segment), Fabrication(**keys))}
 
 
 @pytest.mark.parametrize("side", ["+x", "-x", "+y", "-y"])
@@ -39,8 +40,10 @@ def test_the_steps_have_the_heights_of_the_stack(make_kit_segment):
 
 
 def test_a_film_with_a_flange_stays_out_of_the_jig(make_kit_segment):
-    assert stacked_tops(make_kit_segment(), Fabrication()) == pytest.approx({"medium1": 0.5, "effector": 1.5})
-    whole = stacked_tops(make_kit_segment(), Fabrication(film_flange_mm=0.0))
+    assert stacked_tops(lone_device(make_kit_segment()), Fabrication()) == pytest.approx(
+        {"medium1": 0.5, "effector": 1.5}
+    )
+    whole = stacked_tops(lone_device(make_kit_segment()), Fabrication(film_flange_mm=0.0))
     assert list(whole) == ["medium2", "film", "medium1", "effector"]
 
 

@@ -3,6 +3,7 @@
 import pytest
 
 from geometry.base import InputError
+from geometry.fabrication.device import lone_device
 from geometry.fabrication.kit import solid_kit
 from geometry.fabrication.parameters import Fabrication
 from geometry.parameters import Effector, Medium
@@ -63,7 +64,7 @@ REFUSED = {
 @pytest.mark.parametrize(("changes", "keys", "start", "limit"), REFUSED.values(), ids=REFUSED)
 def test_refusals(make_kit_segment, changes, keys, start, limit):
     with pytest.raises(InputError) as refused:
-        solid_kit(make_kit_segment(**changes), Fabrication(**{"cavities": (1, 1), **keys}))
+        solid_kit(lone_device(make_kit_segment(**changes)), Fabrication(**{"cavities": (1, 1), **keys}))
     sentence = str(refused.value)
     assert start in sentence
     assert limit in sentence
@@ -75,18 +76,18 @@ def test_a_narrower_segment_fits_the_pitch(make_kit_segment):
     """0.4 mm of wall, two glue lines and, beside medium 2, two clearances leave 1.5 mm of 2.5 mm."""
     everything = {"effector": "sheet", "medium1": "sheet", "medium2": "sheet"}
     keys = {"pitch_mm": 2.5, "array": (2, 1), "routes": everything, "tab_width_mm": 0.6}
-    parts = solid_kit(make_kit_segment(length_mm=1.5, width_mm=1.5), Fabrication(**keys)).parts
+    parts = solid_kit(lone_device(make_kit_segment(length_mm=1.5, width_mm=1.5)), Fabrication(**keys)).parts
     assert {part.label for part in parts} == {"frame-body", "frame-ring", "jig"}
     with pytest.raises(InputError, match=r"at most 1\.5 mm"):
-        solid_kit(make_kit_segment(length_mm=1.51, width_mm=1.5), Fabrication(**keys))
+        solid_kit(lone_device(make_kit_segment(length_mm=1.51, width_mm=1.5)), Fabrication(**keys))
 
 
 def test_only_sides_with_neighbours_count_at_the_pitch(make_kit_segment):
     everything = {"effector": "sheet", "medium1": "sheet", "medium2": "sheet"}
     long = make_kit_segment(length_mm=1.5, width_mm=6.0)
-    assert solid_kit(long, Fabrication(pitch_mm=2.5, array=(2, 1), routes=everything)).parts
+    assert solid_kit(lone_device(long), Fabrication(pitch_mm=2.5, array=(2, 1), routes=everything)).parts
     with pytest.raises(InputError, match=r"fabrication\.pitch_mm = 2\.5: segments of 6 mm"):
-        solid_kit(long, Fabrication(pitch_mm=2.5, array=(1, 2), routes=everything, tab_width_mm=0.5))
+        solid_kit(lone_device(long), Fabrication(pitch_mm=2.5, array=(1, 2), routes=everything, tab_width_mm=0.5))
 
 
 def test_filament_serves_large_segments(make_kit_segment):
@@ -96,11 +97,11 @@ def test_filament_serves_large_segments(make_kit_segment):
     fabrication = Fabrication(
         printer="fdm", tab_slot_mm=0.8, vent_width_mm=0.8, cavities=(1, 1), routes={"medium2": "sheet"}
     )
-    assert {part.process for part in solid_kit(segment, fabrication).parts} == {"FDM", "either"}
+    assert {part.process for part in solid_kit(lone_device(segment), fabrication).parts} == {"FDM", "either"}
 
 
 def test_what_is_not_cast_is_cut(make_kit_segment):
     segment = make_kit_segment(medium2=Medium(thickness_mm=2.0, material="sponge"))
-    kit = solid_kit(segment, Fabrication(cavities=(1, 1), routes={"medium1": "sheet"}))
+    kit = solid_kit(lone_device(segment), Fabrication(cavities=(1, 1), routes={"medium1": "sheet"}))
     assert kit.cut_from_sheet == ("medium1", "medium2")
     assert [pour.component for pour in kit.pours] == ["effector"]

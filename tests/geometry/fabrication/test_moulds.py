@@ -8,6 +8,7 @@ from build123d import Pos, Vector
 
 from geometry.fabrication.casting import check_cavity
 from geometry.fabrication.cavity import check_mould_sizes, least_draft_deg, styled_cavity
+from geometry.fabrication.device import lone_device
 from geometry.fabrication.mould import mould_of
 from geometry.fabrication.parameters import Fabrication
 from geometry.fabrication.part import box, printer_profile, volume
@@ -31,7 +32,7 @@ SHAPES = {
 def mould(request, make_kit_segment):
     effector, style = SHAPES[request.param]
     fabrication = Fabrication(mould_style=style, cavities=(1, 1))
-    found, cavity = styled_cavity("effector", make_kit_segment(effector=effector), 0.02, fabrication)
+    found, cavity = styled_cavity("effector", lone_device(make_kit_segment(effector=effector)), 0.02, fabrication)
     return mould_of("effector", found, cavity, fabrication)
 
 
@@ -55,7 +56,7 @@ def test_the_shrunk_void_is_the_designed_part(design):
 def test_a_forgotten_compensation_shows(make_kit_segment):
     """The farthest corner of a box that is larger by 1 / 0.98 lies beyond the box by that share of its diagonal."""
     fabrication = Fabrication(mould_style="split", cavities=(1, 1))
-    style, cavity = styled_cavity("effector", make_kit_segment(), 0.02, fabrication)
+    style, cavity = styled_cavity("effector", lone_device(make_kit_segment()), 0.02, fabrication)
     check = check_cavity(mould_of("effector", style, replace(cavity, shrinkage=0.0), fabrication), fabrication)
     growth = 1.0 / 0.98 - 1.0
     assert check.deviation_mm == pytest.approx(growth * sqrt(1.25**2 + 1.25**2 + 1.0), rel=1e-6)
@@ -66,7 +67,7 @@ def test_a_forgotten_compensation_shows(make_kit_segment):
 def test_a_missing_wall_shows(make_kit_segment):
     """A step of 0.1 mm in the wall of the cavity is found by the cuts."""
     fabrication = Fabrication(mould_style="open", cavities=(1, 1))
-    style, cavity = styled_cavity("effector", make_kit_segment(), 0.0, fabrication)
+    style, cavity = styled_cavity("effector", lone_device(make_kit_segment()), 0.0, fabrication)
     mould = mould_of("effector", style, cavity, fabrication)
     notch = box((-0.2, 0.2), (1.0, 1.35), (0.3, 0.6))
     dented = replace(mould, solids={**mould.solids, "plate": mould.solids["plate"].cut(notch)})
@@ -108,7 +109,9 @@ def test_the_part_leaves_the_mould_without_meeting_a_wall(mould):
 
 def test_walls_of_an_open_mould_have_their_draft(make_kit_segment):
     def least(effector, **keys):
-        _, cavity = styled_cavity("effector", make_kit_segment(effector=effector), 0.0, Fabrication(**keys))
+        _, cavity = styled_cavity(
+            "effector", lone_device(make_kit_segment(effector=effector)), 0.0, Fabrication(**keys)
+        )
         return least_draft_deg(cavity.solid, cavity.height)
 
     assert least(Effector(), draft_deg=2.0) == pytest.approx(2.0, abs=1e-6)
@@ -121,7 +124,9 @@ def test_walls_of_an_open_mould_have_their_draft(make_kit_segment):
 
 def test_deep_parts_get_a_split_mould_by_themselves(make_kit_segment):
     def style_of(height):
-        return styled_cavity("effector", make_kit_segment(effector=Effector(height_mm=height)), 0.0, Fabrication())[0]
+        return styled_cavity(
+            "effector", lone_device(make_kit_segment(effector=Effector(height_mm=height))), 0.0, Fabrication()
+        )[0]
 
     limit = 2 * 0.05 / sqrt(2.0) / tan(radians(1.0))
     assert [style_of(limit - 0.01), style_of(limit + 0.01)] == ["open", "split"]
@@ -130,7 +135,7 @@ def test_deep_parts_get_a_split_mould_by_themselves(make_kit_segment):
 def test_every_cavity_of_a_gang_is_there(make_kit_segment):
     """The plate of 1 x 2 cavities lacks two drafted boxes: h (a^2 + w^2 / 3), w = h tan(draft)."""
     fabrication = Fabrication(cavities=(1, 2), vent_depth_mm=1e-3)
-    style, cavity = styled_cavity("effector", make_kit_segment(), 0.0, fabrication)
+    style, cavity = styled_cavity("effector", lone_device(make_kit_segment()), 0.0, fabrication)
     mould = mould_of("effector", style, cavity, fabrication)
     assert len(mould.gang.centers) == 2
     one = 6.25 + tan(radians(1.0)) ** 2 / 3.0

@@ -5,6 +5,7 @@ from math import pi
 import pytest
 
 from geometry.fabrication.casting import casting_kit
+from geometry.fabrication.device import lone_device
 from geometry.fabrication.parameters import CastingNumbers, Fabrication, castable_materials, recipe_for
 from geometry.parameters import Effector, Medium
 
@@ -44,7 +45,7 @@ def test_a_large_pour_is_mixed_as_poured(make_kit_segment):
     fabrication = Fabrication(
         casting={"own": own}, cavities=(1, 1), routes={"medium2": "sheet"}, smallest_batch_g=0.05, overfill_percent=0.0
     )
-    (pour,) = casting_kit(segment, fabrication).pours
+    (pour,) = casting_kit(lone_device(segment), fabrication).pours
     assert pour.mixed_mass_g == pytest.approx(20.0 * 2.5 * 1.0 * 1.1e-3, rel=2e-4)
 
 
@@ -78,6 +79,6 @@ def test_every_built_in_recipe_is_plausible_and_has_a_source():
 
 def test_a_stand_in_is_said(make_kit_segment):
     fabrication = Fabrication(cavities=(1, 1), routes={"medium1": "sheet", "medium2": "sheet"})
-    (pour,) = casting_kit(make_kit_segment(effector=Effector()), fabrication).pours
+    (pour,) = casting_kit(lone_device(make_kit_segment(effector=Effector())), fabrication).pours
     assert (pour.material, pour.recipe) == ("rubber", "rtv615")
     assert "stands in" in pour.note
