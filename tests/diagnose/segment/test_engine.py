@@ -204,10 +204,18 @@ def test_force_ratio_is_what_the_3d_model_gains_at_the_deepest_press(rig):
     assert setting.candidate.derived(setting.values)["force_ratio"] == pytest.approx(gained, rel=0.01)
 
 
+RELAXES = {
+    "name": "viscoelasticity",
+    "component": "medium2",
+    "parameters": {"relative_moduli": [0.3], "relaxation_times_s": [0.1]},
+}
+STRETCHED = {"name": "film-prestretch", "component": "film", "parameters": {"strain_x": 0.002, "strain_y": 0.002}}
+
+
 @pytest.mark.parametrize(
     ("tables", "reason"),
     [
-        ({"mechanisms": [{"name": "friction", "component": "dot", "parameters": {"coefficient": 0.3}}]}, "friction"),
+        ({"mechanisms": [RELAXES, STRETCHED]}, "viscoelasticity or film-prestretch, but not both"),
         ({"materials": {"pvdf": {"model": "piezoelectric-film", "coupling": "two-way"}}}, "two-way"),
     ],
 )
