@@ -175,7 +175,7 @@ PURPOSES = {
     "plate": "Holds the cavities of {component}; the cast parts leave it upwards.",
     "floor": "Carries the bars of the mould of {component} on its pins.",
     "bar": "Forms the sides of {component}; is drawn off sideways before the parts are lifted.",
-    "lid": "Presses the poured {component} flat; line it with acetate film, or use a glass slide in its place.",
+    "lid": "Presses what is poured for {component} flat; line it with acetate film, or use a glass slide in its place.",
 }
 IN_WORDS = {"effector": "the effector", "medium1": "medium 1", "medium2": "medium 2"}
 
