@@ -3,7 +3,7 @@
 The model is the generator's own, of what the experimenter believes, which is more than fair.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -91,3 +91,33 @@ def terms_of(bench: Bench, run: Signals, model: Signals, channel: str) -> Floats
     drawn_by = [channel] if channel in bench.voltages else bench.voltages
     u, drawn = seen[:, 0], step * np.cumsum(sum(model[name] for name in drawn_by)) / bench.peak_V
     return np.column_stack([drawn, u, u**2, u**3, seen[:, 1], seen[:, 2]])
+
+
+def linear_opinion(
+    bench: Bench,
+    runs: Sequence[Signals],
+    model: Sequence[Signals],
+    columns_of: Callable[[Signals, Signals, str], Floats],
+    fit: Callable[[Floats, Floats], tuple[Floats, Floats]],
+) -> Opinion:
+    """What a linear fit of the residuals says, whose columns are the terms once or several times; the one that is
+    largest in any channel names.
+
+    columns_of(run, its model, channel) : (t, k). fit(inputs (n, k), target (n,)) : weights (k,) and sizes (k,).
+    """
+    before = residuals_of(bench, runs, model)
+    firsts = [halves(bench, n, run["time_s"])[0] for n, run in enumerate(runs)]
+    after, sizes = {}, np.zeros(len(TERMS))
+    for name, residuals in before.items():
+        sigma = noise_of(bench)[name]
+        pairs = list(enumerate(zip(runs, model, strict=True)))
+        columns = [less_gain(bench, n, own, name, columns_of(run, own, name)) for n, (run, own) in pairs]
+        inputs = np.concatenate([c[first] for c, first in zip(columns, firsts, strict=True)])
+        target = np.concatenate([r[first] for r, first in zip(residuals, firsts, strict=True)]) / sigma
+        weights, size = fit(inputs, target)
+        sizes = np.maximum(sizes, size.reshape(-1, len(TERMS)).sum(axis=0))
+        after[name] = [r - sigma * (c @ weights) for r, c in zip(residuals, columns, strict=True)]
+    left, had = held_out(bench, runs, after), held_out(bench, runs, before)
+    detected = had > WORTH * left
+    largest = int(sizes.argmax())
+    return Opinion(detected, list(TERMS.values())[largest] if detected and sizes[largest] > 0.0 else None, left)

@@ -9,10 +9,10 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.stats import f as f_distribution
 
-from diagnose.prove.believed import TERMS, WORTH, Opinion, features, halves, held_out, less_gain, residuals_of, terms_of
+from diagnose.prove.believed import Opinion, features, linear_opinion, terms_of
 from diagnose.prove.world.bench import Bench
 from diagnose.prove.world.laws import Floats
-from diagnose.prove.world.reality import Signals, noise_of
+from diagnose.prove.world.reality import Signals
 
 STILL = 0.05
 """Share of the largest depth or speed below which the dot is clear or held."""
@@ -22,30 +22,22 @@ TESTED, LEVEL = 1000, 0.001
 
 def localised(bench: Bench, runs: Sequence[Signals], model: Sequence[Signals]) -> Opinion:
     """Each term in each phase alone, taken in while a partial F test is for it; what explains most names."""
-    before = residuals_of(bench, runs, model)
-    firsts = [halves(bench, n, run["time_s"])[0] for n, run in enumerate(runs)]
-    after, explained = {}, dict.fromkeys(TERMS, 0.0)
-    for name, residuals in before.items():
-        sigma = noise_of(bench)[name]
-        local = [
-            np.concatenate([terms_of(bench, run, own, name) * phase[:, None] for phase in _phases(bench, run)], axis=1)
-            for run, own in zip(runs, model, strict=True)
-        ]
-        local = [less_gain(bench, n, model[n], name, terms) for n, terms in enumerate(local)]
-        inputs = np.concatenate([terms[first] for terms, first in zip(local, firsts, strict=True)])
-        target = np.concatenate([r[first] for r, first in zip(residuals, firsts, strict=True)]) / sigma
-        some = np.linspace(0, len(target) - 1, min(TESTED, len(target))).astype(int)
-        gains = _taken_in(inputs[some], target[some])
-        for column, gain in gains.items():
-            explained[list(TERMS)[column % len(TERMS)]] += gain
-        weights = np.zeros(inputs.shape[1])
-        columns = list(gains)
-        weights[columns] = np.linalg.lstsq(inputs[:, columns], target, rcond=None)[0]
-        after[name] = [r - sigma * (terms @ weights) for r, terms in zip(residuals, local, strict=True)]
-    left, had = held_out(bench, runs, after), held_out(bench, runs, before)
-    largest = max(explained, key=lambda term: explained[term])
-    named = TERMS[largest] if explained[largest] > 0.0 and had > WORTH * left else None
-    return Opinion(had > WORTH * left, named, left)
+
+    def columns_of(run: Signals, own: Signals, channel: str) -> Floats:
+        terms = terms_of(bench, run, own, channel)
+        return np.concatenate([terms * phase[:, None] for phase in _phases(bench, run)], axis=1)
+
+    return linear_opinion(bench, runs, model, columns_of, _selected)
+
+
+def _selected(inputs: Floats, target: Floats) -> tuple[Floats, Floats]:
+    """Weights (k,) of the columns that are taken in, and the squares (k,) that each takes."""
+    some = np.linspace(0, len(target) - 1, min(TESTED, len(target))).astype(int)
+    gains = _taken_in(inputs[some], target[some])
+    columns, weights, sizes = list(gains), np.zeros(inputs.shape[1]), np.zeros(inputs.shape[1])
+    weights[columns] = np.linalg.lstsq(inputs[:, columns], target, rcond=None)[0]
+    sizes[columns] = list(gains.values())
+    return weights, sizes
 
 
 def _phases(bench: Bench, run: Signals) -> list[Floats]:

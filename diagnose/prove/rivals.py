@@ -8,15 +8,16 @@ and fit gains first. They train on the first press of every run and are scored o
 import warnings
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from importlib.util import find_spec
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from diagnose.prove.believed import TERMS, WORTH, Opinion, features, halves, held_out, less_gain, residuals_of, terms_of
+from diagnose.prove.believed import WORTH, Opinion, features, halves, held_out, linear_opinion, residuals_of, terms_of
 from diagnose.prove.localised import localised
 from diagnose.prove.world.bench import BENCHES, Bench
+from diagnose.prove.world.laws import Floats
 from diagnose.prove.world.reality import Reality, Signals, baseline, noise_of, record
 
 POINTS = 250
@@ -86,20 +87,8 @@ def _sparse(bench: Bench, runs: Sequence[Signals], model: Sequence[Signals]) -> 
     """Sequentially thresholded least squares (SINDy) of the residuals on named terms; the largest term names."""
     from pysindy import STLSQ  # type: ignore[import-not-found,import-untyped,unused-ignore]
 
-    before = residuals_of(bench, runs, model)
-    firsts = [halves(bench, n, run["time_s"])[0] for n, run in enumerate(runs)]
-    after, weights = {}, dict.fromkeys(TERMS, 0.0)
-    for name, residuals in before.items():
-        sigma = noise_of(bench)[name]
-        found_terms = [terms_of(bench, run, model[n], name) for n, run in enumerate(runs)]
-        terms = [less_gain(bench, n, model[n], name, own) for n, own in enumerate(found_terms)]
-        inputs = np.concatenate([t[first] for t, first in zip(terms, firsts, strict=True)])
-        target = np.concatenate([r[first] for r, first in zip(residuals, firsts, strict=True)]) / sigma
-        fitted = STLSQ(threshold=SPARSE, alpha=1e-3).fit(inputs, target[:, None]).coef_.ravel()
-        for term, coefficient in zip(TERMS, fitted, strict=True):
-            weights[term] = max(weights[term], abs(float(coefficient)))
-        after[name] = [r - sigma * (t @ fitted) for r, t in zip(residuals, terms, strict=True)]
-    left, had = held_out(bench, runs, after), held_out(bench, runs, before)
-    largest = max(weights, key=lambda term: weights[term])
-    named = TERMS[largest] if weights[largest] > 0.0 and had > WORTH * left else None
-    return Opinion(had > WORTH * left, named, left)
+    def fit(inputs: Floats, target: Floats) -> tuple[Floats, Floats]:
+        weights = STLSQ(threshold=SPARSE, alpha=1e-3).fit(inputs, target[:, None]).coef_.ravel()
+        return weights, np.abs(weights)
+
+    return linear_opinion(bench, runs, model, partial(terms_of, bench), fit)
