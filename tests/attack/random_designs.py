@@ -183,9 +183,9 @@ def _dot(draw, segment, reducible):
         table |= {"base_diameter_mm": draw.between(1.0, 2.0), "height_mm": draw.between(0.4, 0.6)}
     else:
         table["standard"] = draw.among(STANDARDS)
-        if table["shape"] == "cap" and across and draw.perhaps(0.5):
+        if table["shape"] == "cap" and across and draw.perhaps(0.8):
             table |= {"cell": "⠿", "cell_dot": draw.whole(1, 6)}
-            if draw.perhaps(0.3):
+            if draw.perhaps(0.5):
                 table["cell_heights_mm"] = [draw.between(0.35, 0.55) for _ in range(6)]
     return table
 
