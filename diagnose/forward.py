@@ -45,7 +45,7 @@ class Candidate:
     derived : the same -> quantities that are comparable between laws (relaxed_fraction, force_ratio, loss_ratio).
     compared : which of these, "force_ratio" or "loss_ratio", a press of the 3D model tells; "" for none.
     together : how its coordinates go together in presses of the 3D model: "sum", "jointly", "fading" or "glue" (see
-    diagnose.engines.segment.path).
+    diagnose.engines.segment.interpolation).
     units : name of a parameter or derived quantity -> unit in the verdict.
     """
 
@@ -124,6 +124,12 @@ class Engine(Protocol):
     def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
         """Do whatever full solves these candidates need, or recall them. Repeated calls cost nothing."""
 
+    def refine(self, settings: Sequence[Setting], report: Report) -> bool:
+        """Do a full solve with each of these settings alone, so that near them predictions are as right as there.
+
+        Returns whether any prediction has changed by more than an error that matters.
+        """
+
     def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
         """Every answer of a run (number in the recording) in milliseconds, at its own times, without noise.
 
@@ -167,6 +173,10 @@ class PassingOn:
     def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
         """As the engine."""
         self._engine.prepare(candidates, report)
+
+    def refine(self, settings: Sequence[Setting], report: Report) -> bool:
+        """As the engine."""
+        return self._engine.refine(settings, report)
 
     def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
         """As the engine."""

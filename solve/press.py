@@ -11,7 +11,14 @@ from geometry.dot import DotShape, resolve_dot
 from mesh.symmetry import unfolded
 from mesh.types import Planes, TetMesh
 from solve.model import Model
-from solve.problem import OpenInterface, build_system, meshed_share, open_interfaces, refuse_unresolved
+from solve.problem import (
+    OpenInterface,
+    build_system,
+    meshed_share,
+    open_interfaces,
+    refuse_unresolved,
+    with_rims_of_patches,
+)
 from solve.recorder import Recorder
 from solve.result import PressResult, Step
 from solve.solution.checkpoint import Checkpoint
@@ -59,7 +66,8 @@ def discretise(model: Model, tet_mesh: TetMesh, dot: DotShape, others: Iterable[
         kept &= set(planes_of(other, resolve_dot(other.dot, other.segment)))
     lost = tuple(axis for axis in tet_mesh.planes if axis not in kept)
     physics, plane_strain = model.physics, model.segment.section == "plane-strain"
-    opened = open_interfaces(unfolded(tet_mesh, lost).tet_mesh, physics.bonds, physics.delaminations, plane_strain)
+    whole = with_rims_of_patches(unfolded(tet_mesh, lost).tet_mesh, model.segment, physics.delaminations)
+    opened = open_interfaces(whole, physics.bonds, physics.delaminations, plane_strain)
     return replace(set_up(model, dot, *opened), unfolded=lost)
 
 

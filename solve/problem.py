@@ -17,6 +17,8 @@ from geometry.base import InputError
 from geometry.dot import DotShape
 from geometry.parameters import Segment
 from mesh.interfaces import inner_nodes, interface_facets, split_interface
+from mesh.outline import outline
+from mesh.seams import with_columns_at
 from mesh.types import TetMesh
 from solve.fem.sparsity import Numbers, Term, Unknowns, build_pattern, number
 from solve.materials.film import FilmLaw, FilmPlasticity, YieldLaw, film_law
@@ -110,6 +112,23 @@ def open_interfaces(
         tet_mesh, lower, upper = split_interface(tet_mesh, name, joined)
         opened.append(OpenInterface(name, lower, upper, bare))
     return tet_mesh, tuple(opened)
+
+
+def with_rims_of_patches(tet_mesh: TetMesh, segment: Segment, delaminations: tuple[Delamination, ...]) -> TetMesh:
+    """The mesh, of a slice with corners where its delaminated patches begin and end; of a solid as it was.
+
+    Facets are loose or bonded as a whole. Where the patch ended at the nearest of them, what it does would go up in
+    steps of whole elements as it grows. InputError for a missing layer.
+    """
+    if segment.section == "solid":
+        return tet_mesh
+    foot = outline(segment).effector_half_x
+    kept = [-foot, foot]
+    for patch in delaminations:
+        rims = [patch.center_mm[0] + side * patch.diameter_mm / 2 for side in (-1, 1)]
+        tet_mesh = with_columns_at(tet_mesh, interface_facets(tet_mesh, patch.bond), rims, kept)
+        kept += rims
+    return tet_mesh
 
 
 def meshed_share(segment: Segment, tet_mesh: TetMesh) -> float:

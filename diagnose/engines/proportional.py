@@ -135,6 +135,10 @@ class ProportionalEngine:
     def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
         """Nothing."""
 
+    def refine(self, settings: Sequence[Setting], report: Report) -> bool:
+        """Nothing: predictions are solved."""
+        return False
+
     def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
         """Voltages of a run. ValueError beyond the bounds of a value, or where a law turns over."""
         hum = [s.values for s in settings if s.candidate.traits.free_phase]

@@ -147,7 +147,7 @@ def _rivals(judge: Judge, singles: Sequence[Judged], pair: Judged, report: Repor
     found = []
     for count, other in enumerate(others):
         report("rivals of the pair", count, len(others))
-        found += [judge.judged(fit) for fit in paired(judge.model, judge.found, other, second, [start])]
+        found += [judge.judged(fit) for fit in paired(judge.model, judge.found, other, second, [start], report)]
     return found
 
 

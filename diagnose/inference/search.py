@@ -126,6 +126,7 @@ def _clipped(one: Sensitivity, guess: Floats) -> Floats:
 
 
 STARTS = 3  # of each candidate's first fit
+REFINEMENTS = 3
 ROUGH = 1e-3  # of the excess: what a last step of a first fit may gain, which only has to tell who is worth a second
 
 
@@ -200,7 +201,19 @@ def singles(model: ObservedModel, found: Screening, firsts: Sequence[FirstFit], 
     for count, one in enumerate(firsts):
         report("fits", count, len(firsts))
         fits.append(fitted(model, found.start, (found.candidates[one.number],), one.values, found.excess))
-    return [fit for fit in fits if _acts(fit)]
+    return [fit for fit in refined(model, found.start, fits, found.excess, report) if _acts(fit)]
+
+
+def refined(
+    model: ObservedModel, start: LinearisedSystem, fits: Sequence[Fitted], excess: float, report: Report
+) -> list[Fitted]:
+    """Fits made anew by an engine that has solved at their values, until it says there what it said before."""
+    fits = list(fits)
+    for _ in range(REFINEMENTS):
+        if not model.engine.refine([setting for fit in fits for setting in fit.settings], report):
+            break
+        fits = [fitted(model, start, fit.candidates, fit.values, excess) for fit in fits]
+    return fits
 
 
 def pairs(
@@ -228,12 +241,17 @@ def pairs(
     fits = []
     for count, number in enumerate(shown):
         report("pairs", count, len(shown))
-        fits += paired(model, found, first, others[number], tests.estimates[number][:STARTS])
+        fits += paired(model, found, first, others[number], tests.estimates[number][:STARTS], report)
     return fits
 
 
 def paired(
-    model: ObservedModel, found: Screening, first: Fitted, second: Candidate, starts: Sequence[Floats]
+    model: ObservedModel,
+    found: Screening,
+    first: Fitted,
+    second: Candidate,
+    starts: Sequence[Floats],
+    report: Report,
 ) -> list[Fitted]:
     """Both together from starts (q,) of the second; none where the model has no answer."""
     both = (*first.candidates, second)
@@ -242,7 +260,7 @@ def paired(
     if best is None:
         return []
     fit = fitted(model, first.system, both, best.values, found.excess)
-    return [fit] if _acts(fit) else []
+    return [one for one in refined(model, first.system, [fit], found.excess, report) if _acts(one)]
 
 
 def _acts(fit: Fitted) -> bool:

@@ -65,6 +65,10 @@ class CouponEngine:
     def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
         """Nothing: a point is solved in milliseconds."""
 
+    def refine(self, settings: Sequence[Setting], report: Report) -> bool:
+        """Nothing: predictions are solved."""
+        return False
+
     def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
         """Force or displacement of a run. ValueError beyond the bounds of a value, or where a law turns over."""
         return self.imagine(self.recording.runs[run], settings)

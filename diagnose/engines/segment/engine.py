@@ -111,6 +111,7 @@ class SegmentEngine:
         self.drives = [drive_of(*pair) for pair in zip(recording.runs, recording.phases, strict=True)]
         self.stands = Stands(self.model, mesh_settings, recording, report)
         self.stands.add([setting.candidate for setting in self.declared], report)
+        self.stands.refine(self.declared, report)
         self.accuracy = self.stands.accuracy
         self._last: tuple[Asked, ResponseTable] | None = None
         stated = {setting.candidate.name for setting in self.declared}
@@ -158,6 +159,11 @@ class SegmentEngine:
         """Press what these candidates need. NoEquilibriumError."""
         self.stands.add(candidates, report)
         self._last = None
+
+    def refine(self, settings: Sequence[Setting], report: Report) -> bool:
+        """Press each of these settings. NoEquilibriumError where the baseline has none."""
+        self._last = None
+        return self.stands.refine(settings, report)
 
     def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
         """Every answer of a run. ValueError for what was not prepared."""

@@ -5,7 +5,7 @@ How deep the runs of a recording go.
 What may float without counting as physics, through the model: sizes, moduli, d31, and the zero of the drive.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 
@@ -13,7 +13,7 @@ import numpy as np
 
 from diagnose.engines.segment import path
 from diagnose.engines.segment.answer import FilmPlate
-from diagnose.engines.segment.path import effect_of
+from diagnose.engines.segment.interpolation import Differences, effect_of
 from diagnose.forward import Candidate, Coordinate, Setting
 from diagnose.signals.recording import Recording
 from diagnose.vocabulary.base import Scene
@@ -25,6 +25,7 @@ from solve.mechanisms import with_mechanisms
 from solve.mechanisms.layers.viscoelasticity import VISCOELASTICITY
 from solve.model import Model, Physics, Press
 from solve.press import press_segment
+from solve.problem import with_rims_of_patches
 from solve.reduced.fit import CELLS, ResponseTable
 from solve.solution.newton import NoEquilibriumError
 from solve.tables import job as job_files
@@ -99,6 +100,8 @@ MARGIN = 1.02  # of the depth of the table over the deepest press
 FINEST, MIDDLE = 0.4, 0.7
 """Element sizes of the finer meshes, in terms of the diagnosis mesh."""
 MOST_NODES = 20_000  # 2 s of one core for each Newton step
+CHEAP_NODES = 10_000  # of the middle mesh of a slice, with what stands for it in y
+MATTERS = 1e-3  # of force and charge: what a press may differ by from those around it
 ROUND_OFF = 1e-12  # of a weight
 TOUCH = 1e-6  # of the depth: there is no logarithm of 0
 SLIPS = 3  # steps between two of them under friction
@@ -123,6 +126,7 @@ class Prepared:
         self.depth_mm = MARGIN * self.pressed_mm + offset_reach_mm(recording)
         self.depths = Depths(SHARES)
         self._changes: dict[Name, Floats] = {}
+        self._differences: dict[Name, Differences] = {}
         self.shortfalls: dict[Name, str] = {}
         finest = finer_mesh(model, self.options, FINEST, MOST_NODES)
         meshes = finest, self._middle_mesh
@@ -179,25 +183,78 @@ class Prepared:
         """See Traits.on_middle_mesh; a dot elsewhere is pressed on it too."""
         return finer_mesh(self.model, self.options, MIDDLE, MOST_NODES)
 
+    @property
+    def _all_finer(self) -> bool:
+        """Whether a press on the middle mesh takes hardly longer, as that of a slice."""
+        return len(self._middle_mesh[0].points_mm) <= CHEAP_NODES
+
     def add(self, candidates: Sequence[Candidate], places: Sequence[Place], report: Report) -> None:
         """Press what these candidates, and dots at these places, need beyond what was pressed. NoEquilibriumError."""
         wanted = {name: job for c in candidates for name, job in self._jobs(c) if name not in self._changes}
         moved = {_at(place): self.moved(place) for place in places if any(place) and _at(place) not in self._changes}
         wanted |= {name: (self.job(model, self._middle_mesh), 1) for name, model in moved.items()}
-        if not wanted:
-            return
-        bases = _all_there(run_all(self._bases, report))
-        outputs = run_all([self._guided(*one) for one in wanted.values()], report)
-        for (name, (job, base)), found in zip(wanted.items(), outputs, strict=True):
-            if len(found):
-                self._changes[name] = self._change(job, bases[base], found)
+        self._changes |= self._pressed(wanted, report)
         for candidate in candidates:
             self._bridge(candidate)
+
+    def refine(self, settings: Sequence[Setting], report: Report) -> bool:
+        """Press settings alone where they are not known yet; whether one differs by more than MATTERS.
+
+        A press that has no equilibrium, and one on a mesh that takes long, tells nothing. NoEquilibriumError.
+        """
+        asked = {press_name(s.candidate, s.values): s for s in settings if self._may_differ(s)}
+        wanted = {name: self._job(s.candidate, s.values) for name, s in asked.items()}
+        quick = {name: job for name, job in wanted.items() if len(job[0].tet_mesh.points_mm) <= CHEAP_NODES}
+        largest = 0.0
+        for name, found in self._pressed(quick, report).items():
+            setting = asked[name]
+            difference = found - self._between(setting)
+            self._differences[_coordinates(setting.candidate)].add(setting.values, difference)
+            largest = max(largest, self._size(difference))
+        return largest > MATTERS
+
+    def _may_differ(self, setting: Setting) -> bool:
+        """Whether a press at these values would tell something new."""
+        candidate = setting.candidate
+        if not any(setting.values[n] for n in effect_of(candidate).pressed):
+            return False
+        differences = self._differences.setdefault(_coordinates(candidate), Differences(candidate))
+        return not differences.known(setting.values)
+
+    def _size(self, change: Floats) -> float:
+        """The larger of the changes of force and of charge, relative to those at the deepest press."""
+        force, _, *charges = self._smooth[-1]
+        per_force = max(float(np.abs(charges).max()) / float(force), 1e-300)
+        return max(float(np.abs(change[:, 0]).max()), float(np.abs(change[:, 2:]).max()) / per_force)
+
+    def _pressed(self, wanted: Mapping[Name, tuple[Job, int]], report: Report) -> dict[Name, Floats]:
+        """Changes by jobs, each with the number of its mesh; those without equilibrium are left out."""
+        if not wanted:
+            return {}
+        bases = _all_there(run_all(self._bases, report))
+        beside = {name: self._without_patch(job) for name, (job, _) in wanted.items()}
+        others = {name: (job, wanted[name][1]) for name, job in beside.items() if job is not None}
+        outputs = run_all([self._guided(*one) for one in (*wanted.values(), *others.values())], report)
+        compared = dict(zip(others, outputs[len(wanted) :], strict=True))
+        changes = {}
+        for (name, (job, base)), found in zip(wanted.items(), outputs, strict=False):
+            reference = compared.get(name, bases[base])
+            if len(found) and len(reference):
+                changes[name] = self._change(job, reference, found)
+        return changes
 
     def _guided(self, job: Job, base: int) -> Job:
         """Starting from the baseline's equilibria, except where a moved dot touches other nodes."""
         moved = job.model.dot != self._bases[base].model.dot
         return job if moved else replace(job, guided_by=self._guides[base])
+
+    def _without_patch(self, job: Job) -> Job | None:
+        """The baseline on the mesh that a patch changes, so that only the patch is in the difference; None for none."""
+        patches, known = job.model.physics.delaminations, self.model.physics.delaminations
+        if patches == known or job.model.segment.section == "solid":
+            return None
+        moved = with_rims_of_patches(job.tet_mesh, job.model.segment, patches)
+        return replace(self.job(self.model), tet_mesh=moved)
 
     def _change(self, job: Job, base: Floats, found: Floats) -> Floats:
         """Against the baseline on the same mesh; charges scaled to those of the finest mesh."""
@@ -230,14 +287,18 @@ class Prepared:
         return moved(self.model, place)
 
     def _jobs(self, candidate: Candidate) -> Iterator[tuple[Name, tuple[Job, int]]]:
-        """Presses by name, each with the number of its mesh: 0 for the diagnosis mesh, 1 for the middle one."""
-        back = path.BACK if candidate.traits.shows_on_return else ()
-        finer = candidate.traits.on_middle_mesh
+        """Presses by name."""
         for point in effect_of(candidate).points:
-            changed = with_mechanisms(self.model, [candidate.switched_on(point)])
-            job = self.job(changed, self._middle_mesh if finer else None)
-            parts = SLIPS if job.model.physics.friction > 0.0 else 1
-            yield press_name(candidate, point), (replace(job, back=back, parts=parts), int(finer))
+            yield press_name(candidate, point), self._job(candidate, point)
+
+    def _job(self, candidate: Candidate, point: Sequence[float]) -> tuple[Job, int]:
+        """A press, and the number of its mesh: 0 for the diagnosis mesh, 1 for the middle one."""
+        back = path.BACK if candidate.traits.shows_on_return else ()
+        finer = candidate.traits.on_middle_mesh or (self._all_finer and not back)
+        changed = with_mechanisms(self.model, [candidate.switched_on(point)])
+        job = self.job(changed, self._middle_mesh if finer else None)
+        parts = SLIPS if job.model.physics.friction > 0.0 else 1
+        return replace(job, back=back, parts=parts), int(finer)
 
     def job(self, model: Model, mesh: Sizes | None = None) -> Job:
         """The press of a changed model on a mesh, moved with its layers, at once: nothing relaxes."""
@@ -264,13 +325,18 @@ class Prepared:
 
     def _values(self, setting: Setting) -> Floats | None:
         """Changes (n, 2 + e), or of a path (n + b r, 2 + e); None where the setting needs no press."""
-        effect = effect_of(setting.candidate)
-        if not any(setting.values[n] for n in effect.pressed):
+        if not any(setting.values[n] for n in effect_of(setting.candidate).pressed):
             return None
-        what = f"{setting.candidate.mechanism} of {setting.candidate.component}"
+        return self._between(setting)
+
+    def _between(self, setting: Setting) -> Floats:
+        """The same from the presses, and what those beyond the first differ by."""
+        candidate, effect = setting.candidate, effect_of(setting.candidate)
+        what = f"{candidate.mechanism} of {candidate.component}"
         weighed = zip(effect.weights(setting.values), effect.points, strict=True)
-        parts = [w * self._known(press_name(setting.candidate, p), what) for w, p in weighed if abs(w) > ROUND_OFF]
-        return np.sum(parts, axis=0) if parts else None
+        parts = [w * self._known(press_name(candidate, p), what) for w, p in weighed if abs(w) > ROUND_OFF]
+        more = self._differences.get(_coordinates(candidate))
+        return np.asarray(np.sum(parts, axis=0) + (more.at(setting.values) if more is not None else 0.0))
 
     def _known(self, name: Name, what: str) -> Floats:
         if name not in self._changes:
@@ -295,6 +361,11 @@ def press_name(candidate: Candidate, point: Sequence[float]) -> Name:
     """Name of a press, one for a nuisance and for the candidate that has it among others."""
     on = tuple((c.name, value) for c, value in zip(candidate.coordinates, point, strict=True) if value != 0.0)
     return (*candidate.name, on)
+
+
+def _coordinates(candidate: Candidate) -> Name:
+    """A candidate and a nuisance that is one of its coordinates are two."""
+    return (*candidate.name, *(coordinate.name for coordinate in candidate.coordinates))
 
 
 def _values(candidate: Candidate, point: Sequence[float]) -> str:

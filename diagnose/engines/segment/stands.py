@@ -8,7 +8,7 @@ charge of the other: there each place has tables of its own, as have all candida
 from collections.abc import Mapping, Sequence
 
 from diagnose.engines.segment.prepared import Place, Prepared, moved
-from diagnose.forward import Candidate
+from diagnose.forward import Candidate, Setting
 from diagnose.signals.recording import Recording
 from geometry.base import Report
 from solve.model import Model
@@ -44,6 +44,11 @@ class Stands:
         """Press what these candidates need, wherever the dot stands. NoEquilibriumError."""
         for prepared in self._at.values():
             prepared.add(candidates, (), report)
+
+    def refine(self, settings: Sequence[Setting], report: Report) -> bool:
+        """Press these settings wherever the dot stands; whether that changed anything that matters."""
+        changed = [prepared.refine(settings, report) for prepared in self._at.values()]
+        return any(changed)
 
     @property
     def shortfalls(self) -> tuple[str, ...]:

@@ -162,6 +162,9 @@ class ToyEngine:
     def prepare(self, candidates, report):
         pass
 
+    def refine(self, _settings, _report):
+        return False
+
     def predict(self, run, settings):
         sensor = sensor_of(settings)
         its = self.recording.runs[run]

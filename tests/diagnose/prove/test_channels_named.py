@@ -50,6 +50,9 @@ class Known:
     def prepare(self, _candidates, _report):
         """Nothing to press."""
 
+    def refine(self, _settings, _report):
+        return False
+
     def predict(self, number, settings):
         run = self.recording.runs[number]
         on = [setting.candidate.switched_on(setting.values) for setting in settings if any(setting.values)]

@@ -3,12 +3,14 @@
 import numpy as np
 import pytest
 
+from diagnose.engines.segment.engine import segment_engine
 from diagnose.forward import Setting
+from diagnose.signals.recording import Recording
 from geometry.base import InputError
 from solve.mechanisms import Mechanism
 from solve.model import Readout
 from solve.tables import job as store
-from tests.diagnose.segment.rigs import DEPTH_MM, candidate, engine, press, run, silent
+from tests.diagnose.segment.rigs import COARSE, DEPTH_MM, candidate, engine, model, press, run, silent
 
 KINKS = 0.01  # of the peak: so coarse a surface touches node by node, which neither table nor press resolves
 FORCE = {"drive": "force_N"}
@@ -79,6 +81,26 @@ def test_a_mechanism_acts_as_in_the_3d_model(rig, mechanism, component, values, 
     assert found["voltage_V"][1] > least
     for error, effect in found.values():
         assert error < allowed * effect + KINKS
+
+
+@pytest.mark.slow
+def test_far_from_all_presses_a_refinement_brings_the_tables_to_the_3d_model(rig):
+    """A foam is pressed at few exponents; where a fit leads, once more. The reference has elements a third as large."""
+    fine = segment_engine(model(), COARSE.scaled(0.35), Recording((run(),)), silent)
+    foam = switched(rig, "foam-densification", "effector", (0.3, 2.0))
+
+    def change(of, signals):
+        plain = signals(of, [])
+        changed = signals(of, [foam])
+        return {name: (changed[name] - plain[name]) / peak(plain[name]) for name in plain}
+
+    true = change(fine, lambda of, on: of.solve(0, [s.candidate.switched_on(s.values) for s in on], silent))
+    before = change(rig, lambda of, on: of.predict(0, on))
+    assert rig.refine([foam], silent)
+    after = change(rig, lambda of, on: of.predict(0, on))
+    for name in true:
+        assert peak(after[name] - true[name]) < 0.2 * peak(before[name] - true[name])
+    assert not rig.refine([foam], silent)
 
 
 def test_a_compliant_rig_in_the_tables_is_one_in_the_3d_model(rig):

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from diagnose.engines.segment.path import effect
-from diagnose.forward import Coordinate
+from diagnose.engines.segment.interpolation import Differences, effect
+from diagnose.forward import Candidate, Coordinate
 
 X = Coordinate("x", 0.0, 1.0, (0.1,), (0.3, 1.0))
 Y = Coordinate("y", -1.0, 1.0, (0.1,), (-1.0, 0.5, 1.0))
@@ -47,3 +47,16 @@ def test_the_exponent_of_a_foam_means_nothing_without_compressibility():
 def test_beyond_the_bounds_is_refused():
     with pytest.raises(ValueError, match=r"x = 1\.2: must lie between 0 and 1"):
         effect("sum", (X,)).weights((1.2,))
+
+
+def test_a_further_press_counts_where_it_was_made_and_not_at_the_first_ones():
+    chosen = Candidate("foam-densification", "medium1", (X, FREE, Y), lambda _: {})
+    known, more = effect("sum", chosen.coordinates), Differences(chosen)
+    more.add((0.6, 0.0, 0.2), np.array([[1.0, -2.0]]))
+    more.add((0.6, 0.0, 0.4), np.array([[0.5, 0.5]]) - more.at((0.6, 0.0, 0.4)))
+    np.testing.assert_allclose(more.at((0.6, 0.3, 0.2)), [[1.0, -2.0]], atol=1e-9)
+    np.testing.assert_allclose(more.at((0.6, 0.0, 0.4)), [[0.5, 0.5]], atol=1e-9)
+    for point in ((0.0, 0.0, 0.0), *known.points):
+        np.testing.assert_allclose(more.at(point), 0.0, atol=1e-9)
+    assert more.known((0.6, 0.9, 0.21))
+    assert not more.known((0.3, 0.0, 0.2))

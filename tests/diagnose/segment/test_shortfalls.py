@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from diagnose.engines.segment import prepared
-from diagnose.engines.segment.path import effect_of
+from diagnose.engines.segment.interpolation import effect_of
 from diagnose.engines.segment.prepared import Prepared, press_name
 from diagnose.forward import Candidate, Coordinate
 from solve.solution.newton import NoEquilibriumError

@@ -60,6 +60,9 @@ class ToyEngine:
     def prepare(self, candidates, report):
         report("prepared", len(candidates), len(candidates))
 
+    def refine(self, _settings, _report):
+        return False
+
     def predict(self, run, settings):
         return self.imagine(self.recording.runs[run], settings)
 

@@ -1,0 +1,49 @@
+"""Columns of a slice's nodes moved to places in x at which something begins or ends, such as a delaminated patch."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from geometry.arrays import Floats, Ints
+from mesh.types import TET_EDGES, TetMesh
+
+LEAST = 0.1
+"""Of the distance between two columns, what must stay between a column that moves and one that does not."""
+
+
+def with_columns_at(tet_mesh: TetMesh, facets: Ints, places_mm: Sequence[float], kept_mm: Sequence[float]) -> TetMesh:
+    """The mesh of a slice, stretched in x so that corners of facets (k, 6) stand at each of the places.
+
+    kept_mm : where corners stay, as below the sides of an effector. The ends of the facets stay too. A place that is
+    nearer to one that stays, or to another place, than elements can be thin takes the corners there.
+    """
+    points = tet_mesh.points_mm.copy()
+    corners, middles = np.unique(tet_mesh.tets[:, :4]), tet_mesh.tets[:, 4:]
+    columns = np.unique(np.round(points[facets[:, :3], 0], 9))
+    before, after = _moves(columns, places_mm, [columns[0], *kept_mm, columns[-1]])
+    moved = np.zeros(len(points))
+    moved[corners] = np.interp(points[corners, 0], before, after) - points[corners, 0]
+    moved[middles] = moved[tet_mesh.tets[:, TET_EDGES]].mean(axis=2)  # edges stay straight, or as curved as they were
+    points[:, 0] += moved
+    return replace(tet_mesh, points_mm=points)
+
+
+def _moves(columns: Floats, places: Sequence[float], kept: Sequence[float]) -> tuple[Floats, Floats]:
+    """Columns that are fixed or moved, ascending, and where they go."""
+    goes = {float(columns[np.abs(columns - one).argmin()]): float(one) for one in kept if _within(columns, one)}
+    for place in places:
+        width = float(np.diff(columns)[np.clip(np.searchsorted(columns, place) - 1, 0, len(columns) - 2)])
+        if not _within(columns, place) or min(abs(place - there) for there in goes.values()) < LEAST * width:
+            continue
+        below = max((one for one, there in goes.items() if there < place), default=columns[0])
+        above = min((one for one, there in goes.items() if there > place), default=columns[-1])
+        free = columns[(columns > below) & (columns < above)]
+        if len(free):
+            goes[float(free[np.abs(free - place).argmin()])] = float(place)
+    order = sorted(goes)
+    return np.array(order), np.array([goes[one] for one in order])
+
+
+def _within(columns: Floats, place: float) -> bool:
+    return bool(columns[0] <= place <= columns[-1])
