@@ -48,7 +48,7 @@ DELAMINATION = register(
         example={"center_mm": [0.7, 0.0], "diameter_mm": 1.0},
         typical={
             "center_mm": "default [0, 0]",
-            "diameter_mm": "must span several facets of the mesh",
+            "diameter_mm": "in a solid it must span several facets of the mesh",
             "bonded_diameter_mm": "glue that lets go from the edge inwards; what is left must span several facets",
         },
         traits=Traits(adds_up=True),
