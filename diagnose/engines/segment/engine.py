@@ -16,8 +16,10 @@ import numpy as np
 from diagnose.engines.segment import full
 from diagnose.engines.segment.answer import Drive, FilmPlate, Mechanics, drive_of, mechanics, shown
 from diagnose.engines.segment.declared import always_on, readout_behind, without_path
+from diagnose.engines.segment.depth import ZERO, nuisance
 from diagnose.engines.segment.path import with_history
-from diagnose.engines.segment.prepared import ZERO, Prepared, nuisance
+from diagnose.engines.segment.prepared import Prepared
+from diagnose.engines.segment.presses import moved
 from diagnose.engines.segment.stands import Stands
 from diagnose.forward import Candidate, Setting, Signals
 from diagnose.signals.recording import Recording, Run
@@ -198,7 +200,7 @@ class SegmentEngine:
         """Every answer of a run by the 3D model along its own drive. ValueError, NoEquilibriumError."""
         asked, drive = self.recording.runs[run], self.drives[run]
         base, beside = self.stands.at(asked.dot_offset_mm)
-        believed = replace(base.moved(beside), readout=self._readout(asked))
+        believed = replace(moved(base.model, beside), readout=self._readout(asked))
         stated = [setting.candidate.switched_on(setting.values) for setting in self.declared]
         on = with_mechanisms(believed, [*stated, *mechanisms])
         elastic, values = replace(on, physics=replace(on.physics, viscosity={})), self._driven(drive, on, ())

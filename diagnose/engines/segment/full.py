@@ -11,7 +11,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from diagnose.engines.segment.answer import Drive, FilmPlate, Mechanics, shown
-from diagnose.engines.segment.prepared import ungapped
+from diagnose.engines.segment.presses import ungapped
 from diagnose.forward import Signals
 from diagnose.signals.recording import Run
 from geometry.arrays import Bools, Floats, Ints

@@ -1,113 +1,43 @@
-"""All that was pressed for one rig: the baseline's table, what layers remember, and changes by candidates.
-
-How deep the runs of a recording go.
-
-What may float without counting as physics, through the model: sizes, moduli, d31, and the zero of the drive.
-"""
+"""All that was pressed for one rig: the baseline's table, what layers remember, and changes by candidates."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property
 
 import numpy as np
 
 from diagnose.engines.segment import path
 from diagnose.engines.segment.answer import FilmPlate
+from diagnose.engines.segment.depth import deepest, offset_reach_mm, rounded_up
 from diagnose.engines.segment.interpolation import Differences, effect_of
-from diagnose.forward import Candidate, Coordinate, Setting
+from diagnose.engines.segment.presses import (
+    CHEAP_NODES,
+    MOST_NODES,
+    SHARES,
+    Name,
+    Place,
+    Presses,
+    all_there,
+    moved,
+)
+from diagnose.forward import Candidate, Setting
 from diagnose.signals.recording import Recording
-from diagnose.vocabulary.base import Scene
-from diagnose.vocabulary.layers.property_error import nuisance as wrong_number
 from diagnose.vocabulary.layers.viscoelasticity import LARGEST_SHARE, relaxable
 from geometry.arrays import Floats
 from geometry.base import Report
-from solve.mechanisms import with_mechanisms
 from solve.mechanisms.layers.viscoelasticity import VISCOELASTICITY
-from solve.model import Model, Physics, Press
-from solve.press import press_segment
-from solve.problem import with_rims_of_patches
+from solve.model import Model
 from solve.reduced.fit import CELLS, ResponseTable
 from solve.solution.newton import NoEquilibriumError
-from solve.tables import job as job_files
 from solve.tables.job import Job, Reduction
-from solve.tables.rig_mesh import Mesh, MeshSettings, finer_mesh, mesh_of, rig_mesh
+from solve.tables.rig_mesh import MeshSettings, finer_mesh, rig_mesh
 from solve.tables.smooth import PRESSED, TRUSTED, Depths, accuracy, change, replaced, smooth
 from solve.tables.workers import run_all
 
-LADDER_STEP = 1.05  # noise of the drive is far less than a step, and a table 5 % too deep costs nothing
-DEEPER = 1.3  # of the depth that a force reaches: softer candidates go deeper, and layers creep
-
-
-def deepest(model: Model, tet_mesh: Mesh, recording: Recording) -> float:
-    """mm: of the displacements that drive, and where forces drive, of those with some way to go."""
-    depths = [float(run.drive_values.max()) for run in recording.runs if run.drive == "displacement_mm"]
-    forces = [float(run.drive_values.max()) for run in recording.runs if run.drive == "force_N"]
-    if forces:
-        depths.append(DEEPER * reached(model, tet_mesh, max(forces)))
-    return max(depths)
-
-
-def rounded_up(value: float) -> float:
-    """The next power of LADDER_STEP, so that noise of the drive does not ask for presses anew."""
-    return float(LADDER_STEP ** np.ceil(np.log(value) / np.log(LADDER_STEP)))
-
-
-def reached(model: Model, tet_mesh: Mesh, force_N: float) -> float:
-    """Depth in mm under a force. NoEquilibriumError."""
-    pushed = replace(model, press=Press(force_N=force_N, load_steps=4), readout=None, physics=_elastic(model.physics))
-    name = job_files.key(Job(pushed, tet_mesh, force_N, ()))
-    found = job_files.recall(name)
-    if found is None:
-        found = np.array([_press(pushed, tet_mesh)])
-        job_files.keep(name, found)
-    return float(found[0])
-
-
-def _press(model: Model, tet_mesh: Mesh) -> float:
-    result = press_segment(ungapped(model), tet_mesh)
-    if result.failure is not None:
-        raise NoEquilibriumError(f"the baseline under {model.press.force_N:.3g} N: {result.failure}", np.zeros(0), None)
-    return 1e3 * float(result.trace.dot_path_m[-1])
-
-
-def _elastic(physics: Physics) -> Physics:
-    """Without what acts in time."""
-    return Physics(bonds=physics.bonds, delaminations=physics.delaminations, prestretch=physics.prestretch)
-
-
-ZERO = "zero-of-the-drive"
-
-
-def nuisance(scene: Scene, recording: Recording, name: str) -> Candidate | None:
-    """The candidate with the one coordinate of a nuisance, None where the model has no such part."""
-    if name != "offset_mm":
-        return wrong_number(scene, name)
-    if not any(run.drive == "displacement_mm" for run in recording.runs):
-        return None
-    most = offset_reach_mm(recording)
-    coordinate = Coordinate("offset_mm", -most, most, (0.1 * most, -0.1 * most))
-    return Candidate(ZERO, "dot", (coordinate,), lambda _: {}, units={"offset_mm": "mm"})
-
-
-def offset_reach_mm(recording: Recording) -> float:
-    """Six sigma of the largest error of the first touch that is declared."""
-    return 6.0 * max((run.nuisance.get("offset_mm", 0.0) for run in recording.runs), default=0.0)
-
-
-SHARES = 0.1, 0.25, 0.45, 0.7, 1.0
-"""Of the depth, at which changes are seen: they are smooth over it."""
 MARGIN = 1.02  # of the depth of the table over the deepest press
-FINEST, MIDDLE = 0.4, 0.7
-"""Element sizes of the finer meshes, in terms of the diagnosis mesh."""
-MOST_NODES = 20_000  # 2 s of one core for each Newton step
-CHEAP_NODES = 10_000  # of the middle mesh of a slice, with what stands for it in y
+FINEST = 0.4  # element sizes of the finest mesh, in terms of the diagnosis mesh
 MATTERS = 1e-3  # of force and charge: what a press may differ by from those around it
 ROUND_OFF = 1e-12  # of a weight
 TOUCH = 1e-6  # of the depth: there is no logarithm of 0
-SLIPS = 3  # steps between two of them under friction
-Name = tuple[object, ...]
-Place = tuple[float, float]
-Sizes = tuple[Mesh, MeshSettings]
 
 
 class Prepared:
@@ -124,14 +54,15 @@ class Prepared:
         self.tet_mesh, self.options = rig_mesh(model, options)
         self.pressed_mm = rounded_up(deepest(model, self.tet_mesh, recording))
         self.depth_mm = MARGIN * self.pressed_mm + offset_reach_mm(recording)
+        self.presses = Presses(model, self.tet_mesh, self.options, self.depth_mm)
         self.depths = Depths(SHARES)
         self._changes: dict[Name, Floats] = {}
         self._differences: dict[Name, Differences] = {}
         self.shortfalls: dict[Name, str] = {}
         finest = finer_mesh(model, self.options, FINEST, MOST_NODES)
-        meshes = finest, self._middle_mesh
-        jobs = [replace(self.job(model, mesh), shares=PRESSED) for mesh in meshes]
-        reduction, outputs = self._reduced([*jobs, *self._bases], report)
+        meshes = finest, self.presses.middle_mesh
+        jobs = [replace(self.presses.job(model, mesh), shares=PRESSED) for mesh in meshes]
+        reduction, outputs = self._reduced([*jobs, *self.presses.bases], report)
         fine, middle = (smooth(PRESSED, found) for found in outputs[: len(jobs)])
         self._smooth = fine.at(np.linspace(TOUCH, 1.0, CELLS + 1))
         made = reduction.made()
@@ -149,14 +80,16 @@ class Prepared:
         declared = self.model.physics.viscosity
         layers = sorted(relaxable(self.model), key=lambda layer: layer not in declared)
         while True:
-            reduction = Reduction(self._bases[0].model, self.tet_mesh, self.depth_mm, tuple(layers), LARGEST_SHARE)
+            reduction = Reduction(
+                self.presses.bases[0].model, self.tet_mesh, self.depth_mm, tuple(layers), LARGEST_SHARE
+            )
             try:
                 outputs = run_all(jobs, report, [reduction])
             except NoEquilibriumError:
                 if len(layers) <= len(declared):
                     raise
             else:
-                return reduction, _all_there(outputs)
+                return reduction, all_there(outputs)
             told = f"No equilibrium with the full memory of {', '.join(layers)}"
             dropped = layers.pop()
             left_out = f"{VISCOELASTICITY.name} of {dropped} is left out of the candidates"
@@ -167,32 +100,14 @@ class Prepared:
         """No change, (n, 2 + e)."""
         return np.zeros((len(SHARES), 2 + len(self.film.electrodes)))
 
-    @cached_property
-    def _bases(self) -> tuple[Job, Job]:
-        """The baseline on the diagnosis mesh and on the middle one: what changes are compared with and start from."""
-        coarse, middle = self.job(self.model), self.job(self.model, self._middle_mesh)
-        return replace(coarse, guides=True, parts=SLIPS), replace(middle, guides=True)
-
-    @cached_property
-    def _guides(self) -> list[str]:
-        """Names of the bases in solve.tables.job."""
-        return [job_files.key(job) for job in self._bases]
-
-    @cached_property
-    def _middle_mesh(self) -> Sizes:
-        """See Traits.on_middle_mesh; a dot elsewhere is pressed on it too."""
-        return finer_mesh(self.model, self.options, MIDDLE, MOST_NODES)
-
-    @property
-    def _all_finer(self) -> bool:
-        """Whether a press on the middle mesh takes hardly longer, as that of a slice."""
-        return len(self._middle_mesh[0].points_mm) <= CHEAP_NODES
-
     def add(self, candidates: Sequence[Candidate], places: Sequence[Place], report: Report) -> None:
         """Press what these candidates, and dots at these places, need beyond what was pressed. NoEquilibriumError."""
         wanted = {name: job for c in candidates for name, job in self._jobs(c) if name not in self._changes}
-        moved = {_at(place): self.moved(place) for place in places if any(place) and _at(place) not in self._changes}
-        wanted |= {name: (self.job(model, self._middle_mesh), 1) for name, model in moved.items()}
+        elsewhere = {
+            _at(place): moved(self.model, place) for place in places if any(place) and _at(place) not in self._changes
+        }
+        on, mesh = self.presses, self.presses.middle_mesh
+        wanted |= {name: (on.job(model, mesh), 1) for name, model in elsewhere.items()}
         self._changes |= self._pressed(wanted, report)
         for candidate in candidates:
             self._bridge(candidate)
@@ -203,7 +118,7 @@ class Prepared:
         A press that has no equilibrium, and one on a mesh that takes long, tells nothing. NoEquilibriumError.
         """
         asked = {press_name(s.candidate, s.values): s for s in settings if self._may_differ(s)}
-        wanted = {name: self._job(s.candidate, s.values) for name, s in asked.items()}
+        wanted = {name: self.presses.with_candidate(s.candidate, s.values) for name, s in asked.items()}
         quick = {name: job for name, job in wanted.items() if len(job[0].tet_mesh.points_mm) <= CHEAP_NODES}
         largest = 0.0
         for name, found in self._pressed(quick, report).items():
@@ -229,32 +144,7 @@ class Prepared:
 
     def _pressed(self, wanted: Mapping[Name, tuple[Job, int]], report: Report) -> dict[Name, Floats]:
         """Changes by jobs, each with the number of its mesh; those without equilibrium are left out."""
-        if not wanted:
-            return {}
-        bases = _all_there(run_all(self._bases, report))
-        beside = {name: self._without_patch(job) for name, (job, _) in wanted.items()}
-        others = {name: (job, wanted[name][1]) for name, job in beside.items() if job is not None}
-        outputs = run_all([self._guided(*one) for one in (*wanted.values(), *others.values())], report)
-        compared = dict(zip(others, outputs[len(wanted) :], strict=True))
-        changes = {}
-        for (name, (job, base)), found in zip(wanted.items(), outputs, strict=False):
-            reference = compared.get(name, bases[base])
-            if len(found) and len(reference):
-                changes[name] = self._change(job, reference, found)
-        return changes
-
-    def _guided(self, job: Job, base: int) -> Job:
-        """Starting from the baseline's equilibria, except where a moved dot touches other nodes."""
-        moved = job.model.dot != self._bases[base].model.dot
-        return job if moved else replace(job, guided_by=self._guides[base])
-
-    def _without_patch(self, job: Job) -> Job | None:
-        """The baseline on the mesh that a patch changes, so that only the patch is in the difference; None for none."""
-        patches, known = job.model.physics.delaminations, self.model.physics.delaminations
-        if patches == known or job.model.segment.section == "solid":
-            return None
-        moved = with_rims_of_patches(job.tet_mesh, job.model.segment, patches)
-        return replace(self.job(self.model), tet_mesh=moved)
+        return {name: self._change(*three) for name, three in self.presses.compared(wanted, report).items()}
 
     def _change(self, job: Job, base: Floats, found: Floats) -> Floats:
         """Against the baseline on the same mesh; charges scaled to those of the finest mesh."""
@@ -282,30 +172,10 @@ class Prepared:
             what = f"{candidate.mechanism} ({candidate.component})"
             self.shortfalls[name] = f"No equilibrium with {what} at {_values(candidate, point)}: {instead}."
 
-    def moved(self, place: Place) -> Model:
-        """The model with the dot at a place, from where it stands."""
-        return moved(self.model, place)
-
     def _jobs(self, candidate: Candidate) -> Iterator[tuple[Name, tuple[Job, int]]]:
         """Presses by name."""
         for point in effect_of(candidate).points:
-            yield press_name(candidate, point), self._job(candidate, point)
-
-    def _job(self, candidate: Candidate, point: Sequence[float]) -> tuple[Job, int]:
-        """A press, and the number of its mesh: 0 for the diagnosis mesh, 1 for the middle one."""
-        back = path.BACK if candidate.traits.shows_on_return else ()
-        finer = candidate.traits.on_middle_mesh or (self._all_finer and not back)
-        changed = with_mechanisms(self.model, [candidate.switched_on(point)])
-        job = self.job(changed, self._middle_mesh if finer else None)
-        parts = SLIPS if job.model.physics.friction > 0.0 else 1
-        return replace(job, back=back, parts=parts), int(finer)
-
-    def job(self, model: Model, mesh: Sizes | None = None) -> Job:
-        """The press of a changed model on a mesh, moved with its layers, at once: nothing relaxes."""
-        on = model.physics
-        own = replace(structural(on), friction=on.friction, softening=on.softening, film_yield=on.film_yield)
-        tet_mesh = mesh_of(model, self.model, *(mesh or (self.tet_mesh, self.options)))
-        return Job(replace(ungapped(model), physics=own, readout=None), tet_mesh, self.depth_mm, SHARES)
+            yield press_name(candidate, point), self.presses.with_candidate(candidate, point)
 
     def change(self, place: Place, settings: Sequence[Setting]) -> Floats | None:
         """The sum (n, 2 + e) of what elastic settings and the dot's place change; None for nothing. ValueError."""
@@ -344,19 +214,6 @@ class Prepared:
         return self._changes[name]
 
 
-def moved(model: Model, place: Place) -> Model:
-    """A model with the dot at a place, from where it stands."""
-    x, y = model.dot.offset_mm
-    return replace(model, dot=model.dot.model_copy(update={"offset_mm": (x + place[0], y + place[1])}))
-
-
-def _all_there(outputs: list[Floats]) -> list[Floats]:
-    """The baseline's. NoEquilibriumError where it has none."""
-    if not all(map(len, outputs)):
-        raise NoEquilibriumError("the baseline has no equilibrium at the depth of these runs", np.zeros(0), None)
-    return outputs
-
-
 def press_name(candidate: Candidate, point: Sequence[float]) -> Name:
     """Name of a press, one for a nuisance and for the candidate that has it among others."""
     on = tuple((c.name, value) for c, value in zip(candidate.coordinates, point, strict=True) if value != 0.0)
@@ -376,13 +233,3 @@ def _values(candidate: Candidate, point: Sequence[float]) -> str:
 
 def _at(place: Place) -> Name:
     return ("place", *place)
-
-
-def ungapped(model: Model) -> Model:
-    """The dot at its first touch."""
-    return replace(model, dot=model.dot.model_copy(update={"gap_mm": 0.0}))
-
-
-def structural(physics: Physics) -> Physics:
-    """What of the physics is in an elastic press."""
-    return Physics(bonds=physics.bonds, delaminations=physics.delaminations, prestretch=physics.prestretch)

@@ -7,7 +7,8 @@ charge of the other: there each place has tables of its own, as have all candida
 
 from collections.abc import Mapping, Sequence
 
-from diagnose.engines.segment.prepared import Place, Prepared, moved
+from diagnose.engines.segment.prepared import Prepared
+from diagnose.engines.segment.presses import Place, moved
 from diagnose.forward import Candidate, Setting
 from diagnose.signals.recording import Recording
 from geometry.base import Report

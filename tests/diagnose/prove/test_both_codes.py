@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnose.engines.segment.prepared import SHARES as SHARES_OF_CHANGES
+from diagnose.engines.segment.presses import SHARES as SHARES_OF_CHANGES
 from diagnose.forward import Setting
 from diagnose.prove.folder import files
 from diagnose.prove.world.bench import BENCHES
