@@ -103,11 +103,9 @@ class Prepared:
     def add(self, candidates: Sequence[Candidate], places: Sequence[Place], report: Report) -> None:
         """Press what these candidates, and dots at these places, need beyond what was pressed. NoEquilibriumError."""
         wanted = {name: job for c in candidates for name, job in self._jobs(c) if name not in self._changes}
-        elsewhere = {
-            _at(place): moved(self.model, place) for place in places if any(place) and _at(place) not in self._changes
-        }
+        elsewhere = [place for place in places if any(place) and _at(place) not in self._changes]
         on, mesh = self.presses, self.presses.middle_mesh
-        wanted |= {name: (on.job(model, mesh), 1) for name, model in elsewhere.items()}
+        wanted |= {_at(place): (on.job(moved(self.model, place), mesh), 1) for place in elsewhere}
         self._changes |= self._pressed(wanted, report)
         for candidate in candidates:
             self._bridge(candidate)
@@ -117,7 +115,7 @@ class Prepared:
 
         A press that has no equilibrium, and one on a mesh that takes long, tells nothing. NoEquilibriumError.
         """
-        asked = {press_name(s.candidate, s.values): s for s in settings if self._may_differ(s)}
+        asked = {press_name(s.candidate, s.values): s for s in map(_as_pressed, settings) if self._may_differ(s)}
         wanted = {name: self.presses.with_candidate(s.candidate, s.values) for name, s in asked.items()}
         quick = {name: job for name, job in wanted.items() if len(job[0].tet_mesh.points_mm) <= CHEAP_NODES}
         largest = 0.0
@@ -131,7 +129,7 @@ class Prepared:
     def _may_differ(self, setting: Setting) -> bool:
         """Whether a press at these values would tell something new."""
         candidate = setting.candidate
-        if not any(setting.values[n] for n in effect_of(candidate).pressed):
+        if not any(setting.values):
             return False
         differences = self._differences.setdefault(_coordinates(candidate), Differences(candidate))
         return not differences.known(setting.values)
@@ -212,6 +210,12 @@ class Prepared:
         if name not in self._changes:
             raise ValueError(f"{what} was not prepared")
         return self._changes[name]
+
+
+def _as_pressed(setting: Setting) -> Setting:
+    """Without what acts on the tables instead."""
+    pressed = effect_of(setting.candidate).pressed
+    return replace(setting, values=tuple(v if n in pressed else 0.0 for n, v in enumerate(setting.values)))
 
 
 def press_name(candidate: Candidate, point: Sequence[float]) -> Name:

@@ -1,4 +1,4 @@
-"""Presses of the 3D model of one rig: the baseline on the diagnosis mesh and on a finer one, and changed models on both."""
+"""Presses of the 3D model of one rig: its baseline on the diagnosis mesh and on a finer one, changed models on both."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -103,6 +103,15 @@ def test_far_from_all_presses_a_refinement_brings_the_tables_to_the_3d_model(rig
     assert not rig.refine([foam], silent)
 
 
+def test_a_refinement_leaves_to_the_tables_what_acts_on_them(rig):
+    """The piezoelectric constant scales every charge, and is in no press of a film of another modulus."""
+    values = (0.3, 0.15)
+    at = [switched(rig, "property-error", "film", (*values, d31)) for d31 in (0.0, 0.4)]
+    rig.refine(at[1:], silent)
+    without, scaled = (rig.predict(0, [setting])["voltage_V"] for setting in at)
+    np.testing.assert_allclose(scaled, np.exp(0.4) * without, rtol=1e-9)
+
+
 def test_a_compliant_rig_in_the_tables_is_one_in_the_3d_model(rig):
     """The same for one case that needs no press of its own: the fast suite too shall see the 3D model."""
     for error, effect in errors(rig, switched(rig, "rig-compliance", "rig", (0.3,))).values():
