@@ -1,40 +1,22 @@
-"""How far the conditions of reading may go: one condition after the other away from the usual ones, or all together.
-
-Each reading is a task of its own, kept as a file by the hash of all it depends on: a study that was stopped goes on.
-The limit of a condition is where fewer characters than promised are read; it is bracketed by the values of the axis,
-beyond them by doubling the distance, and then halved.
-"""
+"""What a study of reading asks: one condition after the other away from the usual ones, or all together."""
 
 import itertools
-import json
 import tomllib
-from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass, field, replace
-from functools import lru_cache
-from hashlib import sha256
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from geometry.base import InputError
-from geometry.cache import read_checked, source_hash, write_checked
-from softdot.arrays.kernel import JSON, NPZ, ArrayKernel
-from softdot.console import Untold
-from softdot.reading.cells import cells_of, text_of
+from softdot.arrays.kernel import ArrayKernel
+from softdot.reading.cells import cells_of
 from softdot.reading.conditions import BOUNDS, ReadingConditions, standard_of
 from softdot.reading.decoders import named_decoders
-from softdot.reading.decoders.track import NoDotError
-from softdot.reading.job import content, read_line
-from softdot.reading.kernels import opened_kernel
-from solve.model import Readout
 
 USUAL_TEXT = (
     "soft dots, read by touch: the quick brown fox jumps over the lazy dog, packs five dozen liquor jugs, and leaves "
     "at 7.45 for Vienna; who knows why? Six big quartz vaults, one jolly wizard."
 )
-HALVINGS, DOUBLINGS = 4, 3
-RATES = ("cell", "character", "word")
 MOST_READINGS = 20_000
 KEYS = ("text", "table", "decoder", "repeats", "accuracy", "combine", "base", "axes")
 
@@ -55,37 +37,6 @@ class ReadingStudy:
     repeats: int = 2
     accuracy: float = 0.98
     combine: bool = False
-
-
-@dataclass(frozen=True)
-class StudyTask:
-    """One reading of a study."""
-
-    folder: str
-    readout: str
-    conditions: ReadingConditions
-    text: str
-    table: str | None
-    decoder: str
-
-    def key(self, kernel_hash: str) -> str:
-        """Of all it depends on, the program among it."""
-        told = {**asdict(self), "folder": kernel_hash, "program": source_hash("softdot.reading.study")}
-        return sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
-
-
-@dataclass
-class Readings:
-    """What is known: for each condition of a study the characters that were right, and of how many."""
-
-    records: dict[ReadingConditions, dict[str, Any]] = field(default_factory=dict)
-
-    def share(self, study: ReadingStudy, conditions: ReadingConditions) -> float | None:
-        """Of the characters, over all repeats; None where a reading was refused."""
-        found = [self.records[one] for one in repeated(study, conditions)]
-        if any(one["status"] != "read" for one in found):
-            return None
-        return float(sum(one["right"] for one in found) / sum(one["of"] for one in found))
 
 
 def usual_axes(kernel: ArrayKernel, base: ReadingConditions) -> dict[str, tuple[float, ...]]:
@@ -164,98 +115,3 @@ def with_value(conditions: ReadingConditions, name: str, value: float) -> Readin
 def repeated(study: ReadingStudy, conditions: ReadingConditions) -> list[ReadingConditions]:
     """The conditions with the seed of each repeat."""
     return [replace(conditions, seed=conditions.seed + number) for number in range(study.repeats)]
-
-
-def kernel_hash(folder: Path) -> str:
-    """Of both files of a kernel."""
-    return sha256(b"".join((folder / name).read_bytes() for name in (NPZ, JSON))).hexdigest()
-
-
-@lru_cache(maxsize=1)
-def _kernel(folder: str) -> ArrayKernel:
-    return opened_kernel(Path(folder))
-
-
-def read_task(task: StudyTask) -> dict[str, Any]:
-    """The record of one reading: status "read" with the numbers of the first decoder, and of each by its name, or
-    "refused" with the reason. Raises no InputError.
-    """
-    try:
-        kernel, cells = _kernel(task.folder), cells_of(task.text, task.table)
-        readout, names = Readout.model_validate_json(task.readout), named_decoders(task.decoder)
-        reading = read_line(kernel, readout, task.conditions, names, Untold(), cells)
-    except NoDotError:
-        nothing = {"right": 0, "of": len(text_of(cells, task.table)), "accuracy": dict.fromkeys(RATES, 0.0)}
-        return {"status": "read", "reason": None, **nothing, "text_read": "", "decoders": dict.fromkeys(names, nothing)}
-    except InputError as error:
-        return {"status": "refused", "reason": str(error)}
-    told = content(reading, task.text, task.table)
-    decoders = {name: _numbers(own) for name, own in told["decoders"].items()}
-    first = decoders[told["decoder"]]
-    return {"status": "read", "reason": None, **first, "text_read": told["text_read"], "decoders": decoders}
-
-
-def _numbers(told: Mapping[str, Any]) -> dict[str, Any]:
-    """Of one decoder: characters that were right, of how many, and all rates."""
-    counts = {name: told["character_accuracy"][name] for name in ("right", "of")}
-    return {**counts, "accuracy": {name: told[f"{name}_accuracy"]["value"] for name in RATES}}
-
-
-def kept(folder: Path, key: str) -> dict[str, Any] | None:
-    """The record of an earlier reading."""
-    return read_checked(folder / f"{key}.json", "it is read again")
-
-
-def keep(folder: Path, key: str, task: StudyTask, record: dict[str, Any]) -> None:
-    """Write a record, whole or not at all."""
-    write_checked(folder / f"{key}.json", {**record, "conditions": asdict(task.conditions)})
-
-
-def limits_of(study: ReadingStudy, readings: Readings) -> Iterator[tuple[str, "ConditionLimit"]]:
-    """How far each condition may go, as far as is known."""
-    for name, values in study.axes.items():
-        start = getattr(study.base, name)
-        usual = values[0] if start is None else start
-        rising = np.mean(values) >= usual
-        ahead = sorted({*values, usual}, reverse=not rising)
-        ahead = ahead[ahead.index(usual) :]
-        yield name, _limit(study, readings, name, [float(one) for one in ahead])
-
-
-@dataclass(frozen=True)
-class ConditionLimit:
-    """good : the farthest value that is still read, None where the usual one is not; bad : the nearest that is not.
-
-    following : the value to be read next, None where the limit is as narrow as was asked.
-    """
-
-    good: float | None
-    bad: float | None
-    following: float | None
-
-
-def _limit(study: ReadingStudy, readings: Readings, name: str, ahead: list[float]) -> ConditionLimit:
-    """By all readings of this condition at and behind its usual value."""
-    start, sign = ahead[0], 1.0 if ahead[-1] >= ahead[0] else -1.0
-    known: dict[float, bool] = {}
-    for conditions in {replace(one, seed=study.base.seed) for one in readings.records}:
-        value = getattr(conditions, name)
-        value = start if value is None else value
-        alone = replace(conditions, **{name: getattr(study.base, name)}) == study.base
-        if alone and sign * (value - start) >= 0.0:
-            share = readings.share(study, conditions)
-            known[value] = share is not None and share >= study.accuracy
-    order = sorted(known, key=lambda value: sign * value)
-    bad = next((value for value in order if not known[value]), None)
-    good = [value for value in order if known[value] and (bad is None or sign * (bad - value) > 0.0)]
-    extra = len(set(known) - set(ahead))
-    if not good:
-        return ConditionLimit(None, bad, None)
-    if bad is None:
-        further = good[-1] + (good[-1] - start or sign)
-        further = float(np.clip(further, *BOUNDS[name]))
-        done = extra >= DOUBLINGS or further == good[-1]
-        return ConditionLimit(good[-1], None, None if done else further)
-    first = next((value for value in order if value not in ahead), None)
-    halved = extra >= HALVINGS + (DOUBLINGS if first is not None and sign * (first - ahead[-1]) > 0.0 else 0)
-    return ConditionLimit(good[-1], bad, None if halved else 0.5 * (good[-1] + bad))

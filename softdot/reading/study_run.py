@@ -20,19 +20,9 @@ from softdot.output import Product, check_output
 from softdot.reading.conditions import ReadingConditions
 from softdot.reading.decoders import named_decoders
 from softdot.reading.kernels import opened_kernel, readout_of
-from softdot.reading.study import (
-    Readings,
-    ReadingStudy,
-    StudyTask,
-    keep,
-    kept,
-    kernel_hash,
-    limits_of,
-    points,
-    read_task,
-    repeated,
-    with_value,
-)
+from softdot.reading.study import ReadingStudy, points, repeated, with_value
+from softdot.reading.study_limits import Readings, limits_of
+from softdot.reading.study_task import StudyTask, keep, kept, kernel_hash, read_task
 
 FOLDER, TABLE, PICTURE = "conditions", "reading_study.csv", "reading_study.png"
 STUDY = Product(

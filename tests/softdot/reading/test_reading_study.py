@@ -9,20 +9,9 @@ import pytest
 from geometry.base import InputError
 from softdot.cli import main
 from softdot.reading.conditions import ReadingConditions
-from softdot.reading.study import (
-    Readings,
-    ReadingStudy,
-    StudyTask,
-    keep,
-    kept,
-    kernel_hash,
-    limits_of,
-    load_study,
-    points,
-    read_task,
-    repeated,
-    with_value,
-)
+from softdot.reading.study import ReadingStudy, load_study, points, repeated, with_value
+from softdot.reading.study_limits import Readings, limits_of
+from softdot.reading.study_task import StudyTask, keep, kept, kernel_hash, read_task
 from tests.softdot.reading.lines import READOUT
 
 
