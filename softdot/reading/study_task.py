@@ -15,7 +15,7 @@ from softdot.console import Untold
 from softdot.reading.cells import cells_of, text_of
 from softdot.reading.conditions import ReadingConditions
 from softdot.reading.decoders import named_decoders
-from softdot.reading.decoders.track import NoDotError
+from softdot.reading.decoders.onset import NoDotError
 from softdot.reading.job import content, read_line
 from softdot.reading.kernels import opened_kernel
 from solve.model import Readout

@@ -24,7 +24,7 @@ from softdot.config import Config, config_hash
 from softdot.console import Untold, installed_version
 from softdot.reading.cells import cells_of, text_of
 from softdot.reading.conditions import ReadingConditions
-from softdot.reading.decoders.track import NoDotError
+from softdot.reading.decoders.onset import NoDotError
 from softdot.reading.job import LineReading, read_line
 from softdot.reading.kernels import checked_kernel, readout_of
 from softdot.reading.motion import near

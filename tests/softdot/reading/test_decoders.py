@@ -5,7 +5,8 @@ import pytest
 
 from softdot.reading.cells import cells_of, text_of
 from softdot.reading.decoders import learned
-from softdot.reading.decoders.track import NoDotError, tracked
+from softdot.reading.decoders.onset import NoDotError
+from softdot.reading.decoders.track import tracked
 from softdot.reading.line import DotLine
 from softdot.reading.voltages import Voltages
 from solve.model import Readout
