@@ -139,7 +139,7 @@ def main() -> None:
         environment = {**os.environ, "SOFTDOT_STUDIO": folder}
         started = time.perf_counter()
         command = [sys.executable, "-m", "softdot", "studio", "--no-browser"]
-        running = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment)
+        running = subprocess.Popen(command, stdout=subprocess.PIPE, encoding="utf-8", env=environment)
         assert running.stdout is not None
         process = psutil.Process(running.pid)
         address = running.stdout.readline().split()[-1]

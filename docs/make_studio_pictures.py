@@ -171,7 +171,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as designs:
         command = [sys.executable, "-m", "softdot", "studio", "--no-browser"]
         environment = {**os.environ, "SOFTDOT_STUDIO": designs}
-        running = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment)
+        running = subprocess.Popen(command, stdout=subprocess.PIPE, encoding="utf-8", env=environment)
         assert running.stdout is not None
         address = running.stdout.readline().split()[-1]
         with sync_playwright() as engine:

@@ -23,7 +23,7 @@ def threads(first="", **environment):
     """Of numba and OpenMP in a new process."""
     own = {name: value for name, value in os.environ.items() if not name.endswith("_NUM_THREADS")}
     command = [sys.executable, "-c", SAID.format(first=first)]
-    done = subprocess.run(command, env={**own, **environment}, capture_output=True, text=True, encoding="utf-8")
+    done = subprocess.run(command, env={**own, **environment}, capture_output=True, encoding="utf-8")
     assert done.returncode == 0, done.stderr
     return done.stdout.split()
 
@@ -69,7 +69,7 @@ for _ in range(5):
     spent += sum(os.times()[:2]) - before
 print(spent)
 """
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, encoding="utf-8", env=free())
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, encoding="utf-8", env=free())
     assert done.returncode == 0, done.stderr
     assert float(done.stdout) <= 0.05
 

@@ -51,7 +51,7 @@ class Running:
         environment = {**os.environ, **ONE_THREAD, "SOFTDOT_STUDIO": str(folder / "designs")}
         self.folder = folder
         self.process = subprocess.Popen(
-            command, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+            command, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8",
             preexec_fn=heard,
         )  # fmt: skip
         assert self.process.stdout is not None

@@ -23,7 +23,9 @@ pytestmark = pytest.mark.slow
 
 def children(number: int) -> list[int]:
     """Processes that a process has started, and theirs."""
-    found = subprocess.run(["ps", "-o", "pid=", "--ppid", str(number)], capture_output=True, text=True, check=False)
+    found = subprocess.run(
+        ["ps", "-o", "pid=", "--ppid", str(number)], capture_output=True, encoding="utf-8", check=False
+    )
     own = [int(one) for one in found.stdout.split()]
     return [*own, *(inner for one in own for inner in children(one))]
 
@@ -110,7 +112,7 @@ def test_the_default_design_gives_the_numbers_of_softdot_run(start_studio, open_
     (tmp_path / "mine.toml").write_text(tab.text, "utf-8")
     command = [sys.executable, "-m", "softdot", "run", "mine.toml", "-o", "out", "--json"]
     done = subprocess.run(
-        command, cwd=tmp_path, capture_output=True, text=True, env={**os.environ, **ONE_THREAD}, timeout=300
+        command, cwd=tmp_path, capture_output=True, encoding="utf-8", env={**os.environ, **ONE_THREAD}, timeout=300
     )
     summary = json.loads(done.stdout)
     for name in ("reaction_force_N", "film_charge_pC", "open_circuit_voltage_V"):

@@ -365,7 +365,9 @@ def test_other_addresses_only_when_told_and_then_under_that_name_alone():
 )
 def test_bad_arguments_are_refused_in_one_sentence(tmp_path, arguments, said):
     command_line = [sys.executable, "-m", "softdot", "studio", "--no-browser", *arguments]
-    done = subprocess.run(command_line, cwd=tmp_path, capture_output=True, text=True, timeout=60, env=dict(os.environ))
+    done = subprocess.run(
+        command_line, cwd=tmp_path, capture_output=True, encoding="utf-8", timeout=60, env=dict(os.environ)
+    )
     assert done.returncode == 2
     assert said in done.stderr
     assert "Traceback" not in done.stderr
