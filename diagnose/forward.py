@@ -124,10 +124,10 @@ class Engine(Protocol):
     def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
         """Do whatever full solves these candidates need, or recall them. Repeated calls cost nothing."""
 
-    def refine(self, settings: Sequence[Setting], report: Report) -> bool:
+    def refine(self, settings: Sequence[Setting], report: Report) -> Sequence[Setting]:
         """Do a full solve with each of these settings alone, so that near them predictions are as right as there.
 
-        Returns whether any prediction has changed by more than an error that matters.
+        Returns those whose predictions have changed by more than an error that matters.
         """
 
     def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
@@ -174,7 +174,7 @@ class PassingOn:
         """As the engine."""
         self._engine.prepare(candidates, report)
 
-    def refine(self, settings: Sequence[Setting], report: Report) -> bool:
+    def refine(self, settings: Sequence[Setting], report: Report) -> Sequence[Setting]:
         """As the engine."""
         return self._engine.refine(settings, report)
 

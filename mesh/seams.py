@@ -30,14 +30,14 @@ def with_columns_at(tet_mesh: TetMesh, facets: Ints, places_mm: Sequence[float],
 
 
 def _moves(columns: Floats, places: Sequence[float], kept: Sequence[float]) -> tuple[Floats, Floats]:
-    """Columns that are fixed or moved, ascending, and where they go."""
-    goes = {float(columns[np.abs(columns - one).argmin()]): float(one) for one in kept if _within(columns, one)}
+    """Places and columns that stay or move, ascending, and where they go."""
+    goes = {place: place for place in np.round(kept, 9).tolist() if _within(columns, place)}
     for place in places:
         width = float(np.diff(columns)[np.clip(np.searchsorted(columns, place) - 1, 0, len(columns) - 2)])
         if not _within(columns, place) or min(abs(place - there) for there in goes.values()) < LEAST * width:
             continue
-        below = max((one for one, there in goes.items() if there < place), default=columns[0])
-        above = min((one for one, there in goes.items() if there > place), default=columns[-1])
+        below = max(one for one, there in goes.items() if there < place)
+        above = min(one for one, there in goes.items() if there > place)
         free = columns[(columns > below) & (columns < above)]
         if len(free):
             goes[float(free[np.abs(free - place).argmin()])] = float(place)

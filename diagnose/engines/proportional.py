@@ -135,9 +135,9 @@ class ProportionalEngine:
     def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
         """Nothing."""
 
-    def refine(self, settings: Sequence[Setting], report: Report) -> bool:
+    def refine(self, settings: Sequence[Setting], report: Report) -> Sequence[Setting]:
         """Nothing: predictions are solved."""
-        return False
+        return ()
 
     def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
         """Voltages of a run. ValueError beyond the bounds of a value, or where a law turns over."""

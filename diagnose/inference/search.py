@@ -126,7 +126,7 @@ def _clipped(one: Sensitivity, guess: Floats) -> Floats:
 
 
 STARTS = 3  # of each candidate's first fit
-REFINEMENTS = 3
+REFINEMENTS = 3  # most full solves of each mechanism of a fit
 ROUGH = 1e-3  # of the excess: what a last step of a first fit may gain, which only has to tell who is worth a second
 
 
@@ -210,9 +210,15 @@ def refined(
     """Fits made anew by an engine that has solved at their values, until it says there what it said before."""
     fits = list(fits)
     for _ in range(REFINEMENTS):
-        if not model.engine.refine([setting for fit in fits for setting in fit.settings], report):
+        changed = model.engine.refine([setting for fit in fits for setting in fit.settings], report)
+        if not changed:
             break
-        fits = [fitted(model, start, fit.candidates, fit.values, excess) for fit in fits]
+        fits = [
+            fitted(model, start, fit.candidates, fit.values, excess)
+            if any(setting in changed for setting in fit.settings)
+            else fit
+            for fit in fits
+        ]
     return fits
 
 

@@ -43,6 +43,10 @@ def test_what_is_kept_does_not_move(plain):
     assert {-0.2, 0.2, 0.27} <= set(columns(moved(plain, (0.27,), kept=(-0.2, 0.2))))
 
 
+def test_what_is_kept_between_two_columns_pulls_none_of_them_to_it(plain):
+    np.testing.assert_array_equal(moved(plain, (), kept=(-0.13, 0.13)).points_mm, plain.points_mm)
+
+
 def test_a_place_at_a_column_that_stays_takes_that_column(plain):
     """No element becomes a hundredth as thick as it was."""
     assert np.diff(columns(moved(plain, (0.201,), kept=(0.2,)))).min() > 0.05

@@ -65,9 +65,9 @@ class CouponEngine:
     def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
         """Nothing: a point is solved in milliseconds."""
 
-    def refine(self, settings: Sequence[Setting], report: Report) -> bool:
+    def refine(self, settings: Sequence[Setting], report: Report) -> Sequence[Setting]:
         """Nothing: predictions are solved."""
-        return False
+        return ()
 
     def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
         """Force or displacement of a run. ValueError beyond the bounds of a value, or where a law turns over."""

@@ -1,7 +1,4 @@
-"""How deep the runs of a recording go.
-
-What may float without counting as physics, through the model: sizes, moduli, d31, and the zero of the drive.
-"""
+"""The drive of a recording: how deep its runs go, and by how much its zero may be off."""
 
 from dataclasses import replace
 

@@ -162,7 +162,7 @@ class SegmentEngine:
         self.stands.add(candidates, report)
         self._last = None
 
-    def refine(self, settings: Sequence[Setting], report: Report) -> bool:
+    def refine(self, settings: Sequence[Setting], report: Report) -> Sequence[Setting]:
         """Press each of these settings. NoEquilibriumError where the baseline has none."""
         self._last = None
         return self.stands.refine(settings, report)
@@ -208,7 +208,7 @@ class SegmentEngine:
         def shape(fit: ResponseTable) -> full.Shape:
             return lambda of, values: mechanics(fit, base.depth_mm, base.relaxing, of, values, elastic)
 
-        tet_mesh = mesh_of(on, base.model, base.tet_mesh, base.options)
+        tet_mesh = mesh_of(on, base.model, base.presses.tet_mesh, base.presses.options)
         task = full.Task(asked, drive, values, on, tet_mesh, self._film(on), shape(base.raw), shape(base.fit))
         return full.solve(task, report)
 

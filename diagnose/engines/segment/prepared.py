@@ -51,15 +51,15 @@ class Prepared:
 
     def __init__(self, model: Model, options: MeshSettings, recording: Recording, report: Report) -> None:
         self.model = model
-        self.tet_mesh, self.options = rig_mesh(model, options)
-        self.pressed_mm = rounded_up(deepest(model, self.tet_mesh, recording))
+        tet_mesh, options = rig_mesh(model, options)
+        self.pressed_mm = rounded_up(deepest(model, tet_mesh, recording))
         self.depth_mm = MARGIN * self.pressed_mm + offset_reach_mm(recording)
-        self.presses = Presses(model, self.tet_mesh, self.options, self.depth_mm)
+        self.presses = Presses(model, tet_mesh, options, self.depth_mm)
         self.depths = Depths(SHARES)
         self._changes: dict[Name, Floats] = {}
         self._differences: dict[Name, Differences] = {}
         self.shortfalls: dict[Name, str] = {}
-        finest = finer_mesh(model, self.options, FINEST, MOST_NODES)
+        finest = finer_mesh(model, options, FINEST, MOST_NODES)
         meshes = finest, self.presses.middle_mesh
         jobs = [replace(self.presses.job(model, mesh), shares=PRESSED) for mesh in meshes]
         reduction, outputs = self._reduced([*jobs, *self.presses.bases], report)
@@ -81,7 +81,7 @@ class Prepared:
         layers = sorted(relaxable(self.model), key=lambda layer: layer not in declared)
         while True:
             reduction = Reduction(
-                self.presses.bases[0].model, self.tet_mesh, self.depth_mm, tuple(layers), LARGEST_SHARE
+                self.presses.bases[0].model, self.presses.tet_mesh, self.depth_mm, tuple(layers), LARGEST_SHARE
             )
             try:
                 outputs = run_all(jobs, report, [reduction])
@@ -110,21 +110,21 @@ class Prepared:
         for candidate in candidates:
             self._bridge(candidate)
 
-    def refine(self, settings: Sequence[Setting], report: Report) -> bool:
-        """Press settings alone where they are not known yet; whether one differs by more than MATTERS.
+    def refine(self, settings: Sequence[Setting], report: Report) -> list[Setting]:
+        """Press settings alone where they are not known yet; those that differ by more than MATTERS.
 
         A press that has no equilibrium, and one on a mesh that takes long, tells nothing. NoEquilibriumError.
         """
         asked = {press_name(s.candidate, s.values): s for s in map(_as_pressed, settings) if self._may_differ(s)}
         wanted = {name: self.presses.with_candidate(s.candidate, s.values) for name, s in asked.items()}
         quick = {name: job for name, job in wanted.items() if len(job[0].tet_mesh.points_mm) <= CHEAP_NODES}
-        largest = 0.0
+        differing = []
         for name, found in self._pressed(quick, report).items():
             setting = asked[name]
             difference = found - self._between(setting)
             self._differences[_coordinates(setting.candidate)].add(setting.values, difference)
-            largest = max(largest, self._size(difference))
-        return largest > MATTERS
+            differing += [setting] if self._size(difference) > MATTERS else []
+        return [setting for setting in settings if _as_pressed(setting) in differing]
 
     def _may_differ(self, setting: Setting) -> bool:
         """Whether a press at these values would tell something new."""

@@ -87,8 +87,8 @@ class Presses:
         if not wanted:
             return {}
         bases = all_there(run_all(self.bases, report))
-        beside = {name: self._without_patch(job) for name, (job, _) in wanted.items()}
-        others = {name: (job, wanted[name][1]) for name, job in beside.items() if job is not None}
+        beside = {name: (self._without_patch(job), mesh) for name, (job, mesh) in wanted.items()}
+        others = {name: (job, mesh) for name, (job, mesh) in beside.items() if job is not None}
         outputs = run_all([self._guided(*one) for one in (*wanted.values(), *others.values())], report)
         own = dict(zip(others, outputs[len(wanted) :], strict=True))
         found = {

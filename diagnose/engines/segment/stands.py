@@ -46,10 +46,10 @@ class Stands:
         for prepared in self._at.values():
             prepared.add(candidates, (), report)
 
-    def refine(self, settings: Sequence[Setting], report: Report) -> bool:
-        """Press these settings wherever the dot stands; whether that changed anything that matters."""
-        changed = [prepared.refine(settings, report) for prepared in self._at.values()]
-        return any(changed)
+    def refine(self, settings: Sequence[Setting], report: Report) -> list[Setting]:
+        """Press these settings wherever the dot stands; those for which that changed anything that matters."""
+        changed = [one for prepared in self._at.values() for one in prepared.refine(settings, report)]
+        return [setting for setting in settings if setting in changed]
 
     @property
     def shortfalls(self) -> tuple[str, ...]:

@@ -163,7 +163,7 @@ class ToyEngine:
         pass
 
     def refine(self, _settings, _report):
-        return False
+        return ()
 
     def predict(self, run, settings):
         sensor = sensor_of(settings)

@@ -51,7 +51,7 @@ class Known:
         """Nothing to press."""
 
     def refine(self, _settings, _report):
-        return False
+        return ()
 
     def predict(self, number, settings):
         run = self.recording.runs[number]

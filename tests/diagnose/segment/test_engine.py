@@ -96,7 +96,7 @@ def test_far_from_all_presses_a_refinement_brings_the_tables_to_the_3d_model(rig
 
     true = change(fine, lambda of, on: of.solve(0, [s.candidate.switched_on(s.values) for s in on], silent))
     before = change(rig, lambda of, on: of.predict(0, on))
-    assert rig.refine([foam], silent)
+    assert rig.refine([foam], silent) == [foam]
     after = change(rig, lambda of, on: of.predict(0, on))
     for name in true:
         assert peak(after[name] - true[name]) < 0.2 * peak(before[name] - true[name])

@@ -57,8 +57,8 @@ def test_a_layer_whose_memory_has_no_equilibrium_is_left_out_and_told(monkeypatc
     monkeypatch.setattr(prepared, "run_all", run_all)
     rig = model()
     base = SimpleNamespace(model=rig)
-    presses = SimpleNamespace(bases=(base, base))
-    before = SimpleNamespace(model=rig, tet_mesh=None, depth_mm=0.1, presses=presses, shortfalls={})
+    presses = SimpleNamespace(bases=(base, base), tet_mesh=None)
+    before = SimpleNamespace(model=rig, depth_mm=0.1, presses=presses, shortfalls={})
     reduction, outputs = Prepared._reduced(before, [base], lambda *_: None)
     assert [len(layers) for layers in asked] == [4, 3, 2]
     assert reduction.relaxing == asked[-1]

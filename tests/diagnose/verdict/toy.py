@@ -61,7 +61,7 @@ class ToyEngine:
         report("prepared", len(candidates), len(candidates))
 
     def refine(self, _settings, _report):
-        return False
+        return ()
 
     def predict(self, run, settings):
         return self.imagine(self.recording.runs[run], settings)
