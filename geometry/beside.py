@@ -10,7 +10,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor, wait
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack
 from queue import Empty, SimpleQueue
 from threading import Event, Thread
 from typing import Any
@@ -18,45 +18,50 @@ from typing import Any
 from geometry.environment import ONE_THREAD
 from geometry.files import end_with_parent, sweep_scratch
 
-Ask = Callable[..., "Future[Any]"]
-"""Of a function, which a module holds under its name, and its arguments: what it returns or raises, later."""
 
-
-@contextmanager
-def beside(variables: Mapping[str, str] | None = None) -> Iterator[Ask]:
+class Beside:
     """A process for the time of a block, with these environment variables beside those of this process.
 
     Calls are done in the order in which they were asked for; what a process that dies leaves undone is done here. At
-    the end of the block, or when it is interrupted, calls that are not done yet are given up.
+    the end of the block, or when it is interrupted, the process is ended and calls that are not done yet are given up.
+    An inner block may end it earlier.
     """
-    command = [sys.executable, "-m", __name__, str(os.getpid())]
-    own = {**os.environ, **(variables or {}), "PYTHONPATH": os.pathsep.join(sys.path)}
-    pipe = subprocess.PIPE
-    # in a session of its own: Ctrl-C in the terminal reaches this process alone, which ends it
-    process = subprocess.Popen(command, env=own, stdin=pipe, stdout=pipe, start_new_session=True)
-    over, pool = Event(), ThreadPoolExecutor(1)
-    try:
-        yield lambda function, *arguments: pool.submit(_answer, process, over, function, *arguments)
-    finally:
-        over.set()
-        process.kill()  # asked to end, it could be held up by a library for seconds
-        process.wait()
-        pool.shutdown(cancel_futures=True)
+
+    def __init__(self, variables: Mapping[str, str] | None = None) -> None:
+        command = [sys.executable, "-m", __name__, str(os.getpid())]
+        own = {**os.environ, **(variables or {}), "PYTHONPATH": os.pathsep.join(sys.path)}
+        pipe = subprocess.PIPE
+        # in a session of its own: Ctrl-C in the terminal reaches this process alone, which ends it
+        self._process = subprocess.Popen(command, env=own, stdin=pipe, stdout=pipe, start_new_session=True)
+        self._over, self._pool = Event(), ThreadPoolExecutor(1)
+
+    def __enter__(self) -> "Beside":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._over.set()
+        self._process.kill()  # asked to end, it could be held up by a library for seconds
+        self._process.wait()
+        self._pool.shutdown(cancel_futures=True)
         sweep_scratch()
 
+    def __call__(self, function: Callable[..., Any], *arguments: Any) -> "Future[Any]":
+        """What a function returns or raises, later; function : one that a module holds under its name."""
+        return self._pool.submit(self._answer, function, *arguments)
 
-def _answer(process: "subprocess.Popen[bytes]", over: Event, function: Callable[..., Any], *arguments: Any) -> Any:
-    assert process.stdin is not None
-    assert process.stdout is not None
-    try:
-        pickle.dump((function, arguments), process.stdin)
-        process.stdin.flush()
-        done, value = pickle.load(process.stdout)
-    except (OSError, EOFError, pickle.UnpicklingError):
-        return None if over.is_set() else function(*arguments)
-    if not done:
-        raise value
-    return value
+    def _answer(self, function: Callable[..., Any], *arguments: Any) -> Any:
+        asked, answered = self._process.stdin, self._process.stdout
+        assert asked is not None
+        assert answered is not None
+        try:
+            pickle.dump((function, arguments), asked)
+            asked.flush()
+            done, value = pickle.load(answered)
+        except (OSError, EOFError, pickle.UnpicklingError):
+            return None if self._over.is_set() else function(*arguments)
+        if not done:
+            raise value
+        return value
 
 
 def each_beside(function: Callable[[Any], Any], items: Mapping[str, Any], count: int) -> Iterator[tuple[str, Any]]:
@@ -72,7 +77,7 @@ def each_beside(function: Callable[[Any], Any], items: Mapping[str, Any], count:
     with ExitStack() as processes:
         try:
             for _ in range(count):
-                ask = processes.enter_context(beside(ONE_THREAD))
+                ask = processes.enter_context(Beside(ONE_THREAD))
                 Thread(target=_feed, args=(ask, function, waiting, done, over), daemon=True).start()
             for _ in items:
                 name, future = done.get()
@@ -82,7 +87,7 @@ def each_beside(function: Callable[[Any], Any], items: Mapping[str, Any], count:
 
 
 def _feed(
-    ask: Ask,
+    ask: Beside,
     function: Callable[[Any], Any],
     waiting: "SimpleQueue[tuple[str, Any]]",
     done: "SimpleQueue[tuple[str, Future[Any]]]",

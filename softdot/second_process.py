@@ -4,14 +4,13 @@ This module itself loads in no time, so that the second process starts before th
 """
 
 import time
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from geometry.base import load_alone, without_collector
-from geometry.beside import Ask, beside
+from geometry.beside import Beside
 
 if TYPE_CHECKING:
     from geometry.dot import DotShape
@@ -23,12 +22,11 @@ PARTS = ("geometry", "topology", "exporters3d", "mesher")
 DRAWING = ("trimesh", "solve.result", "matplotlib.figure", "pyvista.plotting", "export.pictures")
 
 
-@contextmanager
-def second_process() -> Iterator[Ask]:
-    """The process for the time of a block; it begins to load what it needs at once."""
-    with beside() as ask:
-        ask(load_libraries)
-        yield ask
+def second_process() -> Beside:
+    """The process, for the time of a block; it begins to load what it needs at once."""
+    ask = Beside()
+    ask(load_libraries)
+    return ask
 
 
 def load_libraries() -> None:

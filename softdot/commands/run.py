@@ -6,7 +6,7 @@ import logging
 import time
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, wait
-from contextlib import contextmanager, nullcontext, suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from threading import Thread
 from typing import TYPE_CHECKING, Any
@@ -32,7 +32,7 @@ from softdot.second_process import draw, make_cad, second_process
 if TYPE_CHECKING:
     from argparse import Namespace
 
-    from geometry.beside import Ask
+    from geometry.beside import Beside
     from geometry.dot import DotShape
     from softdot.case import Case, OnStep
     from softdot.config import Config
@@ -69,14 +69,14 @@ def run_case(
     out: Path,
     progress: Progress | None = None,
     mesh_formats: Sequence[str] = (),
-    ask: Ask | None = None,
+    ask: Beside | None = None,
 ) -> dict[str, Any]:
     """Run the whole pipeline of a case into the folder out and return its summary.
 
-    mesh_formats : in which the mesh is written for other codes, see mesh.files.formats. ask : of a second process that
-    is there already; else one is started. InputError before any work for what cannot be built or written. Where a
-    computation does not converge nothing is raised: solver.converged is False, solver.failure says why and what
-    converged is written.
+    mesh_formats : in which the mesh is written for other codes, see mesh.files.formats. ask : a second process that is
+    there already, which is ended here; else one is started. InputError before any work for what cannot be built or
+    written. Where a computation does not converge nothing is raised: solver.converged is False, solver.failure says why
+    and what converged is written.
     """
     from export.view import ensure_rendering
     from mesh.files.formats import check_formats
@@ -87,7 +87,8 @@ def run_case(
         check_formats(mesh_formats)
         _ = case.checked
         window = ensure_rendering()
-        with staged_folder(out, RUN) as folder, nullcontext(ask) if ask else second_process() as second:
+        # the second process ends first: it must write nothing into a folder that is being removed
+        with staged_folder(out, RUN) as folder, ask or second_process() as second:
             second(ensure_rendering, window)
             filled = _fill(case, folder, progress, mesh_formats, second)
             summary: dict[str, Any] = heading(case.config) | plain(filled)
@@ -95,7 +96,7 @@ def run_case(
     return summary
 
 
-def _fill(case: Case, folder: Path, progress: Progress, mesh_formats: Sequence[str], ask: Ask) -> dict[str, Any]:
+def _fill(case: Case, folder: Path, progress: Progress, mesh_formats: Sequence[str], ask: Beside) -> dict[str, Any]:
     """Everything but summary.json; returns the summary. Parts and pictures are made beside mesh, press and files."""
     from mesh.files.formats import write_mesh
     from mesh.types import MeshingError

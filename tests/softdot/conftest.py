@@ -1,15 +1,14 @@
 """A pipeline whose stages are replaced by quick stand-ins, and a way to call the command line."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import Future
-from contextlib import contextmanager
+from contextlib import nullcontext
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
 from geometry import assembly
-from geometry.beside import Ask
 from softdot import second_process
 from softdot.case import Case
 from softdot.commands import run
@@ -79,19 +78,19 @@ def stages(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
         monkeypatch.setattr(Case, name, called(name))
     monkeypatch.setattr(second_process, "write_cad", called("write_cad"))
     monkeypatch.setattr(run, "write_outputs", called("write_outputs"))
-    monkeypatch.setattr(run, "second_process", at_once)
+    monkeypatch.setattr(run, "second_process", AtOnce)
     monkeypatch.setattr(run, "draw", lambda *_: {})
     monkeypatch.setattr(uncertainty, "prepare", lambda _: None)
     return fakes
 
 
-@contextmanager
-def at_once() -> Iterator[Ask]:
+class AtOnce(nullcontext["AtOnce"]):
     """In place of the second process: calls are done here, where the stand-ins are."""
 
-    def ask(function: Callable[..., object], *arguments: object) -> Future[object]:
+    def __enter__(self) -> "AtOnce":
+        return self
+
+    def __call__(self, function: Callable[..., object], *arguments: object) -> Future[object]:
         future: Future[object] = Future()
         future.set_result(function(*arguments))
         return future
-
-    yield ask

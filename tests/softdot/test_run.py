@@ -1,12 +1,18 @@
 """The pipeline: what it writes, and what is left when something goes wrong."""
 
+import errno
 import json
+import time
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
 
+from export import view
+from geometry.beside import Beside
 from mesh.types import MeshingError
 from softdot.cli import main
+from softdot.commands import run
 from tests.softdot.complaints import complaints
 from tests.softdot.stand_ins import result_of
 
@@ -148,6 +154,32 @@ def test_ctrl_c_leaves_nothing(tmp_path, capfd, stages, stage):
     assert main(["run", "-o", str(tmp_path / "new" / "out")]) == 130
     assert list(tmp_path.iterdir()) == []
     assert complaints(capfd.readouterr().err) == "softdot: interrupted, nothing was written\n"
+
+
+def does_nothing(*_):
+    return 0.0
+
+
+def writes_on_and_on(_mesh, _result, _dot, folder, _readout):
+    while True:
+        with suppress(OSError):
+            folder.mkdir(parents=True, exist_ok=True)
+
+
+def test_a_failure_leaves_nothing_though_the_second_process_still_writes(tmp_path, capfd, stages, monkeypatch):
+    def full(_dot, _result, _summary, folder, _pictures):
+        while not (folder / "pictures").exists():
+            time.sleep(0.01)
+        raise OSError(errno.EFBIG, "File too large")
+
+    monkeypatch.setattr(view, "ensure_rendering", does_nothing)
+    monkeypatch.setattr(run, "second_process", Beside)
+    monkeypatch.setattr(run, "make_cad", does_nothing)
+    monkeypatch.setattr(run, "draw", writes_on_and_on)
+    stages.write_outputs = full
+    assert main(["run", "-q", "-o", str(tmp_path / "out")]) == 2
+    assert "a limit of the size of files" in complaints(capfd.readouterr().err)
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.usefixtures("stages")
