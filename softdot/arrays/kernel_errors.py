@@ -1,7 +1,8 @@
-"""How far a kernel is from the whole array: presses at other places and depths, and of cells of one to six dots.
+"""How far a kernel is from the whole array.
 
-Each press is solved as a whole and laid beside the kernel at all its load steps. The error of the charges is the
-largest difference of any segment, of the largest charge of that press; that of the force is relative to its last one.
+Presses that took no part in it are solved as a whole and laid beside it at all their load steps. The error of the
+charges is the largest difference of any segment, of the largest charge of that press; that of the force is relative to
+its last one.
 """
 
 from collections.abc import Mapping
@@ -13,17 +14,12 @@ from geometry.arrays import Floats
 from geometry.base import Report
 from softdot.arrays.case import ArrayCase
 from softdot.arrays.kernel import ArrayKernel
-from softdot.arrays.kernel_presses import KernelTask, all_pressed, by_one_dot, filled, grid_of
+from softdot.arrays.kernel_checks import check_presses
+from softdot.arrays.kernel_presses import KernelTask, all_pressed, filled, grid_of
 from softdot.arrays.matrix import CrosstalkMatrix
 from softdot.config import Config
 
-DOTS = 6
-PLACES, SHALLOWEST, BESIDE = 4, 0.6, 1.0 / 3.0
-"""Presses at places by chance, the least depth of them as a share of the kernel's, and how far cells are beside their
-segments at most, in pitches: dots that hang over the rim are no part of a kernel.
-"""
 MESH = "the same press on the configured mesh"
-SEED = 0
 
 
 @dataclass(frozen=True)
@@ -55,39 +51,6 @@ def check(
         float(100.0 * np.abs(charge - charge_pC).max() / np.abs(charge_pC).max()),
         float(100.0 * np.abs(force - force_N).max() / np.abs(force_N).max()),
     )
-
-
-def by_chance(case: ArrayCase, places: int, cells: int) -> dict[str, Config]:
-    """Name -> press at places over the segments, and by this many cells of each number of dots, beside their segments.
-
-    Depths are by chance too. Cells are pressed only where the array has a segment for each dot of them.
-    """
-    random, found = np.random.default_rng(SEED), {}
-    half = np.array(case.layout.half_mm)
-    for number in range(places):
-        x, y = random.uniform(-half, half)
-        found[f"one dot, {number + 1}"] = _at_depth(by_one_dot(case, float(x), float(y)), random)
-    if len(case.layout.centres(0)) < 2 or len(case.layout.centres(1)) < 3:
-        return found
-    for count in range(1, DOTS + 1):
-        for number in range(cells):
-            dots = sorted(int(dot) for dot in random.choice(DOTS, count, replace=False) + 1)
-            shift = random.uniform(-BESIDE, BESIDE, 2) * case.layout.pitch_mm
-            found[f"cell of {count}, {number + 1}"] = _at_depth(by_cell(case, dots, shift), random)
-    return found
-
-
-def by_cell(case: ArrayCase, dots: list[int], shift_mm: Floats) -> Config:
-    """A press of the kernel by a cell of these dots whose middle is this far from that of the array's first cell."""
-    sign = chr(0x2800 + sum(1 << (dot - 1) for dot in dots))
-    shifted = case.config.dot.lone(cell=sign, cell_dot=dots[0], offset_mm=tuple(shift_mm))
-    dot = ArrayCase(case.config.model_copy(update={"dot": shifted})).press_by_cell().config.dot
-    return by_one_dot(case, 0.0, 0.0).model_copy(update={"dot": dot})
-
-
-def _at_depth(config: Config, random: np.random.Generator) -> Config:
-    depth = float((config.press.indentation_mm or 0.0) * random.uniform(SHALLOWEST, 1.0))
-    return config.model_copy(update={"press": config.press.model_copy(update={"indentation_mm": depth})})
 
 
 def measured(kernel: ArrayKernel, presses: Mapping[str, Config], told: Report) -> list[KernelCheck]:
@@ -125,7 +88,7 @@ def kernel_of(case: ArrayCase, matrix: CrosstalkMatrix, told: Report) -> tuple[A
     names = {f"a dot at {x[i]:.2f}, {y[j]:.2f} mm": (i, j) for i, j in tasks}
     presses = all_pressed({name: tasks[index] for name, index in names.items()}, told)
     kernel = filled(grid, {names[name]: press for name, press in presses.items()})
-    return kernel, [*measured(kernel, by_chance(case, PLACES, 1), told), *beside_matrix(kernel, matrix)]
+    return kernel, [*measured(kernel, check_presses(case), told), *beside_matrix(kernel, matrix)]
 
 
 UNITS = {

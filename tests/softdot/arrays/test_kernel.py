@@ -8,7 +8,8 @@ import pytest
 from geometry.base import InputError
 from softdot.arrays.case import ArrayCase
 from softdot.arrays.kernel import ArrayKernel, load_kernel
-from softdot.arrays.kernel_errors import by_chance, check, kernel_of, measured, places_of
+from softdot.arrays.kernel_checks import cells_by_chance, every_cell, places_by_chance
+from softdot.arrays.kernel_errors import check, kernel_of, measured, places_of
 from softdot.arrays.kernel_presses import KernelPress, KernelTask, filled, grid_of
 from softdot.arrays.matrix import crosstalk
 from softdot.config import load_config
@@ -125,17 +126,41 @@ def test_a_press_of_the_table_itself_has_no_error_and_another_one_has():
     assert off.force_percent == pytest.approx(25.0)
 
 
+def places(config):
+    return places_of(KernelTask(config, ((0.0,), (0.0,))))
+
+
 def test_cells_by_chance_stand_where_their_dots_are_said_to_be():
     case = ArrayCase(load_config(CELL))
-    configs = by_chance(case, 2, 1)
-    assert [name for name in configs if name.startswith("one")] == ["one dot, 1", "one dot, 2"]
-    for count in range(1, 7):
-        places = places_of(KernelTask(configs[f"cell of {count}, 1"], ((0.0,), (0.0,))))
-        assert places.shape == (count, 2)
+    for count, config in enumerate(cells_by_chance(case).values(), 1):
+        at = places(config)
+        assert at.shape == (count, 2)
         # the dots of a cell lie on a grid of 2.5 mm, 0.83 mm at most beside the middles of the segments
-        away = places[:, None] - case.layout.middles
+        away = at[:, None] - case.layout.middles
         shift = away[0][np.hypot(*away[0].T).argmin()]
         np.testing.assert_allclose(np.abs(away - shift).max(axis=2).min(axis=1), 0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize(("settings", "images"), [([], 4), (["array.cells=2", "array.cell_pitch_mm=6.0"], 2)])
+def test_every_cell_is_pressed_once_or_a_mirror_image_of_it(settings, images):
+    case = ArrayCase(load_config(CELL, settings))
+    middles = case.layout.middles
+    found = set()
+    for config in every_cell(case).values():
+        at = places(config)
+        assert config.press.indentation_mm == case.config.press.indentation_mm
+        mirrored = [at, at * [1, -1], at * [-1, 1], at * [-1, -1]]
+        new = {tuple(sorted(map(tuple, np.round(one, 6)))) for one in mirrored[:images]}
+        assert not new & found
+        assert all((np.abs(middles - one).max(axis=1) < 1e-6).any() for cell in new for one in cell)
+        found |= new
+    assert len(found) == 63
+
+
+def test_an_array_smaller_than_a_cell_is_checked_by_one_dot_alone():
+    config = load_config(CELL, ["array.rows=1"])
+    case = ArrayCase(config.model_copy(update={"dot": config.dot.model_copy(update={"cell": None})}))
+    assert (len(places_by_chance(case, 3)), cells_by_chance(case), every_cell(case)) == (3, {}, {})
 
 
 @pytest.mark.parametrize(
@@ -165,7 +190,6 @@ def test_a_kernel_foretells_presses_that_took_no_part_in_it():
     kernel, stated = kernel_of(case, matrix, lambda *_: None)
     worst = max(one.charge_percent for one in stated)
     assert worst < 15.0  # twice the element sizes count too
-    more = {name: at for name, at in by_chance(case, 8, 0).items() if int(name.split()[-1]) > 4}
-    for one in measured(kernel, more, lambda *_: None):
+    for one in measured(kernel, places_by_chance(case, 4, seed=1), lambda *_: None):
         assert one.charge_percent < 1.5 * worst
         assert one.force_percent < 10.0
