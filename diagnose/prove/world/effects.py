@@ -201,6 +201,15 @@ def _sides(reality: Reality, bench: Bench, s: float) -> Reality:
     return replace(reality, made=replace(reality.made, spring_N_per_mm3=200.0 / s))
 
 
+def _loosened(reality: Reality, bench: Bench, s: float) -> Reality:
+    """The base comes off from the rims inwards."""
+    return replace(reality, made=replace(reality.made, loose_from_mm=0.5 * _bonded_mm(bench, s)))
+
+
+def _bonded_mm(bench: Bench, s: float) -> float:
+    return bench.made.length_mm * (1.0 - 0.05 * s)
+
+
 def _offset(reality: Reality, bench: Bench, s: float) -> Reality:
     return replace(reality, made=replace(reality.made, offset_mm=0.1 * s**0.5))
 
@@ -306,6 +315,15 @@ LISTED = (
         lambda _b, s: {"poisson_ratio": _poisson_ratio(s)},
         15.0,
         FOAM_FORM,
+    ),
+    Effect(
+        "loose-base",
+        "delamination",
+        "bond-base",
+        _loosened,
+        lambda b, s: {"bonded_diameter_mm": _bonded_mm(b, s)},
+        16.0,
+        "a floor that pushes as a stiff wall",
     ),
     Effect("mass", "inertia", "rig", _field("mass_g", 200.0), _is("moving_mass_g", 200.0), 20.0),
     *(_crosstalk(one, other) for one, other in ((1, 2), (2, 3), (1, 3))),

@@ -76,6 +76,7 @@ class Made:
 
     dot : "ridge" (plane strain, force for width_mm) or "cap" (a quarter in 3D). fine : elements are this much smaller.
     electrodes : from and to along x, growing, each over the whole width, of a ridge; none: one all over the film.
+    loose_from_mm : beyond this distance from the middle the base of a ridge's stack is not bonded; None: it is.
     """
 
     layers: tuple[Layer | Film | Glue, ...]
@@ -87,6 +88,7 @@ class Made:
     spring_N_per_mm3: float | None = None
     fine: float = 1.0
     electrodes: tuple[tuple[float, float], ...] = ()
+    loose_from_mm: float | None = None
 
     @property
     def strips(self) -> tuple[tuple[float, float], ...]:

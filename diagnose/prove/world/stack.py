@@ -73,6 +73,7 @@ class Stack:
             np.isclose(self.grid.mesh.p[-1, self.grid.mesh.facets].max(axis=0), 0.0)
             & np.isclose(np.ptp(self.grid.mesh.p[-1, self.grid.mesh.facets], axis=0), 0.0),
         )
+        self.floor = None if made.loose_from_mm is None else self._floor(made.loose_from_mm)
         self.free = self._free()
         self.springs = self._springs()
         self.scale = made.width_mm * self.grid.copies if self.dim == 2 else float(self.grid.copies)
@@ -136,6 +137,8 @@ class Stack:
             scatter.add(part.dofs, residual, matrices)
             memory.append(after)
         scatter.add(*self._contact(u, depth_mm))
+        if self.floor is not None:
+            scatter.add(*self._floored(u, self.floor))
         return scatter.residual + self.springs @ u.ravel(), scatter.matrix() + self.springs, tuple(memory)
 
     def _distance(self, u: Floats, depth_mm: float) -> tuple[Floats, Floats, Floats]:
@@ -146,6 +149,19 @@ class Stack:
         arm = where - centre
         length = np.linalg.norm(arm, axis=2)
         return length - self.made.radius_mm, arm / length[..., None], 1.0 / length
+
+    def _floor(self, from_mm: float) -> Skin:
+        """The base beyond a distance from the middle."""
+        corners = self.grid.mesh.p[:, self.grid.mesh.facets]
+        below = np.isclose(corners[-1].max(axis=0), -self.made.height_mm)
+        return _skin(self.grid, below & (np.abs(corners[0].mean(axis=0)) > from_mm))
+
+    def _floored(self, u: Floats, floor: Skin) -> tuple[Indices, Floats, Floats]:
+        """The floor under what is loose pushes upwards, without friction."""
+        sunk = np.einsum("kqa,ka->kq", floor.shape, u[floor.nodes, -1])
+        push, stiff = WALL * np.minimum(sunk, 0.0) * floor.weight, WALL * (sunk < 0.0) * floor.weight
+        matrix = np.einsum("kq,kqa,kqb->kab", stiff, floor.shape, floor.shape, optimize=True)
+        return floor.nodes * self.dim + self.dim - 1, np.einsum("kq,kqa->ka", push, floor.shape), matrix
 
     def _contact(self, u: Floats, depth_mm: float) -> tuple[Indices, Floats, Floats]:
         gap, normal, curvature = self._distance(u, depth_mm)
@@ -188,6 +204,10 @@ class Stack:
         """Unknowns that may move: neither base, nor held sides without springs, nor across a plane of symmetry."""
         fixed = np.zeros((len(self.places), self.dim), dtype=bool)
         fixed[np.isclose(self.places[:, -1], -self.made.height_mm)] = True
+        if self.floor is not None:  # its rim stays bonded
+            loose = np.unique(self.floor.nodes)
+            outside = np.abs(self.places[loose, 0])
+            fixed[loose[outside > outside.min() + 1e-9]] = False
         if self.made.spring_N_per_mm3 is None:
             fixed[self._at_held_side(self.places)] = True
         for axis in range(self.dim - 1):

@@ -70,6 +70,23 @@ def test_a_medium_of_twice_the_modulus_changes_force_and_charge_alike(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("name", ["ridge-clamped", "ridge-free"])
+def test_a_base_that_has_come_apart_from_its_rims_changes_force_and_charge_alike(name, tmp_path):
+    bench = BENCHES[name]
+    told = engine_of(bench, tmp_path)
+    loose = next(one for one in told.candidates if one.name == ("delamination", "bond-base"))
+    setting = Setting(loose, tuple(0.5 if one.name == "rim" else 0.0 for one in loose.coordinates))
+    told.prepare([loose], silent)
+    told.refine([setting], silent)
+    mine = told.prepared.change((0.0, 0.0), [setting])[:, [0, 2]]
+    depths = np.array(SHARES_OF_CHANGES) * told.prepared.depth_mm
+    half_loose = applied(baseline(bench), bench, {"loose-base": 10.0}).made
+    before, after = hidden(bench.made, depths), hidden(half_loose, depths)
+    true = np.column_stack([np.log(after[:, 0] / before[:, 0]), (after[:, 1] - before[:, 1]) / before[:, 0]])
+    assert np.all(np.abs(mine - true) < 0.05 * np.abs(true).max(axis=0))
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("place_mm", sorted({run.place_mm for run in BENCHES["row-free"].runs}))
 def test_force_and_every_charge_of_several_electrodes_agree_wherever_the_dot_stands(place_mm, tmp_path):
     """Charges within the stated error of the largest of them, as the model's error is one of the film."""
