@@ -4,7 +4,7 @@ A dot at places and depths by chance, cells of one to six dots by chance beside 
 Braille over its segments, to the depth of the kernel.
 """
 
-from itertools import combinations
+from itertools import combinations, product
 
 import numpy as np
 
@@ -14,9 +14,13 @@ from softdot.arrays.kernel_presses import by_one_dot
 from softdot.config import Config
 
 DOTS = 6
-PLACES, SHALLOWEST, BESIDE = 4, 0.6, 1.0 / 3.0
-"""Presses at places by chance, the least depth of them as a share of the kernel's, and how far cells are beside their
-segments at most, in pitches: dots that hang over the rim are no part of a kernel.
+PLACES, CELLS = 12, 3
+"""Presses at places by chance, and cells by chance of each number of dots: thirty in all, since nine of ten such presses
+lie within the worst of 29 with a confidence of 95 % (Wilks, Ann. Math. Stat. 12, 1941, 91).
+"""
+SHALLOWEST, BESIDE = 0.6, 1.0 / 3.0
+"""The least depth of these as a share of the kernel's, and how far cells are beside their segments at most, in pitches:
+dots that hang over the rim are no part of a kernel.
 """
 SEED = 0
 COLUMNS_SWAPPED = dict(zip((1, 2, 3, 4, 5, 6), (4, 5, 6, 1, 2, 3), strict=True))
@@ -25,7 +29,7 @@ ROWS_SWAPPED = dict(zip((1, 2, 3, 4, 5, 6), (3, 2, 1, 6, 5, 4), strict=True))
 
 def check_presses(case: ArrayCase) -> dict[str, Config]:
     """Name -> press, on the mesh of the kernel."""
-    return {**places_by_chance(case, PLACES), **cells_by_chance(case), **every_cell(case)}
+    return {**places_by_chance(case, PLACES), **cells_by_chance(case, CELLS), **every_cell(case)}
 
 
 def places_by_chance(case: ArrayCase, count: int, seed: int = SEED) -> dict[str, Config]:
@@ -38,14 +42,14 @@ def places_by_chance(case: ArrayCase, count: int, seed: int = SEED) -> dict[str,
     }
 
 
-def cells_by_chance(case: ArrayCase, seed: int = SEED) -> dict[str, Config]:
-    """A cell of each number of dots, beside its segments; none where the array has no segment for each dot of it."""
+def cells_by_chance(case: ArrayCase, each: int, seed: int = SEED) -> dict[str, Config]:
+    """Cells of each number of dots beside their segments; none where the array has no segment for each dot of one."""
     random = np.random.default_rng([seed, DOTS])
     found = {}
-    for count in range(1, DOTS + 1) if holds_a_cell(case) else ():
+    for number, count in product(range(1, each + 1), range(1, DOTS + 1)) if holds_a_cell(case) else ():
         dots = sorted(int(dot) for dot in random.choice(DOTS, count, replace=False) + 1)
         shift = random.uniform(-BESIDE, BESIDE, 2) * case.layout.pitch_mm
-        found[f"cell of {count} beside its segments"] = _at_depth(by_cell(case, dots, shift), random)
+        found[f"cell of {count} beside its segments, {number}"] = _at_depth(by_cell(case, dots, shift), random)
     return found
 
 
