@@ -3,7 +3,8 @@
 Thread pools: as many threads as there are cores free to this process, asleep while they have no work. Each library has
 a pool of its own: OpenBLAS under NumPy and SciPy, libgomp under numba, libiomp under MKL. By default their threads spin
 for a while after each call, and so take the cores from one another and from other programs; docs/speed.md has what that
-costs.
+costs. OpenBLAS gets one thread: its products are of small or narrow matrices, thousands of them in a diagnosis, and
+waking a second thread takes longer than it saves.
 
 Compiled kernels: numba keeps them beside the source. Of an installed package they would stay behind when pip removes
 it, and the folders that hold them would hide a source checkout that is installed afterwards.
@@ -13,6 +14,7 @@ import os
 from pathlib import Path
 
 ASLEEP = {
+    "OPENBLAS_NUM_THREADS": "1",
     "OPENBLAS_THREAD_TIMEOUT": "4",  # 2^4 cycles, the least it takes; 2^26 by default
     "OMP_WAIT_POLICY": "PASSIVE",
     "KMP_BLOCKTIME": "0",  # MKL sets it by itself, and not to what OMP_WAIT_POLICY asks for

@@ -15,7 +15,7 @@ from softdot.config import Config
 
 DOTS = 6
 PLACES, CELLS = 12, 3
-"""Presses at places by chance, and cells by chance of each number of dots: thirty in all, since nine of ten such presses
+"""Presses at places by chance, and cells by chance of each number of dots. They are thirty, as nine of ten such presses
 lie within the worst of 29 with a confidence of 95 % (Wilks, Ann. Math. Stat. 12, 1941, 91).
 """
 SHALLOWEST, BESIDE = 0.6, 1.0 / 3.0

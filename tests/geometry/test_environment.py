@@ -39,6 +39,14 @@ def test_what_the_user_sets_stays_and_numba_follows_it():
     assert threads(OMP_NUM_THREADS="1", NUMBA_NUM_THREADS="2") == ["2", "1"]
 
 
+def test_dense_products_are_done_by_one_thread_unless_the_user_says_otherwise():
+    said = "import softdot, os; print(os.environ['OPENBLAS_NUM_THREADS'])"
+    own = {name: value for name, value in os.environ.items() if not name.endswith("_NUM_THREADS")}
+    for stated, found in (({}, "1"), ({"OPENBLAS_NUM_THREADS": "2"}, "2")):
+        done = subprocess.run([sys.executable, "-c", said], env=own | stated, capture_output=True, encoding="utf-8")
+        assert done.stdout.strip() == found
+
+
 def test_a_pool_that_waits_takes_no_time():
     """All three pools work, then wait: hardly any of 0.2 s of waiting is spent on a core."""
     code = """
