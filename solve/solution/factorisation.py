@@ -58,7 +58,8 @@ class Pardiso:
             self._rows, self._columns = (part.astype(np.int32) + 1 for part in (matrix.indptr, matrix.indices))
         if self._solver is None:
             self._solver = _pardiso(-2 if symmetric else 11, self.precision is np.float32)
-        self._values = matrix.data.astype(self.precision)
+        with np.errstate(over="raise"):  # what single precision cannot hold is for the next solver, without a warning
+            self._values = matrix.data.astype(self.precision)
         self._call(FACTORISE if known else ANALYSE_AND_FACTORISE, np.zeros(matrix.shape[0], self.precision))
 
     def back_substitute(self, rhs: Floats) -> Floats:

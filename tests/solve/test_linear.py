@@ -1,5 +1,7 @@
 """The linear solver: right answers, and never a wrong one without notice."""
 
+import warnings
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -44,6 +46,19 @@ def test_saddle_point_system(saddle, registry):
     solver._registry = list(registry)
     full = (upper + sp.triu(upper, 1).T).toarray()
     np.testing.assert_allclose(solver.solve(Tangent(upper), rhs, TOLERANCE), np.linalg.solve(full, rhs), rtol=1e-6)
+    solver.close()
+
+
+def test_a_matrix_beyond_single_precision_is_solved_in_double_without_a_warning(saddle):
+    upper, rhs = saddle
+    solver = LinearSolver(1e60 * shift(upper))
+    full = (upper + sp.triu(upper, 1).T).toarray()
+    with warnings.catch_warnings(record=True) as warned:
+        warnings.simplefilter("always")  # as a user has it: here a RuntimeWarning is an error
+        solution = solver.solve(Tangent(1e60 * upper), rhs, TOLERANCE)
+    np.testing.assert_allclose(1e60 * solution, np.linalg.solve(full, rhs), rtol=1e-6)
+    assert solver.name == "pardiso"
+    assert not warned
     solver.close()
 
 
