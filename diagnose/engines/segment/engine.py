@@ -14,7 +14,7 @@ from typing import Self
 import numpy as np
 
 from diagnose.engines.segment import full
-from diagnose.engines.segment.answer import Drive, FilmPlate, Mechanics, drive_of, mechanics, shown
+from diagnose.engines.segment.answer import Courses, Drive, FilmPlate, Mechanics, drive_of, mechanics, shown
 from diagnose.engines.segment.declared import always_on, readout_behind, without_path
 from diagnose.engines.segment.depth import ZERO, nuisance
 from diagnose.engines.segment.path import with_history
@@ -92,6 +92,7 @@ COMPARISONS = {"force_ratio": _force_ratio, "loss_ratio": _loss_ratio}
 
 ROUNDS = 40
 SETTLED = 1e-6  # of the largest force
+KEPT = 4  # of each run: with and without what is fitted, and a step of it
 Asked = tuple[tuple[float, float], list[Setting], float]
 
 
@@ -116,6 +117,7 @@ class SegmentEngine:
         self.stands.refine(self.declared, report)
         self.accuracy = self.stands.accuracy
         self._last: tuple[Asked, ResponseTable] | None = None
+        self._courses = Courses(KEPT * len(recording.runs))
         stated = {setting.candidate.name for setting in self.declared}
         self.candidates: tuple[Candidate, ...] = tuple(
             with_derived(c, self.prepared) for c in candidates_of_segment(self.scene) if c.name not in stated
@@ -225,7 +227,7 @@ class SegmentEngine:
     def _mechanics(self, run: Run, drive: Drive, values: Floats, on: Model, settings: Sequence[Setting]) -> Mechanics:
         """Path, force and charge. What depends on the path acts back on a compliant drive: a fixed point."""
         (base, _), fit = self.stands.at(run.dot_offset_mm), self._fit(run, on, settings)
-        found = mechanics(fit, base.depth_mm, base.relaxing, drive, values, on)
+        found = self._courses.of(fit, base.depth_mm, base.relaxing, drive, values, on)
         histories = base.histories(settings)
         if not histories:
             return found
