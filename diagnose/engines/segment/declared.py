@@ -2,7 +2,8 @@
 
 Friction, softening and yield are pressed as they are for a candidate, against the same segment without them: each is a
 candidate with one value, 1, which is always on. What acts on the read-out acts on that of every run, as runs may state
-amplifiers of their own.
+amplifiers of their own. Hum has another phase in every run, so that nothing can be predicted of it: where it is stated,
+the lines that a recording shows at rest are noise, however loud.
 """
 
 from dataclasses import replace
@@ -10,6 +11,7 @@ from dataclasses import replace
 from diagnose.forward import Candidate, Coordinate, Setting
 from solve.mechanisms import Mechanism, with_mechanisms
 from solve.model import Model, Readout
+from solve.readout.stages import Hum
 
 STATED = Coordinate("stated", 0.0, 1.0, (1.0,), nodes=(1.0,))
 
@@ -19,11 +21,17 @@ def path_dependent(model: Model) -> tuple[Mechanism, ...]:
     return tuple(one for one in model.mechanisms if one.traits.path_dependent and not one.is_off)
 
 
-def without_path(model: Model) -> Model:
-    """The model without them."""
-    declared = path_dependent(model)
-    physics = replace(model.physics, friction=0.0, softening={}, film_yield=None)
-    return replace(model, physics=physics, mechanisms=tuple(one for one in model.mechanisms if one not in declared))
+def of_free_phase(model: Model) -> tuple[Mechanism, ...]:
+    """Those of a model that have another phase in every run."""
+    return tuple(one for one in model.mechanisms if one.traits.free_phase and not one.is_off)
+
+
+def without_stated(model: Model) -> Model:
+    """The model without what depends on the path and what has a phase."""
+    apart = (*path_dependent(model), *of_free_phase(model))
+    electronics = tuple(stage for stage in model.physics.electronics if not isinstance(stage, Hum))
+    physics = replace(model.physics, friction=0.0, softening={}, film_yield=None, electronics=electronics)
+    return replace(model, physics=physics, mechanisms=tuple(one for one in model.mechanisms if one not in apart))
 
 
 def always_on(model: Model) -> tuple[Setting, ...]:

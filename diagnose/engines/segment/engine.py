@@ -15,7 +15,7 @@ import numpy as np
 
 from diagnose.engines.segment import full
 from diagnose.engines.segment.answer import Courses, Drive, FilmPlate, Mechanics, drive_of, mechanics, shown
-from diagnose.engines.segment.declared import always_on, readout_behind, without_path
+from diagnose.engines.segment.declared import always_on, of_free_phase, path_dependent, readout_behind, without_stated
 from diagnose.engines.segment.depth import ZERO, nuisance
 from diagnose.engines.segment.path import with_history
 from diagnose.engines.segment.prepared import Prepared
@@ -110,7 +110,7 @@ class SegmentEngine:
     def __init__(self, model: Model, mesh_settings: MeshSettings, recording: Recording, report: Report) -> None:
         refuse(model, recording)
         self.declared = always_on(model)
-        self.model, self.recording = without_path(model), recording
+        self.model, self.recording = without_stated(model), recording
         self.drives = [drive_of(*pair) for pair in zip(recording.runs, recording.phases, strict=True)]
         self.stands = Stands(self.model, mesh_settings, recording, report)
         self.stands.add([setting.candidate for setting in self.declared], report)
@@ -118,7 +118,7 @@ class SegmentEngine:
         self.accuracy = self.stands.accuracy
         self._last: tuple[Asked, ResponseTable] | None = None
         self._courses = Courses(KEPT * len(recording.runs))
-        stated = {setting.candidate.name for setting in self.declared}
+        stated = {(one.name, one.component) for one in (*path_dependent(model), *of_free_phase(model))}
         self.candidates: tuple[Candidate, ...] = tuple(
             with_derived(c, self.prepared) for c in candidates_of_segment(self.scene) if c.name not in stated
         )

@@ -1,6 +1,7 @@
 """What rig.toml states acts as the same physics does that a diagnosis found, so that improved.toml is believed."""
 
 import tomllib
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 import tomlkit
 
 from diagnose.forward import Setting
+from diagnose.inference.diagnose import diagnose
 from diagnose.signals.recording import Recording
 from softdot.commands.diagnose import engine_for
 from softdot.commands.verdict_page import improved_text
@@ -74,3 +76,26 @@ def test_what_is_stated_is_no_candidate_too(tmp_path):
     tables = {**TABLES, "mechanisms": [{"name": "friction", "component": "dot", "parameters": {"coefficient": 0.5}}]}
     stated = engine_for(rig(tmp_path, tables), rigs.silent)
     assert not any(candidate.mechanism == "friction" for candidate in stated.candidates)
+
+
+def humming(believed, hum_V):
+    """What the rig records with hum of another phase in each run, and white noise."""
+    random, found = np.random.default_rng(7), []
+    sigma = {name: 0.01 * np.abs(signal).max() for name, signal in believed.predict(0, []).items()}
+    for number, one in enumerate(runs()):
+        signals = believed.predict(number, [])
+        shown = {name: s + sigma[name] * random.standard_normal(len(s)) for name, s in signals.items()}
+        shown["voltage_V"] += hum_V * np.sin(2.0 * np.pi * (50.0 * one.time_s + random.random()))
+        found.append(replace(one, channels={**one.channels, **shown}))
+    return Recording(tuple(found))
+
+
+def test_hum_that_is_stated_is_no_mismatch_whatever_its_phase(believed, tmp_path):
+    hum_V = 0.05 * np.abs(believed.predict(0, [])["voltage_V"]).max()
+    recording = humming(believed, hum_V)
+    stated = {"name": "mains-hum", "component": "readout", "parameters": {"amplitude_V": float(hum_V)}}
+    for tables, mismatch in ((TABLES, True), ({**TABLES, "mechanisms": [stated]}, False)):
+        told = engine_for(replace(rig(tmp_path, tables), recording=recording), rigs.silent)
+        hums = tuple(one for one in told.candidates if one.mechanism == "mains-hum")
+        assert len(hums) == mismatch
+        assert diagnose(recording, told.with_candidates(hums), 1, rigs.silent).mismatch == mismatch
