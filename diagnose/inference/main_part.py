@@ -117,7 +117,9 @@ def _with_pairs(judge: TolerantJudge, models: Sequence[Judged], report: Report) 
 def _told(judge: TolerantJudge, models: Sequence[Judged]) -> MainPart | None:
     best = models[0]
     group = [n for n, one in enumerate(models) if n == 0 or not judge.excluded(one.forecast, best.forecast)]
-    if best.left > 1.0 - MOST or best.gain.lower <= 0.0 or not judge.spread(best.forecast):
+    if best.left > 1.0 - MOST or best.gain.lower <= 0.0:
+        return None
+    if judge.largest(best.forecast) > VISIBLE and not judge.spread(best.forecast):
         return None
     order = [*group, *(n for n in range(len(models)) if n not in group)]
     left = by_phase(judge.model.samples, judge.left(best.forecast), PHASES)
