@@ -88,7 +88,8 @@ def mechanics(
     )  # fmt: skip
     if status == TOO_DEEP:
         raise ValueError(f"the dot goes deeper than {depth_mm:.4g} mm, the most that was prepared")
-    return Mechanics(path, outputs[:, 0], outputs[:, 1], outputs[:, 2:])
+    # between its presses a table may tell an area just below none, of which there is no power
+    return Mechanics(path, outputs[:, 0], np.maximum(outputs[:, 1], 0.0), outputs[:, 2:])
 
 
 class Courses:

@@ -170,7 +170,7 @@ class SegmentEngine:
         return self.stands.refine(settings, report)
 
     def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
-        """Every answer of a run. ValueError for what was not prepared."""
+        """Every answer of a run. ValueError for what was not prepared, and where a signal is beyond all numbers."""
         asked, drive = self.recording.runs[run], self.drives[run]
         ahead_s, hum = self._hum(run, settings)
         return self._answer(asked, drive, asked.answers, settings, hum, ahead_s)
@@ -196,7 +196,10 @@ class SegmentEngine:
         values = self._driven(drive, on, settings)
         found = self._mechanics(run, drive, values, on, settings)
         on = replace(on, physics=replace(on.physics, electronics=(*on.physics.electronics, *hum)))
-        return shown(run, names, drive, values, found, self._film(on), on, ahead_s)
+        signals = shown(run, names, drive, values, found, self._film(on), on, ahead_s)
+        if not all(np.isfinite(signal[drive.touching]).all() for signal in signals.values()):
+            raise ValueError(f"run '{run.label}': a signal is beyond all numbers")
+        return signals
 
     def solve(self, run: int, mechanisms: Sequence[Mechanism], report: Report) -> Signals:
         """Every answer of a run by the 3D model along its own drive. ValueError, NoEquilibriumError."""

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from diagnose.engines.segment import answer
 from diagnose.engines.segment.engine import segment_engine
 from diagnose.forward import Setting
 from diagnose.signals.recording import Recording
@@ -263,3 +264,29 @@ def test_a_run_deeper_than_the_stack_is_refused():
 def test_the_3d_model_refuses_what_the_rig_does_not_have(rig):
     with pytest.raises(ValueError, match="component"):
         rig.solve(0, [Mechanism(name="property-error", component="sides")], silent)
+
+
+def test_a_trial_beyond_all_numbers_is_rejected_and_an_area_below_none_is_none(rig, monkeypatch):
+    """A smooth table may tell a touched area just below none, of which a touch with a fractional power is no number."""
+    touch = candidate(rig, "contact-electrification", "film")
+    charged = Setting(touch, (1.0, touch.coordinates[1].starts[0]))
+    told = []
+
+    def followed(*given):
+        path, outputs = given[-2:]
+        path[:], outputs[:] = 0.1, 1e-9
+        outputs[::2, 1] = -1e-20
+        outputs[:] *= scale
+        told.append(len(path))
+        return 0
+
+    monkeypatch.setattr(answer, "follow", followed)
+    for scale in (1.0, np.nan):
+        rig.prepare([touch], silent)
+        monkeypatch.setattr(rig, "_courses", answer.Courses(1))
+        if np.isnan(scale):
+            with pytest.raises(ValueError, match="beyond all numbers"):
+                rig.predict(0, [charged])
+        else:
+            assert all(np.isfinite(signal).all() for signal in rig.predict(0, [charged]).values())
+    assert len(told) == 2
