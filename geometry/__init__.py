@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from geometry.environment import keep_kernels_apart, sleep_while_idle
+from geometry.environment import keep_kernels_apart, quiet_pools
 
-sleep_while_idle()
+quiet_pools()
 keep_kernels_apart(Path(__file__).parent)

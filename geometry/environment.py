@@ -13,7 +13,7 @@ it, and the folders that hold them would hide a source checkout that is installe
 import os
 from pathlib import Path
 
-ASLEEP = {
+POOLS = {
     "OPENBLAS_NUM_THREADS": "1",
     "OPENBLAS_THREAD_TIMEOUT": "4",  # 2^4 cycles, the least it takes; 2^26 by default
     "OMP_WAIT_POLICY": "PASSIVE",
@@ -22,9 +22,9 @@ ASLEEP = {
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
 
 
-def sleep_while_idle() -> None:
+def quiet_pools() -> None:
     """Before NumPy is loaded. What the user has set stays."""
-    for name, value in ASLEEP.items():
+    for name, value in POOLS.items():
         os.environ.setdefault(name, value)
 
 

@@ -16,27 +16,23 @@ from solve.readout.stages import Hum
 STATED = Coordinate("stated", 0.0, 1.0, (1.0,), nodes=(1.0,))
 
 
-def path_dependent(model: Model) -> tuple[Mechanism, ...]:
-    """Those of a model that depend on the path."""
-    return tuple(one for one in model.mechanisms if one.traits.path_dependent and not one.is_off)
-
-
-def of_free_phase(model: Model) -> tuple[Mechanism, ...]:
-    """Those of a model that have another phase in every run."""
-    return tuple(one for one in model.mechanisms if one.traits.free_phase and not one.is_off)
+def stated_apart(model: Model) -> tuple[Mechanism, ...]:
+    """Mechanisms of a model that no table over depth holds: of the path, or of another phase in every run."""
+    on = (one for one in model.mechanisms if not one.is_off)
+    return tuple(one for one in on if one.traits.path_dependent or one.traits.free_phase)
 
 
 def without_stated(model: Model) -> Model:
-    """The model without what depends on the path and what has a phase."""
-    apart = (*path_dependent(model), *of_free_phase(model))
+    """The model without them."""
+    apart = stated_apart(model)
     electronics = tuple(stage for stage in model.physics.electronics if not isinstance(stage, Hum))
     physics = replace(model.physics, friction=0.0, softening={}, film_yield=None, electronics=electronics)
     return replace(model, physics=physics, mechanisms=tuple(one for one in model.mechanisms if one not in apart))
 
 
 def always_on(model: Model) -> tuple[Setting, ...]:
-    """The same as settings."""
-    return tuple(Setting(_stated(one), (1.0,)) for one in path_dependent(model))
+    """Those of them that depend on the path, as settings."""
+    return tuple(Setting(_stated(one), (1.0,)) for one in stated_apart(model) if one.traits.path_dependent)
 
 
 def _stated(mechanism: Mechanism) -> Candidate:

@@ -15,7 +15,7 @@ import numpy as np
 
 from diagnose.engines.segment import full
 from diagnose.engines.segment.answer import Courses, Drive, FilmPlate, Mechanics, drive_of, mechanics, shown
-from diagnose.engines.segment.declared import always_on, of_free_phase, path_dependent, readout_behind, without_stated
+from diagnose.engines.segment.declared import always_on, readout_behind, stated_apart, without_stated
 from diagnose.engines.segment.depth import ZERO, nuisance
 from diagnose.engines.segment.path import with_history
 from diagnose.engines.segment.prepared import Prepared
@@ -118,7 +118,7 @@ class SegmentEngine:
         self.accuracy = self.stands.accuracy
         self._last: tuple[Asked, ResponseTable] | None = None
         self._courses = Courses(KEPT * len(recording.runs))
-        stated = {(one.name, one.component) for one in (*path_dependent(model), *of_free_phase(model))}
+        stated = {(one.name, one.component) for one in stated_apart(model)}
         self.candidates: tuple[Candidate, ...] = tuple(
             with_derived(c, self.prepared) for c in candidates_of_segment(self.scene) if c.name not in stated
         )

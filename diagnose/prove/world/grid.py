@@ -57,7 +57,7 @@ def grid(made: Made) -> Grid:
     places = _to_side if ridge else _about_dot
     x = places(made.length_mm / 2.0, made.fine) if not made.electrodes else _between_edges(made)
     if made.loose_from_mm is not None:
-        x[np.abs(x - made.loose_from_mm).argmin()] = made.loose_from_mm
+        x[1 + np.abs(x[1:-1] - made.loose_from_mm).argmin()] = made.loose_from_mm  # never the middle or the side
     if whole and not made.electrodes:
         x = np.concatenate([-x[:0:-1], x])
     across = [] if ridge else [places(made.width_mm / 2.0, made.fine)]
