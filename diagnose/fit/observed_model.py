@@ -7,7 +7,7 @@ from collections import OrderedDict
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -180,6 +180,14 @@ class ObservedModel:
     def signals(self, values: Floats, settings: Sequence[Setting] = ()) -> list[dict[str, Floats]]:
         """What the instruments of every run show, for nuisances (p,) and mechanisms."""
         return [self._shown(run, values, settings) for run in range(len(self.runs))]
+
+    def imagined(self, run: int, drive: Floats, values: Floats, settings: Sequence[Setting]) -> dict[str, Floats]:
+        """What its instruments would show if the drive (t,) of a run had been another one. ValueError as the engine."""
+        of = self.runs[run]
+        other = replace(of, channels={**of.channels, of.drive: drive})
+        raw = self.engine.imagine(other, [*self._settings(run, values), *settings])
+        told = (self.nuisances, values, run)
+        return {name: observed(of, name, raw[name], by_name(*told, name)) for name in of.answers}
 
     def possible(self, values: Floats) -> Floats:
         """Nuisances (p,) held within what the engine has an answer to."""

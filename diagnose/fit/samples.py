@@ -26,6 +26,11 @@ POOLS: tuple[frozenset[str], ...] = tuple(
 )  # fmt: skip
 
 
+SMALL = 1e-3  # of the noise: what channels share is no more than that
+SharedNoise = Sequence[Signals]
+"""For each run, channel -> (t, k): their combinations with standard normal weights are noise that channels share."""
+
+
 @dataclass(frozen=True)
 class SampleBlock:
     """One channel of one run. rows : its part of the vector."""
@@ -44,11 +49,13 @@ class SampleBlock:
 class Samples:
     """blocks : in order. bank : the transform. channels : names by number. press : (n,) number of the press.
 
-    presses : (run, press within it) of each number. run, phase : (n,) of each coefficient.
+    presses : (run, press within it) of each number. run, phase : (n,) of each coefficient. shared : as asked.
     """
 
-    def __init__(self, recording: Recording, noise: Mapping[tuple[str, str], NoiseModel]) -> None:
-        self.recording, self.noise = recording, noise
+    def __init__(
+        self, recording: Recording, noise: Mapping[tuple[str, str], NoiseModel], shared: SharedNoise = ()
+    ) -> None:
+        self.recording, self.noise, self.shared = recording, noise, shared
         self.channels = tuple(dict.fromkeys(name for run in recording.runs for name in run.answers))
         self.blocks = tuple(_blocks(recording, noise))
         labels, steps = _labels(recording, self.blocks, self.channels)
@@ -59,6 +66,8 @@ class Samples:
         self.press: Ints = np.asarray(number.ravel(), dtype=np.int64)
         self.run, self.phase = labels["run"], labels["phase"]
         self.kind = np.array([self.channels.index(block.channel) for block in self.blocks])
+        self._whiteners: tuple[_Whitener, ...] = ()  # of what is shared, which is made without them
+        self._whiteners = tuple(_whitener(self, run, own) for run, own in enumerate(shared) if own)
 
     def __len__(self) -> int:
         return len(self.press)
@@ -70,7 +79,7 @@ class Samples:
     def coefficients(self, signals: Sequence[Signals]) -> Floats:
         """The vector (n,), or (n, k), of signals of all runs: channel -> (t,) or (t, k)."""
         white = np.concatenate([b.whitening(signals[b.run][b.channel]) for b in self.blocks])
-        return self.bank.coefficients(white)
+        return self._apart(self.bank.coefficients(white))
 
     def of_block(self, block: SampleBlock, white: Floats) -> Floats:
         """The transform (n, ...) of whitened samples (m, ...) of one block, zero elsewhere."""
@@ -79,7 +88,15 @@ class Samples:
         for piece in self.pieces_of(block):
             own = white[piece.samples.start - first : piece.samples.stop - first]
             out[piece.samples] = dct(own, type=2, norm="ortho", axis=0)
-        return out
+        return self._apart(out)
+
+    def _apart(self, values: Floats) -> Floats:
+        """Coefficients (n, ...) with the noise that channels share made independent, in place."""
+        for one in self._whiteners:
+            own = values[one.rows]
+            if own.any():
+                values[one.rows] = own - (one.directions * one.less) @ (one.directions.T @ own)
+        return values
 
     def pieces_of(self, block: SampleBlock) -> tuple[TimeSegment, ...]:
         """The pieces of one block."""
@@ -147,6 +164,24 @@ class Samples:
             np.array([number[key] for key in keys]),
             np.array(list(used.values())),
         )
+
+
+@dataclass(frozen=True)
+class _Whitener:
+    """(1 + C C')^-1/2 = 1 - U diag(less) U' for columns C = U S V' in some rows."""
+
+    rows: Ints
+    directions: Floats
+    less: Floats
+
+
+def _whitener(samples: Samples, run: int, shared: Signals) -> _Whitener:
+    own = [block for block in samples.blocks if block.run == run and block.channel in shared]
+    columns = np.vstack([samples.of_block(b, b.whitening(shared[b.channel]))[b.rows] for b in own])
+    directions, sizes, _ = np.linalg.svd(columns, full_matrices=False)
+    kept = sizes > SMALL
+    rows = np.concatenate([np.arange(block.rows.start, block.rows.stop) for block in own])
+    return _Whitener(rows, directions[:, kept], 1.0 - 1.0 / np.sqrt(1.0 + sizes[kept] ** 2))
 
 
 def noise_degrees(model: NoiseModel) -> float:

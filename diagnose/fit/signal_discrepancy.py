@@ -12,39 +12,46 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from diagnose.fit.samples import Samples
+from diagnose.fit.samples import Samples, noise_degrees
 from diagnose.noise.estimate import repeated
 from geometry.arrays import Floats, Ints
 
 TINY = np.finfo(float).tiny ** 0.5
+VISIBLE = 0.01
+"""Root mean square error relative to the signal, above noise, below which flaws of an ordinary rig may make it."""
 
 
 def in_plain_units(samples: Samples) -> Samples:
     """The same samples with their noise taken as white: sums of squares are then those of the errors themselves."""
     white = {id(law): law.white() for law in samples.noise.values()}
-    return Samples(samples.recording, {key: white[id(law)] for key, law in samples.noise.items()})
+    laws = {key: white[id(law)] for key, law in samples.noise.items()}
+    return Samples(samples.recording, laws, samples.shared)
 
 
 class SignalDiscrepancy:
     """samples : in plain units. unit : (n,) variance of each where the discrepancy is as large as the signal.
 
-    channel : (n,) number of the channel. pieces : (c,) phases of presses of each channel, which count as one each.
+    channel : (n,) number of the channel. share : (n,) by which the squares of each count in the mean over its channel.
     """
 
     def __init__(self, samples: Samples) -> None:
         self.samples = samples
         self.channel: Ints = samples.kind[samples.block_of]
-        self.unit = np.empty(len(samples))
+        labels = np.column_stack([samples.block_of, samples.press, samples.phase])
+        _, first, piece, count = np.unique(labels, axis=0, return_index=True, return_inverse=True, return_counts=True)
+        self.unit, self._blur = np.empty(len(samples)), np.empty(len(samples))
         for block in samples.blocks:
-            rows, variance = block.rows, block.whitening.noise.autoregression.variance
+            rows, law = block.rows, block.whitening.noise
             values = samples.recording.runs[block.run].channels[block.channel][block.observed]
+            self._blur[rows] = np.sqrt(2.0 / noise_degrees(law))
             for press in np.unique(samples.press[rows]):
                 own = samples.press[rows] == press
                 phases = len(np.unique(samples.phase[rows][own]))
                 square = float(((values[own] - values[own].mean()) ** 2).sum())
-                self.unit[rows.start + np.flatnonzero(own)] = max(square / phases / variance, TINY)
-        each = np.unique(np.column_stack([self.channel, samples.press, samples.phase]), axis=0)
-        self.pieces = np.bincount(each[:, 0], minlength=len(samples.channels)).astype(float)
+                self.unit[rows.start + np.flatnonzero(own)] = max(square / phases / law.autoregression.variance, TINY)
+        weight = _seen(count, self.unit[first], self._blur[first])
+        total = np.bincount(self.channel[first], weight)
+        self.share: Floats = (weight / total[self.channel[first]])[piece.ravel()] / self.unit
 
     def variance(self, sizes: Floats) -> Floats:
         """(n,) that discrepancies of sizes (c,), relative to the signals, add to each coefficient."""
@@ -52,11 +59,15 @@ class SignalDiscrepancy:
 
     def squares(self, residual: Floats) -> Floats:
         """(n,) square of a whitened residual (n,) above noise, summing to its mean square relative to the signal."""
-        return np.asarray((residual**2 - 1.0) / self.unit / self.pieces[self.channel])
+        return np.asarray((residual**2 - 1.0) * self.share)
 
     def noise_errors(self, place: Ints) -> Floats:
-        """One sigma of the sums of squares of noise alone, which have the mean 0, over each place (n,) from 0 on."""
-        return np.asarray(np.sqrt(np.bincount(place, 2.0 / (self.unit * self.pieces[self.channel]) ** 2)))
+        """One sigma of the sums of squares of noise alone, which have the mean 0, over each place (n,) from 0 on.
+
+        The power of the noise is itself known from so many samples only.
+        """
+        drawn, known = np.bincount(place, 2.0 * self.share**2), np.bincount(place, self.share * self._blur)
+        return np.asarray(np.sqrt(drawn + known**2))
 
     @property
     def noise_error(self) -> float:
@@ -65,8 +76,18 @@ class SignalDiscrepancy:
 
     def sizes(self, residual: Floats) -> Floats:
         """(c,) root mean square of each channel relative to its signal, above noise."""
-        squares = np.bincount(self.channel, self.squares(residual), len(self.pieces))
+        squares = np.bincount(self.channel, self.squares(residual), len(self.samples.channels))
         return np.asarray(np.sqrt(np.maximum(squares, 0.0)))
+
+
+def _seen(count: Ints, unit: Floats, blur: Floats) -> Floats:
+    """Weight (p,) of phases of presses: as one each, less where noise hides a discrepancy that is just visible.
+
+    The inverse variance of an estimate of its mean square from one degree of freedom beside noise of count
+    coefficients, whose power is off by blur.
+    """
+    noise = (2.0 * count + (count * blur) ** 2) / unit**2
+    return np.asarray(1.0 / (2.0 * VISIBLE**4 + noise))
 
 
 def conditions(samples: Samples) -> Ints:

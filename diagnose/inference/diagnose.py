@@ -10,6 +10,7 @@ import numpy as np
 
 from diagnose.figures import figure, p_equals, part, percent
 from diagnose.findings import Detection, Findings, Fit, FittedModel, Remainder
+from diagnose.fit.drive_error import drive_error
 from diagnose.fit.intervals import intervals, points
 from diagnose.fit.observed_model import Nuisance, ObservedModel
 from diagnose.fit.refit import Fitted, fitted_baseline
@@ -126,8 +127,41 @@ def diagnose(recording: Recording, engine: Engine, seed: int, report: Report) ->
     findings = _findings(model, screening, found, choice)
     if not findings.unexplained:
         return findings
+    trembling = _beside_a_drive_error(model, found, choice, rng, report)
+    if trembling is not None:
+        return trembling
     main = main_part(model, screening, report)
     return findings if main is None else _with_main_part(findings, main, choice, rng)
+
+
+def _beside_a_drive_error(
+    model: ObservedModel, found: Checked, choice: Choice, rng: np.random.Generator, report: Report
+) -> Findings | None:
+    """What is named where the drive may be in error by as much as the best explanation leaves; None where nothing is.
+
+    found : of the detection, which knows of no such error. An error of the drive that makes the whole mismatch leaves
+    nothing to be named.
+    """
+    if not choice.models:
+        return None
+    best = choice.models[0].fit
+    error = drive_error(model, model.possible(best.system.closest()), best.settings, RATES.level)
+    if error is None:
+        return None
+    model = model.seen_as(Samples(model.samples.recording, model.samples.noise, error.noise))
+    baseline = fitted_baseline(model)
+    if checked(model.samples, baseline, rng).p_value > RATES.level:
+        return None
+    screening = screen(model, baseline, report)
+    choice = distinguished(model, screening, choose(model, screening, found.p_value, rng, report))
+    findings = _findings(model, screening, found, choice)
+    if findings.unexplained:
+        return None
+    said = (
+        f"The channels together show that the drive was off its column by {figure(1000.0 * error.rms_mm)} µm (root "
+        f"mean square, below {figure(error.band_Hz)} Hz). This was taken as noise that they share."
+    )
+    return replace(findings, warnings=(*findings.warnings, said))
 
 
 def _quiet(model: ObservedModel, baseline: LinearisedSystem, found: Checked) -> Findings:

@@ -13,12 +13,12 @@ import numpy as np
 from diagnose.findings import Fit
 from diagnose.fit.descent import settings
 from diagnose.fit.observed_model import ObservedModel
-from diagnose.fit.signal_discrepancy import SignalDiscrepancy, by_phase, conditions, in_plain_units
+from diagnose.fit.signal_discrepancy import VISIBLE, SignalDiscrepancy, by_phase, conditions, in_plain_units
 from diagnose.fit.system import linearised
 from diagnose.inference.choice import Judged, implausible, score_of
 from diagnose.inference.forecasts import Forecasted
 from diagnose.inference.search import Screening, first_fits, pairs, screen, singles
-from diagnose.inference.tolerant_judge import VISIBLE, TolerantJudge, held_together, left_by
+from diagnose.inference.tolerant_judge import TolerantJudge, held_together, left_by
 from diagnose.signals.phases import PHASES
 from diagnose.statistics.abstain import RATES
 from diagnose.statistics.held_out import held_out_probabilities

@@ -1,5 +1,7 @@
 """A discrepancy proportional to the signal: its size is what a reader would call the error, whatever the sampling."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -49,13 +51,25 @@ def test_noise_alone_has_a_size_far_below_its_own():
     assert (SignalDiscrepancy(samples).sizes(white) < 0.4 * 0.01 / np.array(signal)).all()
 
 
+def test_a_press_that_drowns_in_noise_counts_next_to_nothing():
+    """Noise that is a tenth stronger than was known is no discrepancy, though it is as large as the weakest signal."""
+    recording = small(3, Sensor(), runs=4, noise=0.005)
+    first = recording.runs[0]
+    weak = replace(first, channels=first.channels | {name: 0.01 * first.channels[name] for name in first.answers})
+    noise = noise_models(recording)
+    samples = in_plain_units(Samples(Recording((weak, *recording.runs[1:])), noise))
+    stronger = 1.1 * np.random.default_rng(5).standard_normal(len(samples))
+    assert (SignalDiscrepancy(samples).sizes(stronger) < 0.01).all()
+
+
 def test_each_phase_counts_as_one_however_many_samples_it_has():
     """Of an error as large as tolerated, the square in units of its variance is the number of phases."""
     samples = samples_of(small(3, Sensor(), runs=4, noise=1e-4))
     tolerance = SignalDiscrepancy(samples)
     residual = off_by(samples, OFF)
     square = float((residual**2 / tolerance.variance(np.full(2, OFF))).sum())
-    assert square == pytest.approx(tolerance.pieces.sum(), rel=0.1)
+    phases = len(np.unique(np.column_stack([samples.block_of, samples.press, samples.phase]), axis=0))
+    assert square == pytest.approx(phases, rel=0.1)
 
 
 def test_runs_that_repeat_each_other_are_one_condition():
