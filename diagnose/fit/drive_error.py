@@ -41,15 +41,18 @@ class DriveError:
 def drive_error(model: ObservedModel, values: Floats, on: Sequence[Setting], level: float) -> DriveError | None:
     """The likeliest error of the drive beside nuisances (p,) and mechanisms.
 
-    None where no displacement drives, where only one channel answers, where channels that err each for itself are as
-    likely by a likelihood-ratio test of this level, or where it is larger than an ordinary rig's. ValueError where the
-    model has no answer.
+    None where no displacement drives, where only one channel answers, where the model has no answer, where channels
+    that err each for itself are as likely by a likelihood-ratio test of this level, or where it is larger than an
+    ordinary rig's.
     """
     if not _tells(model.runs):
         return None
     deepest = max(float(run.drive_values.max()) for run in model.runs)
-    residual = model.samples.recorded - model.vector(values, on)
-    waves = [_Waves(model, run, values, on, residual, STEP * deepest) for run in range(len(model.runs))]
+    try:
+        residual = model.samples.recorded - model.vector(values, on)
+        waves = [_Waves(model, run, values, on, residual, STEP * deepest) for run in range(len(model.runs))]
+    except ValueError:
+        return None
     seen = _Seen.of(model, residual)
     every, each = np.ones((1, len(seen.count))), np.eye(len(seen.count))
     start = (START * deepest) ** 2
@@ -80,8 +83,9 @@ class _Waves:
     ) -> None:
         samples, recorded = model.samples, model.runs[run]
         self.press, self.frequency_Hz, drives = _cosines(recorded, model.samples.recording.phases[run].presses)
-        still = model.imagined(run, recorded.drive_values, values, on)
-        moved = [model.imagined(run, recorded.drive_values + step_mm * wave, values, on) for wave in drives]
+        drive = recorded.drive_values * (1.0 - np.sqrt(2.0) * STEP)  # no wave goes deeper than the recording
+        still = model.imagined(run, drive, values, on)
+        moved = [model.imagined(run, drive + step_mm * wave, values, on) for wave in drives]
         self.change = {
             name: np.array([(one[name] - still[name]) / step_mm for one in moved]).reshape(-1, len(still[name])).T
             for name in recorded.answers

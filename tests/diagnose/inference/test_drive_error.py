@@ -33,12 +33,25 @@ def trembling(seed, sensor, rms_mm=TREMBLE_MM, drift=0.0, **more):
     return Recording(tuple(runs))
 
 
-def learned(recording, names=None):
+class Shallow(ToyEngine):
+    """Has no answer below a depth."""
+
+    deepest_mm: float = np.inf
+
+    def imagine(self, run, settings):
+        if run.drive_values.max() > self.deepest_mm:
+            raise ValueError("deeper than was prepared")
+        return super().imagine(run, settings)
+
+
+def learned(recording, names=None, deepest_mm=np.inf):
     """Beside a model that knows the sensor."""
     if names is not None:
         runs = tuple(replace(run, channels={n: run.channels[n] for n in (run.drive, *names)}) for run in recording.runs)
         recording = Recording(runs)
-    model = ObservedModel(Samples(recording, noise_models(recording)), ToyEngine(recording))
+    engine = Shallow(recording)
+    engine.deepest_mm = deepest_mm
+    model = ObservedModel(Samples(recording, noise_models(recording)), engine)
     return drive_error(model, np.zeros(len(model.nuisances)), (), LEVEL)
 
 
@@ -59,6 +72,14 @@ def test_what_one_channel_shows_alone_is_none():
 
 def test_a_stage_that_trembles_more_than_an_ordinary_one_is_not_excused():
     assert learned(trembling(3, Sensor(), rms_mm=0.02, noise=1e-3, scatter=0.0)) is None
+
+
+def test_where_the_model_has_no_answer_there_is_none():
+    """It needs one as deep as the recording goes, and no deeper."""
+    recording = trembling(3, Sensor(), noise=1e-3, scatter=0.0)
+    deepest = max(run.drive_values.max() for run in recording.runs)
+    assert learned(recording, deepest_mm=deepest) is not None
+    assert learned(recording, deepest_mm=0.9 * deepest) is None
 
 
 def test_noise_that_channels_share_is_white_once_it_is_known():
