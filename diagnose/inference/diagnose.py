@@ -21,7 +21,7 @@ from diagnose.inference import hum
 from diagnose.inference.black_box import trained_and_held, unimproved
 from diagnose.inference.choice import Choice, Judged, choose, criteria
 from diagnose.inference.localisation import explanations, places, shares
-from diagnose.inference.main_part import MainPart, confirmed, main_part
+from diagnose.inference.main_part import FLAWS, MainPart, confirmed, main_part
 from diagnose.inference.residual_test import Checked, checked
 from diagnose.inference.search import Screening, screen
 from diagnose.inference.tolerant_judge import distinguished
@@ -155,13 +155,18 @@ def _beside_a_drive_error(
     screening = screen(model, baseline, report)
     choice = distinguished(model, screening, choose(model, screening, found.p_value, rng, report))
     findings = _findings(model, screening, found, choice)
-    if findings.unexplained:
+    if findings.unexplained or (findings.held_out is not None and not _flaws(findings.held_out)):
         return None
     said = (
         f"The channels together show that the drive was off its column by {figure(1000.0 * error.rms_mm)} µm (root "
         f"mean square, below {figure(error.band_Hz)} Hz). This was taken as noise that they share."
     )
     return replace(findings, warnings=(*findings.warnings, said))
+
+
+def _flaws(held_out: Fit) -> bool:
+    """Whether what is left of held-out presses above noise is no more than an ordinary rig and the details of a law."""
+    return held_out.nrmse_after**2 - held_out.noise_floor_nrmse**2 <= FLAWS**2
 
 
 def _quiet(model: ObservedModel, baseline: LinearisedSystem, found: Checked) -> Findings:

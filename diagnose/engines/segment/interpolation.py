@@ -157,15 +157,16 @@ class Differences:
     def add(self, values: Values, difference: Floats) -> None:
         """A press at values (q,), and what it still differs by, of any shape; nowhere that is known."""
         self._points = np.vstack([self._points, self._place(values)])
-        self._found.append(difference + self.at(values) if self._found else difference)
+        before = self.at(values)
+        self._found.append(difference if before is None else difference + before)
         none = np.zeros((len(self._points) - len(self._found), difference.size))
         all_of_them = np.vstack([none, *(one.reshape(1, -1) for one in self._found)])
         self._between = RBFInterpolator(
             self._points, all_of_them, kernel="inverse_quadratic", epsilon=1.0 / REACH, degree=-1
         )
 
-    def at(self, values: Values) -> Floats:
-        """The difference at values (q,), of the shape of those that were added; (1,) before there are any."""
+    def at(self, values: Values) -> Floats | None:
+        """The difference at values (q,), of the shape of those that were added; None before there are any."""
         if self._between is None:
-            return np.zeros(1)
+            return None
         return np.asarray(self._between(self._place(values)[None])[0].reshape(self._found[0].shape))

@@ -121,7 +121,8 @@ class Prepared:
         differing = []
         for name, found in self._pressed(quick, report).items():
             setting = asked[name]
-            difference = found - self._between(setting)
+            told = self._between(setting)
+            difference = found if told is None else found - told
             self._differences[_coordinates(setting.candidate)].add(setting.values, difference)
             differing += [setting] if self._size(difference) > MATTERS else []
         return [setting for setting in settings if _as_pressed(setting) in differing]
@@ -197,14 +198,16 @@ class Prepared:
             return None
         return self._between(setting)
 
-    def _between(self, setting: Setting) -> Floats:
-        """The same from the presses, and what those beyond the first differ by."""
+    def _between(self, setting: Setting) -> Floats | None:
+        """The same from the presses, and what those beyond the first differ by; None where it is as good as off."""
         candidate, effect = setting.candidate, effect_of(setting.candidate)
         what = f"{candidate.mechanism} of {candidate.component}"
         weighed = zip(effect.weights(setting.values), effect.points, strict=True)
         parts = [w * self._known(press_name(candidate, p), what) for w, p in weighed if abs(w) > ROUND_OFF]
         more = self._differences.get(_coordinates(candidate))
-        return np.asarray(np.sum(parts, axis=0) + (more.at(setting.values) if more is not None else 0.0))
+        beyond = more.at(setting.values) if more is not None else None
+        parts += [beyond] if beyond is not None else []
+        return np.sum(parts, axis=0) if parts else None
 
     def _known(self, name: Name, what: str) -> Floats:
         if name not in self._changes:

@@ -211,6 +211,18 @@ def test_a_softer_bond_lets_a_force_go_deeper_as_in_the_3d_model(rig):
     assert error < 0.1 * effect + 2 * KINKS
 
 
+def test_a_mechanism_that_is_as_good_as_off_changes_nothing(rig):
+    """A fit may lead to values that no press has any weight at, also of what depends on the path."""
+    without = rig.predict(0, [])
+    for setting in (
+        switched(rig, "stress-softening", "effector", (1e-15,)),
+        switched(rig, "friction", "dot", (1e-15,)),
+    ):
+        told = rig.predict(0, [setting])
+        for name in told:
+            np.testing.assert_allclose(told[name], without[name], rtol=0.0, atol=1e-9 * peak(without[name]))
+
+
 @pytest.mark.slow
 def test_softened_rubber_loses_on_the_way_back_and_the_second_time():
     """Twice to one depth: the second way down follows the first way up, and both are below the first way down."""
