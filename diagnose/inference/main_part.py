@@ -25,8 +25,8 @@ from diagnose.statistics.held_out import held_out_probabilities
 from geometry.arrays import Floats
 from geometry.base import Report
 
-MOST, HALF = 0.9, 0.5
-"""Shares of the held-out excess over noise that a main part accounts for: as far as noise lets it be told, for sure."""
+MOST = 0.9
+"""Share of the held-out excess over noise that a main part accounts for."""
 FLAWS = 0.02
 """The same that it may leave: more is not the flaws of a rig and the details of a law."""
 NEARLY_ALL = 0.99
@@ -95,7 +95,7 @@ def main_part(model: ObservedModel, found: Screening, report: Report) -> MainPar
         held_together(plain.samples, [first]),
     )
     models = judge.best_first(singles(judge.model, judge.found, firsts, report))
-    if models and not _most(judge, models[0]):
+    if models and models[0].left > 1.0 - MOST:
         judge, models = _with_pairs(judge, models, report)
     return _told(judge, models) if models else None
 
@@ -120,7 +120,7 @@ def _with_pairs(judge: TolerantJudge, models: Sequence[Judged], report: Report) 
 def _told(judge: TolerantJudge, models: Sequence[Judged]) -> MainPart | None:
     best = models[0]
     group = [n for n, one in enumerate(models) if n == 0 or not judge.excluded(one.forecast, best.forecast)]
-    if not _most(judge, best) or best.gain.lower <= 0.0:
+    if best.left > 1.0 - MOST or best.gain.lower <= 0.0:
         return None
     if judge.largest(best.forecast) > VISIBLE and not judge.spread(best.forecast):
         return None
@@ -137,9 +137,3 @@ def _told(judge: TolerantJudge, models: Sequence[Judged]) -> MainPart | None:
         judge.largest(best.forecast),
         left,
     )
-
-
-def _most(judge: TolerantJudge, one: Judged) -> bool:
-    """Whether it accounts for most of the excess, which noise blurs."""
-    hidden = judge.hidden()
-    return one.left - hidden <= 1.0 - MOST and one.left + hidden <= 1.0 - HALF

@@ -37,7 +37,7 @@ class TolerantJudge:
         self, model: ObservedModel, found: Screening, tolerance: SignalDiscrepancy, sizes: Floats, fold: Ints
     ) -> None:
         self.tolerance, self.fold = tolerance, fold
-        self.model = tolerating(model, tolerance, sizes)
+        self.model = model.tolerating(tolerance.variance(np.maximum(sizes, relative(model))))
         rows = found.baseline.informative
         start, baseline = (linearised(self.model, one.values, (), 0.0, rows) for one in (found.start, found.baseline))
         self.found = replace(found, start=start, baseline=baseline, excess=0.0)
@@ -125,31 +125,13 @@ def held_together(samples: Samples, candidates: Sequence[Candidate]) -> Ints:
     return samples.fold if any(one.traits.free_phase for one in candidates) else conditions(samples)
 
 
-ROUNDS, SETTLED = 8, 0.05
-"""Most rounds of the sizes that are left, and the relative change of one that is none."""
-
-
 def left_by(judge: TolerantJudge, on: Sequence[Setting]) -> Floats:
-    """Sizes (c,) of what settings leave of all presses, nuisances as they come closest.
-
-    Nuisances are held to their priors the more, the more is tolerated: sizes are renewed until they stand still.
-    """
-    start, tolerance, model = judge.found.start, judge.tolerance, judge.model
-    sizes = np.full(len(model.samples.channels), np.inf)
-    for _ in range(ROUNDS):
-        system = linearised(model, start.values, on, 0.0, start.informative)
-        residual = system.residual.copy()
-        residual[system.informative] -= system.nuisance_design @ system.quadratic.mean(system.weighted(residual))
-        before, sizes = sizes, tolerance.sizes(residual)
-        if np.all(before - sizes <= SETTLED * sizes):
-            break
-        model = tolerating(model, tolerance, sizes)
-    return sizes
-
-
-def tolerating(model: ObservedModel, tolerance: SignalDiscrepancy, sizes: Floats) -> ObservedModel:
-    """The model that may leave discrepancies of sizes (c,), at least what it states itself."""
-    return model.tolerating(tolerance.variance(np.maximum(sizes, relative(model))))
+    """Sizes (c,) of what settings leave of all presses, nuisances as they come closest."""
+    start = judge.found.start
+    system = linearised(judge.model, start.values, on, 0.0, start.informative)
+    residual = system.residual.copy()
+    residual[system.informative] -= system.nuisance_design @ system.quadratic.mean(system.weighted(system.residual))
+    return judge.tolerance.sizes(residual)
 
 
 def distinguished(model: ObservedModel, found: Screening, choice: Choice) -> Choice:
