@@ -259,7 +259,9 @@ def _with_main_part(findings: Findings, main: MainPart, choice: Choice, rng: np.
     train, held_out = refits[order[0]]
     if held_out is not None and not confirmed(held_out):
         return findings
-    if not main.nameable or choice.alike > RATES.largest_group:  # what the noise cannot part, a discrepancy cannot
+    # what the noise alone cannot part, and nothing else speaks against, a discrepancy cannot part either
+    too_many_alike = choice.alike > RATES.largest_group and len(choice.decision.reasons) == 1
+    if not main.nameable or too_many_alike:
         return _with_kind(findings, main, rng)
     chances, best = main.probabilities(rng), main.models[order[0]]
     order += [n for n in range(len(main.models)) if n not in main.group]

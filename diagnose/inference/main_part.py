@@ -56,13 +56,10 @@ class MainPart:
 
     @property
     def nameable(self) -> bool:
-        """Whether few enough are as good, and the best leaves little and has no value at an edge.
-
-        One of the two is excused where it is nearly all.
-        """
-        faults = (self.left_size > FLAWS) + bool(implausible(self.models[0].fit))
-        excused = 1 if self.share - self.hidden >= NEARLY_ALL else 0
-        return len(self.group) <= RATES.largest_group and faults <= excused
+        """Whether few enough are as good, and the best leaves little and has no value at an edge, or is nearly all."""
+        few = len(self.group) <= RATES.largest_group
+        plain = self.left_size <= FLAWS and not implausible(self.models[0].fit)
+        return few and (plain or self.share - self.hidden >= NEARLY_ALL)
 
     def probabilities(self, rng: np.random.Generator) -> Floats:
         """(m,) of the models, by their held-out scores, among them and the baseline."""
