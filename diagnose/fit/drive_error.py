@@ -47,12 +47,12 @@ def drive_error(model: ObservedModel, values: Floats, on: Sequence[Setting], lev
     """
     if not _tells(model.runs):
         return None
-    deepest = max(float(run.drive_values.max()) for run in model.runs)
     try:
         residual = model.samples.recorded - model.vector(values, on)
-        waves = [_Waves(model, run, values, on, residual, STEP * deepest) for run in range(len(model.runs))]
+        waves = [_Waves(model, run, values, on, residual) for run in range(len(model.runs))]
     except ValueError:
         return None
+    deepest = max(float(run.drive_values.max()) for run in model.runs)
     seen = _Seen.of(model, residual)
     every, each = np.ones((1, len(seen.count))), np.eye(len(seen.count))
     start = (START * deepest) ** 2
@@ -78,11 +78,10 @@ class _Waves:
     these, whitened, by the number of the channel; moment : (c, w) of these with the residual.
     """
 
-    def __init__(
-        self, model: ObservedModel, run: int, values: Floats, on: Sequence[Setting], residual: Floats, step_mm: float
-    ) -> None:
+    def __init__(self, model: ObservedModel, run: int, values: Floats, on: Sequence[Setting], residual: Floats) -> None:
         samples, recorded = model.samples, model.runs[run]
-        self.press, self.frequency_Hz, drives = _cosines(recorded, model.samples.recording.phases[run].presses)
+        self.press, self.frequency_Hz, drives = _cosines(recorded, samples.recording.phases[run].presses)
+        step_mm = STEP * float(recorded.drive_values.max())
         drive = recorded.drive_values * (1.0 - np.sqrt(2.0) * STEP)  # no wave goes deeper than the recording
         still = model.imagined(run, drive, values, on)
         moved = [model.imagined(run, drive + step_mm * wave, values, on) for wave in drives]
@@ -90,15 +89,13 @@ class _Waves:
             name: np.array([(one[name] - still[name]) / step_mm for one in moved]).reshape(-1, len(still[name])).T
             for name in recorded.answers
         }
-        gram, moment = [], []
-        for name in samples.channels:
-            blocks = [block for block in samples.blocks if block.run == run and block.channel == name]
-            columns = [samples.of_block(b, b.whitening(self.change[name]))[b.rows] for b in blocks]
-            left = [residual[b.rows] for b in blocks]
-            nothing = np.zeros((len(drives), len(drives)))
-            gram.append(sum((c.T @ c for c in columns), nothing))
-            moment.append(sum((c.T @ r for c, r in zip(columns, left, strict=True)), nothing[:, 0]))
-        self.gram, self.moment = np.array(gram), np.array(moment)
+        channels, count = len(samples.channels), len(drives)
+        self.gram, self.moment = np.zeros((channels, count, count)), np.zeros((channels, count))
+        for block in samples.blocks:
+            if block.run == run:
+                columns = samples.of_block(block, block.whitening(self.change[block.channel]))[block.rows]
+                number = samples.channels.index(block.channel)
+                self.gram[number], self.moment[number] = columns.T @ columns, columns.T @ residual[block.rows]
 
     def within(self, band_Hz: float) -> tuple[Bools, Floats]:
         """Which waves (w,) have no higher frequency, and by what each of them counts: alike in each press."""

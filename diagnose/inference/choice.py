@@ -42,7 +42,6 @@ class Choice:
     """models : best first. probabilities : (m,). groups : of models.
 
     box_gain : nats per press of the black box over the best. base : the baseline's forecast, None without models.
-    alike : how many cannot be told from the best by the noise alone, itself included.
     """
 
     models: tuple[Judged, ...]
@@ -51,7 +50,6 @@ class Choice:
     box_gain: float
     decision: Decision
     base: Forecasted | None
-    alike: int = 0
 
 
 class Judge:
@@ -172,7 +170,7 @@ def _decided(judge: Judge, models: tuple[Judged, ...], p_mismatch: float) -> Cho
     )
     decision = decide(evidence, replace(RATES, margin=worth_of_form(samples, metric)))
     probabilities = _probabilities(models, scores, judge.rng)
-    return Choice(models, probabilities, grouped(apart), box.mean, decision, judge.base, evidence.group)
+    return Choice(models, probabilities, grouped(apart), box.mean, decision, judge.base)
 
 
 def _probabilities(models: Sequence[Judged], scores: Floats, rng: np.random.Generator) -> Floats:

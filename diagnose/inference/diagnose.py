@@ -122,9 +122,7 @@ def diagnose(recording: Recording, engine: Engine, seed: int, report: Report) ->
     if found.p_value > RATES.level:
         return _quiet(model, baseline, found)
     engine.prepare(engine.candidates, report)
-    screening = screen(model, baseline, report)
-    choice = distinguished(model, screening, choose(model, screening, found.p_value, rng, report))
-    findings = _findings(model, screening, found, choice)
+    screening, choice, findings = _explained(model, baseline, found, rng, report)
     if not findings.unexplained:
         return findings
     trembling = _beside_a_drive_error(model, found, choice, rng, report)
@@ -132,6 +130,15 @@ def diagnose(recording: Recording, engine: Engine, seed: int, report: Report) ->
         return trembling
     main = main_part(model, screening, report)
     return findings if main is None else _with_main_part(findings, main, choice, rng)
+
+
+def _explained(
+    model: ObservedModel, baseline: LinearisedSystem, found: Checked, rng: np.random.Generator, report: Report
+) -> tuple[Screening, Choice, Findings]:
+    """The choice between all candidates, by the noise alone, and what is told of it."""
+    screening = screen(model, baseline, report)
+    choice = distinguished(model, screening, choose(model, screening, found.p_value, rng, report))
+    return screening, choice, _findings(model, screening, found, choice)
 
 
 def _beside_a_drive_error(
@@ -152,9 +159,7 @@ def _beside_a_drive_error(
     baseline = fitted_baseline(model)
     if checked(model.samples, baseline, rng).p_value > RATES.level:
         return None
-    screening = screen(model, baseline, report)
-    choice = distinguished(model, screening, choose(model, screening, found.p_value, rng, report))
-    findings = _findings(model, screening, found, choice)
+    _, _, findings = _explained(model, baseline, found, rng, report)
     if findings.unexplained or (findings.held_out is not None and not _flaws(findings.held_out)):
         return None
     said = (
@@ -259,9 +264,7 @@ def _with_main_part(findings: Findings, main: MainPart, choice: Choice, rng: np.
     train, held_out = refits[order[0]]
     if held_out is not None and not confirmed(held_out):
         return findings
-    # what the noise alone cannot part, and nothing else speaks against, a discrepancy cannot part either
-    too_many_alike = choice.alike > RATES.largest_group and len(choice.decision.reasons) == 1
-    if not main.nameable or too_many_alike:
+    if not main.nameable or choice.decision.ambiguous:  # what was not told apart before is not by tolerating more
         return _with_kind(findings, main, rng)
     chances, best = main.probabilities(rng), main.models[order[0]]
     order += [n for n in range(len(main.models)) if n not in main.group]

@@ -145,11 +145,13 @@ def distinguished(model: ObservedModel, found: Screening, choice: Choice) -> Cho
     again = [judge.judged(judge.refitted(one.fit)) for one in choice.models]
     good = {n for n, one in enumerate(again) if not judge.excluded(one.forecast, again[0].forecast)}
     group = tuple(sorted({*choice.groups[0], 0, *good}))
-    against = [too_many(len(group), RATES)] if len(group) > RATES.largest_group else _needless(judge, again)
+    ambiguous = len(group) > RATES.largest_group
+    against = [too_many(len(group), RATES)] if ambiguous else _needless(judge, again)
     rest = (tuple(n for n in other if n not in group) for other in choice.groups[1:])
     decision = choice.decision
     if against:
-        decision = replace(decision, named=False, unexplained=True, reasons=(*decision.reasons, *against))
+        reasons = (*decision.reasons, *against)
+        decision = replace(decision, named=False, unexplained=True, reasons=reasons, ambiguous=ambiguous)
     return replace(choice, groups=(group, *filter(None, rest)), decision=decision)
 
 

@@ -46,12 +46,16 @@ class Evidence:
 
 @dataclass(frozen=True)
 class Decision:
-    """named : the best model is named. unexplained : a mismatch that no known mechanism explains."""
+    """named : the best model is named. unexplained : a mismatch that no known mechanism explains.
+
+    ambiguous : nothing speaks against a name but that too many models share it.
+    """
 
     mismatch: bool
     named: bool
     unexplained: bool
     reasons: tuple[str, ...]
+    ambiguous: bool = False
 
 
 def decide(evidence: Evidence, rates: Rates) -> Decision:
@@ -60,7 +64,8 @@ def decide(evidence: Evidence, rates: Rates) -> Decision:
         reason = f"The residual is no larger than noise makes it ({p_equals(evidence.p_mismatch)})."
         return Decision(False, False, False, (reason,))
     reasons = tuple(_against(evidence, rates))
-    return Decision(True, not reasons, bool(reasons), reasons)
+    ambiguous = len(reasons) == 1 and evidence.group > rates.largest_group
+    return Decision(True, not reasons, bool(reasons), reasons, ambiguous)
 
 
 def _against(evidence: Evidence, rates: Rates) -> list[str]:
