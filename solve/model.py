@@ -15,6 +15,7 @@ from geometry.parameters import Dot, Finite, NonNegative, Positive, Segment, Tab
 from solve.materials.inelastic import Prony, Softening
 from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.readout.stages import Stage
+from solve.terms.guide import GuideFriction
 
 if TYPE_CHECKING:
     from solve.mechanisms import Mechanism
@@ -138,9 +139,10 @@ class Physics:
     viscosity : layer or bond -> Prony series; softening : medium -> law (stress scale in MPa).
     bonds : bond -> stiffness. friction : Coulomb coefficient between dot and surface.
     rig_compliance_mm_per_N lies between the displacement sensor and the dot, moving_mass_g between the force sensor
-    and the dot. prestretch : nominal strain of the film in x and y. contact_charge_pC : charge that the dot leaves on
-    the electrodes, all of it at the largest contact area, before that by a power of the area. electronics : stages of
-    the amplifier beside those of the read-out. crosstalk : channel (from 1) -> share of the other channels' voltage.
+    and the dot; guide rubs where the displacement sensor is, and the force sensor carries it. prestretch : nominal
+    strain of the film in x and y. contact_charge_pC : charge that the dot leaves on the electrodes, all of it at the
+    largest contact area, before that by a power of the area. electronics : stages of the amplifier beside those of the
+    read-out. crosstalk : channel (from 1) -> share of the other channels' voltage.
     mutual_pF : two channels -> capacitance between their inputs; channel_leak_uS : channel -> conductance parallel to
     its input; channel_electronics : channel -> stages beside those of all. They need an amplifier for each electrode.
     separate_channels : each electrode is on an amplifier of its own, against a common ground, where voltages act back
@@ -155,6 +157,7 @@ class Physics:
     friction: float = 0.0
     rig_compliance_mm_per_N: float = 0.0
     moving_mass_g: float = 0.0
+    guide: GuideFriction = field(default_factory=GuideFriction)
     prestretch: tuple[float, float] = (0.0, 0.0)
     pyroelectric: Pyroelectric = Pyroelectric()
     contact_charge_pC: float = 0.0
@@ -185,6 +188,7 @@ class Physics:
             or self.film_yield
             or self.friction > 0.0
             or self.moving_mass_g > 0.0
+            or self.guide.forces_N
             or self.pyroelectric.temperature_step_K != 0.0
         )
 

@@ -2,7 +2,8 @@
 
 Why a press that converged should still be doubted: contact that overlaps, a snap, time that is cut too coarsely.
 
-The mass that moves with the dot where its path is prescribed: the force sensor reads F_contact + m a''.
+What the force sensor reads beside the contact: the mass that moves on a prescribed path, F_contact + m a'', and the
+friction of a guide.
 """
 
 from collections.abc import Mapping, Sequence
@@ -240,8 +241,8 @@ class Recorder:
         return -float(self.system.dot_force(trial)[2]) if rig is None else rig.drive_force(trial)
 
     def trace(self, press: Press) -> Trace:
-        """All that was recorded, with the force of the moving mass and the charge of heat and touch."""
-        trace = self._with_inertia(self._trace(), press)
+        """All that was recorded, with the forces of moving mass and guide and the charge of heat and touch."""
+        trace = self._with_guide(self._with_inertia(self._trace(), press))
         return replace(trace, film_charge_C=trace.film_charge_C + self._other_charge(trace))
 
     def _trace(self) -> Trace:
@@ -262,6 +263,11 @@ class Recorder:
         acceleration = prescribed_acceleration(press, trace)
         force = trace.reaction_force_N + 1e-3 * self.physics.moving_mass_g * acceleration
         return replace(trace, reaction_force_N=force)
+
+    def _with_guide(self, trace: Trace) -> Trace:
+        """The force sensor also carries what rubs beside the segment; its displacement sensor tells the path."""
+        rubbing_N = self.physics.guide.felt_N(1e3 * trace.indentation_m)
+        return replace(trace, reaction_force_N=trace.reaction_force_N + rubbing_N)
 
     def _other_charge(self, trace: Trace) -> Floats:
         """Charge of heat and of the touch, (t, e) in C."""

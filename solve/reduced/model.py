@@ -106,14 +106,15 @@ def sensed(time: Floats, drive: Floats, kind: int, path: Floats, contact: Floats
         return drive.copy()
     if physics.rig_compliance_mm_per_N > 0.0:
         return np.asarray((drive - path) / physics.rig_compliance_mm_per_N)
-    return felt(time, drive, contact, physics.moving_mass_g)
+    return felt(time, drive, contact, physics)
 
 
-def felt(time: Floats, depth: Floats, force: Floats, moving_mass_g: float) -> Floats:
-    """Force (t,) with that of a mass which moves along a path (t,) in mm: F + m a''."""
-    if moving_mass_g == 0.0:
-        return force.copy()
-    return np.asarray(force + 1e-6 * moving_mass_g * _acceleration(time, depth))
+def felt(time: Floats, depth: Floats, force: Floats, physics: Physics) -> Floats:
+    """Force (t,) with those of a mass and a guide which move along a path (t,) in mm: F + m a'' + f."""
+    total = force + physics.guide.felt_N(depth)
+    if physics.moving_mass_g > 0.0:
+        total += 1e-6 * physics.moving_mass_g * _acceleration(time, depth)
+    return total
 
 
 def _acceleration(time: Floats, depth: Floats) -> Floats:

@@ -37,7 +37,7 @@ STANDARDS = ("marburg-medium", "ada", "nls", "japan", "en-15823")
 def design(number: int) -> dict:
     """Tables of design `number`, the same each time."""
     draw = Draw(SEED, number)
-    names = [NAMES[number % 24], NAMES[(7 * number + number // 24 + 5) % 24]]
+    names = [NAMES[number % len(NAMES)], NAMES[(7 * number + number // len(NAMES) + 5) % len(NAMES)]]
     names += [draw.among(NAMES)] if draw.perhaps(0.4) else []
     several = number % ARRAY == FIRST_ARRAY
     if several:
@@ -66,6 +66,8 @@ def design(number: int) -> dict:
         "mechanisms": _mechanisms(draw, names, segment, dot),
         "fabrication": {},
     }
+    if "force_N" in tables["press"]:
+        tables["mechanisms"] = [one for one in tables["mechanisms"] if one["name"] != "guide-friction"]
     if several:
         tables["array"] = _array(draw, segment)
         tables["press"].pop("path_xy_mm", None)

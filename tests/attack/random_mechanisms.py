@@ -43,6 +43,10 @@ def mechanism(draw, name, segment, dot) -> dict | None:
         "rig-compliance": lambda: ("rig", {"compliance_mm_per_N": draw.log(1e-3, 1.0)}),
         "film-prestretch": lambda: ("film", {"strain_x": draw.log(1e-4, 0.02), "strain_y": draw.sign(1e-4, 1e-3)}),
         "inertia": lambda: ("rig", {"moving_mass_g": draw.log(0.1, 100.0)}),
+        "guide-friction": lambda: (
+            "rig",
+            {"friction_force_N": [draw.log(1e-3, 10.0)], "presliding_mm": [draw.log(1e-4, 0.1)]},
+        ),
         "crosstalk": lambda: _crosstalk(draw),
         "property-error": lambda: _property(draw, media, dot),
         "dimension-reduction": lambda: ("dot", {}),

@@ -24,7 +24,9 @@ def valid_configurations(draw, shapes=FLAT):
     softest_MPa = min(modulus_MPa(m) for name, m in materials.items() if name != "own-film")
     press = draw(presses(segment, softest_MPa))
     mesher = "pytetwild" if shapes == ROUND else "layered"
-    chosen = [one for one in draw(mechanisms(segment, dot)) if shapes != ROUND or one["name"] != "inertia"]
+    left_out = {"inertia"} if shapes == ROUND else set()
+    left_out |= {"guide-friction"} if "force_N" in press else set()
+    chosen = [one for one in draw(mechanisms(segment, dot)) if one["name"] not in left_out]
     tables = {
         "segment": segment,
         "materials": materials,

@@ -28,6 +28,10 @@ ANYWHERE = {
     ("contact-gap", "dot"): {"gap_mm": between(0.0, 0.1)},
     ("rig-compliance", "rig"): {"compliance_mm_per_N": log_between(1e-3, 1.0)},
     ("inertia", "rig"): {"moving_mass_g": log_between(0.01, 100.0)},
+    ("guide-friction", "rig"): {
+        "friction_force_N": st.lists(between(0.0, 1.0), min_size=2, max_size=2),
+        "presliding_mm": st.lists(log_between(1e-3, 0.1), min_size=2, max_size=2),
+    },
     ("elastic-sides", "sides"): {"stiffness_N_per_mm3": log_between(0.01, 100.0)},
 }
 OF_A_MEDIUM = {

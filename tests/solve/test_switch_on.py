@@ -8,7 +8,7 @@ import pytest
 from geometry.parameters import Dot
 from solve.materials.parameters import Hyperfoam, Knowles, MooneyRivlin, Ogden, Yeoh
 from solve.mechanisms import Mechanism, with_mechanisms
-from solve.model import Model, Readout
+from solve.model import Model, Press, Readout
 from solve.readout.amplifier import amplify
 from tests.solve.segments import materials, segment
 
@@ -34,6 +34,7 @@ def switched(model, name, component, **parameters):
         ("rig-compliance", "rig", {"compliance_mm_per_N": 0.0}),
         ("film-prestretch", "film", {}),
         ("inertia", "rig", {"moving_mass_g": 0.0}),
+        ("guide-friction", "rig", {"friction_force_N": [0.0], "presliding_mm": [0.01]}),
         ("pyroelectric-drift", "film", {"temperature_step_K": 0.0}),
         ("contact-electrification", "film", {"charge_pC": 0.0}),
         ("property-error", "medium2", {}),
@@ -59,6 +60,13 @@ def test_capacitances_add_and_the_lower_limit_counts(model):
         on = switched(start, "saturation", "readout", limit_V=limit_V)
         charge = np.array([0.0, 1e-6])  # some kV on 100 pF
         assert amplify(np.array([0.0, 1e-3]), charge, 100e-12, on.readout, on.physics)[-1] == shown_V
+
+
+def test_a_guide_does_not_rub_where_a_force_drives(model):
+    """Nobody knows what of the force a guide takes: it is refused."""
+    driven = replace(model, press=Press(force_N=1.0))
+    with pytest.raises(ValueError, match=r"press\.indentation_mm"):
+        switched(driven, "guide-friction", "rig", friction_force_N=[0.3], presliding_mm=[0.02])
 
 
 def test_offsets_and_gaps_add(model):

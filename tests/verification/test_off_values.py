@@ -64,6 +64,7 @@ OFF = [
     ("rig-compliance", "rig", {"compliance_mm_per_N": 0.0}),
     ("film-prestretch", "film", {}),
     ("inertia", "rig", {"moving_mass_g": 0.0}),
+    ("guide-friction", "rig", {"friction_force_N": [0.0], "presliding_mm": [0.01]}),
     ("property-error", "medium2", {}),
 ]
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from solve.model import Physics, Press
+from solve.terms.guide import GuideFriction
 from tests.pressing import press_segment
 from tests.solve.segments import materials, ridge
 from tests.verification.slices import BLOCK, STACK, charge, foams, force, mesh_of, plate, pressed, waved
@@ -60,6 +61,33 @@ def test_a_mass_on_a_prescribed_path_adds_its_inertia():
     acceleration = 0.5 * 2e-4 * (np.pi / 0.02) ** 2 * np.cos(np.pi * time / 0.02)
     extra = force(result)[1:-1] + result.trace.contact_force_N[1:-1, 2] * np.sign(-result.trace.contact_force_N[-1, 2])
     np.testing.assert_allclose(extra, 1e-3 * MASS_G * acceleration, atol=5e-3 * 1e-3 * MASS_G * acceleration.max())
+
+
+@pytest.mark.parametrize(("forces_N", "presliding_mm"), [((2.0,), (0.1,)), ((0.5, 3.0), (0.02, 0.7))])
+def test_a_loop_loses_coulombs_force_times_the_way_that_slips(forces_N, presliding_mm):
+    """Between A and -A each slider slips 2 A - 2 d either way: together they lose sum 4 F (A - d)."""
+    amplitude_mm = 1.5
+    path = amplitude_mm * np.sin(np.linspace(0.0, 4.0 * np.pi, 4001))
+    force = GuideFriction(forces_N, presliding_mm).felt_N(path)
+    second = slice(len(path) // 2, None)  # the first loop begins at rest
+    lost = np.trapezoid(force[second], path[second])
+    ways = [4.0 * f * (amplitude_mm - d) for f, d in zip(forces_N, presliding_mm, strict=True)]
+    assert lost == pytest.approx(sum(ways), rel=1e-3)
+
+
+def test_a_guide_rubs_beside_the_segment():
+    """The sensor reads F_c more on the way in and less on the way out; the segment itself feels nothing."""
+    press = waved("trapezoid", 8, rise_s=0.1, fall_s=0.2)
+    result, plain = pressed(press, Physics(guide=GuideFriction((0.4,), (0.05,)))), pressed(press)
+    extra = force(result) - np.abs(result.trace.contact_force_N[:, 2])
+    depth_mm = 1e3 * result.trace.indentation_m
+    deepest = int(np.argmax(depth_mm))
+    inwards, outwards = depth_mm[: deepest + 1] >= 0.05, depth_mm[deepest:] <= depth_mm[deepest] - 0.1
+    np.testing.assert_allclose(extra[: deepest + 1][inwards], 0.4, rtol=1e-9)
+    np.testing.assert_allclose(extra[deepest:][outwards], -0.4, rtol=1e-9)
+    assert inwards.sum() > 3
+    assert outwards.sum() > 2
+    assert charge(result)[deepest] == pytest.approx(charge(plain).max(), rel=1e-9)
 
 
 @pytest.fixture(scope="module")

@@ -100,7 +100,7 @@ class CouponEngine:
         if kind == "force_N":
             return {"displacement_mm": values}
         held = np.maximum(values, -buckling_load_N(self.specimen, model.materials[LAYER]))
-        return {"force_N": felt(run.time_s, drive, held, model.physics.moving_mass_g)}
+        return {"force_N": felt(run.time_s, drive, held, model.physics)}
 
 
 def buckling_load_N(specimen: Specimen, material: Material) -> float:

@@ -45,6 +45,20 @@ def test_a_grip_adds_its_mass_times_the_acceleration_of_the_crosshead():
     np.testing.assert_allclose(added[gathers + 0.1 < TIME][:-1], 0.0, atol=1e-9)
 
 
+def test_a_seal_rubs_with_the_same_force_at_any_speed():
+    """A tenth of the largest force that was recorded, from a tenth of the travel on, of a slow and of a quick run."""
+    of, values = engine("shear"), (0.0, 0.0, 0.0, 0.0, 0.1, 0.0)
+    slider = candidate(of, "guide-friction").parameters(values)
+    assert slider == {"friction_force_N": [pytest.approx(0.4)], "presliding_mm": [pytest.approx(0.8)]}
+    rubbing = Setting(candidate(of, "guide-friction"), values)
+    slow = replace(of.recording.runs[0], time_s=100.0 * TIME)
+    for one in (of.recording.runs[0], slow):
+        added = of.imagine(one, (rubbing,))["force_N"] - of.imagine(one, ())["force_N"]
+        np.testing.assert_allclose(added[(TRAVEL >= 0.8) & (TIME <= 8.0)], 0.4, rtol=1e-9)
+        np.testing.assert_allclose(added[(TRAVEL <= 6.4) & (TIME > 8.0) & (TIME <= 12.0)], -0.4, rtol=1e-9)
+    assert not [one for one in engine(drive="force_N").candidates if one.mechanism == "guide-friction"]
+
+
 def test_a_strip_that_is_pushed_bends_aside_at_eulers_load():
     """Half of its travel back beyond rest: a block would push with the whole force, a strip of 2 mm with 4 % of it."""
     travel = np.interp(TIME, [0.0, 5.0, 15.0, 20.0], [0.0, 4.0, -4.0, 0.0])

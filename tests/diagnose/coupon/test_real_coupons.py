@@ -1,15 +1,34 @@
-"""Real coupons of other laboratories with their forces shuffled: nothing is left to find."""
+"""Real coupons of other laboratories: what an expert knows of them, and nothing where their forces are shuffled."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
 from diagnose.inference.diagnose import diagnose
 from softdot.commands.diagnose import engine_for
 from softdot.config.rig import load_rig
-from tests.diagnose.real import NEEDED, control, converted, silent
+from tests.diagnose.real import NEEDED, RECORDINGS, control, converted, silent
 
 pytestmark = NEEDED
+
+
+def test_the_friction_of_a_seal_is_named_and_predicts_a_repeat_as_coulombs_law_does():
+    """An expert's spring and slider, fitted to the first and third run, leaves 15.7 % of the second."""
+    rig = load_rig(Path(RECORDINGS) / "oring-friction")
+    found = diagnose(rig.recording, engine_for(rig, silent), 0, silent)
+    assert found.best is not None, found.reasons
+    assert [one.candidate.mechanism for one in found.best.settings] == ["guide-friction"]
+    assert found.groups[0] == (0,)
+    assert found.held_out is not None
+    assert found.held_out.nrmse_after < 1.2 * 0.157
+
+
+@pytest.mark.parametrize("name", ["shuffled", "replicates"])
+def test_controls_of_the_seal_name_nothing(name):
+    rig = load_rig(Path(RECORDINGS) / "oring-friction")
+    rig = replace(rig, recording=control(name)(rig.recording))
+    assert diagnose(rig.recording, engine_for(rig, silent), 0, silent).best is None
 
 
 @pytest.mark.parametrize("data", ["silicones-tensile", "rubber-treloar", "vhb-relaxation", "adhesive-shear"])

@@ -1,0 +1,69 @@
+"""Friction of a guide or a seal in the fixture: against the motion, the same at any speed.
+
+Sliders at fixed travels, half a decade apart, by their forces over the largest that was recorded: the answer is linear
+in them, and one that slips in between differs from its neighbours' sum by a tenth of its force for a short while.
+"""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from diagnose.forward import Candidate, Coordinate
+from diagnose.vocabulary.base import REMEMBERS, CouponScene, Scene, Vocabulary, register
+from solve.mechanisms.boundaries.guide_friction import GUIDE_FRICTION
+
+TRAVELS = tuple(10.0 ** (0.5 * n - 3.0) for n in range(6))  # of the largest travel, where a slider slips
+MOST = 1.5  # of the largest force
+
+
+def of_segment(scene: Scene) -> Iterator[Candidate]:
+    """Where a force was recorded, which alone shows it."""
+    if scene.force_N > 0.0:
+        yield _guide(scene.force_N, scene.depth_mm)
+
+
+def of_coupon(scene: CouponScene) -> Iterator[Candidate]:
+    """Where a displacement drives: of a force that drives nobody knows what a guide takes."""
+    if all(run.drive == "displacement_mm" for run in scene.recording.runs):
+        yield _guide(scene.force_N, scene.travel_mm)
+
+
+def _guide(force_N: float, travel_mm: float) -> Candidate:
+    """In terms of the largest force and travel."""
+    travels = [share * travel_mm for share in TRAVELS]
+    coordinates = tuple(Coordinate(f"force_from_{travel:.3g}_mm", 0.0, MOST, (0.05, 0.5)) for travel in travels)
+
+    def parameters(values: Sequence[float]) -> dict[str, Any]:
+        rubbing = [(force_N * value, at) for value, at in zip(values, travels, strict=True) if value > 0.0]
+        return {"friction_force_N": [force for force, _ in rubbing], "presliding_mm": [at for _, at in rubbing]}
+
+    def derived(values: Sequence[float]) -> dict[str, float]:
+        return sliding(**parameters(values))
+
+    units = {"friction_force_N": "N", "presliding_mm": "mm", "sliding_friction_N": "N", "half_of_it_within_mm": "mm"}
+    return Candidate(GUIDE_FRICTION.name, "rig", coordinates, parameters, derived, units)
+
+
+def sliding(friction_force_N: Sequence[float], presliding_mm: Sequence[float]) -> dict[str, float]:
+    """Force of all sliders once they slip, and the travel from rest within which half of it is there.
+
+    presliding_mm ascends.
+    """
+    forces, travels = np.array(friction_force_N), np.array([0.0, *presliding_mm])
+    grown = np.minimum(travels[:, None] / travels[1:], 1.0) @ forces
+    return {
+        "sliding_friction_N": float(grown[-1]),
+        "half_of_it_within_mm": float(np.interp(0.5 * grown[-1], grown, travels)),
+    }
+
+
+register(
+    Vocabulary(
+        GUIDE_FRICTION,
+        "a guide or seal of {} rubs",
+        of_segment=of_segment,
+        of_coupon=of_coupon,
+        kind=REMEMBERS,
+    )
+)
