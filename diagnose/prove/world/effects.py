@@ -12,11 +12,12 @@ import numpy as np
 
 from diagnose.prove.world.bench import Bench
 from diagnose.prove.world.channels import Stray
-from diagnose.prove.world.laws import Damage, Film, Glue, Layer, Made, Spectrum, relaxation
+from diagnose.prove.world.laws import Damage, Film, Glue, Layer, Made, Spectrum, bulk_modulus, relaxation, shear_modulus
 from diagnose.prove.world.noise import Filter
 from diagnose.prove.world.reality import Reality, baseline
 
 GLUE_MM = 0.02
+BULK_OVER_SHEAR = 29.0 / 3.0  # of a soft compressible glue, whose Poisson's ratio is 0.45
 RELAXES_S = 0.4
 
 
@@ -155,23 +156,20 @@ def _stiffening(name: str) -> Callable[[Reality, Bench, float], Reality]:
 GENT = 4.0
 
 
-def _glued(above: str) -> Callable[[Reality, Bench, float], Reality]:
-    """Glue between a layer and the one below it, which is so much thinner."""
+def _glued(medium: str) -> Callable[[Reality, Bench, float], Reality]:
+    """Glue in the place of the medium's skin beside the film, in series with what that skin gives way itself."""
 
     def change(reality: Reality, bench: Bench, s: float) -> Reality:
-        nu = 0.45
-        glue = Glue(above, GLUE_MM, 2.0 * (1.0 + nu) * _shear_N_per_mm3(s) * GLUE_MM, nu)
-        layers = list(reality.made.layers)
-        place = next(n for n, x in enumerate(layers) if getattr(x, "name", "film") == above)
-        below = layers[place - 1]
-        layers[place - 1] = replace(below, thickness_mm=below.thickness_mm - GLUE_MM)
+        skin = _named(reality.made, medium)
+        added = 0.01 * s / GLUE_MM  # of shear, 1/MPa
+        shear = 1.0 / (1.0 / shear_modulus(skin) + added)
+        bulk = 1.0 / (1.0 / bulk_modulus(skin) + added / BULK_OVER_SHEAR)
+        glue = Glue(GLUE_MM, 9.0 * bulk * shear / (3.0 * bulk + shear), 0.5 - 1.5 * shear / (3.0 * bulk + shear))
+        layers = list(_layer(reality.made, medium, thickness_mm=skin.thickness_mm - GLUE_MM).layers)
+        place = next(n for n, x in enumerate(layers) if isinstance(x, Film)) + (medium == "medium1")
         return replace(reality, made=replace(reality.made, layers=(*layers[:place], glue, *layers[place:])))
 
     return change
-
-
-def _shear_N_per_mm3(s: float) -> float:
-    return 100.0 / s
 
 
 def _factor(name: str, quantity: str, per_s: float) -> Callable[[Reality, Bench, float], Reality]:
@@ -266,7 +264,7 @@ LISTED = (
         _is("compliance_mm_per_N", 5e-4),
         40.0,
     ),
-    Effect("glue-below", "adhesive-compliance", FILM_BOND, _glued("film"), form="resolved glue", most=50.0),
+    Effect("glue-below", "adhesive-compliance", FILM_BOND, _glued("medium2"), form="resolved glue", most=50.0),
     Effect(
         "stiffening-medium1", "hyperelastic-stiffening", "medium1", _stiffening("medium1"), form=GENT_FORM, most=8.0
     ),

@@ -62,9 +62,8 @@ class Film:
 
 @dataclass(frozen=True)
 class Glue:
-    """A resolved layer of soft compressible glue, taken from the lower layer. above : the layer that lies on it."""
+    """A resolved layer of soft compressible glue, in the place of a medium's skin."""
 
-    above: str
     thickness_mm: float
     modulus_MPa: float
     poisson_ratio: float = 0.45

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from diagnose.prove.world import laws
-from diagnose.prove.world.bench import Run
+from diagnose.prove.world.bench import FREE, Run
+from diagnose.prove.world.effects import applied
 from diagnose.prove.world.laws import Damage, Film, Layer, Made, Spectrum, at_rest, branches, relaxation, respond
 from diagnose.prove.world.march import table, through_time
-from diagnose.prove.world.reality import scaled_memory, with_strength
+from diagnose.prove.world.reality import baseline, scaled_memory, with_strength
 from diagnose.prove.world.stack import Stack
 
 PAPER = Made(
@@ -147,3 +148,17 @@ def test_both_codes_press_the_same_slice_alike():
     other = pressed(PAPER, 0.3)
     assert other.force_N == pytest.approx(found["reaction_force_N"][-1], rel=2e-3)
     assert other.charge_pC == pytest.approx(found["film_charge_pC"][-1], rel=2e-3)
+
+
+@pytest.mark.parametrize("name", ["glue-above", "glue-below"])
+def test_glue_of_no_strength_is_none_and_soft_glue_leaves_the_film_as_it_is(name):
+    """A hidden glue once thinned the film, and stiffened it where it was weak: the truth then had another name."""
+    coarse = replace(FREE, made=replace(FREE.made, fine=0.5))
+    plain, weak, soft = (applied(baseline(coarse), coarse, {name: s}).made for s in (0.0, 1e-9, 50.0))
+    depth_mm = 0.5 * FREE.deepest_mm
+    before, after, much = (pressed(made, depth_mm, 2) for made in (plain, weak, soft))
+    assert after.force_N == pytest.approx(before.force_N, rel=3e-3)  # the grid has one more row of elements
+    assert after.charge_pC == pytest.approx(before.charge_pC, rel=3e-3)
+    assert much.force_N < 0.999 * before.force_N
+    assert soft.height_mm == pytest.approx(plain.height_mm)
+    assert soft.film == plain.film
