@@ -101,11 +101,14 @@ def branches(viscosity: Mapping[str, Prony], layers: tuple[str, ...]) -> tuple[F
 
 
 def sensed(time: Floats, drive: Floats, kind: int, path: Floats, contact: Floats, physics: Physics) -> Floats:
-    """What the force sensor reads (t,): the force that drives, that of the rig's spring, or F_contact + m a''."""
+    """What the force sensor reads (t,): the force that drives, that of the rig's spring, or F_contact + m a''.
+
+    A guide adds its friction to either of the latter.
+    """
     if kind == BY_FORCE:
         return drive.copy()
     if physics.rig_compliance_mm_per_N > 0.0:
-        return np.asarray((drive - path) / physics.rig_compliance_mm_per_N)
+        return np.asarray((drive - path) / physics.rig_compliance_mm_per_N + physics.guide.felt_N(drive))
     return felt(time, drive, contact, physics)
 
 

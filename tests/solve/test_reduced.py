@@ -15,6 +15,7 @@ from solve.model import Physics, Readout
 from solve.reduced import model as store
 from solve.reduced.fit import CELLS, ResponseTable
 from solve.reduced.model import Accuracy, ReducedModel
+from solve.terms.guide import GuideFriction
 
 STIFFNESS, FULL, SHARE, TAU = 2.0, 0.5, 0.3, 0.2
 SOLID = Physics(viscosity={"medium2": Prony((SHARE,), (TAU,))})
@@ -116,6 +117,19 @@ def test_a_prescribed_path_adds_the_force_of_the_mass():
     with_mass, without = (solid().respond(time, depth, Physics(moving_mass_g=m)).force_N for m in (50.0, 0.0))
     expected = 0.05 * 1e-4 * w**2 * np.cos(w * time)
     np.testing.assert_allclose((with_mass - without)[1:-1], expected[1:-1], atol=1e-4 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("compliance", [0.0, 0.25])
+def test_a_guide_rubs_where_the_rig_travels_and_the_dot_feels_nothing(compliance):
+    """0.3 N more on the way in and less on the way out, once it has slipped after 0.02 mm."""
+    depth = 0.2 * (1.0 - np.abs(np.linspace(-1.0, 1.0, 401)))
+    rubs, smooth = GuideFriction((0.3,), (0.02,)), GuideFriction()
+    rigs = (Physics(rig_compliance_mm_per_N=compliance, guide=guide) for guide in (rubs, smooth))
+    rubbing, plain = (solid().respond(np.linspace(0.0, 2.0, 401), depth, rig) for rig in rigs)
+    extra = rubbing.force_N - plain.force_N
+    np.testing.assert_allclose(extra[21:201], 0.3, rtol=1e-9)
+    np.testing.assert_allclose(extra[241:], -0.3, rtol=1e-9)
+    np.testing.assert_array_equal(rubbing.charge_C, plain.charge_C)
 
 
 def test_heat_and_touch_add_their_charge():
