@@ -17,6 +17,7 @@ from typing import Any
 from benchmarks.timing import Table, file_argument
 from diagnose.findings import Findings
 from diagnose.inference.diagnose import diagnose
+from diagnose.signals.columns import FEWEST
 from diagnose.signals.reading import averaged, thinned
 from diagnose.signals.recording import Recording
 from diagnose.verdict.names import short_name
@@ -26,9 +27,15 @@ from softdot.config.rig import RIG_FILE, load_rig
 AS_IT_IS = "as it is"
 
 
-def averaged_over(factor: int) -> Callable[[Recording], Recording]:
-    """Means over so many samples in a row."""
-    return lambda recording: replace(recording, runs=tuple(averaged(run, factor) for run in recording.runs))
+def averaged_over(factor: int) -> Callable[[Recording], Recording | None]:
+    """Means over so many samples in a row; None where too few would stay."""
+
+    def change(recording: Recording) -> Recording | None:
+        if min(len(run.time_s) for run in recording.runs) < factor * FEWEST:
+            return None
+        return replace(recording, runs=tuple(averaged(run, factor) for run in recording.runs))
+
+    return change
 
 
 def with_noise(factor: float) -> Callable[[Recording], Recording | None]:
