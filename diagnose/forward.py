@@ -47,6 +47,7 @@ class Candidate:
     together : how its coordinates go together in presses of the 3D model: "sum", "jointly", "fading" or "glue" (see
     diagnose.engines.segment.interpolation).
     units : name of a parameter or derived quantity -> unit in the verdict.
+    ordinary : values -> whether a careful laboratory's rig has as much of it, so that it is no finding.
     """
 
     mechanism: str
@@ -57,6 +58,7 @@ class Candidate:
     units: Mapping[str, str] = field(default_factory=dict)
     compared: str = ""
     together: str = "sum"
+    ordinary: Callable[[Sequence[float]], bool] = lambda _: False
 
     @property
     def traits(self) -> Traits:

@@ -165,8 +165,9 @@ def _decided(judge: Judge, models: tuple[Judged, ...], p_mismatch: float) -> Cho
     apart = separations(samples, [one.fit for one in models])
     apart[contradicted(models)] = 0.0
     apart[_told_apart(judge, models)] = np.inf
+    strained, bounds = best.p_strained, implausible(best.fit)
     evidence = Evidence(
-        p_mismatch, best.p_left, best.p_strained, best.gain.lower, box.lower, implausible(best.fit), alike(apart)
+        p_mismatch, best.p_left, strained, best.gain.lower, box.lower, bounds, alike(apart), ordinary(best.fit)
     )
     decision = decide(evidence, replace(RATES, margin=worth_of_form(samples, metric)))
     probabilities = _probabilities(models, scores, judge.rng)
@@ -236,3 +237,8 @@ def implausible(fit: Fitted) -> tuple[str, ...]:
             if end != 0.0 and abs(value - end) <= close and not plausible:
                 found.append(f"{coordinate.name.replace('_', ' ')} = {figure(value)}")
     return tuple(found)
+
+
+def ordinary(fit: Fitted) -> bool:
+    """Whether a careful laboratory's rig has as much of all its mechanisms."""
+    return all(one.candidate.ordinary(one.values) for one in fit.settings)

@@ -15,7 +15,7 @@ from diagnose.fit.descent import settings
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.signal_discrepancy import VISIBLE, SignalDiscrepancy, by_phase, conditions, in_plain_units
 from diagnose.fit.system import linearised
-from diagnose.inference.choice import Judged, implausible, score_of
+from diagnose.inference.choice import Judged, implausible, ordinary, score_of
 from diagnose.inference.forecasts import Forecasted
 from diagnose.inference.search import Screening, first_fits, pairs, screen, singles
 from diagnose.inference.tolerant_judge import TolerantJudge, held_together, left_by
@@ -58,8 +58,9 @@ class MainPart:
     def nameable(self) -> bool:
         """Whether few enough are as good, and the best leaves little and has no value at an edge, or is nearly all."""
         few = len(self.group) <= RATES.largest_group
-        plain = self.left_size <= FLAWS and not implausible(self.models[0].fit)
-        return few and (plain or self.share - self.hidden >= NEARLY_ALL)
+        best = self.models[0].fit
+        plain = self.left_size <= FLAWS and not implausible(best)
+        return few and not ordinary(best) and (plain or self.share - self.hidden >= NEARLY_ALL)
 
     def probabilities(self, rng: np.random.Generator) -> Floats:
         """(m,) of the models, by their held-out scores, among them and the baseline."""

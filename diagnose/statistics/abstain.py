@@ -32,7 +32,7 @@ class Evidence:
     p_strained : of the parameter that lies farthest from its prior beside that model. gain_lower : lower bound of its
     held-out gain, corrected for all candidates. black_box_lower : the same of the black box over the named model; both
     in nats per press, at the level of Rates. implausible : parameters on a bound that no real part has. group : models
-    that cannot be told from the named one, itself included.
+    that cannot be told from the named one, itself included. ordinary : a careful laboratory's rig has as much of it.
     """
 
     p_mismatch: float
@@ -42,6 +42,7 @@ class Evidence:
     black_box_lower: float
     implausible: tuple[str, ...]
     group: int
+    ordinary: bool = False
 
 
 @dataclass(frozen=True)
@@ -85,6 +86,8 @@ def _against(evidence: Evidence, rates: Rates) -> list[str]:
     if evidence.implausible:
         values = ", ".join(evidence.implausible)
         found.append(f"It needs a value at the limit of what a real part can have, which is implausible: {values}.")
+    if evidence.ordinary:
+        found.append("It is no more than what every rig has a little of, and so it is no finding.")
     if evidence.black_box_lower > rates.margin:
         found.append(
             "A flexible model without mechanics, the black box, predicts held-out presses better by at least "

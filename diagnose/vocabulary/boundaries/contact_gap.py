@@ -7,6 +7,8 @@ from diagnose.forward import Candidate, Coordinate
 from diagnose.vocabulary.base import GIVES_WAY, Scene, Vocabulary, register
 from solve.mechanisms.boundaries.contact_gap import CONTACT_GAP
 
+FIRST_TOUCH_MM = 2e-3  # by which a moulded surface gives way before it bears (rule of thumb)
+
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
     """Of any dot."""
@@ -21,7 +23,11 @@ def _gap(scene: Scene) -> Candidate:
     def parameters(values: Sequence[float]) -> dict[str, Any]:
         return {"gap_mm": values[0]}
 
-    return Candidate(CONTACT_GAP.name, "dot", (coordinate,), parameters, units={"gap_mm": "mm"})
+    def ordinary(values: Sequence[float]) -> bool:
+        return values[0] <= FIRST_TOUCH_MM
+
+    units = {"gap_mm": "mm"}
+    return Candidate(CONTACT_GAP.name, "dot", (coordinate,), parameters, units=units, ordinary=ordinary)
 
 
 register(Vocabulary(CONTACT_GAP, "there is a gap before {} touches", of_segment=of_segment, kind=GIVES_WAY))

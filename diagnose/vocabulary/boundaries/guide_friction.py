@@ -14,7 +14,7 @@ from diagnose.vocabulary.base import REMEMBERS, CouponScene, Scene, Vocabulary, 
 from solve.mechanisms.boundaries.guide_friction import GUIDE_FRICTION
 
 TRAVELS = tuple(10.0 ** (0.5 * n - 3.0) for n in range(6))  # of the largest travel, where a slider slips
-MOST = 1.5  # of the largest force
+MOST, ORDINARY = 1.5, 0.003  # of the largest force; what a tester of class 0.5 has of it
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
@@ -41,8 +41,11 @@ def _guide(force_N: float, travel_mm: float) -> Candidate:
     def derived(values: Sequence[float]) -> dict[str, float]:
         return sliding(**parameters(values))
 
+    def ordinary(values: Sequence[float]) -> bool:
+        return sum(values) <= ORDINARY
+
     units = {"friction_force_N": "N", "presliding_mm": "mm", "sliding_friction_N": "N", "half_of_it_within_mm": "mm"}
-    return Candidate(GUIDE_FRICTION.name, "rig", coordinates, parameters, derived, units)
+    return Candidate(GUIDE_FRICTION.name, "rig", coordinates, parameters, derived, units, ordinary=ordinary)
 
 
 def sliding(friction_force_N: Sequence[float], presliding_mm: Sequence[float]) -> dict[str, float]:

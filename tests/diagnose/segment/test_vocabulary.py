@@ -53,6 +53,17 @@ def test_without_an_effector_nothing_is_looked_for_in_it():
     assert not any("effector" in component for _, component in names(scene(segment=segment(effector=None))))
 
 
+def test_what_every_rig_has_a_little_of_is_no_finding():
+    """A surface that gives way by 2 um, and 0.3 % of the force as friction, of which 1 % would be one."""
+    of = {c.name: c for c in candidates(scene())}
+    gap, guide = of.pop(("contact-gap", "dot")), of.pop(("guide-friction", "rig"))
+    assert gap.ordinary((0.0015,))
+    assert not gap.ordinary((0.003,))
+    assert guide.ordinary((0.001, 0.0, 0.0, 0.0015, 0.0, 0.0))
+    assert not guide.ordinary((0.005, 0.0, 0.0, 0.005, 0.0, 0.0))
+    assert not any(c.ordinary([1e-6] * len(c.coordinates)) for c in of.values())
+
+
 def test_sides_that_are_free_have_no_stiffness():
     assert ("elastic-sides", "sides") not in names(scene(segment=segment(boundary="free")))
     assert ("elastic-sides", "sides") in names(scene(segment=segment(boundary="elastic")))

@@ -32,6 +32,7 @@ def test_noise_is_neither_named_nor_unexplained():
         ({"black_box_lower": 0.6}, "black box"),
         ({"implausible": ("thickness_factor",)}, "thickness_factor"),
         ({"group": 4}, "told apart"),
+        ({"ordinary": True}, "every rig"),
     ],
 )
 def test_every_doubt_alone_makes_it_unexplained(change, word):
