@@ -37,8 +37,8 @@ def relaxed(time):
     return STIFFNESS * (2.0 * TRAVEL + kept) / 3.0
 
 
-def found(force_of, rates):
-    """The diagnosis of one run for each rate."""
+def found(force_of, rates, without=""):
+    """The diagnosis of one run for each rate, with all candidates but one."""
     rng, runs = np.random.default_rng(5), []
     for rate in rates:
         time = TIME / rate
@@ -46,6 +46,7 @@ def found(force_of, rates):
         one = run(TRAVEL, force, noise={"force_N": SIGMA_N})
         runs.append(replace(one, label=f"{rate:g} times", time_s=time))
     engine = coupon_engine(Recording(tuple(runs), specimen("shear")), {"mine": RUBBER}, silent)
+    engine = engine.with_candidates(tuple(one for one in engine.candidates if one.mechanism != without))
     return diagnose(engine.recording, engine, 0, silent)
 
 
@@ -87,3 +88,11 @@ def test_one_rate_names_nothing_wrong(force_of, mechanism):
     assert findings.mismatch
     alike = [one for n in findings.groups[0] for one in findings.models[n].settings]
     assert findings.best is None or mechanism in {one.candidate.mechanism for one in alike}
+
+
+@pytest.mark.parametrize("rates", [RATES, RATES[:1]])
+@pytest.mark.parametrize(("force_of", "mechanism"), [(rubbed, "guide-friction"), (relaxed, "viscoelasticity")])
+def test_neither_is_named_for_the_other(force_of, mechanism, rates):
+    findings = found(force_of, rates, without=mechanism)
+    assert findings.unexplained
+    assert findings.best is None
