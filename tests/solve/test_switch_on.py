@@ -10,6 +10,7 @@ from solve.materials.parameters import Hyperfoam, Knowles, MooneyRivlin, Ogden, 
 from solve.mechanisms import Mechanism, with_mechanisms
 from solve.model import Model, Press, Readout
 from solve.readout.amplifier import amplify
+from solve.terms.guide import GuideFriction
 from tests.solve.segments import materials, segment
 
 
@@ -67,6 +68,12 @@ def test_a_guide_does_not_rub_where_a_force_drives(model):
     driven = replace(model, press=Press(force_N=1.0))
     with pytest.raises(ValueError, match=r"press\.indentation_mm"):
         switched(driven, "guide-friction", "rig", friction_force_N=[0.3], presliding_mm=[0.02])
+
+
+def test_sliders_of_two_guides_rub_side_by_side(model):
+    once = switched(model, "guide-friction", "rig", friction_force_N=[0.3], presliding_mm=[0.02])
+    twice = switched(once, "guide-friction", "rig", friction_force_N=[0.1], presliding_mm=[0.2])
+    assert twice.physics.guide == GuideFriction((0.3, 0.1), (0.02, 0.2))
 
 
 def test_offsets_and_gaps_add(model):

@@ -35,7 +35,9 @@ def switch_on(model: Model, component: str, values: RubbingGuide) -> Model:
         return model
     if model.press.force_N is not None:
         raise ValueError("name = 'guide-friction': a force drives (press.force_N); it needs press.indentation_mm")
-    return with_physics(model, guide=GuideFriction(values.friction_force_N, values.presliding_mm))
+    have = model.physics.guide
+    forces_N = (*have.forces_N, *values.friction_force_N)
+    return with_physics(model, guide=GuideFriction(forces_N, (*have.presliding_mm, *values.presliding_mm)))
 
 
 GUIDE_FRICTION = register(
@@ -50,6 +52,6 @@ GUIDE_FRICTION = register(
             "friction_force_N": "a linear ball guide: 0.1 to 2 N; an o-ring under pressure: tens of N (rules of thumb)",
             "presliding_mm": "rolling guides 0.001 to 0.1 mm; a seal of rubber 0.1 to 1 mm (rules of thumb)",
         },
-        traits=Traits(memory=True, acts_on_tables=True),
+        traits=Traits(adds_up=True, memory=True, acts_on_tables=True),
     )
 )
