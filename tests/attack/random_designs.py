@@ -61,13 +61,13 @@ def design(number: int) -> dict:
         "segment": segment,
         "materials": materials,
         "dot": dot,
-        "press": _press(draw, segment, softest, dot["gap_mm"] + 0.1 * ("contact-gap" in names)),
+        "press": _press(
+            draw, segment, softest, dot["gap_mm"] + 0.1 * ("contact-gap" in names), "guide-friction" in names
+        ),
         "mesh": _mesh(draw, solid, round_one),
         "mechanisms": _mechanisms(draw, names, segment, dot),
         "fabrication": {},
     }
-    if "force_N" in tables["press"]:
-        tables["mechanisms"] = [one for one in tables["mechanisms"] if one["name"] != "guide-friction"]
     if several:
         tables["array"] = _array(draw, segment)
         tables["press"].pop("path_xy_mm", None)
@@ -192,12 +192,12 @@ def _dot(draw, segment, reducible):
     return table
 
 
-def _press(draw, segment, softest_MPa, clear_mm):
+def _press(draw, segment, softest_MPa, clear_mm, by_depth):
     """A depth of up to a fifth of the soft height, or a force that makes about that; at times a slide."""
     soft_mm = segment["medium1"]["thickness_mm"] + segment["medium2"]["thickness_mm"]
     strain = draw.log(0.02, 0.2)
     table = {"load_steps": draw.whole(1, 3)}
-    if draw.perhaps(0.65):
+    if draw.perhaps(0.65) or by_depth:
         table["indentation_mm"] = clear_mm + strain * soft_mm
     else:
         table["force_N"] = 0.2 * strain * softest_MPa * segment["length_mm"] * segment["width_mm"]
