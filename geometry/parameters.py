@@ -4,6 +4,7 @@ Origin: centre of the base of medium 2. x along the length, y along the width,
 z from the base towards the dot. Lengths in millimetres, the film in micrometres.
 """
 
+from collections.abc import Sequence
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -20,6 +21,14 @@ class Table(BaseModel):
     """A configuration table: unknown keys are refused, values cannot change after reading."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=False)
+
+
+def require_one_of_each(per: str, **lists: Sequence[float]) -> None:
+    """ValueError where one of the lists of a table, given by their keys, is not as long as the first."""
+    (first, known), *others = lists.items()
+    for name, values in others:
+        if len(values) != len(known):
+            raise ValueError(f"{name} has {len(values)} values but {first} has {len(known)}: one of each per {per}")
 
 
 class Effector(Table):

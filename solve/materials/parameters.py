@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import AfterValidator, Field, TypeAdapter, model_validator
 
 from geometry.base import InputError, nearest
-from geometry.parameters import Finite, Positive, Table
+from geometry.parameters import Finite, Positive, Table, require_one_of_each
 from solve.materials import laws
 from solve.materials.principal_stretches import HyperfoamLaw
 
@@ -169,7 +169,7 @@ class Ogden(MaterialTable):
 
     @model_validator(mode="after")
     def _stiff(self) -> Self:
-        _require_terms("alpha", self.alpha, self.mu_MPa)
+        require_one_of_each("term", mu_MPa=self.mu_MPa, alpha=self.alpha)
         _require_shear_modulus(self.shear_modulus_MPa, "half the sum of mu_MPa times alpha")
         return self
 
@@ -200,8 +200,8 @@ class Hyperfoam(MaterialTable):
 
     @model_validator(mode="after")
     def _stiff(self) -> Self:
-        _require_terms("alpha", self.alpha, self.mu_MPa)
-        _require_terms("poisson_ratio", self.poisson_ratio, self.mu_MPa)
+        require_one_of_each("term", mu_MPa=self.mu_MPa, alpha=self.alpha)
+        require_one_of_each("term", mu_MPa=self.mu_MPa, poisson_ratio=self.poisson_ratio)
         if 0.0 in self.alpha:
             raise ValueError("alpha = 0: every exponent must differ from zero")
         # K = sum 2 mu (beta + 1/3) = sum 2/3 mu (1 + nu) / (1 - 2 nu)
@@ -263,11 +263,6 @@ class PiezoelectricFilm(MaterialTable):
     def law(self) -> laws.MediumLaw:
         """A film is no medium: ValueError."""
         raise ValueError(f"{self.model} is not a medium")
-
-
-def _require_terms(name: str, values: tuple[float, ...], mu: tuple[float, ...]) -> None:
-    if len(values) != len(mu):
-        raise ValueError(f"{name} has {len(values)} values but mu_MPa has {len(mu)}: one of each per term")
 
 
 def _require_shear_modulus(shear_MPa: float, formula: str) -> None:

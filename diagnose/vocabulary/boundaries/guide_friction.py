@@ -1,7 +1,7 @@
 """Friction of a guide or a seal in the fixture: against the motion, the same at any speed.
 
 Sliders at fixed travels, half a decade apart, by their forces over the largest that was recorded: the answer is linear
-in them, and one that slips in between differs from its neighbours' sum by a tenth of its force for a short while.
+in them, and the best sum of two neighbours differs from a slider in between by up to a sixth of its force.
 """
 
 from collections.abc import Iterator, Sequence
@@ -14,7 +14,7 @@ from diagnose.vocabulary.base import REMEMBERS, CouponScene, Scene, Vocabulary, 
 from solve.mechanisms.boundaries.guide_friction import GUIDE_FRICTION
 
 TRAVELS = tuple(10.0 ** (0.5 * n - 3.0) for n in range(6))  # of the largest travel, where a slider slips
-MOST, ORDINARY = 1.5, 0.003  # of the largest force; what a tester of class 0.5 has of it
+MOST, ORDINARY = 1.5, 0.003  # of the largest force; the latter any tester has (rule of thumb)
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
@@ -49,9 +49,9 @@ def _guide(force_N: float, travel_mm: float) -> Candidate:
 
 
 def sliding(friction_force_N: Sequence[float], presliding_mm: Sequence[float]) -> dict[str, float]:
-    """Force of all sliders once they slip, and the travel from rest within which half of it is there.
+    """Force of all sliders in N once they slip, and the travel in mm from rest within which half of it is there.
 
-    presliding_mm ascends.
+    presliding_mm (k,) ascends, one for each force (k,).
     """
     forces, travels = np.array(friction_force_N), np.array([0.0, *presliding_mm])
     grown = np.minimum(travels[:, None] / travels[1:], 1.0) @ forces

@@ -7,7 +7,7 @@ from typing import Self
 
 from pydantic import Field, model_validator
 
-from geometry.parameters import NonNegative, Positive
+from geometry.parameters import NonNegative, Positive, require_one_of_each
 from solve.mechanisms.base import MechanismType, Parameters, Traits, register, with_physics
 from solve.model import Model
 from solve.terms.guide import GuideFriction
@@ -21,11 +21,7 @@ class RubbingGuide(Parameters):
 
     @model_validator(mode="after")
     def _sliders(self) -> Self:
-        if len(self.friction_force_N) != len(self.presliding_mm):
-            raise ValueError(
-                f"presliding_mm has {len(self.presliding_mm)} values but friction_force_N has "
-                f"{len(self.friction_force_N)}: one of each per slider"
-            )
+        require_one_of_each("slider", friction_force_N=self.friction_force_N, presliding_mm=self.presliding_mm)
         return self
 
 

@@ -7,7 +7,7 @@ from typing import Self
 
 from pydantic import Field, model_validator
 
-from geometry.parameters import Positive
+from geometry.parameters import Positive, require_one_of_each
 from solve.materials.inelastic import Prony
 from solve.mechanisms.base import BONDS, MEDIA, MechanismType, Moduli, Parameters, Traits, register, with_physics
 from solve.model import Model
@@ -21,11 +21,7 @@ class Viscoelasticity(Parameters):
 
     @model_validator(mode="after")
     def _series(self) -> Self:
-        if len(self.relative_moduli) != len(self.relaxation_times_s):
-            raise ValueError(
-                f"relaxation_times_s has {len(self.relaxation_times_s)} values but relative_moduli has "
-                f"{len(self.relative_moduli)}: one of each per term"
-            )
+        require_one_of_each("term", relative_moduli=self.relative_moduli, relaxation_times_s=self.relaxation_times_s)
         if sum(self.relative_moduli) >= 1.0:
             raise ValueError(f"relative_moduli = {list(self.relative_moduli)}: their sum must be below 1")
         return self
