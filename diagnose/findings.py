@@ -65,7 +65,7 @@ class Interval:
 
 @dataclass(frozen=True)
 class FittedModel:
-    """One or two mechanisms fitted to all runs, with how it predicts presses that it was not fitted to.
+    """One to three mechanisms fitted to all runs, with how it predicts presses that it was not fitted to.
 
     gain, gain_lower : nats per press over the baseline, and the lower bound of its mean. probability : among all
     models, the baseline and "none of these". p_left : family-wise p-value of what it leaves.

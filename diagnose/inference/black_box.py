@@ -131,15 +131,20 @@ def split(presses: int) -> tuple[list[int], list[int]]:
 
 
 def trained_and_held(
-    model: ObservedModel, found: Screening, fit: Fitted | None, gains: Floats
+    model: ObservedModel,
+    found: Screening,
+    fit: Fitted | None,
+    gains: Floats,
+    halves: tuple[list[int], list[int]] | None = None,
 ) -> tuple[Fit, Fit | None]:
     """Errors on training presses and on held-out ones; None where there is one press only.
 
-    gains : (presses,) held-out log-score gains. Mechanisms and shared nuisances come from training presses alone. What
-    floats in a run that has no training press is fitted to it with both models alike, under its prior.
+    halves : numbers of both, every second one unless told otherwise. gains : (presses,) held-out log-score gains.
+    Mechanisms and shared nuisances come from training presses alone. What floats in a run that has no training press is
+    fitted to it with both models alike, under its prior.
     """
     samples = model.samples
-    training, held = split(len(samples.presses))
+    training, held = halves or split(len(samples.presses))
     informative = found.baseline.informative
     seen = informative & np.isin(samples.press, training)
     settings: tuple[Setting, ...] = ()
@@ -171,8 +176,9 @@ def relaxed(model: ObservedModel, values: Floats, settings: Sequence[Setting], r
         free = np.flatnonzero(~frozen)
         quadratic = Quadratic(system.weighted(system.nuisance_design[:, free]), system.sigma[free])
         values = values.copy()
-        values[free] = quadratic.mean(system.weighted(system.residual[rows] - fixed))
-        values = model.possible(plausible(values, model.sigma))
+        found = quadratic.mean(system.weighted(system.residual[rows] - fixed))
+        values[free] = plausible(found, model.sigma[free])
+        values = model.possible(values)
     return values
 
 

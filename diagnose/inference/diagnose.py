@@ -15,24 +15,28 @@ from diagnose.fit.intervals import intervals, points
 from diagnose.fit.observed_model import Nuisance, ObservedModel
 from diagnose.fit.refit import Fitted, fitted_baseline
 from diagnose.fit.samples import Samples
+from diagnose.fit.signal_discrepancy import by_phase
 from diagnose.fit.system import LinearisedSystem
 from diagnose.forward import Engine, Setting, Signals
 from diagnose.inference import hum
 from diagnose.inference.black_box import trained_and_held, unimproved
-from diagnose.inference.choice import Choice, Judged, choose, criteria
+from diagnose.inference.choice import Choice, Judged, choose, criteria, implausible
 from diagnose.inference.localisation import explanations, places, shares
-from diagnose.inference.main_part import FLAWS, MainPart, confirmed, main_part
+from diagnose.inference.main_part import FLAWS, NEARLY_ALL, MainPart, confirmed, main_part
 from diagnose.inference.residual_test import Checked, checked
 from diagnose.inference.search import Screening, screen
-from diagnose.inference.tolerant_judge import distinguished
+from diagnose.inference.stepwise import Joined, joined
+from diagnose.inference.tolerant_judge import distinguished, residual_beside
 from diagnose.noise.estimate import noise_models
+from diagnose.signals.phases import PHASES
 from diagnose.signals.recording import Recording
 from diagnose.statistics.abstain import RATES, Decision
-from diagnose.verdict.names import in_common
+from diagnose.verdict.names import in_common, listed
 from geometry.arrays import Floats
 from geometry.base import Report
 
 FAR = 3.0  # deviations of a prior
+SAME = 0.05  # relative: errors on held-out presses that are as large as each other
 
 
 def named(fit: Fitted) -> str:
@@ -123,13 +127,13 @@ def diagnose(recording: Recording, engine: Engine, seed: int, report: Report) ->
         return _quiet(model, baseline, found)
     engine.prepare(engine.candidates, report)
     screening, choice, findings = _explained(model, baseline, found, rng, report)
-    if not findings.unexplained:
-        return findings
-    trembling = _beside_a_drive_error(model, found, choice, rng, report)
-    if trembling is not None:
-        return trembling
-    main = main_part(model, screening, report)
-    return findings if main is None else _with_main_part(findings, main, choice, rng)
+    if findings.unexplained:
+        trembling = _beside_a_drive_error(model, found, choice, rng, report)
+        if trembling is not None:
+            return trembling
+        main = main_part(model, screening, report)
+        findings = findings if main is None else _with_main_part(findings, main, choice, rng)
+    return _with_more(model, screening, findings, report)
 
 
 def _explained(
@@ -206,7 +210,9 @@ def _findings(model: ObservedModel, screening: Screening, found: Checked, choice
     gains = best.forecast.log_scores - choice.base.log_scores if best and choice.base else np.zeros(0)
     train, held_out = trained_and_held(model, screening, best.fit if best else None, gains)
     choice = replace(choice, decision=agreeing(choice.decision, held_out))
-    named = choice.decision.named
+    if choice.decision.named:
+        choice = replace(choice, decision=_better_than_one(model, screening, choice, held_out))
+    named, kind = choice.decision.named, _kind(choice, held_out)
     models = tuple(
         _model(model, one, float(choice.probabilities[n]), detailed=named and n in choice.groups[0])
         for n, one in enumerate(choice.models)
@@ -237,18 +243,47 @@ def _findings(model: ObservedModel, screening: Screening, found: Checked, choice
         black_box_gain=choice.box_gain,
         warnings=warnings_of(model, screening.baseline, choice),
         information=_information([fits[number] for number in choice.groups[0]]) if fits else None,
+        kind=kind,
     )
 
 
 def agreeing(decision: Decision, held_out: Fit | None) -> Decision:
     """Nothing is named where held-out presses are predicted with more error, whatever their log-score says."""
-    if not decision.named or held_out is None or held_out.nrmse_after < held_out.nrmse_before:
+    if not decision.named or held_out is None or _better(held_out):
         return decision
     reason = (
         f"Fitted to the other presses, it predicts the held-out ones with an error of {percent(held_out.nrmse_after)} "
         f"instead of {percent(held_out.nrmse_before)}, although it gains in the score that weighs errors by the noise."
     )
     return replace(decision, named=False, unexplained=True, reasons=(*decision.reasons, reason))
+
+
+def _better_than_one(model: ObservedModel, screening: Screening, choice: Choice, held_out: Fit | None) -> Decision:
+    """No pair is named where one of the two alone predicts held-out presses with less error."""
+    pair = choice.models[0].fit.candidates
+    for one in choice.models[1:]:
+        (first, *more) = one.fit.candidates
+        if held_out is None or more or len(pair) == 1 or first not in pair:
+            continue
+        _, alone = trained_and_held(model, screening, one.fit, np.array([one.gain.mean]))
+        if alone is not None and alone.nrmse_after * (1.0 + SAME) < held_out.nrmse_after:
+            reason = (
+                f"Fitted to the other presses, {named(one.fit)} alone predicts the held-out ones with an error of "
+                f"{percent(alone.nrmse_after)}, both together with {percent(held_out.nrmse_after)}."
+            )
+            return replace(choice.decision, named=False, unexplained=True, reasons=(*choice.decision.reasons, reason))
+    return choice.decision
+
+
+def _better(held_out: Fit) -> bool:
+    return held_out.nrmse_after < held_out.nrmse_before
+
+
+def _kind(choice: Choice, held_out: Fit | None) -> str:
+    """What all of the group have in common where nothing but their number is against a name, if anything."""
+    if not choice.decision.ambiguous or (held_out is not None and not _better(held_out)):
+        return ""
+    return in_common([one for number in choice.groups[0] for one in choice.models[number].fit.candidates])
 
 
 def _with_main_part(findings: Findings, main: MainPart, choice: Choice, rng: np.random.Generator) -> Findings:
@@ -303,6 +338,59 @@ def _with_kind(findings: Findings, main: MainPart, rng: np.random.Generator) -> 
     models = tuple(_model(main.model, one, float(chances[n]), False) for n, one in enumerate(main.models))
     return replace(
         findings, models=models, groups=(main.group,), kind=kind, information=_information(group), black_box_gain=0.0
+    )
+
+
+def _with_more(model: ObservedModel, screening: Screening, findings: Findings, report: Report) -> Findings:
+    """With what else shows beside the first explanation, where it has no rival and leaves more than flaws of a rig.
+
+    One whose kind alone could be told, as it leaves too much, is named with what takes the rest away.
+    """
+    held_out = findings.held_out
+    if not (findings.best or findings.kind) or held_out is None or _flaws(held_out) or len(findings.groups[0]) > 1:
+        return findings
+    first = findings.models[0]
+    more = joined(model, screening, first.settings, report)
+    if more is None:
+        return findings
+    judge, one = more.judge, more.judge.judged(more.fit)
+    train, after = trained_and_held(judge.model, judge.found, more.fit, np.array([one.gain.mean]))
+    assert after is not None
+    rest = _remainder(more, after) if findings.unexplained else None
+    if findings.best is None and (rest is None or rest.share < NEARLY_ALL or implausible(more.fit)):
+        return findings
+    whole = _model(judge.model, one, first.probability, detailed=True)
+    return replace(
+        findings,
+        models=(whole, replace(first, probability=0.0), *findings.models[1:]),
+        best=whole,
+        groups=((0,), *(tuple(n + 1 for n in group) for group in findings.groups)),
+        train=train,
+        held_out=after,
+        unnamed=None,
+        improved=_improved(judge.model, one),
+        information=_information([more.fit]),
+        remainder=rest,
+        kind="",
+        reasons=(*findings.reasons, _beside(more.fit, len(first.settings), after)),
+        black_box_gain=0.0,
+    )
+
+
+def _remainder(more: Joined, held_out: Fit) -> Remainder:
+    judge, noise = more.judge, held_out.noise_floor_nrmse**2
+    share = 1.0 - max(held_out.nrmse_after**2 - noise, 0.0) / (held_out.nrmse_before**2 - noise)
+    squares = judge.tolerance.squares(residual_beside(judge, more.fit.settings))
+    return Remainder(share, by_phase(judge.model.samples, squares, PHASES))
+
+
+def _beside(fit: Fitted, first: int, held_out: Fit) -> str:
+    """How the mechanisms after the first few came to be named."""
+    added = listed([f"{one.mechanism} ({one.component})" for one in fit.candidates[first:]])
+    verb = "shows" if len(fit.candidates) == first + 1 else "show"
+    return (
+        f"{added} {verb} in what the first explanation leaves of presses that took no part in the fit: the error falls "
+        f"further, to {percent(held_out.nrmse_after)}."
     )
 
 

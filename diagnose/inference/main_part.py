@@ -108,7 +108,7 @@ def _with_pairs(judge: TolerantJudge, models: Sequence[Judged], report: Report) 
     if not both:
         return judge, list(models)
     sizes = judge.tolerance.sizes(judge.missed(max(both, key=score_of).forecast))
-    closer = TolerantJudge(judge.model, judge.found, judge.tolerance, sizes, judge.fold)
+    closer = judge.tolerating(sizes)
     again = [closer.judged(closer.refitted(one.fit)) for one in (*models, *both)]
     best = max(again[: len(models)], key=score_of)
     kept = [one for one in again[len(models) :] if closer.gained(one.forecast, best.forecast).lower > 0.0]
@@ -118,9 +118,10 @@ def _with_pairs(judge: TolerantJudge, models: Sequence[Judged], report: Report) 
 def _told(judge: TolerantJudge, models: Sequence[Judged]) -> MainPart | None:
     best = models[0]
     group = [n for n, one in enumerate(models) if n == 0 or not judge.excluded(one.forecast, best.forecast)]
-    if best.left > 1.0 - MOST or best.gain.lower <= 0.0:
+    flaws = judge.largest(best.forecast) <= VISIBLE
+    if best.left > 1.0 - (CONFIRMED if flaws else MOST) or best.gain.lower <= 0.0:
         return None
-    if judge.largest(best.forecast) > VISIBLE and not judge.spread(best.forecast):
+    if not flaws and not judge.spread(best.forecast):
         return None
     order = [*group, *(n for n in range(len(models)) if n not in group)]
     left = by_phase(judge.model.samples, judge.left(best.forecast), PHASES)

@@ -229,10 +229,11 @@ def pairs(
     same: Sequence[Candidate],
     report: Report,
     level: float = RATES.level,
+    least: float = 0.0,
 ) -> list[Fitted]:
     """The first mechanism with each second one that shows in what it leaves; same : those that act as the first.
 
-    level : p-value of the score test up to which a second one shows.
+    level : p-value of the score test up to which a second one shows. least : share of the squares that it explains.
     """
     names = [one.name for one in (*first.candidates, *same)]
     others = [c for c in found.candidates if c.name not in names]
@@ -243,7 +244,8 @@ def pairs(
         sigma_of_one=np.concatenate([np.full(first.slopes.shape[1], np.inf), first.system.sigma_of_one]),
     )
     tests = screened(beside, each, least_degrees(model))
-    shown = [int(n) for n in np.argsort(-tests.explained) if tests.p_values[n] <= level][:PAIRS]
+    shows = (tests.p_values <= level) & (tests.explained >= least)
+    shown = [int(n) for n in np.argsort(-tests.explained) if shows[n]][:PAIRS]
     fits = []
     for count, number in enumerate(shown):
         report("pairs", count, len(shown))

@@ -44,6 +44,10 @@ class TolerantJudge:
         self.base = forecasted(model.samples, within_priors(start, baseline), None, self.fold)
         self.before = self.left(self.base)
 
+    def tolerating(self, sizes: Floats) -> "TolerantJudge":
+        """The same judge beside discrepancies of other sizes (c,)."""
+        return TolerantJudge(self.model, self.found, self.tolerance, sizes, self.fold)
+
     def judged(self, fit: Fitted) -> Judged:
         """Held-out conditions predicted by a model that was fitted in this metric."""
         forecast = forecasted(self.model.samples, capped(fit.system), fit, self.fold)
@@ -127,11 +131,16 @@ def held_together(samples: Samples, candidates: Sequence[Candidate]) -> Ints:
 
 def left_by(judge: TolerantJudge, on: Sequence[Setting]) -> Floats:
     """Sizes (c,) of what settings leave of all presses, nuisances as they come closest."""
+    return judge.tolerance.sizes(residual_beside(judge, on))
+
+
+def residual_beside(judge: TolerantJudge, on: Sequence[Setting]) -> Floats:
+    """(n,) residual of all presses with settings, nuisances as they come closest."""
     start = judge.found.start
     system = linearised(judge.model, start.values, on, 0.0, start.informative)
     residual = system.residual.copy()
     residual[system.informative] -= system.nuisance_design @ system.quadratic.mean(system.weighted(system.residual))
-    return judge.tolerance.sizes(residual)
+    return residual
 
 
 def distinguished(model: ObservedModel, found: Screening, choice: Choice) -> Choice:
@@ -141,7 +150,7 @@ def distinguished(model: ObservedModel, found: Screening, choice: Choice) -> Cho
     """
     if not choice.decision.named:
         return choice
-    judge = _judge_of_name(model, found, choice.models[0].fit)
+    judge = judge_of_name(model, found, choice.models[0].fit.settings)
     again = [judge.judged(judge.refitted(one.fit)) for one in choice.models]
     good = {n for n, one in enumerate(again) if not judge.excluded(one.forecast, again[0].forecast)}
     group = tuple(sorted({*choice.groups[0], 0, *good}))
@@ -155,12 +164,13 @@ def distinguished(model: ObservedModel, found: Screening, choice: Choice) -> Cho
     return replace(choice, groups=(group, *filter(None, rest)), decision=decision)
 
 
-def _judge_of_name(model: ObservedModel, found: Screening, name: Fitted) -> TolerantJudge:
-    """Its discrepancy is what the name itself leaves."""
+def judge_of_name(model: ObservedModel, found: Screening, name: Sequence[Setting]) -> TolerantJudge:
+    """Its discrepancy is what the named mechanisms leave."""
     plain = model.seen_as(in_plain_units(model.samples))
-    tolerance, fold = SignalDiscrepancy(plain.samples), held_together(plain.samples, name.candidates)
+    tolerance = SignalDiscrepancy(plain.samples)
+    fold = held_together(plain.samples, [one.candidate for one in name])
     judge = TolerantJudge(plain, found, tolerance, np.zeros(len(plain.samples.channels)), fold)
-    return TolerantJudge(plain, found, tolerance, left_by(judge, name.settings), fold)
+    return TolerantJudge(plain, found, tolerance, left_by(judge, name), fold)
 
 
 def _needless(judge: TolerantJudge, models: Sequence[Judged]) -> list[str]:

@@ -1,8 +1,9 @@
-"""Relaxation as a spectrum: one Prony branch a decade of time, as far as the recording can show it.
+"""Relaxation as a spectrum: two Prony branches a decade of time, as far as the recording can show it.
 
 The coordinates are the branches' moduli over the long-term one, E_i / E_inf = t_i, so that g_i = t_i / (1 + sum t):
-any values that are not negative make a valid series. Half a decade off its time, a branch differs from its neighbours'
-sum by about a percent of what relaxes, so that the times need not be fitted.
+any values that are not negative make a valid series. A material with one time that lies between two branches is met
+by their sum within 2 % of what relaxes, root mean square over a hold (5 to 8 % with one branch a decade), so that the
+times need not be fitted.
 
 A law that stiffens, or gives way, beyond the one stated: more terms of Ogden's series, or of Yeoh's.
 
@@ -29,6 +30,7 @@ from scipy.ndimage import uniform_filter1d
 
 from diagnose.forward import Candidate, Coordinate, Setting
 from diagnose.signals.recording import Recording, Run
+from diagnose.statistics.score_test import MOST
 from geometry.parameters import Dot, Film, Medium, Segment
 from solve.materials.parameters import Material, MooneyRivlin, Ogden, Yeoh, library
 from solve.mechanisms import Mechanism, with_mechanisms
@@ -41,17 +43,23 @@ LARGEST_STRAIN = 0.1
 MOST_OF_COUPON = 20.0  # of E_i / E_inf: a tape or a gel may relax by 95 % within a decade
 
 
+SPACING = 0.5  # decades between branches
 STAIRCASE = 3.0  # times as long as at the quickest rate: a loading with rests in it
 SMOOTHED = 5  # samples, against the noise of the drive
 
 
 def relaxation_times(recording: Recording) -> tuple[float, ...]:
-    """Times in s, a decade apart, between a third of the quickest loading and the longest run."""
+    """Times in s between a third of the quickest loading and the longest run.
+
+    Half a decade apart, or as many as the score test takes.
+    """
     longest = max(float(run.time_s[-1] - run.time_s[0]) for run in recording.runs)
     shortest = max(min(_quickest(recording)) / 3.0, min(2.0 * run.step_s for run in recording.runs))
-    count = max(1, ceil(np.log10(longest / shortest)))
-    slack = np.log10(longest / shortest) - (count - 1)
-    return tuple(float(shortest * 10.0 ** (0.5 * slack + n)) for n in range(count))
+    decades = np.log10(longest / shortest)
+    count = int(np.clip(ceil(decades / SPACING), 1, MOST))
+    spacing = max(SPACING, decades / count)
+    first = 0.5 * (decades - spacing * (count - 1))
+    return tuple(float(shortest * 10.0 ** (first + spacing * n)) for n in range(count))
 
 
 def _quickest(recording: Recording) -> list[float]:

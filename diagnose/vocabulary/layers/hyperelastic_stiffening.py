@@ -19,6 +19,7 @@ from solve.mechanisms.layers.hyperelastic_stiffening import HYPERELASTIC_STIFFEN
 
 HIGHEST = float(np.log1p(30.0))  # a slope of dW/dI1 of 30 at rest: soft tissue reaches it, no rubber does
 EXPONENTIAL = 0.01  # of 1 / (n - 1), below which the law is as good as exponential
+NEXT_TO_NOTHING = 1e-9  # of b, which is above 0 where the mechanism is on: where a fit ends at a slope of 0
 STEEP = 8.0  # exponent of the Ogden term that stiffens
 
 
@@ -70,7 +71,7 @@ def _knowles(component: str) -> Candidate:
     )
 
     def parameters(values: Sequence[float]) -> dict[str, Any]:
-        b, inverse = float(np.expm1(values[0])) * (1.0 + values[1]), values[1]
+        b, inverse = max(float(np.expm1(values[0])) * (1.0 + values[1]), NEXT_TO_NOTHING), values[1]
         return {"b": b, "n": 1.0 + 1.0 / inverse} if inverse > EXPONENTIAL else {"b": b}
 
     return _of_layer(component, coordinates, parameters, {"b": "", "n": ""}, "fading")

@@ -30,7 +30,7 @@ def of_segment(scene: Scene) -> Iterator[Candidate]:
 
 
 def of_coupon(scene: CouponScene) -> Iterator[Candidate]:
-    """The specimen, one branch a decade."""
+    """The specimen, two branches a decade."""
     yield spectrum(PartOfLayer, SPECIMEN, relaxation_times(scene.recording), MOST_OF_COUPON)
 
 

@@ -10,6 +10,7 @@ from diagnose.findings import Fit, Grade
 from diagnose.inference.diagnose import agreeing, diagnose
 from diagnose.signals.recording import Recording
 from diagnose.statistics.abstain import Decision
+from diagnose.vocabulary.base import vocabulary
 from solve.model import Readout
 from tests.diagnose.inference.toy import (
     CANDIDATES,
@@ -118,6 +119,15 @@ def test_four_that_act_alike_are_not_named():
     findings = found(small(5, Sensor(leak=1.0), runs=3), (CANDIDATES[0], *twins))
     assert findings.unexplained
     assert "4 explanations cannot be told apart" in " ".join(findings.reasons)
+    assert (findings.kind, findings.grade) == ("", Grade.UNEXPLAINED)
+
+
+def test_of_four_that_act_alike_the_kind_is_told():
+    twins = [one("charge-leakage", name, "leak", 0.0, 20.0, 0.5) for name in ("dot", "rig", "film")]
+    findings = found(small(5, Sensor(leak=1.0), runs=3), (CANDIDATES[0], *twins))
+    assert findings.best is None
+    assert findings.kind == vocabulary()["charge-leakage"].kind
+    assert findings.grade is Grade.KIND_ONLY
 
 
 @dataclass

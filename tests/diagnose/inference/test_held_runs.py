@@ -3,12 +3,17 @@
 from dataclasses import replace
 from functools import cache
 
+import numpy as np
 import pytest
 
+from diagnose.fit.observed_model import ObservedModel
+from diagnose.fit.samples import Samples
 from diagnose.forward import some_runs
+from diagnose.inference.black_box import relaxed
 from diagnose.inference.diagnose import diagnose
 from diagnose.inference.held_runs import diagnose_and_score
-from tests.diagnose.inference.toy import CANDIDATES, Sensor, ToyEngine, silent, small
+from diagnose.noise.estimate import noise_models
+from tests.diagnose.inference.toy import CANDIDATES, NUISANCE, Sensor, ToyEngine, silent, small
 
 FEW = tuple(CANDIDATES[n] for n in (0, 1, 4))
 TRAINED, HELD = [0, 1, 4, 5], [2, 3]
@@ -74,3 +79,14 @@ def test_runs_without_mismatch_have_an_error_as_large_as_noise():
     found = scored(small(6))
     assert not found.mismatch
     assert found.held_out.nrmse_before == pytest.approx(found.held_out.noise_floor_nrmse, rel=0.2)
+
+
+def test_what_is_known_from_other_runs_stays_as_it_is_however_far_from_its_prior():
+    recording = small(5, runs=2, nuisance={**NUISANCE, "modulus.medium1": 0.01})
+    model = ObservedModel(Samples(recording, noise_models(recording)), ToyEngine(recording))
+    shared = np.array([one.run is None for one in model.nuisances])
+    assert shared.any()
+    known = np.where(shared, 6.0 * model.sigma, 0.0)
+    fitted = relaxed(model, known, (), np.ones(len(model.samples), dtype=bool), shared)
+    assert np.array_equal(fitted[shared], known[shared])
+    assert np.any(fitted[~shared] != 0.0)

@@ -49,6 +49,16 @@ def test_a_rig_with_everything_admits_the_whole_vocabulary():
     assert ("crosstalk", "channel-1-channel-2") in names(FULL)
 
 
+@pytest.mark.parametrize("candidate", every(FULL))
+def test_each_coordinate_alone_is_a_mechanism(candidate):
+    """A fit may end where all others are 0."""
+    for number, coordinate in enumerate(candidate.coordinates):
+        for value in coordinate.starts:
+            at = np.zeros(len(candidate.coordinates))
+            at[number] = value
+            assert candidate.switched_on(tuple(at)).component == candidate.component
+
+
 def test_without_an_effector_nothing_is_looked_for_in_it():
     assert not any("effector" in component for _, component in names(scene(segment=segment(effector=None))))
 
