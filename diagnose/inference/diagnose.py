@@ -210,8 +210,9 @@ def _findings(model: ObservedModel, screening: Screening, found: Checked, choice
     gains = best.forecast.log_scores - choice.base.log_scores if best and choice.base else np.zeros(0)
     train, held_out = trained_and_held(model, screening, best.fit if best else None, gains)
     choice = replace(choice, decision=agreeing(choice.decision, held_out))
-    if choice.decision.named:
-        choice = replace(choice, decision=_better_than_one(model, screening, choice, held_out))
+    if choice.decision.named and held_out is not None:
+        decision = worth_both(choice.decision, held_out, _alone(model, screening, choice.models))
+        choice = replace(choice, decision=decision)
     named, kind = choice.decision.named, _kind(choice, held_out)
     models = tuple(
         _model(model, one, float(choice.probabilities[n]), detailed=named and n in choice.groups[0])
@@ -258,21 +259,27 @@ def agreeing(decision: Decision, held_out: Fit | None) -> Decision:
     return replace(decision, named=False, unexplained=True, reasons=(*decision.reasons, reason))
 
 
-def _better_than_one(model: ObservedModel, screening: Screening, choice: Choice, held_out: Fit | None) -> Decision:
+def _alone(model: ObservedModel, screening: Screening, models: Sequence[Judged]) -> dict[str, Fit]:
+    """Held-out errors of each single mechanism of a pair, which is the first of the models."""
+    pair, found = models[0].fit.candidates, {}
+    for one in models[1:] if len(pair) > 1 else ():
+        if len(one.fit.candidates) == 1 and one.fit.candidates[0] in pair:
+            held_out = trained_and_held(model, screening, one.fit, np.array([one.gain.mean]))[1]
+            assert held_out is not None
+            found[named(one.fit)] = held_out
+    return found
+
+
+def worth_both(decision: Decision, together: Fit, alone: Mapping[str, Fit]) -> Decision:
     """No pair is named where one of the two alone predicts held-out presses with less error."""
-    pair = choice.models[0].fit.candidates
-    for one in choice.models[1:]:
-        (first, *more) = one.fit.candidates
-        if held_out is None or more or len(pair) == 1 or first not in pair:
-            continue
-        _, alone = trained_and_held(model, screening, one.fit, np.array([one.gain.mean]))
-        if alone is not None and alone.nrmse_after * (1.0 + SAME) < held_out.nrmse_after:
+    for name, fit in alone.items():
+        if fit.nrmse_after * (1.0 + SAME) < together.nrmse_after:
             reason = (
-                f"Fitted to the other presses, {named(one.fit)} alone predicts the held-out ones with an error of "
-                f"{percent(alone.nrmse_after)}, both together with {percent(held_out.nrmse_after)}."
+                f"Fitted to the other presses, {name} alone predicts the held-out ones with an error of "
+                f"{percent(fit.nrmse_after)}, both together with {percent(together.nrmse_after)}."
             )
-            return replace(choice.decision, named=False, unexplained=True, reasons=(*choice.decision.reasons, reason))
-    return choice.decision
+            return replace(decision, named=False, unexplained=True, reasons=(*decision.reasons, reason))
+    return decision
 
 
 def _better(held_out: Fit) -> bool:

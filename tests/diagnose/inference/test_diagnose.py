@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from diagnose.findings import Fit, Grade
-from diagnose.inference.diagnose import agreeing, diagnose
+from diagnose.inference.diagnose import agreeing, diagnose, worth_both
 from diagnose.signals.recording import Recording
 from diagnose.statistics.abstain import Decision
 from diagnose.vocabulary.base import vocabulary
@@ -177,6 +177,16 @@ def test_a_better_score_with_a_larger_error_names_nothing():
     refused = agreeing(decision, worse)
     assert (refused.named, refused.unexplained) == (False, True)
     assert "140 % instead of 29 %" in refused.reasons[0]
+
+
+def test_a_pair_that_predicts_worse_than_one_of_the_two_is_not_named():
+    decision = Decision(True, True, False, ())
+    pair = Fit(("run 1, press 1",), 0.5, 0.086, 0.002, 1e6)
+    assert worth_both(decision, pair, {"inertia (rig)": replace(pair, nrmse_after=0.4)}) is decision
+    refused = worth_both(decision, pair, {"viscoelasticity (specimen)": replace(pair, nrmse_after=0.055)})
+    assert (refused.named, refused.unexplained) == (False, True)
+    assert "viscoelasticity (specimen) alone" in refused.reasons[0]
+    assert "5.5 %, both together with 8.6 %" in refused.reasons[0]
 
 
 def test_beside_something_without_a_name_the_main_part_is_named():
