@@ -1,14 +1,11 @@
-"""The whole chain: from a recording and a forward model to findings.
-
-What the findings rest on, in sentences for somebody at a bench.
-"""
+"""The whole chain: from a recording and a forward model to findings."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from diagnose.figures import figure, p_equals, part, percent
+from diagnose.figures import figure, percent
 from diagnose.findings import Detection, Findings, Fit, FittedModel, Remainder
 from diagnose.fit.drive_error import drive_error
 from diagnose.fit.intervals import intervals, points
@@ -20,9 +17,10 @@ from diagnose.fit.system import LinearisedSystem
 from diagnose.forward import Engine, Setting, Signals
 from diagnose.inference import hum
 from diagnose.inference.black_box import trained_and_held, unimproved
-from diagnose.inference.choice import Choice, Judged, choose, criteria, implausible
+from diagnose.inference.choice import Choice, Judged, choose, implausible
 from diagnose.inference.localisation import explanations, places, shares
 from diagnose.inference.main_part import FLAWS, NEARLY_ALL, MainPart, confirmed, main_part
+from diagnose.inference.reasons import beside, named, reasons_of, warnings_of
 from diagnose.inference.residual_test import Checked, checked
 from diagnose.inference.search import Screening, screen
 from diagnose.inference.stepwise import Joined, joined
@@ -31,83 +29,11 @@ from diagnose.noise.estimate import noise_models
 from diagnose.signals.phases import PHASES
 from diagnose.signals.recording import Recording
 from diagnose.statistics.abstain import RATES, Decision
-from diagnose.verdict.names import in_common, listed
+from diagnose.verdict.names import in_common
 from geometry.arrays import Floats
 from geometry.base import Report
 
-FAR = 3.0  # deviations of a prior
 SAME = 0.05  # relative: errors on held-out presses that are as large as each other
-
-
-def named(fit: Fitted) -> str:
-    """charge-leakage (readout) and friction (dot)."""
-    return " and ".join(f"{candidate.mechanism} ({candidate.component})" for candidate in fit.candidates)
-
-
-def reasons_of(p_mismatch: float, choice: Choice | None) -> tuple[str, ...]:
-    """Why something is named, or why not."""
-    if choice is None:
-        return (f"The residual is no larger than noise and the errors of the model make it ({p_equals(p_mismatch)}).",)
-    if not choice.models:
-        return choice.decision.reasons
-    best = choice.models[0]
-    return (_for(best), *choice.decision.reasons, *_alternatives(choice))
-
-
-def _for(best: Judged) -> str:
-    share = part(1.0 - min(best.left, 1.0))
-    return (
-        f"The best explanation is {named(best.fit)}. It accounts for {share} of what your simulation leaves "
-        f"unexplained and predicts held-out presses better by {figure(best.gain.mean)} nats per press (at least "
-        f"{figure(best.gain.lower)})."
-    )
-
-
-def _alternatives(choice: Choice) -> tuple[str, ...]:
-    others = [named(choice.models[n].fit) for n in choice.groups[0] if n > 0]
-    return (f"These recordings cannot tell it from {' or from '.join(others)}.",) if others else ()
-
-
-def warnings_of(model: ObservedModel, baseline: LinearisedSystem, choice: Choice | None) -> tuple[str, ...]:
-    """What makes the findings less sure than they look."""
-    said = _strained(model, baseline)
-    folds = len(np.unique(model.samples.fold))
-    if len(model.samples.presses) < 2:
-        held = "its phases were held out in turn instead" if folds > 1 else "nothing could be held out"
-        more = "A second press at another speed or depth would make the result surer."
-        said.append(f"There is only one press, so {held}. {more}")
-    if choice is not None and len(choice.models) > 1:
-        said += _second_opinion(choice)
-    return tuple(said)
-
-
-def _strained(model: ObservedModel, baseline: LinearisedSystem) -> list[str]:
-    """Nuisances that lie farther from 0 than rig.toml says, a sentence for each name."""
-    far: dict[str, list[tuple[float, float, str]]] = {}
-    for nuisance, value in zip(model.nuisances, baseline.values, strict=True):
-        deviations = abs(value) / nuisance.sigma
-        if deviations > FAR:
-            of = "all runs" if nuisance.run is None else f"run '{model.runs[nuisance.run].label}'"
-            of += "" if nuisance.channel is None else f" ({nuisance.channel})"
-            far.setdefault(nuisance.name, []).append((deviations, value, of))
-    said = []
-    for name, each in far.items():
-        deviations, value, of = max(each)
-        others = f", and by less in {len(each) - 1} more" if len(each) > 1 else ""
-        said.append(
-            f"Your simulation fits best with {name} = {figure(value)} in {of}, {figure(deviations)} times the stated "
-            f"uncertainty{others}: this value may stand in for what is missing."
-        )
-    return said
-
-
-def _second_opinion(choice: Choice) -> list[str]:
-    """Schwarz's criterion, where it prefers another model by more than ten to one."""
-    badness = criteria(choice.models)
-    least = int(np.argmin(badness))
-    if least == 0 or badness[0] - badness[least] < 2.0 * np.log(10.0):
-        return []
-    return [f"By the fit to all presses alone (BIC), {named(choice.models[least].fit)} would be preferred."]
 
 
 def diagnose(recording: Recording, engine: Engine, seed: int, report: Report) -> Findings:
@@ -379,7 +305,7 @@ def _with_more(model: ObservedModel, screening: Screening, findings: Findings, r
         information=_information([more.fit]),
         remainder=rest,
         kind="",
-        reasons=(*findings.reasons, _beside(more.fit, len(first.settings), after)),
+        reasons=(*findings.reasons, beside(more.fit, len(first.settings), after)),
         black_box_gain=0.0,
     )
 
@@ -389,16 +315,6 @@ def _remainder(more: Joined, held_out: Fit) -> Remainder:
     share = 1.0 - max(held_out.nrmse_after**2 - noise, 0.0) / (held_out.nrmse_before**2 - noise)
     squares = judge.tolerance.squares(residual_beside(judge, more.fit.settings))
     return Remainder(share, by_phase(judge.model.samples, squares, PHASES))
-
-
-def _beside(fit: Fitted, first: int, held_out: Fit) -> str:
-    """How the mechanisms after the first few came to be named."""
-    added = listed([f"{one.mechanism} ({one.component})" for one in fit.candidates[first:]])
-    verb = "shows" if len(fit.candidates) == first + 1 else "show"
-    return (
-        f"{added} {verb} in what the first explanation leaves of presses that took no part in the fit: the error falls "
-        f"further, to {percent(held_out.nrmse_after)}."
-    )
 
 
 def _model(model: ObservedModel, one: Judged, probability: float, detailed: bool) -> FittedModel:

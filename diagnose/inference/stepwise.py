@@ -24,7 +24,7 @@ from geometry.base import Report
 MOST_MECHANISMS = 3
 HALF = 0.5
 """The next mechanism leaves at most this share of the excess, and of what any other one in its place leaves."""
-SHOWN = 0.25  # share of the squares that that one explains to first order where it is worth a fit
+SHOWN = 0.25  # share of the squares: what explains less of them to first order is not worth a fit
 FOLDS = 5  # groups of conditions that are left out in turn
 SAME = 0.05  # relative: presses that go as far as each other
 
@@ -77,10 +77,12 @@ def excess_left(judge: TolerantJudge, fit: Fitted) -> Floats:
     samples, left = judge.model.samples, []
     numbers = range(len(samples.presses))
     presses, reached = np.array(numbers), np.array([reach(samples, n) for n in numbers])
+    drive = np.array([samples.recording.runs[run].drive for run, _ in samples.presses])
     condition = np.unique([judge.fold[samples.press == n][0] for n in numbers], return_inverse=True)[1]
     for group in range(min(FOLDS, int(condition.max()) + 1)):
         out = condition % FOLDS == group
-        within = out & (reached <= (1.0 + SAME) * reached[~out].max(initial=0.0))
+        farthest = np.array([reached[~out & (drive == one)].max(initial=0.0) for one in drive])
+        within = out & (reached <= (1.0 + SAME) * farthest)
         if within.any():
             halves = (presses[~out].tolist(), presses[within].tolist())
             shown = trained_and_held(judge.model, judge.found, fit, np.zeros(0), halves)[1]
