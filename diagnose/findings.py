@@ -92,6 +92,22 @@ class Fit:
     noise_floor_nrmse: float
     log_score_gain_per_press: float
 
+    @property
+    def improves(self) -> bool:
+        """Whether the error is less than before."""
+        return self.nrmse_after < self.nrmse_before
+
+    @property
+    def excess_after(self) -> float:
+        """Square of the error above that of noise, at least 0."""
+        return max(self.nrmse_after**2 - self.noise_floor_nrmse**2, 0.0)
+
+    @property
+    def share(self) -> float:
+        """Share of the excess over noise that is taken away; 0 where there was none."""
+        before = self.nrmse_before**2 - self.noise_floor_nrmse**2
+        return 1.0 - self.excess_after / before if before > 0.0 else 0.0
+
 
 class Grade(StrEnum):
     """How much a verdict says of what is missing: all of it, most of it, its kind, or only that something is."""

@@ -101,7 +101,7 @@ def _beside_a_drive_error(
 
 def _flaws(held_out: Fit) -> bool:
     """Whether what is left of held-out presses above noise is no more than an ordinary rig and the details of a law."""
-    return held_out.nrmse_after**2 - held_out.noise_floor_nrmse**2 <= FLAWS**2
+    return held_out.excess_after <= FLAWS**2
 
 
 def _quiet(model: ObservedModel, baseline: LinearisedSystem, found: Checked) -> Findings:
@@ -176,7 +176,7 @@ def _findings(model: ObservedModel, screening: Screening, found: Checked, choice
 
 def agreeing(decision: Decision, held_out: Fit | None) -> Decision:
     """Nothing is named where held-out presses are predicted with more error, whatever their log-score says."""
-    if not decision.named or held_out is None or _better(held_out):
+    if not decision.named or held_out is None or held_out.improves:
         return decision
     reason = (
         f"Fitted to the other presses, it predicts the held-out ones with an error of {percent(held_out.nrmse_after)} "
@@ -190,7 +190,7 @@ def _alone(model: ObservedModel, screening: Screening, models: Sequence[Judged])
     pair, found = models[0].fit.candidates, {}
     for one in models[1:] if len(pair) > 1 else ():
         if len(one.fit.candidates) == 1 and one.fit.candidates[0] in pair:
-            held_out = trained_and_held(model, screening, one.fit, np.array([one.gain.mean]))[1]
+            held_out = trained_and_held(model, screening, one.fit, np.zeros(0))[1]
             assert held_out is not None
             found[named(one.fit)] = held_out
     return found
@@ -208,13 +208,9 @@ def worth_both(decision: Decision, together: Fit, alone: Mapping[str, Fit]) -> D
     return decision
 
 
-def _better(held_out: Fit) -> bool:
-    return held_out.nrmse_after < held_out.nrmse_before
-
-
 def _kind(choice: Choice, held_out: Fit | None) -> str:
     """What all of the group have in common where nothing but their number is against a name, if anything."""
-    if not choice.decision.ambiguous or (held_out is not None and not _better(held_out)):
+    if not choice.decision.ambiguous or (held_out is not None and not held_out.improves):
         return ""
     return in_common([one for number in choice.groups[0] for one in choice.models[number].fit.candidates])
 
@@ -311,10 +307,8 @@ def _with_more(model: ObservedModel, screening: Screening, findings: Findings, r
 
 
 def _remainder(more: Joined, held_out: Fit) -> Remainder:
-    judge, noise = more.judge, held_out.noise_floor_nrmse**2
-    share = 1.0 - max(held_out.nrmse_after**2 - noise, 0.0) / (held_out.nrmse_before**2 - noise)
-    squares = judge.tolerance.squares(residual_beside(judge, more.fit.settings))
-    return Remainder(share, by_phase(judge.model.samples, squares, PHASES))
+    squares = more.judge.tolerance.squares(residual_beside(more.judge, more.fit.settings))
+    return Remainder(held_out.share, by_phase(more.judge.model.samples, squares, PHASES))
 
 
 def _model(model: ObservedModel, one: Judged, probability: float, detailed: bool) -> FittedModel:

@@ -70,9 +70,7 @@ class MainPart:
 
 def confirmed(held_out: Fit) -> bool:
     """Whether a model that was fitted to other presses takes most of the excess over noise away from these."""
-    noise = held_out.noise_floor_nrmse**2
-    before, after = held_out.nrmse_before**2 - noise, max(held_out.nrmse_after**2 - noise, 0.0)
-    return after < (1.0 - CONFIRMED) * before
+    return held_out.share > CONFIRMED
 
 
 def main_part(model: ObservedModel, found: Screening, report: Report) -> MainPart | None:

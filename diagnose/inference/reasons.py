@@ -1,5 +1,7 @@
 """What findings rest on, in sentences for somebody at a bench."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from diagnose.figures import figure, p_equals, part, percent
@@ -7,6 +9,7 @@ from diagnose.findings import Fit
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.refit import Fitted
 from diagnose.fit.system import LinearisedSystem
+from diagnose.forward import Candidate
 from diagnose.inference.choice import Choice, Judged, criteria
 from diagnose.verdict.names import listed
 
@@ -15,7 +18,11 @@ FAR = 3.0  # deviations of a prior
 
 def named(fit: Fitted) -> str:
     """charge-leakage (readout) and friction (dot)."""
-    return " and ".join(f"{candidate.mechanism} ({candidate.component})" for candidate in fit.candidates)
+    return _names(fit.candidates)
+
+
+def _names(candidates: Sequence[Candidate]) -> str:
+    return listed([f"{one.mechanism} ({one.component})" for one in candidates])
 
 
 def reasons_of(p_mismatch: float, choice: Choice | None) -> tuple[str, ...]:
@@ -86,9 +93,8 @@ def _second_opinion(choice: Choice) -> list[str]:
 
 def beside(fit: Fitted, first: int, held_out: Fit) -> str:
     """How the mechanisms after the first few came to be named."""
-    added = listed([f"{one.mechanism} ({one.component})" for one in fit.candidates[first:]])
     verb = "shows" if len(fit.candidates) == first + 1 else "show"
     return (
-        f"{added} {verb} in what the first explanation leaves of presses that took no part in the fit: the error falls "
-        f"further, to {percent(held_out.nrmse_after)}."
+        f"{_names(fit.candidates[first:])} {verb} in what the first explanation leaves of presses that took no part in "
+        f"the fit: the error falls further, to {percent(held_out.nrmse_after)}."
     )

@@ -87,7 +87,7 @@ def excess_left(judge: TolerantJudge, fit: Fitted) -> Floats:
             halves = (presses[~out].tolist(), presses[within].tolist())
             shown = trained_and_held(judge.model, judge.found, fit, np.zeros(0), halves)[1]
             assert shown is not None
-            left.append(max(shown.nrmse_after**2 - shown.noise_floor_nrmse**2, 0.0))
+            left.append(shown.excess_after)
     return np.array(left)
 
 

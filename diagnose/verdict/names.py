@@ -56,7 +56,7 @@ def setting_words(setting: Setting) -> str:
 
 def model_words(model: FittedModel) -> str:
     """All mechanisms of a model, as half a sentence."""
-    return " and ".join(setting_words(setting) for setting in model.settings)
+    return listed([setting_words(setting) for setting in model.settings])
 
 
 def in_common(candidates: Sequence[Candidate]) -> str:

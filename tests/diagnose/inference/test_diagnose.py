@@ -189,6 +189,15 @@ def test_a_pair_that_predicts_worse_than_one_of_the_two_is_not_named():
     assert "5.5 %, both together with 8.6 %" in refused.reasons[0]
 
 
+def test_shares_are_of_squares_above_noise():
+    fit = Fit(("run 1, press 1",), 0.5, 0.3, 0.1, 0.0)
+    assert fit.improves
+    assert fit.excess_after == pytest.approx(0.08)
+    assert fit.share == pytest.approx(1.0 - 0.08 / 0.24)
+    assert replace(fit, nrmse_after=0.05).share == 1.0
+    assert replace(fit, nrmse_before=0.1, nrmse_after=0.1).share == 0.0
+
+
 def test_beside_something_without_a_name_the_main_part_is_named():
     """A leak, and contact charge that is no candidate."""
     findings = found(small(5, Sensor(leak=1.0, touch_charge=0.02), runs=4, noise=0.001), FEW[:3])
