@@ -285,6 +285,8 @@ def _with_more(model: ObservedModel, screening: Screening, findings: Findings, r
     judge, one = more.judge, more.judge.judged(more.fit)
     train, after = trained_and_held(judge.model, judge.found, more.fit, np.array([one.gain.mean]))
     assert after is not None
+    if after.nrmse_after > held_out.nrmse_after:  # such as far beyond the strains that it was fitted to
+        return findings
     rest = _remainder(more, after) if findings.unexplained else None
     if findings.best is None and (rest is None or rest.share < NEARLY_ALL or implausible(more.fit)):
         return findings
