@@ -17,6 +17,7 @@ from softdot.convert import read_sheet, run_text, white_noise, write_recording
 
 AREA_MM2, THICKNESS_MM = 100.0, 1.0
 MODULUS = 1.0  # one sigma, relative: it is what the test is for
+SPECIMENS = 0.2  # one sigma, relative: what layers of soft materials usually differ by, each run having its own
 READING_ERROR = 0.002  # of the largest force, assumed at least: some of the curves were smoothed by their source
 STRESS_AND_SHEAR = {"monotonic_shear_0d05": (4, 3), "monotonic": (2, 3), "cyclic": (3, 4)}
 HEAD = """# Stress and shear are nominal: the layer's sizes are those of a unit specimen.
@@ -48,7 +49,7 @@ def convert(data: Path, out: Path) -> None:
         force = columns["force_N"]
         noise = {"force_N": max(white_noise(force), READING_ERROR * float(force.max()))}
         label = name.removesuffix(".csv").replace("0d", "0.").replace("-", " ")
-        nuisance = {"modulus.specimen": MODULUS}
+        nuisance = {"modulus.specimen": MODULUS, "force_gain": SPECIMENS}
         runs.append(run_text(name, label, "displacement_mm", nuisance=nuisance, noise=noise))
     write_recording(out, "\n".join(runs), files)
 

@@ -81,7 +81,8 @@ def _through_s(run: Run) -> float:
 
 
 EXPONENTS = (4.0, 8.0, -2.0)
-UPWARDS = (4.0, 8.0)  # in shear -2 is the same as 2
+OF_SHEAR = (4.0, 8.0, 1.0)  # -2 is the same as 2 there
+UPWARDS = (4.0, 8.0)
 ADDED = Coordinate("force_ratio_less_1", -0.95, 20.0, (0.5, -0.5))
 SHARE = 20.0  # of one term, in terms of the force without; terms may compensate each other
 
@@ -102,7 +103,10 @@ class Stiffening:
     @property
     def exponents(self) -> tuple[float, ...]:
         """Of the terms that are added to Ogden's series."""
-        chosen = UPWARDS if self.by_force or self.lateral == 1.0 else EXPONENTS
+        if self.by_force:
+            chosen: tuple[float, ...] = UPWARDS
+        else:
+            chosen = OF_SHEAR if self.lateral == 1.0 else EXPONENTS
         return tuple(-abs(exponent) for exponent in chosen) if self.stretch < 1.0 else chosen
 
     @property

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.optimize import nnls
+from scipy.optimize import least_squares, nnls
 
 from diagnose.engines.coupon.engine import coupon_engine, improved_material
 from diagnose.engines.coupon.laws import relaxation_times
@@ -177,6 +177,24 @@ def test_force_ratio_is_the_force_with_over_without_at_the_largest_strain(kind, 
     assert ratio == pytest.approx(one.derived(values)["force_ratio"], rel=1e-6)
     early = int(np.argmax(TRAVEL > 0.0))
     assert force(of, Setting(one, values))[early] == pytest.approx(force(of)[early], rel=0.06)
+
+
+@pytest.mark.parametrize(
+    "law", [np.arcsinh, lambda shear: np.sinh(0.5 * np.arcsinh(0.5 * shear)) / np.hypot(1.0, 0.5 * shear)]
+)
+def test_a_layer_gives_way_at_large_shear_by_laws_that_are_not_the_family(law):
+    """The second is Ogden's of the exponent 1/2. To a shear of ten the family is within 1 % of either."""
+    shear = np.linspace(0.0, 10.0, len(TIME))
+    of = coupon_engine(Recording((run(20.0 * shear),), specimen("shear")), {"mine": RUBBER}, silent)
+    one = candidate(of, "hyperelastic-stiffening")
+
+    def shape(values):
+        found = force(of, Setting(one, tuple(values)))
+        return found / np.linalg.norm(found) - law(shear) / np.linalg.norm(law(shear))
+
+    fit = least_squares(shape, (-0.5, 0.0, -0.5))
+    assert np.linalg.norm(fit.fun) < 0.01
+    assert one.derived(tuple(fit.x))["force_ratio"] < 0.5
 
 
 def test_relaxed_fraction_is_what_a_held_coupon_loses_between_a_tenth_and_ten_seconds():

@@ -70,6 +70,20 @@ def test_a_sheared_layer_relaxes_along_its_series():
     np.testing.assert_allclose(relaxed / relaxed[0], fall, rtol=1e-12)
 
 
+def test_a_quick_branch_of_a_layer_is_a_viscosity_that_grows_with_the_shear():
+    """g mu tau (1 + g^2 / 3) times the rate: of S, S12 + g S22 with mu = 2 c10 and C^-1 of the shear g.
+
+    A branch remembers its last tau, in which the shear grew by tau times the rate.
+    """
+    rate, share, tau = 1.0, 0.5, 1e-3
+    law = InvariantLaw(C10, 0.0, 0.0, 0.0, STIFF)
+    shear = rate * TIME
+    whole = force(SHEAR, law, LENGTH * shear, series=Prony((share,), (tau,)))
+    kept = (1.0 - share) * force(SHEAR, law, LENGTH * shear)
+    expected = AREA * share * 2.0 * C10 * tau * rate * (1.0 + shear**2 / 3.0)
+    np.testing.assert_allclose((whole - kept)[50:], expected[50:], rtol=0.03)
+
+
 def test_rubber_in_tension_relaxes_as_its_second_piola_kirchhoff_stress_does():
     """The volume stays, so that S11 - S22 C22 / C11 relaxes and with it the force."""
     relaxed = force(TENSION, YEOH, np.full(len(TIME), 10.0), series=Prony((0.4,), (2.0,)))
