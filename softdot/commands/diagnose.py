@@ -225,7 +225,7 @@ def engine_for(rig: Rig, report: Report) -> Engine:
     if rig.recording.specimen is not None:
         from diagnose.engines.coupon.engine import coupon_engine
 
-        return coupon_engine(rig.recording, rig.materials, report)
+        return coupon_engine(rig.recording, rig.materials, report, last={})
     from diagnose.engines.proportional import proportional_engine
 
     return proportional_engine(rig.recording, report)

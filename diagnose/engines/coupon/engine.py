@@ -24,6 +24,7 @@ from diagnose.forward import Candidate, Setting, Signals
 from diagnose.signals.recording import Drive, Recording, Run, Specimen
 from diagnose.vocabulary.base import CouponScene, candidates_of_coupon
 from diagnose.vocabulary.layers.property_error import relative_error
+from geometry.arrays import Floats
 from geometry.base import InputError, Report
 from solve.materials.parameters import Material, PiezoelectricFilm, find_material
 from solve.mechanisms import Mechanism
@@ -41,6 +42,8 @@ class CouponEngine:
     """One material point in the place of a coupon that deforms uniformly; the 3D elements would find the same.
 
     material : as rig.toml states it. Nothing has to be prepared, and solve is predict.
+    last : label of a run -> unknowns of its last answer, from which the next one starts, as fits move in small steps;
+        None to start each at small strains, so that it depends on nothing but its arguments.
     """
 
     recording: Recording
@@ -51,6 +54,7 @@ class CouponEngine:
     accuracy: Mapping[str, float] = field(default_factory=lambda: {"force_N": ACCURACY, "displacement_mm": ACCURACY})
     free_nuisances: tuple[Candidate, ...] = ()
     shortfalls: tuple[str, ...] = ()
+    last: dict[str, Floats] | None = field(default=None, repr=False, compare=False)
 
     def nuisance(self, name: str) -> Candidate | None:
         """Relative error of modulus.specimen or thickness.specimen, or an error of the column that drives."""
@@ -96,10 +100,14 @@ class CouponEngine:
         gain = of_drive.get("force_gain", 0.0) if kind == "force_N" else 0.0
         drive = (run.drive_values - shift) / (1.0 + gain)
         model = self.model(mechanisms)
-        values = point_of(self.specimen, model).answer(run.time_s, drive, kind)
+        near = None if self.last is None else self.last.get(run.label)
+        near = near if near is not None and len(near) == len(drive) else None
+        found = point_of(self.specimen, model).answer_near(run.time_s, drive, kind, near)
+        if self.last is not None:
+            self.last[run.label] = found.unknown
         if kind == "force_N":
-            return {"displacement_mm": values}
-        held = np.maximum(values, -buckling_load_N(self.specimen, model.materials[LAYER]))
+            return {"displacement_mm": found.values}
+        held = np.maximum(found.values, -buckling_load_N(self.specimen, model.materials[LAYER]))
         return {"force_N": felt(run.time_s, drive, held, model.physics)}
 
 
@@ -131,8 +139,10 @@ def point_of(specimen: Specimen, model: Model) -> MaterialPoint:
     )
 
 
-def coupon_engine(recording: Recording, materials: Mapping[str, Material], report: Report) -> CouponEngine:
-    """The engine of a recording with a specimen; materials : the user's own.
+def coupon_engine(
+    recording: Recording, materials: Mapping[str, Material], report: Report, last: dict[str, Floats] | None = None
+) -> CouponEngine:
+    """The engine of a recording with a specimen; materials : the user's own. last : of the engine.
 
     InputError for a material that is none of a coupon, a column that is missing, or a travel beyond the specimen.
     """
@@ -144,7 +154,7 @@ def coupon_engine(recording: Recording, materials: Mapping[str, Material], repor
     _refuse_unfit(recording, specimen)
     point = point_of(specimen, one_layer(material, specimen.thickness_mm))
     candidates = candidates_of_coupon(CouponScene(recording, material, point))
-    engine = CouponEngine(recording, specimen, material, candidates)
+    engine = CouponEngine(recording, specimen, material, candidates, last=last)
     report("material point", 1, 1)
     return engine
 

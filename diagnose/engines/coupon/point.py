@@ -11,6 +11,7 @@ A whole history of the stress at one material point: relaxation by scans over ti
 The formulas are those of solve.materials.inelastic; tests hold both ways together.
 """
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numba as nb
@@ -129,10 +130,18 @@ def youngs_modulus_MPa(law: MediumLaw) -> float:
     return 9.0 * bulk * shear / (3.0 * bulk + shear)
 
 
-TOLERANCE = 1e-7  # of the logarithm of the stretch, or of the shear; the iterate behind it errs by the square
+TOLERANCE = 1e-6  # of the logarithm of the stretch, or of the shear; the iterate behind it errs by the square
 MAX_ITERATIONS = 80  # four or five, unless samples lie at the kink of softening
 MAX_ROUNDS = 30  # two or three
 LARGEST_STEP = 0.3  # of the logarithm of the stretch, or of the shear, in one iteration
+
+
+@dataclass(frozen=True)
+class PointAnswer:
+    """values (t,) : force in N or travel in mm. unknown (t, m) : of the kinematics, where nothing softens."""
+
+    values: Floats
+    unknown: Floats
 
 
 @dataclass(frozen=True)
@@ -148,7 +157,15 @@ class MaterialPoint:
 
     def answer(self, time_s: Floats, drive: Floats, kind: Drive) -> Floats:
         """Force (t,) in N of a travel (t,) in mm, or travel of a force. NoEquilibriumError."""
-        return _Test(self, drive, kind == "displacement_mm", Relaxation.of(self.series, time_s)).answer()
+        return self.answer_near(time_s, drive, kind).values
+
+    def answer_near(self, time_s: Floats, drive: Floats, kind: Drive, near: Floats | None = None) -> PointAnswer:
+        """The same with its unknowns; near (t, m) : those of a similar point, from which the iteration starts."""
+        test = _Test(self, drive, kind == "displacement_mm", Relaxation.of(self.series, time_s))
+        if near is not None:
+            with suppress(NoEquilibriumError):
+                return test.answer_near(near)
+        return test.answer_near(test.start())
 
     def travel_if_linear(self, force: Floats) -> Floats:
         """Travel (t,) of a force at the stiffness of small strains."""
@@ -182,30 +199,36 @@ class _Test:
     by_travel: bool
     relaxation: Relaxation
 
-    def answer(self) -> Floats:
-        """Force or travel (t,). NoEquilibriumError."""
-        point, peaks = self.point, None
-        travel = self.drive if self.by_travel else point.travel_if_linear(self.drive)
-        unknown = self._settled(point.kinematics.start(travel, point.poisson_ratio), None)
-        if point.softening is not None:
-            unknown, peaks = self._softened(unknown)
-        now = point.reading(unknown, self.relaxation.relaxed(point.elastic(unknown, peaks).stress))
-        return now.force if self.by_travel else now.travel + point.compliance_mm_per_N * now.force
+    def start(self) -> Floats:
+        """Unknowns (t, m) near those of small strains."""
+        travel = self.drive if self.by_travel else self.point.travel_if_linear(self.drive)
+        return self.point.kinematics.start(travel, self.point.poisson_ratio)
+
+    def answer_near(self, start: Floats) -> PointAnswer:
+        """Force or travel, from unknowns (t, m) near. NoEquilibriumError."""
+        point = self.point
+        elastic, stress = self._settled(start, None)
+        unknown, stress = (elastic, stress) if point.softening is None else self._softened(elastic)
+        now = point.reading(unknown, self.relaxation.relaxed(stress))
+        answer = now.force if self.by_travel else now.travel + point.compliance_mm_per_N * now.force
+        return PointAnswer(answer, elastic)
 
     def _softened(self, unknown: Floats) -> tuple[Floats, Floats]:
-        """Unknowns with softening and the largest energies before, from those without."""
+        """Unknowns and elastic stress with softening, from the unknowns without."""
         for _ in range(MAX_ROUNDS):
             peaks, before = earlier_peaks(self.point.energy(unknown)), unknown
-            unknown = self._settled(before, peaks)
+            unknown, stress = self._settled(before, peaks)
             if np.abs(unknown - before).max() <= TOLERANCE:
-                return unknown, peaks
+                return unknown, stress
         raise self._nowhere()
 
-    def _settled(self, unknown: Floats, peaks: Floats | None) -> Floats:
-        """Unknowns (t, m) in balance."""
+    def _settled(self, unknown: Floats, peaks: Floats | None) -> tuple[Floats, Floats]:
+        """Unknowns (t, m) in balance, and the elastic stress (t, 6) there, by its tangent over the last step."""
         last, damping = np.zeros_like(unknown), np.ones((len(unknown), 1))
         for _ in range(MAX_ITERATIONS):
-            step = self._step(unknown, self.point.elastic(unknown, peaks))
+            elastic = self.point.elastic(unknown, peaks)
+            stress_by = np.asarray(elastic.tangent) @ self.point.kinematics.strain_rates(unknown)
+            step = self._step(unknown, elastic.stress, stress_by)
             largest = float(np.abs(step).max())
             if not np.isfinite(largest):
                 break
@@ -213,19 +236,18 @@ class _Test:
             last = np.clip(damping * step, -LARGEST_STEP, LARGEST_STEP)
             unknown = unknown + last
             if largest <= TOLERANCE:
-                return unknown
+                return unknown, elastic.stress + np.einsum("tcm,tm->tc", stress_by, last)
         raise self._nowhere()
 
-    def _step(self, unknown: Floats, elastic: StressResponse) -> Floats:
-        """Newton's correction (t, m)."""
-        now = self.point.reading(unknown, self.relaxation.relaxed(elastic.stress))
+    def _step(self, unknown: Floats, stress: Floats, stress_by: Floats) -> Floats:
+        """Newton's correction (t, m). stress (t, 6) is the elastic one, stress_by (t, 6, m) its derivative."""
+        now = self.point.reading(unknown, self.relaxation.relaxed(stress))
         weight = self.point.compliance_mm_per_N if self.by_travel else 1.0
         along = float(self.by_travel)
         residual = np.column_stack([along * now.travel + weight * now.force - self.drive, now.lateral])
         by_stress = np.concatenate([weight * now.force_stress[:, None, :], now.lateral_stress], axis=1)
         of_drive = along * now.travel_unknown + weight * now.force_unknown
         by_unknown = np.concatenate([of_drive[:, None, :], now.lateral_unknown], axis=1)
-        stress_by = np.asarray(elastic.tangent) @ self.point.kinematics.strain_rates(unknown)
         return self.relaxation.newton_step(residual, by_stress, stress_by, by_unknown)
 
     def _nowhere(self) -> NoEquilibriumError:

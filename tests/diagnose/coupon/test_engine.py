@@ -217,6 +217,18 @@ def test_solve_with_the_mechanism_is_predict_with_its_setting():
         assert np.array_equal(solved, force(of, setting))
 
 
+@pytest.mark.parametrize("kind", KINDS)
+def test_an_answer_from_the_last_one_is_the_same(kind):
+    of = engine(kind)
+    quick = replace(of, last={})
+    for one in of.candidates:
+        for start in range(len(one.coordinates[0].starts)):
+            values = tuple(each.starts[min(start, len(each.starts) - 1)] for each in one.coordinates)
+            setting = Setting(one, values)
+            np.testing.assert_allclose(force(quick, setting), force(of, setting), rtol=1e-7, atol=1e-8)
+    assert len(quick.last["run"]) == len(TIME)
+
+
 def test_the_improved_material_is_one_that_a_segment_can_be_made_of():
     of = engine()
     settings = [
