@@ -47,7 +47,7 @@ class Candidate:
     together : how its coordinates go together in presses of the 3D model: "sum", "jointly", "fading" or "glue" (see
     diagnose.engines.segment.interpolation).
     units : name of a parameter or derived quantity -> unit in the verdict.
-    ordinary : values -> whether a careful laboratory's rig has as much of it, so that it is no finding.
+    everyday : name of a parameter or derived quantity -> what a careful laboratory has of it: no finding.
     """
 
     mechanism: str
@@ -58,7 +58,7 @@ class Candidate:
     units: Mapping[str, str] = field(default_factory=dict)
     compared: str = ""
     together: str = "sum"
-    ordinary: Callable[[Sequence[float]], bool] = lambda _: False
+    everyday: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def traits(self) -> Traits:
@@ -69,6 +69,11 @@ class Candidate:
     def name(self) -> tuple[str, str]:
         """Mechanism and component."""
         return self.mechanism, self.component
+
+    def ordinary(self, values: Sequence[float]) -> bool:
+        """Whether a careful laboratory's rig has as much of it."""
+        found = {**self.parameters(values), **self.derived(values)}
+        return bool(self.everyday) and all(found[name] <= most for name, most in self.everyday.items())
 
     def switched_on(self, values: Sequence[float]) -> Mechanism:
         """The mechanism as a configuration has it. ValueError for values beyond its bounds."""

@@ -30,7 +30,10 @@ Function = Callable[[Floats], float]
 
 
 def intervals(model: ObservedModel, fit: Fitted) -> tuple[Mapping[str, Interval], ...]:
-    """For each mechanism of a fit, its parameters and derived quantities by name."""
+    """For each mechanism of a fit, its parameters and derived quantities by name.
+
+    The low end leaves room for what every rig has of it: of a gap, softness at the first touch.
+    """
     fit = _model_may_err(model, _law_may_differ(fit))
     return tuple(_of_mechanism(model, fit, number) for number in range(len(fit.candidates)))
 
@@ -63,7 +66,9 @@ def _of_mechanism(model: ObservedModel, fit: Fitted, number: int) -> Mapping[str
 
     names = _numbers(fit.settings[number])
     candidate = fit.candidates[number]
-    return {name: _interval(model, fit, function(name), _unit(candidate, name)) for name in names}
+    found = {name: _interval(model, fit, function(name), _unit(candidate, name)) for name in names}
+    less = {name: max(found[name].low - usual, 0.0) for name, usual in candidate.everyday.items()}
+    return {name: replace(one, low=less.get(name, one.low)) for name, one in found.items()}
 
 
 def _unit(candidate: Candidate, name: str) -> str:

@@ -23,11 +23,8 @@ def _gap(scene: Scene) -> Candidate:
     def parameters(values: Sequence[float]) -> dict[str, Any]:
         return {"gap_mm": values[0]}
 
-    def ordinary(values: Sequence[float]) -> bool:
-        return values[0] <= FIRST_TOUCH_MM
-
-    units = {"gap_mm": "mm"}
-    return Candidate(CONTACT_GAP.name, "dot", (coordinate,), parameters, units=units, ordinary=ordinary)
+    units, everyday = {"gap_mm": "mm"}, {"gap_mm": FIRST_TOUCH_MM}
+    return Candidate(CONTACT_GAP.name, "dot", (coordinate,), parameters, units=units, everyday=everyday)
 
 
 register(Vocabulary(CONTACT_GAP, "there is a gap before {} touches", of_segment=of_segment, kind=GIVES_WAY))

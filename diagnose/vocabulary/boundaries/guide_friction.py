@@ -14,7 +14,7 @@ from diagnose.vocabulary.base import REMEMBERS, CouponScene, Scene, Vocabulary, 
 from solve.mechanisms.boundaries.guide_friction import GUIDE_FRICTION
 
 TRAVELS = tuple(10.0 ** (0.5 * n - 3.0) for n in range(6))  # of the largest travel, where a slider slips
-MOST, ORDINARY = 1.5, 0.003  # of the largest force; the latter any tester has (rule of thumb)
+MOST, EVERYDAY = 1.5, 0.003  # of the largest force; the latter any tester has (rule of thumb)
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
@@ -41,11 +41,9 @@ def _guide(force_N: float, travel_mm: float) -> Candidate:
     def derived(values: Sequence[float]) -> dict[str, float]:
         return sliding(**parameters(values))
 
-    def ordinary(values: Sequence[float]) -> bool:
-        return sum(values) <= ORDINARY
-
     units = {"friction_force_N": "N", "presliding_mm": "mm", "sliding_friction_N": "N", "half_of_it_within_mm": "mm"}
-    return Candidate(GUIDE_FRICTION.name, "rig", coordinates, parameters, derived, units, ordinary=ordinary)
+    everyday = {"sliding_friction_N": EVERYDAY * force_N}
+    return Candidate(GUIDE_FRICTION.name, "rig", coordinates, parameters, derived, units, everyday=everyday)
 
 
 def sliding(friction_force_N: Sequence[float], presliding_mm: Sequence[float]) -> dict[str, float]:

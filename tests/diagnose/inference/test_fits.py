@@ -99,6 +99,14 @@ def test_an_interval_is_where_the_likelihood_has_fallen_by_its_quantile():
     assert leak.high - leak.low == pytest.approx(2.0 * 1.645 * error, rel=0.1)
 
 
+def test_an_interval_reaches_down_by_what_every_rig_has():
+    model, _, right = leaking()
+    (without,) = intervals(model, right)
+    for usual, low in ((0.1, without["leak"].low - 0.1), (5.0, 0.0)):
+        (found,) = intervals(model, replace(right, candidates=(replace(LEAK, everyday={"leak": usual}),)))
+        assert (found["leak"].low, found["leak"].high) == pytest.approx((low, without["leak"].high))
+
+
 def test_an_interval_that_a_bound_ends_says_so():
     model = seen(small(6, Sensor(branches2=(0.1, 0.0, 0.0)), runs=3))
     baseline = fitted_baseline(model)
