@@ -98,11 +98,7 @@ def relaxed_fraction(relative_moduli: Sequence[float], relaxation_times_s: Seque
 
 
 def spectrum(make: type[Candidate], component: str, times_s: Sequence[float], most: float) -> Candidate:
-    """The candidate at a component, one coordinate a branch; most : of each E_i / E_inf. make : its class.
-
-    At most = MOST_OF_COUPON next to nothing of the stress stays in the end, as in an uncured adhesive: more would show
-    as the same.
-    """
+    """The candidate at a component, one coordinate a branch; most : of each E_i / E_inf. make : its class."""
 
     def parameters(values: Sequence[float]) -> dict[str, Any]:
         moduli, times = _branches(values, times_s)
@@ -111,8 +107,7 @@ def spectrum(make: type[Candidate], component: str, times_s: Sequence[float], mo
     def derived(values: Sequence[float]) -> dict[str, float]:
         return {"relaxed_fraction": relaxed_fraction(*_branches(values, times_s))}
 
-    fluid = (False, most >= MOST_OF_COUPON)
-    coordinates = tuple(Coordinate(f"modulus_at_{time:.3g}_s", 0.0, most, (0.1, 0.5), (), fluid) for time in times_s)
+    coordinates = tuple(Coordinate(f"modulus_at_{time:.3g}_s", 0.0, most, (0.1, 0.5)) for time in times_s)
     units = {"relative_moduli": "", "relaxation_times_s": "s", "relaxed_fraction": ""}
     return make(VISCOELASTICITY.name, component, coordinates, parameters, derived, units)
 
