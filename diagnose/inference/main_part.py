@@ -56,10 +56,14 @@ class MainPart:
 
     @property
     def nameable(self) -> bool:
-        """Whether few enough are as good, and the best leaves little and has no value at an edge, or is nearly all."""
+        """Whether few enough are as good, and the best leaves little and has no value at an edge, or is nearly all.
+
+        A wrong number has no law whose details could be off: it leaves the flaws of a rig alone.
+        """
         few = len(self.group) <= RATES.largest_group
         best = self.models[0].fit
-        plain = self.left_size <= FLAWS and not implausible(best)
+        numbers = all(candidate.traits.applied_last for candidate in best.candidates)
+        plain = self.left_size <= (VISIBLE if numbers else FLAWS) and not implausible(best)
         return few and not ordinary(best) and (plain or self.share - self.hidden >= NEARLY_ALL)
 
     def probabilities(self, rng: np.random.Generator) -> Floats:

@@ -211,6 +211,16 @@ def test_beside_something_without_a_name_the_main_part_is_named():
     assert low < 1.0 < high
 
 
+@pytest.mark.parametrize(("touch_charge", "grade"), [(0.02, Grade.MAIN_PART), (0.05, Grade.UNEXPLAINED)])
+def test_a_wrong_number_leaves_no_more_than_the_flaws_of_a_rig(touch_charge, grade):
+    """A modulus beside contact charge that is no candidate; what is left is 1 and 1.7 % of the signal."""
+    errors = tuple(c for c in CANDIDATES if c.mechanism == "property-error")
+    sensor = Sensor(modulus1=0.6, touch_charge=touch_charge)
+    findings = found(small(5, sensor, runs=4, noise=0.001), (*FEW[:3], *errors))
+    assert findings.grade == grade
+    assert names(findings) in ((("property-error", "medium1"),), ())
+
+
 def test_flaws_of_a_rig_alone_have_no_main_part():
     """A surface that is soft by 2 um at the touch, which no candidate describes."""
     findings = found(small(5, Sensor(rounding_mm=0.002), runs=4, noise=0.001), FEW)
