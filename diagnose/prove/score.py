@@ -31,7 +31,9 @@ class Score:
     main_part : named as most of what is missing; main_right : exactly the truth, or in a fair group with it.
     overlap : of the localised excess with that of the generator, 0 to 1. held_out : error over noise floor.
     covered : value -> whether its interval holds it. next_sigma : what the next press is said to separate.
-    resolved : whether that press, once made, leaves the truth alone; None where it was not made.
+    equals : explanations that are as good as the truth, itself among them, named or not.
+    resolved : whether that press, once made, leaves the truth alone; smaller : whether it leaves fewer equals, of which
+    the truth is one. None where it was not made.
     """
 
     case: int
@@ -56,6 +58,8 @@ class Score:
     seconds: float = 0.0
     main_part: tuple[Name, ...] = ()
     main_right: bool = False
+    equals: int = 1
+    smaller: bool | None = None
 
     @property
     def right(self) -> bool:
@@ -74,7 +78,8 @@ def scored(truth: Mapping[str, Any], verdict: Mapping[str, Any], separation: Sep
     named = () if verdict["unexplained"] else _names(verdict["missing_physics"])
     main = _names(verdict.get("main_part") or [])
     exact = bool(named) and named == true
-    group = _group_with(true, named or main, verdict.get("ambiguous_with") or [])
+    groups = verdict.get("ambiguous_with") or []
+    group = _group_with(true, named or main, groups)
     fair = 1 < len(group) <= LARGEST_GROUP and _inseparable(group, true, separation)
     held_out = (verdict.get("fit") or {}).get("held_out") or {}
     floor = held_out.get("noise_floor_nrmse")
@@ -100,6 +105,7 @@ def scored(truth: Mapping[str, Any], verdict: Mapping[str, Any], separation: Sep
         seconds=seconds,
         main_part=main,
         main_right=bool(main) and (main == true or fair),
+        equals=len(_group_with(true, true, groups)),
     )
 
 
@@ -203,6 +209,7 @@ def tally(scores: Sequence[Score]) -> dict[str, Any]:
         "clear_component": rate(clear, lambda s: s.component),
         "pairs_exact": rate(of[PAIR], lambda s: s.exact),
         "ambiguous_told": rate(of[AMBIGUOUS], lambda s: s.group > 1 or not s.named),
+        "next_press_narrows": rate([s for s in scores if s.smaller is not None], lambda s: bool(s.smaller)),
         "next_press_resolves": rate([s for s in scores if s.resolved is not None], lambda s: bool(s.resolved)),
         "held_out_on_floor": rate(told, lambda s: (s.held_out or 0.0) <= ON_FLOOR),
         "covered": rate(covered, lambda one: one[1]),

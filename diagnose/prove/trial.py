@@ -117,11 +117,11 @@ def tried(case: Case, terms: Terms, commit: Commit) -> dict[str, Any]:
         nothing = {"verdict": None, "score": None}
         return {**record, "status": "no verdict", "reason": heard.reason, "seconds": heard.seconds, **nothing}
     score = _scored(case, sealed.truth, heard.verdict, heard.seconds)
-    if score.group > 1 and heard.next_press is not None:
+    if score.equals > 1 and heard.next_press is not None:
         longer = with_asked(case, runs, heard.verdict["next_experiment"], heard.next_press)
         if longer is not None:
-            record["asked"], resolved = _settled(case, terms, sealed.truth, files(*longer))
-            score = replace(score, resolved=resolved)
+            record["asked"], resolved, left = _settled(case, terms, sealed.truth, files(*longer))
+            score = replace(score, resolved=resolved, smaller=None if resolved is None else 0 < left < score.equals)
     own = {"seconds": heard.seconds, "verdict": heard.verdict, "score": score.plain()}
     return {**record, "status": "scored", "reason": None, **own}
 
@@ -137,14 +137,18 @@ def _scored(case: Case, truth: Mapping[str, Any], verdict: Mapping[str, Any], se
 
 def _settled(
     case: Case, terms: Terms, truth: Mapping[str, Any], recording: Mapping[str, str]
-) -> tuple[dict[str, Any], bool | None]:
-    """What a recording with the press that was asked for tells, and whether it names just the truth."""
+) -> tuple[dict[str, Any], bool | None, int]:
+    """What a recording with the press that was asked for tells, whether it names just the truth, and its equals.
+
+    No equals where the truth is not among what is as good as the best.
+    """
     heard = _heard(case, terms, recording)
     if heard.verdict is None:
-        return {"reason": heard.reason}, None
+        return {"reason": heard.reason}, None, 0
     score = _scored(case, truth, heard.verdict, heard.seconds)
-    told = {"named": [list(name) for name in score.named], "group": score.group, "seconds": heard.seconds}
-    return told, score.exact and score.group == 1
+    left = score.equals if score.exact or score.equals > 1 else 0
+    told = {"named": [list(name) for name in score.named], "group": score.group, "equals": left}
+    return {**told, "seconds": heard.seconds}, score.exact and score.group == 1, left
 
 
 def separation(case: Case, rival: Name) -> float | None:

@@ -82,7 +82,8 @@ HEAD = {
     "abstention_outside": "effect outside the list of mechanisms: nothing named",
     "pairs_exact": "two effects at once: both named",
     "ambiguous_told": "designed ambiguity: reported, or nothing named",
-    "next_press_resolves": "several explanations left, proposed press made: only the truth is named",
+    "next_press_narrows": "several explanations as good, proposed press made: fewer are, and the truth is one",
+    "next_press_resolves": "the same: only the truth is named",
     "held_out_on_floor": "held-out error within 1.2 times the noise floor, where named exactly",
     "covered": "90 % intervals that contain the true value",
 }

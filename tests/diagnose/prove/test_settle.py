@@ -19,6 +19,8 @@ WAVE = "time_s,displacement_mm\n" + "\n".join(f"{t:.9g},{u:.9g}" for t, u in zip
 CASE = Case(20, 7, AMBIGUOUS, VOLTAGE_ONLY.name, ("cable",), 5.0)
 CABLE = {"mechanism": "parasitic-capacitance", "component": "readout"}
 WEAK = {"mechanism": "property-error", "component": "film"}
+GLUE = {"mechanism": "adhesive-compliance", "component": "bond-base"}
+LEAK = {"mechanism": "charge-leakage", "component": "readout"}
 
 
 def experiment(**changes):
@@ -57,10 +59,17 @@ def test_the_longer_recording_begins_with_what_there_was(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("named", "groups", "resolved"),
-    [([CABLE], [], True), ([CABLE], [[CABLE, WEAK]], False), ([WEAK], [], False), ([], [], False)],
+    ("named", "groups", "resolved", "left"),
+    [
+        ([CABLE], [], True, 1),
+        ([CABLE], [[CABLE, WEAK]], False, 2),
+        ([WEAK], [], False, 0),
+        ([], [], False, 0),
+        ([], [[CABLE, WEAK, GLUE, LEAK]], False, 4),
+        ([], [[WEAK, GLUE, LEAK]], False, 0),
+    ],
 )
-def test_only_the_truth_alone_is_a_resolved_group(named, groups, resolved, monkeypatch):
+def test_only_the_truth_alone_is_a_resolved_group(named, groups, resolved, left, monkeypatch):
     truth = {
         "number": 20, "kind": AMBIGUOUS, "bench": VOLTAGE_ONLY.name, "whitened_rms": 5.0, "per_run": {},
         "mechanisms": [{**CABLE, "values": {}}],
@@ -71,4 +80,4 @@ def test_only_the_truth_alone_is_a_resolved_group(named, groups, resolved, monke
     }  # fmt: skip
     monkeypatch.setattr(trial, "diagnosed", lambda *_: Heard(verdict, "", 1.0))
     monkeypatch.setattr(trial, "_scored", lambda _, t, v, s: scored(t, v, lambda _: 0.5, s))
-    assert trial._settled(CASE, Terms("."), truth, {})[1] is resolved
+    assert trial._settled(CASE, Terms("."), truth, {})[1:] == (resolved, left)
