@@ -72,8 +72,10 @@ class Candidate:
 
     def ordinary(self, values: Sequence[float]) -> bool:
         """Whether a careful laboratory's rig has as much of it."""
+        if not self.everyday:
+            return False
         found = {**self.parameters(values), **self.derived(values)}
-        return bool(self.everyday) and all(found[name] <= most for name, most in self.everyday.items())
+        return all(found[name] <= most for name, most in self.everyday.items())
 
     def switched_on(self, values: Sequence[float]) -> Mechanism:
         """The mechanism as a configuration has it. ValueError for values beyond its bounds."""

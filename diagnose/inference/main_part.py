@@ -7,11 +7,13 @@ an explanation here, and held-out conditions decide: runs that repeat each other
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import hypot
 
 import numpy as np
 
 from diagnose.findings import Fit
 from diagnose.fit.descent import settings
+from diagnose.fit.discrepancy import FORM_ERROR
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.signal_discrepancy import VISIBLE, SignalDiscrepancy, by_phase, conditions, in_plain_units
 from diagnose.fit.system import linearised
@@ -40,8 +42,9 @@ class MainPart:
     """models : best first, each with its gain over the baseline. group : numbers of those that are as good.
 
     model, found : in the metric in which they were judged. base : the baseline's forecast there. share : of the
-    held-out excess over noise that the best accounts for; hidden : what noise may hide of it. left_size : root mean
-    square of what it leaves, relative to the signal, of the worst channel. left_by_phase : phase -> share of that.
+    held-out excess over noise that the best accounts for; hidden : what noise may hide of it. left_size, effect_size :
+    root mean square of what it and the baseline leave, relative to the signal, of the worst channel. left_by_phase :
+    phase -> share of what it leaves.
     """
 
     models: tuple[Judged, ...]
@@ -52,18 +55,19 @@ class MainPart:
     share: float
     hidden: float
     left_size: float
+    effect_size: float
     left_by_phase: dict[str, float]
 
     @property
     def nameable(self) -> bool:
         """Whether few enough are as good, and the best leaves little and has no value at an edge, or is nearly all.
 
-        A wrong number has no law whose details could be off: it leaves the flaws of a rig alone.
+        What it may leave are flaws of a rig, and of a law some percent of its effect; a wrong number has no law.
         """
         few = len(self.group) <= RATES.largest_group
         best = self.models[0].fit
-        numbers = all(candidate.traits.applied_last for candidate in best.candidates)
-        plain = self.left_size <= (VISIBLE if numbers else FLAWS) and not implausible(best)
+        law = 0.0 if all(candidate.traits.applied_last for candidate in best.candidates) else FORM_ERROR
+        plain = self.left_size <= min(FLAWS, hypot(VISIBLE, law * self.effect_size)) and not implausible(best)
         return few and not ordinary(best) and (plain or self.share - self.hidden >= NEARLY_ALL)
 
     def probabilities(self, rng: np.random.Generator) -> Floats:
@@ -136,5 +140,6 @@ def _told(judge: TolerantJudge, models: Sequence[Judged]) -> MainPart | None:
         1.0 - best.left,
         judge.hidden(),
         judge.largest(best.forecast),
+        judge.largest(judge.base),
         left,
     )
