@@ -30,7 +30,7 @@ from geometry.base import Report
 MOST = 0.9
 """Share of the held-out excess over noise that a main part accounts for."""
 FLAWS = 0.02
-"""The same that it may leave: more is not the flaws of a rig and the details of a law."""
+"""Of the signal, the most that may be left by flaws of a rig and the details of a law."""
 NEARLY_ALL = 0.99
 """The share that it needs where it leaves more, or has a value at the end of what a real part can have."""
 CONFIRMED = 0.8
