@@ -56,8 +56,9 @@ def quasi_linear(recording: Recording, train: Chosen) -> Callable[[Run], dict[st
 
     def terms(run: Run) -> Floats:
         strain = run.channels["displacement_mm"] / specimen.gauge_mm
-        both = [strain, strain / np.hypot(1.0, strain / 2.0)]  # of Ogden's exponents 2 and 1
-        if not shear:
+        if shear:
+            both = [strain, strain / np.hypot(1.0, strain / 2.0)]  # of Ogden's exponents 2 and 1
+        else:
             both = [1.0 + strain - (1.0 + strain) ** -2, 1.0 - (1.0 + strain) ** -3]
         columns = [column for one in both for column in (one, *(remembered(run.time_s, one, tau) for tau in taus))]
         return np.column_stack(columns)

@@ -35,6 +35,8 @@ from solve.solution.newton import NoEquilibriumError
 ACCURACY = 1e-3  # of a drive that is taken as straight between its samples
 FACTORS = {f"modulus.{SPECIMEN}": "modulus_factor", f"thickness.{SPECIMEN}": "thickness_factor"}
 DRIVE_ERRORS: Mapping[str, Drive] = {"offset_mm": "displacement_mm", "offset_N": "force_N", "force_gain": "force_N"}
+Starts = dict[tuple[str, int], Floats]
+"""Label and length of a run -> unknowns (t, m) of its last answer."""
 
 
 @dataclass(frozen=True)
@@ -42,8 +44,8 @@ class CouponEngine:
     """One material point in the place of a coupon that deforms uniformly; the 3D elements would find the same.
 
     material : as rig.toml states it. Nothing has to be prepared, and solve is predict.
-    last : label of a run -> unknowns of its last answer, from which the next one starts, as fits move in small steps;
-        None to start each at small strains, so that it depends on nothing but its arguments.
+    last : from which the next answer starts, as fits move in small steps; None to start each at small strains, so that
+    it depends on nothing but its arguments.
     """
 
     recording: Recording
@@ -54,7 +56,7 @@ class CouponEngine:
     accuracy: Mapping[str, float] = field(default_factory=lambda: {"force_N": ACCURACY, "displacement_mm": ACCURACY})
     free_nuisances: tuple[Candidate, ...] = ()
     shortfalls: tuple[str, ...] = ()
-    last: dict[str, Floats] | None = field(default=None, repr=False, compare=False)
+    last: Starts | None = field(default=None, repr=False, compare=False)
 
     def nuisance(self, name: str) -> Candidate | None:
         """Relative error of modulus.specimen or thickness.specimen, or an error of the column that drives."""
@@ -100,11 +102,11 @@ class CouponEngine:
         gain = of_drive.get("force_gain", 0.0) if kind == "force_N" else 0.0
         drive = (run.drive_values - shift) / (1.0 + gain)
         model = self.model(mechanisms)
-        near = None if self.last is None else self.last.get(run.label)
-        near = near if near is not None and len(near) == len(drive) else None
+        course = run.label, len(drive)
+        near = None if self.last is None else self.last.get(course)
         found = point_of(self.specimen, model).answer_near(run.time_s, drive, kind, near)
         if self.last is not None:
-            self.last[run.label] = found.unknown
+            self.last[course] = found.unknown
         if kind == "force_N":
             return {"displacement_mm": found.values}
         held = np.maximum(found.values, -buckling_load_N(self.specimen, model.materials[LAYER]))
@@ -140,7 +142,7 @@ def point_of(specimen: Specimen, model: Model) -> MaterialPoint:
 
 
 def coupon_engine(
-    recording: Recording, materials: Mapping[str, Material], report: Report, last: dict[str, Floats] | None = None
+    recording: Recording, materials: Mapping[str, Material], report: Report, last: Starts | None = None
 ) -> CouponEngine:
     """The engine of a recording with a specimen; materials : the user's own. last : of the engine.
 
