@@ -1,8 +1,8 @@
 """Controls for real recordings: made so that no physics is left to find, and a diagnosis has to keep quiet.
 
-    from controls import replicates, shuffled
+    from controls import replicates, reversed_answers, shuffled
 
-Both take a recording as load_rig reads it and give another one; replicates needs force and voltage.
+Each takes a recording as load_rig reads it and gives another one; replicates needs force and voltage.
 """
 
 from dataclasses import replace
@@ -28,6 +28,11 @@ def _with_answers(run: Run, other: Run) -> Run:
     count = min(len(run.time_s), len(other.time_s))
     strange = {name: other.channels[name][:count][::-1] for name in run.answers}
     return _cut(run, count, {**{name: values[:count] for name, values in run.channels.items()}, **strange})
+
+
+def reversed_answers(recording: Recording) -> Recording:
+    """Every run with its own answers backwards, against a drive that runs on: a cause would follow its effect."""
+    return replace(recording, runs=tuple(_with_answers(run, run) for run in recording.runs))
 
 
 def replicates(recording: Recording) -> Recording:

@@ -116,12 +116,17 @@ def finer_mesh(model: Model, options: MeshOptions, factor: float, largest: int) 
     return (crowded(made, model.segment) if options.mesher == "layered" else made), options
 
 
-def mesh_of(model: Model, known: Model, tet_mesh: TetMesh, options: MeshOptions) -> TetMesh:
-    """The mesh of a changed model: the known one's, moved with its layers, unless it is of another dimension."""
+def mesh_of(
+    model: Model, known: Model, tet_mesh: TetMesh, options: MeshOptions, largest: int = LARGEST
+) -> TetMesh:
+    """The mesh of a changed model: the known one's, moved with its layers, unless it is of another dimension.
+
+    That has at most largest nodes, crowded towards held sides: nothing is subtracted from it on a mesh of its own.
+    """
     if model.segment.section != known.segment.section:  # the sizes of a slice would make half a million nodes
         volume_mm3 = sum(outline(model.segment).volumes().values())
-        even_mm = (NODES_PER_CUBE * volume_mm3 / LARGEST) ** (1.0 / 3.0)
-        return rig_mesh(model, options.scaled(max(1.0, even_mm / options.element_size_mm)))[0]
+        even_mm = (NODES_PER_CUBE * volume_mm3 / largest) ** (1.0 / 3.0)
+        return finer_mesh(model, options, max(1.0, even_mm / options.element_size_mm), largest)[0]
     return morphed(tet_mesh, known.segment, model.segment)
 
 

@@ -65,7 +65,7 @@ class Presses:
         """The press of a changed model on a mesh, moved with its layers, at once: nothing relaxes."""
         on = model.physics
         own = replace(structural(on), friction=on.friction, softening=on.softening, film_yield=on.film_yield)
-        tet_mesh = mesh_of(model, self.model, *(mesh or (self.tet_mesh, self.options)))
+        tet_mesh = mesh_of(model, self.model, *(mesh or (self.tet_mesh, self.options)), MOST_NODES)
         return Job(replace(ungapped(model), physics=own, readout=None), tet_mesh, self.depth_mm, SHARES)
 
     def with_candidate(self, candidate: Candidate, point: Sequence[float]) -> tuple[Job, int]:

@@ -35,8 +35,9 @@ def test_a_leak_predicts_the_presses_of_one_speed_best(recording):
     assert best.gain_lower > 0.0
 
 
-def test_voltages_of_other_presses_name_nothing(recording):
-    found = found_in(control("shuffled")(recording))
+@pytest.mark.parametrize("name", ["shuffled", "reversed_answers"])
+def test_voltages_of_other_presses_and_backwards_name_nothing(recording, name):
+    found = found_in(control(name)(recording))
     assert found.best is None
     assert min(found.screened.values()) > found.detection.level
 
