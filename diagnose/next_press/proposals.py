@@ -2,7 +2,8 @@
 
 A press as a rig is told it: rest, in, hold, out, as often as wanted. Taken from a recorded one, then varied.
 
-What a bench can change about a press: speed, hold, depth, cycles, load resistor, capacitance, position, warmth.
+What a bench can change about a press: speed, hold, depth, cycles, load resistor, capacitance, position, warmth, and
+whether a load cell is there.
 """
 
 from collections.abc import Iterator, Mapping
@@ -165,12 +166,14 @@ OFFSETS_MM = (0.25, 0.5)
 RESISTORS_MOHM = (0.1, 1.0, 10.0, 100.0, 1000.0)
 CAPACITORS_PF = (100.0, 1000.0)
 CYCLES = 3
+FORCE, LOAD_CELL = "force_N", 0.03
+"""A channel that may be added, and the standard deviation of a load cell's gain."""
 ALIKE = 1.5  # a resistor within this factor is no change
 
 
 def variations(setup: PressSetup) -> Iterator[PressSetup]:
     """Every single change of a press that a bench can make and sample."""
-    for changed in (*_shaped(setup), *_wired(setup), *_placed(setup)):
+    for changed in (*_shaped(setup), *_wired(setup), *_placed(setup), *_measured(setup)):
         if changed.feasible and not changed.changes.keys() <= setup.changes.keys():
             yield changed
 
@@ -224,3 +227,13 @@ def _placed(setup: PressSetup) -> Iterator[PressSetup]:
         if entry.undone_by is not None:
             words, keys = entry.undone_by
             yield setup.changed(words, dict(keys), removes=name)
+
+
+def _measured(setup: PressSetup) -> Iterator[PressSetup]:
+    """With a load cell, where only voltages answer to a displacement."""
+    run = setup.run
+    if run.drive != "displacement_mm" or FORCE in run.channels:
+        return
+    beside = {FORCE: np.full(len(run.time_s), np.nan)}
+    run = replace(run, channels={**run.channels, **beside}, nuisance={**run.nuisance, "force_gain": LOAD_CELL})
+    yield setup.changed("with a load cell", {"records": FORCE}, run=run)

@@ -271,3 +271,8 @@ def _drawn(model: Autoregression, rng: np.random.Generator, count: int) -> Float
     denominator = np.concatenate([[1.0], -model.coefficients])
     values, _ = lfilter([1.0], denominator, driven, zi=lfiltic([1.0], denominator, before))
     return np.asarray(values)
+
+
+def white_noise(sigma: float, step_s: float, source: str = "assumed") -> NoiseModel:
+    """Independent samples of this standard deviation at a step."""
+    return NoiseModel(Autoregression(np.zeros(0), sigma**2), step_s, source, 0)

@@ -28,7 +28,7 @@ def rig_text(bench: Bench) -> str:
             lines.append(f"readout = {{ {', '.join(own)} }}")
         if bench.made.electrodes:
             lines.append(f"dot_offset_mm = [{run.place_mm:g}, 0.0]")
-        lines += ["[runs.nuisance]", *(f"{name} = {width:g}" for name, width in bench.nuisance), ""]
+        lines += ["[runs.nuisance]", *(f"{name} = {width:g}" for name, width in bench.floating(run)), ""]
     return "\n".join(lines)
 
 

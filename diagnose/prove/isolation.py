@@ -6,7 +6,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -20,12 +20,12 @@ PROGRAM = "softdot.cli"  # by name: what diagnoses stands above this package
 
 @dataclass(frozen=True)
 class Heard:
-    """What came out. verdict : None without one; reason : why; next_press : text of its waveform."""
+    """What came out. verdict : None without one; reason : why; next_presses : file -> text of waveforms."""
 
     verdict: Mapping[str, Any] | None
     reason: str
     seconds: float
-    next_press: str | None = None
+    next_presses: Mapping[str, str] = field(default_factory=dict)
 
 
 def diagnosed(files: Mapping[str, str], cache: Path, limit_s: float, options: tuple[str, ...] = ()) -> Heard:
@@ -55,12 +55,12 @@ def diagnosed(files: Mapping[str, str], cache: Path, limit_s: float, options: tu
 
 
 def _heard(ended: "subprocess.CompletedProcess[str]", folder: Path, seconds: float) -> Heard:
-    verdict, wave = folder / "verdict" / "verdict.json", folder / "verdict" / "next-press.csv"
+    verdict = folder / "verdict" / "verdict.json"
     if not verdict.exists():
         last = " | ".join(ended.stderr.strip().splitlines()[-LINES:])
         return Heard(None, f"exit {ended.returncode}: {last}", seconds)
-    following = wave.read_text("utf-8") if wave.exists() else None
-    return Heard(json.loads(verdict.read_text("utf-8")), "", seconds, following)
+    waves = {wave.name: wave.read_text("utf-8") for wave in verdict.parent.glob("next-press*.csv")}
+    return Heard(json.loads(verdict.read_text("utf-8")), "", seconds, waves)
 
 
 def environment(folder: Path, cache: Path) -> dict[str, str]:

@@ -1,6 +1,6 @@
 """One case from its seed to its score: conceal, commit, diagnose in isolation, reveal, verify, compare.
 
-The press that a verdict asks for, made in the hidden world, and whether the longer recording settles the name.
+The presses that a verdict asks for, made in the hidden world, and whether the longer recording settles the name.
 
 Commit, diagnose, reveal, verify: a truth is fixed by a hash before anybody looks at its recording.
 
@@ -29,34 +29,40 @@ from diagnose.prove.world.reality import Judge, Signals
 
 SHAPE = frozenset({"speed_factor", "hold_s", "displacement_mm", "cycles"})
 """Changes that the waveform holds already."""
-RESISTOR, CAPACITANCE = "input_resistance_MOhm", "input_capacitance_pF"
+RESISTOR, CAPACITANCE, RECORDS = "input_resistance_MOhm", "input_capacitance_pF", "records"
 
 
 def asked_run(bench: Bench, experiment: Mapping[str, Any], wave: str) -> Run | None:
-    """The run of next_experiment, its waveform as CSV text; None where this world cannot change what is asked."""
+    """A run that a verdict asks for, its waveform as CSV text; None where this world cannot change what is asked."""
     changes = experiment["changes"]
-    if not changes.keys() <= SHAPE | {RESISTOR, CAPACITANCE}:
+    if not changes.keys() <= SHAPE | {RESISTOR, CAPACITANCE, RECORDS}:
         return None
     like = next(run for run in bench.runs if run.label == experiment["as_in"])
     time_s, path_mm = np.loadtxt(wave.splitlines(), delimiter=",", skiprows=1, unpack=True)
     added_pF = changes.get(CAPACITANCE, bench.amplifier.capacitance_pF) - bench.amplifier.capacitance_pF
     resistance = changes.get(RESISTOR, like.resistance_MOhm)
-    return traced("as asked for", time_s, path_mm, resistance, added_pF, like.place_mm)
+    label = f"as asked for, {experiment['waveform'].removesuffix('.csv')}"
+    return traced(label, time_s, path_mm, resistance, added_pF, like.place_mm, RECORDS in changes)
 
 
 def with_asked(
-    case: Case, runs: Sequence[Signals], experiment: Mapping[str, Any], wave: str
+    case: Case, runs: Sequence[Signals], experiment: Mapping[str, Any], waves: Mapping[str, str]
 ) -> tuple[Bench, list[Signals]] | None:
-    """Bench and recording with one more run; None where it cannot be made here."""
-    bench = BENCHES[case.bench]
-    run = asked_run(bench, experiment, wave)
-    if run is None:
-        return None
-    try:
-        more = pressed_again(case, run)
-    except (RuntimeError, FloatingPointError):  # no equilibrium that deep
-        return None
-    return replace(bench, runs=(*bench.runs, run)), [*runs, more]
+    """Bench and recording with all runs of next_experiment that can be made here; None without any.
+
+    waves : file -> text of each waveform.
+    """
+    bench, signals = BENCHES[case.bench], list(runs)
+    for number, asked in enumerate([experiment, *experiment["then"]]):
+        run = asked_run(BENCHES[case.bench], asked, waves[asked["waveform"]])
+        if run is None:
+            continue
+        try:
+            more = pressed_again(case, run, number)
+        except (RuntimeError, FloatingPointError):  # no equilibrium that deep
+            continue
+        bench, signals = replace(bench, runs=(*bench.runs, run)), [*signals, more]
+    return (bench, signals) if len(signals) > len(runs) else None
 
 
 @dataclass(frozen=True)
@@ -117,8 +123,8 @@ def tried(case: Case, terms: Terms, commit: Commit) -> dict[str, Any]:
         nothing = {"verdict": None, "score": None}
         return {**record, "status": "no verdict", "reason": heard.reason, "seconds": heard.seconds, **nothing}
     score = _scored(case, sealed.truth, heard.verdict, heard.seconds)
-    if score.equals > 1 and heard.next_press is not None:
-        longer = with_asked(case, runs, heard.verdict["next_experiment"], heard.next_press)
+    if score.equals > 1 and heard.next_presses:
+        longer = with_asked(case, runs, heard.verdict["next_experiment"], heard.next_presses)
         if longer is not None:
             record["asked"], resolved, left = _settled(case, terms, sealed.truth, files(*longer))
             score = replace(score, resolved=resolved, smaller=None if resolved is None else 0 < left < score.equals)
@@ -138,7 +144,7 @@ def _scored(case: Case, truth: Mapping[str, Any], verdict: Mapping[str, Any], se
 def _settled(
     case: Case, terms: Terms, truth: Mapping[str, Any], recording: Mapping[str, str]
 ) -> tuple[dict[str, Any], bool | None, int]:
-    """What a recording with the press that was asked for tells, whether it names just the truth, and its equals.
+    """What a recording with the presses that were asked for tells, whether it names just the truth, and its equals.
 
     No equals where the truth is not among what is as good as the best.
     """

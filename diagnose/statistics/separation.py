@@ -14,10 +14,11 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
+from scipy.sparse.csgraph import connected_components
 from scipy.stats import norm
 
 from diagnose.statistics.score_test import orthonormal
-from geometry.arrays import Floats
+from geometry.arrays import Bools, Floats
 
 Group = tuple[int, ...]
 
@@ -83,6 +84,19 @@ def remaining_spread(information: Floats) -> Floats:
     return np.linalg.inv(np.linalg.cholesky(information)).T
 
 
-def best_press(separation: Floats) -> int:
-    """The press whose least separated pair of rivals is farthest apart; separation : (presses, pairs) in sigma."""
-    return int(max(range(len(separation)), key=lambda n: (separation[n].min(), separation[n].mean())))
+def best_press(separation: Floats, settled: float) -> int:
+    """The press that parts most pairs of rivals by settled; of equals the one whose least separated pair is farthest.
+
+    separation : (presses, pairs) in sigma.
+    """
+    parted = (separation >= settled).sum(axis=1)
+    return int(max(range(len(separation)), key=lambda n: (parted[n], separation[n].min(), separation[n].mean())))
+
+
+def linked(count: int, together: Bools) -> tuple[Group, ...]:
+    """Groups of two and more that pairs (count (count - 1) / 2,), in the order of combinations, link to each other."""
+    of_pairs = np.zeros((count, count), dtype=bool)
+    of_pairs[np.triu_indices(count, 1)] = together
+    number, labels = connected_components(of_pairs, directed=False)
+    groups = (tuple(int(n) for n in np.flatnonzero(labels == label)) for label in range(number))
+    return tuple(group for group in groups if len(group) > 1)

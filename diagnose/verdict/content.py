@@ -120,11 +120,11 @@ FORMAT = "softdot-verdict/1"
 def verdict(
     findings: Findings,
     summary: Sequence[str],
-    following: NextPress | None,
+    following: Sequence[NextPress],
     resimulated: Sequence[Resimulated],
     warnings: Sequence[str],
 ) -> dict[str, Any]:
-    """The whole content. summary : sentences for people; following : the next press, None where none can be told.
+    """The whole content. summary : sentences for people; following : the next presses, best first.
 
     What is only the main part has a key of its own: missing_physics is empty unless it explains everything.
     """
@@ -288,17 +288,28 @@ def _resimulated(one: Resimulated) -> dict[str, Any]:
     }
 
 
-def next_experiment(findings: Findings, following: NextPress | None) -> dict[str, Any]:
-    """The next press; without one, a sentence and null."""
-    if following is None:
+def next_experiment(findings: Findings, following: Sequence[NextPress]) -> dict[str, Any]:
+    """The next press, and under "then" those to make after it; without one, a sentence and null."""
+    if not following:
         return {"text": without_press(findings), "changes": {}, "separates": [], "expected_separation_sigma": None}
+    first, *others = [_press(press, waveform(number)) for number, press in enumerate(following)]
+    return {**first, "then": others}
+
+
+def waveform(number: int) -> str:
+    """File of the motion of a proposed press, numbered from 0."""
+    return f"next-press-{number + 1}.csv" if number else "next-press.csv"
+
+
+def _press(press: NextPress, file: str) -> dict[str, Any]:
     return {
-        "text": following.text,
-        "as_in": following.run.label,
-        "changes": dict(following.changes),
-        "separates": [_member(model) for model in following.rivals],
-        "expected_separation_sigma": following.separation,
-        "waveform": "next-press.csv",
+        "text": press.text,
+        "as_in": press.run.label,
+        "changes": dict(press.changes),
+        "separates": [_member(model) for model in press.rivals],
+        "leaves_together": [[_member(press.rivals[number]) for number in group] for group in press.alike],
+        "expected_separation_sigma": press.separation,
+        "waveform": file,
     }
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from diagnose.findings import Findings, Fit
 from diagnose.forward import Engine, Setting, Signals
-from diagnose.next_press.choose import without_phase
+from diagnose.next_press.parting import without_phase
 from diagnose.signals.recording import Recording, Run
 from geometry.arrays import Floats
 from geometry.base import Report

@@ -1,16 +1,18 @@
 """The verdict in sentences that a bench engineer understands, each with a word on what it is about."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from diagnose.figures import figure, p_equals, part, percent
 from diagnose.findings import Findings, Fit, FittedModel
 from diagnose.next_press.choose import NextPress, surviving
 from diagnose.signals.recording import Recording
-from diagnose.verdict.content import IN_WORDS, where_words, without_press
+from diagnose.verdict.content import IN_WORDS, next_experiment, where_words, without_press
 from diagnose.verdict.names import interval_words, listed, model_words, short_name
 from diagnose.verdict.resimulation import Resimulated
 
+ORDER = "Next", "After that", "Then"
 HALF = 0.5  # of what is left: the phase that has more of it is named
 
 
@@ -26,7 +28,7 @@ class Sentence:
 
 
 def sentences(
-    recording: Recording, findings: Findings, following: NextPress | None, resimulated: Sequence[Resimulated]
+    recording: Recording, findings: Findings, following: Sequence[NextPress], resimulated: Sequence[Resimulated]
 ) -> list[Sentence]:
     """From what is off to what to do next."""
     if not findings.mismatch:
@@ -124,16 +126,22 @@ def _proof(resimulated: Sequence[Resimulated]) -> Iterator[Sentence]:
         )
 
 
-def _next(findings: Findings, following: NextPress | None) -> Iterator[Sentence]:
-    if following is not None:
-        yield Sentence("Next", f"{following.text} {separation_words(following.separation)}")
-    elif findings.unexplained or len(surviving(findings)) > 1:
+def _next(findings: Findings, following: Sequence[NextPress]) -> Iterator[Sentence]:
+    planned = next_experiment(findings, following)
+    for label, press in zip(ORDER, [planned, *planned["then"]] if following else [], strict=False):
+        yield Sentence(label, f"{press['text']} {separation_words(press)}")
+    if not following and (findings.unexplained or len(surviving(findings)) > 1):
         yield Sentence("Next", without_press(findings))
 
 
-def separation_words(sigma: float) -> str:
-    """How far a press is expected to part the rivals."""
-    return f"The explanations are expected to differ by {figure(sigma)} standard deviations in it."
+def separation_words(press: Mapping[str, Any]) -> str:
+    """How far a press, as verdict.json has it, is expected to part the rivals, and which of them stay together."""
+    sigma = figure(press["expected_separation_sigma"])
+    told = f"The explanations are expected to differ by {sigma} standard deviations in it"
+    groups = [[f"{one['mechanism']} ({one['component']})" for one in group] for group in press["leaves_together"]]
+    if not groups:
+        return f"{told}."
+    return f"{told} or more, but these stay alike: {'; '.join(listed(group) for group in groups)}."
 
 
 def _count(number: int, what: str) -> str:

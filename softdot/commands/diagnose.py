@@ -11,12 +11,12 @@ import numpy as np
 
 from diagnose.findings import Findings
 from diagnose.forward import Engine, all_but, other_units, some_runs
-from diagnose.next_press.choose import NextPress, next_press
+from diagnose.next_press.choose import MOST_PRESSES, NextPress, next_presses
 from diagnose.noise.estimate import noise_models
 from diagnose.signals.columns import refuse_slow_sampling
 from diagnose.signals.reading import thinned
 from diagnose.signals.recording import Recording
-from diagnose.verdict.content import FORMAT, verdict
+from diagnose.verdict.content import FORMAT, verdict, waveform
 from diagnose.verdict.resimulation import OutOfTimeError, Resimulated, resimulate
 from diagnose.verdict.words import sentences
 from geometry.base import InputError, Report, nearest
@@ -38,9 +38,10 @@ from softdot.output import Product, staged_folder
 from solve.mechanisms import MECHANISMS
 from solve.solution.newton import NoEquilibriumError
 
-NEXT_PRESS = "next-press.csv"
 DIAGNOSIS = Product(
-    FORMAT, "verdict.json", frozenset({"verdict.json", "report.html", "plots", "improved.toml", NEXT_PRESS})
+    FORMAT,
+    "verdict.json",
+    frozenset({"verdict.json", "report.html", "plots", "improved.toml", *map(waveform, range(MOST_PRESSES))}),
 )
 UNCHECKED = "The result was not checked with the full 3D model, because --fast-model-only was given."
 FULL_MODEL_S = 240.0  # for presses by the full model, of the ten minutes that a first diagnosis may take
@@ -120,7 +121,7 @@ def _fill(rig: Rig, options: Options, progress: Progress, folder: Path) -> dict[
     progress.stage("check with the full model")
     proof = _proof(rig, engine, findings, report, options.full_model_s)
     progress.stage("plan")
-    following = next_press(rig.recording, engine, findings)
+    following = next_presses(rig.recording, engine, findings)
     progress.stage("write")
     told = sentences(named_on, findings, following, proof.runs)
     units = other_units(rig.recording, engine)
@@ -169,16 +170,18 @@ def _proof(rig: Rig, engine: Engine, findings: Findings, report: Report, limit_s
     return proof
 
 
-def _write_files(rig: Rig, engine: Engine, findings: Findings, following: NextPress | None, folder: Path) -> None:
+def _write_files(
+    rig: Rig, engine: Engine, findings: Findings, following: Sequence[NextPress], folder: Path
+) -> None:
     from softdot.commands.verdict_page import improved_text
 
     improved = improved_text(rig, engine, findings)
     if improved is not None:
         (folder / "improved.toml").write_text(improved, "utf-8")
-    if following is not None:
-        run = following.run
-        columns = np.column_stack([run.time_s, run.drive_values])
-        np.savetxt(folder / NEXT_PRESS, columns, "%.9g", ",", header=f"time_s,{run.drive}", comments="")
+    for number, press in enumerate(following):
+        columns = np.column_stack([press.run.time_s, press.run.drive_values])
+        header = f"time_s,{press.run.drive}"
+        np.savetxt(folder / waveform(number), columns, "%.9g", ",", header=header, comments="")
 
 
 def _reporting(progress: Progress) -> Report:

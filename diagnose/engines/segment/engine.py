@@ -177,7 +177,8 @@ class SegmentEngine:
 
     def imagine(self, run: Run, settings: Sequence[Setting]) -> Signals:
         """Every channel of a run that was not made, its hum left out. ValueError for what was not prepared."""
-        names = dict.fromkeys(name for each in self.recording.runs for name in each.channels if name != run.drive)
+        runs = (*self.recording.runs, run)
+        names = dict.fromkeys(name for each in runs for name in each.channels if name != run.drive)
         return self._answer(run, drive_of(run, Recording((run,)).phases[0]), tuple(names), settings, (), 0.0)
 
     def _answer(

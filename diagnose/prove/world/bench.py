@@ -20,7 +20,7 @@ class Run:
     """count presses to depth_mm: rise_s up, hold_s, rise_s down, pause_s clear of the segment; lead_s of rest first.
 
     resistance_MOhm : input of the amplifier, None for that of the rig. added_pF : across the input. place_mm : of the
-    dot along x, from where it stands by the rig.
+    dot along x, from where it stands by the rig. load_cell : whether one is there where the bench has none.
     """
 
     label: str
@@ -33,6 +33,7 @@ class Run:
     lead_s: float = 1.0
     pause_s: float = 0.8
     place_mm: float = 0.0
+    load_cell: bool = False
 
     @property
     def length_s(self) -> float:
@@ -93,13 +94,14 @@ class Traced(Run):
 
 
 def traced(
-    label: str, asked_s: Floats, asked_mm: Floats, resistance_MOhm: float | None, added_pF: float, place_mm: float
-) -> Traced:
+    label: str, asked_s: Floats, asked_mm: Floats, resistance_MOhm: float | None, added_pF: float, place_mm: float,
+    load_cell: bool = False,
+) -> Traced:  # fmt: skip
     """A run along a path (n,) that touches at least once."""
     touch_s = float(asked_s[np.argmax(asked_mm > 0.0)])
     return Traced(
         label, float(asked_mm.max()), 0.0, 0.0, resistance_MOhm, added_pF, lead_s=touch_s, asked_s=asked_s,
-        asked_mm=asked_mm, place_mm=place_mm,
+        asked_mm=asked_mm, place_mm=place_mm, load_cell=load_cell,
     )  # fmt: skip
 
 
@@ -129,6 +131,10 @@ class Bench:
     force: bool = True
     mesh_mm: tuple[float, float] | None = None
 
+    def floating(self, run: Run) -> tuple[tuple[str, float], ...]:
+        """Nuisances of a run: those of a load cell too where it has one of its own."""
+        return self.nuisance + (LOAD_CELL if run.load_cell and not self.force else ())
+
     @property
     def deepest_mm(self) -> float:
         """Of all runs."""
@@ -146,12 +152,13 @@ class Bench:
         return tuple(f"voltage_{n}_V" for n in range(1, count + 1)) or ("voltage_V",)
 
 
+LOAD_CELL = ("force_gain", 0.02), ("offset_N", 0.01)
 NUISANCE = (
     ("gain", 0.02),
-    ("force_gain", 0.02),
+    LOAD_CELL[0],
     ("lag_s", 0.001),
     ("offset_V", 0.02),
-    ("offset_N", 0.01),
+    LOAD_CELL[1],
     ("modulus.medium1", 0.05),
 )
 
@@ -229,7 +236,7 @@ VOLTAGE_ONLY = replace(
     force=False,
     amplifier=replace(CLAMPED.amplifier, resistance_MOhm=None),
     runs=CLAMPED.runs[:4],
-    nuisance=tuple(one for one in NUISANCE if one[0] not in ("force_gain", "offset_N")),
+    nuisance=tuple(one for one in NUISANCE if one not in LOAD_CELL),
 )
 """No load cell and no resistor: nothing tells a cable's capacitance from a film of less charge."""
 PITCH_MM = 2.5

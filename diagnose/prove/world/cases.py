@@ -17,7 +17,6 @@ from diagnose.prove.world.reality import (
     Reality,
     Signals,
     baseline,
-    channels,
     judge_of,
     keys,
     noise_law,
@@ -179,15 +178,15 @@ def _nuisance_name(key: Any) -> str:
     return f"{name} of run {run}" + "".join(f", channel {number + 1}" for number in channel)
 
 
-def pressed_again(case: Case, run: Run) -> Signals:
-    """What one more run records of the same specimen, with nuisances and noise of its own.
+def pressed_again(case: Case, run: Run, number: int) -> Signals:
+    """What one more run records of the same specimen, with nuisances and noise of its own; number : of those asked for.
 
     RuntimeError or FloatingPointError without equilibrium.
     """
     bench, first = BENCHES[case.bench], np.random.default_rng([case.seed, case.number])
-    rng = np.random.default_rng([case.seed, case.number, AGAIN])
+    rng = np.random.default_rng([case.seed, case.number, AGAIN, number])
     known: dict[Any, float] = {k: value for k, value in _nuisance(bench, first).items() if isinstance(k, str)}
-    here = [(name, width) for name, width in bench.nuisance if name in PER_RUN]
+    here = [(name, width) for name, width in bench.floating(run) if name in PER_RUN]
     one = replace(bench, runs=(run,))
     numbered = [((name, len(bench.runs), *key[2:]), width) for name, width in here for key in keys(name, one)]
     own = {key: width * float(rng.standard_normal()) for key, width in numbered}
@@ -246,7 +245,7 @@ def _noisy(run: Signals, bench: Bench, rng: np.random.Generator) -> Signals:
     noisy = dict(run)
     count = len(run["time_s"])
     noisy["displacement_mm"] = run["displacement_mm"] + DISPLACEMENT_NOISE_MM * rng.standard_normal(count)
-    for name in channels(bench):
+    for name in (name for name in run if name not in ("time_s", "displacement_mm")):
         noisy[name] = run[name] + noise_of(bench)[name] * noise_law(name).draw(rng, count)
     return noisy
 

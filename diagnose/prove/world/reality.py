@@ -198,7 +198,7 @@ def _run(reality: Reality, bench: Bench, run: Run, number: int, mechanics: Mecha
     charge = charge + other[:, None] * films / films.sum()
     amplified = voltages(_amplifier(reality, run), reality.wiring, time, charge, tuple(films), 1.7 * number)
     signals = {"time_s": time, "displacement_mm": run.depth(time)}
-    if bench.force:
+    if bench.force or run.load_cell:
         signals["force_N"] = (1.0 + reality.of("force_gain", number)) * force + reality.of("offset_N", number)
     for channel, (name, voltage) in enumerate(zip(bench.voltages, amplified.T, strict=True)):
         voltage = voltage + reality.pickup * run.speed_mm_per_s(time)

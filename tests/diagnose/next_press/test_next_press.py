@@ -7,7 +7,8 @@ import pytest
 from scipy.linalg import block_diag
 
 from diagnose.forward import Setting
-from diagnose.next_press.choose import PressJudge, next_press, surviving
+from diagnose.next_press.choose import SETTLED, next_presses, surviving
+from diagnose.next_press.parting import PressJudge
 from diagnose.next_press.proposals import Shape, base_setup, recorded_shape, repeats, variations
 from diagnose.signals.phases import segmented
 from diagnose.signals.recording import Recording
@@ -18,8 +19,13 @@ LEAKS, RELAXES = fitted(LEAK, 0.5), fitted(RELAXING, 0.3, 0.5)
 
 
 def planned(recording, models=(LEAKS, RELAXES), engine=None):
+    """The first of the presses that are proposed, None without any."""
+    return next(iter(series(recording, models, engine)), None)
+
+
+def series(recording, models, engine=None):
     findings = found(recording, models, models[0], (tuple(range(len(models))),))
-    return next_press(recording, engine or ToyEngine(recording), findings)
+    return next_presses(recording, engine or ToyEngine(recording), findings)
 
 
 @pytest.fixture(scope="module")
@@ -49,6 +55,35 @@ def test_two_equal_rivals_are_not_parted(recording):
     judge = PressJudge(recording, ToyEngine(recording), (LEAKS, twin), {})
     assert judge.separations(repeats(recording)[0]) == pytest.approx([0.0], abs=1e-6)
     assert planned(recording, (LEAKS, twin)) is None
+
+
+def test_a_press_that_settles_all_but_twins_says_which_stay_together(recording):
+    (only,) = series(recording, (LEAKS, RELAXES, fitted(LEAK, 0.5)))
+    assert only.alike == ((0, 2),)
+    assert only.separations[1] == pytest.approx(0.0, abs=1e-6)
+    assert only.separation == pytest.approx(min(only.separations[[0, 2]]))
+
+
+def test_presses_are_made_until_their_separations_together_settle_it(recording):
+    """Under a rough model one press does not; squares add."""
+    rough = ToyEngine(recording)
+    rough.accuracy = {"voltage_V": 0.8, "force_N": 0.8}
+    found = series(recording, (LEAKS, RELAXES), rough)
+    assert len(found) > 1
+    together = [np.sqrt(sum(float(one.separations[0]) ** 2 for one in found[: n + 1])) for n in range(len(found))]
+    assert [bool(one.alike) for one in found] == [sigma < SETTLED for sigma in together]
+
+
+def test_a_load_cell_shows_what_a_voltage_does_not(recording):
+    """A leak leaves the force as it is; what relaxes lets it fall too, and a model may know forces better."""
+    rough, setup = ToyEngine(recording), base_setup(recording)
+    rough.accuracy = {"voltage_V": 0.3, "force_N": 0.02}
+    (weighed,) = [each.proposal() for each in variations(setup) if "records" in each.changes]
+    assert weighed.run.answers == ("voltage_V", "force_N")
+    without, with_it = separations(recording, [setup.proposal(), weighed], rough)
+    assert with_it > SETTLED > without
+    forces = toy_recording(runs=(toy_run(channels=("voltage_V", "force_N")),))
+    assert not any("records" in each.changes for each in variations(base_setup(forces)))
 
 
 def test_an_error_of_the_model_hides_a_difference(recording):
@@ -133,7 +168,7 @@ def test_every_change_is_said_noted_and_made(recording):
         if key.startswith("input_"):
             assert getattr(proposal.run.readout, key) == changed.changes[key]
             assert same_drive
-        elif key not in ("dot_offset_mm", "dot_temperature"):
+        elif key not in ("dot_offset_mm", "dot_temperature", "records"):
             assert not same_drive
 
 

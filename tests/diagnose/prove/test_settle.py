@@ -12,6 +12,7 @@ from diagnose.prove.score import scored
 from diagnose.prove.trial import Terms, asked_run, with_asked
 from diagnose.prove.world.bench import CLAMPED, VOLTAGE_ONLY
 from diagnose.prove.world.cases import AMBIGUOUS, Case
+from diagnose.prove.world.reality import baseline, record
 
 TIME = np.arange(0.0, 4.0, 0.004)
 TWICE = 0.25 * np.clip(np.minimum(np.abs(TIME - 2.0) - 0.2, 1.8 - np.abs(TIME - 2.0)) / 0.4, -0.1, 1.0)
@@ -24,7 +25,7 @@ LEAK = {"mechanism": "charge-leakage", "component": "readout"}
 
 
 def experiment(**changes):
-    return {"as_in": "slow and deep", "changes": changes}
+    return {"as_in": "slow and deep", "changes": changes, "waveform": "next-press.csv", "then": []}
 
 
 def test_the_stage_follows_the_path_with_round_corners():
@@ -53,9 +54,22 @@ def test_the_longer_recording_begins_with_what_there_was(monkeypatch):
     more = {"time_s": TIME, "of": "the same specimen"}
     monkeypatch.setattr("diagnose.prove.trial.pressed_again", lambda *_: more)
     before = [{"time_s": TIME}] * 4
-    bench, runs = with_asked(CASE, before, experiment(), WAVE)
+    warm = {**experiment(dot_temperature="of the film"), "waveform": "next-press-2.csv"}
+    slow = {**experiment(speed_factor=0.1), "waveform": "next-press-3.csv"}
+    asked = {**experiment(), "then": [warm, slow]}
+    waves = {f"next-press{number}.csv": WAVE for number in ("", "-2", "-3")}
+    bench, runs = with_asked(CASE, before, asked, waves)
     assert runs[:4] == before
-    assert (len(bench.runs), runs[4]) == (5, more)
+    assert (len(bench.runs), runs[4:]) == (6, [more, more])
+    assert with_asked(CASE, before, {**warm, "then": []}, waves) is None
+
+
+def test_a_load_cell_that_was_asked_for_records_the_force_of_that_run_alone():
+    run = asked_run(VOLTAGE_ONLY, experiment(records="force_N"), WAVE)
+    (signals,) = record(baseline(VOLTAGE_ONLY), replace(VOLTAGE_ONLY, runs=(run,)))
+    assert signals["force_N"].max() > 1.0
+    text = rig_text(replace(VOLTAGE_ONLY, runs=(*VOLTAGE_ONLY.runs, run)))
+    assert text.count("force_gain") == 1
 
 
 @pytest.mark.parametrize(

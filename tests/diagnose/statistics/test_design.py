@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from diagnose.statistics.separation import best_press, remaining_spread
+from diagnose.statistics.separation import best_press, linked, remaining_spread
 
 RNG = np.random.default_rng(111)
 TANGENT, DIFFERENCE = RNG.standard_normal((40, 2)), RNG.standard_normal(40)
@@ -15,4 +15,14 @@ def test_the_root_is_of_the_inverse_information():
 
 
 def test_the_least_separated_pair_decides():
-    assert best_press(np.array([[9.0, 0.1, 9.0], [2.0, 3.0, 2.5], [2.0, 9.0, 2.5]])) == 2
+    assert best_press(np.array([[9.0, 0.1, 9.0], [2.0, 3.0, 2.5], [2.0, 9.0, 2.5]]), 10.0) == 2
+
+
+def test_a_press_that_settles_more_pairs_comes_first():
+    assert best_press(np.array([[3.0, 3.0, 3.0], [0.1, 9.0, 5.0]]), 3.3) == 1
+
+
+def test_rivals_that_no_press_parts_are_linked_through_others():
+    """Of four, 0 and 1 are alike and 1 and 3; pairs are 01, 02, 03, 12, 13, 23."""
+    assert linked(4, np.array([True, False, False, False, True, False])) == ((0, 1, 3),)
+    assert linked(3, np.zeros(3, dtype=bool)) == ()

@@ -7,7 +7,7 @@ import pytest
 
 from diagnose.findings import Remainder
 from diagnose.forward import Setting
-from diagnose.next_press.choose import next_press
+from diagnose.next_press.choose import next_presses
 from diagnose.verdict.content import verdict
 from diagnose.verdict.resimulation import resimulate
 from softdot.console import json_text
@@ -58,7 +58,7 @@ def recording():
 
 def content(recording, findings, resimulated=(), warnings=()):
     """As a file has it."""
-    following = next_press(recording, ToyEngine(recording), findings)
+    following = next_presses(recording, ToyEngine(recording), findings)
     text = json_text(verdict(findings, ["A sentence."], following, resimulated, warnings))
     return json.loads(text, parse_constant=lambda name: pytest.fail(f"{name} is no JSON"))
 

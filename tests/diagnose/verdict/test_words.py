@@ -9,7 +9,7 @@ import pytest
 from diagnose.figures import figure
 from diagnose.findings import Fit, Interval, LocatedExcess, Remainder
 from diagnose.forward import Candidate, Coordinate, Setting
-from diagnose.next_press.choose import next_press
+from diagnose.next_press.choose import next_presses
 from diagnose.verdict.content import verdict, where_words
 from diagnose.verdict.names import (
     WHERE,
@@ -33,7 +33,7 @@ def recording():
     return toy_recording([Setting(LEAK, (0.5,))])
 
 
-def told(recording, findings, following=None):
+def told(recording, findings, following=()):
     return [str(sentence) for sentence in sentences(recording, findings, following, ())]
 
 
@@ -43,7 +43,7 @@ def place(run="slow", phase="hold", band=(0.0, 2.0), share=0.9, channel="voltage
 
 def test_from_what_is_off_to_what_to_do(recording):
     findings = found(recording, (LEAKS, RELAXES), LEAKS, ((0, 1),))
-    lines = told(recording, findings, next_press(recording, ToyEngine(recording), findings))
+    lines = told(recording, findings, next_presses(recording, ToyEngine(recording), findings))
     assert lines[0] == "Your simulation of the voltage is too high in the hold, below 2 Hz, in “slow”."
     assert lines[1] == "Left out: charge leaks through the amplifier; resistance 2000 MΩ (90 % interval 1600 to 2400)."
     assert lines[2] == (
@@ -124,9 +124,9 @@ def test_how_far_the_best_unnamed_model_would_come_is_said_and_written(recording
     assert told(recording, findings)[3].startswith(expected)
     worse = replace(findings, unnamed=replace(tried, nrmse_after=1.4))
     assert not any(line.startswith("The closest") for line in told(recording, worse))
-    written = verdict(findings, (), None, (), ())["fit"]
+    written = verdict(findings, (), (), (), ())["fit"]
     assert written["held_out_best_unnamed"]["nrmse_after"] == 0.51
-    assert verdict(found(recording, (LEAKS,), LEAKS, ((0,),)), (), None, (), ())["fit"]["held_out_best_unnamed"] is None
+    assert verdict(found(recording, (LEAKS,), LEAKS, ((0,),)), (), (), (), ())["fit"]["held_out_best_unnamed"] is None
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import pytest
 
 from diagnose.findings import Fit, FittedModel, Interval
 from diagnose.forward import Candidate, Coordinate, Setting
-from diagnose.next_press.choose import next_press
+from diagnose.next_press.choose import next_presses
 from diagnose.verdict.content import verdict
 from diagnose.verdict.names import interval_words, mechanism_words
 from diagnose.verdict.resimulation import Resimulated
@@ -63,7 +63,7 @@ def of_the_toy(recording):
     return found(recording, (fitted(LEAK, 0.5),), fitted(LEAK, 0.5), ((0,),))
 
 
-def page(recording, findings, resimulated=(), following=None):
+def page(recording, findings, resimulated=(), following=()):
     """What is told, verdict.json and the text of the page without its marks."""
     told = sentences(recording, findings, following, resimulated)
     summary = plain(verdict(findings, [str(one) for one in told], following, resimulated, ()))
@@ -199,5 +199,5 @@ def test_agreement_tells_its_p_value_once_and_alike(recording, of_the_toy):
 def test_the_separation_of_the_next_press_is_one_number(recording):
     leaks, relaxes = fitted(LEAK, 0.5), fitted(RELAXING, 0.3, 0.09)
     findings = found(recording, (leaks, relaxes), leaks, ((0, 1),))
-    told, _, body = page(recording, findings, (), next_press(recording, ToyEngine(recording), findings))
+    told, _, body = page(recording, findings, (), next_presses(recording, ToyEngine(recording), findings))
     assert len(set(re.findall(rf"differ by ({NUMBER}) standard", told + body))) == 1

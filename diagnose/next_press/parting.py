@@ -1,0 +1,138 @@
+"""How far apart rivals are in a proposed press, in sigma, once all that may float has floated as far as is still open.
+
+What may float is what an inference excuses too: nuisances, errors of the model, and of each mechanism's law.
+
+A recording that nobody has made yet, of one proposed press, and the engine that answers it.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+from typing import cast
+
+import numpy as np
+
+from diagnose.findings import FittedModel
+from diagnose.fit.discrepancy import FORM_ERROR
+from diagnose.fit.observed_model import ObservedModel
+from diagnose.fit.samples import Samples
+from diagnose.fit.system import LinearisedSystem, Quadratic, linearised
+from diagnose.forward import Candidate, Engine, Setting, Signals
+from diagnose.next_press.proposals import Proposal
+from diagnose.noise.estimate import noise_models
+from diagnose.noise.model import NoiseModel, white_noise
+from diagnose.signals.recording import Recording
+from diagnose.statistics.separation import remaining_spread
+from geometry.arrays import Floats
+
+
+def without_phase(settings: Sequence[Setting]) -> tuple[Setting, ...]:
+    """Settings without hum: its phase is that of one run, and means nothing to another model or another press."""
+    return tuple(setting for setting in settings if not setting.candidate.traits.free_phase)
+
+
+class ImaginedEngine:
+    """The part of an engine that fits ask for, with the proposed press as its only run."""
+
+    def __init__(self, engine: Engine, proposal: Proposal) -> None:
+        self._engine, self._proposal = engine, proposal
+        self.name, self.accuracy, self.candidates = engine.name, engine.accuracy, engine.candidates
+        self.free_nuisances = engine.free_nuisances
+
+    def nuisance(self, name: str) -> Candidate | None:
+        """As the engine."""
+        return self._engine.nuisance(name)
+
+    def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
+        """All channels of the press. ValueError where the engine cannot tell."""
+        kept = [setting for setting in settings if setting.candidate.mechanism != self._proposal.removes]
+        if self._proposal.number is not None:
+            return self._engine.predict(self._proposal.number, kept)
+        if not hasattr(self._engine, "imagine"):
+            raise ValueError(f"the model '{self.name}' can predict only the presses of the recording")
+        return self._engine.imagine(self._proposal.run, kept)
+
+
+STEP = 1e-3  # of a coordinate, for its slope
+ADDED_NOISE = 0.005  # of the largest signal: one sigma of an instrument that is not there yet
+
+
+@dataclass(frozen=True)
+class ImaginedAnswer:
+    """What one rival says of a press. prediction : (n,) whitened. slopes : (n, q) by its coordinates."""
+
+    system: LinearisedSystem
+    prediction: Floats
+    slopes: Floats
+
+
+class PressJudge:
+    """Rivals, and spreads (q, q): for each a root of the covariance that the recording leaves to its coordinates."""
+
+    def __init__(
+        self, recording: Recording, engine: Engine, rivals: Sequence[FittedModel], fitted: Mapping[str, float]
+    ) -> None:
+        """fitted : nuisance that all runs share -> value. ValueError as the engine's."""
+        self.engine, self.fitted = engine, fitted
+        self.rivals = [without_phase(rival.settings) for rival in rivals]
+        self.specimen, self.noise = recording.specimen, noise_models(recording)
+        model = ObservedModel(Samples(recording, self.noise), engine)
+        self.spreads = [self._spread(self._answer(model, rival), rival) for rival in self.rivals]
+
+    def separations(self, proposal: Proposal) -> Floats:
+        """(pairs,) sigma between each two rivals. ValueError where the engine cannot tell."""
+        answers = self.answers(proposal)
+        pairs = combinations(range(len(answers)), 2)
+        return np.array([self._separation(answers[i], answers[j], self.spreads[i], self.spreads[j]) for i, j in pairs])
+
+    def answers(self, proposal: Proposal) -> list[ImaginedAnswer]:
+        """What each rival says of a press. ValueError where the engine cannot tell."""
+        run, engine = proposal.run, cast(Engine, ImaginedEngine(self.engine, proposal))
+        noise = {(run.label, name): self._noise(proposal, engine, name) for name in run.answers}
+        model = ObservedModel(Samples(Recording((run,), self.specimen), noise), engine)
+        return [self._answer(model, rival) for rival in self.rivals]
+
+    def _noise(self, proposal: Proposal, engine: Engine, channel: str) -> NoiseModel:
+        """Of the recording, or of an instrument that the press adds: white, a share of its largest signal."""
+        known = self.noise.get((proposal.run.label, channel))
+        if known is not None:
+            return known
+        largest = float(np.abs(engine.predict(0, self.rivals[0])[channel]).max())
+        return white_noise(ADDED_NOISE * largest, proposal.run.step_s)
+
+    def _answer(self, model: ObservedModel, settings: tuple[Setting, ...]) -> ImaginedAnswer:
+        values = np.array([0.0 if n.run is not None else self.fitted.get(n.name, 0.0) for n in model.nuisances])
+        prediction = model.vector(values, settings)
+        slopes = [(model.vector(values, moved) - prediction) / step for moved, step in _moved(settings)]
+        return ImaginedAnswer(
+            linearised(model, values, settings, FORM_ERROR),
+            prediction,
+            np.column_stack([np.zeros((len(prediction), 0)), *slopes]),
+        )
+
+    def _spread(self, answer: ImaginedAnswer, settings: Sequence[Setting]) -> Floats:
+        """From what the recording tells of the coordinates, and what is plausible without it."""
+        widths = [c.high - c.low for setting in settings for c in setting.candidate.coordinates]
+        slopes = answer.system.weighted(answer.slopes)
+        told = answer.system.quadratic.product(slopes, slopes)
+        return remaining_spread(told + np.diag(np.square(1.0 / np.array(widths))))
+
+    def _separation(self, one: ImaginedAnswer, other: ImaginedAnswer, *spreads: Floats) -> float:
+        """The expected separation of statistics/design.py, by inner products: presses may have many samples."""
+        weight = 1.0 / np.sqrt(np.maximum(one.system.variance, other.system.variance))[:, None]
+        open_still = np.column_stack([one.slopes @ spreads[0], other.slopes @ spreads[1]])
+        columns = np.column_stack([open_still, one.system.nuisance_design, other.system.nuisance_design])
+        sigma = np.concatenate([np.ones(open_still.shape[1]), one.system.sigma, other.system.sigma])
+        difference = weight[:, 0] * (one.prediction - other.prediction)
+        return float(np.sqrt(max(Quadratic(weight * columns, sigma).square(difference), 0.0)))
+
+
+def _moved(settings: Sequence[Setting]) -> Iterator[tuple[list[Setting], float]]:
+    """The settings with one coordinate after the other a little nearer to the middle of its range, and by how much."""
+    for number, setting in enumerate(settings):
+        for which, coordinate in enumerate(setting.candidate.coordinates):
+            value = setting.values[which]
+            towards = 1.0 if value < 0.5 * (coordinate.low + coordinate.high) else -1.0
+            step = towards * STEP * (abs(value) + STEP * (coordinate.high - coordinate.low))
+            values = tuple(v + step if n == which else v for n, v in enumerate(setting.values))
+            yield [replace(s, values=values) if n == number else s for n, s in enumerate(settings)], step
