@@ -170,9 +170,7 @@ def _proof(rig: Rig, engine: Engine, findings: Findings, report: Report, limit_s
     return proof
 
 
-def _write_files(
-    rig: Rig, engine: Engine, findings: Findings, following: Sequence[NextPress], folder: Path
-) -> None:
+def _write_files(rig: Rig, engine: Engine, findings: Findings, following: Sequence[NextPress], folder: Path) -> None:
     from softdot.commands.verdict_page import improved_text
 
     improved = improved_text(rig, engine, findings)

@@ -116,9 +116,7 @@ def finer_mesh(model: Model, options: MeshOptions, factor: float, largest: int) 
     return (crowded(made, model.segment) if options.mesher == "layered" else made), options
 
 
-def mesh_of(
-    model: Model, known: Model, tet_mesh: TetMesh, options: MeshOptions, largest: int = LARGEST
-) -> TetMesh:
+def mesh_of(model: Model, known: Model, tet_mesh: TetMesh, options: MeshOptions, largest: int = LARGEST) -> TetMesh:
     """The mesh of a changed model: the known one's, moved with its layers, unless it is of another dimension.
 
     That has at most largest nodes, crowded towards held sides: nothing is subtracted from it on a mesh of its own.
