@@ -1,4 +1,4 @@
-"""Real coupons of other laboratories: what an expert knows of them, and nothing where their forces are not their own."""
+"""Real coupons of other laboratories: what an expert knows of them, and nothing where the forces are not their own."""
 
 from dataclasses import replace
 from pathlib import Path
