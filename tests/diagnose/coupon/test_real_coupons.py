@@ -54,7 +54,7 @@ def test_forces_of_other_pulls_and_backwards_name_nothing(data, name, tmp_path):
     converted(data, tmp_path / "out")
     for rig_file in sorted((tmp_path / "out").rglob("rig.toml")):
         rig = load_rig(rig_file.parent)
-        rig = replace(rig, recording=control(name)(rig.recording))
+        rig = replace(rig, recording=thinned(control(name)(rig.recording)))
         found = diagnose(rig.recording, engine_for(rig, silent), 0, silent)
         assert found.mismatch
         assert found.best is None, rig_file.parent.name
