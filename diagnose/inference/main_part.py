@@ -126,9 +126,7 @@ def _told(judge: TolerantJudge, models: Sequence[Judged]) -> MainPart | None:
     best = models[0]
     group = [n for n, one in enumerate(models) if n == 0 or not judge.excluded(one.forecast, best.forecast)]
     flaws = judge.largest(best.forecast) <= VISIBLE
-    if best.left > 1.0 - (CONFIRMED if flaws else MOST) or best.gain.lower <= 0.0:
-        return None
-    if not flaws and not judge.spread(best.forecast):
+    if best.left > 1.0 - (CONFIRMED if flaws else MOST) or best.gain.lower <= 0.0 or not judge.spread(best.forecast):
         return None
     order = [*group, *(n for n in range(len(models)) if n not in group)]
     left = by_phase(judge.model.samples, judge.left(best.forecast), PHASES)

@@ -96,14 +96,16 @@ class TolerantJudge:
     def spread(self, forecast: Forecasted) -> bool:
         """Whether no condition, channel or phase holds most of what is left while most of its own excess stays there.
 
-        That would be something else; laws that are not quite right and flaws of a rig leave a little everywhere.
+        That would be something else; laws that are not quite right and flaws of a rig leave a little everywhere. Nor is
+        any of them predicted worse for sure than without the explanation: there its effect is not what happens.
         """
         after = self.left(forecast)
         for labels in (self.fold, self.tolerance.channel, self.model.samples.phase):
             _, place = np.unique(labels, return_inverse=True)
             was, still = (np.maximum(np.bincount(place, squares), 0.0) for squares in (self.before, after))
-            seen = was > SIGMAS * self.tolerance.noise_errors(place)
-            if np.any(seen & (still > (1.0 - IN_EACH) * was) & (still > MOST_LEFT * still.sum())):
+            sure = SIGMAS * self.tolerance.noise_errors(place)
+            alone = (was > sure) & (still > (1.0 - IN_EACH) * was) & (still > MOST_LEFT * still.sum())
+            if np.any(alone | (still > was + sure)):
                 return False
         return True
 
