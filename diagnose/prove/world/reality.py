@@ -98,7 +98,8 @@ Signals = dict[str, Floats]
 class Reality:
     """Everything is off by default but the baseline.
 
-    gap_mm, compliance_mm_per_N, mass_g : between stage and dot. leak_MOhm : across the film. heat : step (K) and
+    gap_mm, compliance_mm_per_N, mass_g : between stage and dot. guide_N : friction of the stage's guide, which the
+    load cell carries. leak_MOhm : across the film. heat : step (K) and
     time (s) of a half-space that warms. touch_pC : charge left by the touch at the largest area. sensitivity : of the
     film, on all its constants d. fatigue : share of its charge that the film loses from one press to the next.
     drift : relative change of the gain over a minute. jump_s : the clock of the voltage jumps by this in the middle
@@ -111,6 +112,7 @@ class Reality:
     gap_mm: float = 0.0
     compliance_mm_per_N: float = 0.0
     mass_g: float = 0.0
+    guide_N: float = 0.0
     leak_MOhm: float | None = None
     heat: tuple[float, float] = (0.0, 1.0)
     touch_pC: float = 0.0
@@ -192,6 +194,7 @@ def _run(reality: Reality, bench: Bench, run: Run, number: int, mechanics: Mecha
     course = mechanics.course(time, _path(reality, surface, mechanics.known))
     force = course.force_N if details is None else details.force(stage, course.force_N)
     force = force + 1e-6 * reality.mass_g * run.acceleration_mm_per_s2(time)
+    force = force + reality.guide_N * dahl(stage, BEFORE_SLIP_MM)
     charge = reality.sensitivity * course.charge_pC * ((1.0 - reality.fatigue) ** run.presses_before(time))[:, None]
     films = np.array(reality.made.capacitances_pF)
     other = _warmth(reality, run, time) + reality.touch_pC * _touched(course)
@@ -228,6 +231,21 @@ def _warmth(reality: Reality, run: Run, time: Floats) -> Floats:
     since = np.clip(time - run.lead_s, 1e-9, None)
     warm = np.where(time > run.lead_s, erfc(np.sqrt(constant / since)), 0.0)
     return np.asarray(PYRO_PC_PER_MM2_K * reality.made.length_mm * reality.made.width_mm * step * warm)
+
+
+BEFORE_SLIP_MM = 0.01
+
+
+def dahl(path: Floats, travel_mm: float) -> Floats:
+    """Friction (t,) along a path (t,) from -1 to 1: after a reversal it turns over a travel, exponentially.
+
+    Dahl, A solid friction model, Aerospace Corporation TOR-0158(3107-18)-1 (1968), of the exponent 1.
+    """
+    found = np.zeros(len(path))
+    for n, step in enumerate(np.diff(path), start=1):
+        towards = np.sign(step)
+        found[n] = towards + (found[n - 1] - towards) * np.exp(-abs(step) / travel_mm)
+    return found
 
 
 def _touched(course: Course) -> Floats:

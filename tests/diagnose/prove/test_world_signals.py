@@ -9,7 +9,7 @@ from diagnose.prove.world.bench import CLAMPED, FREE, VOLTAGE_ONLY, Run
 from diagnose.prove.world.effects import EFFECTS, applied, fits
 from diagnose.prove.world.march import Course, Table
 from diagnose.prove.world.noise import Amplifier, Autoregression, Filter, noises, yule_walker
-from diagnose.prove.world.reality import Judge, Reality, _path, baseline
+from diagnose.prove.world.reality import Judge, Reality, _path, baseline, dahl
 
 TIME = np.arange(0.0, 2.0, 0.004)
 
@@ -49,6 +49,16 @@ def test_a_compliant_rig_is_a_spring_in_series():
     reality = replace(baseline(CLAMPED), compliance_mm_per_N=0.5)
     reached = _path(reality, np.array([-0.2, 0.0, 0.5]), linear)
     np.testing.assert_allclose(reached, [-0.2, 0.0, 0.5 / (1.0 + 0.5 * 3.0)], atol=1e-6)
+
+
+def test_a_guide_loses_four_times_its_friction_on_each_way_whatever_the_speed():
+    """Between -A and A, much farther than the travel d: 4 A, less 4 d of the turns; -expm1(-2 A / d) is 1."""
+    path = np.interp(np.arange(4001.0), [0.0, 1000.0, 2000.0, 3000.0, 4000.0], [0.5, -0.5, 0.5, -0.5, 0.5])
+    friction = dahl(path, 0.02)
+    last = slice(2000, None)
+    assert np.trapezoid(friction[last], path[last]) == pytest.approx(4.0 * (0.5 - 0.02), rel=0.01)
+    np.testing.assert_allclose(dahl(path[::2], 0.02), friction[::2], atol=1e-12)
+    assert np.abs(friction).max() <= 1.0
 
 
 def test_ramps_are_smooth_and_come_back():
