@@ -53,10 +53,10 @@ def next_presses(recording: Recording, engine: Engine, findings: Findings) -> tu
     if len(rivals) < 2:
         return ()
     judge = PressJudge(recording, engine, rivals, {name: value for name, (value, _) in findings.nuisances.items()})
-    presses, known = Presses(judge, recording), np.zeros(len(rivals) * (len(rivals) - 1) // 2)
+    search, known = PressSearch(judge, recording), np.zeros(len(rivals) * (len(rivals) - 1) // 2)
     found: list[NextPress] = []
     while len(found) < MOST_PRESSES and known.min() < SETTLED:
-        best = presses.best(known)
+        best = search.best(known)
         if best is None:
             break
         press, separations = best
@@ -77,7 +77,7 @@ def surviving(findings: Findings) -> tuple[FittedModel, ...]:
     return tuple(chosen[:MOST_RIVALS])
 
 
-class Presses:
+class PressSearch:
     """All presses of one change, each with its separations (pairs,), and presses of two changes where these help."""
 
     def __init__(self, judge: PressJudge, recording: Recording) -> None:
