@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -26,21 +25,18 @@ SETTLED = least_separation(CONFUSED)
 class NextPress:
     """text : what to do. changes : key -> value. rivals : the models it is to part, their names by settings.
 
-    separations : (pairs,) sigma between each two rivals in it. alike : those that this press and the ones before it
-    are expected to leave together, in groups of numbers of rivals.
+    separations : (pairs,) sigma between each two rivals in it. separation : the least of those that are settled by it,
+    with the presses before; the largest where none is. alike : those that are expected to stay together after it, in
+    groups of numbers of rivals.
     """
 
     text: str
     changes: Mapping[str, Any]
     rivals: tuple[FittedModel, ...]
     separations: Floats
+    separation: float
     alike: tuple[Group, ...]
     run: Run
-
-    @cached_property
-    def separation(self) -> float:
-        """Sigma between the least separated two rivals of those that it parts."""
-        return float(min(self.separations[self.separations >= LEAST], default=0.0))
 
 
 def next_presses(recording: Recording, engine: Engine, findings: Findings) -> tuple[NextPress, ...]:
@@ -60,9 +56,11 @@ def next_presses(recording: Recording, engine: Engine, findings: Findings) -> tu
         if best is None:
             break
         press, separations = best
-        known = np.hypot(known, separations)
+        before, known = known, np.hypot(known, separations)
+        settled = separations[(before < SETTLED) & (known >= SETTLED)]
+        sigma = float(settled.min() if len(settled) else separations.max())
         alike = linked(len(rivals), known < SETTLED)
-        found.append(NextPress(press.text, press.changes, rivals, separations, alike, press.run))
+        found.append(NextPress(press.text, press.changes, rivals, separations, sigma, alike, press.run))
     return tuple(found)
 
 

@@ -12,7 +12,6 @@ from diagnose.verdict.content import IN_WORDS, next_experiment, where_words, wit
 from diagnose.verdict.names import interval_words, listed, model_words, short_name
 from diagnose.verdict.resimulation import Resimulated
 
-ORDER = "Next", "After that", "Then"
 HALF = 0.5  # of what is left: the phase that has more of it is named
 
 
@@ -128,20 +127,23 @@ def _proof(resimulated: Sequence[Resimulated]) -> Iterator[Sentence]:
 
 def _next(findings: Findings, following: Sequence[NextPress]) -> Iterator[Sentence]:
     planned = next_experiment(findings, following)
-    for label, press in zip(ORDER, [planned, *planned["then"]] if following else [], strict=False):
-        yield Sentence(label, f"{press['text']} {separation_words(press)}")
+    if following:
+        yield Sentence("Next", f"{planned['text']} {separation_words(planned)}")
+        for press in planned["then"]:
+            yield Sentence("After that", f"{press['text']} {separation_words(press, 'Those that are left')}")
     if not following and (findings.unexplained or len(surviving(findings)) > 1):
         yield Sentence("Next", without_press(findings))
 
 
-def separation_words(press: Mapping[str, Any]) -> str:
+def separation_words(press: Mapping[str, Any], rivals: str = "The explanations") -> str:
     """How far a press, as verdict.json has it, is expected to part the rivals, and which of them stay together."""
     sigma = figure(press["expected_separation_sigma"])
-    told = f"The explanations are expected to differ by {sigma} standard deviations in it"
-    groups = [[f"{one['mechanism']} ({one['component']})" for one in group] for group in press["leaves_together"]]
-    if not groups:
+    told = f"{rivals} are expected to differ by {sigma} standard deviations in it"
+    groups = press["leaves_together"]
+    if not groups or len(groups[0]) == len(press["separates"]):
         return f"{told}."
-    return f"{told} or more, but these stay alike: {'; '.join(listed(group) for group in groups)}."
+    names = [listed([f"{one['mechanism']} ({one['component']})" for one in group]) for group in groups]
+    return f"{told} or more; these will not be told apart by it: {'; '.join(names)}."
 
 
 def _count(number: int, what: str) -> str:

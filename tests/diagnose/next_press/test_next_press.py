@@ -62,6 +62,7 @@ def test_a_press_that_settles_all_but_twins_says_which_stay_together(recording):
     assert only.alike == ((0, 2),)
     assert only.separations[1] == pytest.approx(0.0, abs=1e-6)
     assert only.separation == pytest.approx(min(only.separations[[0, 2]]))
+    assert only.separation > SETTLED
 
 
 def test_presses_are_made_until_their_separations_together_settle_it(recording):
