@@ -66,8 +66,8 @@ class MainPart:
         """
         few = len(self.group) <= RATES.largest_group
         best = self.models[0].fit
-        scaled = all(candidate.traits.applied_last for candidate in best.candidates)  # what is stated: a wrong number
-        law = 0.0 if scaled else FORM_ERROR
+        stated = all(candidate.traits.wrong_number for candidate in best.candidates)
+        law = 0.0 if stated else FORM_ERROR
         plain = self.left_size <= min(FLAWS, hypot(VISIBLE, law * self.effect_size)) and not implausible(best)
         return few and not ordinary(best) and (plain or self.share - self.hidden >= NEARLY_ALL)
 

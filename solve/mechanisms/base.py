@@ -58,7 +58,7 @@ class Traits:
     acts_on_tables : it, or a part of it, acts on a press that is known as on the 3D model: no press of its own.
     on_middle_mesh : a diagnosis presses it on its finer mesh, since a coarse one feels it node by node, or since it is
     asked for to some percent.
-    applied_last : it scales whatever the others have made.
+    wrong_number : a stated number is another one, which is no physics; it scales whatever the others have made.
     acts_up_to : parameter with the highest frequency in Hz at which it acts, "" where there is none.
     free_phase : it has a phase that nobody knows, another one in every run.
     """
@@ -72,7 +72,7 @@ class Traits:
     changes_geometry: bool = False
     acts_on_tables: bool = False
     on_middle_mesh: bool = False
-    applied_last: bool = False
+    wrong_number: bool = False
     acts_up_to: str = ""
     free_phase: bool = False
 

@@ -191,7 +191,7 @@ def switched(settings: Sequence[Setting]) -> list[Mechanism]:
 
 def with_factors_last(model: Model, mechanisms: Sequence[Mechanism]) -> Model:
     """The model with the mechanisms; a wrong modulus scales whatever law stands there in the end."""
-    return with_mechanisms(model, sorted(mechanisms, key=lambda mechanism: mechanism.traits.applied_last))
+    return with_mechanisms(model, sorted(mechanisms, key=lambda mechanism: mechanism.traits.wrong_number))
 
 
 def drive_error(name: str) -> Candidate:

@@ -94,6 +94,6 @@ PROPERTY_ERROR = register(
             "radius_factor": "Braille standards allow ±10 % and more (sizes)",
             "height_factor": "Braille standards allow ±10 % and more (sizes)",
         },
-        traits=Traits(adds_up=True, acts_on_tables=True, changes_geometry=True, on_middle_mesh=True, applied_last=True),
+        traits=Traits(adds_up=True, acts_on_tables=True, changes_geometry=True, on_middle_mesh=True, wrong_number=True),
     )
 )
