@@ -1,8 +1,7 @@
 """How far apart rivals are in a proposed press, in sigma, once all that may float has floated as far as is still open.
 
-What may float is what an inference excuses too: nuisances, errors of the model, and of each mechanism's law.
-
-A recording that nobody has made yet, of one proposed press, and the engine that answers it.
+What may float is what an inference excuses too: nuisances, errors of the model, and of each mechanism's law. The press
+is a recording of one run that nobody has made yet.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -98,7 +97,7 @@ class PressJudge:
         if known is not None:
             return known
         largest = float(np.abs(engine.predict(0, self.rivals[0])[channel]).max())
-        return white_noise(ADDED_NOISE * largest, proposal.run.step_s)
+        return white_noise(ADDED_NOISE * largest, proposal.run.step_s, "assumed")
 
     def _answer(self, model: ObservedModel, settings: tuple[Setting, ...]) -> ImaginedAnswer:
         values = np.array([0.0 if n.run is not None else self.fitted.get(n.name, 0.0) for n in model.nuisances])

@@ -11,12 +11,13 @@ Samples at rest: nothing touches, or has touched for a while, so what is recorde
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from math import isclose
 
 import numpy as np
 
-from diagnose.noise.autoregression import Autoregression, fit_autoregression
-from diagnose.noise.model import Line, NoiseModel, find_lines, quantisation_step, without_lines
+from diagnose.noise.autoregression import fit_autoregression
+from diagnose.noise.model import Line, NoiseModel, find_lines, quantisation_step, white_noise, without_lines
 from diagnose.signals.align import lag_between
 from diagnose.signals.phases import Segmentation
 from diagnose.signals.recording import Recording, Run
@@ -196,8 +197,8 @@ def _stated(run: Run, channel: str) -> NoiseModel:
             f"recording '{run.file}', column {channel}: its noise is not known; record at least {ENOUGH} samples "
             f"before the touch, repeat the run, or state noise.{channel} of the run in rig.toml"
         )
-    white = Autoregression(np.zeros(0), run.noise[channel] ** 2)
-    return NoiseModel(white, run.step_s, STATED, 0, (), quantisation_step(run.channels[channel]))
+    white = white_noise(run.noise[channel], run.step_s, STATED)
+    return replace(white, quantisation=quantisation_step(run.channels[channel]))
 
 
 def _enough(values: Sequence[Floats]) -> bool:

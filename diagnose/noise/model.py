@@ -273,6 +273,6 @@ def _drawn(model: Autoregression, rng: np.random.Generator, count: int) -> Float
     return np.asarray(values)
 
 
-def white_noise(sigma: float, step_s: float, source: str = "assumed") -> NoiseModel:
-    """Independent samples of this standard deviation at a step."""
+def white_noise(sigma: float, step_s: float, source: str) -> NoiseModel:
+    """Independent samples of this standard deviation at a step; source : who says so."""
     return NoiseModel(Autoregression(np.zeros(0), sigma**2), step_s, source, 0)
