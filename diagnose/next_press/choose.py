@@ -81,14 +81,14 @@ class PressSearch:
     def __init__(self, judge: PressJudge, recording: Recording) -> None:
         self.judge, self.setup = judge, base_setup(recording)
         ones = [] if self.setup is None else [self.setup, *variations(self.setup)]
-        self.known = list(self._told([*repeats(recording), *(one.proposal() for one in ones)]))
+        self.singles = list(self._told([*repeats(recording), *(one.proposal() for one in ones)]))
 
     def best(self, known: Floats) -> tuple[Proposal, Floats] | None:
         """The one that parts most of what presses before, with separations (pairs,), do not; None where none does.
 
         Where one change leaves rivals together, a second one is tried on top of it.
         """
-        first = _best(self.known, known)
+        first = _best(self.singles, known)
         if first is None or np.hypot(known, first[1]).min() >= SETTLED:
             return first
         return _best([first, *self._told(self._second(first[0]))], known)

@@ -291,7 +291,8 @@ def _resimulated(one: Resimulated) -> dict[str, Any]:
 def next_experiment(findings: Findings, following: Sequence[NextPress]) -> dict[str, Any]:
     """The next press, and under "then" those to make after it; without one, a sentence and null."""
     if not following:
-        return {"text": without_press(findings), "changes": {}, "separates": [], "expected_separation_sigma": None}
+        nothing: dict[str, Any] = {"changes": {}, "separates": [], "leaves_together": [], "then": []}
+        return {"text": without_press(findings), **nothing, "expected_separation_sigma": None}
     first, *others = [_press(press, waveform(number)) for number, press in enumerate(following)]
     return {**first, "then": others}
 

@@ -194,7 +194,8 @@ def _run(reality: Reality, bench: Bench, run: Run, number: int, mechanics: Mecha
     course = mechanics.course(time, _path(reality, surface, mechanics.known))
     force = course.force_N if details is None else details.force(stage, course.force_N)
     force = force + 1e-6 * reality.mass_g * run.acceleration_mm_per_s2(time)
-    force = force + reality.guide_N * dahl(stage, BEFORE_SLIP_MM)
+    if reality.guide_N > 0.0:  # a loop over all samples
+        force = force + reality.guide_N * dahl(stage, BEFORE_SLIP_MM)
     charge = reality.sensitivity * course.charge_pC * ((1.0 - reality.fatigue) ** run.presses_before(time))[:, None]
     films = np.array(reality.made.capacitances_pF)
     other = _warmth(reality, run, time) + reality.touch_pC * _touched(course)
