@@ -12,6 +12,7 @@ import numpy as np
 from pydantic import Field, field_validator
 from scipy.ndimage import median_filter
 
+from diagnose.signals.acceleration import acceleration_mm_per_s2
 from diagnose.signals.phases import Segmentation, segmented
 from geometry.arrays import Bools, Floats
 from geometry.base import nearest
@@ -211,6 +212,11 @@ class Run:
     def pieces(self) -> tuple[slice, ...]:
         """Stretches of even sampling: a gap in time or another rate begins a new one."""
         return even_pieces(self.time_s)
+
+    @cached_property
+    def acceleration_mm_per_s2(self) -> Floats:
+        """Of the drive, (t,), where it is a displacement."""
+        return acceleration_mm_per_s2(self.time_s, self.drive_values)
 
     @cached_property
     def step_s(self) -> float:

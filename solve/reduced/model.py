@@ -11,6 +11,7 @@ import json
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -100,30 +101,34 @@ def branches(viscosity: Mapping[str, Prony], layers: tuple[str, ...]) -> tuple[F
     return table[:, 0].copy(), table[:, 1].copy(), table[:, 2].astype(np.int64)
 
 
-def sensed(time: Floats, drive: Floats, kind: int, path: Floats, contact: Floats, physics: Physics) -> Floats:
+Accelerated = Callable[[], Floats]
+"""Acceleration (t,) of a path in mm/s2, calculated where a mass feels it."""
+
+
+def sensed(
+    drive: Floats, kind: int, path: Floats, contact: Floats, physics: Physics, accelerated: Accelerated
+) -> Floats:
     """What the force sensor reads (t,): the force that drives, that of the rig's spring, or F_contact + m a''.
 
-    A guide adds its friction to either of the latter.
+    A guide adds its friction to either of the latter. accelerated : the drive.
     """
     if kind == BY_FORCE:
         return drive.copy()
     if physics.rig_compliance_mm_per_N > 0.0:
         return np.asarray((drive - path) / physics.rig_compliance_mm_per_N + physics.guide.felt_N(drive))
-    return felt(time, drive, contact, physics)
+    return felt(drive, contact, physics, accelerated)
 
 
-def felt(time: Floats, depth: Floats, force: Floats, physics: Physics) -> Floats:
+def felt(depth: Floats, force: Floats, physics: Physics, accelerated: Accelerated) -> Floats:
     """Force (t,) with those of a mass and a guide which move along a path (t,) in mm: F + m a'' + f."""
     total = force + physics.guide.felt_N(depth)
-    if physics.moving_mass_g > 0.0:
-        total += 1e-6 * physics.moving_mass_g * _acceleration(time, depth)
-    return total
+    return total + 1e-6 * physics.moving_mass_g * accelerated() if physics.moving_mass_g > 0.0 else total
 
 
-def _acceleration(time: Floats, depth: Floats) -> Floats:
-    """Second derivative (t,) by differences, at rest before and after."""
+def second_differences(time: Floats, path: Floats) -> Floats:
+    """Second derivative (t,) of a path (t,), at rest before and after."""
     step = np.diff(time)
-    rate = np.concatenate([[0.0], np.diff(depth) / step, [0.0]])
+    rate = np.concatenate([[0.0], np.diff(path) / step, [0.0]])
     width = np.concatenate([step[:1], 0.5 * (step[1:] + step[:-1]), step[-1:]])
     return np.asarray(np.diff(rate) / width)
 
@@ -168,7 +173,8 @@ class ReducedModel:
         self._refuse(physics)
         time, drive, kind = given(time_s, depth_mm, force_N, gap_mm)
         path, outputs = self._follow(time, drive, kind, physics)
-        force = sensed(time, drive, kind, path, outputs[:, 0], physics)
+        accelerated = partial(second_differences, time, drive)
+        force = sensed(drive, kind, path, outputs[:, 0], physics, accelerated)
         area, constant = self.film[:, 1], self.pyroelectric_uC_per_m2_K
         each = outputs[:, 2:] + other_charge_C(time, outputs[:, 1], area, constant, physics)
         wired = np.ones(len(self.film)) if wired is None else np.asarray(wired, dtype=np.float64)

@@ -110,7 +110,7 @@ class CouponEngine:
         if kind == "force_N":
             return {"displacement_mm": found.values}
         held = np.maximum(found.values, -buckling_load_N(self.specimen, model.materials[LAYER]))
-        return {"force_N": felt(run.time_s, drive, held, model.physics)}
+        return {"force_N": felt(drive, held, model.physics, lambda: run.acceleration_mm_per_s2)}
 
 
 def buckling_load_N(specimen: Specimen, material: Material) -> float:

@@ -6,9 +6,11 @@ The drive of a run as the model takes it, and where its first touch is.
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
+from diagnose.signals.acceleration import acceleration_mm_per_s2
 from diagnose.signals.phases import Segmentation
 from diagnose.signals.recording import Run
 from geometry.arrays import Bools, Floats
@@ -33,6 +35,11 @@ class Drive:
     def by_depth(self) -> bool:
         """Whether a displacement drives."""
         return self.kind == BY_DEPTH
+
+    @cached_property
+    def acceleration_mm_per_s2(self) -> Floats:
+        """(t,) where a displacement drives."""
+        return acceleration_mm_per_s2(self.time_s, self.values)
 
 
 def drive_of(run: Run, phases: Segmentation) -> Drive:
@@ -125,7 +132,8 @@ def shown(
     if voltages:
         signals |= amplified(voltages, drive.time_s, found, film, on, ahead_s)
     if "force_N" in names:
-        signals["force_N"] = sensed(drive.time_s, values, drive.kind, found.path_mm, found.force_N, on.physics)
+        told = (values, drive.kind, found.path_mm, found.force_N, on.physics)
+        signals["force_N"] = sensed(*told, lambda: drive.acceleration_mm_per_s2)
     if "displacement_mm" in names:
         path = found.path_mm + on.dot.gap_mm
         signals["displacement_mm"] = np.where(drive.touching, path, run.channels.get("displacement_mm", path))

@@ -8,9 +8,8 @@ from diagnose.forward import Candidate
 from diagnose.vocabulary.base import CouponScene, Scene, Vocabulary, growing, register
 from solve.mechanisms.boundaries.inertia import INERTIA
 
-MASS_G = 5.0
-HEAVIEST_G = 500.0
-GRIP_G, HEAVIEST_GRIP_G = 50.0, 20_000.0  # from a clip to the grips of a large tester
+MASS_G, GRIP_G = 5.0, 50.0  # of a small dot, and of a clip
+HEAVIEST_G = 20_000.0  # the grips, or the crosshead, of a large tester, which may press a segment too
 
 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
@@ -22,7 +21,7 @@ def of_coupon(scene: CouponScene) -> Iterator[Candidate]:
     """Where the load cell moves."""
     if any(run.drive != "displacement_mm" for run in scene.recording.runs):
         return
-    coordinate = growing("mass", GRIP_G, HEAVIEST_GRIP_G, (GRIP_G, 10.0 * GRIP_G))
+    coordinate = growing("mass", GRIP_G, HEAVIEST_G, (GRIP_G, 10.0 * GRIP_G))
 
     def parameters(values: Sequence[float]) -> dict[str, Any]:
         return {"moving_mass_g": GRIP_G * sinh(values[0])}

@@ -1,0 +1,41 @@
+"""Acceleration of a measured path: in second differences the noise of its column would drown it.
+
+A quintic smoothing spline with as few knots as leave a residual of the root mean square of that noise (Dierckx, Curve
+and Surface Fitting with Splines, 1993, chapter 5).
+"""
+
+from math import comb
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from scipy.interpolate import make_splrep
+
+from geometry.arrays import Floats
+from solve.reduced.model import second_differences
+
+DEGREE = 5  # its second derivative is smooth
+NEGLIGIBLE = 0.01  # of the root mean square of second differences, what noise makes of them
+ORDER = 6  # of differences in which a smooth motion hardly shows
+FEWEST = 4 * ORDER
+
+
+def acceleration_mm_per_s2(time_s: Floats, path_mm: Floats) -> Floats:
+    """Second derivative (t,) of a path (t,) in mm: by differences where their noise is too small to matter."""
+    raw = second_differences(time_s, path_mm)
+    if len(path_mm) < FEWEST:
+        return raw
+    noise = noise_mm(path_mm)
+    of_raw = np.sqrt(comb(4, 2)) * noise / float(np.median(np.diff(time_s))) ** 2
+    if of_raw <= NEGLIGIBLE * float(np.sqrt(np.mean(raw**2))):
+        return raw
+    largest = len(path_mm) + np.sqrt(2.0 * len(path_mm))  # of its range by chance: noise is no motion
+    spline = make_splrep(time_s, path_mm, k=DEGREE, s=largest * noise**2)
+    return np.asarray(spline.derivative(2)(time_s))
+
+
+def noise_mm(path_mm: Floats) -> float:
+    """One sigma of what a column (t,) adds to a smooth path: noise, or its last digit, while the column changes."""
+    moves = np.ptp(sliding_window_view(path_mm, ORDER + 1), axis=1) > 0.0
+    rough = np.abs(np.diff(path_mm, ORDER))[moves]
+    white = float(np.median(rough)) / 0.6745 if len(rough) else 0.0
+    return white / float(np.sqrt(comb(2 * ORDER, ORDER)))
