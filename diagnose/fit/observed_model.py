@@ -7,7 +7,7 @@ from collections import OrderedDict
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -184,8 +184,7 @@ class ObservedModel:
     def imagined(self, run: int, drive: Floats, values: Floats, settings: Sequence[Setting]) -> dict[str, Floats]:
         """What its instruments would show if the drive (t,) of a run had been another one. ValueError as the engine."""
         of = self.runs[run]
-        other = replace(of, channels={**of.channels, of.drive: drive})
-        raw = self.engine.imagine(other, [*self._settings(run, values), *settings])
+        raw = self.engine.imagine(of.along(drive), [*self._settings(run, values), *settings])
         told = (self.nuisances, values, run)
         return {name: observed(of, name, raw[name], by_name(*told, name)) for name in of.answers}
 

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from pathlib import PurePath
@@ -18,6 +18,7 @@ from geometry.arrays import Bools, Floats
 from geometry.base import nearest
 from geometry.parameters import Finite, Positive, Table
 from solve.model import Readout
+from solve.reduced.model import second_differences
 
 FORMAT = "softdot-recording/1"
 PARTS = ("effector", "medium1", "film", "medium2", "specimen")
@@ -173,6 +174,7 @@ class Run:
     readout : the amplifier of this run as rig.toml states it; None for open circuit.
     nuisance : what may float without counting as physics -> one-sigma width.
     noise : channel -> one sigma of its white noise, where the experimenter states it.
+    accelerated : acceleration of the drive in mm/s2, where it is known better than from a path that was measured.
     """
 
     label: str
@@ -188,6 +190,13 @@ class Run:
     readout: Readout | None = None
     nuisance: Mapping[str, float] = field(default_factory=dict)
     noise: Mapping[str, float] = field(default_factory=dict)
+    accelerated: Floats | None = None
+
+    def along(self, drive: Floats) -> "Run":
+        """The same run along another drive (t,); what was added to the one that was measured has no noise."""
+        more = second_differences(self.time_s, drive - self.drive_values)
+        accelerated = self.acceleration_mm_per_s2 + more if self.drive == "displacement_mm" else None
+        return replace(self, channels={**self.channels, self.drive: drive}, accelerated=accelerated)
 
     @property
     def drive_values(self) -> Floats:
@@ -216,6 +225,8 @@ class Run:
     @cached_property
     def acceleration_mm_per_s2(self) -> Floats:
         """Of the drive, (t,), where it is a displacement."""
+        if self.accelerated is not None:
+            return self.accelerated
         return acceleration_mm_per_s2(self.time_s, self.drive_values)
 
     @cached_property

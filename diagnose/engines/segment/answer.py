@@ -6,11 +6,9 @@ The drive of a run as the model takes it, and where its first touch is.
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
-from diagnose.signals.acceleration import acceleration_mm_per_s2
 from diagnose.signals.phases import Segmentation
 from diagnose.signals.recording import Run
 from geometry.arrays import Bools, Floats
@@ -35,11 +33,6 @@ class Drive:
     def by_depth(self) -> bool:
         """Whether a displacement drives."""
         return self.kind == BY_DEPTH
-
-    @cached_property
-    def acceleration_mm_per_s2(self) -> Floats:
-        """(t,) where a displacement drives."""
-        return acceleration_mm_per_s2(self.time_s, self.values)
 
 
 def drive_of(run: Run, phases: Segmentation) -> Drive:
@@ -133,7 +126,7 @@ def shown(
         signals |= amplified(voltages, drive.time_s, found, film, on, ahead_s)
     if "force_N" in names:
         told = (values, drive.kind, found.path_mm, found.force_N, on.physics)
-        signals["force_N"] = sensed(*told, lambda: drive.acceleration_mm_per_s2)
+        signals["force_N"] = sensed(*told, lambda: run.acceleration_mm_per_s2)
     if "displacement_mm" in names:
         path = found.path_mm + on.dot.gap_mm
         signals["displacement_mm"] = np.where(drive.touching, path, run.channels.get("displacement_mm", path))
