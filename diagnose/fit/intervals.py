@@ -5,7 +5,8 @@ quantile of the best (Venzon and Moolgavkar, Appl. Stat. 37 (1988) 87). Its ends
 the likelihood is quadratic and g linear: with Hessian H and slope a of g, to the end of the ellipsoid along H^-1 a.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import replace
 from numbers import Real
 
@@ -32,9 +33,9 @@ Function = Callable[[Floats], float]
 def intervals(model: ObservedModel, fit: Fitted) -> tuple[Mapping[str, Interval], ...]:
     """For each mechanism of a fit, its parameters and derived quantities by name.
 
-    The low end leaves room for what every rig has of it: of a gap, softness at the first touch.
+    All leave room for what every rig has a little of; the low end of a gap or of friction also for what of it is that.
     """
-    fit = _model_may_err(model, _law_may_differ(fit))
+    fit = _as_every_rig(model, _model_may_err(model, _law_may_differ(fit)))
     return tuple(_of_mechanism(model, fit, number) for number in range(len(fit.candidates)))
 
 
@@ -58,6 +59,31 @@ def _model_may_err(model: ObservedModel, fit: Fitted) -> Fitted:
     shown = model.signals(fit.system.values, fit.settings)
     columns, sigma = discrepancy.repeated(model.samples, discrepancy.of_the_film(shown), relative(model))
     return replace(fit, system=fit.system.with_nuisance_columns(columns, sigma))
+
+
+def _as_every_rig(model: ObservedModel, fit: Fitted) -> Fitted:
+    """With what a careful laboratory has too, softness at the first touch or friction, of either sign.
+
+    It is no finding, but takes the place of a part of what is.
+    """
+    more = [one for one in model.engine.candidates if one.everyday and one not in fit.candidates]
+    columns = [column for one in more for column in _a_little(model, fit, one)]
+    if not columns:
+        return fit
+    return replace(fit, system=fit.system.with_nuisance_columns(np.column_stack(columns), np.ones(len(columns))))
+
+
+def _a_little(model: ObservedModel, fit: Fitted, candidate: Candidate) -> Iterator[Floats]:
+    """Changes (n,), one for each coordinate, by as much as is usual; together their squares are that of one."""
+    without, count = model.vector(fit.system.values, fit.settings), len(candidate.coordinates)
+    for number, coordinate in enumerate(candidate.coordinates):
+        at = np.where(np.arange(count) == number, coordinate.starts[0], 0.0)
+        one = Setting(candidate, tuple(at.tolist()))
+        found = _numbers(one)
+        share = min(usual / found[name] for name, usual in candidate.everyday.items())
+        with suppress(ValueError):
+            change = model.vector(fit.system.values, [*fit.settings, one]) - without
+            yield np.asarray(share / np.sqrt(count) * change)
 
 
 def _of_mechanism(model: ObservedModel, fit: Fitted, number: int) -> Mapping[str, Interval]:

@@ -158,3 +158,20 @@ def test_intervals_cover_the_truth_where_the_model_errs_over_depth_in_all_runs_a
         (found,) = intervals(model, fit)
         covered += found[coordinate].low <= true <= found[coordinate].high
     assert covered >= 19  # 22.5 expected; without the allowance 16 and 16
+
+
+@pytest.mark.slow
+def test_intervals_cover_the_truth_though_the_surface_gives_way_at_the_first_touch():
+    """Softness of 4 um, which looks nearly like a gap, is no finding; beside a compliance it shifts that."""
+    compliance, gap = (
+        next(one for one in CANDIDATES if one.mechanism == of) for of in ("rig-compliance", "contact-gap")
+    )
+    candidates, covered = (compliance, replace(gap, everyday={"gap_mm": 4e-3})), 0
+    for seed in range(20):
+        sensor = Sensor(compliance=0.08, rounding_mm=4e-3)
+        model = seen(small(300 + seed, sensor, runs=4, noise=0.001, distort=0.0), candidates=candidates)
+        model.engine.accuracy = {"force_N": 0.002, "voltage_V": 0.002}
+        baseline = fitted_baseline(model)
+        (found,) = intervals(model, fitted(model, baseline, (compliance,), np.array([0.06]), excess(baseline)))
+        covered += found["compliance"].low <= 0.08 <= found["compliance"].high
+    assert covered >= 17  # 18 expected; 14 without the allowance
