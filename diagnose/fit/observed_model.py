@@ -41,6 +41,15 @@ class Nuisance:
         """Whether a channel has it, as far as that is told apart."""
         return self.channel in (None, channel)
 
+    def stated(self, value: float) -> float:
+        """The value as rig.toml states it: of a factor its relative error, whatever the coordinate."""
+        if self.candidate is None:
+            return value
+        at = np.zeros(len(self.candidate.coordinates))
+        at[self.coordinate] = value
+        factors = [one for name, one in self.candidate.parameters(at.tolist()).items() if name.endswith("_factor")]
+        return float(factors[0]) - 1.0 if factors else value
+
 
 def nuisances(recording: Recording, engine: Engine) -> tuple[Nuisance, ...]:
     """All that rig.toml declares and the engine knows, and what the engine itself leaves free."""

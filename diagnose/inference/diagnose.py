@@ -331,8 +331,8 @@ def _detection(model: ObservedModel, found: Checked) -> Detection:
 
 def _nuisances(model: ObservedModel, values: Floats) -> dict[str, tuple[float, float]]:
     """Name, "name of run" or "name of run, channel" -> value and prior sigma."""
-    labels = [_label(nuisance, model) for nuisance in model.nuisances]
-    return {label: (float(v), float(s)) for label, v, s in zip(labels, values, model.sigma, strict=True)}
+    each = zip(model.nuisances, values, model.sigma, strict=True)
+    return {_label(one, model): (one.stated(float(value)), float(sigma)) for one, value, sigma in each}
 
 
 def _label(nuisance: Nuisance, model: ObservedModel) -> str:

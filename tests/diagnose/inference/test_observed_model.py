@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 
 from diagnose.fit.discrepancy import allowance, columns, drive_noise, of_the_film
-from diagnose.fit.observed_model import ObservedModel
+from diagnose.fit.observed_model import Nuisance, ObservedModel
 from diagnose.fit.refit import fitted_baseline
 from diagnose.fit.samples import Samples
 from diagnose.fit.system import informative_rows, linearised
 from diagnose.forward import Setting
 from diagnose.noise.estimate import noise_models
+from diagnose.vocabulary.layers.property_error import property_error
 from tests.diagnose.inference.toy import CANDIDATES, NUISANCE, Sensor, ToyEngine, small
 
 
@@ -181,3 +182,10 @@ def test_the_error_of_the_model_is_that_of_the_film_also_where_an_electrode_coll
         np.testing.assert_array_equal(film["voltage_2_V"], own["voltage_1_V"])
         np.testing.assert_array_equal(film["voltage_1_V"], own["voltage_1_V"])
         np.testing.assert_array_equal(film["force_N"], own["force_N"])
+
+
+def test_a_wrong_modulus_is_told_as_its_relative_error():
+    """Whose coordinate is the logarithm of a factor: half the modulus is an error of -50 %."""
+    halved = Nuisance("modulus.medium1", None, 0.05, property_error("medium1", ("modulus",)))
+    assert halved.stated(np.log(0.5)) == pytest.approx(-0.5)
+    assert Nuisance("gain", 0, 0.05).stated(0.1) == 0.1
