@@ -28,6 +28,7 @@ from geometry.arrays import Floats, Ints
 IN_EACH, MOST_LEFT, SIGMAS = 0.5, 0.5, 4.0
 """Share of an excess that most of it is: in a condition, channel or phase alone, where that holds this share of all
 that is left; its excess counts from so many standard errors above noise."""
+LITTLE_LEFT = 0.1  # of all that is left: what holds less of it may be predicted worse
 
 
 class TolerantJudge:
@@ -97,7 +98,7 @@ class TolerantJudge:
         """Whether no condition, channel or phase holds most of what is left while most of its own excess stays there.
 
         That would be something else; laws that are not quite right and flaws of a rig leave a little everywhere. Nor is
-        any of them predicted worse for sure than without the explanation: there its effect is not what happens.
+        any that holds a good part of it predicted worse for sure than without: there its effect is not what happens.
         """
         after = self.left(forecast)
         for labels in (self.fold, self.tolerance.channel, self.model.samples.phase):
@@ -105,7 +106,8 @@ class TolerantJudge:
             was, still = (np.maximum(np.bincount(place, squares), 0.0) for squares in (self.before, after))
             sure = SIGMAS * self.tolerance.noise_errors(place)
             alone = (was > sure) & (still > (1.0 - IN_EACH) * was) & (still > MOST_LEFT * still.sum())
-            if np.any(alone | (still > was + sure)):
+            worse = (still > was + sure) & (still > LITTLE_LEFT * still.sum())
+            if np.any(alone | worse):
                 return False
         return True
 
