@@ -5,10 +5,11 @@ and Surface Fitting with Splines, 1993, chapter 5).
 """
 
 from math import comb
+from warnings import catch_warnings, simplefilter
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from scipy.interpolate import make_splrep
+from scipy.interpolate import UnivariateSpline
 
 from geometry.arrays import Floats
 from solve.reduced.model import second_differences
@@ -29,7 +30,9 @@ def acceleration_mm_per_s2(time_s: Floats, path_mm: Floats) -> Floats:
     if of_raw <= NEGLIGIBLE * float(np.sqrt(np.mean(raw**2))):
         return raw
     largest = len(path_mm) + np.sqrt(2.0 * len(path_mm))  # of its range by chance: noise is no motion
-    spline = make_splrep(time_s, path_mm, k=DEGREE, s=largest * noise**2)
+    with catch_warnings():
+        simplefilter("ignore")  # where no knots meet that residual exactly, it gives those that come near
+        spline = UnivariateSpline(time_s, path_mm, k=DEGREE, s=largest * noise**2)
     return np.asarray(spline.derivative(2)(time_s))
 
 
