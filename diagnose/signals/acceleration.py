@@ -11,6 +11,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from scipy.interpolate import UnivariateSpline
 
+from diagnose.signals.phases import sigma_of_differences
 from geometry.arrays import Floats
 from solve.reduced.model import second_differences
 
@@ -39,6 +40,4 @@ def acceleration_mm_per_s2(time_s: Floats, path_mm: Floats) -> Floats:
 def noise_mm(path_mm: Floats) -> float:
     """One sigma of what a column (t,) adds to a smooth path: noise, or its last digit, while the column changes."""
     moves = np.ptp(sliding_window_view(path_mm, ORDER + 1), axis=1) > 0.0
-    rough = np.abs(np.diff(path_mm, ORDER))[moves]
-    white = float(np.median(rough)) / 0.6745 if len(rough) else 0.0
-    return white / float(np.sqrt(comb(2 * ORDER, ORDER)))
+    return sigma_of_differences(np.diff(path_mm, ORDER)[moves], ORDER)

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from itertools import pairwise
+from math import comb
 
 import numpy as np
 from scipy.ndimage import uniform_filter1d
@@ -91,7 +92,14 @@ def rest_of(drive: Floats) -> tuple[float, float]:
 
 def _white(values: Floats) -> float:
     """One sigma of white noise from second differences."""
-    return float(np.median(np.abs(np.diff(values, 2))) / 0.6745 / np.sqrt(6.0)) if len(values) > 2 else 0.0
+    return sigma_of_differences(np.diff(values, 2), 2)
+
+
+def sigma_of_differences(differences: Floats, order: int) -> float:
+    """One sigma of white noise from its differences (t,) of an order, by their median; 0 of none."""
+    if not len(differences):
+        return 0.0
+    return float(np.median(np.abs(differences)) / 0.6745 / np.sqrt(float(comb(2 * order, order))))
 
 
 def _spans(depth: Floats, noise: float) -> list[tuple[int, int]]:
