@@ -18,9 +18,10 @@ from dataclasses import replace
 import numpy as np
 
 from geometry.arrays import Floats
+from solve.fem.kinematics import deformation_gradient, smallest_jacobian
 from solve.fem.sparsity import Trial
 from solve.solution.linear import LinearSolveError, LinearSolver
-from solve.solution.newton import NoEquilibriumError, equilibrate, explained, rim_met
+from solve.solution.newton import CRUSHED, NoEquilibriumError, equilibrate, explained, rim_met
 from solve.solution.schedule import Target, load_between
 from solve.system import Evaluation, Load, State, System
 from solve.terms.solid import InvertedElementError
@@ -80,6 +81,7 @@ def _unbalanced(system: System, now: Evaluation) -> float:
     return float(np.linalg.norm(now.residual[system.mechanical]))
 
 
+INCOMPRESSIBLE = 10.0  # of the bulk modulus over the shear modulus; 9.7 at a Poisson's ratio of 0.45
 OPENING_TOLERANCE = 0.01  # of the most work put in so far
 
 
@@ -91,6 +93,22 @@ def opens_too_coarsely(system: System, before: State, state: State) -> bool:
     clear = float(system.contact.mean_gap(there.displacement, there.move).min())
     made_up = 0.5 * _force(system, before) * min(clear, -_travel(system, before, state))
     return made_up > OPENING_TOLERANCE * before.most_work
+
+
+def crushes(system: System, before: State, state: State) -> bool:
+    """Whether a step takes most of the volume of an element that can hardly be compressed.
+
+    Then Newton's method has gone too far, to an equilibrium in which a fold of the mesh holds itself.
+    """
+    return _least_volume(system, state) < CRUSHED <= _least_volume(system, before)
+
+
+def _least_volume(system: System, state: State) -> float:
+    """The smallest det F of media that can hardly be compressed."""
+    displacement = system.displacement(state.x)
+    rubbers = [s for s in system.solids if s.law.bulk_modulus > INCOMPRESSIBLE * s.law.shear_modulus]
+    found = [smallest_jacobian(deformation_gradient(r.gradient, displacement[r.tets])).min() for r in rubbers]
+    return float(min(found, default=1.0))
 
 
 def with_work(system: System, before: State, state: State) -> State:
@@ -144,7 +162,8 @@ def march(
     on_state: OnState,
     may_snap: bool = False,
 ) -> str | None:
-    """Walk to the target, halving the step where Newton fails, time is cut too coarsely, or contact opens in midst.
+    """Walk to the target, halving the step where Newton fails or goes too far, time is cut too coarsely, or contact
+    opens in midst.
 
     Where time is cut too coarsely in the smallest step too, that step is damped, and the state keeps its error.
     past : the last converged states, extended in place. kink : the rate of loading jumped at the last of them.
@@ -164,7 +183,8 @@ def march(
             if error > TIME_TOLERANCE and size > SMALLEST_IN_TIME:
                 size *= max(0.5, 0.9 * np.sqrt(TIME_TOLERANCE / error)) if error < 4.0 * TIME_TOLERANCE else 0.5
                 continue
-            if size > SMALLEST_SUBSTEP and opens_too_coarsely(system, past[-1], state):
+            too_far = opens_too_coarsely(system, past[-1], state) or crushes(system, past[-1], state)
+            if size > SMALLEST_SUBSTEP and too_far:
                 size *= 0.5
                 continue
             if error > TIME_TOLERANCE:

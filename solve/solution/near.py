@@ -4,6 +4,7 @@ Moduli, glue or remembered stress change an equilibrium less than the way down t
 """
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -14,7 +15,7 @@ from geometry.arrays import Floats, Ints
 from mesh.symmetry import MIRRORED
 from mesh.types import UPSIDE_DOWN, Planes, TetMesh
 from solve.solution.linear import LinearSolver
-from solve.solution.march import march
+from solve.solution.march import crushes, march
 from solve.solution.newton import NoEquilibriumError, equilibrate
 from solve.solution.schedule import Target
 from solve.system import State, System
@@ -116,11 +117,10 @@ def reach(
 ) -> str | None:
     """At once from a guess (count,) beside the equilibrium, else by marching; as solve.solution.march.march."""
     if guess is not None:
-        try:
-            past.append(equilibrate(system, linear, guess, target.load, target.time, past[-1]))
-        except NoEquilibriumError:
-            pass
-        else:
-            del past[:-3]
-            return None
+        with suppress(NoEquilibriumError):
+            state = equilibrate(system, linear, guess, target.load, target.time, past[-1])
+            if not crushes(system, past[-1], state):
+                past.append(state)
+                del past[:-3]
+                return None
     return march(system, linear, past, target, kink, lambda *_: None)

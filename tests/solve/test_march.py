@@ -75,6 +75,29 @@ def test_a_step_that_does_not_converge_is_cut_and_still_arrives(walk, monkeypatc
     assert all(a == b for (_, a), (b, _) in pairwise(times))
 
 
+def test_a_long_step_to_an_equilibrium_with_a_folded_element_is_cut(walk, elastic, monkeypatch):
+    import solve.solution.march as module
+
+    real, system = module._equilibrate, elastic.system
+    top = next(solid for solid in system.solids if solid.name == "effector")
+    fold = np.zeros(system.count)
+    free = (system.unknowns.displacement[top.tets[:, 0]] >= 0).sum(axis=1)
+    nodes = top.tets[int(np.argmax(free))]
+    dofs = system.unknowns.displacement[nodes[0]]
+    fold[dofs[dofs >= 0]] = 1.6 * (system.points[nodes].mean(axis=0) - system.points[nodes[0]])[dofs >= 0]
+
+    def equilibrate(system, linear, past, load, time):
+        state = real(system, linear, past, load, time)
+        return replace(state, x=state.x + fold) if time - past[-1].time > 0.3 else state
+
+    monkeypatch.setattr(module, "_equilibrate", equilibrate)
+    failure, times, past = walk()
+    assert failure is None
+    assert max(after - before for before, after in times) <= 0.3
+    assert module._least_volume(system, past[-1]) > 0.5
+    assert module.crushes(system, past[-1], replace(past[-1], x=past[-1].x + fold))
+
+
 def test_it_gives_up_below_the_smallest_sub_step_and_says_why(walk, monkeypatch):
     refuse(monkeypatch, 0.0)
     failure, times, _ = walk()
