@@ -127,6 +127,11 @@ class Made:
         """Whether an answer depends on what happened before."""
         return any(isinstance(layer, Layer) and (layer.spectrum or layer.damage) for layer in self.layers)
 
+    @property
+    def damaged(self) -> bool:
+        """Whether it remembers for good."""
+        return any(isinstance(layer, Layer) and layer.damage for layer in self.layers)
+
     def key(self) -> str:
         """Hash of all of it."""
         return hashlib.sha256(repr(self).encode()).hexdigest()[:32]

@@ -19,6 +19,8 @@ POINTS = {"ridge": 24, "cap": 10}
 GRADING = 1.3
 STEPS_PER_DEPTH = 18
 DIGEST = hashlib.sha256().digest_size
+EARLIER = *np.linspace(0.0, 1.0, 9), *np.linspace(0.9, 0.0, 5)
+"""Of the depth of an earlier press, where it is solved."""
 STILL = 1e-4  # of the deepest press
 LONGEST, GROWTH, SHORTEST_S = 0.5, 1.5, 0.006
 
@@ -30,6 +32,10 @@ class Course:
     force_N: Floats
     charge_pC: Floats
     area_mm2: Floats
+
+    def last(self, count: int) -> "Course":
+        """The end of it."""
+        return Course(self.force_N[-count:], self.charge_pC[-count:], self.area_mm2[-count:])
 
 
 @dataclass(frozen=True)
@@ -64,12 +70,19 @@ def table(made: Made, depth_mm: float) -> Table:
     return Table(points, course)
 
 
-def through_time(made: Made, time_s: Floats, depth_mm: Floats) -> tuple[list[int], Course]:
-    """Samples (m,) of the path (t,) of the dot at which it was solved, and the answers there; at rest at first."""
+def through_time(made: Made, time_s: Floats, depth_mm: Floats, before_mm: float) -> tuple[list[int], Course]:
+    """Samples (m,) of the path (t,) of the dot at which it was solved, and the answers there; at rest at first.
+
+    before_mm : where the dot has been earlier, which damage remembers; nothing relaxes any more.
+    """
     marks = steps(time_s, depth_mm)
-    kept = _kept(f"time-{_program()}-{made.key()}-{_digest(time_s[marks], depth_mm[marks])}")
-    course = kept.read() or kept.write(_pressed(made, depth_mm[marks], np.diff(time_s[marks], prepend=time_s[0] - 1.0)))
-    return marks, course
+    before_mm = before_mm if made.damaged else 0.0
+    earlier = before_mm * np.array(EARLIER) if before_mm > 0.0 else np.zeros(0)
+    path, waits = np.append(earlier, depth_mm[marks]), np.diff(time_s[marks], prepend=time_s[0] - 1.0)
+    kept = _kept(f"time-{_program()}-{made.key()}-{_digest(time_s[marks], path)}")
+    return marks, kept.read() or kept.write(
+        _pressed(made, path, np.append(np.ones(len(earlier)), waits)).last(len(marks))
+    )
 
 
 def steps(time_s: Floats, depth_mm: Floats) -> list[int]:

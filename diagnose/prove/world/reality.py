@@ -3,7 +3,8 @@
 Presses with memory at any strength, from three that are solved through time and kept.
 
 The difference to the elastic press is interpolated over the strength by the parabola through none, half and full
-(NODES), and scaled by the elastic answers of the specimen over those of the nominal stack.
+(NODES). It is solved along the path that the stage was asked for, on larger elements (COARSER), by which it changes by
+1 %, and scaled by the elastic answer of the specimen along its own path over that of the nominal stack.
 
 How large an effect is against the noise, once every declared nuisance has taken its part; how far from rivals.
 
@@ -28,6 +29,7 @@ from diagnose.prove.world.march import Course, Table, table, through_time
 from diagnose.prove.world.noise import Amplifier, Autoregression, noises
 
 NODES = 0.25, 0.5
+COARSER = 0.7
 FAINT = 0.02
 
 
@@ -60,20 +62,35 @@ def forgetful(made: Made) -> Made:
     return with_strength(made, 0.0)
 
 
-def scaled_memory(made: Made, time: Floats, path: Floats, elastic: Course, nominal: Course) -> Course:
-    """Answers (t,) to the path of the dot. ValueError beyond the largest strength that is solved."""
-    value = strength(made)
+def scaled_memory(made: Made, asked: "Asked", elastic: Course, nominal: Course, deepest_mm: float) -> Course:
+    """Answers (t,) of a specimen whose elastic answers are known; nominal : those of the stack made, as was asked for.
+
+    deepest_mm : to which tables go. ValueError beyond the largest strength that is solved.
+    """
+    value, time = strength(made), asked.time_s
     if value > NODES[-1]:
         raise ValueError(f"a strength of {value:g} is beyond {NODES[-1]:g}")
-    marks, near = through_time(with_strength(made, NODES[0]), time, path)
-    far = through_time(with_strength(made, NODES[1]), time, path)[1]
+    larger = replace(made, fine=COARSER * made.fine)
+    marks, near = through_time(with_strength(larger, NODES[0]), time, asked.path_mm, asked.before_mm)
+    far = through_time(with_strength(larger, NODES[1]), time, asked.path_mm, asked.before_mm)[1]
+    base = table(forgetful(larger), deepest_mm).at(asked.path_mm[marks])
 
     def scaled(name: str) -> Floats:
-        own, base = getattr(elastic, name), getattr(nominal, name)
-        solved = [getattr(course, name) - base[marks] for course in (near, far)]
-        return _scaled(own, base, PchipInterpolator(time[marks], _parabola(value, *solved), axis=0)(time))
+        solved = [getattr(course, name) - getattr(base, name) for course in (near, far)]
+        difference = PchipInterpolator(time[marks], _parabola(value, *solved), axis=0)(time)
+        return _scaled(getattr(elastic, name), getattr(nominal, name), difference)
 
-    return Course(np.where(path > 0.0, scaled("force_N"), 0.0), scaled("charge_pC"), elastic.area_mm2)
+    force = np.where(elastic.force_N > 0.0, scaled("force_N"), 0.0)
+    return Course(force, scaled("charge_pC"), elastic.area_mm2)
+
+
+@dataclass(frozen=True)
+class Asked:
+    """Times (t,) and the path (t,) of the dot without flaws of the rig; before_mm : its deepest in earlier runs."""
+
+    time_s: Floats
+    path_mm: Floats
+    before_mm: float = 0.0
 
 
 def _parabola(value: float, near: Floats, far: Floats) -> Floats:
@@ -168,12 +185,13 @@ class Mechanics:
     known: Table
     nominal: Table
 
-    def course(self, time: Floats, path: Floats) -> Course:
+    def course(self, path: Floats, asked: Asked) -> Course:
         """Answers to the path of the dot."""
         elastic = self.known.at(path)
         if not self.made.remembers:
             return elastic
-        return scaled_memory(self.made, time, path, elastic, self.nominal.at(path))
+        nominal = self.nominal.at(asked.path_mm)
+        return scaled_memory(self.made, asked, elastic, nominal, float(self.nominal.depth_mm[-1]))
 
 
 def with_scatter(reality: Reality) -> Made:
@@ -191,7 +209,7 @@ def _run(reality: Reality, bench: Bench, run: Run, number: int, mechanics: Mecha
     time = run.times(bench.rate_Hz)
     stage, details = run.depth(time) - reality.of("offset_mm", number), reality.details
     surface = stage if details is None else details.path(time, stage, number)
-    course = mechanics.course(time, _path(reality, surface, mechanics.known))
+    course = mechanics.course(_path(reality, surface, mechanics.known), _asked(reality, bench, number, mechanics.known))
     force = course.force_N if details is None else details.force(stage, course.force_N)
     force = force + 1e-6 * reality.mass_g * run.acceleration_mm_per_s2(time)
     if reality.guide_N > 0.0:  # a loop over all samples
@@ -212,6 +230,18 @@ def _run(reality: Reality, bench: Bench, run: Run, number: int, mechanics: Mecha
         voltage = np.interp(time - late, time, voltage)
         signals[name] = (1.0 + reality.of("gain", number, channel)) * voltage + reality.of("offset_V", number, channel)
     return signals
+
+
+def _asked(reality: Reality, bench: Bench, number: int, known: Table) -> Asked:
+    """The path of the dot that a run asks for, after the runs before it at the same place."""
+    run = bench.runs[number]
+    paths = [
+        _path(reality, one.depth(one.times(bench.rate_Hz)), known)
+        for one in bench.runs[: number + 1]
+        if one.place_mm == run.place_mm
+    ]
+    before_mm = max((float(path.max()) for path in paths[:-1]), default=0.0)
+    return Asked(run.times(bench.rate_Hz), paths[-1], before_mm)
 
 
 def _path(reality: Reality, stage: Floats, known: Table) -> Floats:

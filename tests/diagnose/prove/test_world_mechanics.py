@@ -10,7 +10,7 @@ from diagnose.prove.world.bench import FREE, Run
 from diagnose.prove.world.effects import applied
 from diagnose.prove.world.laws import Damage, Film, Layer, Made, Spectrum, at_rest, branches, relaxation, respond
 from diagnose.prove.world.march import table, through_time
-from diagnose.prove.world.reality import baseline, scaled_memory, with_strength
+from diagnose.prove.world.reality import Asked, baseline, scaled_memory, with_strength
 from diagnose.prove.world.stack import Stack
 
 PAPER = Made(
@@ -108,8 +108,8 @@ def test_a_memory_of_no_strength_gives_the_elastic_press_through_time():
     depth = 0.05 * np.sin(np.pi * time).clip(0.0)
     layers, small = list(PAPER.layers), replace(PAPER, fine=0.25)
     layers[0] = replace(layers[0], spectrum=Spectrum(1e-9, 0.4))
-    relaxed = through_time(replace(small, layers=tuple(layers)), time, depth)[1]
-    elastic = through_time(with_strength(replace(small, layers=tuple(layers)), 0.0), time, depth)[1]
+    relaxed = through_time(replace(small, layers=tuple(layers)), time, depth, 0.0)[1]
+    elastic = through_time(with_strength(replace(small, layers=tuple(layers)), 0.0), time, depth, 0.0)[1]
     np.testing.assert_allclose(relaxed.force_N, elastic.force_N, atol=1e-6 * elastic.force_N.max())
 
 
@@ -118,15 +118,31 @@ def test_a_medium_that_relaxes_answers_no_earlier_than_the_dot_moves(tmp_path, m
     press = Run("one", 0.1, 0.1, 0.4, count=1, lead_s=1.0, pause_s=0.1)
     time = press.times(250.0)
     path = press.depth(time)
-    small = replace(PAPER, fine=0.2)
+    small = replace(PAPER, fine=0.3)
     made = replace(small, layers=(replace(small.layers[0], spectrum=Spectrum(0.2, 0.4)), *small.layers[1:]))
     elastic = table(small, 0.11).at(path)
-    force = scaled_memory(made, time, path, elastic, elastic).force_N
+    force = scaled_memory(made, Asked(time, path), elastic, elastic, 0.11).force_N
     peak = force.max()
     assert np.abs(force[path <= 0.0]).max() < 1e-3 * peak
     held = (time > 1.11) & (time < 1.5)
     np.testing.assert_array_less(np.diff(force[held]), 1e-4 * peak)  # it only falls, and not by the coming way back
     assert force[held][-1] > 0.8 * force[held][0]
+
+
+def test_a_damaged_medium_remembers_the_deeper_press_of_an_earlier_run(tmp_path, monkeypatch):
+    monkeypatch.setenv("SOFTDOT_PROOF_CACHE", str(tmp_path))
+    small = replace(PAPER, fine=0.2)
+    made = replace(small, layers=(replace(small.layers[0], damage=Damage(0.3, 1e-4)), *small.layers[1:]))
+    time = np.linspace(0.0, 2.0, 41)
+    path = np.interp(time, [0.0, 0.5, 1.0, 1.4, 2.0], [0.0, 0.1, 0.0, 0.05, 0.0])
+    marks, whole = through_time(made, time, path, 0.0)
+    second = time >= 1.0
+    after, parted = through_time(made, time[second], path[second], 0.1)
+    told = np.interp(time[second], time[second][after], parted.force_N)
+    expected = np.interp(time[second], time[marks], whole.force_N)
+    virgin = through_time(made, time[second], path[second], 0.0)[1].force_N
+    np.testing.assert_allclose(told, expected, atol=0.01 * expected.max())
+    assert virgin.max() > 1.02 * expected.max()
 
 
 @pytest.mark.slow
