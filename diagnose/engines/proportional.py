@@ -41,11 +41,15 @@ HERTZ = 2.0 / 3.0
 
 @dataclass(frozen=True)
 class Loading:
-    """What a run gives: time_s (t,), force (t,) over the largest of the recording and from its rest, touch_s."""
+    """What a run gives: time_s (t,), force (t,) over the largest of the recording and from its rest, touch_s.
+
+    largest_before : force of earlier runs in the same measure.
+    """
 
     time_s: Floats
     force: Floats
     touch_s: float
+    largest_before: float = 0.0
 
 
 def strain(model: Model, loading: Loading) -> Floats:
@@ -56,7 +60,9 @@ def strain(model: Model, loading: Loading) -> Floats:
         return loading.force
     law = material.law
     point = MaterialPoint(SimpleShear(1.0, 1.0), law, MEDIUM.poisson_ratio, softening, series)
-    return point.answer(loading.time_s, LARGEST_STRAIN * loading.force, "force_N") / LARGEST_STRAIN
+    peak = point.peak_energy({"force_N": LARGEST_STRAIN * loading.largest_before})
+    found = point.answer_near(loading.time_s, LARGEST_STRAIN * loading.force, "force_N", peak_before=peak)
+    return found.values / LARGEST_STRAIN
 
 
 def film_charge(model: Model, loading: Loading) -> Floats:
@@ -241,7 +247,9 @@ def _above_rest(run: Run) -> float:
 def _loading(run: Run, phases: Segmentation, largest_N: float) -> Loading:
     """Force from its rest, over the largest of all runs."""
     level = rest_of(run.drive_values)[0]
-    return Loading(run.time_s, (run.drive_values - level) / largest_N, float(run.time_s[phases.presses[0].touch]))
+    before = max(run.largest_before.get(run.drive, level) - level, 0.0)
+    touch_s = float(run.time_s[phases.presses[0].touch])
+    return Loading(run.time_s, (run.drive_values - level) / largest_N, touch_s, before / largest_N)
 
 
 def _scene(recording: Recording) -> Scene:

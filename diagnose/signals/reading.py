@@ -23,7 +23,7 @@ from diagnose.signals.columns import (
     suspicions,
 )
 from diagnose.signals.phases import Segmentation
-from diagnose.signals.recording import Recording, Run, RunTable, Specimen
+from diagnose.signals.recording import Recording, Run, RunTable, Specimen, one_after_the_other
 from geometry.arrays import Bools, Floats, Ints
 from geometry.base import InputError
 from solve.model import Readout
@@ -46,7 +46,9 @@ def read_recording(
     ]
     travel_mm = np.inf if specimen is None else LARGEST_STRAIN * specimen.gauge_mm
     warnings = [sentence for run, path in pairs for sentence in suspicions(run, path, travel_mm)]
-    return Recording(tuple(run for run, _ in pairs), specimen, tuple(warnings))
+    virgin = [table.virgin if table.virgin is not None else specimen is not None for table in runs]
+    ordered = tuple(one_after_the_other([run for run, _ in pairs], virgin))
+    return Recording(ordered, specimen, tuple(warnings))
 
 
 def read_run(folder: Path, table: RunTable, readout: Readout | None, touches: bool = True) -> Run:

@@ -1,7 +1,7 @@
 """Recordings: runs with their drive and channels on time axes even in stretches, and their tables in rig.toml."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
@@ -40,6 +40,11 @@ class RunTable(Table):
         None, description="row and column, from 1, of the segment of [array] that the dot stands over"
     )
     temperature_C: Finite | None = Field(None, description="room temperature during this run")
+    virgin: bool | None = Field(
+        None,
+        description="whether the specimen was never strained before; none: a coupon is new in each run, anything else "
+        "in the first one",
+    )
     readout: dict[str, Any] = Field({}, description="keys of [readout] that differ in this run")
     nuisance: dict[str, Positive] = Field(
         {}, description="nuisance parameters, which are no missing physics, each with its standard deviation"
@@ -175,6 +180,8 @@ class Run:
     nuisance : what may float without counting as physics -> one-sigma width.
     noise : channel -> one sigma of its white noise, where the experimenter states it.
     accelerated : acceleration of the drive in mm/s2, where it is known better than from a path that was measured.
+    largest_before : drive -> its largest value in earlier runs of the same specimen at this place, which stress
+    softening and yield remember; empty for a virgin one.
     """
 
     label: str
@@ -191,6 +198,7 @@ class Run:
     nuisance: Mapping[str, float] = field(default_factory=dict)
     noise: Mapping[str, float] = field(default_factory=dict)
     accelerated: Floats | None = None
+    largest_before: Mapping[Drive, float] = field(default_factory=dict)
 
     def along(self, drive: Floats) -> "Run":
         """The same run along another drive (t,); what was added to the one that was measured has no noise."""
@@ -233,6 +241,17 @@ class Run:
     def step_s(self) -> float:
         """Median step of time."""
         return float(np.median(np.diff(self.time_s)))
+
+
+def one_after_the_other(runs: Sequence[Run], virgin: Sequence[bool]) -> Iterator[Run]:
+    """Each run with the largest drives before it; virgin : whether a new specimen begins with it."""
+    reached: dict[tuple[float, float], dict[Drive, float]] = {}
+    for run, new in zip(runs, virgin, strict=True):
+        reached = {} if new else reached
+        before = reached.get(run.dot_offset_mm, {})
+        yield replace(run, largest_before=before)
+        most = max(float(run.drive_values.max()), before.get(run.drive, 0.0))
+        reached[run.dot_offset_mm] = {**before, run.drive: most}
 
 
 @dataclass(frozen=True)

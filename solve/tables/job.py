@@ -30,7 +30,7 @@ from solve.solution.newton import NoEquilibriumError
 from solve.solution.schedule import Target
 from solve.system import Load, State
 
-RETURN = 0.95, 0.85, 0.65, 0.4, 0.15, 0.03
+RETURN = 0.95, 0.85, 0.75, 0.6, 0.4, 0.15, 0.03
 """Of the depth from which the dot returns: closest where softened rubber leaves its first curve."""
 
 

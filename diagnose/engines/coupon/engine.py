@@ -104,7 +104,8 @@ class CouponEngine:
         model = self.model(mechanisms)
         course = run.label, len(drive)
         near = None if self.last is None else self.last.get(course)
-        found = point_of(self.specimen, model).answer_near(run.time_s, drive, kind, near)
+        point = point_of(self.specimen, model)
+        found = point.answer_near(run.time_s, drive, kind, near, point.peak_energy(run.largest_before))
         if self.last is not None:
             self.last[course] = found.unknown
         if kind == "force_N":

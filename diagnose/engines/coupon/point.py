@@ -11,6 +11,7 @@ A whole history of the stress at one material point: relaxation by scans over ti
 The formulas are those of solve.materials.inelastic; tests hold both ways together.
 """
 
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
@@ -62,9 +63,9 @@ class Relaxation:
         return np.asarray(_newton_step(residual, by_stress, stress_by, by_unknown, self.moduli, self.fade, self.gain))
 
 
-def earlier_peaks(energy: Floats) -> Floats:
-    """Largest energy (t,) before each sample of a history (t,), 0 before the first."""
-    return np.concatenate([[0.0], np.maximum.accumulate(energy)[:-1]])
+def earlier_peaks(energy: Floats, before: float = 0.0) -> Floats:
+    """Largest energy (t,) before each sample of a history (t,); before : that before the first."""
+    return np.maximum.accumulate(np.concatenate([[before], energy[:-1]]))
 
 
 def softened(law: Softening, elastic: StressResponse, peaks: Floats) -> StressResponse:
@@ -133,6 +134,7 @@ def youngs_modulus_MPa(law: MediumLaw) -> float:
 TOLERANCE = 1e-6  # of the logarithm of the stretch, or of the shear; the iterate behind it errs by the square
 MAX_ITERATIONS = 80  # four or five, unless samples lie at the kink of softening
 MAX_ROUNDS = 30  # two or three
+PULLED = 10  # steps of a pull to the largest drive of an earlier run
 LARGEST_STEP = 0.3  # of the logarithm of the stretch, or of the shear, in one iteration
 
 
@@ -159,13 +161,26 @@ class MaterialPoint:
         """Force (t,) in N of a travel (t,) in mm, or travel of a force. NoEquilibriumError."""
         return self.answer_near(time_s, drive, kind).values
 
-    def answer_near(self, time_s: Floats, drive: Floats, kind: Drive, near: Floats | None = None) -> PointAnswer:
-        """The same with its unknowns; near (t, m) : those of a similar point, from which the iteration starts."""
-        test = _Test(self, drive, kind == "displacement_mm", Relaxation.of(self.series, time_s))
+    def answer_near(
+        self, time_s: Floats, drive: Floats, kind: Drive, near: Floats | None = None, peak_before: float = 0.0
+    ) -> PointAnswer:
+        """The same with its unknowns; near (t, m) : those of a similar point, from which the iteration starts.
+
+        peak_before : largest energy of the specimen in earlier runs, MPa.
+        """
+        test = _Test(self, drive, kind == "displacement_mm", Relaxation.of(self.series, time_s), peak_before)
         if near is not None:
             with suppress(NoEquilibriumError):
                 return test.answer_near(near)
         return test.answer_near(test.start())
+
+    def peak_energy(self, largest: Mapping[Drive, float]) -> float:
+        """Largest energy (MPa) under drives that reach these values, one after the other. NoEquilibriumError."""
+        elastic, time = replace(self, softening=None, series=NO_SERIES), np.arange(1.0 + PULLED)
+        if self.softening is None:
+            return 0.0
+        pulls = [elastic.answer_near(time, value * time / PULLED, kind) for kind, value in largest.items()]
+        return max((float(self.energy(pull.unknown[-1:])[0]) for pull in pulls), default=0.0)
 
     def travel_if_linear(self, force: Floats) -> Floats:
         """Travel (t,) of a force at the stiffness of small strains."""
@@ -198,6 +213,7 @@ class _Test:
     drive: Floats
     by_travel: bool
     relaxation: Relaxation
+    peak_before: float
 
     def start(self) -> Floats:
         """Unknowns (t, m) near those of small strains."""
@@ -216,7 +232,7 @@ class _Test:
     def _softened(self, unknown: Floats) -> tuple[Floats, Floats]:
         """Unknowns and elastic stress with softening, from the unknowns without."""
         for _ in range(MAX_ROUNDS):
-            peaks, before = earlier_peaks(self.point.energy(unknown)), unknown
+            peaks, before = earlier_peaks(self.point.energy(unknown), self.peak_before), unknown
             unknown, stress = self._settled(before, peaks)
             if np.abs(unknown - before).max() <= TOLERANCE:
                 return unknown, stress

@@ -47,6 +47,12 @@ def drive_of(run: Run, phases: Segmentation) -> Drive:
     return Drive(np.ascontiguousarray(time), np.ascontiguousarray(values), BY_DEPTH if by_depth else BY_FORCE, touching)
 
 
+def pressed_once(largest: float, drive: str) -> Drive:
+    """From nothing to the largest value (mm or N) of a drive."""
+    kind = BY_DEPTH if drive == "displacement_mm" else BY_FORCE
+    return Drive(np.array([0.0, 1.0]), np.array([0.0, largest]), kind, np.array([False, True]))
+
+
 @dataclass(frozen=True)
 class FilmPlate:
     """Per electrode the capacitance in F and the area in m2, (e, 2); pyroelectric constant in uC / m2 K."""

@@ -14,7 +14,16 @@ from typing import Self
 import numpy as np
 
 from diagnose.engines.segment import full
-from diagnose.engines.segment.answer import Courses, Drive, FilmPlate, Mechanics, drive_of, mechanics, shown
+from diagnose.engines.segment.answer import (
+    Courses,
+    Drive,
+    FilmPlate,
+    Mechanics,
+    drive_of,
+    mechanics,
+    pressed_once,
+    shown,
+)
 from diagnose.engines.segment.declared import always_on, readout_behind, stated_apart, without_stated
 from diagnose.engines.segment.depth import ZERO, nuisance
 from diagnose.engines.segment.path import with_history
@@ -215,7 +224,9 @@ class SegmentEngine:
             return lambda of, values: mechanics(fit, base.depth_mm, base.relaxing, of, values, elastic)
 
         tet_mesh = mesh_of(on, base.model, base.presses.tet_mesh, base.presses.options)
-        task = full.Task(asked, drive, values, on, tet_mesh, self._film(on), shape(base.raw), shape(base.fit))
+        before = asked.largest_before.get(asked.drive, 0.0) if on.physics.softening or on.physics.film_yield else 0.0
+        alike = shape(base.raw), shape(base.fit)
+        task = full.Task(asked, drive, values, on, tet_mesh, self._film(on), *alike, before)
         return full.solve(task, report)
 
     def _readout(self, run: Run) -> Readout | None:
@@ -235,16 +246,29 @@ class SegmentEngine:
         histories = base.histories(settings)
         if not histories:
             return found
+        before_mm = self._reached_before(run, fit, on, settings)
         give = on.physics.rig_compliance_mm_per_N if drive.by_depth else 1.0
         added = np.zeros(len(values))
         for _ in range(ROUNDS):
-            whole = with_history(found, histories, fit, base.depth_mm)
+            whole = with_history(found, histories, fit, base.depth_mm, before_mm)
             change = whole.force_N - found.force_N - added
             added = added + change
             if give == 0.0 or np.abs(change).max() <= SETTLED * np.abs(whole.force_N).max():
                 break
             found = mechanics(fit, base.depth_mm, base.relaxing, drive, values - give * added, on)
         return whole
+
+    def _reached_before(self, run: Run, fit: ResponseTable, on: Model, settings: Sequence[Setting]) -> float:
+        """Deepest path of the dot (mm) in the runs before; what depends on the path does not act back on it here."""
+        base, _ = self.stands.at(run.dot_offset_mm)
+        at_once = replace(on, physics=replace(on.physics, viscosity={}, moving_mass_g=0.0))
+        deepest = 0.0
+        for name, value in run.largest_before.items():
+            drive = pressed_once(value, name)
+            values = self._driven(drive, on, settings)
+            found = mechanics(fit, base.depth_mm, base.relaxing, drive, values, at_once)
+            deepest = max(deepest, float(found.path_mm[-1]))
+        return deepest
 
     def _fit(self, run: Run, on: Model, settings: Sequence[Setting]) -> ResponseTable:
         """The table with all that changes it; kept, as runs share it."""

@@ -75,6 +75,7 @@ def _farthest(time: Floats, values: Floats, first: int, last: int) -> tuple[floa
 LOAD_STEPS = 8  # of a press in which time does not count
 TOLERANCE = 0.002  # of the largest drive, by which the thinned drive may differ
 MOST_POINTS = 199  # what a waveform file may have
+RESTED = 10.0  # times the slowest relaxation
 Shape = Callable[[Drive, Floats], Mechanics]
 
 
@@ -84,7 +85,7 @@ class Task:
 
     shape : the elastic answer of this mesh's table to any drive. Between the states of the 3D model only the
     difference from it is interpolated, which is smooth where force and charge bend. fine : the same of the table that
-    is corrected by a finer mesh.
+    is corrected by a finer mesh. before : the largest drive of earlier runs, in mm or N; 0 for none.
     """
 
     run: Run
@@ -95,6 +96,12 @@ class Task:
     film: FilmPlate
     shape: Shape
     fine: Shape
+    before: float = 0.0
+
+    @property
+    def largest(self) -> float:
+        """Of the drive, in this run and before, in mm or N."""
+        return max(float(self.values.max()), self.before)
 
 
 def solve(task: Task, report: Report) -> Signals:
@@ -117,7 +124,7 @@ def _press(task: Task, press: Press, report: Report) -> PressResult:
 
 def _largest(task: Task) -> dict[str, float]:
     name = "indentation_mm" if task.drive.by_depth else "force_N"
-    return {name: float(task.values.max())}
+    return {name: task.largest}
 
 
 def _by_depth(task: Task, report: Report) -> Mechanics:
@@ -130,15 +137,28 @@ def _by_depth(task: Task, report: Report) -> Mechanics:
 
 
 def _through_time(task: Task, report: Report) -> Mechanics:
-    """Along the run's own waveform."""
+    """Along the run's own waveform, after that of a press to what was reached before it."""
     time = task.drive.time_s - task.drive.time_s[0]
-    share = np.maximum(task.values, 0.0) / task.values.max()
-    kept = knots(time, share, TOLERANCE, MOST_POINTS)
-    press = Press(**_largest(task), waveform=Waveform.through(time[kept], share[kept]))
-    trace = _press(task, press, report).trace
+    share = np.maximum(task.values, 0.0) / task.largest
+    kept = knots(time, share, TOLERANCE, MOST_POINTS - 3)
+    lead_s, lead = _earlier_press(task)
+    waveform = Waveform.through(np.append(lead_s[:-1], lead_s[-1] + time[kept]), np.append(lead[:-1], share[kept]))
+    trace = _press(task, Press(**_largest(task), waveform=waveform), report).trace
+    first = int(np.searchsorted(trace.time_s, lead_s[-1]))
+    at, found = trace.time_s[first:] - lead_s[-1], _columns(trace, task)[first:]
+    found[:, 3:] -= found[0, 3:]  # what yield left before has leaked away
     alike = _of(task.shape(task.drive, task.values))
-    known = np.column_stack([np.interp(trace.time_s, time, column) for column in alike.T])
-    return _between(_columns(trace, task), trace.time_s, known, time, task)
+    known = np.column_stack([np.interp(at, time, column) for column in alike.T])
+    return _between(found, at, known, time, task)
+
+
+def _earlier_press(task: Task) -> tuple[Floats, Floats]:
+    """Times (p,) and shares (p,) of a press to the largest drive before, and a rest until nothing relaxes any more."""
+    if task.before <= 0.0:
+        return np.zeros(1), np.zeros(1)
+    times = [time for series in task.model.physics.viscosity.values() for time in series.relaxation_times]
+    rest_s = RESTED * max(times, default=0.0)
+    return np.array([0.0, 1.0, 2.0, 3.0 + rest_s]), np.array([0.0, task.before / task.largest, 0.0, 0.0])
 
 
 def _between(columns: Floats, at: Floats, known: Floats, asked: Floats, task: Task) -> Mechanics:

@@ -35,10 +35,13 @@ class PathHistory:
     values: Floats
     shares: tuple[float, ...]
 
-    def along(self, share: Floats) -> tuple[Floats, Floats]:
-        """Changes (t, 2 + e) along a path in shares (t,) of the depth, and the depths (t,) that charges refer to."""
+    def along(self, share: Floats, before: float = 0.0) -> tuple[Floats, Floats]:
+        """Changes (t, 2 + e) along a path in shares (t,) of the depth, and the depths (t,) that charges refer to.
+
+        before : the largest share that was reached earlier.
+        """
         place = np.clip(share, 0.0, None)
-        largest = np.maximum.accumulate(place)
+        largest = np.maximum(np.maximum.accumulate(place), before)
         down = _curve(np.array(self.shares), self.values[: len(self.shares)], place)
         inside = np.clip(place / np.maximum(largest, 1e-12), 0.0, 1.0)
         turned = np.array([self.shares[m] for m in BACK])
@@ -88,13 +91,20 @@ def _between(turned: Floats, curves: Sequence[Floats], largest: Floats) -> Float
     return np.asarray((1.0 - mix) * stack[low, rows] + mix * stack[low + 1, rows])
 
 
-def with_history(found: Mechanics, histories: Sequence[PathHistory], fit: ResponseTable, depth_mm: float) -> Mechanics:
-    """The path with force, area and charge as its history makes them."""
-    share, force = found.path_mm / depth_mm, fit.table[:, 0, 0]
-    factors, charge = np.ones((len(share), 2)), found.charge_C
+def with_history(
+    found: Mechanics, histories: Sequence[PathHistory], fit: ResponseTable, depth_mm: float, before_mm: float
+) -> Mechanics:
+    """The path with force, area and charge as its history makes them; before_mm : reached by the dot in earlier runs.
+
+    Charges count from rest: what yield left before has leaked away.
+    """
+    force, before = fit.table[:, 0, 0], before_mm / depth_mm
+    share = np.concatenate([[0.0], found.path_mm / depth_mm])
+    factors, charge = np.ones((len(found.path_mm), 2)), found.charge_C
     for history in histories:
-        change, at = history.along(share)
-        factors = factors * np.maximum(1.0 + change[:, :2], 0.0)
-        charge = charge + np.interp(at, ROWS, force)[:, None] * change[:, 2:]
+        change, at = history.along(share, before)
+        factors = factors * np.maximum(1.0 + change[1:, :2], 0.0)
+        more = np.interp(at, ROWS, force)[:, None] * change[:, 2:]
+        charge = charge + more[1:] - more[0]
     contact = factors.T * [found.force_N, found.area_m2]
     return replace(found, force_N=contact[0], area_m2=contact[1], charge_C=charge)
