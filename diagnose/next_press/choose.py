@@ -1,7 +1,7 @@
 """The presses to make next, at most three: those by which the surviving rivals part most."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -79,7 +79,7 @@ class PressSearch:
     """All presses of one change, each with its separations (pairs,), and presses of two changes where these help."""
 
     def __init__(self, judge: PressJudge, recording: Recording) -> None:
-        self.judge, self.setup = judge, base_setup(recording)
+        self.judge, self.recording, self.setup = judge, recording, base_setup(recording)
         ones = [] if self.setup is None else [self.setup, *variations(self.setup)]
         self.singles = list(self._told([*repeats(recording), *(one.proposal() for one in ones)]))
 
@@ -101,6 +101,8 @@ class PressSearch:
 
     def _told(self, proposals: Sequence[Proposal]) -> Iterator[tuple[Proposal, Floats]]:
         for proposal in proposals:
+            if proposal.number is None:
+                proposal = replace(proposal, run=self.recording.after_all(proposal.run))
             try:
                 yield proposal, self.judge.separations(proposal)
             except ValueError:  # beyond what the model was prepared for

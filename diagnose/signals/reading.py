@@ -46,9 +46,10 @@ def read_recording(
     ]
     travel_mm = np.inf if specimen is None else LARGEST_STRAIN * specimen.gauge_mm
     warnings = [sentence for run, path in pairs for sentence in suspicions(run, path, travel_mm)]
-    virgin = [table.virgin if table.virgin is not None else specimen is not None for table in runs]
-    ordered = tuple(one_after_the_other([run for run, _ in pairs], virgin))
-    return Recording(ordered, specimen, tuple(warnings))
+    new = [specimen is not None or number == 0 for number in range(len(runs))]
+    told = [table.virgin if table.virgin is not None else usual for table, usual in zip(runs, new, strict=True)]
+    ordered = one_after_the_other(replace(run, virgin=virgin) for (run, _), virgin in zip(pairs, told, strict=True))
+    return Recording(tuple(ordered), specimen, tuple(warnings))
 
 
 def read_run(folder: Path, table: RunTable, readout: Readout | None, touches: bool = True) -> Run:

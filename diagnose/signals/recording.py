@@ -1,7 +1,7 @@
 """Recordings: runs with their drive and channels on time axes even in stretches, and their tables in rig.toml."""
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
@@ -180,8 +180,9 @@ class Run:
     nuisance : what may float without counting as physics -> one-sigma width.
     noise : channel -> one sigma of its white noise, where the experimenter states it.
     accelerated : acceleration of the drive in mm/s2, where it is known better than from a path that was measured.
+    virgin : whether a new specimen begins with it.
     largest_before : drive -> its largest value in earlier runs of the same specimen at this place, which stress
-    softening and yield remember; empty for a virgin one.
+    softening and yield remember.
     """
 
     label: str
@@ -198,6 +199,7 @@ class Run:
     nuisance: Mapping[str, float] = field(default_factory=dict)
     noise: Mapping[str, float] = field(default_factory=dict)
     accelerated: Floats | None = None
+    virgin: bool = True
     largest_before: Mapping[Drive, float] = field(default_factory=dict)
 
     def along(self, drive: Floats) -> "Run":
@@ -243,11 +245,11 @@ class Run:
         return float(np.median(np.diff(self.time_s)))
 
 
-def one_after_the_other(runs: Sequence[Run], virgin: Sequence[bool]) -> Iterator[Run]:
-    """Each run with the largest drives before it; virgin : whether a new specimen begins with it."""
+def one_after_the_other(runs: Iterable[Run]) -> Iterator[Run]:
+    """Each run with the largest drives before it."""
     reached: dict[tuple[float, float], dict[Drive, float]] = {}
-    for run, new in zip(runs, virgin, strict=True):
-        reached = {} if new else reached
+    for run in runs:
+        reached = {} if run.virgin else reached
         before = reached.get(run.dot_offset_mm, {})
         yield replace(run, largest_before=before)
         most = max(float(run.drive_values.max()), before.get(run.drive, 0.0))
@@ -269,6 +271,11 @@ class Recording:
             segmented(run.time_s, run.drive_values, self.specimen is None and run.drive == "displacement_mm")
             for run in self.runs
         )
+
+    def after_all(self, run: Run) -> Run:
+        """A run that is made next: of a coupon on a new one."""
+        new = replace(run, virgin=self.specimen is not None)
+        return list(one_after_the_other([*self.runs, new]))[-1]
 
     def run(self, label: str) -> Run:
         """The run with this label. KeyError."""
