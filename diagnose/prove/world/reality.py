@@ -62,7 +62,7 @@ def forgetful(made: Made) -> Made:
     return with_strength(made, 0.0)
 
 
-def scaled_memory(made: Made, asked: "Asked", elastic: Course, nominal: Course, deepest_mm: float) -> Course:
+def scaled_memory(made: Made, asked: "AskedPath", elastic: Course, nominal: Course, deepest_mm: float) -> Course:
     """Answers (t,) of a specimen whose elastic answers are known; nominal : those of the stack made, as was asked for.
 
     deepest_mm : to which tables go. ValueError beyond the largest strength that is solved.
@@ -85,7 +85,7 @@ def scaled_memory(made: Made, asked: "Asked", elastic: Course, nominal: Course, 
 
 
 @dataclass(frozen=True)
-class Asked:
+class AskedPath:
     """Times (t,) and the path (t,) of the dot without flaws of the rig; before_mm : its deepest in earlier runs."""
 
     time_s: Floats
@@ -185,7 +185,7 @@ class Mechanics:
     known: Table
     nominal: Table
 
-    def course(self, path: Floats, asked: Asked) -> Course:
+    def course(self, path: Floats, asked: AskedPath) -> Course:
         """Answers to the path of the dot."""
         elastic = self.known.at(path)
         if not self.made.remembers:
@@ -232,7 +232,7 @@ def _run(reality: Reality, bench: Bench, run: Run, number: int, mechanics: Mecha
     return signals
 
 
-def _asked(reality: Reality, bench: Bench, number: int, known: Table) -> Asked:
+def _asked(reality: Reality, bench: Bench, number: int, known: Table) -> AskedPath:
     """The path of the dot that a run asks for, after the runs before it at the same place."""
     run = bench.runs[number]
     paths = [
@@ -241,7 +241,7 @@ def _asked(reality: Reality, bench: Bench, number: int, known: Table) -> Asked:
         if one.place_mm == run.place_mm
     ]
     before_mm = max((float(path.max()) for path in paths[:-1]), default=0.0)
-    return Asked(run.times(bench.rate_Hz), paths[-1], before_mm)
+    return AskedPath(run.times(bench.rate_Hz), paths[-1], before_mm)
 
 
 def _path(reality: Reality, stage: Floats, known: Table) -> Floats:

@@ -10,7 +10,7 @@ from diagnose.prove.world.bench import FREE, Run
 from diagnose.prove.world.effects import applied
 from diagnose.prove.world.laws import Damage, Film, Layer, Made, Spectrum, at_rest, branches, relaxation, respond
 from diagnose.prove.world.march import table, through_time
-from diagnose.prove.world.reality import Asked, baseline, scaled_memory, with_strength
+from diagnose.prove.world.reality import AskedPath, baseline, scaled_memory, with_strength
 from diagnose.prove.world.stack import Stack
 
 PAPER = Made(
@@ -121,7 +121,7 @@ def test_a_medium_that_relaxes_answers_no_earlier_than_the_dot_moves(tmp_path, m
     small = replace(PAPER, fine=0.3)
     made = replace(small, layers=(replace(small.layers[0], spectrum=Spectrum(0.2, 0.4)), *small.layers[1:]))
     elastic = table(small, 0.11).at(path)
-    force = scaled_memory(made, Asked(time, path), elastic, elastic, 0.11).force_N
+    force = scaled_memory(made, AskedPath(time, path), elastic, elastic, 0.11).force_N
     peak = force.max()
     assert np.abs(force[path <= 0.0]).max() < 1e-3 * peak
     held = (time > 1.11) & (time < 1.5)
