@@ -1,7 +1,7 @@
 """What a diagnosis found: everything that the verdict and the report are written from."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import Any
 
@@ -68,7 +68,8 @@ class FittedModel:
     """One to three mechanisms fitted to all runs, with how it predicts presses that it was not fitted to.
 
     gain, gain_lower : nats per press over the baseline, and the lower bound of its mean. probability : among all
-    models, the baseline and "none of these". p_left : family-wise p-value of what it leaves.
+    models, the baseline and "none of these". p_left : family-wise p-value of what it leaves. intervals : those of the
+    parameters, where they are still to be found, which takes as long as many fits; None where nobody asks for them.
     """
 
     settings: tuple[Setting, ...]
@@ -77,6 +78,11 @@ class FittedModel:
     gain_lower: float
     probability: float
     p_left: float
+    intervals: Callable[[], tuple[Mapping[str, Interval], ...]] | None = field(default=None, repr=False, compare=False)
+
+    def with_intervals(self) -> "FittedModel":
+        """With those that were still to be found."""
+        return self if self.intervals is None else replace(self, parameters=self.intervals(), intervals=None)
 
 
 @dataclass(frozen=True)

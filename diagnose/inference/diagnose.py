@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -56,10 +57,16 @@ def diagnose(recording: Recording, engine: Engine, seed: int, report: Report) ->
     if findings.unexplained:
         trembling = _beside_a_drive_error(model, found, choice, rng, report)
         if trembling is not None:
-            return trembling
+            return _with_intervals(trembling)
         main = main_part(model, screening, report)
         findings = findings if main is None else _with_main_part(findings, main, choice, rng)
-    return _with_more(model, screening, findings, report)
+    return _with_intervals(_with_more(model, screening, findings, report))
+
+
+def _with_intervals(findings: Findings) -> Findings:
+    """Found last, as they take long and a name may still be replaced."""
+    models = tuple(one.with_intervals() for one in findings.models)
+    return replace(findings, models=models, best=models[0] if findings.best else None)
 
 
 def _explained(
@@ -293,7 +300,7 @@ def _with_more(model: ObservedModel, screening: Screening, findings: Findings, r
     whole = _model(judge.model, one, first.probability, detailed=True)
     return replace(
         findings,
-        models=(whole, replace(first, probability=0.0), *findings.models[1:]),
+        models=(whole, replace(first, probability=0.0, intervals=None), *findings.models[1:]),
         best=whole,
         groups=((0,), *(tuple(n + 1 for n in group) for group in findings.groups)),
         train=train,
@@ -316,11 +323,12 @@ def _remainder(more: Joined, held_out: Fit) -> Remainder:
 def _model(model: ObservedModel, one: Judged, probability: float, detailed: bool) -> FittedModel:
     return FittedModel(
         settings=one.fit.settings,
-        parameters=intervals(model, one.fit) if detailed else points(one.fit),
+        parameters=points(one.fit),
         gain=one.gain.mean,
         gain_lower=one.gain.lower,
         probability=probability,
         p_left=one.p_left,
+        intervals=partial(intervals, model, one.fit) if detailed else None,
     )
 
 
