@@ -31,6 +31,7 @@ KINDS = {
     "int_parsing": "must be a whole number",
     "int_from_float": "must be a whole number",
     "finite_number": "must be a finite number",
+    "bool_type": "must be true or false, without quotes",
     "string_type": "must be a text in quotes",
     "tuple_type": "must be a list in square brackets",
     "dict_type": "must be a table",

@@ -23,6 +23,7 @@ RIGS = {
     GOOD + "drive = 'voltage_V'": "runs[0].drive = 'voltage_V': must be 'displacement_mm' or 'force_N'",
     GOOD + "lable = 'a'": "runs[0].lable is not a key; did you mean 'label'?",
     GOOD + "temperature_C = '23 C'": f"runs[0].temperature_C = '23 C': {NUMBER}",
+    GOOD + "virgin = 'yes'": "runs[0].virgin = 'yes': must be true or false, without quotes",
     GOOD + "dot_offset_mm = [0.0]": "runs[0].dot_offset_mm[1] is missing",
     GOOD + RUN: "runs[1].label = 'press' appears twice",
     GOOD + "[runs.nuisance]\ngian = 0.1": "runs[0].nuisance: 'gian' is not a nuisance parameter; did you mean 'gain'?",
