@@ -130,6 +130,7 @@ def _tail(statistic: float, degrees: int, noise_degrees: float) -> float:
     return float(f_distribution.sf(statistic / degrees, degrees, noise_degrees))
 
 
+CERTAIN = 1e-12  # where the chance that all degrees of freedom give is as small, the weights of fewer do not matter
 PARALLEL = 1e-6  # of its length: what is left of a sensitivity that others in the same candidate already make
 
 
@@ -159,7 +160,9 @@ def score_test(
     target = rotation.T @ residual
     positive, misfit = nnls(triangle, target) if bounded else (np.zeros(0), 0.0)
     statistic = float(along @ along + target @ target - misfit**2)
-    p_value = survival(statistic, weights(_unit(triangle.T @ triangle)), basis.shape[1], noise_degrees)
+    p_value = _tail(statistic, len(bounded) + basis.shape[1], noise_degrees) if statistic > 0.0 else 1.0
+    if p_value > CERTAIN:
+        p_value = survival(statistic, weights(_unit(triangle.T @ triangle)), basis.shape[1], noise_degrees)
     estimate = np.zeros(len(non_negative))
     estimate[np.flatnonzero(non_negative)[bounded]] = positive
     left = residual - sensitivities @ estimate

@@ -14,6 +14,7 @@ The formulas are those of solve.materials.inelastic; tests hold both ways togeth
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numba as nb
 import numpy as np
@@ -42,7 +43,7 @@ class Relaxation:
     @classmethod
     def of(cls, series: Prony, time_s: Floats) -> "Relaxation":
         """The series at times (t,)."""
-        fade, gain = series.decay(np.diff(time_s, prepend=time_s[0]))
+        fade, gain = _decay(series.relaxation_times, time_s.tobytes())
         return cls(np.array(series.relative_moduli, dtype=np.float64), fade, gain)
 
     @property
@@ -61,6 +62,13 @@ class Relaxation:
         by_unknown (t, m, m) : of the residual at fixed stress.
         """
         return np.asarray(_newton_step(residual, by_stress, stress_by, by_unknown, self.moduli, self.fade, self.gain))
+
+
+@lru_cache(maxsize=64)
+def _decay(relaxation_times: tuple[float, ...], clock: bytes) -> tuple[Floats, Floats]:
+    """Of branches (b,) at times (t,), kept since fits change their moduli alone."""
+    time_s = np.frombuffer(clock)
+    return Prony((), relaxation_times).decay(np.diff(time_s, prepend=time_s[0]))
 
 
 def earlier_peaks(energy: Floats, before: float = 0.0) -> Floats:
