@@ -18,10 +18,9 @@ from dataclasses import replace
 import numpy as np
 
 from geometry.arrays import Floats
-from solve.fem.kinematics import deformation_gradient, smallest_jacobian
 from solve.fem.sparsity import Trial
 from solve.solution.linear import LinearSolveError, LinearSolver
-from solve.solution.newton import CRUSHED, NoEquilibriumError, equilibrate, explained, rim_met
+from solve.solution.newton import CRUSHED, NoEquilibriumError, equilibrate, explained, rim_met, smallest_volumes
 from solve.solution.schedule import Target, load_between
 from solve.system import Evaluation, Load, State, System
 from solve.terms.solid import InvertedElementError
@@ -107,8 +106,7 @@ def _least_volume(system: System, state: State) -> float:
     """The smallest det F of media that can hardly be compressed."""
     displacement = system.displacement(state.x)
     rubbers = [s for s in system.solids if s.law.bulk_modulus > INCOMPRESSIBLE * s.law.shear_modulus]
-    found = [smallest_jacobian(deformation_gradient(r.gradient, displacement[r.tets])).min() for r in rubbers]
-    return float(min(found, default=1.0))
+    return float(min((smallest_volumes(one, displacement).min() for one in rubbers), default=1.0))
 
 
 def with_work(system: System, before: State, state: State) -> State:

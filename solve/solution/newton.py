@@ -12,7 +12,8 @@ from geometry.arrays import Bools, Floats, Ints
 from solve.fem.kinematics import deformation_gradient, smallest_jacobian
 from solve.solution.linear import LinearSolveError, LinearSolver
 from solve.system import Evaluation, Load, State, System
-from solve.terms.solid import InvertedElementError
+from solve.terms.film import FilmRegion
+from solve.terms.solid import InvertedElementError, SolidRegion
 
 LOG = logging.getLogger(__name__)
 TOLERANCE = 1e-10  # of the load: differences of presses, such as a diagnosis takes, are to tell 1e-6 of a parameter
@@ -223,12 +224,17 @@ def rim_met(system: System, last: State, load: Load) -> int | None:
     return int(held[deepest]) if gap[deepest] < (NEAR_RIM if system.force_driven else 0.0) else None
 
 
+def smallest_volumes(region: SolidRegion | FilmRegion, displacement: Floats) -> Floats:
+    """Smallest det F of each element (m,) of a region at displacements (n, 3)."""
+    return smallest_jacobian(deformation_gradient(region.gradient, displacement[region.tets]))
+
+
 def _nearest_to_inversion(system: System, state: State) -> tuple[float, InvertedElementError | None]:
     """The smallest det F and its element, of equal ones the first; None in a state that squeezes none."""
     displacement = system.displacement(state.x)
     least: list[tuple[float, str, Ints]] = []
     for name, region in ({solid.name: solid for solid in system.solids} | {"film": system.film}).items():
-        smallest = smallest_jacobian(deformation_gradient(region.gradient, displacement[region.tets]))
+        smallest = smallest_volumes(region, displacement)
         first = int(np.argmax(smallest <= (1.0 + TIE) * smallest.min()))
         least.append((float(smallest[first]), name, region.tets[first]))
     bound = (1.0 + TIE) * min(volume for volume, _, _ in least)

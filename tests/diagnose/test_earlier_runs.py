@@ -10,7 +10,7 @@ from diagnose.engines.proportional import proportional_engine
 from diagnose.forward import Setting
 from diagnose.signals.recording import Recording, Run, one_after_the_other
 from softdot.config.rig import load_rig
-from tests.diagnose.coupon.coupons import RUBBER, specimen
+from tests.diagnose.coupon.coupons import RUBBER, silent, specimen
 from tests.diagnose.rigs import COUPON, HEAD, SEGMENT, csv_text, samples, trapezoid, write_rig
 from tests.diagnose.segment import rigs
 
@@ -18,10 +18,6 @@ STEP_S = 0.02
 HALF = np.arange(0.0, 4.0, STEP_S)
 TIME = rigs.run().time_s
 QUICK = {"touch_s": 0.1, "rise_s": 0.2, "hold_s": 0.1}
-
-
-def silent(*_):
-    """A report that nobody reads."""
 
 
 def pull(largest):

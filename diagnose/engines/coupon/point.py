@@ -184,11 +184,11 @@ class MaterialPoint:
 
     def peak_energy(self, largest: Mapping[Drive, float]) -> float:
         """Largest energy (MPa) under drives that reach these values, one after the other. NoEquilibriumError."""
-        elastic, time = replace(self, softening=None, series=NO_SERIES), np.arange(1.0 + PULLED)
-        if self.softening is None:
+        if self.softening is None or not largest:
             return 0.0
+        elastic, time = replace(self, softening=None, series=NO_SERIES), np.arange(1.0 + PULLED)
         pulls = [elastic.answer_near(time, value * time / PULLED, kind) for kind, value in largest.items()]
-        return max((float(self.energy(pull.unknown[-1:])[0]) for pull in pulls), default=0.0)
+        return max(float(self.energy(pull.unknown[-1:])[0]) for pull in pulls)
 
     def travel_if_linear(self, force: Floats) -> Floats:
         """Travel (t,) of a force at the stiffness of small strains."""

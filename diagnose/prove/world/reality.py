@@ -12,9 +12,9 @@ Signals are whitened by the true noise. With the sensitivities T to the nuisance
 keeps e' (1 + T T')^-1 e of its energy: the least of |e - T x|^2 + |x|^2.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -185,13 +185,14 @@ class Mechanics:
     known: Table
     nominal: Table
 
-    def course(self, path: Floats, asked: AskedPath) -> Course:
-        """Answers to the path of the dot."""
+    def course(self, path: Floats, asked: Callable[[], AskedPath]) -> Course:
+        """Answers to the path of the dot; asked : only where something is remembered."""
         elastic = self.known.at(path)
         if not self.made.remembers:
             return elastic
-        nominal = self.nominal.at(asked.path_mm)
-        return scaled_memory(self.made, asked, elastic, nominal, float(self.nominal.depth_mm[-1]))
+        way = asked()
+        nominal = self.nominal.at(way.path_mm)
+        return scaled_memory(self.made, way, elastic, nominal, float(self.nominal.depth_mm[-1]))
 
 
 def with_scatter(reality: Reality) -> Made:
@@ -209,7 +210,9 @@ def _run(reality: Reality, bench: Bench, run: Run, number: int, mechanics: Mecha
     time = run.times(bench.rate_Hz)
     stage, details = run.depth(time) - reality.of("offset_mm", number), reality.details
     surface = stage if details is None else details.path(time, stage, number)
-    course = mechanics.course(_path(reality, surface, mechanics.known), _asked(reality, bench, number, mechanics.known))
+    course = mechanics.course(
+        _path(reality, surface, mechanics.known), partial(_asked, reality, bench, number, mechanics.known)
+    )
     force = course.force_N if details is None else details.force(stage, course.force_N)
     force = force + 1e-6 * reality.mass_g * run.acceleration_mm_per_s2(time)
     if reality.guide_N > 0.0:  # a loop over all samples
