@@ -70,6 +70,7 @@ class FittedModel:
     gain, gain_lower : nats per press over the baseline, and the lower bound of its mean. probability : among all
     models, the baseline and "none of these". p_left : family-wise p-value of what it leaves. intervals : those of the
     parameters, where they are still to be found, which takes as long as many fits; None where nobody asks for them.
+    shared : nuisance that all runs share -> its coordinate beside these mechanisms.
     """
 
     settings: tuple[Setting, ...]
@@ -79,6 +80,7 @@ class FittedModel:
     probability: float
     p_left: float
     intervals: Callable[[], tuple[Mapping[str, Interval], ...]] | None = field(default=None, repr=False, compare=False)
+    shared: Mapping[str, float] = field(default_factory=dict)
 
     def with_intervals(self) -> "FittedModel":
         """With those that were still to be found."""

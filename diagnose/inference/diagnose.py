@@ -321,6 +321,7 @@ def _remainder(more: Joined, held_out: Fit) -> Remainder:
 
 
 def _model(model: ObservedModel, one: Judged, probability: float, detailed: bool) -> FittedModel:
+    values = model.possible(one.fit.system.closest())
     return FittedModel(
         settings=one.fit.settings,
         parameters=points(one.fit),
@@ -329,6 +330,7 @@ def _model(model: ObservedModel, one: Judged, probability: float, detailed: bool
         probability=probability,
         p_left=one.p_left,
         intervals=partial(intervals, model, one.fit) if detailed else None,
+        shared={of.name: float(value) for of, value in zip(model.nuisances, values, strict=True) if of.run is None},
     )
 
 

@@ -48,7 +48,7 @@ def next_presses(recording: Recording, engine: Engine, findings: Findings) -> tu
     rivals = surviving(findings)
     if len(rivals) < 2:
         return ()
-    judge = PressJudge(recording, engine, rivals, {name: value for name, (value, _) in findings.nuisances.items()})
+    judge = PressJudge(recording, engine, rivals)
     search, known = PressSearch(judge, recording), np.zeros(len(rivals) * (len(rivals) - 1) // 2)
     found: list[NextPress] = []
     while len(found) < MOST_PRESSES and known.min() < SETTLED:

@@ -68,15 +68,13 @@ class ImaginedAnswer:
 class PressJudge:
     """Rivals, and spreads (q, q): for each a root of the covariance that the recording leaves to its coordinates."""
 
-    def __init__(
-        self, recording: Recording, engine: Engine, rivals: Sequence[FittedModel], fitted: Mapping[str, float]
-    ) -> None:
-        """fitted : nuisance that all runs share -> value. ValueError as the engine's."""
-        self.engine, self.fitted = engine, fitted
-        self.rivals = [without_phase(rival.settings) for rival in rivals]
+    def __init__(self, recording: Recording, engine: Engine, rivals: Sequence[FittedModel]) -> None:
+        """ValueError as the engine's."""
+        self.engine = engine
+        self.rivals = [(without_phase(rival.settings), rival.shared) for rival in rivals]
         self.specimen, self.noise = recording.specimen, noise_models(recording)
         model = ObservedModel(Samples(recording, self.noise), engine)
-        self.spreads = [self._spread(self._answer(model, rival), rival) for rival in self.rivals]
+        self.spreads = [self._spread(self._answer(model, *rival), rival[0]) for rival in self.rivals]
 
     def separations(self, proposal: Proposal) -> Floats:
         """(pairs,) sigma between each two rivals. ValueError where the engine cannot tell."""
@@ -89,18 +87,20 @@ class PressJudge:
         run, engine = proposal.run, cast(Engine, ImaginedEngine(self.engine, proposal))
         noise = {(run.label, name): self._noise(proposal, engine, name) for name in run.answers}
         model = ObservedModel(Samples(Recording((run,), self.specimen), noise), engine)
-        return [self._answer(model, rival) for rival in self.rivals]
+        return [self._answer(model, *rival) for rival in self.rivals]
 
     def _noise(self, proposal: Proposal, engine: Engine, channel: str) -> NoiseModel:
         """Of the recording, or of an instrument that the press adds: white, a share of its largest signal."""
         known = self.noise.get((proposal.run.label, channel))
         if known is not None:
             return known
-        largest = float(np.abs(engine.predict(0, self.rivals[0])[channel]).max())
+        largest = float(np.abs(engine.predict(0, self.rivals[0][0])[channel]).max())
         return white_noise(ADDED_NOISE * largest, proposal.run.step_s, "assumed")
 
-    def _answer(self, model: ObservedModel, settings: tuple[Setting, ...]) -> ImaginedAnswer:
-        values = np.array([0.0 if n.run is not None else self.fitted.get(n.name, 0.0) for n in model.nuisances])
+    def _answer(
+        self, model: ObservedModel, settings: tuple[Setting, ...], shared: Mapping[str, float]
+    ) -> ImaginedAnswer:
+        values = np.array([0.0 if n.run is not None else shared.get(n.name, 0.0) for n in model.nuisances])
         prediction = model.vector(values, settings)
         slopes = [(model.vector(values, moved) - prediction) / step for moved, step in _moved(settings)]
         return ImaginedAnswer(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.linalg import block_diag
 
-from diagnose.forward import Setting
+from diagnose.forward import Candidate, Coordinate, Setting
 from diagnose.next_press.choose import SETTLED, next_presses, surviving
 from diagnose.next_press.parting import PressJudge
 from diagnose.next_press.proposals import Shape, base_setup, recorded_shape, repeats, variations
@@ -34,7 +34,7 @@ def recording():
 
 
 def separations(recording, proposals, engine=None):
-    judge = PressJudge(recording, engine or ToyEngine(recording), (LEAKS, RELAXES), {})
+    judge = PressJudge(recording, engine or ToyEngine(recording), (LEAKS, RELAXES))
     return [float(judge.separations(each).min()) for each in proposals]
 
 
@@ -52,7 +52,7 @@ def test_the_choice_is_the_best_of_all_presses_that_the_model_can_tell(recording
 
 def test_two_equal_rivals_are_not_parted(recording):
     twin = fitted(LEAK, 0.5)
-    judge = PressJudge(recording, ToyEngine(recording), (LEAKS, twin), {})
+    judge = PressJudge(recording, ToyEngine(recording), (LEAKS, twin))
     assert judge.separations(repeats(recording)[0]) == pytest.approx([0.0], abs=1e-6)
     assert planned(recording, (LEAKS, twin)) is None
 
@@ -95,7 +95,7 @@ def test_an_error_of_the_model_hides_a_difference(recording):
 
 
 def test_the_separation_is_the_one_of_the_statistics(recording):
-    judge = PressJudge(recording, ToyEngine(recording), (LEAKS, RELAXES), {})
+    judge = PressJudge(recording, ToyEngine(recording), (LEAKS, RELAXES))
     press = repeats(recording)[0]
     one, other = judge.answers(press)
     weight = 1.0 / np.sqrt(np.maximum(one.system.variance, other.system.variance))[:, None]
@@ -113,6 +113,34 @@ def test_a_declared_gain_takes_its_part_of_the_difference(recording):
     press = repeats(recording)[0], repeats(loose)[0]
     tight, floating = separations(recording, press[:1]), separations(loose, press[1:])
     assert floating[0] <= tight[0]
+
+
+def test_each_rival_is_predicted_beside_its_own_value_of_what_all_runs_share(recording):
+    """Which may lie where the fit without any mechanism has strained it to a value that no part has."""
+    engine, sigma = Stiffer(recording), {"gain": 0.02, "modulus.medium1": 0.01}
+    engine.recording = Recording(tuple(replace(run, nuisance=sigma) for run in recording.runs))
+    softer, stiffer = (replace(LEAKS, shared={"modulus.medium1": value}) for value in (-0.2, 0.2))
+    same, apart = (
+        PressJudge(engine.recording, engine, (softer, rival)).separations(repeats(engine.recording)[0])[0]
+        for rival in (softer, stiffer)
+    )
+    assert same == pytest.approx(0.0, abs=1e-6)
+    assert apart > SETTLED
+
+
+class Stiffer(ToyEngine):
+    """A toy whose medium may be stiffer than stated: it gives so much more of everything, up to a third."""
+
+    def nuisance(self, name):
+        within = Coordinate("modulus", -0.3, 0.3, (0.1,))
+        return Candidate("property-error", "medium1", (within,), lambda v: {"modulus_factor": float(np.exp(v[0]))})
+
+    def predict(self, run, settings):
+        (factor,) = [s.values[0] for s in settings if s.candidate.mechanism == "property-error"] or [0.0]
+        if abs(factor) > 0.3:
+            raise ValueError("beyond its bounds")
+        others = [s for s in settings if s.candidate.mechanism != "property-error"]
+        return {name: np.exp(factor) * values for name, values in super().predict(run, others).items()}
 
 
 def test_an_engine_that_knows_only_recorded_presses_repeats_one(recording):
