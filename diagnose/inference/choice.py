@@ -14,7 +14,7 @@ from diagnose.inference.black_box import box_scores, memory, worth_of_form
 from diagnose.inference.forecasts import Forecasted, alike, forecasted, gained, grouped, separations, share_left
 from diagnose.inference.residual_test import DRAWS, checked, nuisance_pull
 from diagnose.inference.search import Screening, first_fits, paired, pairs, singles
-from diagnose.statistics.abstain import FIRSTS, LEFT, RATES, Decision, Evidence, decide
+from diagnose.statistics.abstain import ALIKE, FIRSTS, LEFT, RATES, Decision, Evidence, decide
 from diagnose.statistics.held_out import Gain, bic, gain_over_noise, held_out_probabilities
 from geometry.arrays import Bools, Floats
 from geometry.base import Report
@@ -135,8 +135,10 @@ def _with_pairs(judge: Judge, singles: Sequence[Judged], best: Judged, report: R
         tried += first.fit.candidates
     if best is single:
         return models, best
-    rivals = _rivals(judge, singles, best, report)
-    return [*models, *rivals], judge.best([best, *rivals])
+    models += _rivals(judge, singles, best, report)
+    best = judge.best(models)
+    others = partners(judge, models, best, report)
+    return [*models, *others], judge.best([best, *others])
 
 
 def _rivals(judge: Judge, singles: Sequence[Judged], pair: Judged, report: Report) -> list[Judged]:
@@ -149,6 +151,16 @@ def _rivals(judge: Judge, singles: Sequence[Judged], pair: Judged, report: Repor
         report("rivals of the pair", count, len(others))
         found += [judge.judged(fit) for fit in paired(judge.model, judge.found, other, second, [start], report)]
     return found
+
+
+def partners(judge: Judge, models: Sequence[Judged], pair: Judged, report: Report) -> list[Judged]:
+    """The first of a pair beside what else shows there: where the second was found beside another one, it was alone."""
+    first = pair.fit.candidates[0]
+    alone = next((one.fit for one in models if one.fit.candidates == (first,)), None)
+    if alone is None:
+        return []
+    visited = [c for one in models if first in one.fit.candidates for c in one.fit.candidates if c != first]
+    return [judge.judged(fit) for fit in pairs(judge.model, judge.found, alone, visited, report)]
 
 
 NOTHING = "The residual resembles none of the candidates more than chance allows."
@@ -165,12 +177,14 @@ def _decided(judge: Judge, models: tuple[Judged, ...], p_mismatch: float) -> Cho
     apart = separations(samples, [one.fit for one in models])
     apart[contradicted(models)] = 0.0
     apart[_told_apart(judge, models)] = np.inf
+    probabilities = _probabilities(models, scores, judge.rng)
+    others = likely(models, probabilities)
+    apart[0, others] = apart[others, 0] = 0.0
     strained, bounds = best.p_strained, implausible(best.fit)
     evidence = Evidence(
         p_mismatch, best.p_left, strained, best.gain.lower, box.lower, bounds, alike(apart), ordinary(best.fit)
     )
     decision = decide(evidence, replace(RATES, margin=worth_of_form(samples, metric)))
-    probabilities = _probabilities(models, scores, judge.rng)
     return Choice(models, probabilities, grouped(apart), box.mean, decision, judge.base)
 
 
@@ -195,6 +209,11 @@ def contradicted(models: Sequence[Judged]) -> Bools:
     faultless = np.array([not _doubtful(one) for one in models])
     against = np.subtract.outer(scores, scores) * np.subtract.outer(badness, badness) > 0.0
     return np.asarray(against & np.logical_and.outer(faultless, faultless))
+
+
+def likely(models: Sequence[Judged], probabilities: Floats) -> list[int]:
+    """Numbers of the faultless models that may be right instead of the first, by probabilities (m,) of the scores."""
+    return [n for n, one in enumerate(models) if n > 0 and probabilities[n] > ALIKE and not _doubtful(one)]
 
 
 def criteria(models: Sequence[Judged]) -> Floats:

@@ -58,7 +58,7 @@ def diagnose(recording: Recording, engine: Engine, seed: int, report: Report) ->
         trembling = _beside_a_drive_error(model, found, choice, rng, report)
         if trembling is not None:
             return _with_intervals(trembling)
-        main = main_part(model, screening, report)
+        main = main_part(model, screening, choice.models[0].fit.settings if choice.models else (), report)
         findings = findings if main is None else _with_main_part(findings, main, choice, rng)
     return _with_intervals(_with_more(model, screening, findings, report))
 
@@ -235,7 +235,7 @@ def _with_main_part(findings: Findings, main: MainPart, choice: Choice, rng: np.
     train, held_out = refits[order[0]]
     if held_out is not None and not confirmed(held_out):
         return findings
-    if not main.nameable or choice.decision.ambiguous:  # what was not told apart before is not by tolerating more
+    if not main.nameable or _told_by_tolerating(main, choice):
         return _with_kind(findings, main, rng)
     chances, best = main.probabilities(rng), main.models[order[0]]
     order += [n for n in range(len(main.models)) if n not in main.group]
@@ -254,6 +254,15 @@ def _with_main_part(findings: Findings, main: MainPart, choice: Choice, rng: np.
         reasons=_not_everything(findings, choice, best),
         black_box_gain=0.0,  # of another metric
     )
+
+
+def _told_by_tolerating(main: MainPart, choice: Choice) -> bool:
+    """Whether it was not told apart by the noise alone: then it is not by tolerating more.
+
+    What all that was not told apart has in it was no part of the question.
+    """
+    group = [choice.models[n].fit.candidates for n in choice.groups[0]] if choice.decision.ambiguous else []
+    return any(one not in candidates for one in main.models[0].fit.candidates for candidates in group)
 
 
 def _not_everything(findings: Findings, choice: Choice, main: Judged) -> tuple[str, ...]:

@@ -43,7 +43,8 @@ def whole_and_parts(drive, answer, first, second, coupon=None):
 
 def softened(of):
     """A third of the stress is lost."""
-    return [Setting(next(one for one in of.candidates if one.mechanism == "stress-softening"), (0.3,))]
+    candidate = next(one for one in of.candidates if one.mechanism == "stress-softening")
+    return [Setting(candidate, (0.3, *[0.0] * (len(candidate.coordinates) - 1)))]
 
 
 def second_half(whole, parts, answer):

@@ -162,6 +162,15 @@ def test_a_second_mechanism_that_may_be_a_flaw_of_the_rig_is_not_named():
     assert "contact-gap (dot) is not named for that" in " ".join(findings.reasons)
 
 
+def test_what_too_many_pairs_have_in_them_is_the_main_part():
+    """A leak, and lost motion that four candidates describe alike."""
+    sensor, sure = Sensor(leak=1.0, gap_mm=0.006), {"force_N": 0.003, "voltage_V": 0.003}
+    gaps = [one("contact-gap", name, "gap_mm", 0.0, 0.15, 0.02) for name in ("dot", "rig", "film", "case")]
+    findings = found(small(5, sensor, runs=4, noise=0.001, distort=0.0), (CANDIDATES[0], *gaps), accuracy=sure)
+    assert "4 explanations cannot be told apart" in " ".join(findings.reasons)
+    assert (findings.grade, names(findings)) == (Grade.MAIN_PART, (LEAK,))
+
+
 def test_of_two_equals_the_one_that_a_real_part_can_have_is_named():
     capped = one("pyroelectric-drift", "film", "leak", 0.0, 0.98, 0.5)
     richer = replace(CANDIDATES[0], coordinates=(*CANDIDATES[0].coordinates, *CANDIDATES[13].coordinates))

@@ -14,9 +14,11 @@ from diagnose.fit.refit import believed, common_metric, fitted, fitted_baseline,
 from diagnose.fit.samples import Samples
 from diagnose.fit.system import linearised
 from diagnose.forward import Candidate, Coordinate
+from diagnose.inference.choice import Judge, partners
 from diagnose.inference.forecasts import excess, share_left
+from diagnose.inference.search import paired, screen
 from diagnose.noise.estimate import noise_models
-from tests.diagnose.inference.toy import CANDIDATES, Sensor, ToyEngine, small
+from tests.diagnose.inference.toy import CANDIDATES, Sensor, ToyEngine, silent, small
 
 LEAK, CAPACITANCE, BRANCHES = CANDIDATES[0], CANDIDATES[1], CANDIDATES[4]
 
@@ -175,3 +177,15 @@ def test_intervals_cover_the_truth_though_the_surface_gives_way_at_the_first_tou
         (found,) = intervals(model, fitted(model, baseline, (compliance,), np.array([0.06]), excess(baseline)))
         covered += found["compliance"].low <= 0.08 <= found["compliance"].high
     assert covered >= 17  # 18 expected; 14 without the allowance
+
+
+def test_what_else_shows_beside_the_first_of_a_pair_is_tried_too():
+    model = seen(small(12, Sensor(leak=1.0, branches2=(0.1, 0.1, 0.0)), runs=4))
+    screening = screen(model, fitted_baseline(model), silent)
+    judge = Judge(model, screening, np.random.default_rng(0))
+    leak = fitted(model, screening.start, (LEAK,), np.array([1.0]), 0.0)
+    imitated = paired(model, screening, leak, CANDIDATES[3], [np.full(3, 0.1)], silent)
+    models = [judge.judged(fit) for fit in (leak, *imitated)]
+    tried = [one.fit.candidates[1].name for one in partners(judge, models, models[1], silent)]
+    assert ("viscoelasticity", "medium2") in tried
+    assert ("viscoelasticity", "medium1") not in tried

@@ -71,7 +71,8 @@ CASES = [
     ("foam-densification", "medium2", (0.5, 1.0), 0.08, 0.1),
     ("adhesive-compliance", "bond-film-medium2", (1.2, 2.5), 0.08, 0.05),
     ("elastic-sides", "sides", (2.0,), 0.08, 0.1),
-    ("stress-softening", "effector", (0.3,), 0.15, 0.1),
+    ("stress-softening", "effector", (0.3, 0.0), 0.15, 0.1),
+    ("stress-softening", "effector", (0.5, 0.6), 0.15, 0.1),
 ]
 
 
@@ -215,7 +216,7 @@ def test_a_mechanism_that_is_as_good_as_off_changes_nothing(rig):
     """A fit may lead to values that no press has any weight at, also of what depends on the path."""
     without = rig.predict(0, [])
     for setting in (
-        switched(rig, "stress-softening", "effector", (1e-15,)),
+        switched(rig, "stress-softening", "effector", (1e-15, 0.0)),
         switched(rig, "friction", "dot", (1e-15,)),
     ):
         told = rig.predict(0, [setting])
@@ -230,13 +231,13 @@ def test_softened_rubber_loses_on_the_way_back_and_the_second_time():
     quick = {"rise_s": 0.2, "hold_s": 0.1}
     twice = np.maximum(press(time, touch_s=0.1, **quick), press(time, touch_s=0.9, **quick))
     of = engine(run(values=twice))
-    setting = switched(of, "stress-softening", "effector", (0.3,))
-    told, true = of.predict(0, [setting]), of.solve(0, [setting.candidate.switched_on((0.3,))], silent)
+    setting = switched(of, "stress-softening", "effector", (0.3, 0.0))
+    told, true = of.predict(0, [setting]), of.solve(0, [setting.candidate.switched_on(setting.values)], silent)
     assert peak(told["force_N"] - true["force_N"]) < 0.03 * peak(true["force_N"])
     first, second = (np.argmin(np.abs(time - t)) for t in (0.2, 1.0))
     assert twice[first] == pytest.approx(twice[second])
     lost = 1.0 - told["force_N"][second] / told["force_N"][first]
-    assert lost == pytest.approx(setting.candidate.derived((0.3,))["loss_ratio"], abs=0.02)
+    assert lost == pytest.approx(setting.candidate.derived(setting.values)["loss_ratio"], abs=0.02)
 
 
 @pytest.mark.slow
