@@ -45,11 +45,11 @@ class ImaginedEngine:
     def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
         """All channels of the press. ValueError where the engine cannot tell."""
         kept = [setting for setting in settings if setting.candidate.mechanism != self._proposal.removes]
-        if self._proposal.number is not None:
-            return self._engine.predict(self._proposal.number, kept)
-        if not hasattr(self._engine, "imagine"):
+        if hasattr(self._engine, "imagine"):  # also a repeat, which finds the specimen as all runs have left it
+            return self._engine.imagine(self._proposal.run, kept)
+        if self._proposal.number is None:
             raise ValueError(f"the model '{self.name}' can predict only the presses of the recording")
-        return self._engine.imagine(self._proposal.run, kept)
+        return self._engine.predict(self._proposal.number, kept)
 
 
 STEP = 1e-3  # of a coordinate, for its slope

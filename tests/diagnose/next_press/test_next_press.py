@@ -135,12 +135,32 @@ class Stiffer(ToyEngine):
         within = Coordinate("modulus", -0.3, 0.3, (0.1,))
         return Candidate("property-error", "medium1", (within,), lambda v: {"modulus_factor": float(np.exp(v[0]))})
 
-    def predict(self, run, settings):
+    def imagine(self, run, settings):
         (factor,) = [s.values[0] for s in settings if s.candidate.mechanism == "property-error"] or [0.0]
         if abs(factor) > 0.3:
             raise ValueError("beyond its bounds")
         others = [s for s in settings if s.candidate.mechanism != "property-error"]
-        return {name: np.exp(factor) * values for name, values in super().predict(run, others).items()}
+        return {name: np.exp(factor) * values for name, values in super().imagine(run, others).items()}
+
+
+def test_every_press_is_made_on_a_specimen_that_all_runs_have_left(recording):
+    """Also one that repeats a run."""
+    engine = Remembering(recording)
+    planned(recording, engine=engine)
+    made = {label for label, before in engine.seen if before == pytest.approx({"displacement_mm": 0.3})}
+    assert made >= {run.label for run in recording.runs}
+
+
+class Remembering(ToyEngine):
+    """A toy that writes down what the specimen had felt before each press that it was asked for."""
+
+    def __init__(self, recording):
+        super().__init__(recording)
+        self.seen = []
+
+    def imagine(self, run, settings):
+        self.seen.append((run.label, dict(run.largest_before)))
+        return super().imagine(run, settings)
 
 
 def test_an_engine_that_knows_only_recorded_presses_repeats_one(recording):
