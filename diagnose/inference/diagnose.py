@@ -219,7 +219,7 @@ def _kind(choice: Choice, held_out: Fit | None) -> str:
     """What all of the group have in common where nothing but their number is against a name, if anything."""
     if not choice.decision.ambiguous or (held_out is not None and not held_out.improves):
         return ""
-    return in_common([one for number in choice.groups[0] for one in choice.models[number].fit.candidates])
+    return in_common([choice.models[number].fit.candidates for number in choice.groups[0]])
 
 
 def _with_main_part(findings: Findings, main: MainPart, choice: Choice, rng: np.random.Generator) -> Findings:
@@ -276,7 +276,7 @@ def _not_everything(findings: Findings, choice: Choice, main: Judged) -> tuple[s
 def _with_kind(findings: Findings, main: MainPart, rng: np.random.Generator) -> Findings:
     """What is unexplained, with what all explanations of most of it have in common, if anything."""
     group = [main.models[n].fit for n in main.group]
-    kind = in_common([candidate for fit in group for candidate in fit.candidates])
+    kind = in_common([fit.candidates for fit in group])
     if not kind:
         return findings
     chances = main.probabilities(rng)

@@ -59,7 +59,18 @@ def model_words(model: FittedModel) -> str:
     return listed([setting_words(setting) for setting in model.settings])
 
 
-def in_common(candidates: Sequence[Candidate]) -> str:
+def in_common(explanations: Sequence[Sequence[Candidate]]) -> str:
+    """Half a sentence that is true of all explanations, each of one or more mechanisms; "" without one.
+
+    The mechanisms that all of several have, and what the others are alike in.
+    """
+    first = explanations[0] if len(explanations) > 1 else ()
+    shared = [one for one in first if all(one in others for others in explanations)]
+    rest = _alike([one for explanation in explanations for one in explanation if one not in shared])
+    return listed([*(mechanism_words(*one.name) for one in shared), rest or "something else"]) if shared else rest
+
+
+def _alike(candidates: Sequence[Candidate]) -> str:
     """Half a sentence that is true of all of them, by their kind, or of several by their component; "" without one."""
     kinds = {known.kind if (known := vocabulary().get(one.mechanism)) is not None else "" for one in candidates}
     components = {one.component for one in candidates}

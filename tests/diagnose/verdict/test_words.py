@@ -107,11 +107,20 @@ def test_a_unit_is_told_once():
 
 
 def test_what_explanations_have_in_common():
-    leaks = [Candidate("charge-leakage", where, (), dict) for where in ("readout", "film")]
+    leaks = [(Candidate("charge-leakage", where, (), dict),) for where in ("readout", "film")]
     assert in_common(leaks) == "the film or its input loses charge"
-    mixed = [Candidate(name, "medium2", (), dict) for name in ("viscoelasticity", "property-error")]
+    mixed = [(Candidate(name, "medium2", (), dict),) for name in ("viscoelasticity", "property-error")]
     assert in_common(mixed) == "medium 2 behaves otherwise than stated"
     assert in_common([*leaks, *mixed]) == in_common(mixed[1:]) == ""
+
+
+def test_explanations_by_two_have_the_one_in_common_that_is_in_all_of_them():
+    slow = Candidate("low-pass", "readout", (), dict)
+    soft = [Candidate("adhesive-compliance", bond, (), dict) for bond in ("bond-base", "bond-film-medium2")]
+    stiff = Candidate("property-error", "medium1", (), dict)
+    told = in_common([(slow, one) for one in soft])
+    assert told == "the amplifier filters out fast changes and something in series with the film gives way"
+    assert in_common([(slow, soft[0]), (stiff, slow)]) == "the amplifier filters out fast changes and something else"
 
 
 def test_how_far_the_best_unnamed_model_would_come_is_said_and_written(recording):
