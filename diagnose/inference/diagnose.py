@@ -58,7 +58,7 @@ def diagnose(recording: Recording, engine: Engine, seed: int, report: Report) ->
         trembling = _beside_a_drive_error(model, found, choice, rng, report)
         if trembling is not None:
             return _with_intervals(trembling)
-        main = main_part(model, screening, choice.models[0].fit.settings if choice.models else (), report)
+        main = main_part(model, screening, report)
         findings = findings if main is None else _with_main_part(findings, main, choice, rng)
     return _with_intervals(_with_more(model, screening, findings, report))
 

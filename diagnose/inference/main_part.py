@@ -17,10 +17,9 @@ from diagnose.fit.discrepancy import FORM_ERROR
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.signal_discrepancy import VISIBLE, SignalDiscrepancy, by_phase, conditions, in_plain_units
 from diagnose.fit.system import linearised
-from diagnose.forward import Setting
 from diagnose.inference.choice import Judged, implausible, ordinary, score_of
 from diagnose.inference.forecasts import Forecasted
-from diagnose.inference.search import FirstFit, Screening, first_fits, pairs, screen, singles
+from diagnose.inference.search import Screening, first_fits, pairs, screen, singles
 from diagnose.inference.tolerant_judge import TolerantJudge, held_together, left_by
 from diagnose.signals.phases import PHASES
 from diagnose.statistics.abstain import RATES
@@ -83,11 +82,8 @@ def confirmed(held_out: Fit) -> bool:
     return held_out.share > CONFIRMED
 
 
-def main_part(model: ObservedModel, found: Screening, on: Sequence[Setting], report: Report) -> MainPart | None:
-    """None where no explanation, or none that is told from all but a few rivals, accounts for most of the mismatch.
-
-    on : what comes first by the noise alone; each of these mechanisms may be the main part.
-    """
+def main_part(model: ObservedModel, found: Screening, report: Report) -> MainPart | None:
+    """None where no explanation, or none that is told from all but a few rivals, accounts for most of the mismatch."""
     plain = model.seen_as(in_plain_units(model.samples))
     seen = screen(plain, linearised(plain, found.baseline.values), report)
     tolerance = SignalDiscrepancy(plain.samples)
@@ -95,13 +91,14 @@ def main_part(model: ObservedModel, found: Screening, on: Sequence[Setting], rep
     firsts = first_fits(judge.model, judge.found, report) if judge.largest(judge.base) > VISIBLE else []
     if not firsts:
         return None
-    known = [FirstFit(seen.candidates.index(one.candidate), np.array(one.values), np.nan) for one in on]
-    leaders = [firsts[0], *known]
-    sizes = [left_by(judge, settings((seen.candidates[one.number],), one.values)) for one in leaders]
-    least = min(range(len(sizes)), key=lambda n: float((sizes[n] ** 2).sum()))
-    first = seen.candidates[leaders[least].number]
-    judge = TolerantJudge(plain, seen, tolerance, sizes[least], held_together(plain.samples, [first]))
-    firsts = [*known, *(one for one in firsts if all(one.number != other.number for other in known))]
+    first = seen.candidates[firsts[0].number]
+    judge = TolerantJudge(
+        plain,
+        seen,
+        tolerance,
+        left_by(judge, settings((first,), firsts[0].values)),
+        held_together(plain.samples, [first]),
+    )
     models = judge.best_first(singles(judge.model, judge.found, firsts, report))
     if models and models[0].left > 1.0 - MOST:
         judge, models = _with_pairs(judge, models, report)

@@ -60,16 +60,13 @@ class TolerantJudge:
         return gained(one, rival, len(self.found.candidates))
 
     def excluded(self, rival: Forecasted, best: Forecasted) -> bool:
-        """Whether the best predicts so much better that the rival is hardly true.
+        """Whether the best would hardly predict so much better if the rival were true.
 
-        With d sigma between the two, its gain is normal with mean d^2 / 2 and deviation d if the best is true, and with
-        mean -d^2 / 2 if the rival is. A gain that is likely with neither comes of laws that both err: then it has to
-        be one for sure, whatever the law.
+        With d sigma between the two, its gain would then be normal with mean -d^2 / 2 and deviation d.
         """
         apart = float(np.linalg.norm(separation(best, rival)))
         gain = float((best.log_scores - rival.log_scores).sum())
-        sure = float(norm.isf(RATES.level / len(self.found.candidates))) * apart
-        return gain > min(sure, abs(0.5 * apart**2 - sure))
+        return gain + 0.5 * apart**2 > float(norm.isf(RATES.level / len(self.found.candidates))) * apart
 
     def missed(self, forecast: Forecasted) -> Floats:
         """(n,) residual of the recording, less what the nuisances of each run that was left out make of it."""

@@ -3,10 +3,8 @@
 from types import SimpleNamespace
 
 import numpy as np
-import pytest
 
 from diagnose.forward import Candidate, Coordinate
-from diagnose.inference import tolerant_judge
 from diagnose.inference.choice import contradicted, implausible, likely
 
 
@@ -33,24 +31,6 @@ def test_a_model_that_leaves_too_much_has_no_say():
 def test_a_faultless_model_that_is_right_once_in_twenty_is_likely():
     models = [model(5.0, 20.0), model(4.0, 20.0), model(4.0, 20.0, p_left=0.0), model(0.0, 20.0)]
     assert likely(models, np.array([0.8, 0.08, 0.1, 0.02])) == [1]
-
-
-@pytest.mark.parametrize(
-    ("apart", "gain", "excluded"),
-    [
-        (20.0, 200.0, True),  # as it is if the best is true
-        (20.0, -200.0, False),  # as it is if the rival is
-        (20.0, 20.0, False),  # neither: a gain of one deviation
-        (20.0, 100.0, True),  # neither, but a gain for sure
-        (5.0, 12.5, True),
-        (3.0, 4.5, False),  # too close
-    ],
-)
-def test_a_rival_is_excluded_by_a_gain_that_it_would_hardly_allow(monkeypatch, apart, gain, excluded):
-    monkeypatch.setattr(tolerant_judge, "separation", lambda *_: np.array([apart]))
-    best, rival = (SimpleNamespace(log_scores=np.array([score])) for score in (gain, 0.0))
-    judge = SimpleNamespace(found=SimpleNamespace(candidates=[None] * 40))
-    assert tolerant_judge.TolerantJudge.excluded(judge, rival, best) is excluded
 
 
 def at(value, levels_off=(False, False)):
