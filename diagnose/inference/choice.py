@@ -135,8 +135,8 @@ def _with_pairs(judge: Judge, singles: Sequence[Judged], best: Judged, report: R
         tried += first.fit.candidates
     if best is single:
         return models, best
-    models += _rivals(judge, singles, best, report)
-    best = judge.best(models)
+    rivals = _rivals(judge, singles, best, report)
+    models, best = [*models, *rivals], judge.best([best, *rivals])
     others = partners(judge, models, best, report)
     return [*models, *others], judge.best([best, *others])
 

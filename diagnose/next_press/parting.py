@@ -71,7 +71,7 @@ class PressJudge:
     def __init__(self, recording: Recording, engine: Engine, rivals: Sequence[FittedModel]) -> None:
         """ValueError as the engine's."""
         self.engine = engine
-        self.rivals = [(without_phase(rival.settings), rival.shared) for rival in rivals]
+        self.rivals = [(without_phase(rival.settings), rival.shared) for rival in rivals]  # what is on, beside what
         self.specimen, self.noise = recording.specimen, noise_models(recording)
         model = ObservedModel(Samples(recording, self.noise), engine)
         self.spreads = [self._spread(self._answer(model, *rival), rival[0]) for rival in self.rivals]
