@@ -43,6 +43,10 @@ class Fitted:
         """As the engine has them."""
         return settings(self.candidates, self.values)
 
+    def nuisances(self, model: ObservedModel) -> Floats:
+        """Those (p,) with which it comes closest to the recording, within what the engine has an answer to."""
+        return model.possible(self.system.closest())
+
 
 def common_metric(samples: Samples, baseline: LinearisedSystem) -> LinearisedSystem:
     """The baseline with one model-form error for all candidates, as if its residual were the effect."""

@@ -152,7 +152,7 @@ def trained_and_held(
     if fit is not None:
         own = fitted(model, fit.system.reached(seen), fit.candidates, fit.values, found.excess)
         settings = own.settings
-        after = model.possible(own.system.closest())
+        after = own.nuisances(model)
     runs = {samples.presses[n][0] for n in training}
     frozen = np.array([nuisance.run is None or nuisance.run in runs for nuisance in model.nuisances], dtype=bool)
     unseen = informative & np.isin(samples.press, held)

@@ -89,7 +89,7 @@ def _beside_a_drive_error(
     if not choice.models:
         return None
     best = choice.models[0].fit
-    error = drive_error(model, model.possible(best.system.closest()), best.settings, RATES.level)
+    error = drive_error(model, best.nuisances(model), best.settings, RATES.level)
     if error is None:
         return None
     model = model.seen_as(Samples(model.samples.recording, model.samples.noise, error.noise))
@@ -330,7 +330,7 @@ def _remainder(more: Joined, held_out: Fit) -> Remainder:
 
 
 def _model(model: ObservedModel, one: Judged, probability: float, detailed: bool) -> FittedModel:
-    values = model.possible(one.fit.system.closest())
+    each = zip(model.nuisances, one.fit.nuisances(model), strict=True)
     return FittedModel(
         settings=one.fit.settings,
         parameters=points(one.fit),
@@ -339,7 +339,7 @@ def _model(model: ObservedModel, one: Judged, probability: float, detailed: bool
         probability=probability,
         p_left=one.p_left,
         intervals=partial(intervals, model, one.fit) if detailed else None,
-        shared={of.name: float(value) for of, value in zip(model.nuisances, values, strict=True) if of.run is None},
+        shared={nuisance.name: float(value) for nuisance, value in each if nuisance.run is None},
     )
 
 
@@ -367,7 +367,7 @@ def labelled(model: ObservedModel, values: Floats, settings: Sequence[Setting]) 
 
 
 def _improved(model: ObservedModel, chosen: Judged) -> Mapping[str, Signals]:
-    return labelled(model, model.possible(chosen.fit.system.closest()), chosen.fit.settings)
+    return labelled(model, chosen.fit.nuisances(model), chosen.fit.settings)
 
 
 def _information(fits: Sequence[Fitted]) -> Floats:

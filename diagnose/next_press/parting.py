@@ -4,7 +4,7 @@ What may float is what an inference excuses too: nuisances, errors of the model,
 is a recording of one run that nobody has made yet.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import cast
@@ -71,10 +71,10 @@ class PressJudge:
     def __init__(self, recording: Recording, engine: Engine, rivals: Sequence[FittedModel]) -> None:
         """ValueError as the engine's."""
         self.engine = engine
-        self.rivals = [(without_phase(rival.settings), rival.shared) for rival in rivals]  # what is on, beside what
+        self.rivals = [replace(rival, settings=without_phase(rival.settings)) for rival in rivals]
         self.specimen, self.noise = recording.specimen, noise_models(recording)
         model = ObservedModel(Samples(recording, self.noise), engine)
-        self.spreads = [self._spread(self._answer(model, *rival), rival[0]) for rival in self.rivals]
+        self.spreads = [self._spread(self._answer(model, rival), rival.settings) for rival in self.rivals]
 
     def separations(self, proposal: Proposal) -> Floats:
         """(pairs,) sigma between each two rivals. ValueError where the engine cannot tell."""
@@ -87,20 +87,19 @@ class PressJudge:
         run, engine = proposal.run, cast(Engine, ImaginedEngine(self.engine, proposal))
         noise = {(run.label, name): self._noise(proposal, engine, name) for name in run.answers}
         model = ObservedModel(Samples(Recording((run,), self.specimen), noise), engine)
-        return [self._answer(model, *rival) for rival in self.rivals]
+        return [self._answer(model, rival) for rival in self.rivals]
 
     def _noise(self, proposal: Proposal, engine: Engine, channel: str) -> NoiseModel:
         """Of the recording, or of an instrument that the press adds: white, a share of its largest signal."""
         known = self.noise.get((proposal.run.label, channel))
         if known is not None:
             return known
-        largest = float(np.abs(engine.predict(0, self.rivals[0][0])[channel]).max())
+        largest = float(np.abs(engine.predict(0, self.rivals[0].settings)[channel]).max())
         return white_noise(ADDED_NOISE * largest, proposal.run.step_s, "assumed")
 
-    def _answer(
-        self, model: ObservedModel, settings: tuple[Setting, ...], shared: Mapping[str, float]
-    ) -> ImaginedAnswer:
-        values = np.array([0.0 if n.run is not None else shared.get(n.name, 0.0) for n in model.nuisances])
+    def _answer(self, model: ObservedModel, rival: FittedModel) -> ImaginedAnswer:
+        settings = rival.settings
+        values = np.array([0.0 if n.run is not None else rival.shared.get(n.name, 0.0) for n in model.nuisances])
         prediction = model.vector(values, settings)
         slopes = [(model.vector(values, moved) - prediction) / step for moved, step in _moved(settings)]
         return ImaginedAnswer(
