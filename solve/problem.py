@@ -262,12 +262,12 @@ def _solid(make: Builder, name: str, law: MediumLaw) -> SolidRegion:
     dofs = make.unknowns.displacement[tets].reshape(-1, 30)
     if not law.compressible:
         dofs = np.concatenate([dofs, make.unknowns.pressure[index]], axis=1)
-    inelastic: list[Inelastic] = []
+    scaled, inelastic = law.scaled(1.0 / make.units.stress), list[Inelastic]()
     if name in make.physics.softening:
         inelastic.append(make.physics.softening[name].scaled(1e6 / make.units.stress))
     if name in make.physics.viscosity:
-        inelastic.append(make.physics.viscosity[name])
-    return solid_region(name, law.scaled(1.0 / make.units.stress), make.points, tets, dofs, tuple(inelastic))
+        inelastic.append(make.physics.viscosity[name].acting_on(scaled.shear_modulus))
+    return solid_region(name, scaled, make.points, tets, dofs, tuple(inelastic))
 
 
 def _film(make: Builder) -> FilmRegion:

@@ -23,7 +23,8 @@ import numpy as np
 
 from diagnose.engines.coupon.kinematics import SimpleShear
 from diagnose.engines.coupon.laws import LARGEST_STRAIN, LAYER, MEDIUM, one_layer, switched, with_factors_last
-from diagnose.engines.coupon.point import NO_SERIES, MaterialPoint, Relaxation
+from diagnose.engines.coupon.point import MaterialPoint
+from diagnose.engines.coupon.relaxation import NO_SERIES, Relaxation
 from diagnose.forward import Candidate, Coordinate, Setting, Signals
 from diagnose.signals.phases import Segmentation, rest_of, segmented
 from diagnose.signals.recording import Recording, Run

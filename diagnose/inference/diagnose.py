@@ -289,29 +289,30 @@ def _with_kind(findings: Findings, main: MainPart, rng: np.random.Generator) -> 
 def _with_more(model: ObservedModel, screening: Screening, findings: Findings, report: Report) -> Findings:
     """With what else shows beside the first explanation, where it has no rival and leaves more than flaws of a rig.
 
-    One whose kind alone could be told, as it leaves too much, is named with what takes the rest away.
+    It is fitted anew beside what it leaves, so that no detail that it cannot have outweighs the rest. One whose kind
+    alone could be told, as it leaves too much, is named with what takes the rest away.
     """
     held_out = findings.held_out
     if not (findings.best or findings.kind) or held_out is None or _flaws(held_out) or len(findings.groups[0]) > 1:
         return findings
     first = findings.models[0]
     more = joined(model, screening, first.settings, report)
-    if more is None:
-        return findings
+    grown = len(more.fit.candidates) > len(first.settings)
     judge, one = more.judge, more.judge.judged(more.fit)
     train, after = trained_and_held(judge.model, judge.found, more.fit, np.array([one.gain.mean]))
     assert after is not None
     if after.nrmse_after > held_out.nrmse_after:  # such as far beyond the strains that it was fitted to
         return findings
     rest = _remainder(more, after) if findings.unexplained else None
-    if findings.best is None and (rest is None or rest.share < NEARLY_ALL or implausible(more.fit)):
+    if findings.best is None and (not grown or rest is None or rest.share < NEARLY_ALL or implausible(more.fit)):
         return findings
     whole = _model(judge.model, one, first.probability, detailed=True)
+    before = (replace(first, probability=0.0, intervals=None),) if grown else ()
     return replace(
         findings,
-        models=(whole, replace(first, probability=0.0, intervals=None), *findings.models[1:]),
+        models=(whole, *before, *findings.models[1:]),
         best=whole,
-        groups=((0,), *(tuple(n + 1 for n in group) for group in findings.groups)),
+        groups=((0,), *(tuple(n + len(before) for n in group) for group in findings.groups[0 if grown else 1 :])),
         train=train,
         held_out=after,
         unnamed=None,
@@ -319,7 +320,7 @@ def _with_more(model: ObservedModel, screening: Screening, findings: Findings, r
         information=_information([more.fit]),
         remainder=rest,
         kind="",
-        reasons=(*findings.reasons, beside(more.fit, len(first.settings), after)),
+        reasons=(*findings.reasons, beside(more.fit, len(first.settings), after)) if grown else findings.reasons,
         black_box_gain=0.0,
     )
 

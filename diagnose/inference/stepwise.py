@@ -37,15 +37,15 @@ class Joined:
     fit: Fitted
 
 
-def joined(model: ObservedModel, found: Screening, named: Sequence[Setting], report: Report) -> Joined | None:
-    """The named mechanisms with all that shows beside them; None where nothing does."""
+def joined(model: ObservedModel, found: Screening, named: Sequence[Setting], report: Report) -> Joined:
+    """The named mechanisms with all that shows beside them, fitted anew beside what they leave."""
     judge = judge_of_name(model, found, named)
     values = np.concatenate([one.values for one in named])
     fit = fitted(judge.model, judge.found.start, tuple(one.candidate for one in named), values, 0.0)
     now = Joined(judge, fit)
     while len(now.fit.candidates) < MOST_MECHANISMS and (more := _with_one_more(now, report)) is not None:
         now = more
-    return now if len(now.fit.candidates) > len(named) else None
+    return now
 
 
 def _with_one_more(now: Joined, report: Report) -> Joined | None:

@@ -35,12 +35,13 @@ Memory = tuple[Floats, ...]  # arrays whose first axis counts the quadrature poi
 class StressResponse:
     """Second Piola-Kirchhoff stress (n, 6), tangent (n, 6, 6) and strain energy (n,) at n quadrature points.
 
-    energy is None where no law asks for it.
+    energy is None where no law asks for it; cauchy_green : C (n, 3, 3) of a medium, None of a film or a bond.
     """
 
     stress: Floats
     tangent: Floats
     energy: Floats | None = None
+    cauchy_green: Floats | None = None
 
 
 class Inelastic(Protocol):
@@ -101,14 +102,22 @@ def branch_stress(branch, fade, gain, change):  # type: ignore[no-untyped-def]
 
 @dataclass(frozen=True)
 class Prony:
-    """relative_moduli : g_i, sum below 1; relaxation_times : tau_i in s. No terms: elastic."""
+    """relative_moduli : g_i, sum below 1; relaxation_times : tau_i in s. No terms: elastic.
+
+    linear : in the history of the elastic stress.
+    """
 
     relative_moduli: tuple[float, ...]
     relaxation_times: tuple[float, ...]
     needs_energy = False
+    linear = True
 
     def scaled(self, factor: float) -> "Prony":
         """The series itself: its moduli are relative."""
+        return self
+
+    def acting_on(self, shear_modulus: float) -> "Prony":
+        """The series itself, whatever the shear modulus of the elastic law."""
         return self
 
     def start(self, points: int, components: int = 6) -> Memory:
@@ -176,7 +185,7 @@ class Softening:
         stress = factor[:, None] * elastic.stress
         rank_one = elastic.stress[:, :, None] * elastic.stress[:, None, :]
         tangent = factor[:, None, None] * elastic.tangent + slope[:, None, None] * rank_one
-        return StressResponse(stress, tangent, elastic.energy), (largest,)
+        return replace(elastic, stress=stress, tangent=tangent), (largest,)
 
     def time_error(self, memory: Memory, new: Memory, time_step: float, after_kink: bool) -> float:
         """No rate enters."""

@@ -189,6 +189,8 @@ class ReducedModel:
         if structure(physics) != self.structure:
             raise ValueError("the reduced model was made with other bonds, delaminations or prestretch: build it again")
         for name, series in physics.viscosity.items():
+            if not series.linear:
+                raise ValueError(f"the reduced model has no branches that flow: {name} needs the full solver")
             share, known = sum(series.relative_moduli), self.relaxing.get(name, 0.0)
             if share > known * (1.0 + 1e-9):
                 raise ValueError(f"{name} relaxes by {share:g} of its stress: the reduced model knows up to {known:g}")

@@ -90,7 +90,7 @@ class SolidRegion(Term):
         """Isochoric (of a foam: whole) response at F (s, q, 3, 3) in points in order, and the new memory."""
         c = cauchy_green(f)
         energy = self.law.energy(c) if any(law.needs_energy for law in self.inelastic) else None
-        return respond(self.inelastic, StressResponse(*self.law.stress(c), energy), memory, time_step)
+        return respond(self.inelastic, StressResponse(*self.law.stress(c), energy, c), memory, time_step)
 
     def _chunks(self, trial: Trial) -> Iterator[tuple[slice, Floats]]:
         for start in range(0, len(self.tets), CHUNK):

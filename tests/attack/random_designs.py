@@ -65,7 +65,7 @@ def design(number: int) -> dict:
             draw, segment, softest, dot["gap_mm"] + 0.1 * ("contact-gap" in names), "guide-friction" in names
         ),
         "mesh": _mesh(draw, solid, round_one),
-        "mechanisms": _mechanisms(draw, names, segment, dot),
+        "mechanisms": _mechanisms(draw, names, segment, dot, materials),
         "fabrication": {},
     }
     if several:
@@ -80,11 +80,16 @@ def design(number: int) -> dict:
     return tables
 
 
-def _mechanisms(draw, names, segment, dot):
+def _mechanisms(draw, names, segment, dot, materials):
     made = [one for one in (mechanism(draw, name, segment, dot) for name in dict.fromkeys(names)) if one is not None]
     remade = [one for one in made if one["name"] in ("hyperelastic-stiffening", "foam-densification")]
     if len({one["component"] for one in remade}) < len(remade):  # both would give one layer its law
         made.remove(remade[-1])
+    foams = {name.removeprefix("own-") for name, one in materials.items() if one.get("model") == "hyperfoam"}
+    foams |= {one["component"] for one in made if one["name"] == "foam-densification"}
+    for one in made:
+        if one["component"] in foams and "multiplicative_moduli" in one["parameters"]:  # of rubber only
+            one["parameters"]["relative_moduli"] = one["parameters"].pop("multiplicative_moduli")
     return made
 
 

@@ -23,7 +23,7 @@ def mechanism(draw, name, segment, dot) -> dict | None:
             "film",
             {"charge_pC": draw.sign(1.0, 50.0), "area_exponent": draw.between(0.3, 3.0)},
         ),
-        "viscoelasticity": lambda: (draw.among([*media, *media, "film", *_bonded(segment)]), _prony(draw)),
+        "viscoelasticity": lambda: _relaxing(draw, media, ["film", *_bonded(segment)]),
         "hyperelastic-stiffening": lambda: (draw.among(media), _stiffening(draw)),
         "foam-densification": lambda: (draw.among(media), _foam(draw)),
         "stress-softening": lambda: (
@@ -79,10 +79,11 @@ def _low_pass(draw):
     return {**table, "order": draw.whole(1, 4)}
 
 
-def _prony(draw):
-    terms = range(draw.whole(1, 3))
-    return {
-        "relative_moduli": [draw.between(0.02, 0.25) for _ in terms],
+def _relaxing(draw, media, others):
+    where, terms = draw.among([*media, *media, *others]), range(draw.whole(1, 3))
+    law = draw.among(["relative_moduli", "multiplicative_moduli"]) if where in media else "relative_moduli"
+    return where, {
+        law: [draw.between(0.02, 0.25) for _ in terms],
         "relaxation_times_s": [draw.log(0.01, 10.0) for _ in terms],
     }
 

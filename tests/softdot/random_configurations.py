@@ -26,7 +26,8 @@ def valid_configurations(draw, shapes=FLAT):
     mesher = "pytetwild" if shapes == ROUND else "layered"
     left_out = {"inertia"} if shapes == ROUND else set()
     left_out |= {"guide-friction"} if "force_N" in press else set()
-    chosen = [one for one in draw(mechanisms(segment, dot)) if one["name"] not in left_out]
+    foams = {name for name in layers if materials[f"own-{name}"].get("model") == "hyperfoam"}
+    chosen = [one for one in draw(mechanisms(segment, dot, foams)) if one["name"] not in left_out]
     tables = {
         "segment": segment,
         "materials": materials,

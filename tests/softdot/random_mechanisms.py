@@ -8,6 +8,9 @@ MAXWELL = st.lists(st.tuples(between(0.0, 0.3), log_between(0.01, 10.0)), min_si
 PRONY = MAXWELL.map(
     lambda terms: {"relative_moduli": [g for g, _ in terms], "relaxation_times_s": [t for _, t in terms]}
 )
+FLOWING = MAXWELL.map(
+    lambda terms: {"multiplicative_moduli": [g for g, _ in terms], "relaxation_times_s": [t for _, t in terms]}
+)
 STIFF = log_between(1.0, 1e6)
 FACTOR = between(0.7, 1.4)
 
@@ -50,12 +53,14 @@ OF_A_BOND = {
 
 
 @st.composite
-def mechanisms(draw, segment, dot):
-    """A list of mechanism tables, none twice at one component."""
+def mechanisms(draw, segment, dot, foams):
+    """A list of mechanism tables, none twice at one component; foams : layers of foam, which do not flow."""
     where = st.one_of(*choices(segment, dot))
     chosen = draw(st.lists(where, max_size=3, unique_by=lambda m: (m["name"], m["component"])))
     remade = [m for m in chosen if m["name"] in ("hyperelastic-stiffening", "foam-densification")]
-    return [m for m in chosen if m not in remade[1:]]
+    foams = foams | {m["component"] for m in remade if m["name"] == "foam-densification"}
+    flowing = [m for m in chosen if m["component"] in foams and "multiplicative_moduli" in m["parameters"]]
+    return [m for m in chosen if m not in remade[1:] and m not in flowing]
 
 
 def choices(segment, dot):
@@ -70,6 +75,9 @@ def choices(segment, dot):
         yield st.sampled_from(bonds).flatmap(lambda where, name=name, table=table: switch(name, where, table))
     for where in (*media, "film"):
         yield PRONY.map(lambda table, where=where: {"name": "viscoelasticity", "component": where, "parameters": table})
+    for where in media:
+        flowing = {"name": "viscoelasticity", "component": where}
+        yield FLOWING.map(lambda table, flowing=flowing: {**flowing, "parameters": table})
     offset = {"offset_mm": st.tuples(between(-0.3, 0.3), st.just(0.0)).map(list)}
     yield switch("dot-offset", "dot", offset)
     width = min(segment["length_mm"], segment["width_mm"])

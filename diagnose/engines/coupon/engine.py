@@ -19,7 +19,8 @@ from diagnose.engines.coupon.laws import (
     switched,
     with_factors_last,
 )
-from diagnose.engines.coupon.point import NO_SERIES, MaterialPoint, youngs_modulus_MPa
+from diagnose.engines.coupon.point import MaterialPoint, youngs_modulus_MPa
+from diagnose.engines.coupon.relaxation import NO_SERIES
 from diagnose.forward import Candidate, Setting, Signals
 from diagnose.signals.recording import Drive, Recording, Run, Specimen
 from diagnose.vocabulary.base import CouponScene, candidates_of_coupon

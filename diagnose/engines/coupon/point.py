@@ -6,69 +6,24 @@ with the tester's compliance c. The stress remembers earlier samples only, so th
 forward substitution in time; Newton's iteration converges quadratically whatever relaxes. The largest energies of a
 softening law are those of the round before, first of the coupon that does not soften: on first loading it is the same.
 
-A whole history of the stress at one material point: relaxation by scans over time, softening by its running maximum.
-
-The formulas are those of solve.materials.inelastic; tests hold both ways together.
+What relaxes is in relaxation.py and flow.py; softening is a running maximum.
 """
 
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import lru_cache
 
-import numba as nb
 import numpy as np
 
+from diagnose.engines.coupon.flow import FlowingBranches
 from diagnose.engines.coupon.kinematics import Kinematics, Reading, SimpleShear
+from diagnose.engines.coupon.relaxation import NO_SERIES, Relaxation
 from diagnose.signals.recording import Drive
 from geometry.arrays import Floats
-from solve.materials.inelastic import Prony, Softening, StressResponse, branch_stress
+from solve.materials.inelastic import Prony, Softening, StressResponse
 from solve.materials.laws import MediumLaw
+from solve.materials.multiplicative import MultiplicativeMaxwell
 from solve.solution.newton import NoEquilibriumError
-
-NO_SERIES = Prony((), ())
-
-
-@dataclass(frozen=True)
-class Relaxation:
-    """A Prony series on one clock, at rest before the first sample.
-
-    moduli : g_i (b,); fade : exp(-a), gain : (1 - exp(-a)) / a with a = dt / tau_i, (t, b), dt = 0 at first.
-    """
-
-    moduli: Floats
-    fade: Floats
-    gain: Floats
-
-    @classmethod
-    def of(cls, series: Prony, time_s: Floats) -> "Relaxation":
-        """The series at times (t,)."""
-        fade, gain = _decay(series.relaxation_times, time_s.tobytes())
-        return cls(np.array(series.relative_moduli, dtype=np.float64), fade, gain)
-
-    @property
-    def instant(self) -> Floats:
-        """d stress / d elastic stress at the same time, (t,)."""
-        return np.asarray(1.0 - self.moduli.sum() + self.gain @ self.moduli)
-
-    def relaxed(self, elastic: Floats) -> Floats:
-        """Stress (t, c) of the history (t, c) of the elastic one."""
-        return np.asarray(_relaxed(elastic, self.moduli, self.fade, self.gain))
-
-    def newton_step(self, residual: Floats, by_stress: Floats, stress_by: Floats, by_unknown: Floats) -> Floats:
-        """Correction (t, m) of the unknowns that makes residual (t, m) vanish, memory included.
-
-        by_stress (t, m, c) : of the residual; stress_by (t, c, m) : of the elastic stress by the unknowns;
-        by_unknown (t, m, m) : of the residual at fixed stress.
-        """
-        return np.asarray(_newton_step(residual, by_stress, stress_by, by_unknown, self.moduli, self.fade, self.gain))
-
-
-@lru_cache(maxsize=64)
-def _decay(relaxation_times: tuple[float, ...], clock: bytes) -> tuple[Floats, Floats]:
-    """Of branches (b,) at times (t,), kept since fits change their moduli alone."""
-    time_s = np.frombuffer(clock)
-    return Prony((), relaxation_times).decay(np.diff(time_s, prepend=time_s[0]))
 
 
 def earlier_peaks(energy: Floats, before: float = 0.0) -> Floats:
@@ -79,58 +34,6 @@ def earlier_peaks(energy: Floats, before: float = 0.0) -> Floats:
 def softened(law: Softening, elastic: StressResponse, peaks: Floats) -> StressResponse:
     """The response (t points) where every sample remembers a largest energy (t,)."""
     return replace(law.update(elastic, (peaks,), 0.0)[0], energy=None)
-
-
-@nb.njit(cache=True)
-def _relaxed(elastic, moduli, fade, gain):  # type: ignore[no-untyped-def]
-    samples, parts = elastic.shape
-    branches = np.zeros((len(moduli), parts))
-    stress = np.empty_like(elastic)
-    rest = 1.0 - moduli.sum()
-    for t in range(samples):
-        for c in range(parts):
-            change = elastic[t, c] - (elastic[t - 1, c] if t > 0 else 0.0)
-            stress[t, c] = rest * elastic[t, c]
-            for b in range(len(moduli)):
-                branches[b, c] = branch_stress(branches[b, c], fade[t, b], moduli[b] * gain[t, b], change)
-                stress[t, c] += branches[b, c]
-    return stress
-
-
-@nb.njit(cache=True)
-def _newton_step(residual, by_stress, stress_by, by_unknown, moduli, fade, gain):  # type: ignore[no-untyped-def]
-    """Forward substitution in time: the correction of a sample depends on those before through the branches."""
-    samples, size = residual.shape
-    parts = stress_by.shape[1]
-    branches, old, new = np.zeros((len(moduli), parts)), np.zeros(parts), np.zeros(parts)
-    matrix, right, step = np.empty((size, size)), np.empty(size), np.empty_like(residual)
-    for t in range(samples):
-        instant = 1.0 - moduli.sum()
-        for b in range(len(moduli)):
-            instant += moduli[b] * gain[t, b]
-        for i in range(size):
-            right[i] = -residual[t, i]
-            for c in range(parts):
-                for b in range(len(moduli)):
-                    right[i] -= by_stress[t, i, c] * (fade[t, b] * branches[b, c] - moduli[b] * gain[t, b] * old[c])
-            for j in range(size):
-                matrix[i, j] = by_unknown[t, i, j]
-                for c in range(parts):
-                    matrix[i, j] += instant * by_stress[t, i, c] * stress_by[t, c, j]
-        if size == 1:
-            step[t, 0] = right[0] / matrix[0, 0]
-        else:
-            determinant = matrix[0, 0] * matrix[1, 1] - matrix[0, 1] * matrix[1, 0]
-            step[t, 0] = (right[0] * matrix[1, 1] - right[1] * matrix[0, 1]) / determinant
-            step[t, 1] = (right[1] * matrix[0, 0] - right[0] * matrix[1, 0]) / determinant
-        for c in range(parts):
-            new[c] = 0.0
-            for j in range(size):
-                new[c] += stress_by[t, c, j] * step[t, j]
-            for b in range(len(moduli)):
-                branches[b, c] = branch_stress(branches[b, c], fade[t, b], moduli[b] * gain[t, b], new[c] - old[c])
-            old[c] = new[c]
-    return step
 
 
 def youngs_modulus_MPa(law: MediumLaw) -> float:
@@ -176,11 +79,17 @@ class MaterialPoint:
 
         peak_before : largest energy of the specimen in earlier runs, MPa.
         """
-        test = _Test(self, drive, kind == "displacement_mm", Relaxation.of(self.series, time_s), peak_before)
+        test = _Test(self, drive, kind == "displacement_mm", self.memory(time_s), peak_before)
         if near is not None:
             with suppress(NoEquilibriumError):
                 return test.answer_near(near)
         return test.answer_near(test.start())
+
+    def memory(self, time_s: Floats) -> Relaxation | FlowingBranches:
+        """What its series makes of histories at times (t,)."""
+        if isinstance(self.series, MultiplicativeMaxwell):
+            return FlowingBranches.of(self.series, self.law.shear_modulus, time_s)
+        return Relaxation.of(self.series, time_s)
 
     def peak_energy(self, largest: Mapping[Drive, float]) -> float:
         """Largest energy (MPa) under drives that reach these values, one after the other. NoEquilibriumError."""
@@ -220,7 +129,7 @@ class _Test:
     point: MaterialPoint
     drive: Floats
     by_travel: bool
-    relaxation: Relaxation
+    relaxation: Relaxation | FlowingBranches
     peak_before: float
 
     def start(self) -> Floats:
@@ -233,7 +142,7 @@ class _Test:
         point = self.point
         elastic, stress = self._settled(start, None)
         unknown, stress = (elastic, stress) if point.softening is None else self._softened(elastic)
-        now = point.reading(unknown, self.relaxation.relaxed(stress))
+        now = point.reading(unknown, self.relaxation.relaxed(stress, point.kinematics.cauchy_green(unknown)))
         answer = now.force if self.by_travel else now.travel + point.compliance_mm_per_N * now.force
         return PointAnswer(answer, elastic)
 
@@ -251,8 +160,9 @@ class _Test:
         last, damping = np.zeros_like(unknown), np.ones((len(unknown), 1))
         for _ in range(MAX_ITERATIONS):
             elastic = self.point.elastic(unknown, peaks)
-            stress_by = np.asarray(elastic.tangent) @ self.point.kinematics.strain_rates(unknown)
-            step = self._step(unknown, elastic.stress, stress_by)
+            strain_by = self.point.kinematics.strain_rates(unknown)
+            stress_by = np.asarray(elastic.tangent) @ strain_by
+            step = self._step(unknown, elastic.stress, stress_by, strain_by)
             largest = float(np.abs(step).max())
             if not np.isfinite(largest):
                 break
@@ -263,16 +173,17 @@ class _Test:
                 return unknown, elastic.stress + np.einsum("tcm,tm->tc", stress_by, last)
         raise self._nowhere()
 
-    def _step(self, unknown: Floats, stress: Floats, stress_by: Floats) -> Floats:
-        """Newton's correction (t, m). stress (t, 6) is the elastic one, stress_by (t, 6, m) its derivative."""
-        now = self.point.reading(unknown, self.relaxation.relaxed(stress))
+    def _step(self, unknown: Floats, stress: Floats, stress_by: Floats, strain_by: Floats) -> Floats:
+        """Newton's correction (t, m). stress (t, 6) is the elastic one, ..._by (t, 6, m) derivatives."""
+        strain = self.point.kinematics.cauchy_green(unknown)
+        now = self.point.reading(unknown, self.relaxation.relaxed(stress, strain))
         weight = self.point.compliance_mm_per_N if self.by_travel else 1.0
         along = float(self.by_travel)
         residual = np.column_stack([along * now.travel + weight * now.force - self.drive, now.lateral])
         by_stress = np.concatenate([weight * now.force_stress[:, None, :], now.lateral_stress], axis=1)
         of_drive = along * now.travel_unknown + weight * now.force_unknown
         by_unknown = np.concatenate([of_drive[:, None, :], now.lateral_unknown], axis=1)
-        return self.relaxation.newton_step(residual, by_stress, stress_by, by_unknown)
+        return self.relaxation.newton_step(residual, by_stress, stress_by, by_unknown, strain, strain_by)
 
     def _nowhere(self) -> NoEquilibriumError:
         reason = "the coupon has no equilibrium: the stress of its law falls within this travel or force"

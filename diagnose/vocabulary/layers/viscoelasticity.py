@@ -31,7 +31,8 @@ def of_segment(scene: Scene) -> Iterator[Candidate]:
 
 def of_coupon(scene: CouponScene) -> Iterator[Candidate]:
     """The specimen, two branches a decade."""
-    yield spectrum(PartOfLayer, SPECIMEN, relaxation_times(scene.recording), MOST_OF_COUPON)
+    moduli = "relative_moduli" if scene.point.law.compressible else "multiplicative_moduli"
+    yield spectrum(PartOfLayer, SPECIMEN, relaxation_times(scene.recording), MOST_OF_COUPON, moduli)
 
 
 def of_unknown_geometry(scene: Scene, recording: Recording) -> Iterator[Candidate]:
@@ -91,24 +92,29 @@ def _branch_times(step_s: float, duration_s: float) -> tuple[list[float], float]
 
 
 def relaxed_fraction(relative_moduli: Sequence[float], relaxation_times_s: Sequence[float]) -> float:
-    """1 - G(10 s) / G(0.1 s) of the relaxation modulus."""
+    """1 - G(10 s) / G(0.1 s) of the relaxation modulus at small strain."""
     g, tau = np.array(relative_moduli), np.array(relaxation_times_s)
     early, late = (1.0 - float((g * -np.expm1(-t / tau)).sum()) for t in (EARLY_S, LATE_S))
     return 1.0 - late / early
 
 
-def spectrum(make: type[Candidate], component: str, times_s: Sequence[float], most: float) -> Candidate:
-    """The candidate at a component, one coordinate a branch; most : of each E_i / E_inf. make : its class."""
+def spectrum(
+    make: type[Candidate], component: str, times_s: Sequence[float], most: float, name: str = "relative_moduli"
+) -> Candidate:
+    """The candidate at a component, one coordinate a branch; most : of each E_i / E_inf.
+
+    make : its class. name : of its moduli among the parameters.
+    """
 
     def parameters(values: Sequence[float]) -> dict[str, Any]:
         moduli, times = _branches(values, times_s)
-        return {"relative_moduli": moduli, "relaxation_times_s": times}
+        return {name: moduli, "relaxation_times_s": times}
 
     def derived(values: Sequence[float]) -> dict[str, float]:
         return {"relaxed_fraction": relaxed_fraction(*_branches(values, times_s))}
 
     coordinates = tuple(Coordinate(f"modulus_at_{time:.3g}_s", 0.0, most, (0.1, 0.5)) for time in times_s)
-    units = {"relative_moduli": "", "relaxation_times_s": "s", "relaxed_fraction": ""}
+    units = {name: "", "relaxation_times_s": "s", "relaxed_fraction": ""}
     return make(VISCOELASTICITY.name, component, coordinates, parameters, derived, units)
 
 

@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 
 from diagnose.engines.coupon.kinematics import SimpleShear, Uniaxial
-from diagnose.engines.coupon.point import MaterialPoint, Relaxation, earlier_peaks, softened
+from diagnose.engines.coupon.point import MaterialPoint, earlier_peaks, softened
+from diagnose.engines.coupon.relaxation import Relaxation
 from solve.materials.inelastic import Prony, Softening, StressResponse
 from solve.materials.laws import InvariantLaw
+from solve.materials.multiplicative import MultiplicativeMaxwell
 from solve.terms.solid import solid_region
 from tests.solve.box import box
 from tests.solve.trial import trial
@@ -14,6 +16,7 @@ from tests.solve.trial import trial
 SIZE = (2.0, 1.0, 1.5)
 LAW = InvariantLaw(0.4, 0.0, 0.05, 0.01, 20.0)
 SOFTENING, SERIES = Softening(0.3, 0.01, 0.4), Prony((0.3, 0.2), (0.3, 2.0))
+FLOWING = MultiplicativeMaxwell((0.3, 0.2), (0.3, 2.0))
 TIME = np.array([0.0, 0.2, 0.5, 1.0, 1.2, 1.6, 2.5, 2.7, 3.5])
 STRAIN = np.array([0.0, 0.2, 0.5, 0.5, 0.3, 0.1, 0.1, 0.4, 0.6])
 
@@ -21,13 +24,14 @@ STRAIN = np.array([0.0, 0.2, 0.5, 0.5, 0.3, 0.1, 0.1, 0.4, 0.6])
 class Coupon:
     """Four dozen distorted tetrahedra; held : (n, 3) which displacements are prescribed."""
 
-    def __init__(self, held):
+    def __init__(self, held, series):
         self.points, tets = box(2, SIZE, jitter=0.2)
         corners, local = np.unique(tets[:, :4], return_inverse=True)
         nodes = np.arange(3 * len(self.points)).reshape(-1, 3)
         dofs = np.concatenate([nodes[tets].reshape(-1, 30), nodes.size + local.reshape(-1, 4)], axis=1)
         self.free = np.flatnonzero(np.append(~held(self.points).ravel(), np.ones(len(corners), bool)))
-        self.solid = solid_region("coupon", LAW, self.points, tets, dofs, (SOFTENING, SERIES))
+        laws = SOFTENING, series.acting_on(LAW.shear_modulus)
+        self.solid = solid_region("coupon", LAW, self.points, tets, dofs, laws)
         self.x = np.zeros(nodes.size + len(corners))
         self.history = self.solid.start()
 
@@ -67,25 +71,27 @@ def everywhere(points):
     return np.tile(~inner[:, None], (1, 3))
 
 
-def test_a_strip():
-    coupon, found = Coupon(grips), []
+@pytest.mark.parametrize("series", [SERIES, FLOWING])
+def test_a_strip(series):
+    coupon, found = Coupon(grips, series), []
     for strain, step in zip(STRAIN, np.diff(TIME, prepend=0.0), strict=True):
         thinner = (1.0 + strain) ** -0.4 - 1.0
         displacement = coupon.points * [strain, thinner, thinner]
         end = coupon.points[:, 0] > SIZE[0] - 1e-9
         found.append(coupon.forces(displacement, step)[end, 0].sum())
-    point = MaterialPoint(Uniaxial(1.0, SIZE[0], SIZE[1] * SIZE[2]), LAW, 0.48, SOFTENING, SERIES)
+    point = MaterialPoint(Uniaxial(1.0, SIZE[0], SIZE[1] * SIZE[2]), LAW, 0.48, SOFTENING, series)
     np.testing.assert_allclose(point.answer(TIME, SIZE[0] * STRAIN, "displacement_mm"), found, rtol=1e-9, atol=1e-11)
 
 
-def test_a_sheared_layer():
-    coupon, found = Coupon(everywhere), []
+@pytest.mark.parametrize("series", [SERIES, FLOWING])
+def test_a_sheared_layer(series):
+    coupon, found = Coupon(everywhere, series), []
     for strain, step in zip(STRAIN, np.diff(TIME, prepend=0.0), strict=True):
         displacement = np.zeros_like(coupon.points)
         displacement[:, 0] = strain * coupon.points[:, 1]
         forces, y = coupon.forces(displacement, step), coupon.points[:, 1]
         found.append((forces[:, 0] * y).sum() / SIZE[1])  # the virtual work of a further shear
-    point = MaterialPoint(SimpleShear(SIZE[1], SIZE[0] * SIZE[2]), LAW, 0.48, SOFTENING, SERIES)
+    point = MaterialPoint(SimpleShear(SIZE[1], SIZE[0] * SIZE[2]), LAW, 0.48, SOFTENING, series)
     np.testing.assert_allclose(point.answer(TIME, SIZE[1] * STRAIN, "displacement_mm"), found, rtol=1e-9, atol=1e-11)
 
 

@@ -2,12 +2,15 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.special import erf
 
 from diagnose.engines.coupon.kinematics import SimpleShear, Uniaxial
-from diagnose.engines.coupon.point import NO_SERIES, MaterialPoint
+from diagnose.engines.coupon.point import MaterialPoint
+from diagnose.engines.coupon.relaxation import NO_SERIES
 from solve.materials.inelastic import Prony, Softening
 from solve.materials.laws import InvariantLaw, LinearLaw, OgdenLaw
+from solve.materials.multiplicative import MultiplicativeMaxwell
 from solve.materials.principal_stretches import HyperfoamLaw
 from solve.solution.newton import NoEquilibriumError
 
@@ -15,6 +18,7 @@ C10, C20, C30, STIFF = 0.4, 0.05, 0.01, 1e7
 YEOH = InvariantLaw(C10, 0.0, C20, C30, STIFF)
 LENGTH, AREA = 20.0, 3.0
 TENSION, COMPRESSION, SHEAR = Uniaxial(1.0, LENGTH, AREA), Uniaxial(-1.0, LENGTH, AREA), SimpleShear(LENGTH, AREA)
+BRANCHES = (0.5, 0.3), (0.2, 3.0)
 TIME = np.linspace(0.0, 10.0, 501)
 UP_AND_DOWN = np.interp(TIME, [0.0, 2.0, 4.0, 6.0, 8.0, 10.0], [0.0, 8.0, 1.0, 8.0, 0.0, 10.0])
 
@@ -84,6 +88,24 @@ def test_a_quick_branch_of_a_layer_is_a_viscosity_that_grows_with_the_shear():
     np.testing.assert_allclose((whole - kept)[50:], expected[50:], rtol=0.03)
 
 
+def test_a_strip_of_flowing_rubber_holds_what_its_branches_have_not_let_go():
+    """P = (1 - g) P0 + g mu (l / c - l^-2 c^(1/2)), tau dc/dt = l^2 - (l^2 / c + 2 c^(1/2) / l) c / 3."""
+    share, tau, stretch = 0.7, 2.0, 2.5
+    law = InvariantLaw(C10, 0.0, 0.0, 0.0, STIFF)
+    series = MultiplicativeMaxwell((share,), (tau,))
+    time = np.linspace(0.0, 10.0, 4001)
+    found = MaterialPoint(TENSION, law, 0.5, None, series).answer(time, np.full(4001, 1.5 * LENGTH), "displacement_mm")
+
+    def rate(_, c):
+        return (stretch**2 - (stretch**2 / c + 2.0 * np.sqrt(c) / stretch) * c / 3.0) / tau
+
+    flowed = solve_ivp(rate, (0.0, 10.0), [1.0], t_eval=time, rtol=1e-10, atol=1e-12).y[0]
+    mu = 2.0 * C10
+    branch = mu * (stretch / flowed - np.sqrt(flowed) / stretch**2)
+    expected = AREA * ((1.0 - share) * mu * (stretch - stretch**-2) + share * branch)
+    np.testing.assert_allclose(found, expected, rtol=1e-3)
+
+
 def test_rubber_in_tension_relaxes_as_its_second_piola_kirchhoff_stress_does():
     """The volume stays, so that S11 - S22 C22 / C11 relaxes and with it the force."""
     relaxed = force(TENSION, YEOH, np.full(len(TIME), 10.0), series=Prony((0.4,), (2.0,)))
@@ -102,7 +124,7 @@ def test_a_second_cycle_is_softer_by_the_error_function():
 
 
 @pytest.mark.parametrize("kinematics", [TENSION, COMPRESSION, SHEAR])
-@pytest.mark.parametrize("series", [NO_SERIES, Prony((0.5, 0.3), (0.2, 3.0))])
+@pytest.mark.parametrize("series", [NO_SERIES, Prony(*BRANCHES), MultiplicativeMaxwell(*BRANCHES)])
 @pytest.mark.parametrize("law", [InvariantLaw(C10, 0.0, C20, C30, 80.0), OgdenLaw((0.5, 0.01), (1.5, 5.0), 80.0)])
 def test_the_travel_of_a_force_is_the_travel_that_makes_it(kinematics, law, series):
     point = MaterialPoint(kinematics, law, 0.49, None, series)

@@ -1,0 +1,220 @@
+"""A whole history of a coupon whose branches flow: the formulas of solve.materials.multiplicative by scans over time.
+
+Every deformation of a coupon has the components 11, 22, 33 and 12 alone: tensors are these four numbers here.
+"""
+
+from dataclasses import dataclass
+
+import numba as nb
+import numpy as np
+
+from diagnose.engines.coupon.relaxation import solved
+from geometry.arrays import Floats
+from solve.materials.multiplicative import MultiplicativeMaxwell, flow_weights
+
+OF_SIX = [0, 1, 2, 3]
+
+
+@dataclass(frozen=True)
+class FlowingBranches:
+    """A multiplicative series on one clock, at rest before the first sample.
+
+    moduli : mu_i in MPa (b,); never : share of the elastic stress that does not relax; steps : dt / tau_i (t, b).
+    """
+
+    moduli: Floats
+    never: float
+    steps: Floats
+
+    @classmethod
+    def of(cls, series: MultiplicativeMaxwell, shear_modulus_MPa: float, time_s: Floats) -> "FlowingBranches":
+        """The series at times (t,)."""
+        shares = np.array(series.relative_moduli, dtype=np.float64)
+        steps = np.diff(time_s, prepend=time_s[0])[:, None] / np.array(series.relaxation_times)
+        return cls(shear_modulus_MPa * shares, float(1.0 - shares.sum()), steps)
+
+    def relaxed(self, elastic: Floats, cauchy_green: Floats) -> Floats:
+        """Stress (t, 6) of the histories of the elastic one (t, 6) and of C (t, 3, 3)."""
+        stress = self.never * elastic
+        _add_history(_four(cauchy_green), self.steps, self.moduli, stress)
+        return stress
+
+    def newton_step(
+        self, residual: Floats, by_stress: Floats, stress_by: Floats, by_unknown: Floats, cauchy_green: Floats,
+        strain_by: Floats,
+    ) -> Floats:  # fmt: skip
+        """Correction (t, m) of the unknowns that makes residual (t, m) vanish, memory included.
+
+        by_stress (t, m, 6) : of the residual; stress_by (t, 6, m) : of the elastic stress by the unknowns; by_unknown
+        (t, m, m) : of the residual at fixed stress; strain_by (t, 6, m) : of the strain, engineering shears.
+        """
+        rates = strain_by[:, OF_SIX, :] * np.array([2.0, 2.0, 2.0, 1.0])[:, None]
+        matrices = by_unknown + self.never * np.matmul(by_stress, stress_by)
+        four = _four(cauchy_green)
+        by_four = np.ascontiguousarray(by_stress[:, :, OF_SIX])
+        return np.asarray(_newton_step(residual, by_four, matrices, four, rates, self.steps, self.moduli))
+
+
+def _four(tensors: Floats) -> Floats:
+    """(t, 3, 3) -> (t, 4)."""
+    return np.ascontiguousarray(tensors[:, [0, 1, 2, 0], [0, 1, 2, 1]])
+
+
+@nb.njit(inline="always")
+def _determinant(a):  # type: ignore[no-untyped-def]
+    return (a[0] * a[1] - a[3] * a[3]) * a[2]
+
+
+@nb.njit(inline="always")
+def _inverse(a, factor):  # type: ignore[no-untyped-def]
+    """Times a factor."""
+    plane = factor / (a[0] * a[1] - a[3] * a[3])
+    return a[1] * plane, a[0] * plane, factor / a[2], -a[3] * plane
+
+
+@nb.njit(inline="always")
+def _contracted(a, b):  # type: ignore[no-untyped-def]
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2.0 * a[3] * b[3]
+
+
+@nb.njit(inline="always")
+def _between(g, x):  # type: ignore[no-untyped-def]
+    """g x g."""
+    u, v = g[0] * x[0] + g[3] * x[3], g[0] * x[3] + g[3] * x[1]
+    w, z = g[3] * x[0] + g[1] * x[3], g[3] * x[3] + g[1] * x[1]
+    return u * g[0] + v * g[3], w * g[3] + z * g[1], g[2] * x[2] * g[2], u * g[3] + v * g[1]
+
+
+@nb.njit(inline="always")
+def _stepped(w, flowed, before, now):  # type: ignore[no-untyped-def]
+    """A, det(A)^(1/3), and G, with the weights of a step."""
+    a = (
+        w[0] * flowed[0] + w[1] * before[0] + w[2] * now[0],
+        w[0] * flowed[1] + w[1] * before[1] + w[2] * now[1],
+        w[0] * flowed[2] + w[1] * before[2] + w[2] * now[2],
+        w[0] * flowed[3] + w[1] * before[3] + w[2] * now[3],
+    )
+    root = _determinant(a) ** (1.0 / 3.0)
+    return a, root, _inverse(a, root)
+
+
+@nb.njit(inline="always")
+def _weights_by(a, s, w):  # type: ignore[no-untyped-def]
+    """Derivatives of the weights w by s."""
+    b = a * s
+    gain_by = -0.5 + b / 3.0 if b < 1e-5 else ((1.0 + b) * w[0] - 1.0) / b**2
+    return -a * w[0], (a * gain_by + a * w[0] - w[1]) / s, -(a * gain_by + w[2]) / s
+
+
+@nb.njit(cache=True)
+def _add_history(strain, steps, moduli, stress):  # type: ignore[no-untyped-def]
+    """Stress (t, 6) of the branches is added."""
+    flowed, inner = _rest(len(moduli)), _rest(len(moduli))
+    before, now = np.array([1.0, 1.0, 1.0, 0.0]), np.empty(4)
+    for t in range(len(strain)):
+        c = strain[t]
+        ci, j23 = _inverse(c, 1.0), _determinant(c) ** (-1.0 / 3.0)
+        for k in range(4):
+            now[k] = j23 * c[k]
+        for b in range(len(moduli)):
+            w = flow_weights(steps[t, b], _contracted(before, inner[b]) / 3.0)
+            a, root, g = _stepped(w, flowed[b], before, now)
+            s = _contracted(c, g) / 3.0
+            for k in range(4):
+                stress[t, k] += moduli[b] * j23 * (g[k] - s * ci[k])
+                flowed[b, k], inner[b, k] = a[k] / root, g[k]
+        before[:] = now
+
+
+@nb.njit(inline="always")
+def _rest(branches):  # type: ignore[no-untyped-def]
+    flowed = np.zeros((branches, 4))
+    flowed[:, :3] = 1.0
+    return flowed
+
+
+@nb.njit(cache=True)
+def _newton_step(residual, by_stress, matrices, strain, rates, steps, moduli):  # type: ignore[no-untyped-def]
+    """Forward substitution in time: the correction of a sample depends on those before through C_i and C^.
+
+    Changes (1 + m, 4) are those by what was corrected before, and those by each of the m unknowns.
+    """
+    samples, size = residual.shape
+    flowed, inner = _rest(len(moduli)), _rest(len(moduli))
+    before, now = np.array([1.0, 1.0, 1.0, 0.0]), np.empty(4)
+    of_flowed, of_before = np.zeros((len(moduli), 4)), np.zeros(4)
+    of_c, of_now, of_s = np.zeros((1 + size, 4)), np.zeros((1 + size, 4)), np.zeros((1 + size, 4))
+    of_a, step = np.zeros((len(moduli), 1 + size, 4)), np.empty_like(residual)
+    matrix, right = np.empty((size, size)), np.empty(size)
+    for t in range(samples):
+        c = strain[t]
+        ci, j23 = _inverse(c, 1.0), _determinant(c) ** (-1.0 / 3.0)
+        for k in range(4):
+            now[k] = j23 * c[k]
+            for j in range(size):
+                of_c[1 + j, k] = rates[t, k, j]
+        for j in range(1 + size):
+            volume = _contracted(ci, of_c[j]) / 3.0
+            for k in range(4):
+                of_now[j, k], of_s[j, k] = j23 * (of_c[j, k] - volume * c[k]), 0.0
+        for b in range(len(moduli)):
+            was = _contracted(before, inner[b]) / 3.0
+            w = flow_weights(steps[t, b], was)
+            of_was = (_contracted(of_before, inner[b]) - _contracted(before, _between(inner[b], of_flowed[b]))) / 3.0
+            by_was = _weights_by(steps[t, b], was, w)
+            for k in range(4):
+                by_w = by_was[0] * flowed[b, k] + by_was[1] * before[k] + by_was[2] * now[k]
+                corrected = w[0] * of_flowed[b, k] + w[1] * of_before[k] + of_was * by_w
+                for j in range(1 + size):
+                    of_a[b, j, k] = w[2] * of_now[j, k] + (corrected if j == 0 else 0.0)
+            a, root, g = _stepped(w, flowed[b], before, now)
+            _add_changes(c, ci, j23, g, root, moduli[b], of_c, of_a[b], of_s)
+            for k in range(4):
+                flowed[b, k], inner[b, k] = a[k] / root, g[k]
+                of_a[b, :, k] /= root
+        for i in range(size):
+            right[i] = -residual[t, i] - _seen(by_stress[t, i], of_s[0])
+            for j in range(size):
+                matrix[i, j] = matrices[t, i, j] + _seen(by_stress[t, i], of_s[1 + j])
+        solved(matrix, right, step[t])
+        for k in range(4):
+            before[k], of_before[k] = now[k], _corrected(of_now, step[t], k)
+        for b in range(len(moduli)):
+            for k in range(4):
+                of_flowed[b, k] = _corrected(of_a[b], step[t], k)
+            grown = _contracted(inner[b], of_flowed[b]) / 3.0  # det C_i stays 1
+            for k in range(4):
+                of_flowed[b, k] -= grown * flowed[b, k]
+    return step
+
+
+@nb.njit(inline="always")
+def _add_changes(c, ci, j23, g, root, modulus, of_c, of_a, of_s):  # type: ignore[no-untyped-def]
+    """Changes (1 + m, 4) of the stress of one branch are added to of_s, by those of C and A."""
+    s = _contracted(c, g) / 3.0
+    for j in range(len(of_c)):
+        grown, bent = _contracted(g, of_a[j]) / 3.0, _between(g, of_a[j])
+        of_g = (
+            (grown * g[0] - bent[0]) / root, (grown * g[1] - bent[1]) / root,
+            (grown * g[2] - bent[2]) / root, (grown * g[3] - bent[3]) / root,
+        )  # fmt: skip
+        volume, of_ci = _contracted(ci, of_c[j]) / 3.0, _between(ci, of_c[j])
+        of_share = (_contracted(of_c[j], g) + _contracted(c, of_g)) / 3.0
+        for k in range(4):
+            deviator = g[k] - s * ci[k]
+            of_s[j, k] += modulus * j23 * (of_g[k] - of_share * ci[k] + s * of_ci[k] - volume * deviator)
+
+
+@nb.njit(inline="always")
+def _corrected(changes, step, k):  # type: ignore[no-untyped-def]
+    """The whole change of one component, with the unknowns' corrections (m,)."""
+    total = changes[0, k]
+    for j in range(len(step)):
+        total += changes[1 + j, k] * step[j]
+    return total
+
+
+@nb.njit(inline="always")
+def _seen(by_stress, stress):  # type: ignore[no-untyped-def]
+    """Of the six stresses the four that are not 0."""
+    return by_stress[0] * stress[0] + by_stress[1] * stress[1] + by_stress[2] * stress[2] + by_stress[3] * stress[3]

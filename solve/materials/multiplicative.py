@@ -1,0 +1,136 @@
+"""Relaxation at large strain: Maxwell branches whose dashpots flow, F = F_e F_i in each.
+
+A branch is a neo-Hookean spring of shear modulus mu_i on the elastic part of the isochoric deformation; with
+C_i = F_i' F_i, det C_i = 1, and C^ = J^(-2/3) C
+    psi = mu_i / 2 (C^ : C_i^-1 - 3),      tau_i dC_i/dt = C^ - s C_i,      s = C^ : C_i^-1 / 3
+(Simo, Comput. Methods Appl. Mech. Eng. 99, 1992; Lion, Acta Mech. 123, 1997; Reese and Govindjee, Int. J. Solids
+Struct. 35, 1998). With s from before the step and C^ linear over it the equation is linear, and its solution, brought
+back to det C_i = 1, is an explicit update of second order (that of Shutov, Landgraf and Ihlemann, Comput. Methods Appl.
+Mech. Eng. 265, 2013, with exponentials for the factors of backward Euler; b = s dt / tau_i, g = (1 - exp(-b)) / b):
+    A = exp(-b) C_i + (g - exp(-b)) / s C^_old + (1 - g) / s C^,      C_i <- A / det(A)^(1/3)
+At small strain, s = 1, it is that of solve.materials.inelastic. With G = C_i^-1 after the step
+    S_i = mu_i J^(-2/3) (G - (C : G) / 3 C^-1)
+which is the gradient of a function of C, as G is that of 3 det(A)^(1/3) with respect to A: the tangent is symmetric.
+"""
+
+from dataclasses import dataclass, replace
+
+import numba as nb
+import numpy as np
+
+from solve.materials.inelastic import Memory, Prony, StressResponse, mean_decay
+from solve.materials.isochoric import I_OF, J_OF, NUMBER_OF, inverse
+
+
+@dataclass(frozen=True)
+class MultiplicativeMaxwell(Prony):
+    """relative_moduli : mu_i over the shear modulus of the elastic law, of whose stress 1 - sum g_i never relaxes."""
+
+    shear_modulus: float = 1.0
+    linear = False
+
+    def acting_on(self, shear_modulus: float) -> "MultiplicativeMaxwell":
+        """The branches of a medium with this shear modulus, in the solver's unit of stress."""
+        return replace(self, shear_modulus=shear_modulus)
+
+    def start(self, points: int, components: int = 6) -> Memory:
+        """Those of a Prony series with C_i (n, i, 6) for its branches; and C^ (n, 6) at the last step."""
+        unit = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
+        branches = np.tile(unit, (points, len(self.relative_moduli), 1))
+        return *super().start(points, components)[:2], branches, np.tile(unit, (points, 1))
+
+    def update(self, elastic: StressResponse, memory: Memory, time_step: float) -> tuple[StressResponse, Memory]:
+        """Relaxed response and the new memory."""
+        assert elastic.cauchy_green is not None
+        old, _, flowed, strain = memory
+        moduli = np.array(self.relative_moduli)
+        never = 1.0 - moduli.sum()
+        stress, tangent = never * elastic.stress, never * elastic.tangent
+        new, now = np.empty_like(flowed), np.empty_like(strain)
+        steps = time_step / np.array(self.relaxation_times)
+        _add_branches(
+            elastic.cauchy_green, strain, flowed, steps, self.shear_modulus * moduli, stress, tangent, new, now
+        )
+        change = elastic.stress - old
+        rate = change / time_step if time_step > 0.0 else np.full_like(change, np.nan)
+        return StressResponse(stress, tangent), (elastic.stress, rate, new, now)
+
+
+@nb.njit(inline="always")
+def flow_weights(a, s):  # type: ignore[no-untyped-def]
+    """Of C_i, of C^ before and of C^ after a step of a = dt / tau_i."""
+    fade, gain = np.exp(-a * s), mean_decay(a * s)
+    return fade, (gain - fade) / s, (1.0 - gain) / s
+
+
+@nb.njit(inline="always")
+def _contracted(a, b):  # type: ignore[no-untyped-def]
+    total = 0.0
+    for i in range(3):
+        for j in range(3):
+            total += a[i, j] * b[i, j]
+    return total
+
+
+@nb.njit(inline="always")
+def _fill(six, out):  # type: ignore[no-untyped-def]
+    for i in range(3):
+        for j in range(3):
+            out[i, j] = six[NUMBER_OF[i, j]]
+
+
+@nb.njit(inline="always")
+def _stepped(step, flowed, before, now, a, g):  # type: ignore[no-untyped-def]
+    """A into a and C_i^-1 into g, (3, 3) each; returns det(A)^(1/3) and the weight of C^ after the step."""
+    _fill(flowed, a)
+    inverse(a, g)
+    s = 0.0
+    for i in range(3):
+        for j in range(3):
+            s += g[i, j] * before[NUMBER_OF[i, j]] / 3.0
+    of_flowed, of_before, of_now = flow_weights(step, s)
+    for i in range(3):
+        for j in range(3):
+            v = NUMBER_OF[i, j]
+            a[i, j] = of_flowed * flowed[v] + of_before * before[v] + of_now * now[v]
+    root = inverse(a, g) ** (1.0 / 3.0)
+    for i in range(3):
+        for j in range(3):
+            g[i, j] *= root
+    return root, of_now
+
+
+@nb.njit(parallel=True, cache=True)
+def _add_branches(cauchy_green, before, flowed, steps, moduli, stress, tangent, new, now):  # type: ignore[no-untyped-def]
+    """Stress (n, 6) and tangent (n, 6, 6) of all branches are added; new (n, i, 6) : C_i, now (n, 6) : C^."""
+    for n in nb.prange(len(cauchy_green)):
+        c, ci, a, g = cauchy_green[n], np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
+        j23 = inverse(c, ci) ** (-1.0 / 3.0)
+        for v in range(6):
+            now[n, v] = j23 * c[I_OF[v], J_OF[v]]
+        for b in range(len(moduli)):
+            root, of_now = _stepped(steps[b], flowed[n, b], before[n], now[n], a, g)
+            for v in range(6):
+                new[n, b, v] = a[I_OF[v], J_OF[v]] / root
+            _add_branch(c, ci, j23, g, of_now / root, moduli[b], stress[n], tangent[n])
+
+
+@nb.njit(inline="always")
+def _add_branch(c, ci, j23, g, h, modulus, stress, tangent):  # type: ignore[no-untyped-def]
+    """dG/dC^ is H = h (G x G / 3 - G (.) G); x is H : C."""
+    gcg = g @ c @ g
+    s = _contracted(c, g)
+    x = h * (s / 3.0 * g - gcg)
+    cx = _contracted(c, x)
+    for v in range(6):
+        i, j = I_OF[v], J_OF[v]
+        stress[v] += modulus * j23 * (g[i, j] - s / 3.0 * ci[i, j])
+        for w in range(6):
+            k, m = I_OF[w], J_OF[w]
+            of_ci = 0.5 * (ci[i, k] * ci[j, m] + ci[i, m] * ci[j, k])
+            of_g = 0.5 * (g[i, k] * g[j, m] + g[i, m] * g[j, k])
+            both = ci[i, j] * ci[k, m]
+            at_fixed_g = s / 3.0 * of_ci + s / 9.0 * both - (g[i, j] * ci[k, m] + ci[i, j] * g[k, m]) / 3.0
+            through_g = h * (g[i, j] * g[k, m] / 3.0 - of_g) + cx / 9.0 * both
+            through_g -= (x[i, j] * ci[k, m] + ci[i, j] * x[k, m]) / 3.0
+            tangent[v, w] += 2.0 * modulus * j23 * (at_fixed_g + j23 * through_g)
