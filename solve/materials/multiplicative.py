@@ -11,6 +11,8 @@ Mech. Eng. 265, 2013, with exponentials for the factors of backward Euler; b = s
 At small strain, s = 1, it is that of solve.materials.inelastic. With G = C_i^-1 after the step
     S_i = mu_i J^(-2/3) (G - (C : G) / 3 C^-1)
 which is the gradient of a function of C, as G is that of 3 det(A)^(1/3) with respect to A: the tangent is symmetric.
+Real rubber lies between this and a Prony series of the second Piola-Kirchhoff stress, so that a share f of each branch
+may flow: S = (1 - sum g_i) S0 + sum (f S_i + (1 - f) Q_i) with mu_i = g_i mu.
 """
 
 from dataclasses import dataclass, replace
@@ -24,8 +26,10 @@ from solve.materials.isochoric import I_OF, J_OF, NUMBER_OF, inverse
 
 @dataclass(frozen=True)
 class MultiplicativeMaxwell(Prony):
-    """relative_moduli : mu_i over the shear modulus of the elastic law, of whose stress 1 - sum g_i never relaxes."""
+    """A Prony series of which a share flows. shear_modulus : of the elastic law, whose stress is the instantaneous one
+    where that is neo-Hookean."""
 
+    flowing: float = 1.0
     shear_modulus: float = 1.0
     linear = False
 
@@ -34,26 +38,24 @@ class MultiplicativeMaxwell(Prony):
         return replace(self, shear_modulus=shear_modulus)
 
     def start(self, points: int, components: int = 6) -> Memory:
-        """Those of a Prony series with C_i (n, i, 6) for its branches; and C^ (n, 6) at the last step."""
+        """That of a Prony series; C_i (n, i, 6), and C^ (n, 6) at the last step."""
         unit = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
         branches = np.tile(unit, (points, len(self.relative_moduli), 1))
-        return *super().start(points, components)[:2], branches, np.tile(unit, (points, 1))
+        return *super().start(points, components), branches, np.tile(unit, (points, 1))
 
     def update(self, elastic: StressResponse, memory: Memory, time_step: float) -> tuple[StressResponse, Memory]:
         """Relaxed response and the new memory."""
         assert elastic.cauchy_green is not None
-        old, _, flowed, strain = memory
-        moduli = np.array(self.relative_moduli)
-        never = 1.0 - moduli.sum()
-        stress, tangent = never * elastic.stress, never * elastic.tangent
+        *plain, flowed, strain = memory
+        linear, plain_now = super().update(elastic, tuple(plain), time_step)
+        moduli = self.flowing * np.array(self.relative_moduli)
+        of_linear, of_elastic = 1.0 - self.flowing, self.flowing - moduli.sum()
+        stress = of_linear * linear.stress + of_elastic * elastic.stress
+        tangent = of_linear * linear.tangent + of_elastic * elastic.tangent
         new, now = np.empty_like(flowed), np.empty_like(strain)
-        steps = time_step / np.array(self.relaxation_times)
-        _add_branches(
-            elastic.cauchy_green, strain, flowed, steps, self.shear_modulus * moduli, stress, tangent, new, now
-        )
-        change = elastic.stress - old
-        rate = change / time_step if time_step > 0.0 else np.full_like(change, np.nan)
-        return StressResponse(stress, tangent), (elastic.stress, rate, new, now)
+        steps, moduli = time_step / np.array(self.relaxation_times), self.shear_modulus * moduli
+        _add_branches(elastic.cauchy_green, strain, flowed, steps, moduli, stress, tangent, new, now)
+        return StressResponse(stress, tangent), (*plain_now, new, now)
 
 
 @nb.njit(inline="always")

@@ -87,9 +87,8 @@ def _mechanisms(draw, names, segment, dot, materials):
         made.remove(remade[-1])
     foams = {name.removeprefix("own-") for name, one in materials.items() if one.get("model") == "hyperfoam"}
     foams |= {one["component"] for one in made if one["name"] == "foam-densification"}
-    for one in made:
-        if one["component"] in foams and "multiplicative_moduli" in one["parameters"]:  # of rubber only
-            one["parameters"]["relative_moduli"] = one["parameters"].pop("multiplicative_moduli")
+    for one in (one for one in made if one["component"] in foams):
+        one["parameters"].pop("flowing_share", None)  # only rubber flows
     return made
 
 

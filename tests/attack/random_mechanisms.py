@@ -81,11 +81,12 @@ def _low_pass(draw):
 
 def _relaxing(draw, media, others):
     where, terms = draw.among([*media, *media, *others]), range(draw.whole(1, 3))
-    law = draw.among(["relative_moduli", "multiplicative_moduli"]) if where in media else "relative_moduli"
-    return where, {
-        law: [draw.between(0.02, 0.25) for _ in terms],
+    series = {
+        "relative_moduli": [draw.between(0.02, 0.25) for _ in terms],
         "relaxation_times_s": [draw.log(0.01, 10.0) for _ in terms],
     }
+    flow = {"flowing_share": draw.among((0.0, 1.0, draw.between(0.0, 1.0)))} if where in media else {}
+    return where, {**series, **flow}
 
 
 def _stiffening(draw):

@@ -8,9 +8,7 @@ MAXWELL = st.lists(st.tuples(between(0.0, 0.3), log_between(0.01, 10.0)), min_si
 PRONY = MAXWELL.map(
     lambda terms: {"relative_moduli": [g for g, _ in terms], "relaxation_times_s": [t for _, t in terms]}
 )
-FLOWING = MAXWELL.map(
-    lambda terms: {"multiplicative_moduli": [g for g, _ in terms], "relaxation_times_s": [t for _, t in terms]}
-)
+FLOWING = st.tuples(PRONY, between(0.0, 1.0)).map(lambda drawn: {**drawn[0], "flowing_share": drawn[1]})
 STIFF = log_between(1.0, 1e6)
 FACTOR = between(0.7, 1.4)
 
@@ -59,7 +57,7 @@ def mechanisms(draw, segment, dot, foams):
     chosen = draw(st.lists(where, max_size=3, unique_by=lambda m: (m["name"], m["component"])))
     remade = [m for m in chosen if m["name"] in ("hyperelastic-stiffening", "foam-densification")]
     foams = foams | {m["component"] for m in remade if m["name"] == "foam-densification"}
-    flowing = [m for m in chosen if m["component"] in foams and "multiplicative_moduli" in m["parameters"]]
+    flowing = [m for m in chosen if m["component"] in foams and "flowing_share" in m["parameters"]]
     return [m for m in chosen if m not in remade[1:] and m not in flowing]
 
 

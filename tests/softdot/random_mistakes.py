@@ -96,7 +96,7 @@ def impossible_materials(size):
         ("viscoelasticity", "medium2", {"relative_moduli": [], "relaxation_times_s": [size]}),
         ("viscoelasticity", "medium2", {"relaxation_times_s": [size]}),
         ("viscoelasticity", "bond-medium1-film", {"relative_moduli": [0.2], "relaxation_times_s": [size]}),
-        ("viscoelasticity", "film", {"multiplicative_moduli": [0.2], "relaxation_times_s": [size]}),
+        ("viscoelasticity", "film", {"relative_moduli": [0.2], "relaxation_times_s": [size], "flowing_share": 0.5}),
         ("hyperelastic-stiffening", "medium2", {"mu_MPa": [size], "alpha": [-2.0]}),
         ("hyperelastic-stiffening", "medium2", {"mu_MPa": [size], "alpha": [2.0, 3.0]}),
         ("hyperelastic-stiffening", "medium2", {"mu_MPa": [], "alpha": []}),

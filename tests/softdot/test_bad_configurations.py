@@ -107,13 +107,11 @@ CASES = {
     PRONY.format("[0.6]", "[0.1, 1.0]"): (
         "mechanisms[0].parameters.relaxation_times_s has 2 values but relative_moduli has 1: one of each per term"
     ),
-    "[[mechanisms]]\nname = 'viscoelasticity'\ncomponent = 'medium2'\n"
-    "parameters = {relative_moduli = [0.1], multiplicative_moduli = [0.1], relaxation_times_s = [1.0]}": (
-        "mechanisms[0].parameters.relative_moduli and multiplicative_moduli: give one of them"
+    PRONY.format("[0.6]", "[0.1], flowing_share = 1.5"): (
+        "mechanisms[0].parameters.flowing_share = 1.5: must be less than or equal to 1"
     ),
-    "[[mechanisms]]\nname = 'viscoelasticity'\ncomponent = 'film'\n"
-    "parameters = {multiplicative_moduli = [0.1], relaxation_times_s = [1.0]}": (
-        "mechanisms[0].parameters.multiplicative_moduli: 'film' must be a medium of rubber; use relative_moduli"
+    PRONY.format("[0.6]", "[0.1], flowing_share = 0.5").replace("medium2", "film"): (
+        "mechanisms[0].parameters.flowing_share = 0.5: 'film' is no medium of rubber; must be 0"
     ),
     PRONY.format("[0.6]", "[-0.1]"): ("mechanisms[0].parameters.relaxation_times_s.0 = -0.1: must be greater than 0"),
     "[[mechanisms]]\nname = 'friction'\ncomponent = 'dot'\nparameters = {coefficient = -0.1}": (

@@ -11,7 +11,7 @@ from solve.materials.multiplicative import MultiplicativeMaxwell
 
 LAW = InvariantLaw(0.4, 0.1, 0.05, 0.01, 20.0)
 G, TAU = (0.3, 0.2), (0.3, 2.0)
-SERIES = MultiplicativeMaxwell(G, TAU, LAW.shear_modulus)
+SERIES = MultiplicativeMaxwell(G, TAU, 1.0, LAW.shear_modulus)
 
 
 def answer(series, strains, time):
@@ -83,7 +83,7 @@ def test_at_small_strain_it_is_the_series_of_the_stress():
 
 def test_a_step_is_instantaneously_elastic_and_ends_at_what_never_relaxes():
     law = InvariantLaw(0.4, 0.0, 0.0, 0.0, 20.0)
-    series, c = MultiplicativeMaxwell(G, TAU, law.shear_modulus), sheared(np.array([2.0]))
+    series, c = MultiplicativeMaxwell(G, TAU, 1.0, law.shear_modulus), sheared(np.array([2.0]))
     response = StressResponse(*law.stress(c), cauchy_green=c)
     at_once, memory = series.update(response, series.start(1), 0.0)
     np.testing.assert_allclose(at_once.stress, response.stress, atol=1e-12)
@@ -95,7 +95,7 @@ def test_a_step_is_instantaneously_elastic_and_ends_at_what_never_relaxes():
 def test_a_quick_branch_is_a_newtonian_fluid_however_large_the_shear():
     """Nominal shear stress S12 + g S22 = mu tau dg/dt (a Prony series of S makes it mu tau dg/dt (1 + g^2 / 3))."""
     tau, rate = 1e-3, 1.0
-    series, time = MultiplicativeMaxwell((0.5,), (tau,), LAW.shear_modulus), np.linspace(0.0, 10.0, 4001)
+    series, time = MultiplicativeMaxwell((0.5,), (tau,), 1.0, LAW.shear_modulus), np.linspace(0.0, 10.0, 4001)
     shear = rate * time
     stress = answer(series, sheared(shear), time)[0]
     branch = stress - 0.5 * LAW.stress(sheared(shear))[0]
@@ -103,13 +103,23 @@ def test_a_quick_branch_is_a_newtonian_fluid_however_large_the_shear():
     np.testing.assert_allclose(nominal, 0.5 * LAW.shear_modulus * tau * rate, rtol=2e-3)
 
 
-def test_the_tangent_is_the_derivative_of_the_stress_and_symmetric():
+def test_what_does_not_flow_is_the_series_of_the_stress():
+    time = np.linspace(0.0, 1.5, 31)
+    strains = np.array([course(t) for t in time])
+    flows, plain = answer(SERIES, strains, time)[0], answer(Prony(G, TAU), strains, time)[0]
+    partly = answer(MultiplicativeMaxwell(G, TAU, 0.3, LAW.shear_modulus), strains, time)[0]
+    np.testing.assert_allclose(partly, 0.3 * flows + 0.7 * plain, atol=1e-12)
+
+
+@pytest.mark.parametrize("flowing", [1.0, 0.4])
+def test_the_tangent_is_the_derivative_of_the_stress_and_symmetric(flowing):
     rng = np.random.default_rng(0)
     history = np.array([f.T @ f for f in np.eye(3) + 0.4 * rng.standard_normal((4, 3, 3))])
     time, change = np.array([0.0, 0.3, 0.6, 0.8]), 1e-6
+    series = MultiplicativeMaxwell(G, TAU, flowing, LAW.shear_modulus)
 
     def end(strain):
-        return answer(SERIES, [*history[:-1], history[-1] + 2.0 * from_voigt(strain, 2.0)], time)
+        return answer(series, [*history[:-1], history[-1] + 2.0 * from_voigt(strain, 2.0)], time)
 
     slope = np.stack([(end(change * e)[0][-1] - end(-change * e)[0][-1]) / (2.0 * change) for e in np.eye(6)], axis=1)
     tangent = end(np.zeros(6))[1]

@@ -1,15 +1,16 @@
-"""A whole history of a coupon whose branches flow: the formulas of solve.materials.multiplicative by scans over time.
+"""A whole history of a coupon whose branches flow: the formulas of solve.materials.multiplicative, scanned over time.
 
 Every deformation of a coupon has the components 11, 22, 33 and 12 alone: tensors are these four numbers here.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numba as nb
 import numpy as np
 
-from diagnose.engines.coupon.relaxation import solved
+from diagnose.engines.coupon.relaxation import Relaxation, solved
 from geometry.arrays import Floats
+from solve.materials.inelastic import branch_stress
 from solve.materials.multiplicative import MultiplicativeMaxwell, flow_weights
 
 OF_SIX = [0, 1, 2, 3]
@@ -17,27 +18,34 @@ OF_SIX = [0, 1, 2, 3]
 
 @dataclass(frozen=True)
 class FlowingBranches:
-    """A multiplicative series on one clock, at rest before the first sample.
+    """A series of which a share flows, on one clock, at rest before the first sample.
 
-    moduli : mu_i in MPa (b,); never : share of the elastic stress that does not relax; steps : dt / tau_i (t, b).
+    linear : the series whose stress relaxes, of which a share 1 - flowing is kept. moduli : mu_i of what flows, MPa
+    (b,). steps : dt / tau_i (t, b).
     """
 
+    linear: Relaxation
+    flowing: float
     moduli: Floats
-    never: float
     steps: Floats
 
     @classmethod
     def of(cls, series: MultiplicativeMaxwell, shear_modulus_MPa: float, time_s: Floats) -> "FlowingBranches":
         """The series at times (t,)."""
-        shares = np.array(series.relative_moduli, dtype=np.float64)
+        linear = Relaxation.of(series, time_s)
         steps = np.diff(time_s, prepend=time_s[0])[:, None] / np.array(series.relaxation_times)
-        return cls(shear_modulus_MPa * shares, float(1.0 - shares.sum()), steps)
+        return cls(linear, series.flowing, series.flowing * shear_modulus_MPa * linear.moduli, steps)
+
+    @property
+    def kept(self) -> Relaxation:
+        """The linear series with what is left to it: its stress, with all that never relaxes, is the rest."""
+        return replace(self.linear, moduli=(1.0 - self.flowing) * self.linear.moduli)
 
     def relaxed(self, elastic: Floats, cauchy_green: Floats) -> Floats:
         """Stress (t, 6) of the histories of the elastic one (t, 6) and of C (t, 3, 3)."""
-        stress = self.never * elastic
+        stress = self.kept.relaxed(elastic) - self.flowing * self.linear.moduli.sum() * elastic
         _add_history(_four(cauchy_green), self.steps, self.moduli, stress)
-        return stress
+        return np.asarray(stress)
 
     def newton_step(
         self, residual: Floats, by_stress: Floats, stress_by: Floats, by_unknown: Floats, cauchy_green: Floats,
@@ -48,11 +56,14 @@ class FlowingBranches:
         by_stress (t, m, 6) : of the residual; stress_by (t, 6, m) : of the elastic stress by the unknowns; by_unknown
         (t, m, m) : of the residual at fixed stress; strain_by (t, 6, m) : of the strain, engineering shears.
         """
+        kept = self.kept
+        instant = kept.instant - self.flowing * self.linear.moduli.sum()
+        matrices = by_unknown + np.matmul(by_stress, instant[:, None, None] * stress_by)
+        by_four, stress_four = (np.ascontiguousarray(a) for a in (by_stress[:, :, OF_SIX], stress_by[:, OF_SIX]))
         rates = strain_by[:, OF_SIX, :] * np.array([2.0, 2.0, 2.0, 1.0])[:, None]
-        matrices = by_unknown + self.never * np.matmul(by_stress, stress_by)
-        four = _four(cauchy_green)
-        by_four = np.ascontiguousarray(by_stress[:, :, OF_SIX])
-        return np.asarray(_newton_step(residual, by_four, matrices, four, rates, self.steps, self.moduli))
+        linear = stress_four, kept.fade, kept.gain * kept.moduli
+        flow = _four(cauchy_green), rates, self.steps, self.moduli
+        return np.asarray(_newton_step(residual, by_four, matrices, linear, flow))
 
 
 def _four(tensors: Floats) -> Floats:
@@ -134,12 +145,15 @@ def _rest(branches):  # type: ignore[no-untyped-def]
 
 
 @nb.njit(cache=True)
-def _newton_step(residual, by_stress, matrices, strain, rates, steps, moduli):  # type: ignore[no-untyped-def]
-    """Forward substitution in time: the correction of a sample depends on those before through C_i and C^.
+def _newton_step(residual, by_stress, matrices, linear, flow):  # type: ignore[no-untyped-def]
+    """Forward substitution in time: the correction of a sample depends on those before through Q_i, C_i and C^.
 
     Changes (1 + m, 4) are those by what was corrected before, and those by each of the m unknowns.
     """
+    stress_by, fade, gain = linear
+    strain, rates, steps, moduli = flow
     samples, size = residual.shape
+    of_branch, of_elastic, was_elastic = np.zeros((len(moduli), 4)), np.zeros(4), np.zeros(4)
     flowed, inner = _rest(len(moduli)), _rest(len(moduli))
     before, now = np.array([1.0, 1.0, 1.0, 0.0]), np.empty(4)
     of_flowed, of_before = np.zeros((len(moduli), 4)), np.zeros(4)
@@ -157,6 +171,9 @@ def _newton_step(residual, by_stress, matrices, strain, rates, steps, moduli):  
             volume = _contracted(ci, of_c[j]) / 3.0
             for k in range(4):
                 of_now[j, k], of_s[j, k] = j23 * (of_c[j, k] - volume * c[k]), 0.0
+        for b in range(len(moduli)):
+            for k in range(4):
+                of_s[0, k] += fade[t, b] * of_branch[b, k] - gain[t, b] * was_elastic[k]
         for b in range(len(moduli)):
             was = _contracted(before, inner[b]) / 3.0
             w = flow_weights(steps[t, b], was)
@@ -178,7 +195,12 @@ def _newton_step(residual, by_stress, matrices, strain, rates, steps, moduli):  
                 matrix[i, j] = matrices[t, i, j] + _seen(by_stress[t, i], of_s[1 + j])
         solved(matrix, right, step[t])
         for k in range(4):
-            before[k], of_before[k] = now[k], _corrected(of_now, step[t], k)
+            before[k], of_before[k], of_elastic[k] = now[k], _corrected(of_now, step[t], k), 0.0
+            for j in range(size):
+                of_elastic[k] += stress_by[t, k, j] * step[t, j]
+            for b in range(len(moduli)):
+                of_branch[b, k] = branch_stress(of_branch[b, k], fade[t, b], gain[t, b], of_elastic[k] - was_elastic[k])
+            was_elastic[k] = of_elastic[k]
         for b in range(len(moduli)):
             for k in range(4):
                 of_flowed[b, k] = _corrected(of_a[b], step[t], k)

@@ -49,12 +49,13 @@ SMOOTHED = 5  # samples, against the noise of the drive
 
 
 def relaxation_times(recording: Recording) -> tuple[float, ...]:
-    """Times in s between a third of the quickest loading and the longest run.
+    """Times in s between a tenth of the quickest loading and three times the longest run.
 
-    Half a decade apart, or as many as the score test takes.
+    Half a decade apart, or as many as the score test takes. What has not come to rest when the longest run ends would
+    else have to relax within it, and what flows already while it is loaded as slowly as that.
     """
-    longest = max(float(run.time_s[-1] - run.time_s[0]) for run in recording.runs)
-    shortest = max(min(_quickest(recording)) / 3.0, min(2.0 * run.step_s for run in recording.runs))
+    longest = 3.0 * max(float(run.time_s[-1] - run.time_s[0]) for run in recording.runs)
+    shortest = max(min(_quickest(recording)) / 10.0, min(2.0 * run.step_s for run in recording.runs))
     decades = np.log10(longest / shortest)
     count = int(np.clip(ceil(decades / SPACING), 1, MOST))
     spacing = max(SPACING, decades / count)

@@ -20,6 +20,8 @@ LARGEST_SHARE = 0.75
 MOST = LARGEST_SHARE / (1.0 - LARGEST_SHARE) / BRANCHES  # modulus of one branch, in terms of what never relaxes
 EARLY_S, LATE_S = 0.1, 10.0
 FEWEST_SAMPLES = 5.0  # within the shortest time of relaxation that is looked for
+LINEAR = Coordinate("linear_share", 0.0, 1.0, (1.0,), levels_off=(False, True))
+"""The share of the branches of a coupon by which its stress relaxes; by the others it flows."""
 MOST_OF_SENSOR = 1.0  # modulus of one branch of an unknown sensor, in terms of what never relaxes
 
 
@@ -30,9 +32,9 @@ def of_segment(scene: Scene) -> Iterator[Candidate]:
 
 
 def of_coupon(scene: CouponScene) -> Iterator[Candidate]:
-    """The specimen, two branches a decade."""
-    moduli = "relative_moduli" if scene.point.law.compressible else "multiplicative_moduli"
-    yield spectrum(PartOfLayer, SPECIMEN, relaxation_times(scene.recording), MOST_OF_COUPON, moduli)
+    """The specimen, two branches a decade; rubber flows, but for a share that is fitted."""
+    shares = () if scene.point.law.compressible else (LINEAR,)
+    yield spectrum(PartOfLayer, SPECIMEN, relaxation_times(scene.recording), MOST_OF_COUPON, shares)
 
 
 def of_unknown_geometry(scene: Scene, recording: Recording) -> Iterator[Candidate]:
@@ -99,23 +101,26 @@ def relaxed_fraction(relative_moduli: Sequence[float], relaxation_times_s: Seque
 
 
 def spectrum(
-    make: type[Candidate], component: str, times_s: Sequence[float], most: float, name: str = "relative_moduli"
+    make: type[Candidate], component: str, times_s: Sequence[float], most: float, shares: tuple[Coordinate, ...] = ()
 ) -> Candidate:
     """The candidate at a component, one coordinate a branch; most : of each E_i / E_inf.
 
-    make : its class. name : of its moduli among the parameters.
+    make : its class. shares : the share of the branches that does not flow, where the rest does; none where nothing
+    does.
     """
+    count = len(times_s)
 
     def parameters(values: Sequence[float]) -> dict[str, Any]:
-        moduli, times = _branches(values, times_s)
-        return {name: moduli, "relaxation_times_s": times}
+        moduli, times = _branches(values[:count], times_s)
+        series = {"relative_moduli": moduli, "relaxation_times_s": times}
+        return {**series, "flowing_share": 1.0 - values[count]} if shares else series
 
     def derived(values: Sequence[float]) -> dict[str, float]:
-        return {"relaxed_fraction": relaxed_fraction(*_branches(values, times_s))}
+        return {"relaxed_fraction": relaxed_fraction(*_branches(values[:count], times_s))}
 
-    coordinates = tuple(Coordinate(f"modulus_at_{time:.3g}_s", 0.0, most, (0.1, 0.5)) for time in times_s)
-    units = {name: "", "relaxation_times_s": "s", "relaxed_fraction": ""}
-    return make(VISCOELASTICITY.name, component, coordinates, parameters, derived, units)
+    branches = tuple(Coordinate(f"modulus_at_{time:.3g}_s", 0.0, most, (0.1, 0.5)) for time in times_s)
+    units = {"relative_moduli": "", "relaxation_times_s": "s", "flowing_share": "", "relaxed_fraction": ""}
+    return make(VISCOELASTICITY.name, component, (*branches, *shares), parameters, derived, units)
 
 
 def _branches(values: Sequence[float], times_s: Sequence[float]) -> tuple[list[float], list[float]]:

@@ -3,7 +3,7 @@
 Equation, source and typical values: docs/mechanisms.md#viscoelasticity.
 """
 
-from typing import Any, Self
+from typing import Self
 
 from pydantic import Field, model_validator
 
@@ -15,42 +15,32 @@ from solve.model import Model
 
 
 class Viscoelasticity(Parameters):
-    """A Prony series of the stress (relative_moduli), or of branches that flow (multiplicative_moduli)."""
+    """A Prony series."""
 
     relative_moduli: Moduli = Field(description="share of the instantaneous stress that each term relaxes")
-    multiplicative_moduli: Moduli = Field(
-        (),
-        description="in its place, for rubber at large strain: share of the shear modulus that each flowing branch has",
-    )
     relaxation_times_s: tuple[Positive, ...] = Field(description="one for each modulus")
-
-    @model_validator(mode="before")
-    @classmethod
-    def _one_series(cls, values: Any) -> Any:
-        flows = isinstance(values, dict) and "multiplicative_moduli" in values
-        return {"relative_moduli": (), **values} if flows else values
+    flowing_share: float = Field(
+        0.0,
+        ge=0.0,
+        le=1.0,
+        description="of each term, the share that is a branch of rubber that flows, for large strain",
+    )
 
     @model_validator(mode="after")
     def _series(self) -> Self:
-        if self.relative_moduli and self.multiplicative_moduli:
-            raise ValueError("relative_moduli and multiplicative_moduli: give one of them")
-        name = "multiplicative_moduli" if self.multiplicative_moduli else "relative_moduli"
-        moduli = getattr(self, name)
-        require_one_of_each("term", **{name: moduli}, relaxation_times_s=self.relaxation_times_s)
-        if sum(moduli) >= 1.0:
-            raise ValueError(f"{name} = {list(moduli)}: their sum must be below 1")
+        require_one_of_each("term", relative_moduli=self.relative_moduli, relaxation_times_s=self.relaxation_times_s)
+        if sum(self.relative_moduli) >= 1.0:
+            raise ValueError(f"relative_moduli = {list(self.relative_moduli)}: their sum must be below 1")
         return self
 
 
 def switch_on(model: Model, component: str, values: Viscoelasticity) -> Model:
-    """The model with this physics at a component. ValueError where branches should flow that are not of rubber."""
-    series = Prony(values.relative_moduli, values.relaxation_times_s)
-    if values.multiplicative_moduli:
+    """The model with this physics at a component. ValueError where a share should flow of what is no rubber."""
+    series, share = Prony(values.relative_moduli, values.relaxation_times_s), values.flowing_share
+    if share > 0.0:
         if component not in MEDIA or model.materials[component].law.compressible:
-            raise ValueError(
-                f"parameters.multiplicative_moduli: '{component}' must be a medium of rubber; use relative_moduli"
-            )
-        series = MultiplicativeMaxwell(values.multiplicative_moduli, values.relaxation_times_s)
+            raise ValueError(f"parameters.flowing_share = {share:g}: '{component}' is no medium of rubber; must be 0")
+        series = MultiplicativeMaxwell(values.relative_moduli, values.relaxation_times_s, share)
     on = {component: series} if sum(series.relative_moduli) > 0.0 else {}
     return with_physics(model, viscosity={**model.physics.viscosity, **on})
 
@@ -68,8 +58,8 @@ VISCOELASTICITY = register(
                 "silicones: 0.05, 0.03, 0.02; unfilled natural rubber 2 to 3 % per decade of time, filled 5 to 10 % "
                 "(rules of thumb)"
             ),
-            "multiplicative_moduli": "as above; of a soft adhesive 0.9 in all",
             "relaxation_times_s": "0.1, 1, 10 with the above",
+            "flowing_share": "1 of soft adhesives and tapes at strains above one; in a press it hardly matters",
         },
         traits=Traits(memory=True, acts_on_tables=True),
     )

@@ -16,7 +16,7 @@ from tests.solve.trial import trial
 SIZE = (2.0, 1.0, 1.5)
 LAW = InvariantLaw(0.4, 0.0, 0.05, 0.01, 20.0)
 SOFTENING, SERIES = Softening(0.3, 0.01, 0.4), Prony((0.3, 0.2), (0.3, 2.0))
-FLOWING = MultiplicativeMaxwell((0.3, 0.2), (0.3, 2.0))
+FLOWING = MultiplicativeMaxwell((0.3, 0.2), (0.3, 2.0), 0.7)
 TIME = np.array([0.0, 0.2, 0.5, 1.0, 1.2, 1.6, 2.5, 2.7, 3.5])
 STRAIN = np.array([0.0, 0.2, 0.5, 0.5, 0.3, 0.1, 0.1, 0.4, 0.6])
 

@@ -124,7 +124,7 @@ def test_a_second_cycle_is_softer_by_the_error_function():
 
 
 @pytest.mark.parametrize("kinematics", [TENSION, COMPRESSION, SHEAR])
-@pytest.mark.parametrize("series", [NO_SERIES, Prony(*BRANCHES), MultiplicativeMaxwell(*BRANCHES)])
+@pytest.mark.parametrize("series", [NO_SERIES, Prony(*BRANCHES), MultiplicativeMaxwell(*BRANCHES, 0.6)])
 @pytest.mark.parametrize("law", [InvariantLaw(C10, 0.0, C20, C30, 80.0), OgdenLaw((0.5, 0.01), (1.5, 5.0), 80.0)])
 def test_the_travel_of_a_force_is_the_travel_that_makes_it(kinematics, law, series):
     point = MaterialPoint(kinematics, law, 0.49, None, series)
