@@ -51,7 +51,7 @@ def refuse(model: Model, recording: Recording) -> None:
     if isinstance(film, PiezoelectricFilm) and film.coupling == "two-way":
         raise InputError("coupling = 'two-way': a diagnosis needs a film whose voltage does not act back")
     if not all(series.linear for series in physics.viscosity.values()):
-        raise InputError("mechanisms: a diagnosis of a segment takes relative_moduli, not multiplicative_moduli")
+        raise InputError("mechanisms: a diagnosis of a segment takes viscoelasticity with flowing_share = 0 alone")
     if physics.viscosity and physics.prestretch != (0.0, 0.0):
         raise InputError("mechanisms: a diagnosis accepts declared viscoelasticity or film-prestretch, but not both")
     for run in recording.runs:
