@@ -106,15 +106,19 @@ class Fit:
         return self.nrmse_after < self.nrmse_before
 
     @property
+    def excess_before(self) -> float:
+        """Square of the error above that of noise, at least 0, without a mechanism."""
+        return max(self.nrmse_before**2 - self.noise_floor_nrmse**2, 0.0)
+
+    @property
     def excess_after(self) -> float:
-        """Square of the error above that of noise, at least 0."""
+        """The same with the mechanisms."""
         return max(self.nrmse_after**2 - self.noise_floor_nrmse**2, 0.0)
 
     @property
     def share(self) -> float:
         """Share of the excess over noise that is taken away; 0 where there was none."""
-        before = self.nrmse_before**2 - self.noise_floor_nrmse**2
-        return 1.0 - self.excess_after / before if before > 0.0 else 0.0
+        return 1.0 - self.excess_after / self.excess_before if self.excess_before > 0.0 else 0.0
 
 
 class Grade(StrEnum):

@@ -2,10 +2,12 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from math import inf, sqrt
 from typing import Any
 
 from diagnose.figures import figure, p_equals, part, percent
 from diagnose.findings import Findings, Fit, FittedModel
+from diagnose.fit.signal_discrepancy import VISIBLE
 from diagnose.next_press.choose import NextPress, surviving
 from diagnose.signals.recording import Recording
 from diagnose.verdict.content import IN_WORDS, next_experiment, where_words, without_press
@@ -107,13 +109,25 @@ def _unexplained(findings: Findings) -> Iterator[Sentence]:
             "Left out", f"only its kind can be told: {findings.kind}. Each of these explains most: {rivals}."
         )
         return
-    yield Sentence("Left out", "something that none of the known mechanisms explains, so nothing is named.")
+    yield Sentence("Left out", _nameless(findings))
     if findings.reasons:
         yield Sentence("Why nothing is named", " ".join(findings.reasons))
     if findings.unnamed is not None and findings.unnamed.nrmse_after < findings.unnamed.nrmse_before:
         closest = short_name([setting.candidate for setting in findings.models[0].settings])
         text = f"with {closest}, the error on held-out presses would fall {_errors(findings.unnamed)}."
         yield Sentence("The closest explanation", text)
+
+
+def _nameless(findings: Findings) -> str:
+    """What is said of a mismatch without a name, and whether an ordinary rig makes as much."""
+    fits = [fit for fit in (findings.train, findings.held_out) if fit is not None]
+    excess = max((sqrt(fit.excess_before) for fit in fits), default=inf)
+    if excess > VISIBLE:
+        return "something that none of the known mechanisms explains, so nothing is named."
+    return (
+        f"nothing large. What is off is {percent(excess)} of the recorded signal above the noise; flaws of an ordinary "
+        "rig make as much. None of the known mechanisms explains it, so nothing is named."
+    )
 
 
 def _proof(resimulated: Sequence[Resimulated]) -> Iterator[Sentence]:
