@@ -48,16 +48,17 @@ STAIRCASE = 3.0  # times as long as at the quickest rate: a loading with rests i
 SMOOTHED = 5  # samples, against the noise of the drive
 
 
-def relaxation_times(recording: Recording) -> tuple[float, ...]:
+def relaxation_times(recording: Recording, others: int = 0) -> tuple[float, ...]:
     """Times in s between a tenth of the quickest loading and three times the longest run.
 
-    Half a decade apart, or as many as the score test takes. What has not come to rest when the longest run ends would
-    else have to relax within it, and what flows already while it is loaded as slowly as that.
+    Half a decade apart, or as many as the score test takes beside so many others of the candidate. What has not come to
+    rest when the longest run ends would else have to relax within it, and what flows already while it is loaded as
+    slowly as that.
     """
     longest = 3.0 * max(float(run.time_s[-1] - run.time_s[0]) for run in recording.runs)
     shortest = max(min(_quickest(recording)) / 10.0, min(2.0 * run.step_s for run in recording.runs))
     decades = np.log10(longest / shortest)
-    count = int(np.clip(ceil(decades / SPACING), 1, MOST))
+    count = int(np.clip(ceil(decades / SPACING), 1, MOST - others))
     spacing = max(SPACING, decades / count)
     first = 0.5 * (decades - spacing * (count - 1))
     return tuple(float(shortest * 10.0 ** (first + spacing * n)) for n in range(count))

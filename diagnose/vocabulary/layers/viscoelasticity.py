@@ -34,7 +34,8 @@ def of_segment(scene: Scene) -> Iterator[Candidate]:
 def of_coupon(scene: CouponScene) -> Iterator[Candidate]:
     """The specimen, two branches a decade; rubber flows, but for a share that is fitted."""
     shares = () if scene.point.law.compressible else (LINEAR,)
-    yield spectrum(PartOfLayer, SPECIMEN, relaxation_times(scene.recording), MOST_OF_COUPON, shares)
+    times = relaxation_times(scene.recording, len(shares))
+    yield spectrum(PartOfLayer, SPECIMEN, times, MOST_OF_COUPON, shares)
 
 
 def of_unknown_geometry(scene: Scene, recording: Recording) -> Iterator[Candidate]:

@@ -35,11 +35,16 @@ def test_a_leak_predicts_the_presses_of_one_speed_best(recording):
     assert best.gain_lower > 0.0
 
 
-@pytest.mark.parametrize("name", ["shuffled", "reversed_answers"])
-def test_voltages_of_other_presses_and_backwards_name_nothing(recording, name):
-    found = found_in(control(name)(recording))
+def test_voltages_of_other_presses_name_nothing(recording):
+    """Nothing in them looks like a mechanism."""
+    found = found_in(control("shuffled")(recording))
     assert found.best is None
     assert min(found.screened.values()) > found.detection.level
+
+
+def test_voltages_backwards_name_nothing(recording):
+    """A press backwards looks like one, so that mechanisms show in it; none of them predicts."""
+    assert found_in(control("reversed_answers")(recording)).best is None
 
 
 def test_the_difference_of_two_presses_names_nothing(recording):
