@@ -153,7 +153,7 @@ def _add_prove(commands: Any) -> None:
     )
     prove.add_argument("--cases", type=int, required=True, metavar="N", help="how many recordings")
     prove.add_argument("--seed", type=int, default=0, metavar="S", help="of the cases")
-    rigs = "from ridge-clamped, ridge-free, dot-clamped, which are the default, and row-free with three channels"
+    rigs = "from ridge-clamped, ridge-free, dot-clamped (default: these), row-free, thick-clamped, thick-free"
     prove.add_argument("--rigs", metavar="NAME,NAME", help=rigs)
     kinds = "from none, single, pair, left-out, outside, ambiguous; default: all"
     prove.add_argument("--kinds", metavar="KIND,KIND", help=kinds)

@@ -16,9 +16,10 @@ from scipy.optimize import minimize_scalar
 
 from diagnose.prove.believed import WORTH, Opinion, features, halves, held_out, linear_opinion, residuals_of, terms_of
 from diagnose.prove.localised import localised
-from diagnose.prove.world.bench import BENCHES, Bench
+from diagnose.prove.world.bench import Bench
 from diagnose.prove.world.laws import Floats
 from diagnose.prove.world.reality import Reality, Signals, baseline, noise_of, record
+from diagnose.prove.world.rigs import BENCHES
 
 POINTS = 250
 LARGEST_MOHM, SMALLEST_MOHM = 1e6, 1.0

@@ -22,10 +22,11 @@ from diagnose.prove import rivals
 from diagnose.prove.folder import files
 from diagnose.prove.isolation import Heard, diagnosed
 from diagnose.prove.score import Name, Score, scored
-from diagnose.prove.world.bench import BENCHES, Bench, Run, traced
+from diagnose.prove.world.bench import Bench, Run, traced
 from diagnose.prove.world.cases import Case, concealed, pressed_again, rival_family
 from diagnose.prove.world.effects import EFFECTS, fits
 from diagnose.prove.world.reality import Judge, Signals
+from diagnose.prove.world.rigs import BENCHES
 
 SHAPE = frozenset({"speed_factor", "hold_s", "displacement_mm", "cycles"})
 """Changes that the waveform holds already."""

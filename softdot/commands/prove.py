@@ -11,9 +11,9 @@ from typing import Any
 
 from diagnose.prove.score import Score
 from diagnose.prove.trial import Terms, tried
-from diagnose.prove.world.bench import BENCHES
 from diagnose.prove.world.cases import KINDS, Case, plan
 from diagnose.prove.world.effects import EFFECTS, KNOWN, STAGED, fits
+from diagnose.prove.world.rigs import BENCHES
 from geometry.base import InputError
 from geometry.cache import check_folder, data_hash, source_hash
 from softdot import proof as proof_files
@@ -87,7 +87,7 @@ def prove_case(case: Case, terms: Terms, place: Path, program: str) -> dict[str,
 
 RIDGES = ("ridge-clamped", "ridge-free")
 RIGS = (*RIDGES, "dot-clamped")
-SEVERAL_CHANNELS = ("row-free",)
+OTHERS = ("row-free", "thick-clamped", "thick-free")
 AWAY = "the Dask scheduler disappeared; finished cases are kept, start the proof again"
 
 
@@ -143,8 +143,8 @@ def _check(request: Request) -> None:
     if request.seed < 0:
         raise InputError(f"--seed {request.seed}: must not be negative")
     for rig in request.rigs:
-        if rig not in (*RIGS, *SEVERAL_CHANNELS):
-            raise InputError(f"--rigs '{rig}': must be of {', '.join((*RIGS, *SEVERAL_CHANNELS))}")
+        if rig not in (*RIGS, *OTHERS):
+            raise InputError(f"--rigs '{rig}': must be of {', '.join((*RIGS, *OTHERS))}")
     for name in request.mechanisms:
         can = _hidden(request)
         if name not in can:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from diagnose.prove.world.bench import BENCHES, VOLTAGE_ONLY, Bench, Run
+from diagnose.prove.world.bench import Bench, Run
 from diagnose.prove.world.details import Details
 from diagnose.prove.world.effects import EFFECTS, KNOWN, STAGED, UNKNOWN, applied, fits
 from diagnose.prove.world.laws import Floats
@@ -24,6 +24,7 @@ from diagnose.prove.world.reality import (
     record,
     shares,
 )
+from diagnose.prove.world.rigs import BENCHES, VOLTAGE_ONLY
 
 NONE, SINGLE, PAIR, LEFT_OUT, OUTSIDE, AMBIGUOUS = "none", "single", "pair", "left-out", "outside", "ambiguous"
 KINDS = (NONE, SINGLE, PAIR, LEFT_OUT, OUTSIDE, AMBIGUOUS)

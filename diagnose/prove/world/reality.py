@@ -21,12 +21,13 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 from scipy.special import erfc
 
-from diagnose.prove.world.bench import BENCHES, Bench, Run
+from diagnose.prove.world.bench import Bench, Run
 from diagnose.prove.world.channels import Wiring, voltages
 from diagnose.prove.world.details import Details
 from diagnose.prove.world.laws import Floats, Layer, Made
 from diagnose.prove.world.march import Course, Table, table, through_time
 from diagnose.prove.world.noise import Amplifier, Autoregression, noises
+from diagnose.prove.world.rigs import BENCHES
 
 NODES = 0.25, 0.5
 COARSER = 0.7

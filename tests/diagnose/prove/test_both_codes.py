@@ -8,9 +8,9 @@ import pytest
 from diagnose.engines.segment.presses import SHARES as SHARES_OF_CHANGES
 from diagnose.forward import Setting
 from diagnose.prove.folder import files
-from diagnose.prove.world.bench import BENCHES
 from diagnose.prove.world.effects import applied
 from diagnose.prove.world.reality import baseline, record
+from diagnose.prove.world.rigs import BENCHES
 from diagnose.prove.world.stack import Stack
 from softdot.commands.diagnose import engine_for
 from softdot.config.rig import load_rig
@@ -41,7 +41,7 @@ def engine_of(bench, folder):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["ridge-clamped", "ridge-free", "dot-clamped"])
+@pytest.mark.parametrize("name", ["ridge-clamped", "ridge-free", "dot-clamped", "thick-clamped", "thick-free"])
 def test_force_and_charge_of_a_press_agree(name, tmp_path):
     bench = BENCHES[name]
     told = engine_of(bench, tmp_path)

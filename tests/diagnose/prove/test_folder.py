@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from diagnose.prove.folder import files, rig_text
-from diagnose.prove.world.bench import BENCHES, CLAMPED
 from diagnose.prove.world.reality import channels
+from diagnose.prove.world.rigs import BENCHES, CLAMPED
 from softdot.config.rig import load_rig
 
 
@@ -27,7 +27,7 @@ def test_a_recording_is_read_as_it_was_meant(name, tmp_path):
     assert not rig.recording.warnings
     assert rig.config.segment.length_mm == bench.made.length_mm
     assert rig.recording.runs[0].answers == channels(bench)
-    assert rig.config.segment.boundary == ("free" if name in ("ridge-free", "row-free") else "clamped")
+    assert rig.config.segment.boundary == ("free" if name.endswith("-free") else "clamped")
     width, thickness = bench.made.width_mm, 1e3 * bench.made.film.thickness_mm
     assert (rig.config.segment.width_mm, rig.config.segment.film.thickness_um) == (width, thickness)
 

@@ -9,9 +9,9 @@ import pytest
 from diagnose.prove import rivals
 from diagnose.prove.localised import _taken_in
 from diagnose.prove.world import reality
-from diagnose.prove.world.bench import CLAMPED
 from diagnose.prove.world.cases import _noisy
 from diagnose.prove.world.march import Course, Table
+from diagnose.prove.world.rigs import CLAMPED
 
 
 @pytest.fixture(autouse=True)

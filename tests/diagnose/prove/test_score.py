@@ -3,9 +3,9 @@
 import pytest
 
 from diagnose.prove.score import rate, scored, tally
-from diagnose.prove.world.bench import BENCHES
 from diagnose.prove.world.cases import KINDS, NONE, OUTSIDE, PAIR, SINGLE, plan
 from diagnose.prove.world.effects import fits
+from diagnose.prove.world.rigs import BENCHES
 from diagnose.statistics.abstain import wilson_interval
 
 LEAK = {"mechanism": "charge-leakage", "component": "readout"}

@@ -10,9 +10,9 @@ from diagnose.prove.folder import rig_text
 from diagnose.prove.isolation import Heard
 from diagnose.prove.score import scored
 from diagnose.prove.trial import Terms, asked_run, with_asked
-from diagnose.prove.world.bench import CLAMPED, VOLTAGE_ONLY
 from diagnose.prove.world.cases import AMBIGUOUS, Case
 from diagnose.prove.world.reality import baseline, record
+from diagnose.prove.world.rigs import CLAMPED, VOLTAGE_ONLY
 
 TIME = np.arange(0.0, 4.0, 0.004)
 TWICE = 0.25 * np.clip(np.minimum(np.abs(TIME - 2.0) - 0.2, 1.8 - np.abs(TIME - 2.0)) / 0.4, -0.1, 1.0)

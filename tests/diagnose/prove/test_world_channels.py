@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnose.prove.world.bench import CLAMPED, ROW
 from diagnose.prove.world.cases import SINGLE, plan
 from diagnose.prove.world.channels import Stray, Wiring, voltages
 from diagnose.prove.world.effects import EFFECTS, applied, fits
@@ -13,6 +12,7 @@ from diagnose.prove.world.laws import Film, Layer, Made
 from diagnose.prove.world.march import table
 from diagnose.prove.world.noise import Amplifier
 from diagnose.prove.world.reality import baseline, keys
+from diagnose.prove.world.rigs import CLAMPED, ROW
 from diagnose.prove.world.stack import Stack
 
 TIME = np.arange(0.0, 3.0, 0.004)

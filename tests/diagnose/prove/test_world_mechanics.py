@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from diagnose.prove.world import laws
-from diagnose.prove.world.bench import FREE, Run
+from diagnose.prove.world.bench import Run
 from diagnose.prove.world.effects import applied
 from diagnose.prove.world.laws import Damage, Film, Layer, Made, Spectrum, at_rest, branches, relaxation, respond
 from diagnose.prove.world.march import table, through_time
 from diagnose.prove.world.reality import AskedPath, baseline, scaled_memory, with_strength
+from diagnose.prove.world.rigs import FREE
 from diagnose.prove.world.stack import Stack
 
 PAPER = Made(

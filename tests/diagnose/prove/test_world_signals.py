@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnose.prove.world.bench import CLAMPED, FREE, VOLTAGE_ONLY, Run
+from diagnose.prove.world.bench import Run
 from diagnose.prove.world.effects import EFFECTS, applied, fits
 from diagnose.prove.world.march import Course, Table
 from diagnose.prove.world.noise import Amplifier, Autoregression, Filter, noises, yule_walker
 from diagnose.prove.world.reality import Judge, Reality, _path, baseline, dahl
+from diagnose.prove.world.rigs import CLAMPED, FREE, VOLTAGE_ONLY
 
 TIME = np.arange(0.0, 2.0, 0.004)
 

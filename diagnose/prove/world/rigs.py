@@ -1,0 +1,183 @@
+"""The rigs of the proof.
+
+Two of them are made as those of another group, whose recordings are diagnosed beside the proof's: thicker layers, one
+press a run, more noise, and no modulus that is stated as uncertain.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from diagnose.prove.world.bench import CLEAR_MM, LOAD_CELL, Bench, Run, Traced, traced
+from diagnose.prove.world.laws import Film, Layer, Made
+from diagnose.prove.world.noise import Amplifier, Filter
+
+NUISANCE = (
+    ("gain", 0.02),
+    LOAD_CELL[0],
+    ("lag_s", 0.001),
+    ("offset_V", 0.02),
+    LOAD_CELL[1],
+    ("modulus.medium1", 0.05),
+)
+
+
+def _runs(deep: float, resistance_MOhm: float) -> tuple[Run, ...]:
+    """Three depths, three speeds, two holds and a second resistor; two presses each."""
+    return (
+        Run("fast and deep", deep, 0.12, 0.5),
+        Run("slow and deep", deep, 0.6, 0.3),
+        Run("shallow", 0.5 * deep, 0.2, 0.5),
+        Run("long hold", 0.8 * deep, 0.2, 1.6),
+        Run("other resistor", deep, 0.2, 0.5, resistance_MOhm=resistance_MOhm),
+        Run("half depth, slow", 0.65 * deep, 0.5, 0.4),
+    )
+
+
+CLAMPED = Bench(
+    "ridge-clamped",
+    Made(
+        (
+            Layer("medium2", 2.0, 1.0),
+            Film(held=True),
+            Layer("medium1", 0.5, 5.0, held=True),
+            Layer("effector", 1.0, 1.0, held=True),
+        ),
+        2.5,
+        16.0,
+        "ridge",
+        0.8125,
+    ),
+    Amplifier(10_000.0, 100.0, (Filter(60.0, 2, "butterworth"),)),
+    _runs(0.25, 1000.0),
+    NUISANCE,
+    36.0,
+    7.6,
+)
+FREE = Bench(
+    "ridge-free",
+    Made(
+        (Layer("medium2", 1.5, 0.5), Film(), Layer("medium1", 0.8, 2.0), Layer("effector", 0.8, 1.0)),
+        3.0,
+        10.0,
+        "ridge",
+        1.15,
+    ),
+    Amplifier(5_000.0, 220.0, (Filter(100.0, 1, "butterworth"),)),
+    _runs(0.3, 500.0),
+    NUISANCE,
+    6.6,
+    3.2,
+)
+SOLID = Bench(
+    "dot-clamped",
+    Made(
+        (
+            Layer("medium2", 1.5, 0.5),
+            Film(held=True),
+            Layer("medium1", 0.5, 3.0, held=True),
+            Layer("effector", 0.8, 1.0, held=True),
+        ),
+        2.5,
+        2.5,
+        "cap",
+        0.8125,
+    ),
+    Amplifier(20_000.0, 50.0, (Filter(60.0, 2, "butterworth"),)),
+    _runs(0.2, 2000.0),
+    NUISANCE,
+    1.0,
+    0.3,
+)
+VOLTAGE_ONLY = replace(
+    CLAMPED,
+    name="ridge-voltage-only",
+    force=False,
+    amplifier=replace(CLAMPED.amplifier, resistance_MOhm=None),
+    runs=CLAMPED.runs[:4],
+    nuisance=tuple(one for one in NUISANCE if one not in LOAD_CELL),
+)
+"""No load cell and no resistor: nothing tells a cable's capacitance from a film of less charge."""
+PITCH_MM = 2.5
+ROW = Bench(
+    "row-free",
+    Made(
+        (Layer("medium2", 1.5, 0.5), Film(), Layer("medium1", 0.8, 1.5)),
+        3.0 * PITCH_MM,
+        10.0,
+        "ridge",
+        1.15,
+        fine=0.5,  # elements of half the size change force and charge by 0.1 %
+        electrodes=tuple((n * PITCH_MM - 1.15, n * PITCH_MM + 1.15) for n in (-1, 0, 1)),
+    ),
+    Amplifier(5_000.0, 100.0, (Filter(60.0, 2, "butterworth"),)),
+    (
+        Run("first, fast", 0.25, 0.12, 0.5, place_mm=-PITCH_MM),
+        Run("second, fast", 0.25, 0.12, 0.5),
+        Run("first, slow and shallow", 0.16, 0.5, 0.4, place_mm=-PITCH_MM),
+        Run("second, long hold", 0.2, 0.2, 1.6),
+        Run("first, other resistor", 0.25, 0.2, 0.5, resistance_MOhm=500.0, place_mm=-PITCH_MM),
+        Run("second, half depth", 0.125, 0.2, 0.4),
+    ),
+    NUISANCE,
+    25.0,
+    5.4,
+    noise=0.002,
+    mesh_mm=(0.6, 0.2),
+)
+"""Three electrodes in a row under layers that run through: each run presses over the first or the second of them."""
+
+
+def _two_steps(depth_mm: float, step_s: float = 0.004) -> Traced:
+    """To half the depth, a second's rest, to all of it, and back."""
+    corners_s = 0.0, 1.0, 1.2, 2.2, 2.4, 3.6, 3.9, 4.6
+    corners_mm = -CLEAR_MM, -CLEAR_MM, 0.5 * depth_mm, 0.5 * depth_mm, depth_mm, depth_mm, -CLEAR_MM, -CLEAR_MM
+    times = np.asarray(step_s * np.arange(round(corners_s[-1] / step_s) + 1), dtype=np.float64)
+    return replace(traced("two steps", times, np.interp(times, corners_s, corners_mm), None, 0.0, 0.0), count=1)
+
+
+ONCE = (
+    Run("half-sine", 0.18, 0.15, 0.0, count=1),
+    Run("ramp and hold", 0.3, 0.3, 1.6, count=1),
+    Run("5 Hz", 0.12, 0.1, 0.0, count=8, pause_s=0.0),
+    Run("0.2 Hz", 0.3, 2.5, 0.0, count=1, pause_s=0.5),
+    _two_steps(0.25),
+)
+THICK_CLAMPED = Bench(
+    "thick-clamped",
+    Made(
+        (
+            Layer("medium2", 2.0, 1.0),
+            Film(held=True),
+            Layer("medium1", 0.8, 5.0, held=True),
+            Layer("effector", 1.0, 1.0, held=True),
+        ),
+        2.5,
+        16.0,
+        "ridge",
+        1.15,
+    ),
+    Amplifier(1e6, 10.0, (Filter(100.0, 1, "butterworth"),)),
+    ONCE,
+    (("gain", 0.025), ("lag_s", 0.003), ("offset_V", 1.2)),
+    120.0,
+    16.0,
+    noise=0.008,
+)
+THICK_FREE = Bench(
+    "thick-free",
+    Made(
+        (Layer("medium2", 2.0, 1.0), Film(), Layer("medium1", 0.8, 5.0), Layer("effector", 1.0, 1.0)),
+        2.5,
+        16.0,
+        "ridge",
+        1.15,
+    ),
+    Amplifier(1e4, 1e4, (Filter(100.0, 1, "butterworth"),)),
+    ONCE,
+    (("gain", 0.025), ("lag_s", 0.003), ("offset_V", 0.0025)),
+    0.25,
+    4.8,
+    noise=0.008,
+)
+BENCHES = {bench.name: bench for bench in (CLAMPED, FREE, SOLID, VOLTAGE_ONLY, ROW, THICK_CLAMPED, THICK_FREE)}
