@@ -126,14 +126,10 @@ class Yield:
 
 @dataclass(frozen=True)
 class Pyroelectric:
-    """A temperature of the film that approaches temperature_step_K with time_constant_s.
-
-    conduction_share : of the step, what heat brings that is conducted into a half-space; the rest comes exponentially.
-    """
+    """A temperature of the film that approaches temperature_step_K with time_constant_s."""
 
     temperature_step_K: float = 0.0
     time_constant_s: float = 1.0
-    conduction_share: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,6 @@ The input is integrated exactly for what is linear between the samples; then com
 
 import numba as nb
 import numpy as np
-from scipy.special import erfcx
 
 from geometry.arrays import Floats
 from solve.materials.inelastic import mean_decay
@@ -62,15 +61,8 @@ def leaky_integral(time: Floats, charge: Floats, capacitance: float, resistance:
 
 
 def warming_K(time_s: Floats, heat: Pyroelectric) -> Floats:
-    """Change of the film's temperature (t,) since the first touch at time zero, none before.
-
-    dT (1 - exp(-t / tau)) of a body that is warm throughout, dT (1 - exp(t / tau) erfc(sqrt(t / tau))) of the surface
-    of a half-space behind a thermal resistance (Carslaw and Jaeger, Conduction of Heat in Solids, 1959, section 2.7).
-    """
-    times = np.maximum(time_s, 0.0) / heat.time_constant_s
-    share = heat.conduction_share
-    missing = (1.0 - share) * np.exp(-times) + share * erfcx(np.sqrt(times))
-    return np.asarray(heat.temperature_step_K * (1.0 - missing))
+    """Change of the film's temperature (t,) since the first touch at time zero: dT (1 - exp(-t / tau)), none before."""
+    return np.asarray(-heat.temperature_step_K * np.expm1(-np.maximum(time_s, 0.0) / heat.time_constant_s))
 
 
 def other_charge_C(

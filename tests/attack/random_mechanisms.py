@@ -17,11 +17,7 @@ def mechanism(draw, name, segment, dot) -> dict | None:
         ),
         "pyroelectric-drift": lambda: (
             "film",
-            {
-                "temperature_step_K": draw.sign(0.01, 2.0),
-                "time_constant_s": draw.log(0.1, 10.0),
-                "conduction_share": draw.between(0.0, 1.0),
-            },
+            {"temperature_step_K": draw.sign(0.01, 2.0), "time_constant_s": draw.log(0.1, 10.0)},
         ),
         "contact-electrification": lambda: (
             "film",

@@ -21,7 +21,6 @@ ANYWHERE = {
     ("pyroelectric-drift", "film"): {
         "temperature_step_K": between(-1.0, 1.0),
         "time_constant_s": log_between(0.1, 10.0),
-        "conduction_share": between(0.0, 1.0),
     },
     ("contact-electrification", "film"): {"charge_pC": between(-50.0, 50.0), "area_exponent": between(0.3, 3.0)},
     ("film-yield", "film"): {"yield_stress_MPa": log_between(2.0, 100.0), "hardening_modulus_MPa": between(0.0, 100.0)},

@@ -5,10 +5,8 @@ Two-way coupling: the voltage stiffens the film, so that it differs from the pos
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
 
 from solve.model import Physics, Pyroelectric, Readout
-from solve.readout.amplifier import warming_K
 from solve.readout.recording import record
 from tests.verification.slices import charge, force, pressed, waved
 
@@ -89,26 +87,6 @@ def test_heat_comes_with_its_time_constant(plain):
     share = (charge(heat) - charge(plain)) / (charge(heat) - charge(plain))[-1]
     time = heat.trace.time_s
     np.testing.assert_allclose(share, np.expm1(-time / 0.04) / np.expm1(-time[-1] / 0.04), atol=1e-9)
-
-
-def test_heat_that_is_conducted_away_solves_the_integral_equation_of_the_surface():
-    """Of a half-space behind a resistance, in units of tau: T(t) is the integral of (1 - T(s)) / sqrt(pi (t - s))."""
-
-    def surface(time):
-        return warming_K(np.array([time]), Pyroelectric(1.0, 1.0, 1.0))[0]
-
-    def flux(time):
-        return (1.0 - surface(time)) / np.sqrt(np.pi)
-
-    for time in (0.2, 2.0, 20.0):
-        taken = quad(flux, 0.0, time, weight="alg", wvar=(0.0, -0.5))[0]
-        assert surface(time) == pytest.approx(taken, rel=1e-6)
-
-
-def test_heat_that_is_conducted_in_part_is_the_mean_of_both(plain):
-    with_share = [pressed(PRESS, Physics(pyroelectric=Pyroelectric(0.5, 0.04, share))) for share in (0.0, 0.25, 1.0)]
-    lumped, partly, conducted = (charge(one) - charge(plain) for one in with_share)
-    np.testing.assert_allclose(partly, 0.75 * lumped + 0.25 * conducted, atol=1e-9 * lumped.max())
 
 
 @pytest.mark.parametrize("exponent", [1.0, 0.5, 2.0])

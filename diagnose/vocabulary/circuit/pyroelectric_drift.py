@@ -1,4 +1,4 @@
-"""A temperature step of the film, its time constant, and how much of it is conducted into the depth."""
+"""A temperature step of the film, and its time constant."""
 
 from collections.abc import Iterator, Sequence
 from math import exp, log
@@ -31,18 +31,14 @@ def _heat(scene: Scene) -> Candidate:
     fastest, slowest = log(5.0 * scene.step_s / base), log(5.0 * scene.duration_s / base)
     time = Coordinate("log_time", min(fastest, -1.0), max(slowest, 1.0), (-1.5, 1.0))
 
-    low, high = -declared.conduction_share, 1.0 - declared.conduction_share
-    share = Coordinate("conduction_share", low, high, (0.5 if high > 0.0 else -0.5,), levels_off=(True, True))
-
     def parameters(values: Sequence[float]) -> dict[str, Any]:
         return {
             "temperature_step_K": declared.temperature_step_K + values[0],
             "time_constant_s": base * exp(values[1]),
-            "conduction_share": declared.conduction_share + values[2],
         }
 
-    units = {"temperature_step_K": "K", "time_constant_s": "s", "conduction_share": ""}
-    return Candidate(PYROELECTRIC_DRIFT.name, "film", (step, time, share), parameters, units=units)
+    units = {"temperature_step_K": "K", "time_constant_s": "s"}
+    return Candidate(PYROELECTRIC_DRIFT.name, "film", (step, time), parameters, units=units)
 
 
 register(

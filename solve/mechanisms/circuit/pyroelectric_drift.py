@@ -14,19 +14,12 @@ class PyroelectricDrift(Parameters):
     """A temperature step of the film."""
 
     temperature_step_K: Finite = Field(description="final change of temperature")
-    time_constant_s: Positive = Field(1.0, description="time constant of the approach after first touch")
-    conduction_share: float = Field(
-        0.0,
-        ge=0.0,
-        le=1.0,
-        description="of the step, what is conducted into a half-space; the rest comes exponentially",
-    )
+    time_constant_s: Positive = Field(1.0, description="time constant of the exponential approach after first touch")
 
 
 def switch_on(model: Model, component: str, values: PyroelectricDrift) -> Model:
     """The model with this physics at a component."""
-    heat = Pyroelectric(values.temperature_step_K, values.time_constant_s, values.conduction_share)
-    return with_physics(model, pyroelectric=heat)
+    return with_physics(model, pyroelectric=Pyroelectric(values.temperature_step_K, values.time_constant_s))
 
 
 PYROELECTRIC_DRIFT = register(
@@ -43,7 +36,6 @@ PYROELECTRIC_DRIFT = register(
                 "(MSI manual, p. 3)"
             ),
             "time_constant_s": "0.1 to 10 s by the layers between dot and film (rule of thumb); default 1",
-            "conduction_share": "1 on thick layers, 0 on thin ones; default 0",
         },
         traits=Traits(memory=True, acts_on_tables=True),
     )

@@ -135,8 +135,8 @@ def test_a_medium_that_softens_yields_more_on_the_way_back():
 def test_heat_and_touch_add_charge_of_their_own():
     of = engine(run(STEP))
     heat, touch = candidate(of, "pyroelectric-drift", "film"), candidate(of, "contact-electrification", "film")
-    drift = voltage(of, Setting(heat, (0.1, 0.5, 0.0))) - voltage(of)
-    tau = heat.parameters((0.1, 0.5, 0.0))["time_constant_s"]
+    drift = voltage(of, Setting(heat, (0.1, 0.5))) - voltage(of)
+    tau = heat.parameters((0.1, 0.5))["time_constant_s"]
     warming = -np.expm1(-np.maximum(SINCE, 0.0) / tau)
     np.testing.assert_allclose(drift, drift[-1] * warming / warming[-1], atol=1e-9)
     ramped = engine()
