@@ -13,7 +13,7 @@ from tomlkit.items import InlineTable, Table
 from diagnose.engines.coupon.engine import CouponEngine, improved_material
 from diagnose.figures import figure, p_alone, percent, probability
 from diagnose.findings import Findings, FittedModel, Grade
-from diagnose.forward import Engine
+from diagnose.forward import Engine, Setting
 from diagnose.next_press.proposals import Shape, base_setup
 from diagnose.signals.recording import Recording
 from diagnose.verdict.names import (
@@ -194,7 +194,9 @@ def _segment(rig: Rig, findings: Findings) -> tuple[tomlkit.TOMLDocument, str]:
 
 def _coupon(engine: CouponEngine, best: FittedModel) -> tuple[tomlkit.TOMLDocument, str]:
     layer = "medium2"
-    found = improved_material(engine, best.settings, layer)
+    fitted = ((engine.nuisance(name), value) for name, value in best.shared.items())
+    constants = [Setting(candidate, (value,)) for candidate, value in fitted if candidate is not None]
+    found = improved_material(engine, [*best.settings, *constants], layer)
     document = tomlkit.parse(files("softdot.config").joinpath("default.toml").read_text("utf-8"))
     document["segment"][layer]["material"] = found.name
     document["materials"] = {found.name: _rounded(found.table, 6)}

@@ -14,11 +14,12 @@ from tests.diagnose.verdict.toy import LEAK, fitted
 RIG = SimpleNamespace(config=None, recording=SimpleNamespace(specimen=specimen()))
 
 
-def improved(mechanism, tmp_path):
-    """The configuration when a mechanism of the specimen is named at its first starts."""
+def improved(mechanism, tmp_path, **shared):
+    """The configuration when a mechanism of the specimen is named at its first starts; shared : nuisances fitted."""
     of = engine()
     its = candidate(of, mechanism)
-    best = SimpleNamespace(settings=(Setting(its, tuple(c.starts[0] for c in its.coordinates)),))
+    values = tuple(c.starts[0] for c in its.coordinates)
+    best = SimpleNamespace(settings=(Setting(its, values),), shared=shared)
     path = tmp_path / "improved.toml"
     path.write_text(improved_text(RIG, of, SimpleNamespace(best=best)), "utf-8")
     return load_config(path)
@@ -37,6 +38,13 @@ def test_relaxation_becomes_a_mechanism_of_medium_2(tmp_path):
     (relaxing,) = config.mechanisms
     assert (relaxing.name, relaxing.component) == ("viscoelasticity", "medium2")
     assert "medium2" in model_of(config).physics.viscosity
+
+
+def test_the_modulus_is_that_which_was_fitted(tmp_path):
+    """Of a tape that has relaxed before the first second is over it may be several times the one stated."""
+    config = improved("viscoelasticity", tmp_path, **{"modulus.specimen": 2.5, "offset_N": 0.1})
+    assert config.materials["mine"].youngs_modulus_MPa == pytest.approx(3.5 * 1.2)
+    assert [one.name for one in config.mechanisms] == ["viscoelasticity"]
 
 
 def test_a_coupon_that_teaches_nothing_and_a_sensor_nobody_knows_leave_no_configuration():
