@@ -11,8 +11,7 @@ import pytest
 from diagnose.engines.segment.answer import FilmPlate, Mechanics, drive_of, shown
 from diagnose.inference.diagnose import diagnose
 from diagnose.prove.folder import files
-from diagnose.prove.world import bench as benches
-from diagnose.prove.world import cases, reality
+from diagnose.prove.world import cases, reality, rigs
 from diagnose.prove.world.effects import applied
 from diagnose.prove.world.march import Course, Table
 from diagnose.vocabulary.base import Scene, candidates_of_segment
@@ -23,7 +22,7 @@ from solve.mechanisms import with_mechanisms
 DEPTH_MM = np.linspace(0.0, 0.3, 13)
 COLLECTED = {-2.5: (1.0, 0.15, 0.01), 0.0: (0.2, 1.6, 0.2)}
 """Share of the charge of each electrode by the place of the dot."""
-BENCH = replace(benches.ROW, runs=benches.ROW.runs[:2], rate_Hz=125.0)
+BENCH = replace(rigs.ROW, runs=rigs.ROW.runs[:2], rate_Hz=125.0)
 
 
 def pressed(made, _depth_mm=0.0):
