@@ -153,37 +153,21 @@ def _newton_step(residual, by_stress, matrices, linear, flow):  # type: ignore[n
     stress_by, fade, gain = linear
     strain, rates, steps, moduli = flow
     samples, size = residual.shape
-    of_branch, of_elastic, was_elastic = np.zeros((len(moduli), 4)), np.zeros(4), np.zeros(4)
-    flowed, inner = _rest(len(moduli)), _rest(len(moduli))
-    before, now = np.array([1.0, 1.0, 1.0, 0.0]), np.empty(4)
-    of_flowed, of_before = np.zeros((len(moduli), 4)), np.zeros(4)
+    of_branch, was_elastic = np.zeros((len(moduli), 4)), np.zeros(4)
+    flowed, inner, of_flowed = _rest(len(moduli)), _rest(len(moduli)), np.zeros((len(moduli), 4))
+    before, now, of_before = np.array([1.0, 1.0, 1.0, 0.0]), np.empty(4), np.zeros(4)
     of_c, of_now, of_s = np.zeros((1 + size, 4)), np.zeros((1 + size, 4)), np.zeros((1 + size, 4))
     of_a, step = np.zeros((len(moduli), 1 + size, 4)), np.empty_like(residual)
     matrix, right = np.empty((size, size)), np.empty(size)
     for t in range(samples):
         c = strain[t]
         ci, j23 = _inverse(c, 1.0), _determinant(c) ** (-1.0 / 3.0)
-        for k in range(4):
-            now[k] = j23 * c[k]
-            for j in range(size):
-                of_c[1 + j, k] = rates[t, k, j]
-        for j in range(1 + size):
-            volume = _contracted(ci, of_c[j]) / 3.0
-            for k in range(4):
-                of_now[j, k], of_s[j, k] = j23 * (of_c[j, k] - volume * c[k]), 0.0
+        _strained(c, ci, j23, rates[t], now, of_c, of_now)
+        of_s[:] = 0.0
         for b in range(len(moduli)):
             for k in range(4):
                 of_s[0, k] += fade[t, b] * of_branch[b, k] - gain[t, b] * was_elastic[k]
-        for b in range(len(moduli)):
-            was = _contracted(before, inner[b]) / 3.0
-            w = flow_weights(steps[t, b], was)
-            of_was = (_contracted(of_before, inner[b]) - _contracted(before, _between(inner[b], of_flowed[b]))) / 3.0
-            by_was = _weights_by(steps[t, b], was, w)
-            for k in range(4):
-                by_w = by_was[0] * flowed[b, k] + by_was[1] * before[k] + by_was[2] * now[k]
-                corrected = w[0] * of_flowed[b, k] + w[1] * of_before[k] + of_was * by_w
-                for j in range(1 + size):
-                    of_a[b, j, k] = w[2] * of_now[j, k] + (corrected if j == 0 else 0.0)
+            w = _carried(steps[t, b], flowed[b], inner[b], before, now, of_flowed[b], of_before, of_now, of_a[b])
             a, root, g = _stepped(w, flowed[b], before, now)
             _add_changes(c, ci, j23, g, root, moduli[b], of_c, of_a[b], of_s)
             for k in range(4):
@@ -194,20 +178,63 @@ def _newton_step(residual, by_stress, matrices, linear, flow):  # type: ignore[n
             for j in range(size):
                 matrix[i, j] = matrices[t, i, j] + _seen(by_stress[t, i], of_s[1 + j])
         solved(matrix, right, step[t])
-        for k in range(4):
-            before[k], of_before[k], of_elastic[k] = now[k], _corrected(of_now, step[t], k), 0.0
-            for j in range(size):
-                of_elastic[k] += stress_by[t, k, j] * step[t, j]
-            for b in range(len(moduli)):
-                of_branch[b, k] = branch_stress(of_branch[b, k], fade[t, b], gain[t, b], of_elastic[k] - was_elastic[k])
-            was_elastic[k] = of_elastic[k]
-        for b in range(len(moduli)):
-            for k in range(4):
-                of_flowed[b, k] = _corrected(of_a[b], step[t], k)
-            grown = _contracted(inner[b], of_flowed[b]) / 3.0  # det C_i stays 1
-            for k in range(4):
-                of_flowed[b, k] -= grown * flowed[b, k]
+        before[:] = now
+        _remember_linear(stress_by[t], fade[t], gain[t], step[t], of_branch, was_elastic)
+        _remember_flow(inner, flowed, of_a, of_now, step[t], of_flowed, of_before)
     return step
+
+
+@nb.njit(inline="always")
+def _strained(c, ci, j23, rates, now, of_c, of_now):  # type: ignore[no-untyped-def]
+    """C^ (4,) into now, the changes of C and C^ into of_c and of_now."""
+    for k in range(4):
+        now[k] = j23 * c[k]
+        for j in range(1, len(of_c)):
+            of_c[j, k] = rates[k, j - 1]
+    for j in range(len(of_c)):
+        volume = _contracted(ci, of_c[j]) / 3.0
+        for k in range(4):
+            of_now[j, k] = j23 * (of_c[j, k] - volume * c[k])
+
+
+@nb.njit(inline="always")
+def _carried(step, flowed, inner, before, now, of_flowed, of_before, of_now, of_a):  # type: ignore[no-untyped-def]
+    """Changes of A of one branch into of_a; returns the weights of the step."""
+    s = _contracted(before, inner) / 3.0
+    of_s = (_contracted(of_before, inner) - _contracted(before, _between(inner, of_flowed))) / 3.0
+    w = flow_weights(step, s)
+    by_s = _weights_by(step, s, w)
+    for k in range(4):
+        of_weights = of_s * (by_s[0] * flowed[k] + by_s[1] * before[k] + by_s[2] * now[k])
+        for j in range(len(of_a)):
+            of_a[j, k] = w[2] * of_now[j, k]
+        of_a[0, k] += w[0] * of_flowed[k] + w[1] * of_before[k] + of_weights
+    return w
+
+
+@nb.njit(inline="always")
+def _remember_linear(stress_by, fade, gain, step, of_branch, was_elastic):  # type: ignore[no-untyped-def]
+    """Corrections of Q_i (b, 4) and of the elastic stress (4,), once those of the unknowns (m,) are known."""
+    for k in range(4):
+        change = -was_elastic[k]
+        for j in range(len(step)):
+            change += stress_by[k, j] * step[j]
+        was_elastic[k] += change
+        for b in range(len(of_branch)):
+            of_branch[b, k] = branch_stress(of_branch[b, k], fade[b], gain[b], change)
+
+
+@nb.njit(inline="always")
+def _remember_flow(inner, flowed, of_a, of_now, step, of_flowed, of_before):  # type: ignore[no-untyped-def]
+    """Corrections of C_i (b, 4), whose determinant stays 1, and of C^ (4,); of_a : those of A over det(A)^(1/3)."""
+    for k in range(4):
+        of_before[k] = _corrected(of_now, step, k)
+        for b in range(len(flowed)):
+            of_flowed[b, k] = _corrected(of_a[b], step, k)
+    for b in range(len(flowed)):
+        grown = _contracted(inner[b], of_flowed[b]) / 3.0
+        for k in range(4):
+            of_flowed[b, k] -= grown * flowed[b, k]
 
 
 @nb.njit(inline="always")

@@ -22,6 +22,16 @@ NUISANCE = (
 )
 
 
+Sized = tuple[float, float]
+"""Thickness in mm and modulus in MPa of a layer."""
+
+
+def _layers(medium2: Sized, medium1: Sized, effector: Sized, held: bool) -> tuple[Layer | Film, ...]:
+    """From the base upwards; what is held is held at its sides, all but medium 2."""
+    upper = Layer("medium1", *medium1, held=held), Layer("effector", *effector, held=held)
+    return (Layer("medium2", *medium2), Film(held=held), *upper)
+
+
 def _runs(deep: float, resistance_MOhm: float) -> tuple[Run, ...]:
     """Three depths, three speeds, two holds and a second resistor; two presses each."""
     return (
@@ -37,12 +47,7 @@ def _runs(deep: float, resistance_MOhm: float) -> tuple[Run, ...]:
 CLAMPED = Bench(
     "ridge-clamped",
     Made(
-        (
-            Layer("medium2", 2.0, 1.0),
-            Film(held=True),
-            Layer("medium1", 0.5, 5.0, held=True),
-            Layer("effector", 1.0, 1.0, held=True),
-        ),
+        _layers((2.0, 1.0), (0.5, 5.0), (1.0, 1.0), held=True),
         2.5,
         16.0,
         "ridge",
@@ -57,7 +62,7 @@ CLAMPED = Bench(
 FREE = Bench(
     "ridge-free",
     Made(
-        (Layer("medium2", 1.5, 0.5), Film(), Layer("medium1", 0.8, 2.0), Layer("effector", 0.8, 1.0)),
+        _layers((1.5, 0.5), (0.8, 2.0), (0.8, 1.0), held=False),
         3.0,
         10.0,
         "ridge",
@@ -72,12 +77,7 @@ FREE = Bench(
 SOLID = Bench(
     "dot-clamped",
     Made(
-        (
-            Layer("medium2", 1.5, 0.5),
-            Film(held=True),
-            Layer("medium1", 0.5, 3.0, held=True),
-            Layer("effector", 0.8, 1.0, held=True),
-        ),
+        _layers((1.5, 0.5), (0.5, 3.0), (0.8, 1.0), held=True),
         2.5,
         2.5,
         "cap",
@@ -143,41 +143,25 @@ ONCE = (
     Run("0.2 Hz", 0.3, 2.5, 0.0, count=1, pause_s=0.5),
     _two_steps(0.25),
 )
+THICK = (2.0, 1.0), (0.8, 5.0), (1.0, 1.0)
+WIDTHS = ("gain", 0.025), ("lag_s", 0.003)
 THICK_CLAMPED = Bench(
     "thick-clamped",
-    Made(
-        (
-            Layer("medium2", 2.0, 1.0),
-            Film(held=True),
-            Layer("medium1", 0.8, 5.0, held=True),
-            Layer("effector", 1.0, 1.0, held=True),
-        ),
-        2.5,
-        16.0,
-        "ridge",
-        1.15,
-    ),
+    Made(_layers(*THICK, held=True), 2.5, 16.0, "ridge", 1.15),
     Amplifier(1e6, 10.0, (Filter(100.0, 1, "butterworth"),)),
     ONCE,
-    (("gain", 0.025), ("lag_s", 0.003), ("offset_V", 1.2)),
+    (*WIDTHS, ("offset_V", 1.2)),
     120.0,
     16.0,
     noise=0.008,
 )
-THICK_FREE = Bench(
-    "thick-free",
-    Made(
-        (Layer("medium2", 2.0, 1.0), Film(), Layer("medium1", 0.8, 5.0), Layer("effector", 1.0, 1.0)),
-        2.5,
-        16.0,
-        "ridge",
-        1.15,
-    ),
-    Amplifier(1e4, 1e4, (Filter(100.0, 1, "butterworth"),)),
-    ONCE,
-    (("gain", 0.025), ("lag_s", 0.003), ("offset_V", 0.0025)),
-    0.25,
-    4.8,
-    noise=0.008,
+THICK_FREE = replace(
+    THICK_CLAMPED,
+    name="thick-free",
+    made=replace(THICK_CLAMPED.made, layers=_layers(*THICK, held=False)),
+    amplifier=replace(THICK_CLAMPED.amplifier, resistance_MOhm=1e4, capacitance_pF=1e4),
+    nuisance=(*WIDTHS, ("offset_V", 0.0025)),
+    peak_V=0.25,
+    peak_N=4.8,
 )
 BENCHES = {bench.name: bench for bench in (CLAMPED, FREE, SOLID, VOLTAGE_ONLY, ROW, THICK_CLAMPED, THICK_FREE)}
