@@ -2,9 +2,14 @@
 
     python examples/recordings/adhesive_shear.py DATA OUT
 
-Spreadsheets without header. Monotonic shear: time s, -, stress kPa, shear; of 0d05 the fourth column is the shear and
+Spreadsheets without header. Monotonic shear: time s, E, stress kPa, shear; of 0d05 the fourth column is the shear and
 the fifth the stress. Cyclic shear with relaxation: time s, -, -, stress kPa, shear. Stress and shear are nominal, so
 a layer of 10 mm x 10 mm x 1 mm is stated, of which shear in mm and stress times 100 mm2 are displacement and force.
+
+The time of 0d01, 0d1 and 1 is not used. Those files are named by the shear rate, as 0d05 is, whose time times 0.05 1/s
+is its shear g. In the three others E = g / sqrt(1 + g^2 / 4), which never exceeds 2, and time times the rate is E to
+some per cent: the machine would have had to pull forty times as fast at a shear of 10 as at first. That time was
+calculated from E, so it is g over the rate here.
 """
 
 import sys
@@ -19,6 +24,7 @@ AREA_MM2, THICKNESS_MM = 100.0, 1.0
 MODULUS = 5.0  # one sigma, relative: what is stated is a start, and the modulus before anything relaxes is unknown
 SPECIMENS = 0.2  # one sigma, relative: what layers of soft materials usually differ by, each run having its own
 READING_ERROR = 0.002  # of the largest force, assumed at least: some of the curves were smoothed by their source
+RATE_PER_S = {"shear_0d01": 0.01, "shear_0d1": 0.1, "monotonic_shear_1": 1.0}
 STRESS_AND_SHEAR = {"monotonic_shear_0d05": (4, 3), "monotonic": (2, 3), "cyclic": (3, 4)}
 HEAD = """# Stress and shear are nominal: the layer's sizes are those of a unit specimen.
 format = "softdot-recording/1"
@@ -59,6 +65,9 @@ def read(file: Path) -> dict[str, Floats]:
     stress, shear = next(columns for part, columns in STRESS_AND_SHEAR.items() if part in file.stem)
     table = read_sheet(file)[:, [0, shear, stress]]
     table = table[np.isfinite(table).all(axis=1)]
+    rate_per_s = next((rate for end, rate in RATE_PER_S.items() if file.stem.endswith(end)), None)
+    if rate_per_s is not None:
+        table[:, 0] = table[:, 1] / rate_per_s
     table = table[np.concatenate([[True], np.diff(table[:, 0]) > 0.0])]
     return {
         "time_s": table[:, 0],

@@ -155,8 +155,31 @@ def test_real_recordings(script, tmp_path):
 def test_noise_of_real_presses_whitens_a_trial_that_it_has_not_seen():
     files = sorted((Path(RECORDINGS) / "pvdf-presses").glob("*Sp300*.npz"))[:2]
     read = runpy.run_path(str(EXAMPLES / "pvdf_presses.py"))["read"]
-    known, fresh = (read(file)[0]["voltage_1_V"][:4000] for file in files)  # 2 s before the touch
+    known, fresh = (read(file)[0][:4000] for file in files)  # 2 s before the touch
     model = NoiseModel(fit_autoregression([known - known.mean()]), 1.0 / 2000.0, "rest", len(known))
     white = model.whiten(fresh - fresh.mean())
     assert white.var() == pytest.approx(1.0, abs=0.1)
     assert np.abs([np.mean(white[k:] * white[:-k]) for k in range(1, 6)]).max() < 0.06
+
+
+@pytest.mark.slow
+@needs_recordings
+def test_a_trial_whose_streams_are_not_of_one_press_is_left_out(tmp_path, capsys):
+    """The first at speed 150 holds its force for 1.8 s and its voltage for 1.5 s."""
+    data = Path(RECORDINGS) / "pvdf-presses"
+    runpy.run_path(str(EXAMPLES / "pvdf_presses.py"))["convert"](data, tmp_path / "out")
+    labels = [run.label for run in load_rig(tmp_path / "out").recording.runs]
+    assert len(labels) == len(list(data.glob("*.npz"))) - 1
+    assert "cube 10, sequence 1, speed 150, trial 1" not in labels
+    assert "Cube10_Seq1_Sp150_t01 is left out" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+@needs_recordings
+def test_pulls_of_the_adhesive_are_as_fast_as_their_files_say(tmp_path):
+    runpy.run_path(str(EXAMPLES / "adhesive_shear.py"))["convert"](
+        Path(RECORDINGS) / "adhesive-shear", tmp_path / "out"
+    )
+    pulls = [run for run in load_rig(tmp_path / "out").recording.runs if run.label.startswith("monotonic")]
+    rates = {run.label: np.polyfit(run.time_s, run.channels["displacement_mm"], 1)[0] for run in pulls}
+    assert rates == pytest.approx({f"monotonic shear {rate:g}": rate for rate in (0.01, 0.05, 0.1, 1.0)}, rel=0.01)

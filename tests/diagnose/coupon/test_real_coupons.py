@@ -41,6 +41,19 @@ def test_a_tape_relaxes(share_of_noise, tmp_path):
     assert found.held_out.nrmse_after < 1.2 * 0.0254
 
 
+def test_an_adhesive_relaxes(tmp_path):
+    """An expert's quasi-linear model of two elastic terms, fitted to the same runs, leaves 33 % of the others; 13 %
+    with times that were calculated from another strain."""
+    converted("adhesive-shear", tmp_path / "out")
+    rig = load_rig(next((tmp_path / "out").rglob("rig.toml")).parent)
+    found = diagnose(rig.recording, engine_for(rig, silent), 0, silent)
+    assert found.best is not None, found.reasons
+    assert [one.candidate.mechanism for one in found.best.settings] == ["viscoelasticity"]
+    assert found.groups[0] == (0,)
+    assert found.held_out is not None
+    assert found.held_out.nrmse_after < 1.2 * 0.13
+
+
 @pytest.mark.parametrize("name", ["shuffled", "reversed_answers", "replicates"])
 def test_controls_of_the_seal_name_nothing(name):
     rig = load_rig(Path(RECORDINGS) / "oring-friction")
