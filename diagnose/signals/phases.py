@@ -16,7 +16,8 @@ SHORTEST_HOLD = 0.1  # of the press: a half-sine is slow for 6 % of it
 FEWEST_AT_REST = 8
 MOVING = 3.0  # change over the lead, in standard deviations about its straight line
 SHALLOW = 0.05  # of the deepest: what is lower is no press
-BRIEF = 0.05  # of the longest: what is shorter is a spike or a rebound
+BRIEF = 0.05  # of the longest: what is shorter is a spike
+REBOUND = 0.2  # of the press before: what is shallower and follows within the length of that press has bounced
 
 
 @dataclass(frozen=True)
@@ -110,7 +111,19 @@ def _spans(depth: Floats, noise: float) -> list[tuple[int, int]]:
     spans = [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]
     deep = [(a, b) for a, b in spans if depth[a:b].max() > max(SHALLOW * deepest, 10.0 * noise)]
     longest = max((b - a for a, b in deep), default=0)
-    return [(a, b) for a, b in deep if b - a > BRIEF * longest]
+    return _without_rebounds(depth, [(a, b) for a, b in deep if b - a > BRIEF * longest])
+
+
+def _without_rebounds(depth: Floats, spans: list[tuple[int, int]]) -> list[tuple[int, int]]:
+    """What bounces where a press lets go belongs to the time after that press."""
+    kept: list[tuple[int, int]] = []
+    for a, b in spans:
+        if kept:
+            first, last = kept[-1]
+            if a - last < last - first and depth[a:b].max() < REBOUND * depth[first:last].max():
+                continue
+        kept.append((a, b))
+    return kept
 
 
 def _press(time_s: Floats, depth: Floats, span: tuple[int, int], start: int, end: int) -> PressPhases:

@@ -68,6 +68,14 @@ def test_a_spike_is_no_press():
     assert len(segmented(TIME, drive).presses) == 1
 
 
+def test_what_bounces_where_a_press_lets_go_is_no_press():
+    """A finger that strikes again just after it has let go; a shallow press after a rest is one."""
+    press, bounce = trapezoid(TIME, 0.3), trapezoid(TIME, 0.04, 2.0, 0.02, 0.02)
+    shallow = trapezoid(TIME, 0.04, 3.0, 0.1, 0.3)
+    assert len(segmented(TIME, np.maximum(press, bounce)).presses) == 1
+    assert len(segmented(TIME, np.maximum(press, shallow)).presses) == 2
+
+
 def test_a_drive_that_stays_clear_has_no_press():
     assert segmented(TIME[:100], np.linspace(-0.5, -0.1, 100)).presses == ()
 
