@@ -171,14 +171,22 @@ def unimproved(fit: Fit) -> Fit:
 def relaxed(model: ObservedModel, values: Floats, settings: Sequence[Setting], rows: Bools, frozen: Bools) -> Floats:
     """Nuisances fitted to some rows within what is plausible, but for those that are frozen."""
     for _ in range(ROUNDS if len(values) else 0):
-        system = linearised(model, values, settings, informative=rows)
-        fixed = system.nuisance_design[:, : len(values)][:, frozen] @ values[frozen]
-        free = np.flatnonzero(~frozen)
-        quadratic = Quadratic(system.weighted(system.nuisance_design[:, free]), system.sigma[free])
-        values = values.copy()
-        found = quadratic.mean(system.weighted(system.residual[rows] - fixed))
-        values[free] = plausible(found, model.sigma[free])
-        values = model.possible(values)
+        values = model.possible(_bounded(linearised(model, values, settings, informative=rows), values, frozen))
+    return values
+
+
+def _bounded(system: LinearisedSystem, values: Floats, frozen: Bools) -> Floats:
+    """Least squares (p,) within what is plausible: what would go farther is held there and the rest fitted again."""
+    values, held = values.copy(), frozen.copy()
+    columns, sigma = system.nuisance_design[:, : len(values)], system.sigma[: len(values)]
+    while not held.all():
+        free = np.flatnonzero(~held)
+        residual = system.residual[system.informative] - columns[:, held] @ values[held]
+        found = Quadratic(system.weighted(columns[:, free]), sigma[free]).mean(system.weighted(residual))
+        values[free] = plausible(found, sigma[free])
+        held[free] = values[free] != found
+        if not held[free].any():
+            break
     return values
 
 

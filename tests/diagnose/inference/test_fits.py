@@ -5,15 +5,17 @@ from functools import cache
 
 import numpy as np
 import pytest
+from scipy.optimize import lsq_linear
 
 from diagnose.fit.descent import descended, descent
 from diagnose.fit.discrepancy import FORM_ERROR
 from diagnose.fit.intervals import intervals
 from diagnose.fit.observed_model import ObservedModel
-from diagnose.fit.refit import believed, common_metric, fitted, fitted_baseline, largest_form_error
+from diagnose.fit.refit import PLAUSIBLE, believed, common_metric, fitted, fitted_baseline, largest_form_error
 from diagnose.fit.samples import Samples
 from diagnose.fit.system import linearised
 from diagnose.forward import Candidate, Coordinate
+from diagnose.inference.black_box import relaxed
 from diagnose.inference.choice import Judge, partners
 from diagnose.inference.forecasts import excess, share_left
 from diagnose.inference.search import paired, screen
@@ -53,6 +55,21 @@ def test_a_prediction_takes_the_whole_gain_though_the_model_states_an_error_of_i
     (believed_gain,), (gain,) = system.nuisances(system.residual), system.closest()
     assert gain == pytest.approx(0.08, abs=0.012)  # its prior and the stated error of each sample keep the rest
     assert believed_gain < 0.06
+
+
+def test_beside_a_nuisance_at_the_end_of_what_is_plausible_the_others_fit_as_well_as_they_can():
+    """SciPy's bounded least squares, of the recording and the priors, agrees."""
+    recording = small(8, runs=1, nuisance={"gain": 0.05, "offset_V": 0.05}, noise=0.002, distort=0.0, scatter=0.0)
+    recording.runs[0].channels["voltage_V"][:] *= 1.4
+    model = seen(recording)
+    everything, nothing = np.ones(len(model.samples), dtype=bool), np.zeros(2, dtype=bool)
+    values = relaxed(model, relaxed(model, np.zeros(2), (), everything, nothing), (), everything, nothing)
+    system = linearised(model, values)
+    rows = np.vstack([system.weighted(system.nuisance_design[:, :2]), np.diag(1.0 / model.sigma)])
+    seen_and_prior = np.concatenate([system.weighted(system.residual), np.zeros(2)])
+    best = lsq_linear(rows, seen_and_prior, (-PLAUSIBLE * model.sigma, PLAUSIBLE * model.sigma))
+    assert best.active_mask.tolist() == [1, 0]
+    assert values == pytest.approx(best.x, rel=1e-4)
 
 
 def test_nuisances_are_held_within_what_the_engine_can_answer():
