@@ -21,7 +21,7 @@ from diagnose.inference.black_box import trained_and_held, unimproved
 from diagnose.inference.choice import Choice, Judged, choose, implausible
 from diagnose.inference.localisation import explanations, places, shares
 from diagnose.inference.main_part import FLAWS, NEARLY_ALL, MainPart, confirmed, main_part
-from diagnose.inference.reasons import beside, named, reasons_of, warnings_of
+from diagnose.inference.reasons import beside, closest, named, reasons_of, warnings_of
 from diagnose.inference.residual_test import Checked, checked
 from diagnose.inference.search import Screening, screen
 from diagnose.inference.stepwise import Joined, joined
@@ -223,20 +223,20 @@ def _kind(choice: Choice, held_out: Fit | None) -> str:
 
 
 def _with_main_part(findings: Findings, main: MainPart, choice: Choice, rng: np.random.Generator) -> Findings:
-    """What is unexplained as a whole, with its main part; as it was where a true refit does not confirm that.
+    """What is unexplained as a whole, with its main part, or what comes closest where a true refit does not confirm it.
 
     Of several that are as good the one comes first that then predicts with the least error: what is held out in main
     was predicted linear about the fit to all.
     """
-    several = main.models[: len(main.group) if main.nameable else 1]
+    several = main.models[: len(main.group) if main.most and main.nameable else 1]
     refits = [trained_and_held(main.model, main.found, one.fit, np.array([one.gain.mean])) for one in several]
     errors = [held_out.nrmse_after if held_out is not None else 0.0 for _, held_out in refits]
     order = sorted(range(len(several)), key=errors.__getitem__)
     train, held_out = refits[order[0]]
-    if held_out is not None and not confirmed(held_out):
-        return findings
+    if not main.most or (held_out is not None and not confirmed(held_out)):
+        return _with_closest(findings, main, refits[0][1], rng)
     if not main.nameable or _told_by_tolerating(main, choice):
-        return _with_kind(findings, main, rng)
+        return _with_kind(findings, main, refits[0][1], rng)
     chances, best = main.probabilities(rng), main.models[order[0]]
     order += [n for n in range(len(main.models)) if n not in main.group]
     models = tuple(_model(main.model, main.models[n], float(chances[n]), n in main.group) for n in order)
@@ -273,16 +273,33 @@ def _not_everything(findings: Findings, choice: Choice, main: Judged) -> tuple[s
     return (f"By the noise alone {named(first[0].fit)} comes first, which is not named either.", *reasons)
 
 
-def _with_kind(findings: Findings, main: MainPart, rng: np.random.Generator) -> Findings:
+def _with_kind(findings: Findings, main: MainPart, held_out: Fit | None, rng: np.random.Generator) -> Findings:
     """What is unexplained, with what all explanations of most of it have in common, if anything."""
-    group = [main.models[n].fit for n in main.group]
-    kind = in_common([fit.candidates for fit in group])
-    if not kind:
+    kind = in_common([main.models[n].fit.candidates for n in main.group])
+    return replace(_by_squares(findings, main, held_out, rng), kind=kind) if kind else findings
+
+
+def _with_closest(findings: Findings, main: MainPart, held_out: Fit | None, rng: np.random.Generator) -> Findings:
+    """What is unexplained, with what comes closest by the squares of errors, if it predicts held-out presses better."""
+    before = findings.unnamed
+    if before is None or held_out is None or held_out.nrmse_after >= before.nrmse_after:
         return findings
+    said = closest(main.models[0].fit, main.share)
+    return replace(_by_squares(findings, main, held_out, rng), reasons=(*findings.reasons, said))
+
+
+def _by_squares(findings: Findings, main: MainPart, held_out: Fit | None, rng: np.random.Generator) -> Findings:
+    """Models without a name as they come by the squares of their errors. held_out : of the first."""
+    group = [main.models[n].fit for n in main.group]
     chances = main.probabilities(rng)
     models = tuple(_model(main.model, one, float(chances[n]), False) for n, one in enumerate(main.models))
     return replace(
-        findings, models=models, groups=(main.group,), kind=kind, information=_information(group), black_box_gain=0.0
+        findings,
+        models=models,
+        groups=(main.group,),
+        unnamed=held_out,
+        information=_information(group),
+        black_box_gain=0.0,  # of another metric
     )
 
 

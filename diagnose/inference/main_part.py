@@ -44,7 +44,8 @@ class MainPart:
     model, found : in the metric in which they were judged. base : the baseline's forecast there. share : of the
     held-out excess over noise that the best accounts for; hidden : what noise may hide of it. left_size, effect_size :
     root mean square of what it and the baseline leave, relative to the signal, of the worst channel. left_by_phase :
-    phase -> share of what it leaves.
+    phase -> share of what it leaves. most : whether it accounts for most of the mismatch, in all places; otherwise it
+    is what comes closest.
     """
 
     models: tuple[Judged, ...]
@@ -57,6 +58,7 @@ class MainPart:
     left_size: float
     effect_size: float
     left_by_phase: dict[str, float]
+    most: bool
 
     @property
     def nameable(self) -> bool:
@@ -83,7 +85,7 @@ def confirmed(held_out: Fit) -> bool:
 
 
 def main_part(model: ObservedModel, found: Screening, report: Report) -> MainPart | None:
-    """None where no explanation, or none that is told from all but a few rivals, accounts for most of the mismatch."""
+    """None where no explanation shows, or none predicts better than the baseline."""
     plain = model.seen_as(in_plain_units(model.samples))
     seen = screen(plain, linearised(plain, found.baseline.values), report)
     tolerance = SignalDiscrepancy(plain.samples)
@@ -102,7 +104,7 @@ def main_part(model: ObservedModel, found: Screening, report: Report) -> MainPar
     models = judge.best_first(singles(judge.model, judge.found, firsts, report))
     if models and models[0].left > 1.0 - MOST:
         judge, models = _with_pairs(judge, models, report)
-    return _told(judge, models) if models else None
+    return _told(judge, models) if models and models[0].gain.lower > 0.0 else None
 
 
 def _with_pairs(judge: TolerantJudge, models: Sequence[Judged], report: Report) -> tuple[TolerantJudge, list[Judged]]:
@@ -122,12 +124,10 @@ def _with_pairs(judge: TolerantJudge, models: Sequence[Judged], report: Report) 
     return closer, sorted([*again[: len(models)], *kept], key=score_of, reverse=True)
 
 
-def _told(judge: TolerantJudge, models: Sequence[Judged]) -> MainPart | None:
+def _told(judge: TolerantJudge, models: Sequence[Judged]) -> MainPart:
     best = models[0]
     group = [n for n, one in enumerate(models) if n == 0 or not judge.excluded(one.forecast, best.forecast)]
     flaws = judge.largest(best.forecast) <= VISIBLE
-    if best.left > 1.0 - (CONFIRMED if flaws else MOST) or best.gain.lower <= 0.0 or not judge.spread(best.forecast):
-        return None
     order = [*group, *(n for n in range(len(models)) if n not in group)]
     left = by_phase(judge.model.samples, judge.left(best.forecast), PHASES)
     return MainPart(
@@ -141,4 +141,5 @@ def _told(judge: TolerantJudge, models: Sequence[Judged]) -> MainPart | None:
         judge.largest(best.forecast),
         judge.largest(judge.base),
         left,
+        best.left <= 1.0 - (CONFIRMED if flaws else MOST) and judge.spread(best.forecast),
     )

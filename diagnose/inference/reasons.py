@@ -98,3 +98,12 @@ def beside(fit: Fitted, first: int, held_out: Fit) -> str:
         f"{_names(fit.candidates[first:])} {verb} in what the first explanation leaves of presses that took no part in "
         f"the fit: the error falls further, to {percent(held_out.nrmse_after)}."
     )
+
+
+def closest(fit: Fitted, share: float) -> str:
+    """What comes closest where errors count by their squares and nothing is a main part."""
+    verb, it = ("comes", "It accounts") if len(fit.candidates) == 1 else ("come", "They account")
+    return (
+        f"Where errors count by their squares, {named(fit)} {verb} closest. {it} for {part(max(share, 0.0))} of "
+        f"the excess in conditions that took no part in the fit; a main part accounts for more, and in all of them."
+    )
