@@ -104,14 +104,17 @@ def _numbers(model: FittedModel) -> str:
 
 def _unexplained(findings: Findings) -> Iterator[Sentence]:
     if findings.kind:
-        rivals = listed([model_words(findings.models[n]) for n in findings.groups[0]], "or")
-        yield Sentence(
-            "Left out", f"only its kind can be told: {findings.kind}. Each of these explains most: {rivals}."
+        rivals = [model_words(findings.models[n]) for n in findings.groups[0]]
+        each = (
+            f"Each of these explains most: {listed(rivals, 'or')}."
+            if len(rivals) > 1
+            else f"Of all that is known only this explains most, and it leaves too much for a name: {rivals[0]}."
         )
-        return
-    yield Sentence("Left out", _nameless(findings))
-    if findings.reasons:
-        yield Sentence("Why nothing is named", " ".join(findings.reasons))
+        yield Sentence("Left out", f"only its kind can be told: {findings.kind}. {each}")
+    else:
+        yield Sentence("Left out", _nameless(findings))
+        if findings.reasons:
+            yield Sentence("Why nothing is named", " ".join(findings.reasons))
     if findings.unnamed is not None and findings.unnamed.nrmse_after < findings.unnamed.nrmse_before:
         closest = short_name([setting.candidate for setting in findings.models[0].settings])
         text = f"with {closest}, the error on held-out presses would fall {_errors(findings.unnamed)}."

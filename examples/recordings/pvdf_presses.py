@@ -7,10 +7,10 @@ streams were taken by two clocks at about 2 kHz each. They span the same time, s
 that of their clocks to a percent or two; there the force is put onto the voltage's clock where, behind a high-pass, it
 is most like taxel 1. The time constant of the high-pass is the same for all trials and the one that makes them most
 alike: one much shorter than a press gives the rate of the force, a much longer one the force itself. Lag and clock
-ratio stay nuisances. A trial whose streams are not alike anywhere is left out. Of the taxels the first is kept, which
-carries most of the signal, and every 16th sample behind a low-pass at 62 Hz: a press takes a tenth of a second or more.
-The shape of the fingertip and the unit of the force are not documented: geometry = "unknown", newtons by magnitude. The
-level of the first REST_S is taken off force and voltages.
+ratio stay nuisances. A trial whose streams are much less alike than those of the others is left out. Of the taxels the
+first is kept, which carries most of the signal, and every 16th sample behind a low-pass at 62 Hz: a press takes a tenth
+of a second or more. The shape of the fingertip and the unit of the force are not documented: geometry = "unknown",
+newtons by magnitude. The level of the first REST_S is taken off force and voltages.
 """
 
 import re
@@ -34,7 +34,7 @@ CLOCKS = (0.98, 1.02)  # of the ratio of lengths
 CLOCK_ERROR = 1e-3
 TIME_CONSTANTS_S = np.geomspace(1e-3, 10.0, 13)
 LAG_ERROR_S = 0.01  # one sigma: the time constant moves the lag by about as much
-ALIKE = 0.8  # correlation of the two streams, below which a trial is left out
+ALIKE = 0.8  # correlation of the two streams in terms of the median trial's, below which one is left out
 EVERY = 16  # samples
 HEAD = """# Real presses; shape of the fingertip and unit of the force are not documented by the source.
 format = "softdot-recording/1"
@@ -46,10 +46,12 @@ geometry = "unknown"
 def convert(data: Path, out: Path) -> None:
     """Write the recording of all files in data whose streams are alike."""
     runs, files = [HEAD], {}
-    streams = {file.stem: read(file) for file in sorted(data.glob("Cube*_Seq*_Sp*_t*.npz"))}
-    for stem, (columns, lag) in aligned(streams).items():
-        if abs(lag.correlation) < ALIKE:
-            print(f"{stem} is left out: force and voltage correlate by {lag.correlation:.2f} at best", file=sys.stderr)
+    trials = aligned({file.stem: read(file) for file in sorted(data.glob("Cube*_Seq*_Sp*_t*.npz"))})
+    usual = float(np.median([abs(lag.correlation) for _, lag in trials.values()]))
+    for stem, (columns, lag) in trials.items():
+        if abs(lag.correlation) < ALIKE * usual:
+            said = f"force and voltage correlate by {lag.correlation:.2f}, usually by {usual:.2f}"
+            print(f"{stem} is left out: {said}", file=sys.stderr)
             continue
         name = stem.lower().replace("_", "-") + ".csv"
         files[name] = thinned(columns)

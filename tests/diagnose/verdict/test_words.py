@@ -111,6 +111,17 @@ def test_where_too_many_are_as_good_their_kind_is_told(recording):
     )
 
 
+def test_of_one_explanation_that_leaves_too_much_the_kind_is_told_with_its_error(recording):
+    left = Fit(("run, press 1",), 0.97, 0.29, 0.22, 5.0)
+    kind = found(recording, (LEAKS,), None, ((0,),), unexplained=True, kind="something leaks", unnamed=left)
+    assert told(recording, kind)[1:3] == [
+        "Left out: only its kind can be told: something leaks. Of all that is known only this explains most, and it "
+        "leaves too much for a name: charge leaks through the amplifier.",
+        "The closest explanation: with charge-leakage (readout), the error on held-out presses would fall from 97 % to "
+        "29 % of the recorded signal (the estimated noise makes 22 %).",
+    ]
+
+
 def test_a_unit_is_told_once():
     told = interval_words("normal_stiffness_N_per_mm3", Interval(65.0, 8.4, 66.0, "N/mm3"))
     assert told == "normal stiffness 65 N/mm³ (90 % interval 8.4 to 66)"
