@@ -280,9 +280,12 @@ def _with_kind(findings: Findings, main: MainPart, held_out: Fit | None, rng: np
 
 
 def _with_closest(findings: Findings, main: MainPart, held_out: Fit | None, rng: np.random.Generator) -> Findings:
-    """What is unexplained, with what comes closest by the squares of errors, if it predicts held-out presses better."""
+    """What is unexplained, with what comes closest by the squares of errors, if it predicts held-out presses better.
+
+    A kind that was told by the noise stays, with the explanations that it is true of.
+    """
     before = findings.unnamed
-    if before is None or held_out is None or held_out.nrmse_after >= before.nrmse_after:
+    if findings.kind or before is None or held_out is None or held_out.nrmse_after >= before.nrmse_after:
         return findings
     said = closest(main.models[0].fit, main.share)
     return replace(_by_squares(findings, main, held_out, rng), reasons=(*findings.reasons, said))
