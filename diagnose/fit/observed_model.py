@@ -150,6 +150,7 @@ def slope_by_step(change: Callable[[float], Floats], step: float, length: int) -
 
 REMEMBERED = 400  # predictions of one run
 STEP = 0.02  # of the first start of a coordinate, for slopes
+SHARES = (1.0, 0.5, 0.25, 0.125)  # of a step of the nuisances
 
 
 class ObservedModel:
@@ -196,6 +197,17 @@ class ObservedModel:
         raw = self.engine.imagine(of.along(drive), [*self._settings(run, values), *settings])
         told = (self.nuisances, values, run)
         return {name: observed(of, name, raw[name], by_name(*told, name)) for name in of.answers}
+
+    def answered(self, start: Floats, end: Floats, settings: Sequence[Setting]) -> Floats:
+        """Nuisances (p,) as far on a step from a start as there is an answer: the law of a coupon may turn over."""
+        for share in SHARES:
+            values = start + share * (end - start)
+            try:
+                self.signals(values, settings)
+            except ValueError:
+                continue
+            return np.asarray(values)
+        return start
 
     def possible(self, values: Floats) -> Floats:
         """Nuisances (p,) held within what the engine has an answer to."""

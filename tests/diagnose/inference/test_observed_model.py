@@ -75,6 +75,18 @@ def test_a_baseline_is_fitted_beside_a_law_that_turns_over():
     assert low <= held[shared] <= high
 
 
+def test_a_step_of_the_nuisances_ends_where_the_model_has_an_answer():
+    smooth = observed()
+    shared = [(n.name, n.run) for n in smooth.nuisances].index(("modulus.medium1", None))
+    model = ObservedModel(smooth.samples, Turning(smooth.samples.recording, -1.0, 0.3))
+    start, end = np.zeros(len(model.sigma)), np.zeros(len(model.sigma))
+    end[shared] = 1.0
+    assert model.answered(start, end, ())[shared] == 0.25
+    assert model.answered(start, 0.2 * end, ())[shared] == 0.2
+    end[shared] = 100.0
+    assert model.answered(start, end, ())[shared] == 0.0
+
+
 def test_nuisances_of_a_run_leave_the_other_alone_and_shared_ones_are_counted_once():
     model = observed()
     names = [(n.name, n.run) for n in model.nuisances]
