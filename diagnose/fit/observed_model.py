@@ -150,7 +150,7 @@ def slope_by_step(change: Callable[[float], Floats], step: float, length: int) -
 
 REMEMBERED = 400  # predictions of one run
 STEP = 0.02  # of the first start of a coordinate, for slopes
-SHARES = (1.0, 0.5, 0.25, 0.125)  # of a step of the nuisances
+SHARES = (0.5, 0.25, 0.125)  # of a step of the nuisances
 
 
 class ObservedModel:
@@ -200,13 +200,12 @@ class ObservedModel:
 
     def answered(self, start: Floats, end: Floats, settings: Sequence[Setting]) -> Floats:
         """Nuisances (p,) as far on a step from a start as there is an answer: the law of a coupon may turn over."""
-        for share in SHARES:
-            values = start + share * (end - start)
+        for values in (end, *(start + share * (end - start) for share in SHARES)):
             try:
                 self.signals(values, settings)
             except ValueError:
                 continue
-            return np.asarray(values)
+            return values
         return start
 
     def possible(self, values: Floats) -> Floats:
