@@ -199,7 +199,8 @@ class ObservedModel:
         return {name: observed(of, name, raw[name], by_name(*told, name)) for name in of.answers}
 
     def answered(self, start: Floats, end: Floats, settings: Sequence[Setting]) -> Floats:
-        """Nuisances (p,) as far on a step from a start as there is an answer: the law of a coupon may turn over."""
+        """Possible nuisances (p,) as far on a step from a start as there is an answer: a coupon's law may turn over."""
+        end = self.possible(end)
         for values in (end, *(start + share * (end - start) for share in SHARES)):
             try:
                 self.signals(values, settings)

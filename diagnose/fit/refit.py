@@ -45,7 +45,7 @@ class Fitted:
 
     def nuisances(self, model: ObservedModel) -> Floats:
         """Those (p,) with which it comes closest to the recording, within what the engine has an answer to."""
-        return model.answered(self.system.values, model.possible(self.system.closest()), self.settings)
+        return model.answered(self.system.values, self.system.closest(), self.settings)
 
 
 def common_metric(samples: Samples, baseline: LinearisedSystem) -> LinearisedSystem:

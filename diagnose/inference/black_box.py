@@ -171,8 +171,8 @@ def unimproved(fit: Fit) -> Fit:
 def relaxed(model: ObservedModel, values: Floats, settings: Sequence[Setting], rows: Bools, frozen: Bools) -> Floats:
     """Nuisances fitted to some rows within what is plausible, but for those that are frozen."""
     for _ in range(ROUNDS if len(values) else 0):
-        end = model.possible(_bounded(linearised(model, values, settings, informative=rows), values, frozen))
-        values = model.answered(values, end, settings)
+        system = linearised(model, values, settings, informative=rows)
+        values = model.answered(values, _bounded(system, values, frozen), settings)
     return values
 
 

@@ -14,14 +14,19 @@ from tests.diagnose.real import NEEDED, RECORDINGS, control, converted, silent
 pytestmark = NEEDED
 
 
+def named_alone(found, mechanism):
+    """One mechanism, without a rival, shown on presses that were held out."""
+    assert found.best is not None, found.reasons
+    assert [one.candidate.mechanism for one in found.best.settings] == [mechanism]
+    assert found.groups[0] == (0,)
+    assert found.held_out is not None
+
+
 def test_the_friction_of_a_seal_is_named_and_predicts_a_repeat_as_coulombs_law_does():
     """An expert's spring and slider, fitted to the first and third run, leaves 15.7 % of the second."""
     rig = load_rig(Path(RECORDINGS) / "oring-friction")
     found = diagnose(rig.recording, engine_for(rig, silent), 0, silent)
-    assert found.best is not None, found.reasons
-    assert [one.candidate.mechanism for one in found.best.settings] == ["guide-friction"]
-    assert found.groups[0] == (0,)
-    assert found.held_out is not None
+    named_alone(found, "guide-friction")
     assert found.held_out.nrmse_after < 1.2 * 0.157
 
 
@@ -34,10 +39,7 @@ def test_a_tape_relaxes(share_of_noise, tmp_path):
     runs = [replace(run, noise={name: share_of_noise * s for name, s in run.noise.items()}) for run in recording.runs]
     recording = replace(recording, runs=tuple(runs))
     found = diagnose(recording, engine_for(replace(rig, recording=recording), silent), 0, silent)
-    assert found.best is not None, found.reasons
-    assert [one.candidate.mechanism for one in found.best.settings] == ["viscoelasticity"]
-    assert found.groups[0] == (0,)
-    assert found.held_out is not None
+    named_alone(found, "viscoelasticity")
     assert found.held_out.nrmse_after < 1.2 * 0.0254
 
 
@@ -47,10 +49,7 @@ def test_an_adhesive_relaxes(tmp_path):
     converted("adhesive-shear", tmp_path / "out")
     rig = load_rig(next((tmp_path / "out").rglob("rig.toml")).parent)
     found = diagnose(rig.recording, engine_for(rig, silent), 0, silent)
-    assert found.best is not None, found.reasons
-    assert [one.candidate.mechanism for one in found.best.settings] == ["viscoelasticity"]
-    assert found.groups[0] == (0,)
-    assert found.held_out is not None
+    named_alone(found, "viscoelasticity")
     assert found.held_out.nrmse_after < 1.2 * 0.13
 
 
