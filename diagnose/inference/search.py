@@ -147,6 +147,11 @@ class Screening:
     excess: float
 
     @property
+    def rough(self) -> float:
+        """Gain of a step that is the last of a first fit."""
+        return max(LEAST_GAIN, ROUGH * self.excess)
+
+    @property
     def survivors(self) -> list[int]:
         """Numbers of the candidates that show, those that explain most first."""
         order = np.argsort(-self.tests.explained, kind="stable")
@@ -184,12 +189,11 @@ class FirstFit:
 def first_fits(model: ObservedModel, found: Screening, report: Report) -> list[FirstFit]:
     """Survivors fitted in one metric, the best of them, FINALISTS at most, first."""
     common = common_metric(model.samples, found.start)
-    rough = max(LEAST_GAIN, ROUGH * found.excess)
     firsts = []
     for count, number in enumerate(found.survivors):
         report("first fits", count, len(found.survivors))
         only = (found.candidates[number],)
-        best = lowest(descent(model, common, only, ()), found.tests.estimates[number][:STARTS], rough)
+        best = lowest(descent(model, common, only, ()), found.tests.estimates[number][:STARTS], found.rough)
         if best is not None:
             firsts.append(FirstFit(number, best.values, best.cost))
     return sorted(firsts, key=lambda one: one.cost)[:FINALISTS]
@@ -264,7 +268,7 @@ def paired(
     """Both together from starts (q,) of the second; none where the model has no answer."""
     both = (*first.candidates, second)
     problem = descent(model, first.system, both, first.settings)
-    best = lowest(problem, [np.concatenate([first.values, start]) for start in starts])
+    best = lowest(problem, [np.concatenate([first.values, start]) for start in starts], found.rough)
     if best is None:
         return []
     fit = fitted(model, first.system, both, best.values, found.excess)

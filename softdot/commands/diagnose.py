@@ -227,7 +227,7 @@ def engine_for(rig: Rig, report: Report) -> Engine:
         from diagnose.engines.coupon.engine import coupon_engine
 
         return coupon_engine(rig.recording, rig.materials, report, last={})
-    from diagnose.engines.proportional import proportional_engine
+    from diagnose.engines.proportional.engine import proportional_engine
 
     return proportional_engine(rig.recording, report)
 

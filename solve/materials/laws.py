@@ -18,6 +18,9 @@ from solve.materials.principal_stretches import log_stretches, principal_stress
 class MediumLaw(Protocol):
     """What the element needs of a medium."""
 
+    def __hash__(self) -> int:
+        """Of its constants: answers of a law can be kept."""
+
     @property
     def bulk_modulus(self) -> float:
         """K, in the unit of stress of the law."""

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diagnose.engines.coupon.engine import coupon_engine
-from diagnose.engines.proportional import proportional_engine
+from diagnose.engines.proportional.engine import proportional_engine
 from diagnose.forward import Setting
 from diagnose.signals.recording import Recording, Run, one_after_the_other
 from softdot.config.rig import load_rig

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.special import erf
 
-from diagnose.engines.proportional import proportional_engine
+from diagnose.engines.proportional.engine import proportional_engine
 from diagnose.forward import Setting
 from diagnose.signals.recording import Recording, Run
 from geometry.base import InputError

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from diagnose.engines.proportional import proportional_engine
+from diagnose.engines.proportional.engine import proportional_engine
 from diagnose.inference.diagnose import diagnose
 from softdot.config.rig import load_rig
 from tests.diagnose.real import NEEDED, control, converted, silent

@@ -1,0 +1,1 @@
+"""Sensors of unknown geometry: charge in proportion to the measured force."""

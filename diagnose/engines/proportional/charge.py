@@ -1,0 +1,87 @@
+"""Charge of a sensor of unknown geometry under a measured force, and the voltage that its amplifier makes of it.
+
+    Q(t) = s g(t),    g the strain of one medium under the measured force f = F / F_max,    g = f at the baseline
+s is one unknown number for each channel. A medium that relaxes, softens or stiffens is the coupon of
+diagnose.engines.coupon in simple shear: the same laws of the 3D solver, on a strain of unknown size. A tenth is taken
+at the largest force, small enough that relaxation is linear. Of a Yeoh law then f = g + a g^3 + b g^5.
+    Charge of the touch: in proportion to the contact area of a sphere, f^(2/3) (Hertz, J. reine angew. Math. 92, 1882).
+    Heat: p dT(t) over the film, in terms of the voltage of 28 um of PVDF, with dT from the first touch.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from diagnose.engines.coupon.kinematics import SimpleShear
+from diagnose.engines.coupon.laws import LARGEST_STRAIN, LAYER, MEDIUM
+from diagnose.engines.coupon.point import MaterialPoint
+from diagnose.engines.coupon.relaxation import NO_SERIES, Relaxation
+from diagnose.vocabulary.base import film_capacitance_pF
+from geometry.arrays import Floats
+from solve.materials.inelastic import Prony, Softening
+from solve.materials.laws import MediumLaw
+from solve.materials.parameters import PiezoelectricFilm
+from solve.model import Model, Readout
+from solve.readout.amplifier import amplify, warming_K
+
+HERTZ = 2.0 / 3.0
+
+
+@dataclass(frozen=True, eq=False)
+class Loading:
+    """What a run gives: time_s (t,), force (t,) over the largest of the recording and from its rest, touch_s.
+
+    largest_before : force of earlier runs in the same measure. Compared by identity, so that strains can be kept.
+    """
+
+    time_s: Floats
+    force: Floats
+    touch_s: float
+    largest_before: float = 0.0
+
+
+def strain(model: Model, loading: Loading) -> Floats:
+    """Strain (t,) of the medium over that at the largest force at the baseline. NoEquilibriumError."""
+    physics, material = model.physics, model.materials[LAYER]
+    series, softening = physics.viscosity.get(LAYER, NO_SERIES), physics.softening.get(LAYER)
+    if material == MEDIUM and softening is None and series == NO_SERIES:
+        return loading.force
+    return _solved(material.law, softening, series, loading)
+
+
+@lru_cache(maxsize=512)
+def _solved(law: MediumLaw, softening: Softening | None, series: Prony, loading: Loading) -> Floats:
+    """Strain (t,), kept since sensitivities and all that follows the film leave it alone."""
+    point = MaterialPoint(SimpleShear(1.0, 1.0), law, MEDIUM.poisson_ratio, softening, series)
+    peak = point.peak_energy({"force_N": LARGEST_STRAIN * loading.largest_before})
+    found = point.answer_near(loading.time_s, LARGEST_STRAIN * loading.force, "force_N", peak_before=peak)
+    return found.values / LARGEST_STRAIN
+
+
+def film_charge(model: Model, loading: Loading) -> Floats:
+    """Charge (t,) that follows the load, in units of s, the film's own relaxation included. NoEquilibriumError."""
+    charge = strain(model, loading)
+    series = model.physics.viscosity.get("film")
+    if series is None:
+        return charge
+    return Relaxation.of(series, loading.time_s).relaxed(charge[:, None])[:, 0]
+
+
+def other_charge(model: Model, loading: Loading) -> Floats:
+    """Charge (t,) in C of the touch and of heat."""
+    physics, film = model.physics, model.materials["film"]
+    assert isinstance(film, PiezoelectricFilm)
+    area = np.maximum(loading.force, 0.0) ** HERTZ
+    touch = 1e-12 * physics.contact_charge_pC * area**physics.contact_charge_exponent
+    area_m2 = 1e-6 * model.segment.length_mm * model.segment.width_mm
+    warming = warming_K(loading.time_s - loading.touch_s, physics.pyroelectric)
+    return np.asarray(touch + 1e-6 * film.pyroelectric_uC_per_m2_K * area_m2 * warming)
+
+
+def voltage(model: Model, loading: Loading, charge_C: Floats) -> Floats:
+    """What the amplifier gives (t,), at rest before the first sample."""
+    before = loading.time_s[0] - (loading.time_s[1] - loading.time_s[0])
+    time, charge = np.append(before, loading.time_s), np.append(0.0, charge_C)
+    capacitance = 1e-12 * film_capacitance_pF(model)
+    return amplify(time, charge, capacitance, model.readout or Readout(), model.physics)[1:]
