@@ -153,7 +153,7 @@ class Findings:
     groups : indices into models that these recordings cannot tell apart, the best model's group first.
     nuisances : name or "name of run" -> (value, one sigma of the prior) at the baseline.
     baseline, improved : label -> fitted signals with nuisances; improved is None where nothing is named.
-    unnamed : held-out errors of the first model where it is not named.
+    unnamed, closest : held-out errors and signals of the first model where it is not named.
     screened : (mechanism, component) -> p-value of the score test. shares : component -> share of all excess.
     information : (p, p) of the best models' coordinates, in the order of models, see diagnose.next_press.
     """
@@ -178,9 +178,15 @@ class Findings:
     black_box_gain: float
     warnings: tuple[str, ...] = ()
     unnamed: Fit | None = None
+    closest: Mapping[str, Signals] | None = None
     information: Floats | None = field(default=None, compare=False)
     remainder: Remainder | None = None
     kind: str = ""
+
+    @property
+    def comes_closer(self) -> bool:
+        """Whether the first model, although it is not named, predicts held-out presses better than your simulation."""
+        return self.unnamed is not None and self.unnamed.improves
 
     @property
     def grade(self) -> Grade:

@@ -151,8 +151,8 @@ def _findings(model: ObservedModel, screening: Screening, found: Checked, choice
         _model(model, one, float(choice.probabilities[n]), detailed=named and n in choice.groups[0])
         for n, one in enumerate(choice.models)
     )
-    chosen = best if named else None
-    unnamed = held_out if best and not named else None
+    chosen, closest = (best, None) if named else (None, best)
+    unnamed = held_out if closest else None
     if not named:
         train, held_out = unimproved(train), unimproved(held_out) if held_out else None
     return Findings(
@@ -171,6 +171,7 @@ def _findings(model: ObservedModel, screening: Screening, found: Checked, choice
         train=train,
         held_out=held_out,
         unnamed=unnamed,
+        closest=_improved(model, closest) if closest else None,
         nuisances=_nuisances(model, screening.baseline.values),
         baseline=labelled(model, screening.start.values, ()),
         improved=_improved(model, chosen) if chosen else None,
@@ -248,6 +249,7 @@ def _with_main_part(findings: Findings, main: MainPart, choice: Choice, rng: np.
         train=train,
         held_out=held_out,
         unnamed=None,
+        closest=None,
         improved=_improved(main.model, best),
         information=_information([main.models[n].fit for n in order[: len(main.group)]]),
         remainder=Remainder(main.share, main.left_by_phase),
@@ -301,6 +303,7 @@ def _by_squares(findings: Findings, main: MainPart, held_out: Fit | None, rng: n
         models=models,
         groups=(main.group,),
         unnamed=held_out,
+        closest=_improved(main.model, main.models[0]),
         information=_information(group),
         black_box_gain=0.0,  # of another metric
     )
@@ -336,6 +339,7 @@ def _with_more(model: ObservedModel, screening: Screening, findings: Findings, r
         train=train,
         held_out=after,
         unnamed=None,
+        closest=None,
         improved=_improved(judge.model, one),
         information=_information([more.fit]),
         remainder=rest,

@@ -48,14 +48,15 @@ def _scored(findings: Findings, train: ObservedModel, held: ObservedModel) -> Fi
     gains = _log_scores(held, after, settings) - _log_scores(held, before, ())
     fit = errors(held, range(len(held.samples.presses)), before, after, settings, gains)
     named = findings.best is not None
-    shown = findings.improved
+    predicted = labelled(held, after, settings)
     return replace(
         findings,
         detection=replace(findings.detection, noise={**findings.detection.noise, **held.samples.noise_summaries()}),
         held_out=fit if named else unimproved(fit),
         unnamed=fit if best and not named else None,
         baseline={**findings.baseline, **labelled(held, before, ())},
-        improved=None if shown is None else {**shown, **labelled(held, after, settings)},
+        improved=None if findings.improved is None else {**findings.improved, **predicted},
+        closest=None if findings.closest is None else {**findings.closest, **predicted},
     )
 
 

@@ -23,6 +23,8 @@ from geometry.arrays import Floats
 
 RECORDED, BEFORE, AFTER, FULL, SOFT = "#26303a", "#b5263b", "#2f7a4d", "#d08a00", "#8a949e"
 """Colours: what was recorded, your simulation, with what was left out, by the full model, what matters less."""
+CLOSEST = "#3a6ea8"
+"""Colour of an explanation that is not named."""
 WIDTH_IN, DPI = 8.0, 130
 
 
@@ -145,10 +147,8 @@ def _rms(run: Run, channel: str, findings: Findings) -> float:
 
 def _draw_signals(panel: Any, run: Run, channel: str, findings: Findings, full: Signals | None) -> None:
     panel.plot(run.time_s, _shown(run, channel), color=RECORDED, lw=2.6, alpha=0.45, label="recorded")
-    panel.plot(run.time_s, findings.baseline[run.label][channel], color=BEFORE, lw=1.2, label="your simulation")
-    if findings.improved is not None:
-        improved = findings.improved[run.label][channel]
-        panel.plot(run.time_s, improved, color=AFTER, lw=1.2, label="with what was left out")
+    for colour, values in _models(run, channel, findings).items():
+        panel.plot(run.time_s, values, color=colour, lw=1.2, label=MODELS[colour])
     if full is not None and channel in full:
         panel.plot(run.time_s, full[channel], color=FULL, lw=2.0, ls=":", label="the same with the full model")
     panel.set_ylabel(_axis(channel), fontsize=10)
@@ -166,10 +166,14 @@ def _draw_residuals(panel: Any, run: Run, channel: str, findings: Findings) -> N
     panel.set_xlabel("time (s)", fontsize=10)
 
 
+MODELS = {BEFORE: "your simulation", AFTER: "with what was left out", CLOSEST: "closest explanation, not named"}
+
+
 def _models(run: Run, channel: str, findings: Findings) -> Mapping[str, Floats]:
     """Colour -> signal of each model."""
-    after = {} if findings.improved is None else {AFTER: findings.improved[run.label][channel]}
-    return {BEFORE: findings.baseline[run.label][channel], **after}
+    closest = findings.closest if findings.comes_closer else None
+    each = {BEFORE: findings.baseline, AFTER: findings.improved, CLOSEST: closest}
+    return {colour: signals[run.label][channel] for colour, signals in each.items() if signals is not None}
 
 
 def _shown(run: Run, channel: str) -> Floats:

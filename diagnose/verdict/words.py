@@ -115,7 +115,7 @@ def _unexplained(findings: Findings) -> Iterator[Sentence]:
         yield Sentence("Left out", _nameless(findings))
         if findings.reasons:
             yield Sentence("Why nothing is named", " ".join(findings.reasons))
-    if findings.unnamed is not None and findings.unnamed.nrmse_after < findings.unnamed.nrmse_before:
+    if findings.unnamed is not None and findings.comes_closer:
         closest = short_name([setting.candidate for setting in findings.models[0].settings])
         text = f"with {closest}, the error on held-out presses would fall {_errors(findings.unnamed)}."
         yield Sentence("The closest explanation", text)

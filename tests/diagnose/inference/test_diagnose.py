@@ -87,15 +87,27 @@ def test_held_out_presses_come_down_to_the_noise():
     assert findings.held_out.log_score_gain_per_press > 0.0
 
 
+def missed(recording, signals):
+    """Sum of squares of what signals by run leave of a recording."""
+    return sum(
+        np.nansum((values - signals[run.label][name]) ** 2)
+        for run in recording.runs
+        for name, values in run.channels.items()
+        if name in run.answers
+    )
+
+
 def test_an_unknown_effect_is_left_unexplained():
     others = tuple(c for c in FEW if c.name != LEAK)
-    findings = found(small(5, Sensor(leak=1.0), runs=4), others)
+    recording = small(5, Sensor(leak=1.0), runs=4)
+    findings = found(recording, others)
     assert findings.mismatch
     assert findings.unexplained
     assert findings.best is None
     assert findings.improved is None
     assert findings.held_out.nrmse_after == findings.held_out.nrmse_before
     assert findings.unnamed.nrmse_after < findings.unnamed.nrmse_before
+    assert missed(recording, findings.closest) < missed(recording, findings.baseline)
     assert not found(small(7, Sensor(step_charge=0.3), runs=4)).best
 
 

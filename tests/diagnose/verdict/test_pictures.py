@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from diagnose.findings import LocatedExcess
+from diagnose.findings import Fit, LocatedExcess
 from diagnose.forward import Setting
 from diagnose.verdict.pictures import (
     EDGES_HZ,
@@ -72,6 +72,18 @@ def test_a_run_shows_before_after_and_the_full_model(recording, tmp_path):
     assert share_of(green, without) == share_of(amber, without) == 0.0
     assert share_of(green, named) > 0.0
     assert share_of(amber, named) > 0.0
+
+
+def test_an_explanation_without_a_name_is_drawn_where_it_comes_closer(recording, tmp_path):
+    tried = Fit(("quick, press 1",), 0.84, 0.4, 0.026, 100.0)
+    closest = found(recording, (LEAKS,), LEAKS, ((0,),)).improved
+    findings = found(recording, (LEAKS,), None, ((0,),), unexplained=True, unnamed=tried, closest=closest)
+    farther = replace(findings, unnamed=replace(tried, nrmse_after=0.9))
+    run, blue, green = recording.runs[1], (0.23, 0.43, 0.66), (0.18, 0.48, 0.3)
+    drawn = draw_run(run, findings, None, tmp_path / "closer.png")
+    assert share_of(blue, drawn) > 0.0
+    assert share_of(green, drawn) == 0.0
+    assert share_of(blue, draw_run(run, farther, None, tmp_path / "farther.png")) == 0.0
 
 
 def test_of_many_channels_those_that_differ_most_are_drawn():
