@@ -153,7 +153,7 @@ def _add_prove(commands: Any) -> None:
     )
     prove.add_argument("--cases", type=int, required=True, metavar="N", help="how many recordings")
     prove.add_argument("--seed", type=int, default=0, metavar="S", help="of the cases")
-    rigs = "from ridge-clamped, ridge-free, dot-clamped (default: these), row-free, thick-clamped, thick-free"
+    rigs = "of the hidden world, such as thick-clamped,thick-free; default: two ridges and a round dot"
     prove.add_argument("--rigs", metavar="NAME,NAME", help=rigs)
     kinds = "from none, single, pair, left-out, outside, ambiguous; default: all"
     prove.add_argument("--kinds", metavar="KIND,KIND", help=kinds)

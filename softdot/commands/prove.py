@@ -13,7 +13,7 @@ from diagnose.prove.score import Score
 from diagnose.prove.trial import Terms, tried
 from diagnose.prove.world.cases import KINDS, Case, plan
 from diagnose.prove.world.effects import EFFECTS, KNOWN, STAGED, fits
-from diagnose.prove.world.rigs import BENCHES
+from diagnose.prove.world.rigs import BENCHES, OFFERED
 from geometry.base import InputError
 from geometry.cache import check_folder, data_hash, source_hash
 from softdot import proof as proof_files
@@ -85,9 +85,7 @@ def prove_case(case: Case, terms: Terms, place: Path, program: str) -> dict[str,
     return record
 
 
-RIDGES = ("ridge-clamped", "ridge-free")
-RIGS = (*RIDGES, "dot-clamped")
-OTHERS = ("row-free", "thick-clamped", "thick-free")
+RIGS = tuple(name for name in OFFERED if BENCHES[name].usual)
 AWAY = "the Dask scheduler disappeared; finished cases are kept, start the proof again"
 
 
@@ -143,8 +141,8 @@ def _check(request: Request) -> None:
     if request.seed < 0:
         raise InputError(f"--seed {request.seed}: must not be negative")
     for rig in request.rigs:
-        if rig not in (*RIGS, *OTHERS):
-            raise InputError(f"--rigs '{rig}': must be of {', '.join((*RIGS, *OTHERS))}")
+        if rig not in OFFERED:
+            raise InputError(f"--rigs '{rig}': must be of {', '.join(OFFERED)}")
     for name in request.mechanisms:
         can = _hidden(request)
         if name not in can:

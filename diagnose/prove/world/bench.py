@@ -4,8 +4,10 @@ What is done at the bench: presses with rounded ramps, alone or twice, at severa
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 from scipy.ndimage import gaussian_filter1d
 
 from diagnose.prove.world.laws import Floats, Made
@@ -49,8 +51,8 @@ class Run:
         depth = np.full_like(time_s, -CLEAR_MM)
         start = self.lead_s
         for _ in range(self.count):
-            up = _rounded((time_s - start) / self.rise_s)
-            down = _rounded((time_s - start - self.rise_s - self.hold_s) / self.rise_s)
+            up = rounded((time_s - start) / self.rise_s)
+            down = rounded((time_s - start - self.rise_s - self.hold_s) / self.rise_s)
             depth += (self.depth_mm + CLEAR_MM) * (up - down)
             start += 2.0 * self.rise_s + self.hold_s + self.pause_s
         return depth
@@ -84,8 +86,12 @@ class Traced(Run):
         return float(self.asked_s[-1])
 
     def depth(self, time_s: Floats) -> Floats:
-        """As asked for, corners rounded."""
-        return np.asarray(np.interp(time_s, self.asked_s, gaussian_filter1d(self.asked_mm, ROUNDED, mode="nearest")))
+        """As asked for, corners rounded; smooth between the samples, as a mass feels its acceleration."""
+        return np.asarray(self._path(np.clip(time_s, self.asked_s[0], self.asked_s[-1])))
+
+    @cached_property
+    def _path(self) -> CubicSpline:
+        return CubicSpline(self.asked_s, gaussian_filter1d(self.asked_mm, ROUNDED, mode="nearest"))
 
     def presses_before(self, time_s: Floats) -> Floats:
         """Touches before the last one."""
@@ -105,7 +111,7 @@ def traced(
     )  # fmt: skip
 
 
-def _rounded(share: Floats) -> Floats:
+def rounded(share: Floats) -> Floats:
     """0 to 1 with continuous acceleration (a quintic step)."""
     x = np.clip(share, 0.0, 1.0)
     return np.asarray(x**3 * (10.0 - 15.0 * x + 6.0 * x**2))
@@ -117,6 +123,7 @@ class Bench:
 
     mesh_mm : sizes of elements and of those at the dot that the experimenter chose; None for none.
     peak_V, peak_N : about the largest signals, to scale noise and effects. force : whether a load cell is there.
+    usual : whether a proof has it where no rigs are asked for.
     """
 
     name: str
@@ -130,6 +137,7 @@ class Bench:
     rate_Hz: float = 250.0
     force: bool = True
     mesh_mm: tuple[float, float] | None = None
+    usual: bool = False
 
     def floating(self, run: Run) -> tuple[tuple[str, float], ...]:
         """Nuisances of a run: those of a load cell too where it has one of its own."""

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnose.prove.world.bench import Run
+from diagnose.prove.world.bench import Run, traced
 from diagnose.prove.world.effects import EFFECTS, applied, fits
 from diagnose.prove.world.march import Course, Table
 from diagnose.prove.world.noise import Amplifier, Autoregression, Filter, noises, yule_walker
@@ -71,6 +71,16 @@ def test_ramps_are_smooth_and_come_back():
     # a quintic step of height h in time T has the largest acceleration 10 h / sqrt(3) / T^2
     largest = 10.0 / 3.0**0.5 * 0.34 / 0.2**2
     assert np.abs(run.acceleration_mm_per_s2(time)).max() == pytest.approx(largest, rel=1e-2)
+
+
+def test_a_path_that_is_asked_for_sample_by_sample_accelerates_as_the_stage_does():
+    """Straight lines between the samples have no acceleration but at their ends, where it has no limit."""
+    run = Run("a", 0.3, 0.6, 0.5)
+    samples, between = run.times(250.0), run.times(1000.0)
+    asked = traced("asked", samples, run.depth(samples), None, 0.0, 0.0)
+    largest = np.abs(run.acceleration_mm_per_s2(between)).max()
+    for time in (samples, between):
+        assert np.abs(asked.acceleration_mm_per_s2(time)).max() == pytest.approx(largest, rel=0.05)
 
 
 def test_every_effect_is_off_at_strength_zero_and_names_what_the_vocabulary_knows():
