@@ -150,6 +150,7 @@ class Findings:
     models : all that were fitted, best first; best : the first of them where it is named, else None.
     remainder : where the best is only the main part, what it leaves; then the mismatch is unexplained as a whole.
     kind : half a sentence that is true of all explanations in the first group, where they are too many to name one.
+    ambiguous : nothing but their number speaks against a name, whether or not they are of one kind.
     groups : indices into models that these recordings cannot tell apart, the best model's group first.
     nuisances : name or "name of run" -> (value, one sigma of the prior) at the baseline.
     baseline, improved : label -> fitted signals with nuisances; improved is None where nothing is named.
@@ -182,6 +183,7 @@ class Findings:
     information: Floats | None = field(default=None, compare=False)
     remainder: Remainder | None = None
     kind: str = ""
+    ambiguous: bool = False
 
     @property
     def comes_closer(self) -> bool:

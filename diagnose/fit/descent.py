@@ -168,7 +168,6 @@ def bounded_step(hessian: Floats, gradient: Floats, damping: float, values: Floa
 
 JOINT_ITERATIONS = 30
 JOINT_LEAST_GAIN = 0.01  # in half squares: less is no progress
-JOINT_LEAST_SHARE = 1e-4  # of the half squares above noise, the same
 JOINT_STILL = 0.05  # of a standard error: a step below it is none
 
 
@@ -244,7 +243,6 @@ def fitted_jointly(
                 point, left, cost, damping = point + step, after, lower, damping / 10.0
                 break
             damping = max(10.0 * damping, 1e-3)
-        above = max(cost - 0.5 * len(left), 0.0)
-        if still or gain < max(JOINT_LEAST_GAIN, JOINT_LEAST_SHARE * above):
+        if gain < JOINT_LEAST_GAIN or still:
             break
     return Joint(point[: problem.count], point[problem.count :], cost)

@@ -146,7 +146,8 @@ def _findings(model: ObservedModel, screening: Screening, found: Checked, choice
     if choice.decision.named and held_out is not None:
         decision = worth_both(choice.decision, held_out, _alone(model, screening, choice.models))
         choice = replace(choice, decision=decision)
-    named, kind = choice.decision.named, _kind(choice, held_out)
+    named, ambiguous = choice.decision.named, choice.decision.ambiguous and (held_out is None or held_out.improves)
+    kind = in_common([fits[number].settings for number in choice.groups[0]]) if ambiguous else ""
     models = tuple(
         _model(model, one, float(choice.probabilities[n]), detailed=named and n in choice.groups[0])
         for n, one in enumerate(choice.models)
@@ -179,6 +180,7 @@ def _findings(model: ObservedModel, screening: Screening, found: Checked, choice
         warnings=warnings_of(model, screening.baseline, choice),
         information=_information([fits[number] for number in choice.groups[0]]) if fits else None,
         kind=kind,
+        ambiguous=ambiguous,
     )
 
 
@@ -214,13 +216,6 @@ def worth_both(decision: Decision, together: Fit, alone: Mapping[str, Fit]) -> D
             )
             return replace(decision, named=False, unexplained=True, reasons=(*decision.reasons, reason))
     return decision
-
-
-def _kind(choice: Choice, held_out: Fit | None) -> str:
-    """What all of the group have in common where nothing but their number is against a name, if anything."""
-    if not choice.decision.ambiguous or (held_out is not None and not held_out.improves):
-        return ""
-    return in_common([choice.models[number].fit.candidates for number in choice.groups[0]])
 
 
 def _with_main_part(findings: Findings, main: MainPart, choice: Choice, rng: np.random.Generator) -> Findings:
@@ -277,7 +272,7 @@ def _not_everything(findings: Findings, choice: Choice, main: Judged) -> tuple[s
 
 def _with_kind(findings: Findings, main: MainPart, held_out: Fit | None, rng: np.random.Generator) -> Findings:
     """What is unexplained, with what all explanations of most of it have in common, if anything."""
-    kind = in_common([main.models[n].fit.candidates for n in main.group])
+    kind = in_common([main.models[n].fit.settings for n in main.group])
     return replace(_by_squares(findings, main, held_out, rng), kind=kind) if kind else findings
 
 
@@ -304,6 +299,7 @@ def _by_squares(findings: Findings, main: MainPart, held_out: Fit | None, rng: n
         groups=(main.group,),
         unnamed=held_out,
         closest=_improved(main.model, main.models[0]),
+        ambiguous=False,
         information=_information(group),
         black_box_gain=0.0,  # of another metric
     )

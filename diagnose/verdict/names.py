@@ -59,25 +59,32 @@ def model_words(model: FittedModel) -> str:
     return listed([setting_words(setting) for setting in model.settings])
 
 
-def in_common(explanations: Sequence[Sequence[Candidate]]) -> str:
+def in_common(explanations: Sequence[Sequence[Setting]]) -> str:
     """Half a sentence that is true of all explanations, each of one or more mechanisms; "" without one.
 
     The mechanisms that all of several have, and what the others are alike in.
     """
-    first = explanations[0] if len(explanations) > 1 else ()
-    shared = [one for one in first if all(one in others for others in explanations)]
-    rest = _alike([one for explanation in explanations for one in explanation if one not in shared])
-    return listed([*(mechanism_words(*one.name) for one in shared), rest or "something else"]) if shared else rest
+    names = [[one.candidate.name for one in explanation] for explanation in explanations]
+    first = names[0] if len(names) > 1 else []
+    shared = [name for name in first if all(name in others for others in names)]
+    rest = _alike([one for explanation in explanations for one in explanation if one.candidate.name not in shared])
+    return listed([*(mechanism_words(*name) for name in shared), rest or "something else"]) if shared else rest
 
 
-def _alike(candidates: Sequence[Candidate]) -> str:
+def _alike(settings: Sequence[Setting]) -> str:
     """Half a sentence that is true of all of them, by their kind, or of several by their component; "" without one."""
-    kinds = {known.kind if (known := vocabulary().get(one.mechanism)) is not None else "" for one in candidates}
-    components = {one.component for one in candidates}
-    if len(kinds) == 1 and (kind := kinds.pop()):
-        return kind
-    shared = len(components) == 1 and len(candidates) > 1
+    each = [_kinds(one) for one in settings]
+    for kind in each[0] if each else ():
+        if all(kind in others for others in each):
+            return kind
+    components = {one.candidate.component for one in settings}
+    shared = len(components) == 1 and len(settings) > 1
     return f"{component_words(components.pop())} behaves otherwise than stated" if shared else ""
+
+
+def _kinds(setting: Setting) -> list[str]:
+    known = vocabulary().get(setting.candidate.mechanism)
+    return known.kinds(setting) if known is not None else []
 
 
 def short_name(candidates: Sequence[Candidate]) -> str:

@@ -125,6 +125,9 @@ def _nameless(findings: Findings) -> str:
     """What is said of a mismatch without a name, and whether an ordinary rig makes as much."""
     fits = [fit for fit in (findings.train, findings.held_out) if fit is not None]
     excess = max((sqrt(fit.excess_before) for fit in fits), default=inf)
+    if excess > VISIBLE and findings.ambiguous:
+        rivals = listed([model_words(findings.models[n]) for n in findings.groups[0]], "or")
+        return f"one of several things that these recordings cannot tell apart, so nothing is named: {rivals}."
     if excess > VISIBLE:
         return "something that none of the known mechanisms explains, so nothing is named."
     return (

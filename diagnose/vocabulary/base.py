@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from diagnose.forward import Candidate, Coordinate
+from diagnose.forward import Candidate, Coordinate, Setting
 from diagnose.signals.recording import Recording
 from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.mechanisms.base import BONDS, CHANNELS, MechanismType
@@ -136,7 +136,7 @@ def growing(
     )
 
 
-def _none(*_: object) -> Iterable[Candidate]:
+def _none(*_: object) -> tuple[()]:
     return ()
 
 
@@ -155,7 +155,8 @@ class Vocabulary:
     can mesh; none where it cannot be told there.
     undone_by : what a bench can change so that it does not act: words and keys; None where nothing is known.
     below_one : a quantity that is derived from the values, and the words for what happens where it is below 1.
-    kind : a sentence that is true of every mechanism of its kind, "" where it has no relatives.
+    kind : a sentence that is true of every mechanism of its kind, "" where it has no relatives. kinds_at : those that
+    it is of at its values.
     words_of_two : the same as words for a pair of channels, with {} for both; "" where it sits at none.
     """
 
@@ -167,7 +168,12 @@ class Vocabulary:
     undone_by: tuple[str, dict[str, str]] | None = None
     below_one: tuple[str, str] | None = None
     kind: str = ""
+    kinds_at: Callable[[Setting], Iterable[str]] = _none
     words_of_two: str = ""
+
+    def kinds(self, setting: Setting) -> list[str]:
+        """All that it is of at its values, that of the mechanism first."""
+        return [kind for kind in (self.kind, *self.kinds_at(setting)) if kind]
 
 
 VOCABULARY: dict[str, Vocabulary] = {}

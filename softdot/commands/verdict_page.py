@@ -75,7 +75,7 @@ def page_text(
         v=summary,
         version=installed_version(),
         verdict_class=HEADS[findings.grade][0],
-        title=HEADS[findings.grade][1],
+        title=_title(findings),
         told=told,
         detected=detected(findings),
         parameters=list(_parameter_rows(findings.best)) if findings.best else [],
@@ -113,6 +113,12 @@ HEADS = {
     Grade.UNEXPLAINED: ("unknown", "Simulation and recordings differ, and no known mechanism explains it"),
 }
 """Of each grade the class of its box, and the title of the page."""
+SEVERAL = "Simulation and recordings differ, and several known mechanisms explain it alike"
+
+
+def _title(findings: Findings) -> str:
+    several = findings.ambiguous and findings.grade is Grade.UNEXPLAINED
+    return SEVERAL if several else HEADS[findings.grade][1]
 
 
 def _pictures(

@@ -5,8 +5,8 @@ from math import exp, log
 from typing import Any
 
 from diagnose.engines.coupon.laws import SPECIMEN, PartOfLayer
-from diagnose.forward import Candidate, Coordinate
-from diagnose.vocabulary.base import CouponScene, Scene, Vocabulary, register
+from diagnose.forward import Candidate, Coordinate, Setting
+from diagnose.vocabulary.base import GIVES_WAY, STIFFNESS, CouponScene, Scene, Vocabulary, register
 from geometry.dot import resolve_dot
 from geometry.stack import layers
 from solve.mechanisms.layers.property_error import PROPERTY_ERROR
@@ -80,6 +80,22 @@ def relative_error(make: type[Candidate], name: str, parameter: str) -> Candidat
     return make(PROPERTY_ERROR.name, name, (coordinate,), parameters)
 
 
+def kinds_at(setting: Setting) -> Iterator[str]:
+    """Of a medium, the stiffness; where that is less than stated it gives way in series with the film."""
+    factors = setting.candidate.parameters(setting.values)
+    if setting.candidate.component in ("film", SPECIMEN) or "modulus_factor" not in factors:
+        return
+    yield STIFFNESS
+    if factors["modulus_factor"] < factors.get("thickness_factor", 1.0):
+        yield GIVES_WAY
+
+
 register(
-    Vocabulary(PROPERTY_ERROR, "a property of {} differs from rig.toml", of_segment=of_segment, of_coupon=of_coupon)
+    Vocabulary(
+        PROPERTY_ERROR,
+        "a property of {} differs from rig.toml",
+        of_segment=of_segment,
+        of_coupon=of_coupon,
+        kinds_at=kinds_at,
+    )
 )

@@ -103,6 +103,7 @@ def test_an_unknown_effect_is_left_unexplained():
     findings = found(recording, others)
     assert findings.mismatch
     assert findings.unexplained
+    assert not findings.ambiguous
     assert findings.best is None
     assert findings.improved is None
     assert findings.held_out.nrmse_after == findings.held_out.nrmse_before
@@ -142,7 +143,7 @@ def test_four_that_act_alike_are_not_named():
     findings = found(small(5, Sensor(leak=1.0), runs=3), (CANDIDATES[0], *twins))
     assert findings.unexplained
     assert "4 explanations cannot be told apart" in " ".join(findings.reasons)
-    assert (findings.kind, findings.grade) == ("", Grade.UNEXPLAINED)
+    assert (findings.kind, findings.grade, findings.ambiguous) == ("", Grade.UNEXPLAINED, True)
 
 
 def test_of_four_that_act_alike_the_kind_is_told():

@@ -22,6 +22,7 @@ from diagnose.verdict.names import (
 )
 from diagnose.verdict.words import sentences
 from diagnose.vocabulary.base import vocabulary
+from diagnose.vocabulary.layers.property_error import property_error
 from solve.mechanisms import MECHANISMS
 from tests.diagnose.verdict.toy import LEAK, RELAXING, ToyEngine, fitted, found, toy_recording
 
@@ -111,6 +112,14 @@ def test_where_too_many_are_as_good_their_kind_is_told(recording):
     )
 
 
+def test_where_too_many_of_no_one_kind_are_as_good_it_is_not_said_that_none_is(recording):
+    several = found(recording, (LEAKS, RELAXES), None, ((0, 1),), unexplained=True, ambiguous=True)
+    assert told(recording, several)[1] == (
+        "Left out: one of several things that these recordings cannot tell apart, so nothing is named: charge leaks "
+        "through the amplifier or medium 2 relaxes (viscoelasticity)."
+    )
+
+
 def test_of_one_explanation_that_leaves_too_much_the_kind_is_told_with_its_error(recording):
     left = Fit(("run, press 1",), 0.97, 0.29, 0.22, 5.0)
     kind = found(recording, (LEAKS,), None, ((0,),), unexplained=True, kind="something leaks", unnamed=left)
@@ -127,18 +136,33 @@ def test_a_unit_is_told_once():
     assert told == "normal stiffness 65 N/mm³ (90 % interval 8.4 to 66)"
 
 
+def off(mechanism, component):
+    return Setting(Candidate(mechanism, component, (), dict), ())
+
+
 def test_what_explanations_have_in_common():
-    leaks = [(Candidate("charge-leakage", where, (), dict),) for where in ("readout", "film")]
+    leaks = [(off("charge-leakage", where),) for where in ("readout", "film")]
     assert in_common(leaks) == "the film or its input loses charge"
-    mixed = [(Candidate(name, "medium2", (), dict),) for name in ("viscoelasticity", "property-error")]
+    mixed = [(off(name, "medium2"),) for name in ("viscoelasticity", "property-error")]
     assert in_common(mixed) == "medium 2 behaves otherwise than stated"
     assert in_common([*leaks, *mixed]) == in_common(mixed[1:]) == ""
 
 
+@pytest.mark.parametrize(
+    ("modulus", "thickness", "gives_way"), [(-0.3, 0.0, True), (0.1, 0.2, True), (0.3, 0.0, False)]
+)
+def test_a_softer_or_thicker_medium_gives_way_as_a_bond_does(modulus, thickness, gives_way):
+    medium = Setting(property_error("medium2", ("modulus", "thickness")), (modulus, thickness))
+    told = in_common([(off("adhesive-compliance", "bond-base"),), (medium,)])
+    assert told == ("something in series with the film gives way" if gives_way else "")
+    foam = off("foam-densification", "medium1")
+    assert in_common([(foam,), (medium,)]) == "a layer is stiffer or softer than its stated law"
+
+
 def test_explanations_by_two_have_the_one_in_common_that_is_in_all_of_them():
-    slow = Candidate("low-pass", "readout", (), dict)
-    soft = [Candidate("adhesive-compliance", bond, (), dict) for bond in ("bond-base", "bond-film-medium2")]
-    stiff = Candidate("property-error", "medium1", (), dict)
+    slow = off("low-pass", "readout")
+    soft = [off("adhesive-compliance", bond) for bond in ("bond-base", "bond-film-medium2")]
+    stiff = off("property-error", "medium1")
     told = in_common([(slow, one) for one in soft])
     assert told == "the amplifier filters out fast changes and something in series with the film gives way"
     assert in_common([(slow, soft[0]), (stiff, slow)]) == "the amplifier filters out fast changes and something else"

@@ -159,6 +159,15 @@ def test_an_error_has_one_value_and_a_definition(recording, of_the_toy, before, 
     assert "An error is the root mean square of recorded minus simulated signal, divided by" in body
 
 
+def test_the_title_does_not_say_that_nothing_explains_what_several_do(recording, of_the_toy):
+    unexplained = replace(of_the_toy, best=None, unexplained=True)
+    _, _, none = page(recording, unexplained)
+    _, _, several = page(recording, replace(unexplained, ambiguous=True))
+    assert "no known mechanism explains it" in none
+    assert "several known mechanisms explain it alike" in several
+    assert "no known mechanism explains it" not in several
+
+
 def test_the_error_of_the_full_model_is_told_as_its_own(recording, of_the_toy):
     """It is another model on other presses: no two numbers stand under one name."""
     one = Resimulated(
