@@ -130,9 +130,14 @@ def _nameless(findings: Findings) -> str:
         return f"one of several things that these recordings cannot tell apart, so nothing is named: {rivals}."
     if excess > VISIBLE:
         return "something that none of the known mechanisms explains, so nothing is named."
+    known = (
+        "Several known mechanisms explain it alike"
+        if findings.ambiguous
+        else "None of the known mechanisms explains it"
+    )
     return (
         f"nothing large. What is off is {percent(excess)} of the recorded signal above the noise; flaws of an ordinary "
-        "rig make as much. None of the known mechanisms explains it, so nothing is named."
+        f"rig make as much. {known}, so nothing is named."
     )
 
 
