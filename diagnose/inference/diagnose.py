@@ -271,9 +271,12 @@ def _not_everything(findings: Findings, choice: Choice, main: Judged) -> tuple[s
 
 
 def _with_kind(findings: Findings, main: MainPart, held_out: Fit | None, rng: np.random.Generator) -> Findings:
-    """What is unexplained, with what all explanations of most of it have in common, if anything."""
+    """What is unexplained, with what all explanations of most of it have in common, if anything.
+
+    A kind that was told by the noise stays: what was not told apart is not by tolerating more.
+    """
     kind = in_common([main.models[n].fit.settings for n in main.group])
-    return replace(_by_squares(findings, main, held_out, rng), kind=kind) if kind else findings
+    return replace(_by_squares(findings, main, held_out, rng), kind=kind) if kind and not findings.kind else findings
 
 
 def _with_closest(findings: Findings, main: MainPart, held_out: Fit | None, rng: np.random.Generator) -> Findings:
