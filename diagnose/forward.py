@@ -156,6 +156,17 @@ class Engine(Protocol):
         """Every answer of a run by the full model with these mechanisms, in minutes. NoEquilibriumError."""
 
 
+class SolvedOutright:
+    """The part of diagnose.forward.Engine that is empty where every prediction is solved, in milliseconds."""
+
+    def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
+        """Nothing."""
+
+    def refine(self, settings: Sequence[Setting], report: Report) -> Sequence[Setting]:
+        """Nothing: predictions are as right everywhere."""
+        return ()
+
+
 class PassingOn:
     """Implements diagnose.forward.Engine by another engine."""
 

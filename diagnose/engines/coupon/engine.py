@@ -21,7 +21,7 @@ from diagnose.engines.coupon.laws import (
 )
 from diagnose.engines.coupon.point import MaterialPoint, youngs_modulus_MPa
 from diagnose.engines.coupon.relaxation import NO_SERIES
-from diagnose.forward import Candidate, Setting, Signals
+from diagnose.forward import Candidate, Setting, Signals, SolvedOutright
 from diagnose.signals.recording import Drive, Recording, Run, Specimen
 from diagnose.vocabulary.base import CouponScene, candidates_of_coupon
 from diagnose.vocabulary.layers.property_error import relative_error
@@ -41,7 +41,7 @@ Starts = dict[tuple[str, int], Floats]
 
 
 @dataclass(frozen=True)
-class CouponEngine:
+class CouponEngine(SolvedOutright):
     """One material point in the place of a coupon that deforms uniformly; the 3D elements would find the same.
 
     material : as rig.toml states it. Nothing has to be prepared, and solve is predict.
@@ -68,13 +68,6 @@ class CouponEngine:
     def with_candidates(self, candidates: tuple[Candidate, ...]) -> Self:
         """The engine with fewer candidates."""
         return replace(self, candidates=candidates)
-
-    def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
-        """Nothing: a point is solved in milliseconds."""
-
-    def refine(self, settings: Sequence[Setting], report: Report) -> Sequence[Setting]:
-        """Nothing: predictions are solved."""
-        return ()
 
     def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
         """Force or displacement of a run. ValueError beyond the bounds of a value, or where a law turns over."""

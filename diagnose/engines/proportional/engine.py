@@ -14,7 +14,7 @@ import numpy as np
 
 from diagnose.engines.coupon.laws import MEDIUM, one_layer, switched, with_factors_last
 from diagnose.engines.proportional.charge import Loading, film_charge, other_charge, voltage
-from diagnose.forward import Candidate, Coordinate, Setting, Signals
+from diagnose.forward import Candidate, Coordinate, Setting, Signals, SolvedOutright
 from diagnose.signals.phases import Segmentation, rest_of, segmented
 from diagnose.signals.recording import Recording, Run
 from diagnose.vocabulary.base import Scene, candidates_of_unknown_geometry, film_capacitance_pF, growing
@@ -42,7 +42,7 @@ def film_capacitance() -> Candidate:
 
 
 @dataclass(frozen=True)
-class ProportionalEngine:
+class ProportionalEngine(SolvedOutright):
     """Charge in proportion to the measured force, behind the amplifier as stated.
 
     largest_N : force above rest, of all runs. scene : sizes of the recording; its film is assumed, for only time
@@ -68,13 +68,6 @@ class ProportionalEngine:
     def with_candidates(self, candidates: tuple[Candidate, ...]) -> Self:
         """The engine with fewer candidates."""
         return replace(self, candidates=candidates)
-
-    def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
-        """Nothing."""
-
-    def refine(self, settings: Sequence[Setting], report: Report) -> Sequence[Setting]:
-        """Nothing: predictions are solved."""
-        return ()
 
     def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
         """Voltages of a run. ValueError beyond the bounds of a value, or where a law turns over."""
