@@ -14,8 +14,9 @@ import pytest
 from tornado.httpclient import AsyncHTTPClient, HTTPRequest
 from tornado.httpserver import HTTPServer
 from tornado.ioloop import IOLoop
+from tornado.iostream import StreamClosedError
 from tornado.netutil import bind_sockets
-from tornado.websocket import websocket_connect
+from tornado.websocket import WebSocketClosedError, websocket_connect
 
 from softdot.commands import studio as command
 from softdot.studio.guard import Guard
@@ -206,8 +207,11 @@ def spoken(studio, *messages, answers):
             found[told["tell"]] = told
         studio.tab = found["tab"]["name"]
         found.pop("said", None)
-        for message in messages:
-            await line.write_message(message)
+        try:
+            for message in messages:
+                await line.write_message(message)
+        except (StreamClosedError, WebSocketClosedError):  # closed while the message was still being written
+            return {"closed": True}
         while not set(answers) <= set(found):
             told = await line.read_message()
             if told is None:
