@@ -208,12 +208,35 @@ def _bonded_mm(bench: Bench, s: float) -> float:
     return bench.made.length_mm * (1.0 - 0.05 * s)
 
 
+def _loosened_side(reality: Reality, bench: Bench, s: float) -> Reality:
+    """The base comes off from its right rim inwards."""
+    loosened = _loosened(reality, bench, s)
+    return replace(loosened, made=replace(loosened.made, one_sided=True))
+
+
 def _offset(reality: Reality, bench: Bench, s: float) -> Reality:
     return replace(reality, made=replace(reality.made, offset_mm=0.1 * s**0.5))
 
 
 def _stretched(reality: Reality, bench: Bench, s: float) -> Reality:
     return replace(reality, made=_layer(reality.made, "film", prestretch=1e-3 * s))
+
+
+def _yielding(reality: Reality, bench: Bench, s: float) -> Reality:
+    film = _layer(reality.made, "film", yield_MPa=_yield_MPa(s), hardening_MPa=HARDENS_MPA)
+    return replace(reality, made=film)
+
+
+def _yield_MPa(s: float) -> float:
+    return 55.0 / (1.0 + 0.1 * s)
+
+
+HARDENS_MPA = 40.0  # a fiftieth of the film's modulus
+
+
+def _round(reality: Reality, bench: Bench, s: float) -> Reality:
+    """A dot where a ridge is believed; there is no half of it."""
+    return replace(reality, made=replace(reality.made, dot="cap"))
 
 
 def _field(name: str, scale: float) -> Callable[[Reality, Bench, float], Reality]:
@@ -343,6 +366,24 @@ LISTED = (
         50.0,
         "Dahl's law where sliders are fitted",
     ),
+    Effect(
+        "yielding",
+        "film-yield",
+        "film",
+        _yielding,
+        lambda _b, s: {"yield_stress_MPa": _yield_MPa(s)},
+        12.0,
+        "hardens where a film without hardening is fitted",
+    ),
+    Effect("round", "dimension-reduction", "dot", _round),
+    Effect(
+        "loose-side",
+        "delamination",
+        "bond-base",
+        _loosened_side,
+        most=16.0,
+        form="on one side where a rim all around is fitted",
+    ),
     Effect("fatigue", "", "film", _field("fatigue", 0.01), most=30.0),
     Effect("warm-gain", "", "readout", _field("drift", 0.05), most=20.0),
     Effect("clock-jump", "", "readout", _field("jump_s", 0.004), most=20.0),
@@ -367,6 +408,8 @@ def fits(name: str, bench: Bench) -> bool:
     """Whether a bench can have an effect, and its presses are solved in reasonable time: in 3D only those it has."""
     held = any(isinstance(layer, Layer | Film) and layer.held for layer in bench.made.layers)
     if name in ("elastic-case", "stretched") and not held:
+        return False
+    if name == "round" and (bench.made.dot != "ridge" or bench.made.electrodes):
         return False
     if name == "leakage" and bench.amplifier.resistance_MOhm is None:
         return False

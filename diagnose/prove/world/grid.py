@@ -15,6 +15,7 @@ from skfem import Basis, ElementHex2, ElementQuad2, MeshHex, MeshQuad  # type: i
 
 from diagnose.prove.world import laws
 from diagnose.prove.world.laws import Film, Floats, Glue, Layer, Made, Memory, at_rest, respond
+from diagnose.prove.world.plastic import Flow, flowed
 
 AXIAL_MM = 0.04
 """Size of elements along the surface under a ridge, mm."""
@@ -52,7 +53,7 @@ class Grid:
 def grid(made: Made) -> Grid:
     """Elements for what was made."""
     levels, parts = _levels(made)
-    whole = made.offset_mm != 0.0
+    whole = made.offset_mm != 0.0 or made.one_sided
     ridge = made.dot == "ridge"
     places = _to_side if ridge else _about_dot
     x = places(made.length_mm / 2.0, made.fine) if not made.electrodes else _between_edges(made)
@@ -146,8 +147,10 @@ class Part:
         d = self.gradient.shape[3]
         return np.asarray((self.nodes[:, :, None] * d + np.arange(d)).reshape(len(self.nodes), -1))
 
-    def start(self) -> Memory | None:
+    def start(self) -> Memory | Flow | None:
         """Memory at rest; None for what has none."""
+        if isinstance(self.layer, Film):
+            return None if self.layer.yield_MPa is None else Flow.none(self.weight.size)
         return at_rest(self.layer, self.weight.size) if isinstance(self.layer, Layer) else None
 
     def deformed(self, u: Floats) -> Floats:
@@ -159,31 +162,54 @@ class Part:
         f[..., axes[:, None], axes] += inner
         return f.reshape(-1, 3, 3)
 
-    def elements(self, u: Floats, old: Memory | None, step_s: float) -> tuple[Floats, Floats, Memory | None]:
-        """Residuals (m, a d), matrices (m, a d, a d), memory after the step. FloatingPointError when inside out."""
-        f = self.deformed(u)
+    def elements(
+        self, u: Floats, came_from: Floats, old: Memory | Flow | None, step_s: float
+    ) -> tuple[Floats, Floats, Memory | Flow | None]:
+        """Residuals (m, a d), matrices (m, a d, a d), memory after the step. FloatingPointError when inside out.
+
+        came_from : (n, d) the iterate before u. What is stiff and bent, the stress of the film and the pressure of a
+        rubber, stands in the matrix as it was extrapolated from there (Magisano, Leonetti and Garcea, Comput. Methods
+        Appl. Mech. Eng. 313, 2017): Newton's method then takes six iterations where it took twenty, or failed.
+        """
+        f, before = self.deformed(u), self.deformed(came_from)
         if np.linalg.det(f).min() <= 0.0:
             raise FloatingPointError("an element is turned inside out")
         if isinstance(self.layer, Film):
-            _, p, tangent = laws.film_stress(self.layer, f)
-            return *self._integrated(p, tangent), None
+            return self._sheet(self.layer, f, before, old)
         new = old
-        if isinstance(self.layer, Layer) and old is not None:
+        if isinstance(self.layer, Layer) and isinstance(old, Memory):
             p, tangent, new = respond(self.layer, f, old, step_s)
         else:
             _, p, tangent = laws.isochoric(self.layer, f)
-        j, _, _ = laws.volumetric(f, np.zeros(len(f)))
-        pressure, average = self._averaged(j - 1.0)
-        _, cofactor, bend = laws.volumetric(f, pressure)
+        (j, cofactor), (j_before, slope) = laws.volumetric(f), laws.volumetric(before)
+        inverse = self._averaging()
+        pressure = self._pressure(inverse, j - 1.0)
+        extrapolated = self._pressure(inverse, j_before - 1.0 + np.einsum("nij,nij->n", slope, f - before))
+        bend = laws.volume_curvature(j, cofactor, extrapolated)
         residual, matrix = self._integrated(p + pressure[:, None, None] * cofactor, tangent + bend)
-        return residual, matrix + self._volume_matrix(cofactor, average), new
+        return residual, matrix + self._volume_matrix(cofactor, inverse), new
 
-    def _averaged(self, change: Floats) -> tuple[Floats, Floats]:
-        """Pressure (m q,), and the inverse (m, l, l) of the averaging."""
+    def _sheet(
+        self, film: Film, f: Floats, before: Floats, old: Memory | Flow | None
+    ) -> tuple[Floats, Floats, Memory | Flow | None]:
+        if isinstance(old, Flow):
+            p, tangent, new = flowed(film, f, old)
+        else:
+            (_, p, tangent), new = laws.film_stress(film, f), None
+        step = f - before
+        beyond = laws.hooke(film, -0.5 * np.einsum("nki,nkj->nij", step, step))
+        return *self._integrated(p, tangent + laws.geometric(beyond)), new
+
+    def _averaging(self) -> Floats:
+        """The inverse (m, l, l) of the mass of the linear functions."""
         weighted = self.weight[..., None] * self.linear
-        inverse = np.linalg.inv(np.einsum("mql,mqk->mlk", weighted, self.linear))
-        share = np.einsum("mlk,mqk,mq->ml", inverse, weighted, change.reshape(self.weight.shape))
-        return laws.bulk_modulus(self.layer) * np.einsum("mql,ml->mq", self.linear, share).ravel(), inverse
+        return np.asarray(np.linalg.inv(np.einsum("mql,mqk->mlk", weighted, self.linear)))
+
+    def _pressure(self, inverse: Floats, change: Floats) -> Floats:
+        """(m q,) of the averaged volume change (m q,)."""
+        weighted = self.weight * change.reshape(self.weight.shape)
+        share = np.einsum("mlk,mqk,mq->ml", inverse, self.linear, weighted)
+        return np.asarray(laws.bulk_modulus(self.layer) * np.einsum("mql,ml->mq", self.linear, share).ravel())
 
     def _volume_matrix(self, cofactor: Floats, inverse: Floats) -> Floats:
         """Bulk modulus times the derivative of the averaged volume change, squared."""

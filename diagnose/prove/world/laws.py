@@ -49,7 +49,10 @@ class Layer:
 
 @dataclass(frozen=True)
 class Film:
-    """Linear piezoelectric film, d in pC/N along x, y and z; prestretch : nominal strain along x before bonding."""
+    """Linear piezoelectric film, d in pC/N along x, y and z; prestretch : nominal strain along x before bonding.
+
+    yield_MPa : von Mises stress at which it yields, None for never; hardening_MPa : slope of that over plastic strain.
+    """
 
     thickness_mm: float = 0.028
     modulus_MPa: float = 2000.0
@@ -58,6 +61,8 @@ class Film:
     relative_permittivity: float = 12.0
     held: bool = False
     prestretch: float = 0.0
+    yield_MPa: float | None = None
+    hardening_MPa: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -76,6 +81,7 @@ class Made:
     dot : "ridge" (plane strain, force for width_mm) or "cap" (a quarter in 3D). fine : elements are this much smaller.
     electrodes : from and to along x, growing, each over the whole width, of a ridge; none: one all over the film.
     loose_from_mm : beyond this distance from the middle the base of a ridge's stack is not bonded; None: it is.
+    one_sided : it is loose there on the right alone.
     """
 
     layers: tuple[Layer | Film | Glue, ...]
@@ -88,6 +94,7 @@ class Made:
     fine: float = 1.0
     electrodes: tuple[tuple[float, float], ...] = ()
     loose_from_mm: float | None = None
+    one_sided: bool = False
 
     @property
     def strips(self) -> tuple[tuple[float, float], ...]:
@@ -125,12 +132,14 @@ class Made:
     @property
     def remembers(self) -> bool:
         """Whether an answer depends on what happened before."""
-        return any(isinstance(layer, Layer) and (layer.spectrum or layer.damage) for layer in self.layers)
+        relaxes = any(isinstance(layer, Layer) and layer.spectrum for layer in self.layers)
+        return relaxes or self.damaged
 
     @property
     def damaged(self) -> bool:
         """Whether it remembers for good."""
-        return any(isinstance(layer, Layer) and layer.damage for layer in self.layers)
+        softens = any(isinstance(layer, Layer) and layer.damage for layer in self.layers)
+        return softens or self.film.yield_MPa is not None
 
     def key(self) -> str:
         """Hash of all of it."""
@@ -180,24 +189,46 @@ def _of_invariant(layer: Layer | Glue, i1: Floats) -> tuple[Floats, Floats, Floa
     return -mu * limit / 2.0 * np.log(left), mu / (2.0 * left), mu / (2.0 * limit * left**2)
 
 
-def volumetric(f: Floats, pressure: Floats) -> tuple[Floats, Floats, Floats]:
-    """J (n,), its cofactor dJ/dF (n, 3, 3) and pressure times its derivative."""
-    j, inverse = np.linalg.det(f), np.linalg.inv(f).transpose(0, 2, 1)
-    cofactor = j[:, None, None] * inverse
-    bend = np.einsum("nij,nkl->nijkl", inverse, inverse) - np.einsum("nil,nkj->nijkl", inverse, inverse)
-    return j, cofactor, (pressure * j)[:, None, None, None, None] * bend
+def volumetric(f: Floats) -> tuple[Floats, Floats]:
+    """J (n,) and its cofactor dJ/dF (n, 3, 3)."""
+    j = np.linalg.det(f)
+    return j, j[:, None, None] * np.linalg.inv(f).transpose(0, 2, 1)
 
 
-def film_stress(film: Film, f: Floats) -> tuple[Floats, Floats, Floats]:
-    """S (n, 3, 3), P and dP/dF of Hooke's law between S and Green's strain, prestretch added."""
+def volume_curvature(j: Floats, cofactor: Floats, pressure: Floats) -> Floats:
+    """pressure d2J/dF2 (n, 3, 3, 3, 3)."""
+    bend = np.einsum("nij,nkl->nijkl", cofactor, cofactor) - np.einsum("nil,nkj->nijkl", cofactor, cofactor)
+    return np.asarray((pressure / j)[:, None, None, None, None] * bend)
+
+
+def film_stress(film: Film, f: Floats, flown: Floats | None = None) -> tuple[Floats, Floats, Floats]:
+    """S (n, 3, 3), P and dP/dF of Hooke's law between S and elastic strain; flown : plastic strain (n, 3, 3)."""
+    shear = shear_modulus(film)
+    stress = hooke(film, elastic_strain(film, f, flown))
+    law = (bulk_modulus(film) - 2.0 / 3.0 * shear) * np.einsum("ij,kl->ijkl", EYE, EYE)
+    law = law + shear * (np.einsum("ik,jl->ijkl", EYE, EYE) + np.einsum("il,jk->ijkl", EYE, EYE))
+    return stress, f @ stress, turned(f, law[None]) + geometric(stress)
+
+
+def hooke(film: Film, strain: Floats) -> Floats:
+    """S (n, 3, 3) of an elastic Green's strain."""
     shear = shear_modulus(film)
     lame = bulk_modulus(film) - 2.0 / 3.0 * shear
-    strain = 0.5 * (np.einsum("nki,nkj->nij", f, f) - EYE) + _prestrain(film, lame, shear)
-    stress = lame * np.trace(strain, axis1=1, axis2=2)[:, None, None] * EYE + 2.0 * shear * strain
-    law = lame * np.einsum("ij,kl->ijkl", EYE, EYE)
-    law = law + shear * (np.einsum("ik,jl->ijkl", EYE, EYE) + np.einsum("il,jk->ijkl", EYE, EYE))
-    turned = np.einsum("nim,mjrl,nkr->nijkl", f, law, f, optimize=True)
-    return stress, f @ stress, turned + geometric(stress)
+    return np.asarray(lame * np.trace(strain, axis1=1, axis2=2)[:, None, None] * EYE + 2.0 * shear * strain)
+
+
+def elastic_strain(film: Film, f: Floats, flown: Floats | None = None) -> Floats:
+    """Green's strain (n, 3, 3) that is under stress: with prestretch, without what has flown (n, 3, 3)."""
+    shear = shear_modulus(film)
+    strain = 0.5 * (np.einsum("nki,nkj->nij", f, f) - EYE)
+    strain = strain + _prestrain(film, bulk_modulus(film) - 2.0 / 3.0 * shear, shear)
+    return np.asarray(strain if flown is None else strain - flown)
+
+
+def turned(f: Floats, law: Floats) -> Floats:
+    """dP/dF that comes of dS/dE (n or 1, 3, 3, 3, 3)."""
+    laws = np.broadcast_to(law, (len(f), 3, 3, 3, 3))
+    return np.asarray(np.einsum("nim,nmjrl,nkr->nijkl", f, laws, f, optimize=True))
 
 
 def geometric(stress: Floats) -> Floats:

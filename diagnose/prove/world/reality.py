@@ -24,7 +24,7 @@ from scipy.special import erfc
 from diagnose.prove.world.bench import Bench, Run
 from diagnose.prove.world.channels import Wiring, voltages
 from diagnose.prove.world.details import Details
-from diagnose.prove.world.laws import Floats, Layer, Made
+from diagnose.prove.world.laws import Film, Floats, Glue, Layer, Made
 from diagnose.prove.world.march import Course, Table, table, through_time
 from diagnose.prove.world.noise import Amplifier, Autoregression, noises
 from diagnose.prove.world.rigs import BENCHES
@@ -35,7 +35,7 @@ FAINT = 0.02
 
 
 def strength(made: Made) -> float:
-    """Of the one layer that remembers; 0 without."""
+    """Of the one layer that relaxes or softens; 0 without."""
     of = [
         layer.spectrum.strength if layer.spectrum else layer.damage.loss if layer.damage else 0.0
         for layer in made.layers
@@ -48,7 +48,7 @@ def strength(made: Made) -> float:
 
 def with_strength(made: Made, value: float) -> Made:
     """The segment with its memory at another strength; 0 forgets."""
-    layers = []
+    layers: list[Layer | Film | Glue] = []
     for layer in made.layers:
         if isinstance(layer, Layer) and layer.spectrum:
             layer = replace(layer, spectrum=replace(layer.spectrum, strength=value) if value else None)
@@ -60,25 +60,31 @@ def with_strength(made: Made, value: float) -> Made:
 
 def forgetful(made: Made) -> Made:
     """Without memory."""
-    return with_strength(made, 0.0)
+    still = with_strength(made, 0.0)
+    layers = tuple(replace(one, yield_MPa=None) if isinstance(one, Film) else one for one in still.layers)
+    return replace(still, layers=layers)
 
 
 def scaled_memory(made: Made, asked: "AskedPath", elastic: Course, nominal: Course, deepest_mm: float) -> Course:
     """Answers (t,) of a specimen whose elastic answers are known; nominal : those of the stack made, as was asked for.
 
-    deepest_mm : to which tables go. ValueError beyond the largest strength that is solved.
+    deepest_mm : to which tables go. ValueError beyond the largest strength that is solved. A film that yields is solved
+    as it is, since below some stress nothing yields.
     """
     value, time = strength(made), asked.time_s
     if value > NODES[-1]:
         raise ValueError(f"a strength of {value:g} is beyond {NODES[-1]:g}")
     larger = replace(made, fine=COARSER * made.fine)
-    marks, near = through_time(with_strength(larger, NODES[0]), time, asked.path_mm, asked.before_mm)
-    far = through_time(with_strength(larger, NODES[1]), time, asked.path_mm, asked.before_mm)[1]
+    yields = made.film.yield_MPa is not None
+    solved = [larger] if yields else [with_strength(larger, node) for node in NODES]
+    courses = [through_time(one, time, asked.path_mm, asked.before_mm) for one in solved]
+    marks = courses[0][0]
     base = table(forgetful(larger), deepest_mm).at(asked.path_mm[marks])
 
     def scaled(name: str) -> Floats:
-        solved = [getattr(course, name) - getattr(base, name) for course in (near, far)]
-        difference = PchipInterpolator(time[marks], _parabola(value, *solved), axis=0)(time)
+        changes = [getattr(course, name) - getattr(base, name) for _, course in courses]
+        change = changes[0] if yields else _parabola(value, *changes)
+        difference = PchipInterpolator(time[marks], change, axis=0)(time)
         return _scaled(getattr(elastic, name), getattr(nominal, name), difference)
 
     force = np.where(elastic.force_N > 0.0, scaled("force_N"), 0.0)

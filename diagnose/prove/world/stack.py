@@ -1,4 +1,4 @@
-"""Equilibrium of a stack under a rigid ridge or cap: Newton's method, contact by a stiff wall at integration points."""
+"""Equilibrium of a stack under a rigid ridge or cap: Newton's method."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -6,25 +6,25 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from skfem import ElementHex2, ElementQuad2, FacetBasis  # type: ignore[import-untyped]
 
 from diagnose.prove.world import laws
-from diagnose.prove.world.grid import Grid, Indices, Part, grid, parts
+from diagnose.prove.world.contact import Dot, Floor, skin
+from diagnose.prove.world.grid import Indices, Part, grid, parts
 from diagnose.prove.world.laws import Film, Floats, Layer, Made, Memory
+from diagnose.prove.world.plastic import Flow
 
 try:
     from pypardiso import spsolve
 except ImportError:  # there is no MKL for this processor
     from scipy.sparse.linalg import spsolve
 
-WALL = 1e4
-"""Stiffness of the contact, MPa/mm: at 1 MPa of pressure the surfaces overlap by a tenth of a micrometre."""
-FACET_ORDER = 9
 TOLERANCE = 1e-8
-MOST_ITERATIONS = 40
+MOST_ITERATIONS = 20
+MOST_HALVINGS = 8
 STILL_MM = 1e-3
-SHARES = (1.0, 0.5, 0.25, 0.1)
-"""Of a step of Newton's method, tried in this order."""
+
+
+Memories = tuple[Memory | Flow | None, ...]
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class State:
     """Displacements (n, d), memory of each part, depth of the dot in mm; slope : du / d(depth) of the last step."""
 
     u: Floats
-    memory: tuple[Memory | None, ...]
+    memory: Memories
     depth_mm: float
     slope: Floats
 
@@ -51,16 +51,6 @@ class Answer:
         return sum(self.charges_pC)
 
 
-@dataclass(frozen=True)
-class Skin:
-    """Facets with shape functions (k, q, a), nodes (k, a) and weights (k, q)."""
-
-    shape: Floats
-    nodes: Indices
-    weight: Floats
-    place: Floats
-
-
 class Stack:
     """A discretised stack."""
 
@@ -68,11 +58,9 @@ class Stack:
         self.made, self.grid = made, grid(made)
         self.parts, self.places = parts(made.layers, self.grid)
         self.dim = self.places.shape[1]
-        self.top = _skin(
-            self.grid,
-            np.isclose(self.grid.mesh.p[-1, self.grid.mesh.facets].max(axis=0), 0.0)
-            & np.isclose(np.ptp(self.grid.mesh.p[-1, self.grid.mesh.facets], axis=0), 0.0),
-        )
+        levels = self.grid.mesh.p[-1, self.grid.mesh.facets]
+        on_top = np.isclose(levels.max(axis=0), 0.0) & np.isclose(np.ptp(levels, axis=0), 0.0)
+        self.dot = Dot(made, skin(self.grid, on_top))
         self.floor = None if made.loose_from_mm is None else self._floor(made.loose_from_mm)
         self.free = self._free()
         self.springs = self._springs()
@@ -86,7 +74,7 @@ class Stack:
 
     def press(self, old: State, depth_mm: float, step_s: float) -> State:
         """Equilibrium at a depth, step_s after the old state; halved where Newton's method fails. RuntimeError."""
-        return self._halving(old, depth_mm, step_s, 6)
+        return self._halving(old, depth_mm, step_s, MOST_HALVINGS)
 
     def _halving(self, old: State, depth_mm: float, step_s: float, left: int) -> State:
         try:
@@ -98,9 +86,9 @@ class Stack:
         return self._halving(middle, depth_mm, 0.5 * step_s, left - 1)
 
     def _newton(self, old: State, depth_mm: float, step_s: float) -> State:
-        u = old.u + old.slope * (depth_mm - old.depth_mm)
-        residual, matrix, memory = self._assembled(u, old.memory, depth_mm, step_s)
+        u = came_from = old.u + old.slope * (depth_mm - old.depth_mm)
         for _ in range(MOST_ITERATIONS):
+            residual, matrix, memory = self._assembled(u, came_from, old.memory, depth_mm, step_s)
             size = self._size(residual)
             if size < TOLERANCE:
                 way = depth_mm - old.depth_mm
@@ -108,86 +96,43 @@ class Stack:
                 return State(u, memory, depth_mm, slope)
             step = np.zeros(u.size)
             step[self.free] = spsolve(matrix[self.free][:, self.free], residual[self.free])
-            u, residual, matrix, memory = self._stepped(u, step.reshape(u.shape), size, old, depth_mm, step_s)
+            came_from, u = u, u - step.reshape(u.shape)
         raise FloatingPointError(f"residual {size:.1e} N")
-
-    def _stepped(
-        self, u: Floats, step: Floats, size: float, old: State, depth_mm: float, step_s: float
-    ) -> tuple[Floats, Floats, sp.csr_matrix, tuple[Memory | None, ...]]:
-        """The step, halved until nothing is inside out and the residual has not grown; at last the smallest step."""
-        for share in SHARES:
-            try:
-                new = u - share * step
-                assembled = self._assembled(new, old.memory, depth_mm, step_s)
-            except FloatingPointError:
-                continue
-            if self._size(assembled[0]) < size or share == SHARES[-1]:
-                return new, *assembled
-        raise FloatingPointError("no step of Newton's method keeps the elements in shape")
 
     def _size(self, residual: Floats) -> float:
         return float(np.abs(residual[self.free]).max())
 
     def _assembled(
-        self, u: Floats, old: tuple[Memory | None, ...], depth_mm: float, step_s: float
-    ) -> tuple[Floats, sp.csr_matrix, tuple[Memory | None, ...]]:
+        self, u: Floats, came_from: Floats, old: Memories, depth_mm: float, step_s: float
+    ) -> tuple[Floats, sp.csr_matrix, Memories]:
         scatter, memory = _Scatter(u.size), []
         for part, before in zip(self.parts, old, strict=True):
-            residual, matrices, after = part.elements(u, before, step_s)
+            residual, matrices, after = part.elements(u, came_from, before, step_s)
             scatter.add(part.dofs, residual, matrices)
             memory.append(after)
-        scatter.add(*self._contact(u, depth_mm))
+        scatter.add(*self.dot.press(u, depth_mm))
         if self.floor is not None:
-            scatter.add(*self._floored(u, self.floor))
+            scatter.add(*self.floor.press(u))
         return scatter.residual + self.springs @ u.ravel(), scatter.matrix() + self.springs, tuple(memory)
 
-    def _distance(self, u: Floats, depth_mm: float) -> tuple[Floats, Floats, Floats]:
-        """Gap (k, q), normal (k, q, d) and curvature 1 / r of the dot at the points of the top."""
-        where = self.top.place + np.einsum("kqa,kai->kqi", self.top.shape, u[self.top.nodes])
-        centre = np.zeros(self.dim)
-        centre[0], centre[-1] = self.made.offset_mm, self.made.radius_mm - depth_mm
-        arm = where - centre
-        length = np.linalg.norm(arm, axis=2)
-        return length - self.made.radius_mm, arm / length[..., None], 1.0 / length
-
-    def _floor(self, from_mm: float) -> Skin:
+    def _floor(self, from_mm: float) -> Floor:
         """The base beyond a distance from the middle."""
         corners = self.grid.mesh.p[:, self.grid.mesh.facets]
         below = np.isclose(corners[-1].max(axis=0), -self.made.height_mm)
-        return _skin(self.grid, below & (np.abs(corners[0].mean(axis=0)) > from_mm))
-
-    def _floored(self, u: Floats, floor: Skin) -> tuple[Indices, Floats, Floats]:
-        """The floor under what is loose pushes upwards, without friction."""
-        sunk = np.einsum("kqa,ka->kq", floor.shape, u[floor.nodes, -1])
-        push, stiff = WALL * np.minimum(sunk, 0.0) * floor.weight, WALL * (sunk < 0.0) * floor.weight
-        matrix = np.einsum("kq,kqa,kqb->kab", stiff, floor.shape, floor.shape, optimize=True)
-        return floor.nodes * self.dim + self.dim - 1, np.einsum("kq,kqa->ka", push, floor.shape), matrix
-
-    def _contact(self, u: Floats, depth_mm: float) -> tuple[Indices, Floats, Floats]:
-        gap, normal, curvature = self._distance(u, depth_mm)
-        push = WALL * np.minimum(gap, 0.0) * self.top.weight
-        stiff = WALL * (gap < 0.0) * self.top.weight
-        outer = normal[..., :, None] * normal[..., None, :]
-        hessian = stiff[..., None, None] * outer + (push * curvature)[..., None, None] * (np.eye(self.dim) - outer)
-        k, a = self.top.nodes.shape
-        residual = np.einsum("kq,kqi,kqa->kai", push, normal, self.top.shape).reshape(k, -1)
-        matrix = np.einsum("kqij,kqa,kqb->kaibj", hessian, self.top.shape, self.top.shape, optimize=True)
-        dofs = (self.top.nodes[:, :, None] * self.dim + np.arange(self.dim)).reshape(k, -1)
-        return dofs, residual, matrix.reshape(k, a * self.dim, -1)
+        middle = corners[0].mean(axis=0)
+        return Floor(skin(self.grid, below & ((middle if self.made.one_sided else np.abs(middle)) > from_mm)))
 
     def answer(self, state: State) -> Answer:
         """Force, charge and touched area of a state."""
-        gap, normal, _ = self._distance(state.u, state.depth_mm)
-        push = WALL * np.minimum(gap, 0.0) * self.top.weight
-        film = next(part for part in self.parts if isinstance(part.layer, Film))
-        stress = laws.film_stress(self.made.film, film.deformed(state.u))[0]
+        number, film = next((n, part) for n, part in enumerate(self.parts) if isinstance(part.layer, Film))
+        flow = state.memory[number]
+        flown = flow.strain if isinstance(flow, Flow) else None
+        stress = laws.film_stress(self.made.film, film.deformed(state.u), flown)[0]
         density = np.einsum("nii,i->n", stress, np.array(self.made.film.d)) / self.made.film.thickness_mm
         collected = density * film.weight.ravel()
-        return Answer(
-            float(self.scale * (push * normal[..., -1]).sum()),
-            tuple(float(self.scale * (collected * share).sum()) for share in self._shares(film)),
-            float(self.scale * self.top.weight[gap < 0.0].sum()),
-        )
+        force, area = self.dot.force_and_area(state.u, state.depth_mm)
+        charges = tuple(float(self.scale * (collected * share).sum()) for share in self._shares(film))
+        return Answer(self.scale * force, charges, self.scale * area)
 
     def _shares(self, film: Part) -> Iterator[Floats]:
         """Of what is at the points of the film (n,), the share that each electrode collects.
@@ -205,7 +150,7 @@ class Stack:
         fixed = np.zeros((len(self.places), self.dim), dtype=bool)
         fixed[np.isclose(self.places[:, -1], -self.made.height_mm)] = True
         if self.floor is not None:  # its rim stays bonded
-            loose = np.unique(self.floor.nodes)
+            loose = np.unique(self.floor.loose.nodes)
             outside = np.abs(self.places[loose, 0])
             fixed[loose[outside > outside.min() + 1e-9]] = False
         if self.made.spring_N_per_mm3 is None:
@@ -237,25 +182,13 @@ class Stack:
         upright = np.isclose(np.abs(mesh.p[0, mesh.facets]).min(axis=0), self.made.length_mm / 2.0)
         if self.dim == 3:
             upright |= np.isclose(np.abs(mesh.p[1, mesh.facets]).min(axis=0), self.made.width_mm / 2.0)
-        side = _skin(self.grid, upright & self._at_held_side(mesh.p[:, mesh.facets].mean(axis=1).T))
+        side = skin(self.grid, upright & self._at_held_side(mesh.p[:, mesh.facets].mean(axis=1).T))
         mass = self.made.spring_N_per_mm3 * np.einsum("kq,kqa,kqb->kab", side.weight, side.shape, side.shape)
-        k, a = side.nodes.shape
-        matrices = np.einsum("kab,ij->kaibj", mass, np.eye(self.dim)).reshape(k, a * self.dim, -1)
-        dofs = (side.nodes[:, :, None] * self.dim + np.arange(self.dim)).reshape(k, -1)
+        dofs = side.dofs(self.dim)
+        matrices = np.einsum("kab,ij->kaibj", mass, np.eye(self.dim)).reshape(*dofs.shape, -1)
         scatter = _Scatter(size)
         scatter.add(dofs, np.zeros(dofs.shape), matrices)
         return scatter.matrix()
-
-
-def _skin(mesh: Grid, chosen: NDArray[np.bool_]) -> Skin:
-    """Shape functions on the chosen facets."""
-    element = ElementQuad2() if mesh.mesh.dim() == 2 else ElementHex2()
-    basis = FacetBasis(mesh.mesh, element, facets=np.flatnonzero(chosen), intorder=FACET_ORDER)
-    values = [np.broadcast_to(np.asarray(field[0]), basis.dx.shape) for field in basis.basis]
-    shape = np.stack(values).transpose(1, 2, 0)
-    used = np.abs(shape).max(axis=(0, 1)) > 1e-12
-    where = np.asarray(basis.global_coordinates()).transpose(1, 2, 0)
-    return Skin(shape[..., used], basis.element_dofs.T.astype(np.int64)[:, used], basis.dx, where)
 
 
 class _Scatter:
