@@ -8,8 +8,21 @@ import pytest
 from diagnose.prove.world import laws
 from diagnose.prove.world.bench import Run
 from diagnose.prove.world.effects import applied
-from diagnose.prove.world.laws import Damage, Film, Layer, Made, Spectrum, at_rest, branches, relaxation, respond
+from diagnose.prove.world.laws import (
+    Damage,
+    Film,
+    Layer,
+    Made,
+    Spectrum,
+    at_rest,
+    branches,
+    elastic_strain,
+    relaxation,
+    respond,
+    shear_modulus,
+)
 from diagnose.prove.world.march import table, through_time
+from diagnose.prove.world.plastic import Flow, flowed
 from diagnose.prove.world.reality import AskedPath, baseline, scaled_memory, with_strength
 from diagnose.prove.world.rigs import FREE
 from diagnose.prove.world.stack import Stack
@@ -179,3 +192,58 @@ def test_glue_of_no_strength_is_none_and_soft_glue_leaves_the_film_as_it_is(name
     assert much.force_N < 0.999 * before.force_N
     assert soft.height_mm == pytest.approx(plain.height_mm)
     assert soft.film == plain.film
+
+
+def test_a_film_that_yields_stays_on_its_yield_surface_and_keeps_its_plastic_strain():
+    film, rate = Film(poisson_ratio=0.5 - 1e-9, yield_MPa=40.0, hardening_MPa=60.0), np.diag([1.0, -0.5, -0.5])
+    f = (np.eye(3) + 0.05 * rate)[None]
+    _, _, flow = flowed(film, f, Flow.none(1))
+    strain = elastic_strain(film, f, flow.strain)
+    deviator = 2.0 * shear_modulus(film) * (strain - np.trace(strain[0]) / 3.0 * np.eye(3))[0]
+    size = np.sqrt(1.5 * (deviator**2).sum())
+    assert size == pytest.approx(40.0 + 60.0 * flow.total[0], rel=1e-9)
+    # in simple tension the stress of von Mises is E E_T / (E + E_T) beyond the yield strain
+    along = 2.0 / 3.0 * (0.5 * ((1.05**2 - 1.0) - (0.975**2 - 1.0)))
+    assert flow.total[0] == pytest.approx((2000.0 * along - 40.0) / 2060.0, rel=1e-6)
+    back = flowed(film, np.eye(3)[None] + 0.03 * rate, flow)[2]
+    np.testing.assert_array_equal(back.strain, flow.strain)  # a small way back is elastic
+
+
+def test_the_tangent_of_a_film_that_yields_is_the_derivative_of_its_stress():
+    film, rng, h = Film(yield_MPa=30.0, hardening_MPa=40.0), np.random.default_rng(0), 1e-7
+    first, way = np.eye(3) + 0.02 * rng.standard_normal((5, 3, 3)), rng.standard_normal((5, 3, 3))
+    _, _, flow = flowed(film, first, Flow.none(5))
+    f = first + 0.02 * rng.standard_normal((5, 3, 3))
+    change = (flowed(film, f + h * way, flow)[0] - flowed(film, f - h * way, flow)[0]) / (2.0 * h)
+    expected = np.einsum("nijkl,nkl->nij", flowed(film, f, flow)[1], way)
+    np.testing.assert_allclose(change, expected, atol=1e-6 * np.abs(expected).max())
+
+
+def test_a_film_that_has_yielded_leaves_a_charge_of_opposite_sign():
+    made = replace(PAPER, fine=0.4)
+    layers = tuple(replace(one, yield_MPa=30.0) if isinstance(one, Film) else one for one in made.layers)
+    charges = {}
+    for name, one in (("elastic", made), ("yields", replace(made, layers=layers))):
+        stack = Stack(one)
+        rest = stack.rest()
+        deep = stack.press(rest, 0.3, 0.0)
+        charges[name] = [stack.answer(x).charge_pC for x in (rest, deep, stack.press(deep, 0.0, 0.0))]
+    assert charges["elastic"][2] == pytest.approx(charges["elastic"][0], abs=1e-3)
+    assert charges["yields"][1] < 0.99 * charges["elastic"][1]
+    assert charges["yields"][2] < -0.002 * charges["elastic"][1]
+
+
+def test_one_long_step_finds_the_equilibrium_of_many_short_ones():
+    made = replace(PAPER, fine=0.4)
+    once, often = pressed(made, 0.3, 1), pressed(made, 0.3, 12)
+    assert once.force_N == pytest.approx(often.force_N, rel=1e-6)
+    assert once.charge_pC == pytest.approx(often.charge_pC, rel=1e-6)
+
+
+def test_a_base_that_is_loose_on_one_side_gives_way_half_as_much_as_on_both():
+    made = replace(PAPER, fine=0.4)
+    bonded, left, both = (
+        pressed(one, 0.2, 3).force_N
+        for one in (made, replace(made, loose_from_mm=0.6, one_sided=True), replace(made, loose_from_mm=0.6))
+    )
+    assert bonded - left == pytest.approx(0.5 * (bonded - both), rel=0.15)

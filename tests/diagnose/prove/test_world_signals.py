@@ -10,7 +10,7 @@ from diagnose.prove.world.effects import EFFECTS, applied, fits
 from diagnose.prove.world.march import Course, Table
 from diagnose.prove.world.noise import Amplifier, Autoregression, Filter, noises, yule_walker
 from diagnose.prove.world.reality import Judge, Reality, _path, baseline, dahl
-from diagnose.prove.world.rigs import CLAMPED, FREE, VOLTAGE_ONLY
+from diagnose.prove.world.rigs import CLAMPED, FREE, SOLID, VOLTAGE_ONLY
 
 TIME = np.arange(0.0, 2.0, 0.004)
 
@@ -96,6 +96,8 @@ def test_effects_that_a_bench_cannot_have_are_barred():
     assert fits("elastic-case", CLAMPED)
     assert not fits("elastic-case", FREE)
     assert not fits("leakage", VOLTAGE_ONLY)
+    assert fits("round", CLAMPED)
+    assert not fits("round", SOLID)  # round already
 
 
 class Flat(Judge):
