@@ -24,7 +24,7 @@ TOUCHED_MM, NEAR_MM, FAR_MM = 0.5, 0.125, 0.25
 ACROSS_MM = {"ridge": 0.1, "cap": 0.3}
 """Size of elements across the layers, mm."""
 MOST_ACROSS = {"ridge": 12, "cap": 4}
-TO_SIDES, FROM_TOUCHED, TO_FACES = 1.6, 2.5, {"ridge": 0.9, "cap": 0.6}
+TO_SIDES, FROM_TOUCHED, TO_FACES = 1.3, 2.5, {"ridge": 0.9, "cap": 0.6}
 """Grading. From a tenth of the depth on, grids three times as fine differ by 0.1 % on both ridges.
 
 Under a cap, five elements instead of three from the touched square to a held side change the charge by 0.05 % at half
