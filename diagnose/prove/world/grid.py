@@ -25,7 +25,9 @@ ACROSS_MM = {"ridge": 0.1, "cap": 0.3}
 """Size of elements across the layers, mm."""
 MOST_ACROSS = {"ridge": 12, "cap": 4}
 TO_SIDES, FROM_TOUCHED, TO_FACES = 1.3, 2.5, {"ridge": 0.9, "cap": 0.6}
-"""Grading. From a tenth of the depth on, grids three times as fine differ by 0.1 % on both ridges.
+"""Grading. Grids 2.2 times as fine differ by 0.04 % at all of the depth of the clamped ridge, by 0.1 and 0.2 % in force
+and charge at a third of it, by 0.2 and 0.4 % at a tenth. The last elements at a side are as thin as they may be: of 5
+instead of 14 micrometres the uppermost one folds under 0.28 mm on the thick rig.
 
 Under a cap, five elements instead of three from the touched square to a held side change the charge by 0.05 % at half
 depth and by 3 % at a tenth of it; evenly spaced ones have 5 and 40 % more.
