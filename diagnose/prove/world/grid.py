@@ -171,7 +171,7 @@ class Part:
 
         came_from : (n, d) the iterate before u. What is stiff and bent, the stress of the film and the pressure of a
         rubber, stands in the matrix as it was extrapolated from there (Magisano, Leonetti and Garcea, Comput. Methods
-        Appl. Mech. Eng. 313, 2017): Newton's method then takes six iterations where it took twenty, or failed.
+        Appl. Mech. Eng. 313, 2017): under a round dot Newton's method then takes a third of the iterations.
         """
         f, before = self.deformed(u), self.deformed(came_from)
         if np.linalg.det(f).min() <= 0.0:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
@@ -22,7 +23,6 @@ TOLERANCE = 1e-8
 MOST_ITERATIONS = 20
 MOST_HALVINGS = 8
 STILL_MM = 1e-3
-
 
 Memories = tuple[Memory | Flow | None, ...]
 
@@ -66,6 +66,14 @@ class Stack:
         self.springs = self._springs()
         self.scale = made.width_mm * self.grid.copies if self.dim == 2 else float(self.grid.copies)
 
+    @cached_property
+    def squeeze(self) -> Floats:
+        """(n, d) du / d(depth) where none is known: the stack follows the dot evenly, so that what touches stays."""
+        follows = np.zeros(self.places.size)
+        follows[self.free] = 1.0
+        along = follows.reshape(self.places.shape)[:, -1] * (-1.0 - self.places[:, -1] / self.made.height_mm)
+        return np.pad(along[:, None], ((0, 0), (self.dim - 1, 0)))
+
     def rest(self) -> State:
         """Before the touch; a stretched film has pulled the stack into shape."""
         still = np.zeros_like(self.places)
@@ -86,14 +94,14 @@ class Stack:
         return self._halving(middle, depth_mm, 0.5 * step_s, left - 1)
 
     def _newton(self, old: State, depth_mm: float, step_s: float) -> State:
-        u = came_from = old.u + old.slope * (depth_mm - old.depth_mm)
+        u = came_from = old.u + old.slope * (max(depth_mm, 0.0) - max(old.depth_mm, 0.0))
         for _ in range(MOST_ITERATIONS):
             residual, matrix, memory = self._assembled(u, came_from, old.memory, depth_mm, step_s)
             size = self._size(residual)
             if size < TOLERANCE:
                 way = depth_mm - old.depth_mm
-                slope = (u - old.u) / way if abs(way) > STILL_MM and min(depth_mm, old.depth_mm) > 0.0 else 0.0 * u
-                return State(u, memory, depth_mm, slope)
+                known = abs(way) > STILL_MM and min(depth_mm, old.depth_mm) > 0.0
+                return State(u, memory, depth_mm, (u - old.u) / way if known else self.squeeze)
             step = np.zeros(u.size)
             step[self.free] = spsolve(matrix[self.free][:, self.free], residual[self.free])
             came_from, u = u, u - step.reshape(u.shape)
