@@ -68,7 +68,7 @@ class Stack:
 
     @cached_property
     def squeeze(self) -> Floats:
-        """(n, d) du / d(depth) where none is known: the stack follows the dot evenly, so that what touches stays."""
+        """(n, d) du / d(depth) between presses of nearly one depth: the stack follows the dot, and what touches stays."""
         follows = np.zeros(self.places.size)
         follows[self.free] = 1.0
         along = follows.reshape(self.places.shape)[:, -1] * (-1.0 - self.places[:, -1] / self.made.height_mm)
@@ -94,14 +94,15 @@ class Stack:
         return self._halving(middle, depth_mm, 0.5 * step_s, left - 1)
 
     def _newton(self, old: State, depth_mm: float, step_s: float) -> State:
-        u = came_from = old.u + old.slope * (max(depth_mm, 0.0) - max(old.depth_mm, 0.0))
+        u = came_from = old.u + old.slope * (depth_mm - old.depth_mm)
         for _ in range(MOST_ITERATIONS):
             residual, matrix, memory = self._assembled(u, came_from, old.memory, depth_mm, step_s)
             size = self._size(residual)
             if size < TOLERANCE:
                 way = depth_mm - old.depth_mm
-                known = abs(way) > STILL_MM and min(depth_mm, old.depth_mm) > 0.0
-                return State(u, memory, depth_mm, (u - old.u) / way if known else self.squeeze)
+                if min(depth_mm, old.depth_mm) <= 0.0:
+                    return State(u, memory, depth_mm, 0.0 * u)
+                return State(u, memory, depth_mm, (u - old.u) / way if abs(way) > STILL_MM else self.squeeze)
             step = np.zeros(u.size)
             step[self.free] = spsolve(matrix[self.free][:, self.free], residual[self.free])
             came_from, u = u, u - step.reshape(u.shape)
