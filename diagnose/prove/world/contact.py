@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from skfem import ElementHex2, ElementQuad2, FacetBasis  # type: ignore[import-untyped]
 
-from diagnose.prove.world.grid import Grid, Indices
+from diagnose.prove.world.grid import Grid, Indices, unknowns
 from diagnose.prove.world.laws import Floats, Made
 
 WALL = 1e4
@@ -29,7 +29,7 @@ class Skin:
 
     def dofs(self, dim: int) -> Indices:
         """(k, a d) unknowns."""
-        return np.asarray((self.nodes[:, :, None] * dim + np.arange(dim)).reshape(len(self.nodes), -1))
+        return unknowns(self.nodes, dim)
 
 
 def skin(mesh: Grid, chosen: NDArray[np.bool_]) -> Skin:

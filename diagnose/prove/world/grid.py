@@ -7,6 +7,7 @@ functions (Simo, Taylor and Pister 1985), so that no pressure is left as an unkn
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -132,6 +133,11 @@ def _rows(layer: Layer | Film | Glue, made: Made) -> Floats:
 Indices = NDArray[np.int64]
 
 
+def unknowns(nodes: Indices, dim: int) -> Indices:
+    """(m, a dim) of nodes (m, a): node by node, component by component."""
+    return np.asarray((nodes[:, :, None] * dim + np.arange(dim)).reshape(len(nodes), -1))
+
+
 @dataclass(frozen=True)
 class Part:
     """One layer. nodes : (m, a); gradient : (m, q, a, d); weight, x : (m, q); linear : (m, q, d + 1)."""
@@ -145,9 +151,8 @@ class Part:
 
     @property
     def dofs(self) -> Indices:
-        """(m, a d) unknowns: node by node, component by component."""
-        d = self.gradient.shape[3]
-        return np.asarray((self.nodes[:, :, None] * d + np.arange(d)).reshape(len(self.nodes), -1))
+        """(m, a d) unknowns."""
+        return unknowns(self.nodes, self.gradient.shape[3])
 
     def start(self) -> Memory | Flow | None:
         """Memory at rest; None for what has none."""
@@ -184,12 +189,11 @@ class Part:
         else:
             _, p, tangent = laws.isochoric(self.layer, f)
         (j, cofactor), (j_before, slope) = laws.volumetric(f), laws.volumetric(before)
-        inverse = self._averaging()
-        pressure = self._pressure(inverse, j - 1.0)
-        extrapolated = self._pressure(inverse, j_before - 1.0 + np.einsum("nij,nij->n", slope, f - before))
+        pressure = self._pressure(j - 1.0)
+        extrapolated = self._pressure(j_before - 1.0 + np.einsum("nij,nij->n", slope, f - before))
         bend = laws.volume_curvature(j, cofactor, extrapolated)
         residual, matrix = self._integrated(p + pressure[:, None, None] * cofactor, tangent + bend)
-        return residual, matrix + self._volume_matrix(cofactor, inverse), new
+        return residual, matrix + self._volume_matrix(cofactor), new
 
     def _sheet(
         self, film: Film, f: Floats, before: Floats, old: Memory | Flow | None
@@ -202,22 +206,23 @@ class Part:
         beyond = laws.hooke(film, -0.5 * np.einsum("nki,nkj->nij", step, step))
         return *self._integrated(p, tangent + laws.geometric(beyond)), new
 
+    @cached_property
     def _averaging(self) -> Floats:
         """The inverse (m, l, l) of the mass of the linear functions."""
         weighted = self.weight[..., None] * self.linear
         return np.asarray(np.linalg.inv(np.einsum("mql,mqk->mlk", weighted, self.linear)))
 
-    def _pressure(self, inverse: Floats, change: Floats) -> Floats:
+    def _pressure(self, change: Floats) -> Floats:
         """(m q,) of the averaged volume change (m q,)."""
         weighted = self.weight * change.reshape(self.weight.shape)
-        share = np.einsum("mlk,mqk,mq->ml", inverse, self.linear, weighted)
+        share = np.einsum("mlk,mqk,mq->ml", self._averaging, self.linear, weighted)
         return np.asarray(laws.bulk_modulus(self.layer) * np.einsum("mql,ml->mq", self.linear, share).ravel())
 
-    def _volume_matrix(self, cofactor: Floats, inverse: Floats) -> Floats:
+    def _volume_matrix(self, cofactor: Floats) -> Floats:
         """Bulk modulus times the derivative of the averaged volume change, squared."""
         b = np.einsum("mqij,mqaj->mqai", self._plane(cofactor), self.gradient)
         rate = np.einsum("mq,mql,mqx->mlx", self.weight, self.linear, b.reshape(*self.weight.shape, -1))
-        return np.asarray(laws.bulk_modulus(self.layer) * rate.transpose(0, 2, 1) @ inverse @ rate)
+        return np.asarray(laws.bulk_modulus(self.layer) * rate.transpose(0, 2, 1) @ self._averaging @ rate)
 
     def _plane(self, tensor: Floats) -> Floats:
         """(m q, 3, 3) -> (m, q, d, d)."""

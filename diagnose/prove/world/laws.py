@@ -147,6 +147,9 @@ class Made:
 
 
 EYE = np.eye(3)
+VOLUME = np.einsum("ij,kl->ijkl", EYE, EYE)
+DEVIATOR = 0.5 * (np.einsum("ik,jl->ijkl", EYE, EYE) + np.einsum("il,jk->ijkl", EYE, EYE)) - VOLUME / 3.0
+"""A change of volume, three times as large, and the rest of a symmetric tensor, as tensors of the fourth rank."""
 
 
 def shear_modulus(layer: Layer | Glue | Film) -> float:
@@ -203,10 +206,8 @@ def volume_curvature(j: Floats, cofactor: Floats, pressure: Floats) -> Floats:
 
 def film_stress(film: Film, f: Floats, flown: Floats | None = None) -> tuple[Floats, Floats, Floats]:
     """S (n, 3, 3), P and dP/dF of Hooke's law between S and elastic strain; flown : plastic strain (n, 3, 3)."""
-    shear = shear_modulus(film)
     stress = hooke(film, elastic_strain(film, f, flown))
-    law = (bulk_modulus(film) - 2.0 / 3.0 * shear) * np.einsum("ij,kl->ijkl", EYE, EYE)
-    law = law + shear * (np.einsum("ik,jl->ijkl", EYE, EYE) + np.einsum("il,jk->ijkl", EYE, EYE))
+    law = bulk_modulus(film) * VOLUME + 2.0 * shear_modulus(film) * DEVIATOR
     return stress, f @ stress, turned(f, law[None]) + geometric(stress)
 
 

@@ -7,11 +7,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnose.prove.world.laws import EYE, Film, Floats, bulk_modulus, elastic_strain, geometric, shear_modulus, turned
-
-SYMMETRIC = 0.5 * (np.einsum("ik,jl->ijkl", EYE, EYE) + np.einsum("il,jk->ijkl", EYE, EYE))
-VOLUME = np.einsum("ij,kl->ijkl", EYE, EYE)
-DEVIATOR = SYMMETRIC - VOLUME / 3.0
+from diagnose.prove.world.laws import (
+    DEVIATOR,
+    EYE,
+    VOLUME,
+    Film,
+    Floats,
+    bulk_modulus,
+    elastic_strain,
+    geometric,
+    shear_modulus,
+    turned,
+)
 
 
 @dataclass(frozen=True)
