@@ -52,6 +52,7 @@ def weighted_means(tet_mesh: TetMesh, values):
     return total / np.maximum(count, 1.0)
 
 
+@pytest.mark.slow
 def test_charge_along_a_held_rim_does_not_follow_the_elements():
     pressed = Case(mesh={"mesher": "layered"}, press={"load_steps": 1}).press()
     tet_mesh, charge = pressed.result.tet_mesh, pressed.result.steps[-1].fields.charge_density_C_per_m2

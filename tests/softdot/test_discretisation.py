@@ -68,6 +68,7 @@ CHANGES = (
 )
 
 
+@pytest.mark.slow
 def test_the_stated_error_covers_the_true_one_and_is_of_its_size():
     """The true one is that against elements a quarter as large; a bar is a rate and not a bound."""
     ratios = []

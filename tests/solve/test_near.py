@@ -83,6 +83,7 @@ def test_every_unknown_of_a_plain_press_is_read_back():
     np.testing.assert_allclose(back.unknowns, [x for _, x in found], rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_equilibria_of_other_elements_are_no_guide(plain):
     setup, _ = press(ridge)
     other: TetMesh = setup.recorder.tet_mesh

@@ -83,7 +83,10 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("case", CASES)
+LONG = ("moving mass", "friction", "force")  # half a minute and more each
+
+
+@pytest.mark.parametrize("case", [pytest.param(name, marks=pytest.mark.slow if name in LONG else ()) for name in CASES])
 def test_sensitivity_is_the_difference_of_two_presses(case, monkeypatch):
     monkeypatch.setattr(solve.solution.march, "TIME_TOLERANCE", np.inf)  # the same times for all presses
     value, at = CASES[case]

@@ -130,6 +130,7 @@ def test_a_surface_too_coarse_for_the_dot_is_told():
     assert "overlaps the surface" in warnings(1.2)[0]
 
 
+@pytest.mark.slow
 def test_the_contact_area_is_where_the_surface_lies_on_the_dot():
     """Nodes count where the gap around them is nil; open ones have a pressure too, of round-off."""
     stack = segment()

@@ -29,6 +29,7 @@ def test_a_finer_mesh_is_finer_in_every_size():
     assert finer.mesher == plain.mesher
 
 
+@pytest.mark.slow
 def test_a_slightly_pressed_foam_is_the_constant_sponge():
     """Both laws have 50 kPa at small strain; deep down the foam gives way."""
 
