@@ -48,6 +48,7 @@ class Candidate:
     diagnose.engines.segment.interpolation).
     units : name of a parameter or derived quantity -> unit in the verdict.
     everyday : name of a parameter or derived quantity -> what a careful laboratory has of it: no finding.
+    stated_as : nuisance parameter by which rig.toml says how uncertain it is, such as "offset_mm"; "" for none.
     """
 
     mechanism: str
@@ -59,6 +60,7 @@ class Candidate:
     compared: str = ""
     together: str = "sum"
     everyday: Mapping[str, float] = field(default_factory=dict)
+    stated_as: str = ""
 
     @property
     def traits(self) -> Traits:

@@ -24,7 +24,7 @@ Separation = Callable[[Name], float | None]
 
 @dataclass(frozen=True)
 class Score:
-    """One case. size : whitened root mean square per sample of the effect, nuisances removed.
+    """One case. size : whitened root mean square per sample of the effect, nuisances removed; flaws : of the rig's.
 
     exact : just the true mechanisms at their components. grouped : exact, or a fair group that holds the truth.
     component, mechanism : as far as something is named. group : members of the group that holds the truth, else 1.
@@ -60,6 +60,7 @@ class Score:
     main_right: bool = False
     equals: int = 1
     smaller: bool | None = None
+    flaws: float = 0.0
 
     @property
     def right(self) -> bool:
@@ -106,6 +107,7 @@ def scored(truth: Mapping[str, Any], verdict: Mapping[str, Any], separation: Sep
         main_part=main,
         main_right=bool(main) and (main == true or fair),
         equals=len(_group_with(true, true, groups)),
+        flaws=truth.get("flaws_rms", 0.0),
     )
 
 
@@ -166,6 +168,8 @@ def _covered(true: Sequence[Mapping[str, Any]], named: Sequence[Mapping[str, Any
 
 CLEAR = 5.0
 """Size from which an effect has to be named."""
+ABOVE_FLAWS = 2.0
+"""Times the flaws of its rig from which an effect is the larger part of a mismatch by far: four fifths of its power."""
 EDGES = (0.0, 0.35, 0.75, 1.5, 3.5, 7.5, 15.0, np.inf)
 ON_FLOOR = 1.2
 Item = TypeVar("Item")
@@ -189,6 +193,9 @@ def tally(scores: Sequence[Score]) -> dict[str, Any]:
     """Every rate of the proof."""
     of = {kind: [s for s in scores if s.kind == kind] for kind in (NONE, SINGLE, PAIR, LEFT_OUT, OUTSIDE, AMBIGUOUS)}
     clear = [s for s in of[SINGLE] if s.size >= CLEAR]
+    flawed = [s for s in of[SINGLE] if s.flaws]
+    above = [s for s in flawed if s.size >= ABOVE_FLAWS * s.flaws]
+    below = [s for s in flawed if s.size < ABOVE_FLAWS * s.flaws]
     told = [s for s in scores if s.exact and s.held_out is not None]
     covered = [(name, holds) for s in scores for name, holds in s.covered.items()]
     return {
@@ -206,6 +213,10 @@ def tally(scores: Sequence[Score]) -> dict[str, Any]:
         "clear_right": rate(clear, lambda s: s.exact or s.main_part == s.truth),
         "clear_right_or_grouped": rate(clear, lambda s: s.right),
         "clear_wrong": rate(clear, lambda s: bool(s.named or s.main_part) and not s.right),
+        "above_flaws_right": rate(above, lambda s: s.right),
+        "above_flaws_wrong": rate(above, lambda s: bool(s.named or s.main_part) and not s.right),
+        "below_flaws_right": rate(below, lambda s: s.right),
+        "below_flaws_wrong": rate(below, lambda s: bool(s.named or s.main_part) and not s.right),
         "clear_component": rate(clear, lambda s: s.component),
         "pairs_exact": rate(of[PAIR], lambda s: s.exact),
         "ambiguous_told": rate(of[AMBIGUOUS], lambda s: s.group > 1 or not s.named),

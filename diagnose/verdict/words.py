@@ -36,7 +36,7 @@ def sentences(
         return _agreement(recording, findings)
     opening = [Sentence("", where_words(recording, findings))]
     if findings.best is None:
-        return [*opening, *_unexplained(findings), *_next(findings, following)]
+        return [*opening, *_unexplained(findings), *_to_state(recording, findings), *_next(findings, following)]
     told = [*opening, *_named(findings, findings.best), *_rest(findings), *_proof(resimulated)]
     return [*told, *_next(findings, following)]
 
@@ -119,6 +119,23 @@ def _unexplained(findings: Findings) -> Iterator[Sentence]:
         closest = short_name([setting.candidate for setting in findings.models[0].settings])
         text = f"with {closest}, the error on held-out presses would fall {_errors(findings.unnamed)}."
         yield Sentence("The closest explanation", text)
+
+
+def _to_state(recording: Recording, findings: Findings) -> Iterator[Sentence]:
+    """What every rig has a little of and rig.toml says nothing of, where it predicts held-out presses better alone."""
+    if any(run.drive != "displacement_mm" for run in recording.runs):
+        return
+    stated = {name for run in recording.runs for name in run.nuisance}
+    for model in findings.models:
+        one = model.settings[0].candidate
+        if len(model.settings) == 1 and one.stated_as and one.stated_as not in stated and model.gain_lower > 0.0:
+            usual = min(one.everyday.values())
+            yield Sentence(
+                "To be stated",
+                f"every rig has a little of {short_name([one])}, and rig.toml says nothing of it. State how uncertain "
+                f"it is in [runs.nuisance], {one.stated_as} = {usual:g} for a careful set-up, and diagnose again: the "
+                "rest is then judged beside it.",
+            )
 
 
 def _nameless(findings: Findings) -> str:

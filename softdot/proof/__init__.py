@@ -6,7 +6,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from diagnose.prove.score import ALIKE, CLEAR, share
+from diagnose.prove.score import ABOVE_FLAWS, ALIKE, CLEAR, share
 from diagnose.prove.score import rate as counted
 from diagnose.prove.trial import verified
 from diagnose.prove.world.cases import LEFT_OUT, NONE, OUTSIDE, SINGLE, SIZES, Case
@@ -75,6 +75,10 @@ HEAD = {
     "clear_right": f"effects of size {CLEAR:g} or more: exactly named, all of it or its main part",
     "clear_right_or_grouped": f"effects of size {CLEAR:g} or more: the same, or in a fair group",
     "clear_wrong": f"effects of size {CLEAR:g} or more: a wrong name at either grade",
+    "above_flaws_right": f"effects of {ABOVE_FLAWS:g} times the flaws of the rig or more: right, or in a fair group",
+    "above_flaws_wrong": f"effects of {ABOVE_FLAWS:g} times the flaws of the rig or more: a wrong name",
+    "below_flaws_right": "smaller effects on rigs with flaws: right, or in a fair group",
+    "below_flaws_wrong": "smaller effects on rigs with flaws: a wrong name",
     "names_right": "of all names given, at either grade: right",
     "main_parts_without_effect": "a main part named without any effect",
     "main_parts_of_unknown": "a main part named of what is not among the candidates",

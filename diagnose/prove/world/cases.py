@@ -66,7 +66,10 @@ class Case:
 
 @dataclass(frozen=True)
 class Truth:
-    """What is concealed. size : reached; per_run : (run, channel) -> share of the effect's energy."""
+    """What is concealed. size : reached; per_run : (run, channel) -> share of the effect's energy.
+
+    flaws : size of the rig's flaws, taken alike; 0 where it has none.
+    """
 
     case: Case
     strengths: dict[str, float]
@@ -75,6 +78,7 @@ class Truth:
     size: float
     sigma: float
     per_run: dict[str, float] = field(default_factory=dict)
+    flaws: float = 0.0
 
     def plain(self) -> dict[str, Any]:
         """As JSON has it."""
@@ -97,6 +101,7 @@ class Truth:
             "nuisance": self.nuisance,
             "aimed_rms": self.case.size,
             "whitened_rms": self.size,
+            "flaws_rms": self.flaws,
             "sigma": self.sigma,
             "per_run": self.per_run,
         }
@@ -168,7 +173,8 @@ def concealed(case: Case) -> tuple[Truth, list[Signals]]:
     values = {name: {**one, **_force_ratio(name, bench, plainly, reality)} for name, one in values.items()}
     per_run = {f"{run} | {channel}": share for (run, channel), share in shares(left, bench).items()}
     named = {_nuisance_name(key): value for key, value in nuisance.items()}
-    truth = Truth(case, strengths, values, named, judge.rms(left), float(np.linalg.norm(left)), per_run)
+    flaws = judge.rms(judge.left(plainly, replace(plainly, details=None))) if case.details else 0.0
+    truth = Truth(case, strengths, values, named, judge.rms(left), float(np.linalg.norm(left)), per_run, flaws)
     return truth, [_noisy(run, bench, rng) for run in record(reality, bench)]
 
 

@@ -23,8 +23,8 @@ def _gap(scene: Scene) -> Candidate:
     def parameters(values: Sequence[float]) -> dict[str, Any]:
         return {"gap_mm": values[0]}
 
-    units, everyday = {"gap_mm": "mm"}, {"gap_mm": FIRST_TOUCH_MM}
-    return Candidate(CONTACT_GAP.name, "dot", (coordinate,), parameters, units=units, everyday=everyday)
+    told: dict[str, Any] = {"units": {"gap_mm": "mm"}, "everyday": {"gap_mm": FIRST_TOUCH_MM}, "stated_as": "offset_mm"}
+    return Candidate(CONTACT_GAP.name, "dot", (coordinate,), parameters, **told)
 
 
 register(Vocabulary(CONTACT_GAP, "there is a gap before {} touches", of_segment=of_segment, kind=GIVES_WAY))

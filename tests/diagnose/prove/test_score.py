@@ -111,6 +111,22 @@ def test_a_main_part_is_right_by_its_name_and_no_name_of_everything():
     assert (rates["main_parts_without_effect"]["count"], rates["names_right"]["count"]) == (1, 1)
 
 
+def test_on_a_rig_with_flaws_effects_are_counted_by_what_the_flaws_make():
+    flawed = {"flaws_rms": 2.0}
+    scores = [
+        scored({**truth(LEAK, size=4.0), **flawed}, verdict(LEAK), far),
+        scored({**truth(LEAK, size=6.0), **flawed}, verdict(CABLE), far),
+        scored({**truth(LEAK, size=3.9), **flawed}, verdict(unexplained=True), far),
+        scored(truth(LEAK, size=6.0), verdict(LEAK), far),  # a rig without flaws
+    ]
+    rates = tally(scores)
+    counts = {name: (rates[name]["count"], rates[name]["of"]) for name in rates if "flaws" in name}
+    assert counts == {
+        "above_flaws_right": (1, 2), "above_flaws_wrong": (1, 2),
+        "below_flaws_right": (0, 1), "below_flaws_wrong": (0, 1),
+    }  # fmt: skip
+
+
 def test_a_tally_counts():
     scores = [
         scored(truth(LEAK), verdict(LEAK), far),

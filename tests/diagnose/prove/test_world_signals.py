@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from diagnose.prove.world.bench import Run, traced
+from diagnose.prove.world.details import PLAY, SOFTNESS_MM, Details
 from diagnose.prove.world.effects import EFFECTS, applied, fits
 from diagnose.prove.world.march import Course, Table
 from diagnose.prove.world.noise import Amplifier, Autoregression, Filter, noises, yule_walker
@@ -50,6 +51,19 @@ def test_a_compliant_rig_is_a_spring_in_series():
     reality = replace(baseline(CLAMPED), compliance_mm_per_N=0.5)
     reached = _path(reality, np.array([-0.2, 0.0, 0.5]), linear)
     np.testing.assert_allclose(reached, [-0.2, 0.0, 0.5 / (1.0 + 0.5 * 3.0)], atol=1e-6)
+
+
+def test_a_soft_surface_yields_by_half_the_square_at_first_and_by_its_softness_in_the_end():
+    soft = Details((0.0, 1.0, 0.0, 0.0, 0.0), seed=0)
+    stage = np.array([-0.1, 0.0, 1e-5, 0.3])
+    expected = [-0.1, 0.0, 1e-10 / (2.0 * SOFTNESS_MM), 0.3 - SOFTNESS_MM]
+    np.testing.assert_allclose(soft.path(TIME[:4], stage, 0), expected, rtol=2e-3, atol=1e-12)
+
+
+def test_play_makes_the_force_larger_on_the_way_down_and_smaller_on_the_way_up():
+    way = np.concatenate([np.linspace(0.0, 0.3, 301), np.linspace(0.3, 0.0, 301)])
+    force = Details((0.0, 0.0, 1.0, 0.0, 0.0), seed=0).force(way, np.ones(len(way)))
+    np.testing.assert_allclose(force[[150, 450]], [1.0 + PLAY, 1.0 - PLAY], rtol=1e-12)
 
 
 def test_a_guide_loses_four_times_its_friction_on_each_way_whatever_the_speed():

@@ -120,6 +120,20 @@ def test_where_too_many_of_no_one_kind_are_as_good_it_is_not_said_that_none_is(r
     )
 
 
+def test_what_every_rig_has_a_little_of_is_to_be_stated(recording):
+    gap = replace(LEAKS, settings=(Setting(replace(LEAK, everyday={"gap_mm": 0.002}, stated_as="offset_mm"), (0.1,)),))
+    lines = told(recording, found(recording, (gap,), None, ((0,),), unexplained=True))
+    advice = "in [runs.nuisance], offset_mm = 0.002 for a careful set-up, and diagnose again"
+    assert advice in next(line for line in lines if line.startswith("To be stated: every rig has a little of"))
+    said = replace(recording, runs=tuple(replace(run, nuisance={"offset_mm": 0.002}) for run in recording.runs))
+    for silent in (
+        told(said, found(recording, (gap,), None, ((0,),), unexplained=True)),
+        told(recording, found(recording, (replace(gap, gain_lower=-1.0),), None, ((0,),), unexplained=True)),
+        told(recording, found(recording, (LEAKS,), None, ((0,),), unexplained=True)),
+    ):
+        assert not any(line.startswith("To be stated") for line in silent)
+
+
 def test_of_one_explanation_that_leaves_too_much_the_kind_is_told_with_its_error(recording):
     left = Fit(("run, press 1",), 0.97, 0.29, 0.22, 5.0)
     kind = found(recording, (LEAKS,), None, ((0,),), unexplained=True, kind="something leaks", unnamed=left)
