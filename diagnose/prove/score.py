@@ -67,6 +67,11 @@ class Score:
         """Whether the name that is given, at either grade, is right."""
         return self.grouped or self.main_right
 
+    @property
+    def wrong(self) -> bool:
+        """Whether a name is given, at either grade, that is not right."""
+        return bool(self.named or self.main_part) and not self.right
+
     def plain(self) -> dict[str, Any]:
         """As JSON has it."""
         return {**asdict(self), "truth": list(map(list, self.truth)), "named": list(map(list, self.named)),
@@ -212,11 +217,11 @@ def tally(scores: Sequence[Score]) -> dict[str, Any]:
         "names_right": rate([s for s in scores if s.named or s.main_part], lambda s: s.right),
         "clear_right": rate(clear, lambda s: s.exact or s.main_part == s.truth),
         "clear_right_or_grouped": rate(clear, lambda s: s.right),
-        "clear_wrong": rate(clear, lambda s: bool(s.named or s.main_part) and not s.right),
+        "clear_wrong": rate(clear, lambda s: s.wrong),
         "above_flaws_right": rate(above, lambda s: s.right),
-        "above_flaws_wrong": rate(above, lambda s: bool(s.named or s.main_part) and not s.right),
+        "above_flaws_wrong": rate(above, lambda s: s.wrong),
         "below_flaws_right": rate(below, lambda s: s.right),
-        "below_flaws_wrong": rate(below, lambda s: bool(s.named or s.main_part) and not s.right),
+        "below_flaws_wrong": rate(below, lambda s: s.wrong),
         "clear_component": rate(clear, lambda s: s.component),
         "pairs_exact": rate(of[PAIR], lambda s: s.exact),
         "ambiguous_told": rate(of[AMBIGUOUS], lambda s: s.group > 1 or not s.named),

@@ -23,8 +23,15 @@ def _gap(scene: Scene) -> Candidate:
     def parameters(values: Sequence[float]) -> dict[str, Any]:
         return {"gap_mm": values[0]}
 
-    told: dict[str, Any] = {"units": {"gap_mm": "mm"}, "everyday": {"gap_mm": FIRST_TOUCH_MM}, "stated_as": "offset_mm"}
-    return Candidate(CONTACT_GAP.name, "dot", (coordinate,), parameters, **told)
+    return Candidate(
+        CONTACT_GAP.name,
+        "dot",
+        (coordinate,),
+        parameters,
+        units={"gap_mm": "mm"},
+        everyday={"gap_mm": FIRST_TOUCH_MM},
+        stated_as="offset_mm",
+    )
 
 
 register(Vocabulary(CONTACT_GAP, "there is a gap before {} touches", of_segment=of_segment, kind=GIVES_WAY))
