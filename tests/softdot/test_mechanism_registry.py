@@ -101,8 +101,8 @@ def on(k_per_V2):
 @pytest.mark.usefixtures("registered")
 def test_it_runs_and_its_off_value_changes_nothing(tmp_path):
     """V (1 + k V^2) is the voltage without it."""
-    plain = run_config(config_from(TABLES), tmp_path / "plain")["readout_voltage_V"]
-    assert run_config(with_k(0.0), tmp_path / "off")["readout_voltage_V"] == plain
+    plain = outcome(config_from(TABLES))["readout_voltage_V"]
+    assert outcome(with_k(0.0))["readout_voltage_V"] == plain
     found = np.array(run_config(with_k(0.5), tmp_path / "on")["readout_voltage_V"])
     np.testing.assert_allclose(found * (1 + 0.5 * found**2), plain, rtol=1e-9)
     assert found[-1] < 0.9 * plain[-1]

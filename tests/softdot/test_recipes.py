@@ -13,7 +13,7 @@ ROOT = Path(__file__).parents[2]
 TEXT = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
 RECIPES = dict(re.findall(r"^### (.+?)\n(.*?)(?=^### |\Z)", TEXT, re.DOTALL | re.MULTILINE))
 BLOCK = re.compile(r"^```(?:python|toml)\n# (.+?)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
-LEFT_OUT = shutil.ignore_patterns("*.pyc*", "*.tmp.*")  # what numba compiled stays, else it takes 20 s again
+LEFT_OUT = shutil.ignore_patterns("*.pyc.*", "*.tmp.*")  # what is compiled stays, else it takes 20 s again
 PACKAGES = ("geometry", "mesh", "solve", "export", "diagnose", "softdot")
 
 

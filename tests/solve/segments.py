@@ -8,7 +8,7 @@ from geometry.stack import layers
 from mesh.build import MeshOptions, build
 from solve.materials.parameters import NeoHookean, PiezoelectricFilm
 
-COARSE = MeshOptions(element_size_mm=0.9, contact_element_size_mm=0.45, mesher="layered")
+COARSE = MeshOptions(element_size_mm=1.4, contact_element_size_mm=0.7, mesher="layered")
 
 
 def segment(**changes) -> Segment:

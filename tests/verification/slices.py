@@ -7,6 +7,7 @@ import numpy as np
 from geometry.dot import DotShape
 from geometry.parameters import Dot, Segment
 from geometry.stack import layers
+from mesh.build import MeshOptions
 from mesh.types import TetMesh
 from solve.materials.parameters import Hyperfoam, PiezoelectricFilm
 from solve.model import Model, Physics, Press, Readout, Waveform
@@ -20,6 +21,7 @@ STACK = segment(section="plane-strain")
 BLOCK = segment(section="plane-strain", boundary="free", effector=None)
 FOAM = Hyperfoam(mu_MPa=(0.2,), alpha=(2.0,), poisson_ratio=(0.25,))
 DEPTH_MM = 0.2
+OF_SLICES = MeshOptions(element_size_mm=0.9, contact_element_size_mm=0.45, mesher="layered")
 
 
 def plate(stack: Segment) -> DotShape:
@@ -38,7 +40,7 @@ def foams() -> dict:
 def mesh_of(flat: bool) -> TetMesh:
     """The coarse mesh under the ridge, or under the plate."""
     stack = BLOCK if flat else STACK
-    return coarse_mesh(stack, plate(stack) if flat else ridge(stack))
+    return coarse_mesh(stack, plate(stack) if flat else ridge(stack), OF_SLICES)
 
 
 def pressed(

@@ -9,8 +9,8 @@ from solve.mechanisms import Mechanism, with_mechanisms
 from solve.model import Model, Press, Readout
 from solve.readout.recording import readout_voltage
 from tests.pressing import press_segment
-from tests.solve.segments import COARSE, coarse_mesh, materials
-from tests.verification.slices import STACK, mesh_of, waved
+from tests.solve.segments import coarse_mesh, materials
+from tests.verification.slices import OF_SLICES, STACK, mesh_of, waved
 
 PRESS = Press(indentation_mm=0.2, load_steps=2)
 TRAPEZOID = waved("trapezoid", 3, rise_s=0.1, hold_s=0.1, fall_s=0.1)
@@ -25,7 +25,7 @@ def solve(name=None, component="medium2", press=PRESS, readout=None, **parameter
         model = with_mechanisms(model, [Mechanism(name=name, component=component, parameters=parameters)])
     dot = resolve_dot(model.dot, model.segment)
     same = model.segment.model_copy(update={"boundary": STACK.boundary}) == STACK
-    tet_mesh = mesh_of(False) if same else coarse_mesh(model.segment, dot, COARSE)
+    tet_mesh = mesh_of(False) if same else coarse_mesh(model.segment, dot, OF_SLICES)
     result = press_segment(model.segment, model.materials, dot, press, tet_mesh, None, model.physics, model.readout)
     assert result.converged, result.failure
     return result, model

@@ -90,7 +90,7 @@ def test_one_rate_names_nothing_wrong(force_of, mechanism):
     assert findings.best is None or mechanism in {one.candidate.mechanism for one in alike}
 
 
-@pytest.mark.parametrize("rates", [RATES, RATES[:1]])
+@pytest.mark.parametrize("rates", [pytest.param(RATES, marks=pytest.mark.slow), RATES[:1]])
 @pytest.mark.parametrize(("force_of", "mechanism"), [(rubbed, "guide-friction"), (relaxed, "viscoelasticity")])
 def test_neither_is_named_for_the_other(force_of, mechanism, rates):
     findings = found(force_of, rates, without=mechanism)

@@ -53,6 +53,7 @@ def names(findings):
     return [one.candidate.mechanism for one in findings.best.settings]
 
 
+@pytest.mark.slow
 def test_what_only_relaxes_only_relaxes():
     assert names(found()) == ["viscoelasticity"]
 

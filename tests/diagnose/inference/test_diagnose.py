@@ -112,6 +112,7 @@ def test_an_unknown_effect_is_left_unexplained():
     assert not found(small(7, Sensor(step_charge=0.3), runs=4)).best
 
 
+@pytest.mark.slow
 def test_what_comes_closest_is_told_by_the_error_that_a_reader_counts(monkeypatch):
     """Nothing is named; by the noise alone another explanation comes first, which predicts worse."""
     recording, others = small(5, Sensor(leak=1.0), runs=4, noise=0.001), tuple(c for c in FEW if c.name != LEAK)
@@ -186,6 +187,7 @@ def test_a_second_mechanism_that_may_be_a_flaw_of_the_rig_is_not_named():
     assert "contact-gap (dot) is not named for that" in " ".join(findings.reasons)
 
 
+@pytest.mark.slow
 def test_what_too_many_pairs_have_in_them_is_the_main_part():
     """A leak, and lost motion that four candidates describe alike."""
     sensor, sure = Sensor(leak=1.0, gap_mm=0.006), {"force_N": 0.003, "voltage_V": 0.003}

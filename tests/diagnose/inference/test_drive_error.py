@@ -94,7 +94,11 @@ def test_noise_that_channels_share_is_white_once_it_is_known():
         assert least < float(np.mean(left**2)) < most
 
 
-@pytest.mark.parametrize("name", [("rig-compliance", "rig"), ("charge-leakage", "readout")], ids=" ".join)
+@pytest.mark.parametrize(
+    "name",
+    [("rig-compliance", "rig"), pytest.param(("charge-leakage", "readout"), marks=pytest.mark.slow)],
+    ids=" ".join,
+)
 def test_a_mechanism_is_identified_on_a_stage_that_trembles(name):
     recording = trembling(5, concealed(name), runs=4, noise=1e-3)
     findings = diagnose(recording, ToyEngine(recording, candidates=CANDIDATES), 1, silent)
