@@ -16,6 +16,7 @@ w_j = sum over faces a, |a| = j, of P(N(0, I_aa^-1) > 0) P(N(0, I_bb - I_ba I_aa
 
 from dataclasses import dataclass
 from itertools import combinations
+from math import comb
 
 import numpy as np
 from scipy.optimize import nnls
@@ -75,6 +76,9 @@ def posterior(residual: Floats, tangent: Floats, prior_sigma: Floats) -> tuple[F
 
 
 MOST = 8  # non-negative parameters: 256 faces
+CLOSED = 3  # dimensions of the orthants that have a closed form
+ORTHANT_ERROR = 1e-3  # of the others, relative: no level is better known
+ROUGH, LEAST = 1e-3, 1e-5  # absolute, of a first estimate and of what is next to nothing
 
 
 def weights(information: Floats) -> Floats:
@@ -86,10 +90,23 @@ def weights(information: Floats) -> Floats:
     if count > MOST:
         raise ValueError(f"{count} non-negative parameters in one candidate; at most {MOST}")
     found = np.zeros(count + 1)
-    for positive in range(count + 1):
+    left_out = _from_the_others(count)
+    for positive in set(range(count + 1)) - set(left_out):
         for face in combinations(range(count), positive):
             found[positive] += _chance_of_face(information, list(face))
+    for positive in left_out:
+        found[positive] = max(0.5 - found[positive % 2 :: 2].sum(), 0.0)
     return np.asarray(found / found.sum())  # the sum is one but for the numerical orthants
+
+
+def _from_the_others(count: int) -> list[int]:
+    """One even and one odd number of degrees whose weights make one half with those of the other even and odd ones.
+
+    Silvapulle and Sen, proposition 3.6.1. Those with the most faces of numerical orthants, if there are any.
+    """
+    numerical = {j: comb(count, j) for j in range(count + 1) if max(j, count - j) > CLOSED}
+    of_each = [[j for j in numerical if j % 2 == odd] for odd in (0, 1)]
+    return [max(some, key=numerical.__getitem__) for some in of_each if some]
 
 
 def survival(statistic: float, weight: Floats, unbounded: int = 0, noise_degrees: float = np.inf) -> float:
@@ -110,11 +127,18 @@ def orthant(covariance: Floats) -> float:
         return 1.0
     deviation = np.sqrt(np.diag(covariance))
     correlation = np.clip(covariance / np.outer(deviation, deviation), -1.0, 1.0)
-    if count <= 3:
+    if count <= CLOSED:
         above = correlation[np.triu_indices(count, 1)]
         return float(0.5**count + 0.5 ** (count - 1) * np.arcsin(above).sum() / np.pi)
-    law = multivariate_normal(cov=correlation, allow_singular=True, seed=np.random.default_rng(0))
-    return float(law.cdf(np.zeros(count)))
+    rough = _numerical(correlation, ROUGH)
+    return _numerical(correlation, max(ORTHANT_ERROR * rough, LEAST))
+
+
+def _numerical(correlation: Floats, error: float) -> float:
+    """The same by quasi-random points, of this absolute error."""
+    seed = np.random.default_rng(0)
+    law = multivariate_normal(cov=correlation, allow_singular=True, seed=seed, abseps=error, releps=0.0)
+    return float(law.cdf(np.zeros(len(correlation))))
 
 
 def _chance_of_face(information: Floats, face: list[int]) -> float:
