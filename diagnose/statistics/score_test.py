@@ -100,9 +100,9 @@ def weights(information: Floats) -> Floats:
 
 
 def _from_the_others(count: int) -> list[int]:
-    """One even and one odd number of degrees whose weights make one half with those of the other even and odd ones.
+    """One even and one odd number of degrees, those with the most faces of numerical orthants; none without any.
 
-    Silvapulle and Sen, proposition 3.6.1. Those with the most faces of numerical orthants, if there are any.
+    Even weights make one half together, and so do odd ones (Silvapulle and Sen, proposition 3.6.1).
     """
     numerical = {j: comb(count, j) for j in range(count + 1) if max(j, count - j) > CLOSED}
     of_each = [[j for j in numerical if j % 2 == odd] for odd in (0, 1)]

@@ -24,20 +24,28 @@ def test_independent_parameters_have_binomial_weights():
     np.testing.assert_allclose(weights(np.eye(4)) * 16.0, [1.0, 4.0, 6.0, 4.0, 1.0], rtol=1e-3)
 
 
-@pytest.mark.parametrize("shared", [0.0, 0.8, 3.0])
-def test_three_parameters_against_projection_by_brute_force(shared):
-    rng = np.random.default_rng(3)
-    design = rng.standard_normal((6, 3)) + shared
-    positive = [int((nnls(design, rng.standard_normal(6))[0] > 0.0).sum()) for _ in range(8000)]
-    counted = np.bincount(positive, minlength=4) / 8000
-    np.testing.assert_allclose(weights(design.T @ design), counted, atol=4.0 * np.sqrt(0.25 / 8000))
+def like(shared):
+    """Six samples of three parameters, alike as more is shared."""
+    return np.random.default_rng(3).standard_normal((6, 3)) + shared
+
+
+def spectrum(branches):
+    """What branches of relaxation lose over sixty seconds."""
+    return -np.expm1(-np.linspace(0.0, 60.0, 200)[:, None] / np.geomspace(0.1, 30.0, branches))
+
+
+@pytest.mark.parametrize("design", [like(0.0), like(0.8), like(3.0), spectrum(4), spectrum(6), spectrum(8)])
+def test_weights_against_projection_by_brute_force(design):
+    rng, (samples, count) = np.random.default_rng(3), design.shape
+    positive = [int((nnls(design, rng.standard_normal(samples))[0] > 0.0).sum()) for _ in range(8000)]
+    counted = np.bincount(positive, minlength=count + 1) / 8000
+    found = weights(design.T @ design)
+    np.testing.assert_allclose(found, counted, atol=4.0 * np.sqrt(found * (1.0 - found) / 8000).max())
 
 
 def test_even_and_odd_weights_share_equally():
-    """The Gauss-Bonnet relation of polyhedral cones (Shapiro 1988)."""
-    design = np.random.default_rng(4).standard_normal((8, 5)) + 0.5
-    found = weights(design.T @ design)
-    assert found[::2].sum() == pytest.approx(0.5, abs=1e-3)
+    """The Gauss-Bonnet relation of polyhedral cones (Shapiro 1988), of weights that all have a closed form."""
+    assert weights(like(0.5).T @ like(0.5))[::2].sum() == pytest.approx(0.5, abs=1e-12)
 
 
 def test_orthants_of_equal_correlation_one_half():
