@@ -16,12 +16,12 @@ from tests.solve.segments import materials, segment
 
 NOISE = 1e-5  # relative to the press: what a parameter must change at least, or this compares round-off
 COARSE = MeshOptions(element_size_mm=2.0, contact_element_size_mm=1.5, mesher="layered")
-FINER = MeshOptions(element_size_mm=1.2, contact_element_size_mm=0.8, mesher="layered")  # some of whose contact slips
+FINER = MeshOptions(element_size_mm=1.2, contact_element_size_mm=0.8, mesher="layered")
 PRESS = Press(
     indentation_mm=0.15, load_steps=2, waveform=Waveform(shape="trapezoid", rise_s=0.1, hold_s=0.2, fall_s=0.1)
 )
 
-DEEP = PRESS.model_copy(update={"indentation_mm": 0.3})  # for the same reason
+DEEP = PRESS.model_copy(update={"indentation_mm": 0.3})  # so that some of the contact slips
 
 
 def model(*mechanisms, press=PRESS, coupling="one-way", **sides):

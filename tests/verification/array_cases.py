@@ -5,7 +5,7 @@ from softdot.config import config_from
 from softdot.config.toml import completed
 from solve.press import press_segment
 
-COARSE = {"element_size_mm": 1.2, "contact_element_size_mm": 0.4}
+COARSE = {"element_size_mm": 0.9, "contact_element_size_mm": 0.3}
 
 
 def array(columns=2, rows=1, segment=None, press=None, mesh=None, tables=None, **keys) -> ArrayCase:

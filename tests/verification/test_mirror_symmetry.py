@@ -11,7 +11,7 @@ from mesh.symmetry import unfolded
 from softdot.case import Case
 from solve.press import press_segment
 
-COARSE = {"mesher": "layered", "element_size_mm": 1.0, "contact_element_size_mm": 0.5}
+COARSE = {"mesher": "layered", "element_size_mm": 0.7, "contact_element_size_mm": 0.35}
 PRESS = {"indentation_mm": 0.2, "load_steps": 2}
 SIDES = [{"name": name, "center_mm": [x, 0.0], "size_mm": [0.5, 2.0]} for name, x in (("left", -0.8), ("right", 0.8))]
 CORNERS = [

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mesh.build import MeshOptions
 from solve.materials.inelastic import Prony
 from solve.model import BondLine, Physics, Press, Readout, Waveform
 from solve.readout.amplifier import amplify
@@ -22,11 +23,12 @@ SLOW = Waveform(shape="half-sine", rise_s=0.6)
 CABLE = Readout(input_resistance_MOhm=1000.0, input_capacitance_pF=100.0, low_pass_Hz=60.0)
 SERIES = {"medium2": Prony((0.1, 0.2), (0.03, 0.2)), "medium1": Prony((0.2,), (0.5,))}
 DEPTH_MM, PEAK = 0.3, 0.01
+MESH = MeshOptions(element_size_mm=0.9, contact_element_size_mm=0.45, mesher="layered")
 
 
 @pytest.fixture(scope="module")
 def mesh_3d():
-    return coarse_mesh(STACK, DOT)
+    return coarse_mesh(STACK, DOT, MESH)
 
 
 @pytest.fixture(scope="module")
