@@ -10,12 +10,19 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.fft import dct
 
 from diagnose.forward import Signals
 from diagnose.noise.model import NoiseModel, Whitening
 from diagnose.signals.recording import Recording, Run
-from diagnose.statistics.cells import FilterBank, Hypotheses, TimeSegment, octave_edges, segments, with_pools
+from diagnose.statistics.cells import (
+    CosineTransform,
+    FilterBank,
+    Hypotheses,
+    TimeSegment,
+    octave_edges,
+    segments,
+    with_pools,
+)
 from geometry.arrays import Bools, Floats, Ints
 
 POOLS: tuple[frozenset[str], ...] = tuple(
@@ -84,10 +91,7 @@ class Samples:
     def of_block(self, block: SampleBlock, white: Floats) -> Floats:
         """The transform (n, ...) of whitened samples (m, ...) of one block, zero elsewhere."""
         out = np.zeros((len(self), *white.shape[1:]))
-        first = block.rows.start
-        for piece in self.pieces_of(block):
-            own = white[piece.samples.start - first : piece.samples.stop - first]
-            out[piece.samples] = dct(own, type=2, norm="ortho", axis=0)
+        out[block.rows] = self._transforms[block.rows.start](white)
         return self._apart(out)
 
     def _apart(self, values: Floats) -> Floats:
@@ -102,6 +106,11 @@ class Samples:
         """The pieces of one block."""
         rows = block.rows
         return tuple(piece for piece in self.bank.pieces if rows.start <= piece.samples.start < rows.stop)
+
+    @cached_property
+    def _transforms(self) -> Mapping[int, CosineTransform]:
+        """Of each block, by its first row."""
+        return {block.rows.start: CosineTransform(self.pieces_of(block)) for block in self.blocks}
 
     @cached_property
     def fold(self) -> Ints:

@@ -68,6 +68,25 @@ def octave_edges(duration_s: float, step_s: float) -> Floats:
     return np.concatenate([[0.0], nyquist * 2.0 ** np.arange(-octaves, 1)])
 
 
+class CosineTransform:
+    """Orthonormal coefficients (DCT-II) of pieces in a row, each by itself.
+
+    Pieces of one length are transformed together, since a call takes longer than the transform of a short piece.
+    """
+
+    def __init__(self, pieces: Sequence[TimeSegment]) -> None:
+        lengths = np.array([piece.samples.stop - piece.samples.start for piece in pieces])
+        first = np.cumsum(lengths) - lengths
+        self._alike = [first[lengths == count][:, None] + np.arange(count) for count in np.unique(lengths)]
+
+    def __call__(self, values: Floats) -> Floats:
+        """Coefficients (n, ...) of samples (n, ...)."""
+        found = np.empty(values.shape)
+        for rows in self._alike:
+            found[rows] = dct(values[rows], type=2, norm="ortho", axis=1)
+        return found
+
+
 class FilterBank:
     """The transform from n samples to n coefficients and their sorting into cells.
 
@@ -77,6 +96,7 @@ class FilterBank:
     def __init__(self, pieces: Sequence[TimeSegment], edges_Hz: Floats) -> None:
         """edges_Hz : (k,) ascending from 0; what lies above the last one joins the highest band."""
         self.pieces = tuple(pieces)
+        self._transform = CosineTransform(self.pieces)
         cells: list[Cell] = []
         numbers: list[Ints] = []
         for piece in self.pieces:
@@ -90,7 +110,7 @@ class FilterBank:
 
     def coefficients(self, values: Floats) -> Floats:
         """Orthonormal coefficients (n,) or (n, k) of samples (n,) or (n, k)."""
-        return np.concatenate([dct(values[p.samples], type=2, norm="ortho", axis=0) for p in self.pieces])
+        return self._transform(values)
 
     def energies(self, values: Floats) -> Floats:
         """Sum of squares (c,) in each cell of samples (n,)."""

@@ -3,12 +3,12 @@
 The drive of a run as the model takes it, and where its first touch is.
 """
 
-from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from diagnose.engines.segment.recent import Recent
 from diagnose.signals.phases import Segmentation
 from diagnose.signals.recording import Run
 from geometry.arrays import Bools, Floats
@@ -98,11 +98,14 @@ def mechanics(
     return Mechanics(path, outputs[:, 0], np.maximum(outputs[:, 1], 0.0), outputs[:, 2:])
 
 
+Course = tuple[ResponseTable, Drive, Floats, tuple[object, ...]]
+
+
 class Courses:
     """Mechanics of the last drives that were followed: what stands behind the film alone leaves them as they are."""
 
     def __init__(self, count: int) -> None:
-        self._kept: deque[tuple[ResponseTable, Drive, Floats, tuple[object, ...], Mechanics]] = deque(maxlen=count)
+        self._recent: Recent[Course, Mechanics] = Recent(count)
 
     def of(
         self, fit: ResponseTable, depth_mm: float, layers: tuple[str, ...], drive: Drive, values: Floats, on: Model
@@ -110,12 +113,14 @@ class Courses:
         """As mechanics()."""
         physics = on.physics
         acting = physics.viscosity, physics.rig_compliance_mm_per_N, physics.moving_mass_g
-        for table, course, asked, those, found in self._kept:
-            if table is fit and course is drive and those == acting and np.array_equal(asked, values):
-                return found
-        found = mechanics(fit, depth_mm, layers, drive, values, on)
-        self._kept.append((fit, drive, values, acting, found))
-        return found
+
+        def same(course: Course) -> bool:
+            table, driven, asked, those = course
+            return table is fit and driven is drive and those == acting and np.array_equal(asked, values)
+
+        return self._recent.find(
+            same, lambda: ((fit, drive, values, acting), mechanics(fit, depth_mm, layers, drive, values, on))
+        )
 
 
 def shown(

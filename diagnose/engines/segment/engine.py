@@ -26,9 +26,10 @@ from diagnose.engines.segment.answer import (
 )
 from diagnose.engines.segment.declared import always_on, readout_behind, stated_apart, without_stated
 from diagnose.engines.segment.depth import ZERO, nuisance
-from diagnose.engines.segment.path import with_history
+from diagnose.engines.segment.path import PathHistory, with_history
 from diagnose.engines.segment.prepared import Prepared
-from diagnose.engines.segment.presses import moved
+from diagnose.engines.segment.presses import Place, moved
+from diagnose.engines.segment.recent import Recent
 from diagnose.engines.segment.stands import Stands
 from diagnose.forward import Candidate, Setting, Signals
 from diagnose.signals.recording import Recording, Run
@@ -103,8 +104,8 @@ COMPARISONS = {"force_ratio": _force_ratio, "loss_ratio": _loss_ratio}
 
 ROUNDS = 40
 SETTLED = 1e-6  # of the largest force
-KEPT = 4  # of each run: with and without what is fitted, and a step of it
-Asked = tuple[tuple[float, float], list[Setting], float]
+KEPT = 4  # tables, and courses of each run: with and without what is fitted, and a step of it
+Asked = tuple[Place, list[Setting], float]
 
 
 def segment_engine(model: Model, mesh_settings: MeshSettings, recording: Recording, report: Report) -> "SegmentEngine":
@@ -127,7 +128,8 @@ class SegmentEngine:
         self.stands.add([setting.candidate for setting in self.declared], report)
         self.stands.refine(self.declared, report)
         self.accuracy = self.stands.accuracy
-        self._last: tuple[Asked, ResponseTable] | None = None
+        self._tables: Recent[Asked, ResponseTable] = Recent(KEPT)
+        self._histories: Recent[tuple[Place, list[Setting]], list[PathHistory]] = Recent(KEPT)
         self._courses = Courses(KEPT * len(recording.runs))
         stated = {(one.name, one.component) for one in stated_apart(model)}
         self.candidates: tuple[Candidate, ...] = tuple(
@@ -173,12 +175,16 @@ class SegmentEngine:
     def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
         """Press what these candidates need. NoEquilibriumError."""
         self.stands.add(candidates, report)
-        self._last = None
+        self._forget()
 
     def refine(self, settings: Sequence[Setting], report: Report) -> Sequence[Setting]:
         """Press each of these settings. NoEquilibriumError where the baseline has none."""
-        self._last = None
+        self._forget()
         return self.stands.refine(settings, report)
+
+    def _forget(self) -> None:
+        self._tables.clear()
+        self._histories.clear()
 
     def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
         """Every answer of a run. ValueError for what was not prepared, and where a signal is beyond all numbers."""
@@ -245,9 +251,10 @@ class SegmentEngine:
         """Path, force and charge. What depends on the path acts back on a compliant drive: a fixed point."""
         (base, _), fit = self.stands.at(run.dot_offset_mm), self._fit(run, on, settings)
         found = self._courses.of(fit, base.depth_mm, base.relaxing, drive, values, on)
-        histories = base.histories(settings)
-        if not histories:
+        asked = run.dot_offset_mm, base.returning(settings)
+        if not asked[1]:
             return found
+        histories = self._histories.find(lambda before: before == asked, lambda: (asked, base.histories(asked[1])))
         before_mm = self._reached_before(run, fit, on, settings)
         give = on.physics.rig_compliance_mm_per_N if drive.by_depth else 1.0
         added = np.zeros(len(values))
@@ -273,16 +280,17 @@ class SegmentEngine:
         return deepest
 
     def _fit(self, run: Run, on: Model, settings: Sequence[Setting]) -> ResponseTable:
-        """The table with all that changes it; kept, as runs share it."""
+        """The table with all that changes it; kept, as runs share it, and so do settings that leave it as it is."""
         base, beside = self.stands.at(run.dot_offset_mm)
-        factor = _d31(on) / _d31(self.model)
-        asked = run.dot_offset_mm, list(settings), factor
-        if self._last is None or self._last[0] != asked:
-            change = base.change(beside, settings)
-            same = change is None and factor == 1.0
-            nothing = base.nothing if change is None else change
-            self._last = asked, base.fit if same else changed(base.fit, base.depths, nothing, factor)
-        return self._last[1]
+        asked = run.dot_offset_mm, base.elastic(settings), _d31(on) / _d31(self.model)
+
+        def made() -> ResponseTable:
+            change, factor = base.change(beside, asked[1]), asked[2]
+            if change is None and factor == 1.0:
+                return base.fit
+            return changed(base.fit, base.depths, base.nothing if change is None else change, factor)
+
+        return self._tables.find(lambda before: before == asked, lambda: (asked, made()))
 
     def _film(self, on: Model) -> FilmPlate:
         """A thinner film has more capacitance."""

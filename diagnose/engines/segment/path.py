@@ -10,6 +10,7 @@ same to 0.1 %.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
@@ -42,18 +43,23 @@ class PathHistory:
         """
         place = np.clip(share, 0.0, None)
         largest = np.maximum(np.maximum.accumulate(place), before)
-        down = _curve(np.array(self.shares), self.values[: len(self.shares)], place)
+        down = self._down(np.clip(place, 0.0, 1.0))
         inside = np.clip(place / np.maximum(largest, 1e-12), 0.0, 1.0)
-        turned = np.array([self.shares[m] for m in BACK])
-        back = _between(turned, [self._way(number, inside) for number in range(len(BACK))], largest)
+        back = _between(np.array([self.shares[m] for m in BACK]), self._ways(inside), largest)
         returning = place < largest
         return np.where(returning[:, None], back, down), np.where(returning, largest, place)
 
-    def _way(self, number: int, inside: Floats) -> Floats:
-        """Changes (t, 2 + e) on a way back at parts (t,) of the depth where it began."""
-        first = len(self.shares) + number * len(RETURN)
-        values = np.vstack([self.values[first : first + len(RETURN)][::-1], self.values[BACK[number]]])
-        return _curve(np.array([*RETURN[::-1], 1.0]), values, inside)
+    @cached_property
+    def _down(self) -> PchipInterpolator:
+        """Changes (t, 2 + e) at shares (t,) of the depth."""
+        return _curve(self.shares, self.values[: len(self.shares)])
+
+    @cached_property
+    def _ways(self) -> PchipInterpolator:
+        """Changes (t, b, 2 + e) on all ways back at parts (t,) of the depth where each began."""
+        back = self.values[len(self.shares) :].reshape(len(BACK), len(RETURN), -1)[:, ::-1]
+        whole = np.concatenate([back, self.values[list(BACK), None]], axis=1)
+        return _curve((*RETURN[::-1], 1.0), whole.transpose(1, 0, 2))
 
 
 def changes(outputs: Floats, base: Floats, shares: Sequence[float], fit: ResponseTable) -> Floats:
@@ -76,19 +82,17 @@ def _relative(outputs: Floats, base: Floats, force: Floats) -> Floats:
     return np.concatenate([ratios, (outputs[:, 2:] - base[:, 2:]) / np.maximum(force, 1e-300)], axis=1)
 
 
-def _curve(at: Floats, values: Floats, place: Floats) -> Floats:
-    """Values (t, o) over the depth, constant towards touch."""
-    curve = PchipInterpolator(np.array([0.0, *at]), np.vstack([values[:1], values]))
-    return np.asarray(curve(np.clip(place, 0.0, 1.0)))
+def _curve(at: Sequence[float], values: Floats) -> PchipInterpolator:
+    """Through values (n, ...) at depths (n,), constant towards touch."""
+    return PchipInterpolator(np.array([0.0, *at]), np.concatenate([values[:1], values]))
 
 
-def _between(turned: Floats, curves: Sequence[Floats], largest: Floats) -> Floats:
-    """Linear in the largest depth, constant beyond the ends."""
+def _between(turned: Floats, curves: Floats, largest: Floats) -> Floats:
+    """Linear between curves (t, b, o) in the largest depth, constant beyond the ends."""
     place = np.interp(largest, turned, np.arange(len(turned)))
     low = np.minimum(place.astype(np.int64), len(turned) - 2)
-    mix, stack = (place - low)[:, None], np.array(curves)
-    rows = np.arange(len(largest))
-    return np.asarray((1.0 - mix) * stack[low, rows] + mix * stack[low + 1, rows])
+    mix, rows = (place - low)[:, None], np.arange(len(largest))
+    return np.asarray((1.0 - mix) * curves[rows, low] + mix * curves[rows, low + 1])
 
 
 def with_history(

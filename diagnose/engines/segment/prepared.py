@@ -179,27 +179,27 @@ class Prepared:
     def change(self, place: Place, settings: Sequence[Setting]) -> Floats | None:
         """The sum (n, 2 + e) of what elastic settings and the dot's place change; None for nothing. ValueError."""
         parts = [] if not any(place) else [self._known(_at(place), f"a dot at {place} mm")]
-        elastic = [setting for setting in settings if not setting.candidate.traits.shows_on_return]
-        parts += [values for values in map(self._values, elastic) if values is not None]
+        parts += [values for values in map(self._between, self.elastic(settings)) if values is not None]
         return np.sum(parts, axis=0) if parts else None
+
+    def elastic(self, settings: Sequence[Setting]) -> list[Setting]:
+        """Those that change the table: they need presses and do not depend on the path."""
+        return [one for one in settings if not one.candidate.traits.shows_on_return and _is_pressed(one)]
+
+    def returning(self, settings: Sequence[Setting]) -> list[Setting]:
+        """Those that depend on the path."""
+        return [one for one in settings if one.candidate.traits.shows_on_return and _is_pressed(one)]
 
     def histories(self, settings: Sequence[Setting]) -> list[path.PathHistory]:
         """Of the settings that depend on the path. ValueError."""
-        found = []
-        for setting in settings:
-            if setting.candidate.traits.shows_on_return:
-                values = self._values(setting)
-                found += [path.PathHistory(values, SHARES)] if values is not None else []
-        return found
-
-    def _values(self, setting: Setting) -> Floats | None:
-        """Changes (n, 2 + e), or of a path (n + b r, 2 + e); None where the setting needs no press."""
-        if not any(setting.values[n] for n in effect_of(setting.candidate).pressed):
-            return None
-        return self._between(setting)
+        each = map(self._between, self.returning(settings))
+        return [path.PathHistory(values, SHARES) for values in each if values is not None]
 
     def _between(self, setting: Setting) -> Floats | None:
-        """The same from the presses, and what those beyond the first differ by; None where it is as good as off."""
+        """Changes (n, 2 + e), or of a path (n + b r, 2 + e); None where the setting is as good as off.
+
+        They come from the first presses, and from what those beyond differ by.
+        """
         candidate, effect = setting.candidate, effect_of(setting.candidate)
         what = f"{candidate.mechanism} of {candidate.component}"
         weighed = zip(effect.weights(setting.values), effect.points, strict=True)
@@ -213,6 +213,11 @@ class Prepared:
         if name not in self._changes:
             raise ValueError(f"{what} was not prepared")
         return self._changes[name]
+
+
+def _is_pressed(setting: Setting) -> bool:
+    """Whether the setting needs a press."""
+    return any(setting.values[n] for n in effect_of(setting.candidate).pressed)
 
 
 def _as_pressed(setting: Setting) -> Setting:

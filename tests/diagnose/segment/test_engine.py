@@ -175,6 +175,20 @@ def test_hum_has_the_amplitude_and_the_phase_that_its_coordinates_say(rig):
     assert hum.parameters((0.03, 0.04))["amplitude_V"] == pytest.approx(0.05)
 
 
+def test_what_stands_behind_the_film_leaves_the_course_of_the_dot(rig, monkeypatch):
+    """Leaks of three sizes beside a softer medium: the dot is followed once."""
+    softer = switched(rig, "property-error", "medium1", (-0.1, 0.0))
+    leak = candidate(rig, "charge-leakage", "readout")
+    followed = []
+    monkeypatch.setattr(answer, "follow", lambda *given, follow=answer.follow: followed.append(1) or follow(*given))
+    rig.prepare([leak], silent)
+    most = leak.coordinates[0].high
+    told = [rig.predict(0, [softer, Setting(leak, (share * most,))]) for share in (0.1, 0.2, 0.3)]
+    assert len(followed) == 1
+    np.testing.assert_array_equal(told[0]["force_N"], told[2]["force_N"])
+    assert peak(told[0]["voltage_V"] - told[2]["voltage_V"]) > 0.01 * peak(told[0]["voltage_V"])
+
+
 def test_what_was_not_prepared_is_refused(rig):
     chosen = candidate(rig, "delamination", "bond-base")
     with pytest.raises(ValueError, match="delamination of bond-base was not prepared"):

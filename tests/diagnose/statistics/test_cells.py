@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.fft import dct
 from scipy.stats import chi2, kstest
 
 from diagnose.statistics.cells import FilterBank, octave_edges, pooled, segments
@@ -29,6 +30,18 @@ def test_energies_add_up_to_the_sum_of_squares():
 def test_the_transform_is_orthonormal():
     matrix = BANK.coefficients(np.eye(640))
     np.testing.assert_allclose(matrix @ matrix.T, np.eye(640), atol=1e-12)
+
+
+def test_a_piece_shows_in_its_own_coefficients_alone():
+    """Also where pieces of one length are transformed together."""
+    values = np.random.default_rng(5).standard_normal((640, 2))
+    for piece in PIECES:
+        inside = np.zeros(640, bool)
+        inside[piece.samples] = True
+        found = BANK.coefficients(np.where(inside[:, None], values, 0.0))
+        np.testing.assert_array_equal(found[~inside], 0.0)
+        own = dct(values[piece.samples], norm="ortho", axis=0)
+        np.testing.assert_allclose(found[inside], own, rtol=1e-12, atol=1e-13)
 
 
 def test_white_noise_has_chi_square_energies():
