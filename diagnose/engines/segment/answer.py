@@ -105,7 +105,7 @@ class Courses:
     """Mechanics of the last drives that were followed: what stands behind the film alone leaves them as they are."""
 
     def __init__(self, count: int) -> None:
-        self._recent: Recent[Course, Mechanics] = Recent(count)
+        self._recent: Recent[Course, Mechanics] = Recent(count, _same_course)
 
     def of(
         self, fit: ResponseTable, depth_mm: float, layers: tuple[str, ...], drive: Drive, values: Floats, on: Model
@@ -113,14 +113,15 @@ class Courses:
         """As mechanics()."""
         physics = on.physics
         acting = physics.viscosity, physics.rig_compliance_mm_per_N, physics.moving_mass_g
-
-        def same(course: Course) -> bool:
-            table, driven, asked, those = course
-            return table is fit and driven is drive and those == acting and np.array_equal(asked, values)
-
-        return self._recent.find(
-            same, lambda: ((fit, drive, values, acting), mechanics(fit, depth_mm, layers, drive, values, on))
+        return self._recent.of(
+            (fit, drive, values, acting), lambda: mechanics(fit, depth_mm, layers, drive, values, on)
         )
+
+
+def _same_course(one: Course, other: Course) -> bool:
+    """The same table and drive, from equal values (t,) and with equal physics."""
+    fit, drive, values, acting = one
+    return fit is other[0] and drive is other[1] and acting == other[3] and np.array_equal(values, other[2])
 
 
 def shown(

@@ -254,7 +254,7 @@ class SegmentEngine:
         asked = run.dot_offset_mm, base.returning(settings)
         if not asked[1]:
             return found
-        histories = self._histories.find(lambda before: before == asked, lambda: (asked, base.histories(asked[1])))
+        histories = self._histories.of(asked, lambda: base.histories(settings))
         before_mm = self._reached_before(run, fit, on, settings)
         give = on.physics.rig_compliance_mm_per_N if drive.by_depth else 1.0
         added = np.zeros(len(values))
@@ -280,17 +280,17 @@ class SegmentEngine:
         return deepest
 
     def _fit(self, run: Run, on: Model, settings: Sequence[Setting]) -> ResponseTable:
-        """The table with all that changes it; kept, as runs share it, and so do settings that leave it as it is."""
+        """The table with all that changes it. It is kept: runs share it, and what stands behind the film leaves it."""
         base, beside = self.stands.at(run.dot_offset_mm)
-        asked = run.dot_offset_mm, base.elastic(settings), _d31(on) / _d31(self.model)
+        factor = _d31(on) / _d31(self.model)
 
         def made() -> ResponseTable:
-            change, factor = base.change(beside, asked[1]), asked[2]
+            change = base.change(beside, settings)
             if change is None and factor == 1.0:
                 return base.fit
             return changed(base.fit, base.depths, base.nothing if change is None else change, factor)
 
-        return self._tables.find(lambda before: before == asked, lambda: (asked, made()))
+        return self._tables.of((run.dot_offset_mm, base.elastic(settings), factor), made)
 
     def _film(self, on: Model) -> FilmPlate:
         """A thinner film has more capacitance."""
