@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnose.fit.samples import SampleBlock, Samples
+from diagnose.fit.samples import Samples
 from diagnose.forward import Candidate, Engine, Setting, Signals
 from diagnose.signals.recording import Recording, Run
 from geometry.arrays import Floats
@@ -227,13 +227,10 @@ class ObservedModel:
         columns = np.zeros((len(self.samples), len(self.nuisances)))
         shown = self.signals(values, settings)
         for number, nuisance in enumerate(self.nuisances):
-            if nuisance.candidate is not None:
+            if nuisance.candidate is None:
+                columns[:, number] = self._behind(nuisance, values, shown)
+            else:
                 columns[:, number] = self._through(number, nuisance, values, settings, shown)
-        for block in self.samples.blocks:
-            behind = self._behind(block, values, shown[block.run][block.channel])
-            if behind:
-                white = block.whitening(np.column_stack(list(behind.values())))
-                columns[:, list(behind)] += self.samples.of_block(block, white)
         return columns
 
     def _shown(self, run: int, values: Floats, settings: Sequence[Setting]) -> dict[str, Floats]:
@@ -250,16 +247,16 @@ class ObservedModel:
                 at.setdefault(nuisance.candidate.name, empty)[1][nuisance.coordinate] += float(value)
         return [Setting(candidate, tuple(own)) for candidate, own in at.values()]
 
-    def _behind(self, block: SampleBlock, values: Floats, shown: Floats) -> dict[int, Floats]:
-        """Changes (t,) of one channel of one run per unit of the nuisances behind the model, by their numbers."""
-        run, name = self.runs[block.run], block.channel
-        own = by_name(self.nuisances, values, block.run, name)
-        found = {
-            number: tangent(run, name, shown, nuisance.name, own)
-            for number, nuisance in enumerate(self.nuisances)
-            if nuisance.run == block.run and nuisance.candidate is None and nuisance.acts_on(name)
+    def _behind(self, nuisance: Nuisance, values: Floats, shown: Sequence[Signals]) -> Floats:
+        """Column (n,) of a nuisance behind the model."""
+        assert nuisance.run is not None
+        run, told = self.runs[nuisance.run], (self.nuisances, values, nuisance.run)
+        column = {
+            name: tangent(run, name, shown[nuisance.run][name], nuisance.name, by_name(*told, name))
+            for name in run.answers
+            if nuisance.acts_on(name)
         }
-        return {number: change for number, change in found.items() if change is not None}
+        return self.of_run(nuisance.run, {name: values for name, values in column.items() if values is not None})
 
     def _through(
         self, number: int, nuisance: Nuisance, values: Floats, settings: Sequence[Setting], shown: Sequence[Signals]
