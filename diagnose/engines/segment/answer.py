@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnose.engines.segment.recent import Recent
 from diagnose.signals.phases import Segmentation
 from diagnose.signals.recording import Run
 from geometry.arrays import Bools, Floats
@@ -96,32 +95,6 @@ def mechanics(
         raise ValueError(f"the dot goes deeper than {depth_mm:.4g} mm, the most that was prepared")
     # between its presses a table may tell an area just below none, of which there is no power
     return Mechanics(path, outputs[:, 0], np.maximum(outputs[:, 1], 0.0), outputs[:, 2:])
-
-
-Course = tuple[ResponseTable, Drive, Floats, tuple[object, ...]]
-
-
-class Courses:
-    """Mechanics of the last drives that were followed: what stands behind the film alone leaves them as they are."""
-
-    def __init__(self, count: int) -> None:
-        self._recent: Recent[Course, Mechanics] = Recent(count, _same_course)
-
-    def of(
-        self, fit: ResponseTable, depth_mm: float, layers: tuple[str, ...], drive: Drive, values: Floats, on: Model
-    ) -> Mechanics:
-        """As mechanics()."""
-        physics = on.physics
-        acting = physics.viscosity, physics.rig_compliance_mm_per_N, physics.moving_mass_g
-        return self._recent.of(
-            (fit, drive, values, acting), lambda: mechanics(fit, depth_mm, layers, drive, values, on)
-        )
-
-
-def _same_course(one: Course, other: Course) -> bool:
-    """The same table and drive, from equal values (t,) and with equal physics."""
-    fit, drive, values, acting = one
-    return fit is other[0] and drive is other[1] and acting == other[3] and np.array_equal(values, other[2])
 
 
 def shown(

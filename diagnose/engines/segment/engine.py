@@ -15,7 +15,6 @@ import numpy as np
 
 from diagnose.engines.segment import full
 from diagnose.engines.segment.answer import (
-    Courses,
     Drive,
     FilmPlate,
     Mechanics,
@@ -29,7 +28,7 @@ from diagnose.engines.segment.depth import ZERO, nuisance
 from diagnose.engines.segment.path import PathHistory, with_history
 from diagnose.engines.segment.prepared import Prepared
 from diagnose.engines.segment.presses import Place, moved
-from diagnose.engines.segment.recent import Recent
+from diagnose.engines.segment.recent import Courses, Recent
 from diagnose.engines.segment.stands import Stands
 from diagnose.forward import Candidate, Setting, Signals
 from diagnose.signals.recording import Recording, Run

@@ -5,6 +5,7 @@ import pytest
 
 from diagnose.engines.segment import answer
 from diagnose.engines.segment.engine import segment_engine
+from diagnose.engines.segment.recent import Courses
 from diagnose.forward import Setting
 from diagnose.signals.recording import Recording
 from geometry.base import InputError
@@ -303,7 +304,7 @@ def touched(rig, monkeypatch, area):
         return 0
 
     monkeypatch.setattr(answer, "follow", followed)
-    monkeypatch.setattr(rig, "_courses", answer.Courses(1))  # nothing is kept of other tests, nor for them
+    monkeypatch.setattr(rig, "_courses", Courses(1))  # nothing is kept of other tests, nor for them
     touch = candidate(rig, "contact-electrification", "film")
     rig.prepare([touch], silent)
     return rig.predict(0, [Setting(touch, (1.0, touch.coordinates[1].starts[0]))])
