@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import tomlkit
 
-from diagnose.engines.segment import answer
+from diagnose.engines.segment import recent
 from diagnose.engines.segment.answer import mechanics
 from diagnose.forward import Setting
 from diagnose.inference.diagnose import diagnose
@@ -85,7 +85,7 @@ def test_what_is_stated_is_no_candidate_too(tmp_path):
 
 def test_a_drive_is_followed_once_where_only_what_stands_behind_the_film_changes(believed, monkeypatch):
     followed = []
-    monkeypatch.setattr(answer, "mechanics", lambda *given: followed.append(given) or mechanics(*given))
+    monkeypatch.setattr(recent, "mechanics", lambda *given: followed.append(given) or mechanics(*given))
     leak, gap = (rigs.candidate(believed, *name) for name in (("charge-leakage", "readout"), ("contact-gap", "dot")))
     believed.prepare([gap], rigs.silent)
     signals = [believed.predict(0, [Setting(leak, (value,))])["voltage_V"] for value in (0.3, 0.6, 0.9)]
