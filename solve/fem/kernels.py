@@ -16,9 +16,9 @@ from pathlib import Path
 import numba as nb
 import numpy as np
 
+from solve.compiled import MATH, in_threads, piece
 from solve.fem.stiffness_blocks import (
     COLUMNS,
-    MATH,
     add_weighted_rows,
     displacement_stiffness,
     first_tangent_rows,
@@ -27,51 +27,8 @@ from solve.fem.stiffness_blocks import (
 )
 from solve.materials.isochoric import I_OF, J_OF, inverse
 
-BLOCK = 64  # elements of one task: they share its scratch arrays
 
-
-@nb.njit(inline="always")
-def _strain_operator(f, g, b):  # type: ignore[no-untyped-def]
-    """B (6, 3n) from F (3, 3) and the gradients g (n, 3)."""
-    for a in range(g.shape[0]):
-        for i in range(3):
-            col = 3 * a + i
-            for v in range(3):
-                b[v, col] = f[i, v] * g[a, v]
-            for v in range(3, 6):
-                k, m = I_OF[v], J_OF[v]
-                b[v, col] = f[i, k] * g[a, m] + f[i, m] * g[a, k]
-
-
-@nb.njit(inline="always")
-def _add_displacement_part(b, g, s, cc, w, cb, ke, re):  # type: ignore[no-untyped-def]
-    """Add w B^t S to re and the upper triangle of w (B^t CC B + geometric part) to ke."""
-    n = b.shape[1]
-    for v in range(6):
-        for j in range(n):
-            cb[v, j] = 0.0
-        for k in range(6):
-            c = w * cc[v, k]
-            for j in range(n):
-                cb[v, j] += c * b[k, j]
-        for j in range(n):
-            re[j] += w * s[v] * b[v, j]
-    for i in range(n):
-        for v in range(6):
-            x = b[v, i]
-            for j in range(i, n):
-                ke[i, j] += x * cb[v, j]
-    for a in range(g.shape[0]):
-        t0 = w * (s[0] * g[a, 0] + s[3] * g[a, 1] + s[5] * g[a, 2])
-        t1 = w * (s[3] * g[a, 0] + s[1] * g[a, 1] + s[4] * g[a, 2])
-        t2 = w * (s[5] * g[a, 0] + s[4] * g[a, 1] + s[2] * g[a, 2])
-        for c in range(a, g.shape[0]):
-            value = t0 * g[c, 0] + t1 * g[c, 1] + t2 * g[c, 2]
-            for i in range(3):
-                ke[3 * a + i, 3 * c + i] += value
-
-
-@nb.njit(inline="always")
+@piece(MATH)
 def _add_pressure_part(ci, pj, h, s, cc):  # type: ignore[no-untyped-def]
     """h = C^-1 as six numbers; add p J C^-1 to S and p J (C^-1 x C^-1 - 2 C^-1 (.) C^-1) to CC; fill CC below."""
     for v in range(6):
@@ -85,7 +42,7 @@ def _add_pressure_part(ci, pj, h, s, cc):  # type: ignore[no-untyped-def]
             cc[k, v] = cc[v, k]
 
 
-@nb.njit(inline="always")
+@piece(MATH)
 def _add_pressure_rows(n, w, mismatch, bulk, ke, re):  # type: ignore[no-untyped-def]
     """Add w N_p (J - 1 - p / K) to r_p, -w N_p N_p / K to K_pp."""
     for a in range(4):
@@ -94,50 +51,49 @@ def _add_pressure_rows(n, w, mismatch, bulk, ke, re):  # type: ignore[no-untyped
             ke[30 + a, 30 + d] -= w * n[a] * n[d] / bulk
 
 
-@nb.njit(parallel=True, cache=True, fastmath=MATH)
-def mixed_solid(grad, weight, shape_p, f, pressure, bulk, s_iso, cc_iso, ke, re):  # type: ignore[no-untyped-def]
+@in_threads(MATH)
+def mixed_solid(start, stop, grad, weight, shape_p, f, pressure, bulk, s_iso, cc_iso, ke, re):  # type: ignore[no-untyped-def]
     """P2-P1 elements, unknowns (10 nodes x 3 displacements, then 4 pressures).
 
     grad (m, q, 10, 3), weight (m, q), shape_p (q, 4), f (m, q, 3, 3), pressure (m, 4), s_iso (m, q, 6),
     cc_iso (m, q, 6, 6) symmetric; the upper triangle of ke (m, 34, 34) and re (m, 34) are overwritten.
     """
     points = grad.shape[1]
-    for block in nb.prange((grad.shape[0] + BLOCK - 1) // BLOCK):
-        b, cb, t = np.zeros((6, COLUMNS)), np.zeros((6, COLUMNS + 8)), np.empty((3, 3 * points, COLUMNS))
-        g, k, up, ru = np.empty((3 * points, 10)), np.empty((10, COLUMNS)), np.empty((4, COLUMNS)), np.empty(COLUMNS)
-        c, ci, s, cc, h, x = np.empty((3, 3)), np.empty((3, 3)), np.empty(6), np.empty((6, 6)), np.empty(6), np.empty(6)
-        for e in range(block * BLOCK, min(grad.shape[0], (block + 1) * BLOCK)):
-            up[:] = 0.0
-            ru[:] = 0.0
-            ke[e, 30:] = 0.0
-            re[e] = 0.0
-            for q in range(points):
-                fq, gq, n, w = f[e, q], g[3 * q : 3 * q + 3], shape_p[q], weight[e, q]
-                transpose_gradients(grad[e, q], gq)
-                for i in range(3):
-                    for j in range(3):
-                        c[i, j] = fq[0, i] * fq[0, j] + fq[1, i] * fq[1, j] + fq[2, i] * fq[2, j]
-                jac = np.sqrt(inverse(c, ci))
-                p = n[0] * pressure[e, 0] + n[1] * pressure[e, 1] + n[2] * pressure[e, 2] + n[3] * pressure[e, 3]
+    b, cb, t = np.zeros((6, COLUMNS)), np.zeros((6, COLUMNS + 8)), np.empty((3, 3 * points, COLUMNS))
+    g, k, up, ru = np.empty((3 * points, 10)), np.empty((10, COLUMNS)), np.empty((4, COLUMNS)), np.empty(COLUMNS)
+    c, ci, s, cc, h, x = np.empty((3, 3)), np.empty((3, 3)), np.empty(6), np.empty((6, 6)), np.empty(6), np.empty(6)
+    for e in range(start, stop):
+        up[:] = 0.0
+        ru[:] = 0.0
+        ke[e, 30:] = 0.0
+        re[e] = 0.0
+        for q in range(points):
+            fq, gq, n, w = f[e, q], g[3 * q : 3 * q + 3], shape_p[q], weight[e, q]
+            transpose_gradients(grad[e, q], gq)
+            for i in range(3):
+                for j in range(3):
+                    c[i, j] = fq[0, i] * fq[0, j] + fq[1, i] * fq[1, j] + fq[2, i] * fq[2, j]
+            jac = np.sqrt(inverse(c, ci))
+            p = n[0] * pressure[e, 0] + n[1] * pressure[e, 1] + n[2] * pressure[e, 2] + n[3] * pressure[e, 3]
+            for v in range(6):
+                s[v] = w * s_iso[e, q, v]
+                for m in range(v, 6):
+                    cc[v, m] = w * cc_iso[e, q, v, m]
+            _add_pressure_part(ci, w * p * jac, h, s, cc)
+            strain_rows(fq, gq, b)
+            first_tangent_rows(fq, gq, s, cc, b, cb, t, 3 * q)
+            add_weighted_rows(s, b, ru)
+            for a in range(4):
                 for v in range(6):
-                    s[v] = w * s_iso[e, q, v]
-                    for m in range(v, 6):
-                        cc[v, m] = w * cc_iso[e, q, v, m]
-                _add_pressure_part(ci, w * p * jac, h, s, cc)
-                strain_rows(fq, gq, b)
-                first_tangent_rows(fq, gq, s, cc, b, cb, t, 3 * q)
-                add_weighted_rows(s, b, ru)
-                for a in range(4):
-                    for v in range(6):
-                        x[v] = w * jac * n[a] * h[v]
-                    add_weighted_rows(x, b, up[a])
-                _add_pressure_rows(n, w, jac - 1.0 - p / bulk, bulk, ke[e], re[e])
-            displacement_stiffness(g, t, k, ke[e])
-            for a in range(10):
-                for i in range(3):
-                    re[e, 3 * a + i] = ru[10 * i + a]
-                    for d in range(4):
-                        ke[e, 3 * a + i, 30 + d] = up[d, 10 * i + a]
+                    x[v] = w * jac * n[a] * h[v]
+                add_weighted_rows(x, b, up[a])
+            _add_pressure_rows(n, w, jac - 1.0 - p / bulk, bulk, ke[e], re[e])
+        displacement_stiffness(g, t, k, ke[e])
+        for a in range(10):
+            for i in range(3):
+                re[e, 3 * a + i] = ru[10 * i + a]
+                for d in range(4):
+                    ke[e, 3 * a + i, 30 + d] = up[d, 10 * i + a]
 
 
 @nb.njit(cache=True)
@@ -159,66 +115,73 @@ def scatter(ke, re, dofs, slots, data, residual):  # type: ignore[no-untyped-def
                 n += 1
 
 
-@nb.njit(parallel=True, cache=True, fastmath=MATH)
-def compressible_solid(grad, weight, f, s, cc, ke, re):  # type: ignore[no-untyped-def]
+@in_threads(MATH)
+def compressible_solid(start, stop, grad, weight, f, s, cc, ke, re):  # type: ignore[no-untyped-def]
     """P2 elements, unknowns (10 nodes x 3 displacements); r_u and K_uu of element_kernels.py.
 
     grad (m, q, 10, 3), weight (m, q), f (m, q, 3, 3), s (m, q, 6) and cc (m, q, 6, 6) the whole stress and
     tangent; the upper triangle of ke (m, 30, 30) and re (m, 30) are overwritten.
     """
     points = grad.shape[1]
-    for block in nb.prange((grad.shape[0] + BLOCK - 1) // BLOCK):
-        b, cb, t = np.zeros((6, COLUMNS)), np.zeros((6, COLUMNS + 8)), np.empty((3, 3 * points, COLUMNS))
-        g, k, ru = np.empty((3 * points, 10)), np.empty((10, COLUMNS)), np.empty(COLUMNS)
-        sw, ccw = np.empty(6), np.empty((6, 6))
-        for e in range(block * BLOCK, min(grad.shape[0], (block + 1) * BLOCK)):
-            ru[:] = 0.0
-            for q in range(points):
-                gq = g[3 * q : 3 * q + 3]
-                transpose_gradients(grad[e, q], gq)
-                for v in range(6):
-                    sw[v] = weight[e, q] * s[e, q, v]
-                    for m in range(6):
-                        ccw[v, m] = weight[e, q] * cc[e, q, v, m]
-                strain_rows(f[e, q], gq, b)
-                first_tangent_rows(f[e, q], gq, sw, ccw, b, cb, t, 3 * q)
-                add_weighted_rows(sw, b, ru)
-            displacement_stiffness(g, t, k, ke[e])
-            for a in range(10):
-                for i in range(3):
-                    re[e, 3 * a + i] = ru[10 * i + a]
+    b, cb, t = np.zeros((6, COLUMNS)), np.zeros((6, COLUMNS + 8)), np.empty((3, 3 * points, COLUMNS))
+    g, k, ru = np.empty((3 * points, 10)), np.empty((10, COLUMNS)), np.empty(COLUMNS)
+    sw, ccw = np.empty(6), np.empty((6, 6))
+    for e in range(start, stop):
+        ru[:] = 0.0
+        for q in range(points):
+            gq = g[3 * q : 3 * q + 3]
+            transpose_gradients(grad[e, q], gq)
+            for v in range(6):
+                sw[v] = weight[e, q] * s[e, q, v]
+                for m in range(6):
+                    ccw[v, m] = weight[e, q] * cc[e, q, v, m]
+            strain_rows(f[e, q], gq, b)
+            first_tangent_rows(f[e, q], gq, sw, ccw, b, cb, t, 3 * q)
+            add_weighted_rows(sw, b, ru)
+        displacement_stiffness(g, t, k, ke[e])
+        for a in range(10):
+            for i in range(3):
+                re[e, 3 * a + i] = ru[10 * i + a]
 
 
-@nb.njit(parallel=True, cache=True)
-def film_solid(grad, weight, f, stress, tangent, charge, coupling, permittivity, per_volt, ke, re):  # type: ignore[no-untyped-def]
+@in_threads(MATH)
+def film_solid(start, stop, grad, weight, f, stress, tangent, charge, coupling, permittivity, per_volt, ke, re):  # type: ignore[no-untyped-def]
     """P2 elements, unknowns (10 nodes x 3 displacements, then the electrode's voltage).
 
     grad (m, q, 10, 3), weight (m, q), f (m, q, 3, 3), stress S (m, q, 6), tangent CC (m, q, 6, 6), charge D3 (m, q),
-    coupling d (6,), permittivity, per_volt = de3/dV; ke (m, 31, 31) upper triangle and re (m, 31) overwritten.
-    re[30] is dh/dV, the element's share of the electrode's charge at that voltage; S = CC (E - d e3) gives
+    coupling d (6,), permittivity, per_volt = de3/dV; the upper triangle of ke (m, 31, 31) and re (m, 31) are
+    overwritten. re[30] is dh/dV, the element's share of the electrode's charge at that voltage; S = CC (E - d e3) gives
     dS/de3 = -CC d and dD3/de3 = eps - d CC d.
     """
-    for e in nb.prange(grad.shape[0]):
-        b, cb, cd = np.empty((6, 30)), np.empty((6, 30)), np.empty(6)
-        ke[e] = 0.0
-        re[e] = 0.0
-        for q in range(grad.shape[1]):
-            w = weight[e, q]
+    points = grad.shape[1]
+    b, cb, t = np.zeros((6, COLUMNS)), np.zeros((6, COLUMNS + 8)), np.empty((3, 3 * points, COLUMNS))
+    g, k, ru, rv = np.empty((3 * points, 10)), np.empty((10, COLUMNS)), np.empty(COLUMNS), np.empty(COLUMNS)
+    sw, ccw, cd = np.empty(6), np.empty((6, 6)), np.empty(6)
+    for e in range(start, stop):
+        ru[:] = 0.0
+        rv[:] = 0.0
+        charged, stiffness = 0.0, 0.0
+        for q in range(points):
+            gq, w = g[3 * q : 3 * q + 3], weight[e, q]
+            transpose_gradients(grad[e, q], gq)
             dcd = 0.0
             for v in range(6):
-                cd[v] = 0.0
-                for k in range(6):
-                    cd[v] += tangent[e, q, v, k] * coupling[k]
-                dcd += coupling[v] * cd[v]
-            _strain_operator(f[e, q], grad[e, q], b)
-            _add_displacement_part(b, grad[e, q], stress[e, q], tangent[e, q], w, cb, ke[e], re[e])
-            for col in range(30):
-                x = 0.0
-                for v in range(6):
-                    x -= cd[v] * b[v, col]
-                ke[e, col, 30] += w * per_volt * x
-            re[e, 30] -= w * per_volt * charge[e, q]
-            ke[e, 30, 30] += w * per_volt * per_volt * (dcd - permittivity)
+                sw[v], cd[v] = w * stress[e, q, v], 0.0
+                for m in range(6):
+                    ccw[v, m] = w * tangent[e, q, v, m]
+                    cd[v] -= per_volt * ccw[v, m] * coupling[m]
+                dcd -= coupling[v] * cd[v]
+            strain_rows(f[e, q], gq, b)
+            first_tangent_rows(f[e, q], gq, sw, ccw, b, cb, t, 3 * q)
+            add_weighted_rows(sw, b, ru)
+            add_weighted_rows(cd, b, rv)
+            charged -= w * per_volt * charge[e, q]
+            stiffness += per_volt * (dcd - w * per_volt * permittivity)
+        displacement_stiffness(g, t, k, ke[e])
+        re[e, 30], ke[e, 30, 30] = charged, stiffness
+        for a in range(10):
+            for i in range(3):
+                re[e, 3 * a + i], ke[e, 3 * a + i, 30] = ru[10 * i + a], rv[10 * i + a]
 
 
 def compiled() -> bool:

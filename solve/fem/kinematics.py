@@ -5,10 +5,10 @@ F = 1 + du/dX, C = F^t F, J = det F (Holzapfel, Nonlinear Solid Mechanics, 2000,
 
 from itertools import permutations
 
-import numba as nb
 import numpy as np
 
 from geometry.arrays import Floats
+from solve.compiled import in_threads
 from solve.materials.isochoric import I_OF, J_OF
 
 
@@ -43,9 +43,9 @@ def smallest_jacobian(f: Floats) -> Floats:
     return smallest
 
 
-@nb.njit(parallel=True, cache=True)
-def _deformation_gradient(gradient, displacement, f):  # type: ignore[no-untyped-def]
-    for e in nb.prange(gradient.shape[0]):
+@in_threads()
+def _deformation_gradient(start, stop, gradient, displacement, f):  # type: ignore[no-untyped-def]
+    for e in range(start, stop):
         for q in range(gradient.shape[1]):
             for i in range(3):
                 x, y, z = 0.0, 0.0, 0.0
@@ -58,10 +58,10 @@ def _deformation_gradient(gradient, displacement, f):  # type: ignore[no-untyped
                 f[e, q, i, i] += 1.0
 
 
-@nb.njit(parallel=True, cache=True)
-def _green_lagrange(gradient, displacement, strain):  # type: ignore[no-untyped-def]
-    for e in nb.prange(gradient.shape[0]):
-        h = np.empty((3, 3))
+@in_threads()
+def _green_lagrange(start, stop, gradient, displacement, strain):  # type: ignore[no-untyped-def]
+    h = np.empty((3, 3))
+    for e in range(start, stop):
         for q in range(gradient.shape[1]):
             for i in range(3):
                 for j in range(3):
@@ -74,17 +74,17 @@ def _green_lagrange(gradient, displacement, strain):  # type: ignore[no-untyped-
                 strain[e, q, v] = 0.5 * twice if v < 3 else twice
 
 
-@nb.njit(parallel=True, cache=True)
-def _cauchy_green(f, c):  # type: ignore[no-untyped-def]
-    for n in nb.prange(len(f)):
+@in_threads()
+def _cauchy_green(start, stop, f, c):  # type: ignore[no-untyped-def]
+    for n in range(start, stop):
         for i in range(3):
             for j in range(3):
                 c[n, i, j] = f[n, 0, i] * f[n, 0, j] + f[n, 1, i] * f[n, 1, j] + f[n, 2, i] * f[n, 2, j]
 
 
-@nb.njit(parallel=True, cache=True)
-def _smallest_jacobian(f, smallest):  # type: ignore[no-untyped-def]
-    for e in nb.prange(f.shape[0]):
+@in_threads()
+def _smallest_jacobian(start, stop, f, smallest):  # type: ignore[no-untyped-def]
+    for e in range(start, stop):
         low = np.inf
         for q in range(f.shape[1]):
             h = f[e, q]

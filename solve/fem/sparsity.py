@@ -16,6 +16,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from geometry.arrays import Bools, Floats, Ints
+from solve.compiled import in_threads
 from mesh.symmetry import in_plane
 from mesh.types import TetMesh
 
@@ -46,7 +47,7 @@ def build_pattern(groups: Sequence[Ints], count: int) -> Pattern:
     upper = sp.triu(total, format="csr")
     upper.sort_indices()
     indptr, indices = upper.indptr.astype(np.int32), upper.indices.astype(np.int32)
-    slots = tuple(_slots(np.ascontiguousarray(dofs), indptr, indices) for dofs in groups)
+    slots = tuple(_slots_of(np.ascontiguousarray(dofs), indptr, indices) for dofs in groups)
     return Pattern(indptr, indices, indptr[:-1].astype(np.int64), slots)
 
 
@@ -62,12 +63,19 @@ def _coupling(dofs: Ints, count: int) -> sp.csr_matrix:
     return product
 
 
-@nb.njit(parallel=True, cache=True)
-def _slots(dofs, indptr, indices):  # type: ignore[no-untyped-def]
-    """Binary search of each upper-triangle pair in its row."""
+def _slots_of(dofs: Ints, indptr: Ints, indices: Ints) -> Ints:
+    """Place (m, pairs) of each upper-triangle pair of dofs (m, k) in the rows of a pattern, -1 where one is fixed."""
     elements, width = dofs.shape
     slots = np.full((elements, width * (width + 1) // 2), -1, np.int32)
-    for e in nb.prange(elements):
+    _search(dofs, indptr, indices, slots)
+    return slots
+
+
+@in_threads()
+def _search(start, stop, dofs, indptr, indices, slots):  # type: ignore[no-untyped-def]
+    """Binary search of each upper-triangle pair in its row."""
+    width = dofs.shape[1]
+    for e in range(start, stop):
         n = 0
         for i in range(width):
             for j in range(i, width):
@@ -82,7 +90,6 @@ def _slots(dofs, indptr, indices):  # type: ignore[no-untyped-def]
                             high = middle
                     slots[e, n] = low
                 n += 1
-    return slots
 
 
 @dataclass(frozen=True)

@@ -7,15 +7,13 @@ holds the geometric part and needs half the products of B^t CC B. Columns run no
 column 10 k + b, so that rows are long and contiguous; K is symmetric, so only the directions k >= i are formed.
 """
 
-import numba as nb
-
+from solve.compiled import MATH, piece
 from solve.materials.isochoric import I_OF, J_OF, NUMBER_OF
 
 COLUMNS = 32  # 30 filled up to whole registers of eight
-MATH = {"contract", "reassoc", "nsz", "arcp"}  # what keeps infinities and not-a-numbers as they are
 
 
-@nb.njit(inline="always")
+@piece(MATH)
 def transpose_gradients(grad, g):  # type: ignore[no-untyped-def]
     """(10, 3) into (3, 10)."""
     for a in range(10):
@@ -23,7 +21,7 @@ def transpose_gradients(grad, g):  # type: ignore[no-untyped-def]
             g[i, a] = grad[a, i]
 
 
-@nb.njit(inline="always")
+@piece(MATH)
 def strain_rows(f, g, b):  # type: ignore[no-untyped-def]
     """B (6, COLUMNS) from F (3, 3) and g (3, 10); columns beyond 30 are left as they are."""
     for k in range(3):
@@ -37,31 +35,30 @@ def strain_rows(f, g, b):  # type: ignore[no-untyped-def]
                 b[v, 10 * k + a] = x * g[J_OF[v], a] + y * g[I_OF[v], a]
 
 
-@nb.njit(inline="always")
+@piece(MATH)
 def _weighted_sum(x, b, j):  # type: ignore[no-untyped-def]
     """sum_v x_v b_v,j."""
     return x[0] * b[0, j] + x[1] * b[1, j] + x[2] * b[2, j] + x[3] * b[3, j] + x[4] * b[4, j] + x[5] * b[5, j]
 
 
-@nb.njit(inline="always")
+@piece(MATH)
 def add_weighted_rows(x, b, total):  # type: ignore[no-untyped-def]
     """Add sum_v x_v b_v to total (COLUMNS,)."""
     for j in range(COLUMNS):
         total[j] += _weighted_sum(x, b, j)
 
 
-@nb.njit(inline="always")
+@piece(MATH)
 def first_tangent_rows(f, g, s, cc, b, cb, t, row):  # type: ignore[no-untyped-def]
     """Rows row to row + 3 of T of one point, for weighted S (6,) and CC (6, 6); cb (6, COLUMNS + 8) is scratch."""
     for v in range(6):
         for j in range(COLUMNS):
             cb[v, j] = _weighted_sum(cc[v], b, j)
-    _fold(f, g, s, cb, t, row, 0, 32)
-    _fold(f, g, s, cb, t, row, 1, 24)
-    _fold(f, g, s, cb, t, row, 2, 16)
+    for i in range(3):
+        _fold(f, g, s, cb, t, row, i, COLUMNS - 8 * i)
 
 
-@nb.njit(inline="always")
+@piece(MATH)
 def _fold(f, g, s, cb, t, row, i, width):  # type: ignore[no-untyped-def]
     """T of direction i from the columns of directions k >= i."""
     x, y, z = f[i, 0], f[i, 1], f[i, 2]
@@ -73,18 +70,15 @@ def _fold(f, g, s, cb, t, row, i, width):  # type: ignore[no-untyped-def]
             t[i, row + d, a] += s[v0] * g[0, a] + s[v1] * g[1, a] + s[v2] * g[2, a]
 
 
-@nb.njit(inline="always")
+@piece(MATH)
 def displacement_stiffness(g, t, k, ke):  # type: ignore[no-untyped-def]
     """Write the upper triangle of K_uu, unknowns 3 a + i, from all rows g (r, 10) and t (3, r, COLUMNS)."""
-    _product(g, t[0], 32, k)
-    _store(k, 0, ke)
-    _product(g, t[1], 24, k)
-    _store(k, 1, ke)
-    _product(g, t[2], 16, k)
-    _store(k, 2, ke)
+    for i in range(3):
+        _product(g, t[i], COLUMNS - 8 * i, k)
+        _store(k, i, ke)
 
 
-@nb.njit(inline="always")
+@piece(MATH)
 def _product(g, t, width, k):  # type: ignore[no-untyped-def]
     """k (10, width) = g^t t, two rows of k and three of t at a time: they then stay in registers."""
     for a in range(0, 10, 2):
@@ -100,7 +94,7 @@ def _product(g, t, width, k):  # type: ignore[no-untyped-def]
                 k[a + 1, j] += y0 * t0 + y1 * t1 + y2 * t2
 
 
-@nb.njit(inline="always")
+@piece(MATH)
 def _store(k, i, ke):  # type: ignore[no-untyped-def]
     """Blocks (i, m >= i), k (10, 10 (m - i) + b), into the upper triangle of ke."""
     for a in range(10):

@@ -8,10 +8,10 @@ c10 + 2 c20 x + 3 c30 x^2, that of the power c10 (1 + b x / n)^(n - 1) (Knowles,
 Symmetric tensors as six numbers: 11, 22, 33, 12, 23, 13; strains carry engineering shears.
 """
 
-import numba as nb
 import numpy as np
 
 from geometry.arrays import Floats
+from solve.compiled import in_threads, piece
 
 I_OF = np.array([0, 1, 2, 0, 1, 0])
 J_OF = np.array([0, 1, 2, 1, 2, 2])
@@ -22,7 +22,7 @@ NO_POWER: Power = (0.0, 1.0)
 """b = 0: the slope of the first invariant's linear term is constant."""
 
 
-@nb.njit(inline="always")
+@piece()
 def inverse(c, out):  # type: ignore[no-untyped-def]
     """Inverse of a 3 x 3 matrix into out; returns the determinant."""
     out[0, 0] = c[1, 1] * c[2, 2] - c[1, 2] * c[2, 1]
@@ -41,7 +41,7 @@ def inverse(c, out):  # type: ignore[no-untyped-def]
     return det
 
 
-@nb.njit(inline="always")
+@piece()
 def _power(x, b, n):  # type: ignore[no-untyped-def]
     """(1 + b x / n)^(n - 1), and its slope in x; exp(b x) for an infinite n."""
     if np.isinf(n):
@@ -51,11 +51,11 @@ def _power(x, b, n):  # type: ignore[no-untyped-def]
     return base ** (n - 1.0), b * (n - 1.0) / n * base ** (n - 2.0)
 
 
-@nb.njit(parallel=True, cache=True)
-def _stress_and_tangent(cauchy_green, c10, c01, c20, c30, b1, n1, stress, tangent):  # type: ignore[no-untyped-def]
-    for n in nb.prange(len(cauchy_green)):
+@in_threads()
+def _stress_and_tangent(start, stop, cauchy_green, c10, c01, c20, c30, b1, n1, stress, tangent):  # type: ignore[no-untyped-def]
+    ci, a, b = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
+    for n in range(start, stop):
         c = cauchy_green[n]
-        ci, a, b = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
         j23 = inverse(c, ci) ** (-1.0 / 3.0)
         trace = c[0, 0] + c[1, 1] + c[2, 2]
         square = 0.0

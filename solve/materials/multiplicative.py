@@ -17,9 +17,9 @@ may flow: S = (1 - sum g_i) S0 + sum (f S_i + (1 - f) Q_i) with mu_i = g_i mu.
 
 from dataclasses import dataclass, replace
 
-import numba as nb
 import numpy as np
 
+from solve.compiled import in_threads, piece
 from solve.materials.inelastic import Memory, Prony, StressResponse, mean_decay
 from solve.materials.isochoric import I_OF, J_OF, NUMBER_OF, inverse
 
@@ -58,14 +58,14 @@ class MultiplicativeMaxwell(Prony):
         return StressResponse(stress, tangent), (*plain_now, new, now)
 
 
-@nb.njit(inline="always")
+@piece()
 def flow_weights(a, s):  # type: ignore[no-untyped-def]
     """Of C_i, of C^ before and of C^ after a step of a = dt / tau_i."""
     fade, gain = np.exp(-a * s), mean_decay(a * s)
     return fade, (gain - fade) / s, (1.0 - gain) / s
 
 
-@nb.njit(inline="always")
+@piece()
 def _contracted(a, b):  # type: ignore[no-untyped-def]
     total = 0.0
     for i in range(3):
@@ -74,14 +74,14 @@ def _contracted(a, b):  # type: ignore[no-untyped-def]
     return total
 
 
-@nb.njit(inline="always")
+@piece()
 def _fill(six, out):  # type: ignore[no-untyped-def]
     for i in range(3):
         for j in range(3):
             out[i, j] = six[NUMBER_OF[i, j]]
 
 
-@nb.njit(inline="always")
+@piece()
 def _stepped(step, flowed, before, now, a, g):  # type: ignore[no-untyped-def]
     """A into a and C_i^-1 into g, (3, 3) each; returns det(A)^(1/3) and the weight of C^ after the step."""
     _fill(flowed, a)
@@ -102,11 +102,12 @@ def _stepped(step, flowed, before, now, a, g):  # type: ignore[no-untyped-def]
     return root, of_now
 
 
-@nb.njit(parallel=True, cache=True)
-def _add_branches(cauchy_green, before, flowed, steps, moduli, stress, tangent, new, now):  # type: ignore[no-untyped-def]
+@in_threads()
+def _add_branches(start, stop, cauchy_green, before, flowed, steps, moduli, stress, tangent, new, now):  # type: ignore[no-untyped-def]
     """Stress (n, 6) and tangent (n, 6, 6) of all branches are added; new (n, i, 6) : C_i, now (n, 6) : C^."""
-    for n in nb.prange(len(cauchy_green)):
-        c, ci, a, g = cauchy_green[n], np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
+    ci, a, g = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
+    for n in range(start, stop):
+        c = cauchy_green[n]
         j23 = inverse(c, ci) ** (-1.0 / 3.0)
         for v in range(6):
             now[n, v] = j23 * c[I_OF[v], J_OF[v]]
@@ -117,7 +118,7 @@ def _add_branches(cauchy_green, before, flowed, steps, moduli, stress, tangent, 
             _add_branch(c, ci, j23, g, of_now / root, moduli[b], stress[n], tangent[n])
 
 
-@nb.njit(inline="always")
+@piece()
 def _add_branch(c, ci, j23, g, h, modulus, stress, tangent):  # type: ignore[no-untyped-def]
     """dG/dC^ is H = h (G x G / 3 - G (.) G); x is H : C."""
     gcg = g @ c @ g

@@ -21,19 +21,18 @@ the last term.
 
 from dataclasses import dataclass
 
-import numba as nb
 import numpy as np
 from scipy.special import exprel
 
 from geometry.arrays import Floats
+from solve.compiled import in_threads, piece
 from solve.materials.isochoric import I_OF, J_OF
 
 PAIR_A, PAIR_B = np.array([0, 1, 0]), np.array([1, 2, 2])
 MAX_SWEEPS = 12  # Jacobi's method converges at least quadratically: four or five do
-BATCH = 256  # points that share one work space
 
 
-@nb.njit(inline="always")
+@piece()
 def _principal(c, square, vector):  # type: ignore[no-untyped-def]
     """Eigenvalues (3,) and eigenvectors (3, 3, columns) of C, by Jacobi's method; C (3, 3) is overwritten.
 
@@ -68,7 +67,7 @@ def _principal(c, square, vector):  # type: ignore[no-untyped-def]
         square[i] = c[i, i]
 
 
-@nb.njit(inline="always")
+@piece()
 def _turn_back(vector, normal, block, shear, basis, image, stress, tangent):  # type: ignore[no-untyped-def]
     """S (6,) and CC (6, 6) from S_a (3,), the coefficients (3, 3) of the first sum of CC and D_01, D_12, D_02."""
     for v in range(6):
@@ -89,7 +88,7 @@ def _turn_back(vector, normal, block, shear, basis, image, stress, tangent):  # 
             tangent[v, w] = tangent[w, v] = x
 
 
-@nb.njit(inline="always")
+@piece()
 def _add_divided_differences(square, p, factor, shear):  # type: ignore[no-untyped-def]
     """Add to D (3,) the divided differences of f c^p, given factor[a] = f c_a^p."""
     for k in range(3):
@@ -99,53 +98,54 @@ def _add_divided_differences(square, p, factor, shear):  # type: ignore[no-untyp
         shear[k] += factor[a] / square[a] * slope
 
 
-@nb.njit(parallel=True, cache=True)
-def _stress_and_tangent(cauchy_green, k, alpha, beta, isochoric, stress, tangent):  # type: ignore[no-untyped-def]
-    for batch in nb.prange((len(cauchy_green) + BATCH - 1) // BATCH):
-        c, vector, block, basis, image = (
-            np.empty((3, 3)),
-            np.empty((3, 3)),
-            np.empty((3, 3)),
-            np.empty((6, 6)),
-            np.empty((6, 6)),
-        )
-        square, log, x, g, h, shear = np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3)
-        for n in range(BATCH * batch, min(BATCH * (batch + 1), len(cauchy_green))):
-            c[:] = cauchy_green[n]
-            _principal(c, square, vector)
+@in_threads()
+def _stress_and_tangent(start, stop, cauchy_green, k, alpha, beta, isochoric, stress, tangent):  # type: ignore[no-untyped-def]
+    c, vector, block, basis, image = (
+        np.empty((3, 3)),
+        np.empty((3, 3)),
+        np.empty((3, 3)),
+        np.empty((6, 6)),
+        np.empty((6, 6)),
+    )
+    square, log, x, g, h, shear = np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3)
+    for n in range(start, stop):
+        c[:] = cauchy_green[n]
+        _principal(c, square, vector)
+        for a in range(3):
+            log[a] = 0.5 * np.log(square[a])
+            g[a] = h[a] = shear[a] = 0.0
+        dilation, t, t_slope = log[0] + log[1] + log[2], 0.0, 0.0
+        for i in range(len(k)):
             for a in range(3):
-                log[a] = 0.5 * np.log(square[a])
-                g[a] = h[a] = shear[a] = 0.0
-            dilation, t, t_slope = log[0] + log[1] + log[2], 0.0, 0.0
-            for i in range(len(k)):
-                for a in range(3):
-                    x[a] = k[i] * np.exp(alpha[i] * (log[a] - dilation / 3.0 if isochoric else log[a]))
-                    g[a] += x[a]
-                    h[a] += alpha[i] * x[a]
-                    x[a] /= square[a]
-                _add_divided_differences(square, 0.5 * alpha[i] - 1.0, x, shear)
-                if not isochoric:
-                    y = k[i] * np.exp(-alpha[i] * beta[i] * dilation)
-                    t += y
-                    t_slope += alpha[i] * beta[i] * y
-            if isochoric:
-                t, t_slope = (g[0] + g[1] + g[2]) / 3.0, (h[0] + h[1] + h[2]) / 9.0
-            for a in range(3):
-                shear[a] += t / (square[PAIR_A[a]] * square[PAIR_B[a]])
-                for b in range(3):
-                    w = t_slope - (h[a] + h[b]) / 3.0 if isochoric else t_slope
-                    if a == b:
-                        w += h[a] - 2.0 * (g[a] - t)
-                    block[a, b] = w / (square[a] * square[b])
-            for a in range(3):
-                g[a] = (g[a] - t) / square[a]
-            _turn_back(vector, g, block, shear, basis, image, stress[n], tangent[n])
+                x[a] = k[i] * np.exp(alpha[i] * (log[a] - dilation / 3.0 if isochoric else log[a]))
+                g[a] += x[a]
+                h[a] += alpha[i] * x[a]
+                x[a] /= square[a]
+            _add_divided_differences(square, 0.5 * alpha[i] - 1.0, x, shear)
+            if not isochoric:
+                y = k[i] * np.exp(-alpha[i] * beta[i] * dilation)
+                t += y
+                t_slope += alpha[i] * beta[i] * y
+        if isochoric:
+            t, t_slope = (g[0] + g[1] + g[2]) / 3.0, (h[0] + h[1] + h[2]) / 9.0
+        for a in range(3):
+            shear[a] += t / (square[PAIR_A[a]] * square[PAIR_B[a]])
+            for b in range(3):
+                w = t_slope - (h[a] + h[b]) / 3.0 if isochoric else t_slope
+                if a == b:
+                    w += h[a] - 2.0 * (g[a] - t)
+                block[a, b] = w / (square[a] * square[b])
+        for a in range(3):
+            g[a] = (g[a] - t) / square[a]
+        _turn_back(vector, g, block, shear, basis, image, stress[n], tangent[n])
 
 
-@nb.njit(parallel=True, cache=True)
-def _principal_squares(cauchy_green, squares):  # type: ignore[no-untyped-def]
-    for n in nb.prange(len(cauchy_green)):
-        _principal(cauchy_green[n].copy(), squares[n], np.empty((3, 3)))
+@in_threads()
+def _principal_squares(start, stop, cauchy_green, squares):  # type: ignore[no-untyped-def]
+    c, vector = np.empty((3, 3)), np.empty((3, 3))
+    for n in range(start, stop):
+        c[:] = cauchy_green[n]
+        _principal(c, squares[n], vector)
 
 
 def log_stretches(cauchy_green: Floats) -> Floats:

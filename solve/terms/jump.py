@@ -25,22 +25,22 @@ Wohlmuth, Discretization Methods and Iterative Solvers Based on Domain Decomposi
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-import numba as nb
 import numpy as np
 
 from geometry.arrays import Bools, Floats, Ints
+from solve.compiled import in_threads
 from solve.fem.kinematics import quadratic
 from solve.fem.sparsity import Block, History, Term, Trial
 from solve.terms.contact import ACTIVE_SET_STIFFNESS, HATS, POINTS, WEIGHTS
 
 
-@nb.njit(parallel=True, cache=True)
-def differentiate_opening(z, value, slope, curvature):  # type: ignore[no-untyped-def]
+@in_threads()
+def differentiate_opening(start, stop, z, value, slope, curvature):  # type: ignore[no-untyped-def]
     """Opening (p,), its slope (p, 9) and curvature (p, 9, 9) by z = (d, t1, t2) (p, 9); all are overwritten."""
-    for point in nb.prange(len(z)):
-        a, n, p = np.empty(3), np.empty(3), np.empty(3)
-        by_tangents, product = np.empty((3, 6)), np.empty((3, 6))
-        across, by_area = np.empty((3, 3)), np.empty((3, 3))
+    a, n, p = np.empty(3), np.empty(3), np.empty(3)
+    by_tangents, product = np.empty((3, 6)), np.empty((3, 6))
+    across, by_area = np.empty((3, 3)), np.empty((3, 3))
+    for point in range(start, stop):
         d, t1, t2 = z[point, :3], z[point, 3:6], z[point, 6:]
         delta = 0.0
         for i in range(3):
@@ -88,12 +88,12 @@ def differentiate_opening(z, value, slope, curvature):  # type: ignore[no-untype
             c[6 + j, 3 + k] -= p[i]
 
 
-@nb.njit(parallel=True, cache=True)
-def integrate_tangent(rows, hessian, area, ke):  # type: ignore[no-untyped-def]
+@in_threads()
+def integrate_tangent(start, stop, hessian, rows, area, ke):  # type: ignore[no-untyped-def]
     """ke (k, 3n, 3n), upper triangle: sum over q of area (k, q) times rows (q, 3, n) on both sides of (k, q, 9, 9)."""
     count = rows.shape[2]
-    for e in nb.prange(len(hessian)):
-        half = np.empty((9, 3 * count))
+    half = np.empty((9, 3 * count))
+    for e in range(start, stop):
         ke[e] = 0.0
         for q in range(rows.shape[0]):
             for i in range(9):
@@ -164,7 +164,7 @@ class MatchedFacets:
     def tangent(self, hessian: Floats) -> Floats:
         """int (dz/du)^t hessian dz/du, upper triangle (k, 3n, 3n), of the second derivative by z (k, q, 9, 9)."""
         ke = np.empty((*self.dofs.shape, self.dofs.shape[1]))
-        integrate_tangent(self.rows, hessian, self.area, ke)
+        integrate_tangent(hessian, self.rows, self.area, ke)
         return ke
 
 

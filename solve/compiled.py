@@ -1,0 +1,52 @@
+"""How the kernels of assembly are compiled: once, without a thread pool of numba's, and their loops in threads of ours.
+
+numba's own parallel loops and its inlining take three times as long to compile as the plain loop with called pieces,
+and run no faster: each kernel takes seconds of assembly in a few large calls.
+"""
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from functools import cache, wraps
+from typing import Any
+
+import numba as nb
+
+MATH = {"contract", "reassoc", "nsz", "arcp"}  # what keeps infinities and not-a-numbers as they are
+PIECE = {"forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}  # called, it is not vectorised
+LEAST = 128  # elements or points that are worth waking a thread
+
+
+def piece(math: Any = False) -> Callable[[Callable[..., Any]], Any]:
+    """Decorator of what only kernels call; math : numba's fastmath."""
+    made: Callable[[Callable[..., Any]], Any] = nb.njit(fastmath=math, **PIECE)
+    return made
+
+
+def in_threads(math: Any = False) -> Callable[[Callable[..., Any]], Callable[..., None]]:
+    """Decorator of kernel(start, stop, first, ...), a loop from start to stop over what first counts: called (first, ...).
+
+    Parts of the loop write to entries of their own. math : numba's fastmath.
+    """
+
+    def decorate(function: Callable[..., Any]) -> Callable[..., None]:
+        kernel = nb.njit(cache=True, nogil=True, fastmath=math)(function)
+
+        @wraps(function)
+        def run(*arguments: Any) -> None:
+            count = len(arguments[0])
+            parts = max(1, min(nb.config.NUMBA_NUM_THREADS, count // LEAST))
+            cuts = [count * part // parts for part in range(parts + 1)]
+            others = [_pool().submit(kernel, *cuts[part : part + 2], *arguments) for part in range(1, parts)]
+            kernel(0, cuts[1], *arguments)
+            for other in others:
+                other.result()
+
+        run.kernel = kernel  # type: ignore[attr-defined]
+        return run
+
+    return decorate
+
+
+@cache
+def _pool() -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(nb.config.NUMBA_NUM_THREADS, "kernel")
