@@ -1,4 +1,4 @@
-"""What a second process does for a run while the first one meshes and presses: the parts' files and the pictures.
+"""What a second process does for a run while the first one meshes and presses: kernels, the parts' files and pictures.
 
 This module itself loads in no time, so that the second process starts before the first one has loaded anything.
 """
@@ -22,11 +22,26 @@ PARTS = ("geometry", "topology", "exporters3d", "mesher")
 DRAWING = ("trimesh", "solve.result", "matplotlib.figure", "pyvista.plotting", "export.pictures")
 
 
-def second_process() -> Beside:
-    """The process, for the time of a block; it begins to load what it needs at once."""
-    ask = Beside()
-    ask(load_libraries)
-    return ask
+class SecondProcess(Beside):
+    """Begins at once to compile kernels that this machine has not kept, and to load what it needs.
+
+    kernels : done when a press will find them.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.kernels = self(compile_kernels)
+        self(load_libraries)
+
+
+def compile_kernels() -> None:
+    """The dear ones, unless they are kept; the first process compiles the others while it waits."""
+    from solve.fem.kernels import compiled
+
+    if not compiled():
+        from solve.fem.warm_up import compile_dear
+
+        compile_dear()
 
 
 def load_libraries() -> None:

@@ -27,12 +27,11 @@ from softdot.console import (
 )
 from softdot.machine import named_when_missing, refuse_no_room_for_libraries
 from softdot.output import RUN, staged_folder
-from softdot.second_process import draw, make_cad, second_process
+from softdot.second_process import SecondProcess, draw, make_cad
 
 if TYPE_CHECKING:
     from argparse import Namespace
 
-    from geometry.beside import Beside
     from geometry.dot import DotShape
     from softdot.case import Case, OnStep
     from softdot.config import Config
@@ -69,7 +68,7 @@ def run_case(
     out: Path,
     progress: Progress | None = None,
     mesh_formats: Sequence[str] = (),
-    ask: Beside | None = None,
+    ask: SecondProcess | None = None,
 ) -> dict[str, Any]:
     """Run the whole pipeline of a case into the folder out and return its summary.
 
@@ -88,7 +87,7 @@ def run_case(
         _ = case.checked
         window = ensure_rendering()
         # the second process ends first: it must write nothing into a folder that is being removed
-        with staged_folder(out, RUN) as folder, ask or second_process() as second:
+        with staged_folder(out, RUN) as folder, ask or SecondProcess() as second:
             second(ensure_rendering, window)
             filled = _fill(case, folder, progress, mesh_formats, second)
             summary: dict[str, Any] = heading(case.config) | plain(filled)
@@ -96,13 +95,16 @@ def run_case(
     return summary
 
 
-def _fill(case: Case, folder: Path, progress: Progress, mesh_formats: Sequence[str], ask: Beside) -> dict[str, Any]:
+def _fill(
+    case: Case, folder: Path, progress: Progress, mesh_formats: Sequence[str], ask: SecondProcess
+) -> dict[str, Any]:
     """Everything but summary.json; returns the summary. Parts and pictures are made beside mesh, press and files."""
     from mesh.files.formats import write_mesh
     from mesh.types import MeshingError
     from softdot.checks import design_warnings, result_warnings
     from softdot.summary import heading, mesh_part, press_part, stopped_solver
     from softdot.tolerances.uncertainty import prepare
+    from solve.fem.warm_up import compile_cheap
 
     clock, config, model = StageClock(), case.config, case.model
     summary = {**heading(config), "warnings": [*case.checked[1], *design_warnings(model)]}
@@ -123,6 +125,9 @@ def _fill(case: Case, folder: Path, progress: Progress, mesh_formats: Sequence[s
             write_mesh(case.mesh, mesh_formats, folder / "mesh")
     progress.stage("solve")
     with clock("solve"):
+        if not ask.kernels.done():
+            compile_cheap()
+            wait((ask.kernels,))
         result = case.press(_reporting(progress)).result
         readout, channels = case.amplified(result) or (None, None)
     if ahead is not None and ahead.cancel():  # not begun: it is done here, while the second process draws
@@ -154,7 +159,7 @@ def _tell(config: Config) -> None:
     if config.from_default:
         LOG.info("%s", told(config.from_default, config.model_dump(mode="json")))
     if not compiled():
-        LOG.info("the element kernels are compiled first, once on this machine: about %.0f s", COMPILE_S)
+        LOG.info("compiling kernels beside the mesh, once on this machine: about %.0f s", COMPILE_S)
 
 
 def write_outputs(
@@ -182,7 +187,7 @@ def _reporting(progress: Progress) -> OnStep:
 def command(chosen: Namespace) -> int:
     """Run chosen.config into chosen.output; 0, or 3 when a computation did not converge. InputError."""
     refuse_no_room_for_libraries()
-    with second_process() as ask:  # at once: it loads its libraries while this one does
+    with SecondProcess() as ask:  # at once: it loads its libraries while this one does
         with without_collector():
             Thread(target=_try_to_draw, daemon=True).start()
             from softdot.case import Case

@@ -28,7 +28,7 @@ from softdot.sweeps import points as point_files
 from softdot.sweeps.cluster import existing_cluster, hardware, local_cluster
 from softdot.sweeps.points import REFUSED, STATUSES, Record, failed, solve_all
 from softdot.sweeps.space import Point, Space, sampling_warnings
-from softdot.sweeps.table import row
+from softdot.sweeps.table import check_tables, row
 
 if TYPE_CHECKING:
     from rich.progress import Progress as Bars
@@ -40,9 +40,10 @@ def run_sweep(
     """Solve every point of a space into the folder out and return the summary (sweep.json).
 
     On one process per core, or on the Dask cluster of a scheduler (tcp://HOST:PORT). Points that an earlier sweep
-    left in out are not solved again. InputError before any work for a folder that cannot be written and for a
-    scheduler that does not answer. After Ctrl-C, or when killed, the points that were finished stay.
+    left in out are not solved again. InputError before any work for a folder that cannot be written, for a
+    scheduler that does not answer, and without pyarrow. After Ctrl-C, or when killed, the points that were finished stay.
     """
+    check_tables()
     check_folder()
     place = point_files.check_folder(Path(out))
     configs = {config_hash(point.config): point.config for point in space.points if point.config is not None}

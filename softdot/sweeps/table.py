@@ -4,6 +4,7 @@ import base64
 import csv
 import json
 from collections.abc import Mapping, Sequence
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -48,6 +49,12 @@ def _flat(tables: Mapping[str, Any], before: str = "") -> dict[str, Any]:
     return flat
 
 
+def check_tables() -> None:
+    """InputError, before any work, where the library of Parquet tables is not installed."""
+    if find_spec("pyarrow") is None:
+        raise InputError("Parquet tables need pyarrow, which softdot alone does not: pip install 'softdot[sweep]'")
+
+
 def write_table(path: Path, rows: list[dict[str, Any]]) -> None:
     """Write Parquet that never exists half-written; a row lacks what other rows have: null."""
     import pyarrow as pa
@@ -71,6 +78,7 @@ def _column(values: list[Any]) -> "pa.Array":
 
 def read_table(out: Path | str) -> "pa.Table":
     """The table in the folder of a complete sweep: .to_pylist() gives rows, .to_pandas() a frame. InputError."""
+    check_tables()
     from pyarrow import ArrowException, parquet
 
     from softdot.sweeps.points import TABLE

@@ -186,4 +186,4 @@ def film_solid(start, stop, grad, weight, f, stress, tangent, charge, coupling, 
 
 def compiled() -> bool:
     """Whether the kernels are kept on this machine, as numba keeps them; else the first press compiles them."""
-    return any(Path(mixed_solid.stats.cache_path or "").glob("*.mixed_solid-*.nbc"))
+    return any(Path(mixed_solid.kernel.stats.cache_path or "").glob("*.mixed_solid-*.nbc"))

@@ -1,0 +1,34 @@
+"""Compile what every press of rubber and film calls, on one element of one point, so that two processes share it."""
+
+import numpy as np
+
+from solve.fem.kernels import film_solid, mixed_solid, scatter
+from solve.fem.kinematics import cauchy_green, deformation_gradient, green_lagrange, smallest_jacobian
+from solve.fem.sparsity import build_pattern
+from solve.materials.isochoric import isochoric_stress
+
+
+ONE = np.ones((1, 1))
+GRADIENT, STILL, F = np.zeros((1, 1, 10, 3)), np.zeros((1, 10, 3)), np.eye(3)[None, None]
+STRESS, TANGENT = np.zeros((1, 1, 6)), np.zeros((1, 1, 6, 6))
+DOFS, PRESSURE = np.arange(34)[None], np.zeros((1, 4))
+
+
+def compile_dear() -> None:
+    """The kernels of elements, two thirds of the whole time. numba keeps what it compiles for other processes."""
+    ke, re = np.zeros((1, 31, 31)), np.zeros((1, 31))
+    film_solid(GRADIENT, ONE, F, STRESS, TANGENT, ONE, np.zeros(6), 1.0, 1.0, ke, re)
+    ke, re = np.zeros((1, 34, 34)), np.zeros((1, 34))
+    # the last one: solve.fem.kernels.compiled asks for it
+    mixed_solid(GRADIENT, ONE, PRESSURE, F, PRESSURE, 1.0, STRESS, TANGENT, ke, re)
+
+
+def compile_cheap() -> None:
+    """The others: a process that waits for the first ones can do these."""
+    deformation_gradient(GRADIENT, STILL)
+    smallest_jacobian(F)
+    green_lagrange(GRADIENT, STILL)
+    isochoric_stress(cauchy_green(F), np.zeros(4))
+    pattern = build_pattern([DOFS], 34)
+    data, residual = np.zeros(len(pattern.indices)), np.zeros(34)
+    scatter(np.zeros((1, 34, 34)), np.zeros((1, 34)), DOFS, pattern.slots[0], data, residual)
