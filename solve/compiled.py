@@ -12,18 +12,22 @@ from typing import Any
 import numba as nb
 
 MATH = {"contract", "reassoc", "nsz", "arcp"}  # what keeps infinities and not-a-numbers as they are
-PIECE = {"forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}  # called, it is not vectorised
+PIECE: Any = {"forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+THREADS: int = nb.config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
 LEAST = 128  # elements or points that are worth waking a thread
 
 
 def piece(math: Any = False) -> Callable[[Callable[..., Any]], Any]:
-    """Decorator of what only kernels call; math : numba's fastmath."""
+    """Decorator of what only kernels call, and LLVM puts in its place, so that it is vectorised there.
+
+    math : numba's fastmath.
+    """
     made: Callable[[Callable[..., Any]], Any] = nb.njit(fastmath=math, **PIECE)
     return made
 
 
 def in_threads(math: Any = False) -> Callable[[Callable[..., Any]], Callable[..., None]]:
-    """Decorator of kernel(start, stop, first, ...), a loop from start to stop over what first counts: called (first, ...).
+    """Decorator of kernel(start, stop, first, ...), a loop over a part of what first counts; called with (first, ...).
 
     Parts of the loop write to entries of their own. math : numba's fastmath.
     """
@@ -34,7 +38,7 @@ def in_threads(math: Any = False) -> Callable[[Callable[..., Any]], Callable[...
         @wraps(function)
         def run(*arguments: Any) -> None:
             count = len(arguments[0])
-            parts = max(1, min(nb.config.NUMBA_NUM_THREADS, count // LEAST))
+            parts = max(1, min(THREADS, count // LEAST))
             cuts = [count * part // parts for part in range(parts + 1)]
             others = [_pool().submit(kernel, *cuts[part : part + 2], *arguments) for part in range(1, parts)]
             kernel(0, cuts[1], *arguments)
@@ -49,4 +53,4 @@ def in_threads(math: Any = False) -> Callable[[Callable[..., Any]], Callable[...
 
 @cache
 def _pool() -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(nb.config.NUMBA_NUM_THREADS, "kernel")
+    return ThreadPoolExecutor(THREADS, "kernel")

@@ -41,7 +41,7 @@ def run_sweep(
 
     On one process per core, or on the Dask cluster of a scheduler (tcp://HOST:PORT). Points that an earlier sweep
     left in out are not solved again. InputError before any work for a folder that cannot be written, for a
-    scheduler that does not answer, and without pyarrow. After Ctrl-C, or when killed, the points that were finished stay.
+    scheduler that does not answer, and without pyarrow. After Ctrl-C, or when killed, the finished points stay.
     """
     check_tables()
     check_folder()

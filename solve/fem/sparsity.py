@@ -16,9 +16,9 @@ import numpy as np
 import scipy.sparse as sp
 
 from geometry.arrays import Bools, Floats, Ints
-from solve.compiled import in_threads
 from mesh.symmetry import in_plane
 from mesh.types import TetMesh
+from solve.compiled import in_threads
 
 
 @dataclass(frozen=True)

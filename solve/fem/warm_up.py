@@ -7,7 +7,6 @@ from solve.fem.kinematics import cauchy_green, deformation_gradient, green_lagra
 from solve.fem.sparsity import build_pattern
 from solve.materials.isochoric import isochoric_stress
 
-
 ONE = np.ones((1, 1))
 GRADIENT, STILL, F = np.zeros((1, 1, 10, 3)), np.zeros((1, 10, 3)), np.eye(3)[None, None]
 STRESS, TANGENT = np.zeros((1, 1, 6)), np.zeros((1, 1, 6, 6))

@@ -78,7 +78,7 @@ def stages(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
         monkeypatch.setattr(Case, name, called(name))
     monkeypatch.setattr(second_process, "write_cad", called("write_cad"))
     monkeypatch.setattr(run, "write_outputs", called("write_outputs"))
-    monkeypatch.setattr(run, "second_process", AtOnce)
+    monkeypatch.setattr(run, "SecondProcess", AtOnce)
     monkeypatch.setattr(run, "draw", lambda *_: {})
     monkeypatch.setattr(uncertainty, "prepare", lambda _: None)
     return fakes
@@ -86,6 +86,9 @@ def stages(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
 
 class AtOnce(nullcontext["AtOnce"]):
     """In place of the second process: calls are done here, where the stand-ins are."""
+
+    def __init__(self) -> None:
+        self.kernels = self(lambda: None)
 
     def __enter__(self) -> "AtOnce":
         return self

@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 
 from export import view
-from geometry.beside import Beside
 from mesh.types import MeshingError
 from softdot.cli import main
 from softdot.commands import run
+from softdot.second_process import SecondProcess
 from tests.softdot.complaints import complaints
 from tests.softdot.stand_ins import result_of
 
@@ -173,7 +173,7 @@ def test_a_failure_leaves_nothing_though_the_second_process_still_writes(tmp_pat
         raise OSError(errno.EFBIG, "File too large")
 
     monkeypatch.setattr(view, "ensure_rendering", does_nothing)
-    monkeypatch.setattr(run, "second_process", Beside)
+    monkeypatch.setattr(run, "SecondProcess", SecondProcess)
     monkeypatch.setattr(run, "make_cad", does_nothing)
     monkeypatch.setattr(run, "draw", writes_on_and_on)
     stages.write_outputs = full

@@ -86,7 +86,9 @@ def run_designs(
     """
     from softdot.reading.designs.results import finish
     from softdot.sweeps.cluster import existing_cluster, local_cluster
+    from softdot.sweeps.table import check_tables
 
+    check_tables()
     progress = progress or Logged()
     cluster = local_cluster(workers) if scheduler is None else existing_cluster(scheduler)
     place = check_output(out, DESIGNS)
