@@ -1,7 +1,8 @@
 """What the compiled libraries read from the environment, once, when they are loaded.
 
 Thread pools: as many threads as there are cores free to this process, asleep while they have no work. Each library has
-a pool of its own: OpenBLAS under NumPy and SciPy, libgomp under numba, libiomp under MKL. By default their threads spin
+a pool of its own: OpenBLAS under NumPy and SciPy, libiomp under MKL, and libgomp under parallel loops of numba, of
+which softdot has none (its kernels run in threads of solve.compiled). By default their threads spin
 for a while after each call, and so take the cores from one another and from other programs; docs/speed.md has what that
 costs. OpenBLAS gets one thread: its products are of small or narrow matrices, thousands of them in a diagnosis, and
 waking a second thread takes longer than it saves.

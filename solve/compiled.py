@@ -1,7 +1,7 @@
 """How the kernels of assembly are compiled: once, without a thread pool of numba's, and their loops in threads of ours.
 
-numba's own parallel loops and its inlining take three times as long to compile as the plain loop with called pieces,
-and run no faster: each kernel takes seconds of assembly in a few large calls.
+numba's own parallel loops and its inlining take three times as long to compile as plain loops with called pieces, and
+run no faster (docs/speed.md).
 """
 
 from collections.abc import Callable
