@@ -26,13 +26,13 @@ def piece(math: Any = False) -> Callable[[Callable[..., Any]], Any]:
     return made
 
 
-def in_threads(math: Any = False) -> Callable[[Callable[..., Any]], Callable[..., None]]:
+def in_threads(math: Any = False) -> Callable[[Callable[..., Any]], Any]:
     """Decorator of kernel(start, stop, first, ...), a loop over a part of what first counts; called with (first, ...).
 
     Parts of the loop write to entries of their own. math : numba's fastmath.
     """
 
-    def decorate(function: Callable[..., Any]) -> Callable[..., None]:
+    def decorate(function: Callable[..., Any]) -> Any:
         kernel = nb.njit(cache=True, nogil=True, fastmath=math)(function)
 
         @wraps(function)
