@@ -111,9 +111,7 @@ def step_times(result: PressResult) -> list[float]:
 def _segment(tet_mesh: TetMesh) -> WriteStep:
     """The whole segment as quadratic tetrahedra."""
     grid, region = Grid(tet_mesh.points_mm, tet_mesh.tets, QUADRATIC_TETRA), tet_mesh.region.astype(np.int32)
-    names = {
-        f"region_{name}": (np.array([number], np.int32), ()) for number, name in enumerate(tet_mesh.region_names)
-    }
+    names = {f"region_{name}": (np.array([number], np.int32), ()) for number, name in enumerate(tet_mesh.region_names)}
 
     def write(step: Step, path: Path) -> None:
         fields = step.fields

@@ -121,6 +121,6 @@ def reach(
             state = equilibrate(system, linear, guess, target.load, target.time, past[-1])
             if not crushes(system, past[-1], state):
                 past.append(state)
-                del past[:-3]
+                del past[:-2]
                 return None
     return march(system, linear, past, target, kink, lambda *_: None)
