@@ -1,9 +1,9 @@
 """This version against an earlier one: python -m benchmarks.against_itself JSON [CASE…].
 
 Both versions do the same work in turn: whole commands, from the start of Python to the last file, with an empty cache
-of results. Their kernels are compiled before, by commands that are not counted, but for cold cases. Beside the clock, which
-other programs share, the processor time of the command and of the processes that it starts is told. The earlier one is
-checked out of the project's own history beside it. Rows that the file has are not measured again.
+of results. Their kernels are compiled before, by commands that are not counted, but for cold cases. Beside the clock,
+which other programs share, the processor time of the command and of the processes that it starts is told. The earlier
+one is checked out of the project's own history beside it. Rows that the file has are not measured again.
 """
 
 import os
@@ -137,7 +137,8 @@ def recorded(rig: str, work: Path) -> None:
 def main(path: Path, names: list[str]) -> None:
     """Measure what the file has not."""
     table = Table(path, "against itself")
-    missing = [one for one in TIMED if one.name in (names or [one.name]) and not table.has(earlier=EARLIER, case=one.name)]
+    asked = [one for one in TIMED if one.name in (names or [one.name])]
+    missing = [one for one in asked if not table.has(earlier=EARLIER, case=one.name)]
     with tempfile.TemporaryDirectory() as folder, checked_out(EARLIER, Path(folder) / EARLIER) as earlier:
         work, versions = Path(folder), {"then": earlier, "now": ROOT}
         prepare(work, versions)

@@ -9,7 +9,17 @@ from numpy.typing import NDArray
 
 from export.cutaway import is_slice
 from export.dot_surface import placed_dot
-from export.skin import MM_PER_M, NodalSteps, Skin, film_top, nearby_plane, nodal_steps, outer_facets, outer_skin, section
+from export.skin import (
+    MM_PER_M,
+    NodalSteps,
+    Skin,
+    film_top,
+    nearby_plane,
+    nodal_steps,
+    outer_facets,
+    outer_skin,
+    section,
+)
 from export.view import COLOUR_MAP, DIVERGING
 from geometry.dot import DotShape
 from geometry.solids import PART_COLOURS
