@@ -83,11 +83,11 @@ def neighbours(rows: list[dict]) -> str:
 def against_itself(rows: list[dict]) -> str:
     """Seconds of whole commands of both versions."""
     body = [
-        [row["case"], row["part"], f"{row['then_s']:.1f}", f"{row['now_s']:.1f}", f"{row['ratio']:.2f}",
+        [row["earlier"], row["case"], row["part"], f"{row['then_s']:.1f}", f"{row['now_s']:.1f}", f"{row['ratio']:.2f}",
          f"{row['aim']:g}"]
         for row in rows
     ]  # fmt: skip
-    return _table(("command", "part", "then s", "now s", "ratio", "aim"), body)
+    return _table(("earlier", "command", "part", "then s", "now s", "ratio", "aim"), body)
 
 
 def error_bars(rows: list[dict]) -> str:

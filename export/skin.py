@@ -177,10 +177,16 @@ def nodal_steps(tet_mesh: TetMesh, steps: Sequence[Step]) -> NodalSteps:
 
 def outer_skin(nodes: NodalSteps, level: int = 1) -> Skin:
     """The skin of every part that is open to the outside, each quadratic face cut into 4^level triangles."""
-    tets = nodes.split.tets
-    mesh_nodes = np.sort(nodes.split.node[tets[:, FACES[:, :3]]].reshape(-1, 3), axis=1)
-    _, first, count = np.unique(mesh_nodes, axis=0, return_index=True, return_counts=True)
-    return _from_facets(nodes, tets[:, FACES].reshape(-1, 6)[first[count == 1]], level)
+    return _from_facets(nodes, outer_facets(nodes.split), level)
+
+
+def outer_facets(split: SplitNodes) -> Ints:
+    """Quadratic facets (k, 6) in split nodes that belong to one tetrahedron only."""
+    corners = np.sort(split.node[split.tets[:, FACES[:, :3]]].reshape(-1, 3), axis=1)
+    # three numbers in one, which sort many times faster than rows
+    keys = np.ravel_multi_index(tuple(corners.T), (int(split.node.max()) + 1,) * 3)
+    _, first, count = np.unique(keys, return_index=True, return_counts=True)
+    return split.tets[:, FACES].reshape(-1, 6)[first[count == 1]]
 
 
 def film_top(nodes: NodalSteps, tet_mesh: TetMesh, level: int = 1) -> Skin:

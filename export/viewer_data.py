@@ -9,7 +9,17 @@ from numpy.typing import NDArray
 
 from export.cutaway import is_slice
 from export.dot_surface import placed_dot
-from export.skin import MM_PER_M, NodalSteps, Skin, film_top, nearby_plane, nodal_steps, outer_skin, section
+from export.skin import (
+    MM_PER_M,
+    NodalSteps,
+    Skin,
+    film_top,
+    nearby_plane,
+    nodal_steps,
+    outer_facets,
+    outer_skin,
+    section,
+)
 from export.view import COLOUR_MAP, DIVERGING
 from geometry.dot import DotShape
 from geometry.solids import PART_COLOURS
@@ -59,8 +69,7 @@ def _caption(step: Step) -> dict[str, float]:
 
 def _skins(nodes: NodalSteps, tet_mesh: TetMesh, plane: float) -> list[Skin]:
     """Outer skin, section and film, curved where the page can bear it."""
-    outer = outer_skin(nodes, 0)
-    level = 1 if 4 * len(outer.triangles) <= MOST_TRIANGLES else 0
+    level = 1 if 4 * len(outer_facets(nodes.split)) <= MOST_TRIANGLES else 0
     return [outer_skin(nodes, level), section(nodes, plane, level), film_top(nodes, tet_mesh, level)]
 
 

@@ -5,15 +5,15 @@ In a shell: paraview --script=show_in_paraview.py, or pvpython show_in_paraview.
 
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
 from export.dot_surface import placed_dot
-from export.recovery import FilmPatches, film_patches
+from export.recovery import film_patches
 from export.skin import MM_PER_M, MPA_PER_PA, PC_PER_MM2_PER_C_PER_M2, split_nodes, spread
-from geometry.arrays import Floats, Ints
+from export.vtk_xml import Grid
+from geometry.arrays import Ints
 from geometry.dot import DotShape
 from geometry.files import whole_folder
 from mesh.types import TetMesh
@@ -66,6 +66,9 @@ QUADRATIC_TETRA = 24
 GLOBAL_AXES = ("XX", "YY", "ZZ", "XY", "YZ", "XZ")
 FILM_AXES = ("11", "22", "33", "12", "23", "13")
 
+WriteStep = Callable[[Step, Path], None]
+"""Writes the file of one step; what all steps share is prepared before."""
+
 
 def write_results(tet_mesh: TetMesh, result: PressResult, dot_shape: DotShape, folder: Path) -> list[Path]:
     """Write segment, parts, film, contact and dot as PVD collections with one file per step; return the PVD paths.
@@ -77,26 +80,22 @@ def write_results(tet_mesh: TetMesh, result: PressResult, dot_shape: DotShape, f
     the field data "region_<name>" holds each part's number. The collection parts has a named block for each part, with
     stress and strain at nodes; show_in_paraview.py shows it all. The folder appears whole or not at all.
     """
-    patches = film_patches(tet_mesh)
-    parts: dict[str, Callable[[Step], Any]] = {
-        "segment": lambda step: _segment(tet_mesh, step),
-        "film": lambda step: _film(tet_mesh, patches, step),
-        "contact": lambda step: _contact(tet_mesh, step),
-        "dot": lambda step: _dot(tet_mesh, dot_shape, step),
+    grids: dict[str, WriteStep] = {
+        "segment": _segment(tet_mesh),
+        "film": _film(tet_mesh),
+        "contact": _contact(tet_mesh),
+        "dot": lambda step, path: _write_dot(tet_mesh, dot_shape, step, path),
+        "parts": _parts(tet_mesh),
     }
+    suffixes, times = {"dot": "vtp", "parts": "vtm"}, step_times(result)
     with whole_folder(folder) as scratch:
-        for name, build in parts.items():
-            suffix = "vtp" if name == "dot" else "vtu"
-            files = [f"{name}_{index:04d}.{suffix}" for index in range(len(result.steps))]
+        for name, write in grids.items():
+            files = [f"{name}_{index:04d}.{suffixes.get(name, 'vtu')}" for index in range(len(result.steps))]
             for file, step in zip(files, result.steps, strict=True):
-                _write_xml(build(step), scratch / file)
-            (scratch / f"{name}.pvd").write_text(collection(files, step_times(result)), encoding="utf-8")
-        blocks = [f"parts_{index:04d}.vtm" for index in range(len(result.steps))]
-        for file, step in zip(blocks, result.steps, strict=True):
-            _write_blocks(_parts(tet_mesh, step), scratch / file)
-        (scratch / "parts.pvd").write_text(collection(blocks, step_times(result)), encoding="utf-8")
+                write(step, scratch / file)
+            (scratch / f"{name}.pvd").write_text(collection(files, times), encoding="utf-8")
         (scratch / "show_in_paraview.py").write_text(paraview_script(tet_mesh, result), encoding="utf-8")
-    return [folder / f"{name}.pvd" for name in [*parts, "parts"]]
+    return [folder / f"{name}.pvd" for name in grids]
 
 
 def step_times(result: PressResult) -> list[float]:
@@ -109,124 +108,107 @@ def step_times(result: PressResult) -> list[float]:
     return [float(index) for index in range(len(depths))]
 
 
-def _segment(tet_mesh: TetMesh, step: Step) -> Any:
+def _segment(tet_mesh: TetMesh) -> WriteStep:
     """The whole segment as quadratic tetrahedra."""
-    fields = step.fields
-    grid = _grid(tet_mesh.points_mm, tet_mesh.tets, QUADRATIC_TETRA)
-    _add(grid.point_data, "displacement_mm", fields.displacement_m * MM_PER_M)
-    _add(grid.cell_data, "cauchy_stress_MPa", fields.cauchy_stress_Pa * MPA_PER_PA, GLOBAL_AXES)
-    _add(grid.cell_data, "green_lagrange_strain", fields.green_lagrange_strain, GLOBAL_AXES)
-    _add(grid.cell_data, "von_mises_MPa", fields.von_mises_Pa * MPA_PER_PA)
-    _add(grid.cell_data, "pressure_MPa", fields.pressure_Pa * MPA_PER_PA)
-    _add(grid.cell_data, "max_stretch", fields.max_stretch)
-    _add(grid.cell_data, "region", tet_mesh.region.astype(np.int32))
-    for number, name in enumerate(tet_mesh.region_names):
-        grid.field_data[f"region_{name}"] = np.array([number], np.int32)
-    return grid
+    grid, region = Grid(tet_mesh.points_mm, tet_mesh.tets, QUADRATIC_TETRA), tet_mesh.region.astype(np.int32)
+    names = {f"region_{name}": (np.array([number], np.int32), ()) for number, name in enumerate(tet_mesh.region_names)}
+
+    def write(step: Step, path: Path) -> None:
+        fields = step.fields
+        cell_data = {
+            "cauchy_stress_MPa": (fields.cauchy_stress_Pa * MPA_PER_PA, GLOBAL_AXES),
+            "green_lagrange_strain": (fields.green_lagrange_strain, GLOBAL_AXES),
+            "von_mises_MPa": (fields.von_mises_Pa * MPA_PER_PA, ()),
+            "pressure_MPa": (fields.pressure_Pa * MPA_PER_PA, ()),
+            "max_stretch": (fields.max_stretch, ()),
+            "region": (region, ()),
+        }
+        grid.write(path, {"displacement_mm": (fields.displacement_m * MM_PER_M, ())}, cell_data, names)
+
+    return write
 
 
-def _parts(tet_mesh: TetMesh, step: Step) -> dict[str, Any]:
-    """Name of each part and its grid, with nodal fields that jump between parts."""
-    fields, split = step.fields, split_nodes(tet_mesh)
-    stress = spread(split, fields.cauchy_stress_Pa) * MPA_PER_PA
-    von_mises = spread(split, fields.von_mises_Pa) * MPA_PER_PA
-    strain = spread(split, fields.green_lagrange_strain)
-    blocks = {}
-    for number, name in enumerate(tet_mesh.region_names):
-        nodes, tets = _compact(split.tets[tet_mesh.region == number])
-        grid = _grid(tet_mesh.points_mm[split.node[nodes]], tets, QUADRATIC_TETRA)
-        _add(grid.point_data, "displacement_mm", fields.displacement_m[split.node[nodes]] * MM_PER_M)
-        _add(grid.point_data, "nodal_von_mises_MPa", von_mises[nodes])
-        _add(grid.point_data, "nodal_cauchy_stress_MPa", stress[nodes], GLOBAL_AXES)
-        _add(grid.point_data, "nodal_green_lagrange_strain", strain[nodes], GLOBAL_AXES)
-        blocks[name] = grid
-    return blocks
+def _parts(tet_mesh: TetMesh) -> WriteStep:
+    """A block for each part, in a file of its own in the folder of their name; fields at nodes jump between parts."""
+    split = split_nodes(tet_mesh)
+    own = [_compact(split.tets[tet_mesh.region == number]) for number in range(len(tet_mesh.region_names))]
+    grids = [Grid(tet_mesh.points_mm[split.node[nodes]], tets, QUADRATIC_TETRA) for nodes, tets in own]
+
+    def write(step: Step, path: Path) -> None:
+        fields, folder = step.fields, path.with_suffix("")
+        everywhere = {
+            "displacement_mm": (fields.displacement_m[split.node] * MM_PER_M, ()),
+            "nodal_von_mises_MPa": (spread(split, fields.von_mises_Pa) * MPA_PER_PA, ()),
+            "nodal_cauchy_stress_MPa": (spread(split, fields.cauchy_stress_Pa) * MPA_PER_PA, GLOBAL_AXES),
+            "nodal_green_lagrange_strain": (spread(split, fields.green_lagrange_strain), GLOBAL_AXES),
+        }
+        files = [f"{folder.name}/{folder.name}_{index}.vtu" for index in range(len(grids))]
+        folder.mkdir()
+        for file, grid, (nodes, _) in zip(files, grids, own, strict=True):
+            here = {name: (values[nodes], components) for name, (values, components) in everywhere.items()}
+            grid.write(path.parent / file, here, {})
+        path.write_text(multi_block(dict(zip(tet_mesh.region_names, files, strict=True))), encoding="utf-8")
+
+    return write
 
 
-def _film(tet_mesh: TetMesh, patches: FilmPatches, step: Step) -> Any:
+def _film(tet_mesh: TetMesh) -> WriteStep:
     """The film's tetrahedra alone, in the film's own axes."""
-    fields = step.fields
-    nodes, tets = _compact(tet_mesh.tets[fields.film_tets])
-    grid = _grid(tet_mesh.points_mm[nodes], tets, QUADRATIC_TETRA)
-    _add(grid.point_data, "displacement_mm", fields.displacement_m[nodes] * MM_PER_M)
-    _add(grid.cell_data, "film_strain", fields.film_strain, FILM_AXES)
-    _add(grid.cell_data, "film_stress_MPa", fields.film_stress_Pa * MPA_PER_PA, FILM_AXES)
-    charge = fields.charge_density_C_per_m2 * PC_PER_MM2_PER_C_PER_M2
-    _add(grid.cell_data, "charge_density_pC_per_mm2", charge)
-    at_nodes = {
-        "nodal_film_strain": (fields.film_strain, FILM_AXES),
-        "nodal_film_stress_MPa": (fields.film_stress_Pa * MPA_PER_PA, FILM_AXES),
-        "nodal_charge_density_pC_per_mm2": (charge, ()),
-    }
-    for name, (values, axes) in at_nodes.items():
-        _add(grid.point_data, name, patches.at_nodes(values, len(tet_mesh.points_mm))[nodes], axes)
-    return grid
+    patches, count = film_patches(tet_mesh), len(tet_mesh.points_mm)
+    nodes, tets = _compact(tet_mesh.tets[tet_mesh.region_tets("film")])
+    grid = Grid(tet_mesh.points_mm[nodes], tets, QUADRATIC_TETRA)
+
+    def write(step: Step, path: Path) -> None:
+        fields = step.fields
+        cell_data = {
+            "film_strain": (fields.film_strain, FILM_AXES),
+            "film_stress_MPa": (fields.film_stress_Pa * MPA_PER_PA, FILM_AXES),
+            "charge_density_pC_per_mm2": (fields.charge_density_C_per_m2 * PC_PER_MM2_PER_C_PER_M2, ()),
+        }
+        at_nodes = {
+            f"nodal_{name}": (patches.at_nodes(values, count)[nodes], axes)
+            for name, (values, axes) in cell_data.items()
+        }
+        moved = {"displacement_mm": (fields.displacement_m[nodes] * MM_PER_M, ())}
+        grid.write(path, moved | at_nodes, cell_data)
+
+    return write
 
 
-def _contact(tet_mesh: TetMesh, step: Step) -> Any:
+def _contact(tet_mesh: TetMesh) -> WriteStep:
     """The skin that the dot can touch, as quadratic triangles."""
-    fields = step.fields
     nodes, triangles = _compact(tet_mesh.facets["contact"])
-    place = np.full(len(tet_mesh.points_mm), -1)
-    place[fields.contact_nodes] = np.arange(len(fields.contact_nodes))
-    grid = _grid(tet_mesh.points_mm[nodes], triangles, QUADRATIC_TRIANGLE)
-    _add(grid.point_data, "displacement_mm", fields.displacement_m[nodes] * MM_PER_M)
-    _add(grid.point_data, "gap_mm", fields.gap_m[place[nodes]] * MM_PER_M)
-    _add(grid.point_data, "contact_pressure_MPa", fields.contact_pressure_Pa[place[nodes]] * MPA_PER_PA)
-    return grid
+    grid = Grid(tet_mesh.points_mm[nodes], triangles, QUADRATIC_TRIANGLE)
+
+    def write(step: Step, path: Path) -> None:
+        fields = step.fields
+        at = np.searchsorted(fields.contact_nodes, nodes)
+        point_data = {
+            "displacement_mm": (fields.displacement_m[nodes] * MM_PER_M, ()),
+            "gap_mm": (fields.gap_m[at] * MM_PER_M, ()),
+            "contact_pressure_MPa": (fields.contact_pressure_Pa[at] * MPA_PER_PA, ()),
+        }
+        grid.write(path, point_data, {})
+
+    return write
 
 
-def _dot(tet_mesh: TetMesh, dot_shape: DotShape, step: Step) -> Any:
+def _write_dot(tet_mesh: TetMesh, dot_shape: DotShape, step: Step, path: Path) -> None:
     """The rigid dot and its plate where they stand at this step."""
     import pyvista
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
     surfaces = placed_dot(dot_shape, tet_mesh, step.dot_position_m * MM_PER_M)
-    return pyvista.merge(surfaces, merge_points=False)
-
-
-def _grid(points_mm: Floats, cells: Ints, cell_type: int) -> Any:
-    """A VTK unstructured grid of one cell type; points (n, 3) in mm, cells (m, nodes per cell)."""
-    import pyvista
-
-    return pyvista.UnstructuredGrid({cell_type: cells}, points_mm)
+    writer = vtkXMLPolyDataWriter()
+    writer.SetInputData(pyvista.merge(surfaces, merge_points=False))
+    writer.SetDataModeToBinary()
+    writer.WriteToOutputStringOn()  # VTK would crash where a disk is full, so Python writes the file
+    if not writer.Write():
+        raise OSError(f"could not write {path}")
+    path.write_text(writer.GetOutputString(), encoding="utf-8")
 
 
 def _compact(cells: Ints) -> tuple[Ints, Ints]:
     """The nodes that the cells use, and the cells renumbered onto them."""
     nodes, renumbered = np.unique(cells, return_inverse=True)
     return nodes, renumbered.reshape(cells.shape)
-
-
-def _add(arrays: Any, name: str, values: Any, components: tuple[str, ...] = ()) -> None:
-    """Attach one array; ParaView shows the names of its components."""
-    arrays[name] = np.ascontiguousarray(values)
-    for number, component in enumerate(components):
-        arrays.GetArray(name).SetComponentName(number, component)
-
-
-FASTEST = 1  # a third of the time of zlib's usual level, for files that are a tenth larger
-
-
-def _write_xml(data: Any, path: Path) -> None:
-    """Write VTK XML, binary and zlib-compressed. VTK would crash where a disk is full, so Python writes the file."""
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter
-
-    writer = vtkXMLPolyDataWriter() if path.suffix == ".vtp" else vtkXMLUnstructuredGridWriter()
-    writer.SetInputData(data)
-    writer.SetDataModeToBinary()
-    writer.SetCompressorTypeToZLib()
-    writer.SetCompressionLevel(FASTEST)
-    writer.WriteToOutputStringOn()
-    if not writer.Write():
-        raise OSError(f"could not write {path}")
-    path.write_text(writer.GetOutputString(), encoding="utf-8")
-
-
-def _write_blocks(blocks: dict[str, Any], path: Path) -> None:
-    """Write named grids as a VTK multi-block file, each in a file of its own in the folder of its name."""
-    folder = path.with_suffix("")
-    folder.mkdir()
-    files = {name: f"{folder.name}/{folder.name}_{index}.vtu" for index, name in enumerate(blocks)}
-    for name, grid in blocks.items():
-        _write_xml(grid, path.parent / files[name])
-    path.write_text(multi_block(files), encoding="utf-8")

@@ -6,10 +6,8 @@ Moduli, glue or remembered stress change an equilibrium less than the way down t
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
-from scipy.interpolate import BSpline, make_interp_spline
 
 from geometry.arrays import Floats, Ints
 from mesh.symmetry import MIRRORED
@@ -91,11 +89,10 @@ class Course:
 
     def at(self, place: float) -> Floats:
         """Between two places on the straight line."""
-        return np.asarray(self._line(place))
-
-    @cached_property
-    def _line(self) -> BSpline:
-        return make_interp_spline(self.places, self.unknowns, k=1)
+        i = int(np.clip(np.searchsorted(self.places, place), 1, len(self.places) - 1))
+        before, after = self.places[i - 1 : i + 1]
+        share = (place - before) / (after - before)
+        return np.asarray((1.0 - share) * self.unknowns[i - 1] + share * self.unknowns[i])
 
     def guess(self, found: Found, place: float) -> Floats:
         """The unknowns (count,) there: those of this course, and the difference of the last two found, carried on."""
@@ -121,6 +118,6 @@ def reach(
             state = equilibrate(system, linear, guess, target.load, target.time, past[-1])
             if not crushes(system, past[-1], state):
                 past.append(state)
-                del past[:-3]
+                del past[:-2]
                 return None
     return march(system, linear, past, target, kink, lambda *_: None)

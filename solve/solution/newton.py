@@ -25,8 +25,11 @@ MAX_HALVINGS = 6
 SAME = 1e-3  # relative: a residual that comes back with the same discrete states runs in a circle
 MAX_CIRCLES = 3
 NEAR = 1.0  # relative residual from which constraints settle within a step: farther away they settle to the wrong ones
+NEAR_FORESEEN = 10.0  # from a start that the past foretold: what it gets wrong is most of all where contact ends
 MAX_SETTLING = 10  # of the constraints in one step
 LITTLE = 0.1  # what a linear solution gains at least
+FORCING = 0.03  # residual of a linear solution over the square of that of Newton's iteration, which falls with it
+LAST = 0.3  # of TOLERANCE: what the last linear solution is to leave
 LOOSEST = 1e-2  # residual of a linear solution, far from the end, relative to the residual and to the load
 
 
@@ -43,10 +46,12 @@ class LostContactError(NoEquilibriumError):
 
 
 def equilibrate(
-    system: System, linear: LinearSolver, x: Floats, load: Load, time: float, previous: State, damped: bool = False
-) -> State:
+    system: System, linear: LinearSolver, x: Floats, load: Load, time: float, previous: State, damped: bool = False,
+    near: float = NEAR,
+) -> State:  # fmt: skip
     """Find the equilibrium near x (count,) at a time after a converged state; damped : see Trial.
 
+    near : relative residual from which constraints settle within a step.
     NoEquilibriumError when there is none within the iterations.
     """
     x, lost, correction = x.copy(), False, np.inf
@@ -71,14 +76,14 @@ def equilibrate(
                 break
             similar = linear.may_reuse(now.tangent, None if status is None else int(np.sum(status != now.status)))
             # inexact Newton: the linear residual need fall neither faster than the nonlinear one nor below its goal
-            loosest = min(0.001 * relative, LOOSEST / max(relative, 1.0))
-            tolerance = min(max(loosest, 0.01 * TOLERANCE / max(relative, 1e-300)), LOOSEST)
+            loosest = min(FORCING * relative, LOOSEST / max(relative, 1.0))
+            tolerance = min(max(loosest, LAST * TOLERANCE / max(relative, 1e-300)), LOOSEST)
             step = linear.solve(now.tangent, -now.residual, tolerance, similar)
             share, before = circles.share(now.status, norm), x
             if circles.count > MAX_CIRCLES:
                 break
             status = now.status
-            if relative <= NEAR:
+            if relative <= near:
                 step, status = _settled(system, linear, now, x, step, tolerance, load, time, previous)
             x, now = _advance(system, x, share * step, load, time, previous, damped)
             correction = _relative_change(system, before, x)
