@@ -13,7 +13,7 @@ SOLVED = {"status": "solved", "reason": None}
 
 def solver(monkeypatch, *records):
     """Records in place of a cluster."""
-    monkeypatch.setattr("softdot.sweeps.cluster.solve_points", lambda _configs, _progress: list(records))
+    monkeypatch.setattr("softdot.sweeps.points.solve_points", lambda *_, **__: list(records))
 
 
 def test_outcomes_come_back_by_name(monkeypatch):
