@@ -122,6 +122,27 @@ class KitPress:
         return Response(*self._full_load.beside(model_of(moved)))
 
 
+_LAST: list[KitPress] = []
+"""Of this process: what a press beside the last one begins from. More would be memory that nobody uses."""
+
+
+def kept_press(config: Config) -> KitPress:
+    """The press that was asked for last in this process, or a new one."""
+    if not _LAST or _LAST[0].config != config:
+        _LAST[:] = [KitPress(config)]
+    return _LAST[0]
+
+
+def slopes_of(config: Config, keys: Sequence[str]) -> tuple[Response, dict[str, Response]]:
+    """As KitPress.slopes, of a configuration as another process is told of it."""
+    return kept_press(config).slopes(keys)
+
+
+def value_beside(config: Config, moved: Config) -> Response:
+    """As KitPress.value."""
+    return kept_press(config).value(moved)
+
+
 def path_matters(config: Config) -> bool:
     """Whether the response at full load depends on how the load came to be there."""
     case = Case(config)
