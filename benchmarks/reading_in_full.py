@@ -18,9 +18,9 @@ from pathlib import Path
 import numpy as np
 
 from geometry.arrays import Floats
-from geometry.executor import LocalProcesses, each_done
 from geometry.braille import dot_offset_mm, raised_dots, standard
 from geometry.environment import usable_cores
+from geometry.executor import LocalProcesses, each_done
 from mesh.array.mesh import array_mesh
 from softdot.arrays.case import ArrayCase, ArrayPress
 from softdot.arrays.kernel import load_kernel

@@ -69,7 +69,8 @@ class Cluster:
     @property
     def places(self) -> int:
         """Threads of all workers; one at least while they are being replaced. AwayError."""
-        return max(1, sum(_reached(self._client.nthreads).values()))
+        threads: dict[str, int] = _reached(self._client.nthreads)
+        return max(1, sum(threads.values()))
 
     def submit(self, function: Callable[..., Any], /, *arguments: Any) -> "Future[Any]":
         """See geometry.executor.Executor. AwayError, also as what the call has raised."""

@@ -95,6 +95,7 @@ class ArrayPresses:
         future = self._executor.submit(result_of_dot, *_told(press))
         self({key: other for key, other in others.items() if _path(other) != _path(press)})
         found, result = future.result()
+        assert isinstance(result, PressResult)
         self.know(_path(press), converged(found, name))
         return result
 

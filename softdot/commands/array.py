@@ -52,7 +52,8 @@ def run_array(
     """Study the array of a configuration into the folder out and return what array.json says; parts : asked for beside
     the matrix.
 
-    Presses are done by processes of this computer, or on the Dask cluster of a scheduler (tcp://HOST:PORT). InputError before any work for what cannot be built or written. Where a press does not converge, StoppedPressError
+    Presses are done by processes of this computer, or on the Dask cluster of a scheduler (tcp://HOST:PORT).
+    InputError before any work for what cannot be built or written. Where a press does not converge, StoppedPressError
     or MeshingError: nothing is written, and presses that were solved are kept in the cache.
     """
     from export.view import ensure_rendering

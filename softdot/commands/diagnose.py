@@ -81,7 +81,8 @@ def run_diagnosis(
 ) -> dict[str, Any]:
     """Diagnose a recording into the folder out and return the content of verdict.json.
 
-    Presses are done by processes of this computer, or on the Dask cluster of a scheduler (tcp://HOST:PORT). InputError before any work for what cannot be read or written; NoEquilibriumError when the baseline has none. In
+    Presses are done by processes of this computer, or on the Dask cluster of a scheduler (tcp://HOST:PORT).
+    InputError before any work for what cannot be read or written; NoEquilibriumError when the baseline has none. In
     both cases nothing is written. A named mechanism that the full model cannot press is told in fit.failure.
     """
     options, progress = options or Options(), progress or Logged()
@@ -209,9 +210,7 @@ def command(chosen: Namespace) -> int:
     options = Options(limit_s, chosen.seed, tuple(chosen.without), tuple(chosen.hold_out))
     try:
         with only_the_summary_on_stdout(), progress_of(chosen) as progress:
-            summary = run_diagnosis(
-                Path(chosen.recording), Path(chosen.output), options, progress, chosen.scheduler
-            )
+            summary = run_diagnosis(Path(chosen.recording), Path(chosen.output), options, progress, chosen.scheduler)
     except (NoEquilibriumError, MeshingError) as error:
         complain(f"diagnose, {error}; nothing was written")
         return NOT_CONVERGED

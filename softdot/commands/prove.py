@@ -181,8 +181,8 @@ def _finished(request: Request, place: Path, records: Sequence[Mapping[str, Any]
     """Count, draw and write."""
     from diagnose.prove.score import tally
     from softdot.console import installed_version
-    from softdot.proof import draw, rival_rates, text
     from softdot.executors import hardware
+    from softdot.proof import draw, rival_rates, text
 
     scores = [score_from(record["score"]) for record in records if record["score"] is not None]
     summary: dict[str, Any] = plain({

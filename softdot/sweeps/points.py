@@ -91,9 +91,7 @@ def solve_all(executor: Executor, configs: Mapping[str, Config]) -> Iterator[tup
         yield name, record
 
 
-def all_ended(
-    executor: Executor, task: Task, arguments: Mapping[str, tuple[Any, ...]]
-) -> Iterator[tuple[str, Record]]:
+def all_ended(executor: Executor, task: Task, arguments: Mapping[str, tuple[Any, ...]]) -> Iterator[tuple[str, Record]]:
     """Name and record of the task with each arguments, in the order in which they end. AwayError."""
     for name, future in each_done(executor, task, arguments):
         yield name, _record(future)

@@ -16,12 +16,12 @@ import pytest
 
 from geometry.base import InputError
 from geometry.executor import LocalProcesses
+from softdot import executors as scheduler_module
 from softdot.cli import main
 from softdot.config import Config, config_from
 from softdot.console import Logged
-from softdot.outcome import outcome
-from softdot import executors as scheduler_module
 from softdot.executors import TINY
+from softdot.outcome import outcome
 from softdot.sweeps import read_table, run_sweep, solve_points, space_from
 from softdot.sweeps.points import solve_all
 from tests.softdot.complaints import complaints

@@ -47,7 +47,8 @@ class Prepared:
     relaxing : the layers whose memory is known.
 
     raw : the baseline's table on the diagnosis mesh; fit : the same with the smoothed answer of a finer mesh.
-    executor : does what is pressed, now and later. accuracy, shortfalls : see diagnose.forward.Engine; shortfalls by name of the press.
+    executor : does what is pressed, now and later.
+    accuracy, shortfalls : see diagnose.forward.Engine; shortfalls by name of the press.
     """
 
     def __init__(
@@ -146,7 +147,9 @@ class Prepared:
 
     def _pressed(self, wanted: Mapping[Name, tuple[Job, int]], report: Report) -> dict[Name, Floats]:
         """Changes by jobs, each with the number of its mesh; those without equilibrium are left out."""
-        return {name: self._change(*three) for name, three in self.presses.compared(wanted, report, self._executor).items()}
+        return {
+            name: self._change(*three) for name, three in self.presses.compared(wanted, report, self._executor).items()
+        }
 
     def _change(self, job: Job, base: Floats, found: Floats) -> Floats:
         """Against the baseline on the same mesh; charges scaled to those of the finest mesh."""
