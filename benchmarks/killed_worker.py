@@ -77,7 +77,7 @@ def trial(name: str, folder: Path) -> Trial:
     tiny = folder / f"{name}.toml"
     tiny.write_text(TINY_ARRAY if name == "array" else TINY_KIT, "utf-8")
     if name == "array":
-        return Trial([*SOFTDOT, "array", str(tiny), "--kernel"], "*-*.npz", "array.json")
+        return Trial([*SOFTDOT, "array", str(tiny), "--kernel"], "[ak]*-*", "array.json")
     return Trial([*SOFTDOT, "kit", str(tiny)], "response-*", "kit.json")
 
 
@@ -95,8 +95,9 @@ class Workers:
         base = [sys.executable, "-m"]
         scheduler = [*base, "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0", *place]
         worker = [*base, "distributed.cli.dask_worker", "--no-nanny", "--nthreads", "1", *place]
+        worker += ["--local-directory", str(folder)]
         self.scheduler = subprocess.Popen(scheduler, env=own, stderr=log, stdout=log)
-        self.workers = [subprocess.Popen(worker, env=own, stderr=log, stdout=log, cwd=folder) for _ in range(2)]
+        self.workers = [subprocess.Popen(worker, env=own, stderr=log, stdout=log) for _ in range(2)]
 
     @property
     def address(self) -> str:
@@ -141,7 +142,7 @@ def run(one: Trial, out: Path, cache: Path, more: list[str], half: int = 0, work
 
 
 def largest_difference(one: Any, other: Any, size: float = 0.0) -> float:
-    """Of any two numbers, relative to the larger of them or of a list of theirs; infinite where anything else differs."""
+    """Of any two numbers, relative to the larger of them or of a list of theirs; infinite where more differs."""
     if isinstance(one, dict) and isinstance(other, dict) and one.keys() == other.keys():
         return max((largest_difference(one[key], other[key]) for key in one.keys() - APART), default=0.0)
     if isinstance(one, list) and isinstance(other, list) and len(one) == len(other):

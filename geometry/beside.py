@@ -10,10 +10,14 @@ import subprocess
 import sys
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import suppress
+from pathlib import Path
 from threading import Event
 from typing import Any
 
 from geometry.files import end_with_parent, sweep_scratch
+
+OOM_SCORE = Path("/proc/self/oom_score_adj")
 
 
 class ProcessDiedError(RuntimeError):
@@ -80,6 +84,8 @@ class Beside:
 def work() -> None:
     """Do what standard input asks for until it ends. What libraries print goes to standard error."""
     end_with_parent(int(sys.argv[1]))
+    with suppress(OSError):  # where memory runs out, Linux ends this process rather than its parent
+        OOM_SCORE.write_text("500", "ascii")
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
     while True:

@@ -72,13 +72,13 @@ def test_every_call_is_answered_under_its_name(executor):
 
 
 def test_an_error_is_the_error_of_the_call_alone(executor):
-    with pytest.raises(InputError, match="^number = 3: must be even$"):
+    with pytest.raises(InputError, match="number = 3: must be even"):
         executor.submit(refuse, 3).result()
     assert executor.submit(square, 3).result() == 9
 
 
 def test_an_error_that_cannot_be_sent_keeps_its_sentence(processes):
-    with pytest.raises(RuntimeError, match="^Picky: not this one$"):
+    with pytest.raises(RuntimeError, match="Picky: not this one"):
         processes.submit(pick, 0).result()
 
 
@@ -115,16 +115,26 @@ def test_processes_start_with_the_first_call_and_are_kept():
         assert alive() == first
 
 
-def test_what_is_under_way_ends_at_once_where_the_work_is_stopped():
+def interrupted():
     """As by Ctrl-C: one call is under way, one waits for it."""
-    begun, before = monotonic(), alive()
-    with pytest.raises(KeyboardInterrupt), LocalProcesses(1) as executor:
-        under_way, waiting = executor.submit(rest), executor.submit(rest)
+    before = alive()
+    with LocalProcesses(1) as executor:
+        INTERRUPTED[:] = executor.submit(rest), executor.submit(rest)
         while alive() == before:
             sleep(0.01)
         raise KeyboardInterrupt
+
+
+INTERRUPTED = []
+
+
+def test_what_is_under_way_ends_at_once_where_the_work_is_stopped():
+    begun, before = monotonic(), alive()
+    with pytest.raises(KeyboardInterrupt):
+        interrupted()
     assert monotonic() - begun < 10.0
     assert alive() == before
+    under_way, waiting = INTERRUPTED
     assert isinstance(under_way.exception(), LostError)
     with pytest.raises(CancelledError):
         waiting.result()

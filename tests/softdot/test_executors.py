@@ -15,12 +15,12 @@ import psutil
 import pytest
 
 from geometry.base import InputError
-from geometry.executor import LocalProcesses
+from geometry.executor import LocalProcesses, each_done
 from softdot import executors as scheduler_module
 from softdot.cli import main
 from softdot.config import Config, config_from
 from softdot.console import Logged
-from softdot.executors import TINY
+from softdot.executors import TINY, executor_for
 from softdot.outcome import outcome
 from softdot.sweeps import read_table, run_sweep, solve_points, space_from
 from softdot.sweeps.points import solve_all
@@ -311,3 +311,34 @@ def test_each_process_calculates_on_one_thread_also_after_a_death(monkeypatch):
         os.kill(victim, signal.SIGKILL)
         assert executor.submit(_threads).result() == (1, 1)
         assert workers_alive() != [victim]
+
+
+def slowly(number):
+    time.sleep(0.2)
+    return os.getpid(), number**2
+
+
+@pytest.mark.slow
+def test_a_worker_of_a_cluster_that_is_killed_loses_no_call():
+    """What it was doing is done by the other one."""
+    from distributed import LocalCluster
+
+    with (
+        LocalCluster(n_workers=2, threads_per_worker=1, scheduler_kwargs=NO_DASHBOARD) as running,
+        executor_for(running.scheduler_address) as cluster,
+    ):
+        assert cluster.places == 2
+        found = {}
+        for name, future in each_done(cluster, slowly, {number: (number,) for number in range(12)}):
+            found[name] = future.result()
+            if len(found) == 4:
+                os.kill(found[name][0], signal.SIGKILL)
+    assert {name: square for name, (_, square) in found.items()} == {number: number**2 for number in range(12)}
+
+
+def test_an_error_on_a_cluster_is_the_error_of_the_call(scheduler):
+    """And a call that is given up is told from it."""
+    with executor_for(scheduler.scheduler_address) as cluster:
+        with pytest.raises(InputError, match="indentation_mm = 9"):
+            cluster.submit(outcome, at_depth(9.0)).result()
+        assert cluster.submit(abs, -3).result() == 3
