@@ -34,12 +34,13 @@ segment = { length_mm = 2.3, width_mm = 2.3, section = "solid", boundary = "free
 array = { columns = 2, rows = 1, shared = ["film", "medium1", "medium2"] }
 dot = { shape = "cap", standard = "marburg-medium" }
 press = { indentation_mm = 0.2, load_steps = 2 }
-mesh = { element_size_mm = 1.2, contact_element_size_mm = 0.5 }
+mesh = { element_size_mm = 1.6, contact_element_size_mm = 0.6 }
 """
 TINY_KIT = """
 press = { indentation_mm = 0.1, load_steps = 2 }
 mesh = { element_size_mm = 0.6, contact_element_size_mm = 0.3, mesher = "layered" }
 """
+COARSE_RIG = RIG.replace("[readout]", "[mesh]\nelement_size_mm = 1.0\ncontact_element_size_mm = 0.4\n\n[readout]")
 RUNS = {"slow, 0.15 mm": (0.15, 0.5, 1.0), "slow, 0.2 mm": (0.2, 0.5, 1.0), "quick, 0.2 mm": (0.2, 0.1, 0.5)}
 COARSE_PAPER = """
 import sys
@@ -49,12 +50,12 @@ from softdot.sweeps import points
 paper.PARTS = ("analytical", "segments")
 solve = points.solve_points
 def coarse(configs, *others, **named):
-    larger = [one.model_copy(update={"mesh": one.mesh.scaled(3.0)}) for one in configs]
+    larger = [one.model_copy(update={"mesh": one.mesh.scaled(4.0)}) for one in configs]
     return solve(larger, *others, **named)
 points.solve_points = coarse
 sys.exit(cli.main(sys.argv[1:]))
 """
-"""The cross-sections and segments of the paper alone, on elements three times as large."""
+"""The cross-sections and segments of the paper alone, on elements four times as large."""
 SOFTDOT = [sys.executable, "-m", "softdot.cli"]
 
 
@@ -70,8 +71,9 @@ class Trial:
 def trial(name: str, folder: Path) -> Trial:
     """One of TRIALS, its input written into a folder."""
     if name == "diagnose":
-        make(folder / "recording", 1, RIG, RUNS, 500.0, 6.0)
-        return Trial([*SOFTDOT, "diagnose", str(folder / "recording")], "press-table-*", "verdict.json")
+        make(folder / "recording", 1, COARSE_RIG, RUNS, 500.0, 6.0)
+        command = [*SOFTDOT, "diagnose", str(folder / "recording"), "--fast-model-only"]
+        return Trial(command, "press-table-*", "verdict.json")
     if name == "paper":
         return Trial([sys.executable, "-c", COARSE_PAPER, "paper"], "outcome-*", "paper.json")
     tiny = folder / f"{name}.toml"

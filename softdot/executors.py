@@ -150,17 +150,34 @@ async def _kind(address: str) -> Any:
         return (await server.identity())["type"]
 
 
+SENT = (
+    "softdot.outcome",
+    "softdot.arrays.kernel_presses",
+    "softdot.arrays.presses",
+    "softdot.reading.designs.operating",
+    "softdot.reading.study_task",
+    "softdot.tolerances.responses",
+    "solve.tables.workers",
+)
+"""Modules whose functions workers are asked to call; those of a proof look after themselves."""
+
+
+def program() -> list[str]:
+    """What tells one softdot from another, for a worker."""
+    return [source_hash(module) for module in SENT]
+
+
 def _require_fitting_workers(client: Any, where: str) -> None:
     """Every worker has this softdot."""
     try:
         client.wait_for_workers(1, timeout=WORKERS_S)
     except TimeoutError:
         raise InputError(f"{where}: this scheduler has no workers; start some with 'dask worker ADDRESS'") from None
-    answers = client.run(source_hash, outcome.__module__, on_error="return")
+    answers = client.run(program, on_error="return")
     for worker, answer in answers.items():
         if isinstance(answer, Exception):
             raise InputError(f"{where}: its worker {worker} cannot load softdot ({answer}); install it there")
-        if answer != source_hash(outcome.__module__):
+        if answer != program():
             raise InputError(f"{where}: its worker {worker} has another softdot; install the same one there")
 
 
