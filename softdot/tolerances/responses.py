@@ -180,6 +180,7 @@ def answered(
         found[name] = future.result()
         questions[name].keep(found[name])
         told(len(found), len(questions), name)
+    _LAST.clear()  # where the executor is this process
     return found
 
 
