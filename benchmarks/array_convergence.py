@@ -16,7 +16,7 @@ import numpy as np
 
 from softdot.arrays.case import ArrayCase
 from softdot.arrays.matrix import CrosstalkMatrix, crosstalk
-from softdot.arrays.presses import Follow
+from softdot.arrays.presses import ArrayPresses
 from softdot.config import config_from
 from softdot.config.toml import completed
 
@@ -32,21 +32,15 @@ JOINED: dict[str, dict[str, list[str]]] = {
 }
 
 
-def quiet(_name: str) -> Any:
-    """Tell nobody of the steps."""
-    return lambda _step, _number, _count: None
-
-
 def matrix(columns: int, rows: int, joined: dict[str, list[str]], sizes_mm: tuple[float, float]) -> CrosstalkMatrix:
     """Of segments of 2.3 mm with a free rim, on elements of two sizes."""
-    follow: Follow = quiet
     tables = {
         "segment": {"length_mm": 2.3, "width_mm": 2.3, "boundary": "free"},
         "array": {"columns": columns, "rows": rows, **joined},
         "press": {"indentation_mm": 0.3, "load_steps": 2},
         "mesh": dict(zip(("element_size_mm", "contact_element_size_mm"), sizes_mm, strict=True)),
     }
-    return crosstalk(ArrayCase(config_from(completed(tables))), follow)
+    return crosstalk(ArrayCase(config_from(completed(tables))), ArrayPresses())
 
 
 def row(found: CrosstalkMatrix) -> dict[str, Any]:

@@ -18,9 +18,9 @@ from pathlib import Path
 import numpy as np
 
 from geometry.arrays import Floats
-from geometry.beside import each_beside
 from geometry.braille import dot_offset_mm, raised_dots, standard
 from geometry.environment import usable_cores
+from geometry.executor import LocalProcesses, each_done
 from mesh.array.mesh import array_mesh
 from softdot.arrays.case import ArrayCase, ArrayPress
 from softdot.arrays.kernel import load_kernel
@@ -116,9 +116,10 @@ def main() -> None:
         dots = places - [x, chosen.offset_mm]
         presses[str(number)] = FullPress(config, float(x), dots[(np.abs(dots) < half).all(axis=1)])
     begun, found = time.perf_counter(), {}
-    for name, answer in each_beside(charges, presses, usable_cores()):
-        found[int(name)] = answer
-        print(f"{len(found)} of {len(presses)}: x = {answer[0]:.2f} mm, {answer[3][-1]:.3f} N", flush=True)
+    with LocalProcesses(usable_cores()) as executor:
+        for name, future in each_done(executor, charges, {name: (press,) for name, press in presses.items()}):
+            answer = found[int(name)] = future.result()
+            print(f"{len(found)} of {len(presses)}: x = {answer[0]:.2f} mm, {answer[3][-1]:.3f} N", flush=True)
     most = STEPS + 1
 
     def filled(part: int, number: int) -> Floats:

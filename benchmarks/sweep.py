@@ -2,7 +2,7 @@
 
 POINTS : 64 if not given; WORKERS : 1 and the number of cores. Solid segments on the layered mesher, so that every run
 solves the same meshes, 5 740 unknowns each; load steps, contact and film as in any press. Each run is a process of
-its own with an empty cache; its rate counts from when the workers are ready, `seconds` is the whole command. Rows
+its own with an empty cache; its rate counts the start of the workers too, `seconds` is the whole command. Rows
 that the file has are not measured again.
 """
 

@@ -1,4 +1,4 @@
-"""A process beside this one that does one call after another, on a core that this one leaves free; and several of them.
+"""A process beside this one that does one call after another, on a core that this one leaves free.
 
 Calls and answers are pickled through its standard input and output. Started with one argument: the process number of
 its parent. It ends with its parent, however that ends.
@@ -8,15 +8,20 @@ import os
 import pickle
 import subprocess
 import sys
-from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import Future, ThreadPoolExecutor, wait
-from contextlib import ExitStack
-from queue import Empty, SimpleQueue
-from threading import Event, Thread
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import suppress
+from pathlib import Path
+from threading import Event
 from typing import Any
 
-from geometry.environment import ONE_THREAD
 from geometry.files import end_with_parent, sweep_scratch
+
+OOM_SCORE = Path("/proc/self/oom_score_adj")
+
+
+class ProcessDiedError(RuntimeError):
+    """The process ended before it had answered."""
 
 
 class Beside:
@@ -40,73 +45,47 @@ class Beside:
 
     def __exit__(self, *_: object) -> None:
         self._over.set()
-        self._process.kill()  # asked to end, it could be held up by a library for seconds
-        self._process.wait()
+        self.kill()
         self._pool.shutdown(cancel_futures=True)
         sweep_scratch()
+
+    def kill(self) -> None:
+        """End the process: asked to end, it could be held up by a library for seconds."""
+        self._process.kill()
+        self._process.wait()
 
     def __call__(self, function: Callable[..., Any], *arguments: Any) -> "Future[Any]":
         """What a function returns or raises, later; function : one that a module holds under its name."""
         return self._pool.submit(self._answer, function, *arguments)
 
     def _answer(self, function: Callable[..., Any], *arguments: Any) -> Any:
+        try:
+            return self.answer(function, *arguments)
+        except ProcessDiedError:
+            return None if self._over.is_set() else function(*arguments)
+
+    def answer(self, function: Callable[..., Any], *arguments: Any) -> Any:
+        """What a function returns or raises, waited for. ProcessDiedError; by one thread at a time."""
         asked, answered = self._process.stdin, self._process.stdout
         assert asked is not None
         assert answered is not None
+        call = pickle.dumps((function, arguments))
         try:
-            pickle.dump((function, arguments), asked)
+            asked.write(call)
             asked.flush()
             done, value = pickle.load(answered)
-        except (OSError, EOFError, pickle.UnpicklingError):
-            return None if self._over.is_set() else function(*arguments)
+        except (OSError, ValueError, EOFError, pickle.UnpicklingError):
+            raise ProcessDiedError from None
         if not done:
             raise value
         return value
 
 
-def each_beside(function: Callable[[Any], Any], items: Mapping[str, Any], count: int) -> Iterator[tuple[str, Any]]:
-    """Name and answer of each item as it is done by one of this many processes of one thread each, in the order given.
-
-    What the function raises is raised here.
-    """
-    waiting: SimpleQueue[tuple[str, Any]] = SimpleQueue()
-    done: SimpleQueue[tuple[str, Future[Any]]] = SimpleQueue()
-    for item in items.items():
-        waiting.put(item)
-    over = Event()
-    with ExitStack() as processes:
-        try:
-            for _ in range(count):
-                ask = processes.enter_context(Beside(ONE_THREAD))
-                Thread(target=_feed, args=(ask, function, waiting, done, over), daemon=True).start()
-            for _ in items:
-                name, future = done.get()
-                yield name, future.result()
-        finally:
-            over.set()
-
-
-def _feed(
-    ask: Beside,
-    function: Callable[[Any], Any],
-    waiting: "SimpleQueue[tuple[str, Any]]",
-    done: "SimpleQueue[tuple[str, Future[Any]]]",
-    over: Event,
-) -> None:
-    """One process's share of the items."""
-    while not over.is_set():
-        try:
-            name, item = waiting.get_nowait()
-        except Empty:
-            return
-        future = ask(function, item)
-        wait((future,))
-        done.put((name, future))
-
-
 def work() -> None:
     """Do what standard input asks for until it ends. What libraries print goes to standard error."""
     end_with_parent(int(sys.argv[1]))
+    with suppress(OSError):  # where memory runs out, Linux ends this process rather than its parent
+        OOM_SCORE.write_text("500", "ascii")
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
     while True:
@@ -117,9 +96,18 @@ def work() -> None:
         try:
             answer = pickle.dumps((True, function(*arguments)))
         except Exception as error:
-            answer = pickle.dumps((False, error))
+            answer = pickle.dumps((False, sendable(error)))
         answers.write(answer)
         answers.flush()
+
+
+def sendable(error: Exception) -> Exception:
+    """The error, or another one that says the same where it cannot be pickled or made again from its sentence."""
+    try:
+        pickle.loads(pickle.dumps(error))
+    except Exception:
+        return RuntimeError(f"{type(error).__name__}: {error}")
+    return error
 
 
 if __name__ == "__main__":

@@ -95,6 +95,7 @@ def _add_paper(commands: Any) -> None:
         "numbers beside ours, the calibration factor, and a design search. A second run uses the cache.",
         epilog=EXIT_STATUS,
     )
+    _add_scheduler(paper)
     _add_output(paper)
 
 
@@ -108,7 +109,7 @@ def _add_sweep(commands: Any) -> None:
     )
     sweep.add_argument("space", metavar="SPACE.toml", help="a configuration and its axes")
     _add_set(sweep)
-    sweep.add_argument("--scheduler", metavar="ADDRESS", help="an existing Dask scheduler, tcp://host:8786")
+    _add_scheduler(sweep)
     _add_output(sweep)
 
 
@@ -140,6 +141,7 @@ def _add_diagnose(commands: Any) -> None:
         help="runs with this in their label take no part in naming and only score the result",
     )
     diagnose.add_argument("--seed", type=int, metavar="N", help="seed of everything random, instead of rig.toml's")
+    _add_scheduler(diagnose)
     _add_output(diagnose)
 
 
@@ -161,7 +163,7 @@ def _add_prove(commands: Any) -> None:
     prove.add_argument("--staged", action="store_true", help="the first eight mechanisms only")
     prove.add_argument("--details", action="store_true", help="rigs with small flaws that no mechanism describes")
     prove.add_argument("--workers", type=int, metavar="N", help="number of processes; one per core by default")
-    prove.add_argument("--scheduler", metavar="ADDRESS", help="an existing Dask scheduler, tcp://host:8786")
+    _add_scheduler(prove)
     _add_output(prove)
 
 
@@ -173,6 +175,7 @@ def _add_kit(commands: Any) -> None:
         epilog=EXIT_STATUS,
     )
     _add_config(kit)
+    _add_scheduler(kit)
     _add_output(kit)
 
 
@@ -219,6 +222,7 @@ def _add_array(commands: Any) -> None:
         "--kernel", dest="parts", action="append_const", const="kernel",
         help="write the kernel: charge of every segment against place and depth of a dot, as softdot read needs it",
     )  # fmt: skip
+    _add_scheduler(array)
     _add_output(array)
 
 
@@ -278,7 +282,7 @@ def _add_read(commands: Any) -> None:
     read.add_argument(
         "--workers", type=int, metavar="N", help="processes of a study or search; one per core by default"
     )
-    read.add_argument("--scheduler", metavar="ADDRESS", help="an existing Dask scheduler, tcp://host:8786, for these")
+    _add_scheduler(read, " of a study or search")
     _add_output(read)
 
 
@@ -354,6 +358,12 @@ def _add_set(command: argparse.ArgumentParser) -> None:
         default=[],
         metavar="KEY=VALUE",
         help="a value instead of that in the file, such as press.indentation_mm=0.2; may be repeated",
+    )
+
+
+def _add_scheduler(command: argparse.ArgumentParser, of_what: str = "") -> None:
+    command.add_argument(
+        "--scheduler", metavar="ADDRESS", help=f"presses{of_what} on this Dask cluster, such as tcp://host:8786"
     )
 
 

@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from geometry.base import InputError
+from geometry.executor import LostError
 from softdot.console import BAD_INPUT, NOT_CONVERGED
 
 CLOSED = {errno.EROFS, errno.EACCES, errno.EPERM}
@@ -73,6 +74,8 @@ def without_room(error: BaseException) -> tuple[str, int] | None:
             return f"'{one.filename or 'output'}' cannot be written ({one.strerror})", BAD_INPUT
         if isinstance(one, MemoryError) or (isinstance(one, OSError) and one.errno == errno.ENOMEM):
             return f"out of memory: {ADVICE}", NOT_CONVERGED
+        if isinstance(one, LostError):
+            return f"a press was given up, {one}; what was solved is kept: {ADVICE}", NOT_CONVERGED
         if any(text in str(one).lower() for text in OUT_OF_MEMORY):
             return f"out of memory: {ADVICE}", NOT_CONVERGED
         one = one.__cause__ or one.__context__

@@ -1,7 +1,7 @@
 """The numbers of one press without its files, kept on disk, and its derivatives by any number of a configuration."""
 
 import copy
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -32,9 +32,14 @@ def outcome(config: Config, on_step: OnStep | None = None) -> dict[str, Any]:
     if known is not None:
         return known
     numbers = solved(config, on_step)
-    if "mesh" in numbers:
-        remember(_name(config), numbers)
+    keep_outcome(config, numbers)
     return numbers
+
+
+def keep_outcome(config: Config, numbers: Mapping[str, Any]) -> None:
+    """Remember what was solved, here or elsewhere, where there was a mesh."""
+    if "mesh" in numbers and remembered(config) is None:
+        remember(_name(config), dict(numbers))
 
 
 def remembered(config: Config) -> dict[str, Any] | None:

@@ -15,7 +15,6 @@ def sweep(space: Path | str | Mapping[str, Any], out: Path | str | None = None) 
     """Press every design of a space; one row a point, as in sweep.parquet.
 
     space : SPACE.toml, or its tables. out : folder of the points, which are not solved again; none: they are not kept.
-    A script that calls this needs `if __name__ == "__main__":`, since the processes that solve import it again.
     InputError for what cannot be read or written.
     """
     from softdot.commands.sweep import run_sweep

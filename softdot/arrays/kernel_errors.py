@@ -12,6 +12,7 @@ import numpy as np
 
 from geometry.arrays import Floats
 from geometry.base import Report
+from geometry.executor import HERE, Executor
 from softdot.arrays.case import ArrayCase
 from softdot.arrays.kernel import ArrayKernel
 from softdot.arrays.kernel_checks import check_presses
@@ -53,10 +54,12 @@ def check(
     )
 
 
-def measured(kernel: ArrayKernel, presses: Mapping[str, Config], told: Report) -> list[KernelCheck]:
+def measured(
+    kernel: ArrayKernel, presses: Mapping[str, Config], told: Report, executor: Executor = HERE
+) -> list[KernelCheck]:
     """Each press solved and laid beside the kernel. StoppedPressError."""
     tasks = {name: KernelTask(config, ((0.0,), (0.0,))) for name, config in presses.items()}
-    solved = all_pressed(tasks, told)
+    solved = all_pressed(tasks, told, executor)
     return [
         check(kernel, name, places_of(task), solved[name].depth_mm, solved[name].charge_pC, solved[name].force_N)
         for name, task in tasks.items()
@@ -80,15 +83,17 @@ def beside_matrix(kernel: ArrayKernel, matrix: CrosstalkMatrix) -> list[KernelCh
     return found
 
 
-def kernel_of(case: ArrayCase, matrix: CrosstalkMatrix, told: Report) -> tuple[ArrayKernel, list[KernelCheck]]:
+def kernel_of(
+    case: ArrayCase, matrix: CrosstalkMatrix, told: Report, executor: Executor = HERE
+) -> tuple[ArrayKernel, list[KernelCheck]]:
     """The kernel of an array with its errors; about is left to be filled. StoppedPressError."""
     grid = grid_of(case)
     tasks = grid.tasks()
     x, y = grid.nodes_mm
     names = {f"a dot at {x[i]:.2f}, {y[j]:.2f} mm": (i, j) for i, j in tasks}
-    presses = all_pressed({name: tasks[index] for name, index in names.items()}, told)
+    presses = all_pressed({name: tasks[index] for name, index in names.items()}, told, executor)
     kernel = filled(grid, {names[name]: press for name, press in presses.items()})
-    return kernel, [*measured(kernel, check_presses(case), told), *beside_matrix(kernel, matrix)]
+    return kernel, [*measured(kernel, check_presses(case), told, executor), *beside_matrix(kernel, matrix)]
 
 
 UNITS = {

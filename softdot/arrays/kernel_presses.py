@@ -16,12 +16,11 @@ from scipy.interpolate import Akima1DInterpolator, LinearNDInterpolator, Nearest
 
 from geometry.arrays import Floats
 from geometry.base import Report
-from geometry.beside import each_beside
 from geometry.cache import data_hash, folder, read_arrays, source_hash, write_arrays
-from geometry.environment import usable_cores
+from geometry.executor import Executor, each_done
 from softdot.arrays.case import ArrayCase, ArrayPress
 from softdot.arrays.kernel import ArrayKernel
-from softdot.arrays.matrix import StoppedPressError
+from softdot.arrays.presses import StoppedPressError
 from softdot.config import Config, input_hash
 from solve.press import press_segment
 from solve.result import PressResult
@@ -102,10 +101,14 @@ def recalled(task: KernelTask) -> KernelPress | None:
 def pressed(task: KernelTask) -> KernelPress:
     """Solve a press; one that converges is kept. InputError, MeshingError."""
     found = _solved(task)
+    _keep(task, found)
+    return found
+
+
+def _keep(task: KernelTask, found: KernelPress) -> None:
     if not found.failure:
         with suppress(OSError):  # a cache that cannot be written is no cache
             write_arrays(_path(task), {name: getattr(found, name) for name in KEPT})
-    return found
 
 
 def _path(task: KernelTask) -> Path:
@@ -211,13 +214,15 @@ def grid_of(case: ArrayCase, detail: KernelDetail = USUAL_DETAIL) -> KernelGrid:
     return KernelGrid(case, (grid_mm(case, 0, detail.per_pitch), grid_mm(case, 1, detail.per_pitch)), detail)
 
 
-def all_pressed(tasks: Mapping[str, KernelTask], told: Report) -> dict[str, KernelPress]:
-    """Each task solved, on all cores. StoppedPressError for one that does not converge; the others are kept."""
+def all_pressed(tasks: Mapping[str, KernelTask], told: Report, executor: Executor) -> dict[str, KernelPress]:
+    """Each task solved. StoppedPressError for one that does not converge; the others are kept."""
     found = {name: press for name, task in tasks.items() if (press := recalled(task)) is not None}
-    left = {name: task for name, task in tasks.items() if name not in found}
-    for name, press in each_beside(pressed, left, min(usable_cores(), len(left))):
+    left = {name: (task,) for name, task in tasks.items() if name not in found}
+    for name, future in each_done(executor, pressed, left):
+        press = future.result()
         if press.failure:
             raise StoppedPressError(f"{tasks[name].where} did not converge: {press.failure}")
+        _keep(tasks[name], press)
         found[name] = press
         told(name, len(found), len(tasks))
     return found

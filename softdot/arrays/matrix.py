@@ -9,14 +9,10 @@ import numpy as np
 
 from geometry.array.layout import ArrayLayout
 from geometry.arrays import Floats
-from softdot.arrays.case import ArrayCase
-from softdot.arrays.presses import Follow, Signals, signals
+from softdot.arrays.case import ArrayCase, ArrayPress
+from softdot.arrays.presses import ArrayPresses, Signals
 
 SYMMETRIC_WITHIN = 1e-9
-
-
-class StoppedPressError(RuntimeError):
-    """A press of the array did not converge: which one, where and why. The command exits with 3."""
 
 
 @dataclass(frozen=True)
@@ -134,17 +130,12 @@ class CrosstalkMatrix:
         }
 
 
-def crosstalk(case: ArrayCase, follow: Follow) -> CrosstalkMatrix:
+def matrix_presses(case: ArrayCase) -> dict[str, ArrayPress]:
+    """Those that are no image of another one, by their names."""
+    places = [case.layout.places[number] for number in case.solved]
+    return {f"the press of {place.label}": case.press_over(place) for place in places}
+
+
+def crosstalk(case: ArrayCase, solve: ArrayPresses) -> CrosstalkMatrix:
     """Solve every press that is no image of another one. StoppedPressError for one that does not converge."""
-    solved = {}
-    for number in case.solved:
-        place = case.layout.places[number]
-        solved[number] = converged(signals(case.press_over(place), follow(place.label)), f"the press of {place.label}")
-    return CrosstalkMatrix(case, solved)
-
-
-def converged(found: Signals, what: str) -> Signals:
-    """The same signals. StoppedPressError where the press stopped short."""
-    if found.failure is not None:
-        raise StoppedPressError(f"{what} did not converge: {found.failure}")
-    return found
+    return CrosstalkMatrix(case, dict(zip(case.solved, solve(matrix_presses(case)).values(), strict=True)))

@@ -6,7 +6,7 @@ was; a press that was stopped goes on from its checkpoint.
 
 import json
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -16,10 +16,11 @@ import numpy as np
 
 from geometry.arrays import Floats
 from geometry.cache import data_hash, folder, read_kept, source_hash, write_kept
-from mesh.types import mesh_hash
-from softdot.arrays.case import ArrayPress
+from geometry.executor import HERE, Executor, each_done
+from geometry.parameters import Dot
+from softdot.arrays.case import ArrayCase, ArrayPress
 from softdot.checks import result_warnings
-from softdot.config import input_hash
+from softdot.config import Config, input_hash
 from solve.model import Readout
 from solve.press import OnStep, press_segment
 from solve.readout.recording import channel_voltages
@@ -60,15 +61,84 @@ class Signals:
 TUPLES = ("planes", "warnings")
 
 
-def signals(press: ArrayPress, on_step: OnStep | None = None) -> Signals:
+class StoppedPressError(RuntimeError):
+    """A press of the array did not converge: which one, where and why. The command exits with 3."""
+
+
+class ArrayPresses:
+    """Presses of a study in numbers, each solved once by an executor.
+
+    told : after each press, how many are there, of how many, and the name of that one.
+    """
+
+    def __init__(self, executor: Executor = HERE, told: Callable[[int, int, str], None] = lambda *_: None) -> None:
+        self._executor, self._told = executor, told
+        self._known: dict[Path, Signals] = {}
+
+    def __call__(self, presses: Mapping[str, ArrayPress]) -> dict[str, Signals]:
+        """Of each press by its name. StoppedPressError where one did not converge, InputError, MeshingError."""
+        paths = {name: _path(press) for name, press in presses.items()}
+        self._known |= {path: found for path in paths.values() if (found := self._recalled(path)) is not None}
+        missing = {path: name for name, path in paths.items() if path not in self._known}
+        calls = {path: _told(presses[name]) for path, name in missing.items()}
+        there = len(presses) - len(missing)
+        for number, (path, future) in enumerate(each_done(self._executor, signals_of_dot, calls), 1 + there):
+            self.know(path, converged(future.result(), missing[path]))
+            self._told(number, len(presses), missing[path])
+        return {name: self._known[path] for name, path in paths.items()}
+
+    def _recalled(self, path: Path) -> Signals | None:
+        return self._known.get(path) or recalled(path)
+
+    def with_fields(self, press: ArrayPress, name: str, others: Mapping[str, ArrayPress]) -> PressResult:
+        """The solver's own result of a press, solved beside others, which are then known. Errors as for a call."""
+        future = self._executor.submit(result_of_dot, *_told(press))
+        self({key: other for key, other in others.items() if _path(other) != _path(press)})
+        found, result = future.result()
+        assert isinstance(result, PressResult)
+        self.know(_path(press), converged(found, name))
+        return result
+
+    def know(self, path: Path, found: Signals) -> None:
+        """Keep what was solved, on disk too."""
+        self._known[path] = found
+        _keep(path, found)
+
+
+def _told(press: ArrayPress) -> tuple[Config, Dot]:
+    """What another process makes the press from."""
+    return press.case.config, press.config.dot
+
+
+def signals_of_dot(config: Config, dot: Dot) -> Signals:
+    """As signals, of the array of a configuration."""
+    return signals(ArrayPress(ArrayCase(config), dot))
+
+
+def result_of_dot(config: Config, dot: Dot) -> tuple[Signals, PressResult]:
+    """The same with the solver's own result."""
+    return _solved(ArrayPress(ArrayCase(config), dot), None)
+
+
+def converged(found: Signals, what: str) -> Signals:
+    """The same signals. StoppedPressError where the press stopped short."""
+    if found.failure is not None:
+        raise StoppedPressError(f"{what} did not converge: {found.failure}")
+    return found
+
+
+def signals(press: ArrayPress) -> Signals:
     """Solve a press, or take it from the cache. What did not converge has a failure and what was reached before it.
 
     InputError, MeshingError.
     """
-    kept = read_kept(_path(press))
-    if kept is not None:
-        return _decoded(json.loads(kept))
-    return _solved(press, on_step)[0]
+    return recalled(_path(press)) or _solved(press, None)[0]
+
+
+def recalled(path: Path) -> Signals | None:
+    """The numbers of a press that was solved before."""
+    kept = read_kept(path)
+    return None if kept is None else _decoded(json.loads(kept))
 
 
 def remembered(press: ArrayPress, on_step: OnStep | None = None) -> PressResult:
@@ -82,14 +152,14 @@ def _solved(press: ArrayPress, on_step: OnStep | None) -> tuple[Signals, PressRe
     checkpoint = Checkpoint(path.with_suffix(".npz"), path.stem)
     result = press_segment(press.model, press.mesh, on_step, checkpoint, press.dot)
     found = signals_of(press, result, time.perf_counter() - begun)
-    if found.failure is None:
-        _keep(path, found)
+    _keep(path, found)
     return found, result
 
 
 def _path(press: ArrayPress) -> Path:
     """Where a press is kept."""
-    key = data_hash([source_hash(__name__), input_hash(press.config), mesh_hash(press.mesh)])
+    config = press.case.config.model_copy(update={"dot": press.config.dot})
+    key = data_hash([source_hash(__name__), input_hash(config)])
     return folder() / f"array-{key}.json"
 
 
@@ -119,6 +189,8 @@ def signals_of(press: ArrayPress, result: PressResult, solve_s: float) -> Signal
 
 
 def _keep(path: Path, found: Signals) -> None:
+    if found.failure is not None or path.exists():
+        return
     tree = {key: value.tolist() if isinstance(value, np.ndarray) else value for key, value in asdict(found).items()}
     with suppress(OSError):  # a cache that cannot be written is no cache
         write_kept(path, json.dumps(tree).encode())
@@ -129,7 +201,3 @@ def _decoded(tree: dict[str, Any]) -> Signals:
         key: (tuple if key in TUPLES else np.array)(value) for key, value in tree.items() if isinstance(value, list)
     }
     return Signals(**{**tree, **lists})
-
-
-Follow = Callable[[str], OnStep]
-"""Of the name of a press: who is told of its steps."""

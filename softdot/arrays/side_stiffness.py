@@ -16,9 +16,9 @@ from scipy.optimize import minimize_scalar
 from geometry.array.layout import ArrayLayout, SegmentPlace
 from geometry.arrays import Floats
 from geometry.parameters import LayerName
-from softdot.arrays.case import ArrayCase
-from softdot.arrays.matrix import CrosstalkMatrix, converged
-from softdot.arrays.presses import Follow, Signals, signals
+from softdot.arrays.case import ArrayCase, ArrayPress
+from softdot.arrays.matrix import CrosstalkMatrix
+from softdot.arrays.presses import ArrayPresses, Signals
 
 STIFFNESSES_N_PER_MM3 = (0.01, 0.1, 0.5, 2.0, 10.0, 50.0, 300.0, 3000.0)
 ROLES = ("inner", "edge", "corner")
@@ -79,49 +79,76 @@ def held_candidates(layout: ArrayLayout) -> list[tuple[LayerName, ...]]:
     return list(dict.fromkeys((joined, without, film)))
 
 
-def effective_sides(matrix: CrosstalkMatrix, follow: Follow) -> dict[str, EffectiveSides]:
+@dataclass(frozen=True)
+class Sides:
+    """The sides of a lone segment: boundary of [segment], the layers that are held, and the stiffness of springs."""
+
+    boundary: str
+    held: tuple[LayerName, ...] = ()
+    stiffness_N_per_mm3: float = 0.0
+
+    @property
+    def name(self) -> str:
+        """In words."""
+        spring = f" {self.stiffness_N_per_mm3:.4g} N/mm3" if self.boundary == "elastic" else ""
+        return f"lone segment, {self.boundary}{spring}, {' '.join(self.held) or 'no layer'} held"
+
+    def press(self, case: ArrayCase) -> ArrayPress:
+        """Of one segment of an array alone."""
+        update = {
+            "boundary": self.boundary,
+            "held_layers": self.held,
+            "side_stiffness_N_per_mm3": self.stiffness_N_per_mm3,
+        }
+        alone = case.lone(case.config.segment.model_copy(update=update))
+        return alone.press_over(alone.layout.places[0])
+
+
+FREE = Sides("free")
+
+
+def lone_sides(layout: ArrayLayout) -> list[Sides]:
+    """All that are pressed whatever comes out; none for one segment."""
+    if len(layout.places) == 1:
+        return []
+    return [Sides("elastic", held, k) for held in held_candidates(layout) for k in STIFFNESSES_N_PER_MM3] + [FREE]
+
+
+def lone_presses(case: ArrayCase, sides: Sequence[Sides]) -> dict[str, ArrayPress]:
+    """By their names."""
+    return {one.name: one.press(case) for one in sides}
+
+
+def effective_sides(matrix: CrosstalkMatrix, solve: ArrayPresses) -> dict[str, EffectiveSides]:
     """For each role that the array has; none for one segment. StoppedPressError.
 
     Lone segments are pressed over a range of stiffness, for each set of layers that springs may hold. Their force and
     voltage, interpolated over the logarithm of the stiffness, give the best set and stiffness; that one is pressed
     itself, and its errors are the ones that count.
     """
-    case = matrix.case
-    if len(matrix.layout.places) == 1:
+    case, layout = matrix.case, matrix.layout
+    lone = solve(lone_presses(case, lone_sides(layout)))
+    if not lone:
         return {}
     by_force = case.config.press.force_N is not None
     families = {
-        held: {k: _pressed(case, "elastic", held, k, follow) for k in STIFFNESSES_N_PER_MM3}
-        for held in held_candidates(matrix.layout)
+        held: [_response(lone[Sides("elastic", held, k).name], by_force) for k in STIFFNESSES_N_PER_MM3]
+        for held in held_candidates(layout)
     }
-    free = _pressed(case, "free", (), 0.0, follow)
+    roles = representatives(layout)
+    targets = {role: _response(matrix.press(n), by_force, matrix.seen_from(n)[n]) for role, n in roles.items()}
+    bests = {
+        role: min((_best(held, curves, target) for held, curves in families.items()), key=lambda one: one.mean_square)
+        for role, target in targets.items()
+    }
+    beside = {role: (best.sides, FREE, Sides("clamped", best.held)) for role, best in bests.items()}
+    lone |= solve(lone_presses(case, [one for three in beside.values() for one in three]))
     found = {}
-    for name, number in representatives(matrix.layout).items():
-        target = _response(matrix.press(number), by_force, matrix.seen_from(number)[number])
-        best = min(
-            (
-                _best(held, [_response(one, by_force) for one in lone.values()], target)
-                for held, lone in families.items()
-            ),
-            key=lambda one: one.mean_square,
-        )
-        presses = [
-            _pressed(case, "elastic", best.held, best.stiffness_N_per_mm3, follow),
-            free,
-            _pressed(case, "clamped", best.held, 0.0, follow),
-        ]
-        likeness = [_likeness(_response(one, by_force), target, by_force) for one in presses]
-        label = matrix.layout.places[number].label
-        found[name] = EffectiveSides(label, best.held, best.stiffness_N_per_mm3, best.at_limit, *likeness)
+    for role, best in bests.items():
+        likeness = [_likeness(_response(lone[one.name], by_force), targets[role], by_force) for one in beside[role]]
+        label = layout.places[roles[role]].label
+        found[role] = EffectiveSides(label, best.held, best.stiffness_N_per_mm3, best.at_limit, *likeness)
     return found
-
-
-def _pressed(case: ArrayCase, boundary: str, held: tuple[LayerName, ...], k: float, follow: Follow) -> Signals:
-    update = {"boundary": boundary, "held_layers": held, "side_stiffness_N_per_mm3": k}
-    alone = case.lone(case.config.segment.model_copy(update=update))
-    spring = f" {k:.3g} N/mm3" if boundary == "elastic" else ""
-    what = f"lone segment, {boundary}{spring}, {' '.join(held) or 'no layer'} held"
-    return converged(signals(alone.press_over(alone.layout.places[0]), follow(what)), what)
 
 
 def _response(found: Signals, by_force: bool, number: int = 0) -> Floats:
@@ -149,6 +176,11 @@ class _Interpolated:
     stiffness_N_per_mm3: float
     at_limit: bool
     mean_square: float
+
+    @property
+    def sides(self) -> Sides:
+        """To be pressed."""
+        return Sides("elastic", self.held, self.stiffness_N_per_mm3)
 
 
 def _best(held: tuple[LayerName, ...], lone: Sequence[Floats], target: Floats) -> _Interpolated:

@@ -7,13 +7,14 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from geometry.arrays import Floats
+from geometry.executor import Executor
 from softdot.arrays.case import ArrayCase, ArrayPress
 from softdot.arrays.kernel import ArrayKernel
 from softdot.arrays.kernel_errors import KernelCheck, kernel_of
-from softdot.arrays.matrix import CrosstalkMatrix, StoppedPressError, converged, crosstalk
-from softdot.arrays.presses import Follow, Signals, remembered, signals
-from softdot.arrays.side_stiffness import EffectiveSides, effective_sides, representatives
-from softdot.arrays.variants import Worth, worth
+from softdot.arrays.matrix import CrosstalkMatrix, crosstalk, matrix_presses
+from softdot.arrays.presses import ArrayPresses, Signals
+from softdot.arrays.side_stiffness import EffectiveSides, effective_sides, lone_presses, lone_sides, representatives
+from softdot.arrays.variants import Worth, variant_presses, worth
 from softdot.console import Progress
 from solve.result import PressResult
 
@@ -68,40 +69,42 @@ class ArrayStudy:
     checks: list[KernelCheck]
 
 
-def study(case: ArrayCase, follow: Follow, progress: Progress, parts: frozenset[Part]) -> ArrayStudy:
-    """Solve everything; parts : what is asked for beside the matrix.
+def study(case: ArrayCase, executor: Executor, progress: Progress, parts: frozenset[Part]) -> ArrayStudy:
+    """Solve everything by an executor; parts : what is asked for beside the matrix.
 
     StoppedPressError where a press does not converge, InputError, MeshingError.
     """
-    number = next(iter(representatives(case.layout).values()))
-    place = case.layout.places[number]
+    place = case.layout.places[next(iter(representatives(case.layout).values()))]
     by_cell = case.config.dot.cell is not None
+    number = case.layout.places.index(place)
     shown = case.press_by_cell() if by_cell else case.press_over(case.layout.places[min(case.images(number))])
     title = f"The cell {case.config.dot.cell}" if by_cell else f"A dot over {place.label}"
-    progress.stage("shown press")
-    result = remembered(shown, follow(title))
-    if result.failure is not None:
-        raise StoppedPressError(f"{title} did not converge: {result.failure}")
-    progress.stage("matrix")
-    matrix = crosstalk(case, follow)
-    cell = _cell_press(case, matrix, follow) if by_cell else None
+    solve = ArrayPresses(executor, progress.step)
+    progress.stage("presses")
+    result = solve.with_fields(shown, title, _known_presses(case, parts))
+    matrix = crosstalk(case, solve)
+    cell = _cell_press(case, matrix, solve) if by_cell else None
     progress.stage("sides")
-    sides = effective_sides(matrix, follow)
-    variants: list[Worth] = []
-    if "variants" in parts:
-        progress.stage("variants")
-        variants = worth(case, follow)
+    sides = effective_sides(matrix, solve)
+    variants = worth(case, solve) if "variants" in parts else []
     found = ArrayStudy(matrix, sides, cell, variants, shown, result, title, None, [])
     if "kernel" not in parts:
         return found
     progress.stage("kernel")
-    kernel, checks = kernel_of(case, matrix, lambda name, number, count: progress.step(number, count, name))
+    told = progress.step
+    kernel, checks = kernel_of(case, matrix, lambda name, done, count: told(done, count, name), executor)
     return replace(found, kernel=kernel, checks=checks)
 
 
-def _cell_press(case: ArrayCase, matrix: CrosstalkMatrix, follow: Follow) -> CellPress:
+def _known_presses(case: ArrayCase, parts: frozenset[Part]) -> dict[str, ArrayPress]:
+    """All that are solved whatever comes out, in one go, so that no core waits in between."""
+    presses = {**matrix_presses(case), **lone_presses(case, lone_sides(case.layout))}
+    return {**presses, **variant_presses(case)[0]} if "variants" in parts else presses
+
+
+def _cell_press(case: ArrayCase, matrix: CrosstalkMatrix, solve: ArrayPresses) -> CellPress:
     cell = case.config.dot.cell or ""
-    found = converged(signals(case.press_by_cell(), follow(f"cell {cell}")), f"the press of the cell {cell}")
+    (found,) = solve({f"the press of the cell {cell}": case.press_by_cell()}).values()
     alone = [
         PchipInterpolator(matrix.depth_mm[i], matrix.charge_pC[i], extrapolate=False)(found.depth_mm)
         for i in case.under_dots().values()

@@ -5,13 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from geometry.array.checks import check_array
-from geometry.array.layout import ArrayLayout, array_layout
+from geometry.array.layout import ArrayLayout, SegmentPlace, array_layout
 from geometry.array.parameters import Array, Groove
 from geometry.base import InputError
 from geometry.parameters import LayerName
-from softdot.arrays.case import ArrayCase
-from softdot.arrays.matrix import converged
-from softdot.arrays.presses import Follow, signals
+from softdot.arrays.case import ArrayCase, ArrayPress
+from softdot.arrays.presses import ArrayPresses
 from softdot.arrays.side_stiffness import representatives
 
 GROOVE_WIDTH, GROOVE_DEPTH = 0.1, 0.75
@@ -63,19 +62,34 @@ def ways(layout: ArrayLayout) -> dict[str, Array]:
     return found
 
 
-def worth(case: ArrayCase, follow: Follow) -> list[Worth]:
-    """Of each way of joining, with the segment nearest to the middle pressed. StoppedPressError."""
-    number = next(iter(representatives(case.layout).values()))
-    found = []
+def variant_presses(case: ArrayCase) -> tuple[dict[str, ArrayPress], dict[str, str]]:
+    """Of each way of joining, by its name, the press of the segment nearest to the middle, or why there is none."""
+    presses, why_not = {}, {}
     for name, array in ways(case.layout).items():
         other = ArrayCase(case.config.model_copy(update={"array": array}))
-        place = case.layout.places[number]
         try:
             check_array(array_layout(array, case.config.segment, case.config.dot))
         except InputError as error:
-            found.append(Worth(name, place.label, None, None, None, None, str(error)))
+            why_not[name] = str(error)
+        else:
+            presses[name] = other.press_over(_middle(case))
+    return presses, why_not
+
+
+def _middle(case: ArrayCase) -> SegmentPlace:
+    return case.layout.places[next(iter(representatives(case.layout).values()))]
+
+
+def worth(case: ArrayCase, solve: ArrayPresses) -> list[Worth]:
+    """Of each way of joining, with the segment nearest to the middle pressed. StoppedPressError."""
+    presses, why_not = variant_presses(case)
+    solved, place, found = solve(presses), _middle(case), []
+    number = case.layout.places.index(place)
+    for name in ways(case.layout):
+        if name in why_not:
+            found.append(Worth(name, place.label, None, None, None, None, why_not[name]))
             continue
-        press = converged(signals(other.press_over(place), follow(name)), f"the press of {place.label}, {name},")
+        press = solved[name]
         others = np.abs(np.delete(press.signal_V[-1], number))
         share = 100.0 * float(others.max(initial=0.0)) / abs(float(press.signal_V[-1, number]))
         force_N, charge_pC = float(press.force_N[-1]), float(press.charge_pC[-1, number])

@@ -29,11 +29,8 @@ if TYPE_CHECKING:
     from argparse import Namespace
 
     from softdot.arrays.kernel import ArrayKernel
-    from softdot.arrays.presses import Follow
     from softdot.arrays.study import ArrayStudy, Part
     from softdot.config import Config
-    from solve.press import OnStep
-    from solve.result import Step
 
 ARRAY = Product(
     "softdot-array/1",
@@ -46,11 +43,16 @@ HERE = Path(__file__).parent
 
 
 def run_array(
-    config: Config, out: Path, progress: Progress | None = None, parts: frozenset[Part] = frozenset()
+    config: Config,
+    out: Path,
+    progress: Progress | None = None,
+    parts: frozenset[Part] = frozenset(),
+    scheduler: str | None = None,
 ) -> dict[str, Any]:
     """Study the array of a configuration into the folder out and return what array.json says; parts : asked for beside
     the matrix.
 
+    Presses are done by processes of this computer, or on the Dask cluster of a scheduler (tcp://HOST:PORT).
     InputError before any work for what cannot be built or written. Where a press does not converge, StoppedPressError
     or MeshingError: nothing is written, and presses that were solved are kept in the cache.
     """
@@ -58,6 +60,7 @@ def run_array(
     from geometry.cache import check_folder
     from softdot.arrays.case import ArrayCase
     from softdot.arrays.study import study
+    from softdot.executors import executor_for
 
     progress = progress or Logged()
     with named_when_missing():
@@ -67,28 +70,16 @@ def run_array(
         if "kernel" in parts:
             case.refuse_kernel()
         ensure_rendering()
-        with staged_folder(out, ARRAY) as folder:
+        with executor_for(scheduler) as executor, staged_folder(out, ARRAY) as folder:
             warn(warnings)
             begun = time.perf_counter()
-            found = study(case, following(progress), progress, parts)
+            found = study(case, executor, progress, parts)
             solve_s = time.perf_counter() - begun
             progress.stage("export")
             summary: dict[str, Any] = plain({**_summary(config, found, warnings), "timing_s": {"solve": solve_s}})
             _write(case, found, summary, folder)
             write_json(folder / ARRAY.summary, summary)
     return summary
-
-
-def following(progress: Progress) -> Follow:
-    """Tell the steps of each press with its name."""
-
-    def follow(name: str) -> OnStep:
-        def on_step(step: Step, number: int, count: int) -> None:
-            progress.step(number, count, f"{name}, {1e3 * step.indentation_m:.3f} mm, {step.reaction_force_N:.3g} N")
-
-        return on_step
-
-    return follow
 
 
 def _summary(config: Config, found: ArrayStudy, warnings: list[str]) -> dict[str, Any]:
@@ -235,14 +226,14 @@ def _write_report(
 def command(chosen: Namespace) -> int:
     """Study chosen.config into chosen.output; 0, or 3 when a press did not converge. InputError."""
     from mesh.types import MeshingError
-    from softdot.arrays.matrix import StoppedPressError
+    from softdot.arrays.presses import StoppedPressError
     from softdot.config import load_config
     from softdot.console import progress_of
 
     config = load_config(chosen.config, chosen.set)
     try:
         with only_the_summary_on_stdout(), progress_of(chosen) as progress:
-            summary = run_array(config, Path(chosen.output), progress, frozenset(chosen.parts))
+            summary = run_array(config, Path(chosen.output), progress, frozenset(chosen.parts), chosen.scheduler)
     except (StoppedPressError, MeshingError) as error:
         complain(f"{error}; nothing was written, presses that were solved are kept in the cache")
         return NOT_CONVERGED

@@ -21,6 +21,7 @@ from diagnose.verdict.resimulation import OutOfTimeError, Resimulated, resimulat
 from diagnose.verdict.words import sentences
 from geometry.base import InputError, Report, nearest
 from geometry.cache import check_folder
+from geometry.executor import HERE, Executor
 from softdot.config import Config
 from softdot.config.rig import Rig, load_rig
 from softdot.console import (
@@ -34,6 +35,7 @@ from softdot.console import (
     show,
     write_json,
 )
+from softdot.executors import executor_for
 from softdot.output import Product, staged_folder
 from solve.mechanisms import MECHANISMS
 from solve.solution.newton import NoEquilibriumError
@@ -71,10 +73,15 @@ class Proof:
 
 
 def run_diagnosis(
-    folder: Path, out: Path, options: Options | None = None, progress: Progress | None = None
+    folder: Path,
+    out: Path,
+    options: Options | None = None,
+    progress: Progress | None = None,
+    scheduler: str | None = None,
 ) -> dict[str, Any]:
     """Diagnose a recording into the folder out and return the content of verdict.json.
 
+    Presses are done by processes of this computer, or on the Dask cluster of a scheduler (tcp://HOST:PORT).
     InputError before any work for what cannot be read or written; NoEquilibriumError when the baseline has none. In
     both cases nothing is written. A named mechanism that the full model cannot press is told in fit.failure.
     """
@@ -85,8 +92,8 @@ def run_diagnosis(
     rig = replace(rig, recording=thinned(rig.recording))
     held_out(rig.recording, options.hold_out)
     noise_models(rig.recording)  # refuses a channel without known noise before any press
-    with staged_folder(out, DIAGNOSIS) as staged:
-        summary: dict[str, Any] = plain(_fill(rig, options, progress, staged))
+    with executor_for(scheduler) as executor, staged_folder(out, DIAGNOSIS) as staged:
+        summary: dict[str, Any] = plain(_fill(rig, options, progress, staged, executor))
         write_json(staged / DIAGNOSIS.summary, summary)
     return summary
 
@@ -100,7 +107,7 @@ def _refuse_what_sampling_misses(rig: Rig) -> None:
             refuse_slow_sampling(run, frequency_Hz, mechanism.name)
 
 
-def _fill(rig: Rig, options: Options, progress: Progress, folder: Path) -> dict[str, Any]:
+def _fill(rig: Rig, options: Options, progress: Progress, folder: Path, executor: Executor) -> dict[str, Any]:
     """Everything but verdict.json; returns the verdict."""
     from diagnose.inference.diagnose import diagnose
     from diagnose.inference.held_runs import diagnose_and_score
@@ -110,7 +117,7 @@ def _fill(rig: Rig, options: Options, progress: Progress, folder: Path) -> dict[
     report = _reporting(progress)
     seed = rig.bench.seed if options.seed is None else options.seed
     progress.stage("model")
-    engine = narrowed(engine_for(rig, report), options.without)
+    engine = narrowed(engine_for(rig, report, executor), options.without)
     progress.stage("compare")
     held = held_out(rig.recording, options.hold_out)
     if held:
@@ -203,7 +210,7 @@ def command(chosen: Namespace) -> int:
     options = Options(limit_s, chosen.seed, tuple(chosen.without), tuple(chosen.hold_out))
     try:
         with only_the_summary_on_stdout(), progress_of(chosen) as progress:
-            summary = run_diagnosis(Path(chosen.recording), Path(chosen.output), options, progress)
+            summary = run_diagnosis(Path(chosen.recording), Path(chosen.output), options, progress, chosen.scheduler)
     except (NoEquilibriumError, MeshingError) as error:
         complain(f"diagnose, {error}; nothing was written")
         return NOT_CONVERGED
@@ -219,10 +226,10 @@ def short_text(summary: dict[str, Any], output: str) -> str:
     return "\n".join([*summary["summary"], f"{output}/report.html"])
 
 
-def engine_for(rig: Rig, report: Report) -> Engine:
+def engine_for(rig: Rig, report: Report, executor: Executor = HERE) -> Engine:
     """The engine for what rig.toml describes. InputError; NoEquilibriumError where its baseline has none."""
     if rig.config is not None:
-        return _of_segment(rig, rig.config, report)
+        return _of_segment(rig, rig.config, report, executor)
     if rig.recording.specimen is not None:
         from diagnose.engines.coupon.engine import coupon_engine
 
@@ -232,8 +239,8 @@ def engine_for(rig: Rig, report: Report) -> Engine:
     return proportional_engine(rig.recording, report)
 
 
-def _of_segment(rig: Rig, config: Config, report: Report) -> Engine:
+def _of_segment(rig: Rig, config: Config, report: Report, executor: Executor) -> Engine:
     from diagnose.engines.segment.engine import segment_engine
     from softdot.config.model import model_of
 
-    return segment_engine(model_of(config), config.mesh, rig.recording, report)
+    return segment_engine(model_of(config), config.mesh, rig.recording, report, executor)

@@ -15,6 +15,7 @@ from export.cut_files import write_cut_files
 from export.printability import check_part, printer_profile
 from export.view import ensure_rendering
 from geometry.base import InputError
+from geometry.executor import Executor
 from geometry.fabrication.device import Device, array_device, lone_device
 from geometry.fabrication.kit import solid_kit
 from geometry.fabrication.part import ROUNDING_MM, FabricationPart
@@ -41,6 +42,7 @@ from softdot.console import (
     warn,
     write_json,
 )
+from softdot.executors import AwayError, executor_for
 from softdot.machine import named_when_missing
 from softdot.output import Product, staged_folder
 from softdot.tolerances.budget import UNFINISHED, BudgetOutcome, budget_of, failed
@@ -58,7 +60,7 @@ def command(chosen: Namespace) -> int:
 
     config = load_config(chosen.config, chosen.set)
     with only_the_summary_on_stdout(), progress_of(chosen) as progress:
-        summary = make_kit(config, Path(chosen.output), progress)
+        summary = make_kit(config, Path(chosen.output), progress, chosen.scheduler)
     show(summary, chosen, short_text)
     if summary["failure"] is None:
         return GOOD
@@ -169,15 +171,18 @@ KIT = Product(
 )
 
 
-def make_kit(config: Config, out: Path, progress: Progress | None = None) -> dict[str, Any]:
+def make_kit(
+    config: Config, out: Path, progress: Progress | None = None, scheduler: str | None = None
+) -> dict[str, Any]:
     """Write the kit of a configuration into the folder out and return what kit.json says.
 
     InputError with one sentence, before anything is written, for what cannot be made. The kit appears without its
     tolerance budget; kit.json and kit.html are replaced when that is known. Where it fails nothing is raised: the kit
-    stays without it, and failure says why. Where it is interrupted the kit stays too.
+    stays without it, and failure says why. Where it is interrupted the kit stays too. The budget's presses are done by
+    processes of this computer, or on the Dask cluster of a scheduler (tcp://HOST:PORT).
     """
     progress = progress or Logged()
-    with named_when_missing():
+    with named_when_missing(), executor_for(scheduler) as executor:
         warnings = _checked(config)
         ensure_rendering()
         with staged_folder(out, KIT) as folder:
@@ -188,7 +193,7 @@ def make_kit(config: Config, out: Path, progress: Progress | None = None) -> dic
             first = _write_sheet(config, contents, UNFINISHED, folder)
         with log_file(out / LOG_FILE):
             progress.stage("tolerances")
-            outcome = _outcome(config, progress)
+            outcome = _outcome(config, progress, executor)
         if json_text(first) != _kit_json(out):
             raise InputError(f"output '{out}': another kit was written there meanwhile; this one's budget has no place")
         return _write_sheet(config, contents, outcome, out)
@@ -271,10 +276,13 @@ def _pressed_segment(config: Config) -> str:
     return f"one segment of the array alone, {sides}"
 
 
-def _outcome(config: Config, progress: Progress) -> BudgetOutcome:
+def _outcome(config: Config, progress: Progress, executor: Executor) -> BudgetOutcome:
     """The tolerance budget, or why there is none."""
     try:
-        return BudgetOutcome("complete", budget=plain(budget_of(budget_config(config), progress.step).as_dict()))
+        budget = budget_of(budget_config(config), progress.step, executor)
+        return BudgetOutcome("complete", budget=plain(budget.as_dict()))
+    except AwayError:
+        raise
     except (InputError, LinearSolveError, MeshingError, StoppedShortError) as error:
         return failed(error)
 

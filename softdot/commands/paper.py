@@ -11,6 +11,7 @@ from typing import Any
 
 from export.page import page_environment
 from export.report import number
+from geometry.executor import Executor
 from geometry.files import write_whole_text
 from softdot.console import (
     GOOD,
@@ -24,6 +25,7 @@ from softdot.console import (
     show,
     write_json,
 )
+from softdot.executors import executor_for
 from softdot.output import Product, staged_folder
 from softdot.paper.published import Published, inconsistencies, published
 from softdot.paper.section import Answer, Block, Cell, Figure, Heading, PaperTable, Section
@@ -36,7 +38,7 @@ def command(chosen: Namespace) -> int:
 
     try:
         with only_the_summary_on_stdout(), progress_of(chosen) as progress:
-            summary = run_paper(Path(chosen.output), progress)
+            summary = run_paper(Path(chosen.output), progress, chosen.scheduler)
     except NotSolvedError as error:
         complain(f"paper, {error}; nothing was written, solved presses are cached")
         return NOT_CONVERGED
@@ -174,15 +176,16 @@ PARTS = ("analytical", "calibration", "segments", "beyond")
 """Packages of softdot.paper, in the order of the page; each has a function section."""
 
 
-def run_paper(out: Path, progress: Progress | None = None) -> dict[str, Any]:
+def run_paper(out: Path, progress: Progress | None = None, scheduler: str | None = None) -> dict[str, Any]:
     """Solve what is not remembered, write the study into the folder out and return the content of paper.json.
 
+    Presses are done by processes of this computer, or on the Dask cluster of a scheduler (tcp://HOST:PORT).
     InputError before any work when out cannot be written; NotSolvedError when a press gives no result. In both
     cases nothing is written, and what was solved is remembered.
     """
-    with staged_folder(out, PAPER) as folder:
+    with executor_for(scheduler) as executor, staged_folder(out, PAPER) as folder:
         (folder / "figures").mkdir()
-        sections = [_part(name)(progress or Logged(), folder) for name in PARTS]
+        sections = [_part(name)(progress or Logged(), folder, executor) for name in PARTS]
         summary: dict[str, Any] = plain(content(sections))
         _write_tables(all_tables(sections), folder / "tables")
         write_report(sections, folder / "paper.html")
@@ -213,8 +216,8 @@ def all_tables(sections: Sequence[Section]) -> list[PaperTable]:
     ]
 
 
-def _part(name: str) -> Callable[[Progress, Path], Section]:
-    found: Callable[[Progress, Path], Section] = import_module(f"softdot.paper.{name}").section
+def _part(name: str) -> Callable[[Progress, Path, Executor], Section]:
+    found: Callable[[Progress, Path, Executor], Section] = import_module(f"softdot.paper.{name}").section
     return found
 
 

@@ -86,7 +86,6 @@ def prove_case(case: Case, terms: Terms, place: Path, program: str) -> dict[str,
 
 
 RIGS = tuple(name for name in OFFERED if BENCHES[name].usual)
-AWAY = "the Dask scheduler disappeared; finished cases are kept, start the proof again"
 
 
 @dataclass(frozen=True)
@@ -166,16 +165,15 @@ def _tried(
     if not missing:
         return
     from geometry.cache import folder
-    from softdot.sweeps.cluster import existing_cluster, local_cluster
+    from softdot.executors import executor_for
     from softdot.sweeps.points import all_ended
 
     terms = Terms(folder().resolve(), request.limit_s)
     arguments = {case.name: (case, terms, place.resolve(), program) for case in missing}
-    address = request.scheduler
-    with local_cluster(request.workers) if address is None else existing_cluster(address) as client:
+    with executor_for(request.scheduler, request.workers) as executor:
         proof_files.begin(place)  # once somebody can work
         with log_file(place / LOG_FILE):
-            for name, record in all_ended(client, prove_case, arguments, AWAY):
+            for name, record in all_ended(executor, prove_case, arguments):
                 yield name, {"score": None, **record}
 
 
@@ -183,8 +181,8 @@ def _finished(request: Request, place: Path, records: Sequence[Mapping[str, Any]
     """Count, draw and write."""
     from diagnose.prove.score import tally
     from softdot.console import installed_version
+    from softdot.executors import hardware
     from softdot.proof import draw, rival_rates, text
-    from softdot.sweeps.cluster import hardware
 
     scores = [score_from(record["score"]) for record in records if record["score"] is not None]
     summary: dict[str, Any] = plain({

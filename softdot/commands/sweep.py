@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from geometry.cache import check_folder
+from geometry.executor import Executor
 from geometry.files import release
 from softdot.config import Config, config_hash
 from softdot.console import (
@@ -24,8 +25,8 @@ from softdot.console import (
     only_the_summary_on_stdout,
     show,
 )
+from softdot.executors import executor_for, hardware
 from softdot.sweeps import points as point_files
-from softdot.sweeps.cluster import existing_cluster, hardware, local_cluster
 from softdot.sweeps.points import REFUSED, STATUSES, Record, failed, solve_all
 from softdot.sweeps.space import Point, Space, sampling_warnings
 from softdot.sweeps.table import check_tables, row
@@ -51,11 +52,11 @@ def run_sweep(
         name: found for name, config in configs.items() if (found := point_files.kept(place, config)) is not None
     }
     missing = {name: config for name, config in configs.items() if name not in records}
-    cluster = local_cluster(space.sweep.workers) if scheduler is None else existing_cluster(scheduler)
+    where = executor_for(scheduler, space.sweep.workers)
     with ExitStack() as stack:
         measured = _measured(0, len(records))
         if missing:
-            measured = _solve(missing, records, cluster, place, progress or Logged(), stack)
+            measured = _solve(missing, records, where, place, progress or Logged(), stack)
         ends = [_record(point, records) for point in space.points]
         summary = {**_heading(space, ends), "scheduler": scheduler, **measured, "hardware": hardware()}
         rows = [row(number, space.points[number].values, record) for number, record in enumerate(ends)]
@@ -66,7 +67,7 @@ def run_sweep(
 def _solve(
     missing: Mapping[str, Config],
     records: dict[str, Record],
-    cluster: AbstractContextManager[Any],
+    where: AbstractContextManager[Executor],
     place: Path,
     progress: Progress,
     stack: ExitStack,
@@ -77,17 +78,17 @@ def _solve(
     """
     reused, count = len(records), len(records) + len(missing)
     begun = time.perf_counter()
-    with cluster as client:
+    with where as executor:
         point_files.begin(place)
         stack.callback(release, point_files.take(place))
         point_files.sweep_up(place)
         stack.callback(point_files.sweep_up, place)
-        workers = len(client.nthreads())
+        workers = executor.places
         ready = time.perf_counter()
         with log_file(place / LOG_FILE):
             progress.stage("solve")
             progress.step(reused, count, "")
-            for name, record in solve_all(client, missing):
+            for name, record in solve_all(executor, missing):
                 records[name] = point_files.keep(place, missing[name], record)
                 progress.step(len(records), count, record["reason"] or "")
         end = time.perf_counter()

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
 
+from geometry.executor import Executor
 from softdot.config import Config
 from softdot.console import Progress
 
@@ -143,11 +144,11 @@ class NotSolvedError(Exception):
     """A press of the study gave no result; the message names it in one sentence."""
 
 
-def solve_named(configs: Mapping[Name, Config], progress: Progress) -> dict[Name, dict[str, Any]]:
-    """Name -> outcome of every press, solved on all cores or remembered. NotSolvedError when one has none."""
-    from softdot.sweeps import solve_points
+def solve_named(configs: Mapping[Name, Config], progress: Progress, executor: Executor) -> dict[Name, dict[str, Any]]:
+    """Name -> outcome of every press, solved by an executor or remembered. NotSolvedError when one has none."""
+    from softdot.sweeps.points import solve_points
 
-    records = dict(zip(configs, solve_points(list(configs.values()), progress), strict=True))
+    records = dict(zip(configs, solve_points(list(configs.values()), progress, executor=executor), strict=True))
     for name, record in records.items():
         if record["status"] != "solved":
             raise NotSolvedError(f"{_text(name)}: {record['status']}, {record['reason']}")

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from geometry.base import InputError
+from geometry.executor import Executor
 from geometry.files import release
 from softdot.arrays.kernel import ArrayKernel
 from softdot.config import Config
@@ -28,7 +29,6 @@ FOLDER, TABLE, PICTURE = "conditions", "reading_study.csv", "reading_study.png"
 STUDY = Product(
     "softdot-reading-study/1", "reading_study.json", frozenset({"reading_study.json", FOLDER, TABLE, PICTURE})
 )
-AWAY = "the Dask scheduler disappeared; finished readings are kept, start the study again"
 
 
 def run_reading_study(
@@ -46,7 +46,7 @@ def run_reading_study(
     under the same path. Readings of an earlier study in out are not made again.
     """
     from geometry.files import hold
-    from softdot.sweeps.cluster import existing_cluster, local_cluster
+    from softdot.executors import executor_for
 
     progress = progress or Logged()
     kernel = opened_kernel(kernel_folder, config)
@@ -60,11 +60,11 @@ def run_reading_study(
         if not (place / STUDY.summary).exists():
             write_json(place / STUDY.summary, {"format": STUDY.format, "complete": False})
         work = _Work(study, kernel_folder, place / FOLDER, readout_of(kernel, config).model_dump_json(), progress)
-        with local_cluster(workers) if scheduler is None else existing_cluster(scheduler) as client:
+        with executor_for(scheduler, workers) as executor:
             progress.stage("read")
-            work.done(client, points(study))
+            work.done(executor, points(study))
             while following := work.following():
-                work.done(client, following)
+                work.done(executor, following)
         summary: dict[str, Any] = plain(_summary(study, work.readings, kernel))
         _write_csv(summary["readings"], place / TABLE)
         _draw(summary, place / PICTURE)
@@ -75,7 +75,7 @@ def run_reading_study(
 
 
 class _Work:
-    """The readings of a study: those of an earlier one, and what is missing by a cluster."""
+    """The readings of a study: those of an earlier one, and what is missing by an executor."""
 
     def __init__(self, study: ReadingStudy, kernel: Path, folder: Path, readout: str, progress: Progress) -> None:
         self.readings = Readings()
@@ -93,7 +93,7 @@ class _Work:
             if limit.following is not None
         ]
 
-    def done(self, client: Any, wanted: list[ReadingConditions]) -> None:
+    def done(self, executor: Executor, wanted: list[ReadingConditions]) -> None:
         """Read under these conditions, with all repeats."""
         from softdot.sweeps.points import all_ended
 
@@ -106,7 +106,7 @@ class _Work:
             else:
                 self.readings.records[task.conditions] = found
         self._progress.step(len(self.readings.records), count, "")
-        for key, record in all_ended(client, read_task, {key: (task,) for key, task in missing.items()}, AWAY):
+        for key, record in all_ended(executor, read_task, {key: (task,) for key, task in missing.items()}):
             if record["status"] in ("read", "refused"):
                 keep(self._folder, key, missing[key], record)
             self.readings.records[missing[key].conditions] = record

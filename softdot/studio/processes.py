@@ -197,7 +197,7 @@ def named(task: str) -> Callable[..., Any]:
 def _outcome(task: str, arguments: Sequence[Any], tell: Tell) -> tuple[str, Any]:
     """The kind of answer and its content; what went wrong is one sentence, and its traceback a line of the log."""
     from mesh.types import MeshingError
-    from softdot.arrays.matrix import StoppedPressError
+    from softdot.arrays.presses import StoppedPressError
     from softdot.machine import without_room
     from solve.solution.linear import LinearSolveError
     from solve.solution.newton import NoEquilibriumError

@@ -1,7 +1,6 @@
-"""Many presses: designs over any keys of the configuration, solved on Dask, gathered in one table.
+"""Many presses: designs over any keys of the configuration, solved by an executor, gathered in one table.
 
-Public names load on first use. A script that calls them needs `if __name__ == "__main__":` around its calls, since
-the processes that solve import it again.
+Public names load on first use.
 """
 
 from importlib import import_module
@@ -9,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from softdot.commands.sweep import run_sweep
-    from softdot.sweeps.cluster import solve_points
+    from softdot.sweeps.points import solve_points
     from softdot.sweeps.space import Space, load_space, space_from
     from softdot.sweeps.table import read_table
 
@@ -19,7 +18,7 @@ _HOMES = {
     "load_space": "softdot.sweeps.space",
     "read_table": "softdot.sweeps.table",
     "run_sweep": "softdot.commands.sweep",
-    "solve_points": "softdot.sweeps.cluster",
+    "solve_points": "softdot.sweeps.points",
     "space_from": "softdot.sweeps.space",
 }
 

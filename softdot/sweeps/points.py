@@ -1,4 +1,4 @@
-"""One point of a sweep in a worker, tasks through a cluster, and the folder that keeps points as they are solved.
+"""One point of a sweep in a worker, many of them by an executor, and the folder that keeps points as they are solved.
 
 Points are added one whole file at a time, named by the hash of their configuration, so they fit any sweep. Table,
 space and summary are replaced together when a sweep is complete: before that the folder has no table, or still that
@@ -8,15 +8,19 @@ of the sweep before, with its own summary.
 import os
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Future
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
 from geometry.base import InputError
 from geometry.cache import read_checked, write_checked
+from geometry.executor import Executor, LostError, each_done
 from geometry.files import hold, whole_file
-from softdot.config import Config, config_from, config_hash
-from softdot.console import plain, write_json
-from softdot.outcome import outcome, outcome_key
+from softdot.config import Config, config_hash
+from softdot.console import Logged, Progress, plain, write_json
+from softdot.executors import AwayError, executor_for
+from softdot.outcome import keep_outcome, outcome, outcome_key, remembered
 from softdot.output import Product, check_output
 
 Record = dict[str, Any]
@@ -25,17 +29,8 @@ SOLVED, REFUSED, NOT_CONVERGED, CRASHED, LOST = "solved", "refused", "not-conver
 STATUSES = (SOLVED, REFUSED, NOT_CONVERGED, CRASHED, LOST)
 ACCIDENTS = (CRASHED, LOST)
 """Not the fault of the configuration: tried again when the sweep is started again."""
-
-TINY = {
-    "segment": {
-        "effector": {"height_mm": 0.5},
-        "medium1": {"thickness_mm": 0.5},
-        "film": {"thickness_um": 100.0},
-        "medium2": {"thickness_mm": 0.5},
-    },
-    "press": {"indentation_mm": 0.05, "load_steps": 1},
-    "mesh": {"mesher": "layered", "element_size_mm": 1.0, "contact_element_size_mm": 1.0},
-}
+OF_THE_CALL = ("status", "reason", "seconds")
+"""What a record has beside the outcome."""
 
 
 def solve_point(config: Config) -> Record:
@@ -61,64 +56,57 @@ def failed(status: str, reason: str) -> Record:
     return {"status": status, "reason": " ".join(reason.split())}
 
 
-def warm_up_config() -> Config:
-    """A press of seconds that has the kernels compiled by one worker before all of them need them."""
-    return config_from(TINY)
-
-
-AWAY = "the Dask scheduler disappeared; finished points are kept, start the sweep again"
 Task = Callable[..., Record]
 
 
-def solve_all(client: Any, configs: Mapping[str, Config]) -> Iterator[tuple[str, Record]]:
-    """Name and record of every configuration, in the order in which they end."""
-    return all_ended(client, solve_point, {name: (config,) for name, config in configs.items()}, AWAY)
+def solve_points(
+    configs: Sequence[Config],
+    progress: Progress | None = None,
+    workers: int | None = None,
+    executor: Executor | None = None,
+) -> list[Record]:
+    """The outcome of every configuration, in order, solved on one process per core, as many as workers, or an executor.
 
-
-def all_ended(
-    client: Any, task: Task, arguments: Mapping[str, tuple[Any, ...]], away: str
-) -> Iterator[tuple[str, Record]]:
-    """Name and record of the task with each arguments, in the order in which they end.
-
-    No more are under way than there are threads: when a worker dies, only what it worked on is suspected.
-    InputError with the sentence away where the scheduler disappears.
+    Each is a new dict with status ("solved", "refused", "not-converged", "crashed" or "lost"), reason (one line,
+    None when solved), seconds, and all of softdot.outcome.outcome(config), as far as there is any. No point stops the
+    others and nothing is raised for one. Equal configurations are solved once; outcomes that are remembered need no
+    worker. progress.step(done, count, reason or "") is called after each point.
     """
-    from distributed import as_completed
-    from distributed.client import ClosedClientError
-
-    waiting = iter(arguments.items())
-    names: dict[Any, str] = {}
-    running = as_completed(loop=client.loop)  # type: ignore[no-untyped-call]
-
-    def fill() -> None:
-        """Keep every thread busy, and one task at least under way while the workers are being replaced."""
-        threads = max(1, sum(client.nthreads().values()))
-        while len(names) < threads and (following := next(waiting, None)) is not None:
-            future = client.submit(task, *following[1], pure=False)
-            names[future] = following[0]
-            running.add(future)  # type: ignore[no-untyped-call]
-
-    try:
-        fill()
-        for future in running:
-            if future.status == "cancelled":
-                raise InputError(away)
-            yield names.pop(future), _record(future)
-            fill()
-    except (OSError, ClosedClientError):
-        raise InputError(away) from None
+    progress = progress or Logged()
+    keys = [outcome_key(config) for config in configs]
+    distinct = dict(zip(keys, configs, strict=True))
+    records = {key: solve_point(config) for key, config in distinct.items() if remembered(config) is not None}
+    missing = {key: config for key, config in distinct.items() if key not in records}
+    with executor_for(workers=workers) if executor is None else nullcontext(executor) as on:
+        for key, record in solve_all(on, missing):
+            records[key] = record
+            progress.step(len(records), len(distinct), record["reason"] or "")
+    return [dict(records[key]) for key in keys]
 
 
-def _record(future: Any) -> Record:
+def solve_all(executor: Executor, configs: Mapping[str, Config]) -> Iterator[tuple[str, Record]]:
+    """Name and record of every configuration, in the order in which they end. What is solved is remembered."""
+    for name, record in all_ended(executor, solve_point, {name: (config,) for name, config in configs.items()}):
+        keep_outcome(configs[name], {key: value for key, value in record.items() if key not in OF_THE_CALL})
+        yield name, record
+
+
+def all_ended(executor: Executor, task: Task, arguments: Mapping[str, tuple[Any, ...]]) -> Iterator[tuple[str, Record]]:
+    """Name and record of the task with each arguments, in the order in which they end. AwayError."""
+    for name, future in each_done(executor, task, arguments):
+        yield name, _record(future)
+
+
+def _record(future: "Future[Any]") -> Record:
     """What the worker returned, or why it could not."""
-    from distributed import KilledWorker
-
-    error = future.exception()
-    if error is None:
+    try:
         return dict(future.result())
-    if isinstance(error, KilledWorker):
-        return failed(LOST, "its worker died each time, perhaps for lack of memory")
-    return failed(CRASHED, f"{type(error).__name__}: {error}")
+    except AwayError:
+        raise
+    except LostError as error:
+        return failed(LOST, str(error))
+    except Exception as error:
+        return failed(CRASHED, f"{type(error).__name__}: {error}")
 
 
 POINTS, TABLE, SPACE_COPY = "points", "sweep.parquet", "space.toml"

@@ -5,15 +5,17 @@ from dataclasses import dataclass
 from math import copysign, sqrt
 from typing import Any, Literal
 
+from geometry.executor import HERE, Executor
 from mesh.types import MeshingError
 from softdot.config import Config
-from softdot.tolerances.responses import KitPress, Response, coarser
+from softdot.tolerances.responses import Question, Response, answered, coarser
 from softdot.tolerances.tolerances import Tolerance, shifts, tolerances
 from solve.solution.linear import LinearSolveError
 from solve.solution.sensitivity import StoppedShortError
 
 MESH_FACTOR, CHECK_FACTOR = 2.0, 3.0
 """Elements of the budget and of its check, against those of the configuration."""
+SLOPES, CHECK, ENDS = "derivatives", "derivatives, coarser mesh", ("upper end", "lower end")
 
 
 @dataclass(frozen=True)
@@ -54,29 +56,31 @@ class Budget:
         }
 
 
-def budget_of(config: Config, on_part: Callable[[int, int, str], None] = lambda *_: None) -> Budget:
+def budget_of(
+    config: Config, told: Callable[[int, int, str], None] = lambda *_: None, executor: Executor = HERE
+) -> Budget:
     """The tolerance budget of a configuration, largest effect on the voltage first. InputError, LinearSolveError,
     MeshingError, StoppedShortError.
 
     First-order effects by direct differentiation of the press; what vanishes there by symmetry by presses at both ends.
-    on_part : told the number of the finished part, of how many, and its name.
+    told : how many presses are there, of how many, and which was the last.
     """
     rows, moved = tolerances(config), shifts(config)
-    count, keys = 2 + len(moved), sorted({key for row in rows for key in row.slopes})
-    fine, coarse = (KitPress(coarser(config, factor)) for factor in (MESH_FACTOR, CHECK_FACTOR))
-    on_part(0, count, "derivatives")
-    nominal, by_key = fine.slopes(keys)
-    on_part(1, count, "derivatives, coarser mesh")
-    check, check_by_key = coarse.slopes(keys)
+    keys = tuple(sorted({key for row in rows for key in row.slopes}))
+    fine, coarse = (coarser(config, factor) for factor in (MESH_FACTOR, CHECK_FACTOR))
+    ends = {
+        f"{row.label}, {way}": Question(fine, moved=coarser(end, MESH_FACTOR))
+        for row, *both in moved
+        for way, end in zip(ENDS, both, strict=True)
+    }
+    found = answered({SLOPES: Question(fine, keys), **ends, CHECK: Question(coarse, keys)}, executor, told)
+    (nominal, by_key), (check, check_by_key) = found[SLOPES], found[CHECK]
     effects = [_first_order(row, by_key, check_by_key) for row in rows]
-    for number, (row, *ends) in enumerate(moved):
-        on_part(2 + number, count, row.label)
-        above, below = (fine.value(coarser(end, MESH_FACTOR)) for end in ends)
-        effects.append(_finite(row, nominal, above, below))
+    effects += [_finite(row, nominal, *(found[f"{row.label}, {way}"] for way in ENDS)) for row, *_ in moved]
     effects.sort(key=lambda effect: -abs(effect.change.voltage))
     return Budget(
         nominal, _minus(check, nominal), _total(effects), tuple(effects),
-        (fine.config.mesh.element_size_mm, fine.config.mesh.contact_element_size_mm),
+        (fine.mesh.element_size_mm, fine.mesh.contact_element_size_mm),
     )  # fmt: skip
 
 

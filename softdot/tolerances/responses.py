@@ -3,7 +3,7 @@
 Where the path of a press does not matter and its voltage is open-circuit, its full load is all that is solved.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -12,6 +12,7 @@ import numpy as np
 from geometry.arrays import Floats
 from geometry.base import InputError
 from geometry.cache import data_hash, recall, remember, source_hash
+from geometry.executor import Executor, each_done
 from mesh.interfaces import morphed
 from mesh.types import TetMesh
 from softdot.case import Case
@@ -70,7 +71,7 @@ class KitPress:
         """The response and its derivative by each key of the configuration with factors. InputError, MeshingError,
         LinearSolveError, StoppedShortError.
         """
-        found = remembered(with_factors(self.config), f"slopes {keys}", lambda: self._slopes(keys))
+        found = remembered(with_factors(self.config), slopes_by(keys), lambda: self._slopes(keys))
         return Response(*found[0]), {key: Response(*pair) for key, pair in found[1].items()}
 
     def full_load(self, keys: Sequence[str]) -> FullLoadResponse:
@@ -87,8 +88,7 @@ class KitPress:
         """The response of a changed configuration, on the mesh of the unchanged one so that the mesh does not blur the
         difference. Errors as for slopes.
         """
-        asked = f"on the mesh of {config_hash(self.config)}"
-        return Response(*remembered(moved, asked, lambda: self._value(moved)))
+        return Response(*remembered(moved, on_mesh_of(self.config), lambda: self._value(moved)))
 
     @cached_property
     def _mesh(self) -> TetMesh:
@@ -122,6 +122,68 @@ class KitPress:
         return Response(*self._full_load.beside(model_of(moved)))
 
 
+class Question(NamedTuple):
+    """What another process is asked of the press of a configuration: its derivatives by keys, or, where that is given,
+    the response of a configuration that was moved.
+    """
+
+    config: Config
+    keys: tuple[str, ...] = ()
+    moved: Config | None = None
+
+    def answer(self) -> Any:
+        """As KitPress.slopes or KitPress.value, by the press that was asked last in this process where it fits."""
+        press = kept_press(self.config)
+        return press.slopes(self.keys) if self.moved is None else press.value(self.moved)
+
+    def recalled(self) -> Any | None:
+        """The answer to an earlier question."""
+        known = recall(self._name)
+        if known is None or self.moved is not None:
+            return None if known is None else Response(*known)
+        return Response(*known[0]), {key: Response(*pair) for key, pair in known[1].items()}
+
+    def keep(self, answer: Any) -> None:
+        """Have it recalled here where it was given elsewhere."""
+        if recall(self._name) is None:
+            remember(self._name, plain(answer))
+
+    @property
+    def _name(self) -> str:
+        if self.moved is None:
+            return name_of(with_factors(self.config), slopes_by(self.keys))
+        return name_of(self.moved, on_mesh_of(self.config))
+
+
+_LAST: list[KitPress] = []
+"""Of this process: what a press beside the last one begins from. More would be memory that nobody uses."""
+
+
+def kept_press(config: Config) -> KitPress:
+    """The press that was asked for last in this process, or a new one."""
+    if not _LAST or _LAST[0].config != config:
+        _LAST[:] = [KitPress(config)]
+    return _LAST[0]
+
+
+def answered(
+    questions: Mapping[str, Question], executor: Executor, told: Callable[[int, int, str], None]
+) -> dict[str, Any]:
+    """The answer to each question by its name; told : how many are there, of how many, and the name of the last one.
+
+    InputError, MeshingError, LinearSolveError, StoppedShortError.
+    """
+    found = {name: known for name, one in questions.items() if (known := one.recalled()) is not None}
+    missing = {name: (one,) for name, one in questions.items() if name not in found}
+    told(len(found), len(questions), "")
+    for name, future in each_done(executor, Question.answer, missing):
+        found[name] = future.result()
+        questions[name].keep(found[name])
+        told(len(found), len(questions), name)
+    _LAST.clear()  # where the executor is this process
+    return found
+
+
 def path_matters(config: Config) -> bool:
     """Whether the response at full load depends on how the load came to be there."""
     case = Case(config)
@@ -145,9 +207,24 @@ def value_along(config: Config, tet_mesh: TetMesh) -> Response:
     return _response(config, Case(config).solve(tet_mesh=tet_mesh))
 
 
+def slopes_by(keys: Sequence[str]) -> str:
+    """What was asked where derivatives were."""
+    return f"slopes {list(keys)}"
+
+
+def on_mesh_of(config: Config) -> str:
+    """What was asked where a moved configuration was pressed."""
+    return f"on the mesh of {config_hash(config)}"
+
+
+def name_of(config: Config, what: str) -> str:
+    """Under which an answer is kept."""
+    return f"response-{data_hash([what, input_hash(config), source_hash(__name__)])}"
+
+
 def remembered(config: Config, what: str, make: Callable[[], Any]) -> Any:
     """Plain numbers kept on disk under the hash of a configuration, of the program and of what was asked."""
-    name = f"response-{data_hash([what, input_hash(config), source_hash(__name__)])}"
+    name = name_of(config, what)
     known = recall(name)
     if known is None:
         known = make()

@@ -132,10 +132,21 @@ def build_reduced(
     asked = ReductionTask(
         segment, materials, dot, tet_mesh, depth_mm, dict(relaxing or {}), physics or Physics(), depth_nodes
     )
+    if cache:
+        return reduced(asked, check)
     _refuse(asked)
-    if not cache:
-        return _build(asked, check)
+    return _build(asked, check)
+
+
+def reduced(asked: ReductionTask, check: bool = True) -> ReducedModel:
+    """As build_reduced, kept on disk."""
+    _refuse(asked)
     return model_files.remembered(model_files.key(asked, check), lambda: _build(asked, check))
+
+
+def keep_reduced(asked: ReductionTask, check: bool, made: ReducedModel) -> None:
+    """Keep on disk what was made elsewhere."""
+    model_files.remembered(model_files.key(asked, check), lambda: made)
 
 
 def _refuse(case: ReductionTask) -> None:

@@ -21,7 +21,7 @@ from geometry.dot import resolve_dot
 from mesh.types import TetMesh, mesh_hash
 from solve.model import Model, Press
 from solve.press import Setup, discretise
-from solve.reduced.build import build_reduced
+from solve.reduced.build import ReductionTask, keep_reduced, reduced
 from solve.reduced.model import ReducedModel
 from solve.solution.linear import LinearSolver
 from solve.solution.march import rest_state
@@ -127,16 +127,19 @@ class Reduction:
 
     def made(self) -> ReducedModel:
         """Pressed, or recalled. NoEquilibriumError."""
-        return build_reduced(
-            self.model.segment, self.model.materials, resolve_dot(self.model.dot, self.model.segment), self.tet_mesh,
-            self.depth_mm, dict.fromkeys(self.relaxing, self.largest_share), self.model.physics, DEPTH_NODES,
-            check=False,
-        )  # fmt: skip
+        return reduced(self._task, check=False)
 
-    def run(self) -> Floats:
-        """Make it, so that it can be recalled elsewhere."""
-        self.made()
-        return np.zeros(0)
+    def keep(self, made: ReducedModel) -> None:
+        """Have it recalled here where it was made elsewhere."""
+        keep_reduced(self._task, False, made)
+
+    @property
+    def _task(self) -> ReductionTask:
+        model = self.model
+        return ReductionTask(
+            model.segment, model.materials, resolve_dot(model.dot, model.segment), self.tet_mesh, self.depth_mm,
+            dict.fromkeys(self.relaxing, self.largest_share), model.physics, DEPTH_NODES,
+        )  # fmt: skip
 
 
 def key(job: Job) -> str:

@@ -1,25 +1,24 @@
-"""Presses that are not on disk yet, on all cores: one process a core, fed one press at a time."""
+"""Presses that are not on disk yet, by an executor where they are worth it."""
 
-import os
-from collections.abc import Iterator, Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from geometry.arrays import Floats
 from geometry.base import Report
-from geometry.beside import each_beside
+from geometry.executor import HERE, Executor, each_done
+from solve.reduced.model import ReducedModel
 from solve.solution.newton import NoEquilibriumError
 from solve.tables import job as job_files
 from solve.tables.job import RETURN, Job, Reduction
 
 
-def answer(job: Job | Reduction) -> Floats | Exception:
-    """Outputs, or the error that can be sent."""
+def answer(job: Job | Reduction) -> Floats | ReducedModel | str:
+    """Outputs, a reduced model, or why there is none."""
     try:
-        return job.run() if isinstance(job, Reduction) else _outputs_of(job)
+        return job.made() if isinstance(job, Reduction) else _outputs_of(job)
     except (NoEquilibriumError, ValueError) as error:
-        return RuntimeError(str(error))
+        return str(error)
 
 
 def _outputs_of(job: Job) -> Floats:
@@ -35,10 +34,12 @@ LARGE = 3000  # nodes: one such press is worth a process, as are the many of a r
 WHAT = "pressing the 3D model"
 
 
-def run_all(jobs: Sequence[Job], report: Report, first: Sequence[Reduction] = ()) -> list[Floats]:
+def run_all(
+    jobs: Sequence[Job], report: Report, first: Sequence[Reduction] = (), executor: Executor = HERE
+) -> list[Floats]:
     """Outputs of all jobs in order, each kept as soon as it is there; empty (0,) for a press without equilibrium.
 
-    first : what takes longest, and is kept where it is made. NoEquilibriumError for one of these.
+    first : what takes longest, and can be recalled afterwards. NoEquilibriumError for one of these.
     """
     names = [job_files.key(job) for job in jobs]
     found = {name: table for name in names if (table := job_files.recall(name)) is not None}
@@ -50,12 +51,17 @@ def run_all(jobs: Sequence[Job], report: Report, first: Sequence[Reduction] = ()
     missing |= dict(left)
     if missing:
         report(WHAT, 0, len(missing))
-    for number, (name, table) in enumerate(_pressed(missing), start=1):
-        if isinstance(missing[name], Job):
-            found[name] = np.zeros(0) if isinstance(table, Exception) else table
+    places = executor if _worth(missing) else HERE
+    calls = {name: (job,) for name, job in missing.items()}
+    for number, (name, future) in enumerate(each_done(places, answer, calls), start=1):
+        job, outputs = missing[name], future.result()
+        if isinstance(job, Job):
+            found[name] = np.zeros(0) if isinstance(outputs, str) else outputs
             job_files.keep(name, found[name])
-        elif isinstance(table, Exception):
-            raise NoEquilibriumError(str(table), np.zeros(0), None) from table
+        elif isinstance(outputs, str):
+            raise NoEquilibriumError(outputs, np.zeros(0), None)
+        else:
+            job.keep(outputs)
         report(WHAT, number, len(missing))
     return [found[name] for name in names]
 
@@ -65,12 +71,7 @@ def _effort(job: Job) -> float:
     return len(job.tet_mesh.points_mm) * job.parts * (len(job.shares) + len(job.back) * len(RETURN))
 
 
-def _pressed(jobs: dict[str, Job | Reduction]) -> Iterator[tuple[str, Any]]:
-    """Name and outputs, or the error, of each job as it is done."""
+def _worth(jobs: Mapping[str, Job | Reduction]) -> bool:
+    """Whether these presses take longer than two processes to start."""
     large = sum(isinstance(job, Reduction) or len(job.tet_mesh.points_mm) > LARGE for job in jobs.values())
-    count = min(os.cpu_count() or 1, max(large, len(jobs) // WORTH_A_PROCESS))
-    if count < 2:
-        for name, job in jobs.items():
-            yield name, answer(job)
-        return
-    yield from each_beside(answer, jobs, count)
+    return max(large, len(jobs) // WORTH_A_PROCESS) > 1

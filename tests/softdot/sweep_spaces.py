@@ -1,10 +1,11 @@
-"""Spaces of points that take a second each, and a cluster that is none."""
+"""Spaces of points that take a second each, and an executor of no processes."""
 
 import copy
 from contextlib import contextmanager
-from types import SimpleNamespace
 
-from softdot.sweeps.points import TINY, solve_point
+from geometry.executor import HERE
+from softdot.executors import TINY
+from softdot.sweeps.points import solve_point
 
 DEPTHS = "press.indentation_mm"
 
@@ -20,12 +21,12 @@ def depths(*values):
 
 
 @contextmanager
-def no_cluster(_workers):
-    """In place of a local cluster: one worker, this process."""
-    yield SimpleNamespace(nthreads=lambda: {"here": 1})
+def no_processes(_scheduler=None, _workers=None):
+    """In place of softdot.executors.executor_for: this process."""
+    yield HERE
 
 
-def solved_here(_client, configs, solve=solve_point):
+def solved_here(_executor, configs, solve=solve_point):
     """In place of solve_all: one after the other."""
     for name, config in configs.items():
         yield name, solve(config)

@@ -3,7 +3,7 @@
 import pytest
 
 from softdot.config import config_from
-from softdot.tolerances import budget as budget_module
+from softdot.tolerances import responses
 from softdot.tolerances.budget import budget_of
 from softdot.tolerances.responses import KitPress, Response, coarser, mesh_of, path_matters, slopes_along, value_along
 from softdot.tolerances.tolerances import FACTORS, factor_key, shifts, tolerances, with_factors
@@ -185,7 +185,7 @@ def test_the_check_has_larger_elements(config):
 
 
 @pytest.fixture
-def budget(config, monkeypatch):
+def budget(config, monkeypatch, tmp_path):
     """A budget of made-up responses: 1 N and 10 V; each key changes both by its place in the alphabet."""
     ends = iter([Response(1.0, 9.0), Response(1.0, 10.5)] * 3)
 
@@ -196,7 +196,8 @@ def budget(config, monkeypatch):
         def value(self, moved):
             return next(ends)
 
-    monkeypatch.setattr(budget_module, "KitPress", MadeUp)
+    monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path))
+    monkeypatch.setattr(responses, "KitPress", MadeUp)
     return budget_of(config)
 
 

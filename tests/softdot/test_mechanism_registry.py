@@ -136,8 +136,8 @@ def test_a_diagnosis_names_it(tmp_path, monkeypatch):
         np.savetxt(path, samples, "%.9g", ",", header=head, comments="")
     engine_for = command.engine_for
 
-    def of_the_amplifier(rig, report):
-        engine = engine_for(rig, report)
+    def of_the_amplifier(rig, report, executor):
+        engine = engine_for(rig, report, executor)
         engine.candidates = tuple(one for one in engine.candidates if one.component == "readout")
         return engine
 

@@ -16,7 +16,7 @@ from softdot.sweeps.points import CRASHED, LOST, NOT_CONVERGED, REFUSED, failed,
 from softdot.sweeps.table import write_table
 from tests.softdot.complaints import complaints
 from tests.softdot.stand_ins import result_of
-from tests.softdot.sweep_spaces import DEPTHS, depths, no_cluster, solved_here, space_of
+from tests.softdot.sweep_spaces import DEPTHS, depths, no_processes, solved_here, space_of
 from tests.softdot.toml_text import toml_text
 
 pytestmark = pytest.mark.usefixtures("presses")
@@ -41,7 +41,7 @@ class Presses:
 @pytest.fixture
 def presses(stages, monkeypatch, tmp_path):
     monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path / "cache"))
-    monkeypatch.setattr(run_module, "local_cluster", no_cluster)
+    monkeypatch.setattr(run_module, "executor_for", no_processes)
     monkeypatch.setattr(run_module, "solve_all", solved_here)
     stages.solve = Presses()
     return stages.solve
@@ -159,7 +159,7 @@ def test_interrupted_before_anything_was_written(monkeypatch, tmp_path, out, cap
     def stopped(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(run_module, "local_cluster", stopped)
+    monkeypatch.setattr(run_module, "executor_for", stopped)
     assert sweep(tmp_path, out, depths(0.1)) == 130
     assert complaints(capfd.readouterr().err) == "softdot: interrupted, nothing was written\n"
     assert not out.exists()

@@ -12,7 +12,7 @@ import pytest
 from geometry.base import InputError
 from softdot.cli import main
 from softdot.config.toml import parsed, with_value
-from softdot.sweeps.points import TINY
+from softdot.executors import TINY
 from softdot.sweeps.space import load_space, space_from
 from tests.softdot.sweep_spaces import depths, space_of
 from tests.softdot.toml_text import toml_text

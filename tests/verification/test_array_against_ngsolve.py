@@ -16,6 +16,7 @@ import pytest
 from mesh.types import TET_FACES, boundary_faces
 from softdot.arrays.case import ArrayCase
 from softdot.arrays.matrix import crosstalk
+from softdot.arrays.presses import ArrayPresses
 from softdot.config import config_from
 from softdot.config.toml import completed
 from tests.verification.row import agrees
@@ -72,7 +73,7 @@ def test_matrix_of_two_segments(tmp_path, monkeypatch):
     """Every entry within 2 %, the force within 1 %."""
     monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path))
     case = ArrayCase(config_from(completed(TABLES)))
-    matrix = crosstalk(case, lambda _name: lambda _step, _number, _count: None)
+    matrix = crosstalk(case, ArrayPresses())
     electrodes = np.array(case.layout.edges(0))
     force_N, voltages_V = by_ngsolve(case.press_over(case.layout.places[0]), electrodes, tmp_path / "case.npz")
     agrees("array 2 x 1, force (N)", matrix.force_N[0, -1], force_N, 0.01)

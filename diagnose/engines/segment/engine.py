@@ -36,6 +36,7 @@ from diagnose.vocabulary.base import Scene, candidates_of_segment
 from geometry.arrays import Floats
 from geometry.base import InputError, Report
 from geometry.checks import check_press_depth
+from geometry.executor import HERE, Executor
 from solve.materials.parameters import PiezoelectricFilm
 from solve.mechanisms import Mechanism, with_mechanisms
 from solve.model import Model, Readout
@@ -107,9 +108,11 @@ KEPT = 4  # tables, and courses of each run: with and without what is fitted, an
 Asked = tuple[Place, list[Setting], float]
 
 
-def segment_engine(model: Model, mesh_settings: MeshSettings, recording: Recording, report: Report) -> "SegmentEngine":
-    """Press the baseline, or recall it. InputError, MeshingError, NoEquilibriumError."""
-    return SegmentEngine(model, mesh_settings, recording, report)
+def segment_engine(
+    model: Model, mesh_settings: MeshSettings, recording: Recording, report: Report, executor: Executor = HERE
+) -> "SegmentEngine":
+    """Press the baseline, or recall it. executor : does all presses. InputError, MeshingError, NoEquilibriumError."""
+    return SegmentEngine(model, mesh_settings, recording, report, executor)
 
 
 class SegmentEngine:
@@ -118,12 +121,14 @@ class SegmentEngine:
     name = "3D FEM"
     free_nuisances: tuple[Candidate, ...] = ()
 
-    def __init__(self, model: Model, mesh_settings: MeshSettings, recording: Recording, report: Report) -> None:
+    def __init__(
+        self, model: Model, mesh_settings: MeshSettings, recording: Recording, report: Report, executor: Executor
+    ) -> None:
         refuse(model, recording)
         self.declared = always_on(model)
         self.model, self.recording = without_stated(model), recording
         self.drives = [drive_of(*pair) for pair in zip(recording.runs, recording.phases, strict=True)]
-        self.stands = Stands(self.model, mesh_settings, recording, report)
+        self.stands = Stands(self.model, mesh_settings, recording, report, executor)
         self.stands.add([setting.candidate for setting in self.declared], report)
         self.stands.refine(self.declared, report)
         self.accuracy = self.stands.accuracy

@@ -24,6 +24,7 @@ from diagnose.signals.recording import Recording
 from diagnose.vocabulary.layers.viscoelasticity import LARGEST_SHARE, relaxable
 from geometry.arrays import Floats
 from geometry.base import Report
+from geometry.executor import HERE, Executor
 from solve.mechanisms.layers.viscoelasticity import VISCOELASTICITY
 from solve.model import Model
 from solve.reduced.fit import CELLS, ResponseTable
@@ -46,11 +47,14 @@ class Prepared:
     relaxing : the layers whose memory is known.
 
     raw : the baseline's table on the diagnosis mesh; fit : the same with the smoothed answer of a finer mesh.
+    executor : does what is pressed, now and later.
     accuracy, shortfalls : see diagnose.forward.Engine; shortfalls by name of the press.
     """
 
-    def __init__(self, model: Model, options: MeshSettings, recording: Recording, report: Report) -> None:
-        self.model = model
+    def __init__(
+        self, model: Model, options: MeshSettings, recording: Recording, report: Report, executor: Executor = HERE
+    ) -> None:
+        self.model, self._executor = model, executor
         tet_mesh, options = rig_mesh(model, options)
         self.pressed_mm = rounded_up(deepest(model, tet_mesh, recording))
         self.depth_mm = MARGIN * self.pressed_mm + offset_reach_mm(recording)
@@ -84,7 +88,7 @@ class Prepared:
                 self.presses.bases[0].model, self.presses.tet_mesh, self.depth_mm, tuple(layers), LARGEST_SHARE
             )
             try:
-                outputs = run_all(jobs, report, [reduction])
+                outputs = run_all(jobs, report, [reduction], self._executor)
             except NoEquilibriumError:
                 if len(layers) <= len(declared):
                     raise
@@ -143,7 +147,9 @@ class Prepared:
 
     def _pressed(self, wanted: Mapping[Name, tuple[Job, int]], report: Report) -> dict[Name, Floats]:
         """Changes by jobs, each with the number of its mesh; those without equilibrium are left out."""
-        return {name: self._change(*three) for name, three in self.presses.compared(wanted, report).items()}
+        return {
+            name: self._change(*three) for name, three in self.presses.compared(wanted, report, self._executor).items()
+        }
 
     def _change(self, job: Job, base: Floats, found: Floats) -> Floats:
         """Against the baseline on the same mesh; charges scaled to those of the finest mesh."""

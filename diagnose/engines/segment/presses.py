@@ -10,6 +10,7 @@ from diagnose.engines.segment.path import BACK
 from diagnose.forward import Candidate
 from geometry.arrays import Floats
 from geometry.base import Report
+from geometry.executor import Executor
 from solve.mechanisms import with_mechanisms
 from solve.model import Model, Physics
 from solve.problem import with_rims_of_patches
@@ -78,7 +79,7 @@ class Presses:
         return replace(job, back=back, parts=parts), int(finer)
 
     def compared(
-        self, wanted: Mapping[Name, tuple[Job, int]], report: Report
+        self, wanted: Mapping[Name, tuple[Job, int]], report: Report, executor: Executor
     ) -> dict[Name, tuple[Job, Floats, Floats]]:
         """By name the job, outputs (n, 2 + e) of the baseline on the same mesh, and its own; none without equilibrium.
 
@@ -86,10 +87,11 @@ class Presses:
         """
         if not wanted:
             return {}
-        bases = all_there(run_all(self.bases, report))
+        bases = all_there(run_all(self.bases, report, executor=executor))
         beside = {name: (self._without_patch(job), mesh) for name, (job, mesh) in wanted.items()}
         others = {name: (job, mesh) for name, (job, mesh) in beside.items() if job is not None}
-        outputs = run_all([self._guided(*one) for one in (*wanted.values(), *others.values())], report)
+        jobs = [self._guided(*one) for one in (*wanted.values(), *others.values())]
+        outputs = run_all(jobs, report, executor=executor)
         own = dict(zip(others, outputs[len(wanted) :], strict=True))
         found = {
             name: (job, own.get(name, bases[base]), seen)

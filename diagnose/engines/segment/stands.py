@@ -12,6 +12,7 @@ from diagnose.engines.segment.presses import Place, moved
 from diagnose.forward import Candidate, Setting
 from diagnose.signals.recording import Recording
 from geometry.base import Report
+from geometry.executor import HERE, Executor
 from solve.model import Model
 from solve.tables.rig_mesh import MeshSettings
 
@@ -21,12 +22,14 @@ HOME: Place = (0.0, 0.0)
 class Stands:
     """accuracy : see diagnose.forward.Engine, the worst of all places."""
 
-    def __init__(self, model: Model, options: MeshSettings, recording: Recording, report: Report) -> None:
+    def __init__(
+        self, model: Model, options: MeshSettings, recording: Recording, report: Report, executor: Executor = HERE
+    ) -> None:
         places = list(dict.fromkeys(run.dot_offset_mm for run in recording.runs))
         self._apart = len(model.segment.film.electrodes) > 1
         homes = places if self._apart else [HOME]
         self._at: Mapping[Place, Prepared] = {
-            home: Prepared(moved(model, home), options, recording, report) for home in homes
+            home: Prepared(moved(model, home), options, recording, report, executor) for home in homes
         }
         if not self._apart:
             self._at[HOME].add((), places, report)

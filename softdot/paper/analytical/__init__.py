@@ -5,6 +5,7 @@ Statements of the paper that its formulas alone decide.
 
 from pathlib import Path
 
+from geometry.executor import Executor
 from softdot.console import Progress
 from softdot.paper.analytical import tables as figures
 from softdot.paper.analytical.formulas import (
@@ -114,7 +115,7 @@ def _neglect() -> Claim:
     )
 
 
-def section(progress: Progress, folder: Path) -> Section:
+def section(progress: Progress, folder: Path, _executor: Executor) -> Section:
     """Formulas only: takes no time. Figures go to folder / "figures"."""
     progress.stage("formulas")
     return Section(

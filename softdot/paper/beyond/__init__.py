@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from geometry.executor import Executor
 from softdot.console import Progress
 from softdot.paper.beyond import tables
 from softdot.paper.beyond import tables as figures
@@ -29,9 +30,9 @@ from softdot.paper.beyond.tables import claims
 from softdot.paper.section import Block, Figure, Heading, Section
 
 
-def section(progress: Progress, folder: Path) -> Section:
+def section(progress: Progress, folder: Path, executor: Executor) -> Section:
     """Solve what is not remembered. Figures go to folder / "figures". NotSolvedError."""
-    return section_of(solve_beyond(progress), folder)
+    return section_of(solve_beyond(progress, executor), folder)
 
 
 def section_of(study: Beyond, folder: Path) -> Section:

@@ -15,6 +15,7 @@ import numpy as np
 from scipy.stats import qmc
 
 from geometry.arrays import Floats
+from geometry.executor import Executor
 from softdot.config import Config
 from softdot.console import Progress
 from softdot.paper.analytical.formulas import (
@@ -149,13 +150,13 @@ class DesignTrial:
 
 
 def solve_trials(
-    designs: Sequence[Design], reading: Reading, mesh: Mapping[str, Any], progress: Progress
+    designs: Sequence[Design], reading: Reading, mesh: Mapping[str, Any], progress: Progress, executor: Executor
 ) -> list[DesignTrial]:
     """Press every design with both boundaries; a design of which one press does not converge is left out."""
-    from softdot.sweeps import solve_points
+    from softdot.sweeps.points import solve_points
 
     configs = [design_config(design, boundary, reading, mesh) for design in designs for boundary in BOUNDARIES]
-    records = solve_points(configs, progress)
+    records = solve_points(configs, progress, executor=executor)
     pairs = zip(designs, records[::2], records[1::2], strict=True)
     return [DesignTrial(design, press_of(free), press_of(held)) for design, free, held in pairs if _solved(free, held)]
 

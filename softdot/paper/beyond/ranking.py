@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from geometry.arrays import Floats
+from geometry.executor import Executor
 from softdot.console import Progress
 from softdot.paper.beyond.designs import (
     BOUNDARIES,
@@ -58,13 +59,13 @@ class Ranking:
     """give and rest fitted again without the film's membrane stiffness."""
 
 
-def rank(progress: Progress) -> Ranking:
+def rank(progress: Progress, executor: Executor) -> Ranking:
     """Press two space-filling samples in cross-section and fit the corrected parameters to one half of each."""
     designs = {FOUR: papers_variables(COUNT_LOG2, SEEDS[0]), SEVEN: sample(COUNT_LOG2, SEEDS[1])}
     samples = {}
     for name, asked in designs.items():
         half = len(asked) // 2  # the halves of a Sobol sequence fill the space evenly too
-        trials = solve_trials(asked, "plane-strain", SLICE_MESH, progress)
+        trials = solve_trials(asked, "plane-strain", SLICE_MESH, progress, executor)
         fitted = set(asked[:half])
         samples[name] = Halves(
             [trial for trial in trials if trial.design in fitted],

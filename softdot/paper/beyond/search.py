@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from geometry.arrays import Floats
+from geometry.executor import Executor
 from softdot.config import Config
 from softdot.console import Progress
 from softdot.paper.beyond.designs import (
@@ -79,14 +80,14 @@ class Search:
         return to_beat([self.papers, *self.trials], self.limits, GOALS[goal])
 
 
-def search(progress: Progress, constants: dict[str, float], seed: int = 2) -> Search:
+def search(progress: Progress, executor: Executor, constants: dict[str, float], seed: int = 2) -> Search:
     """Search in 3D under a round dot. constants : of the corrected parameters, which carry the trend."""
-    papers, *trials = solve_trials([PAPERS, *sample(6, seed)[:FIRST]], "solid", MESH, progress)
+    papers, *trials = solve_trials([PAPERS, *sample(6, seed)[:FIRST]], "solid", MESH, progress, executor)
     limits = limits_of(papers)
     for number in range(ROUNDS):
         surrogate = Surrogate([papers, *trials], constants)
         chosen = propose(surrogate, [papers, *trials], limits, number)
-        trials += solve_trials(chosen, "solid", MESH, progress)
+        trials += solve_trials(chosen, "solid", MESH, progress, executor)
     return Search(papers, trials, limits, Surrogate([papers, *trials], constants))
 
 
@@ -172,12 +173,12 @@ MODELS: Mapping[str, tuple[Reading, Mapping[str, Any]]] = {
 MESHERS = ("pytetwild", "layered")
 
 
-def compare(optima: Sequence[Design], progress: Progress) -> dict[str, list[DesignTrial]]:
+def compare(optima: Sequence[Design], progress: Progress, executor: Executor) -> dict[str, list[DesignTrial]]:
     """Model -> the paper's final design and the optima, in this order. NotSolvedError."""
     designs = [PAPERS, *optima]
     found = {}
     for model, (reading, mesh) in MODELS.items():
-        found[model] = solve_trials(designs, reading, mesh, progress)
+        found[model] = solve_trials(designs, reading, mesh, progress, executor)
         if [trial.design for trial in found[model]] != designs:
             raise NotSolvedError(f"one of the designs of the final comparison did not converge, {model}")
     return found
@@ -257,10 +258,10 @@ class Curve:
         return float(np.exp(low + share * (high - low)))
 
 
-def solve_curves(progress: Progress) -> Mapping[str, Curve]:
+def solve_curves(progress: Progress, executor: Executor) -> Mapping[str, Curve]:
     """The curves of PAIRS in cross-section. NotSolvedError."""
     configs = {(name, side): config for name in PAIRS for side, config in _sides(name).items()}
-    found = {key: press_of(outcome) for key, outcome in solve_named(configs, progress).items()}
+    found = {key: press_of(outcome) for key, outcome in solve_named(configs, progress, executor).items()}
     return {
         name: Curve(found[name, "free"], [found[name, str(k)] for k in STIFFNESS_N_PER_MM3], found[name, "clamped"])
         for name in PAIRS
@@ -289,13 +290,13 @@ class Beyond:
     compared: Mapping[str, Sequence[DesignTrial]]
 
 
-def solve_beyond(progress: Progress) -> Beyond:
+def solve_beyond(progress: Progress, executor: Executor) -> Beyond:
     """Solve what is not remembered. NotSolvedError."""
     progress.stage("between free and clamped")
-    curves = solve_curves(progress)
+    curves = solve_curves(progress, executor)
     progress.stage("what predicts the output")
-    ranking = rank(progress)
+    ranking = rank(progress, executor)
     progress.stage("design search")
-    found = search(progress, dict(ranking.constants))
+    found = search(progress, executor, dict(ranking.constants))
     progress.stage("designs compared")
-    return Beyond(curves, ranking, found, compare([found.best(goal).design for goal in GOALS], progress))
+    return Beyond(curves, ranking, found, compare([found.best(goal).design for goal in GOALS], progress, executor))

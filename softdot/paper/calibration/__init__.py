@@ -5,6 +5,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from geometry.executor import Executor
 from softdot.console import Progress
 from softdot.paper.calibration import figures, tables
 from softdot.paper.calibration import figures as contours
@@ -17,10 +18,10 @@ from softdot.paper.section import Block, Figure, Heading, Section
 Rig = Mapping[str, Solved]
 
 
-def section(progress: Progress, folder: Path) -> Section:
+def section(progress: Progress, folder: Path, executor: Executor) -> Section:
     """Press the rig in both cases and predict p. Figures go to folder / "figures". NotSolvedError."""
     progress.stage("calibration")
-    return section_of(solve_rig(progress), folder)
+    return section_of(solve_rig(progress, executor), folder)
 
 
 def section_of(rig: Rig, folder: Path, exponent: int = SAMPLE_EXPONENT) -> Section:

@@ -14,6 +14,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from geometry.arrays import Floats
+from geometry.executor import Executor
 from softdot.config import Config
 from softdot.console import Progress
 from softdot.paper.calibration.rig import (
@@ -139,12 +140,12 @@ class Solved:
         return self.curves[model].scaled(force, voltage)
 
 
-def solve_rig(progress: Progress) -> dict[str, Solved]:
+def solve_rig(progress: Progress, executor: Executor) -> dict[str, Solved]:
     """Case -> its presses, as far as they are not remembered. NotSolvedError."""
-    from softdot.sweeps import solve_points
+    from softdot.sweeps.points import solve_points
 
     configs = dict(_configs())
-    records = dict(zip(configs, solve_points(list(configs.values()), progress), strict=True))
+    records = dict(zip(configs, solve_points(list(configs.values()), progress, executor=executor), strict=True))
     return {name: _solved(case, records) for name, case in CASES.items()}
 
 

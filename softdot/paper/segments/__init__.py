@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from pathlib import Path
 
+from geometry.executor import Executor
 from softdot.console import Progress
 from softdot.paper.published import EFFECTOR_HEIGHT_MM, RIDGE_RADIUS_MM, published, segment_config
 from softdot.paper.section import Block, Figure, Heading, Section
@@ -130,10 +131,10 @@ def _span(study: Study, quantity: Callable[[SolvedPress], float]) -> str:
     return f"{min(ratios):.2g} to {max(ratios):.2g}"
 
 
-def section(progress: Progress, folder: Path) -> Section:
+def section(progress: Progress, folder: Path, executor: Executor) -> Section:
     """Press every segment of the paper. Figures go to folder / "figures". NotSolvedError."""
     progress.stage("segments")
-    return section_of(solve_study(progress), folder)
+    return section_of(solve_study(progress, executor), folder)
 
 
 def section_of(study: Study, folder: Path) -> Section:

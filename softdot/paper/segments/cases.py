@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from geometry.executor import Executor
 from softdot.config import Config
 from softdot.console import Progress
 from softdot.paper.published import INDENTATION_MM, Boundary, Reading, published, segment_config
@@ -151,9 +152,9 @@ def calibration_factor() -> float:
     return published()["section2.p-mean"].value
 
 
-def solve_study(progress: Progress) -> Study:
+def solve_study(progress: Progress, executor: Executor) -> Study:
     """Press everything, as far as it is not remembered. NotSolvedError when a press does not converge."""
-    presses = {name: press_of(found) for name, found in solve_named(_configs(), progress).items()}
+    presses = {name: press_of(found) for name, found in solve_named(_configs(), progress, executor).items()}
     return Study(
         {reading: {name: presses[reading, name] for name in CASES} for reading in READINGS},
         {reading: presses[f"finer {reading}", CHECKED] for reading in READINGS},

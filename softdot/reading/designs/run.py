@@ -10,6 +10,7 @@ from typing import Any
 
 from geometry.base import InputError
 from geometry.cache import read_checked, source_hash, write_checked
+from geometry.executor import Executor
 from geometry.files import hold, release
 from softdot.config import config_hash
 from softdot.console import LOG_FILE, Logged, Progress, log_file, plain, write_json
@@ -28,7 +29,6 @@ DESIGNS = Product(
          "best.toml", FOLDER}
     ),
 )  # fmt: skip
-AWAY = "the Dask scheduler disappeared; finished designs are kept, start the search again"
 ACCIDENTS = ("crashed", "lost")
 """Not the fault of a design: it is tried again when the search is started again."""
 
@@ -84,19 +84,18 @@ def run_designs(
     On one process per core, as many as workers, or on the Dask cluster of a scheduler. A design that fails has its
     reason and does not stop the others; designs of an earlier search in out are not pressed again. InputError.
     """
+    from softdot.executors import executor_for
     from softdot.reading.designs.results import finish
-    from softdot.sweeps.cluster import existing_cluster, local_cluster
     from softdot.sweeps.table import check_tables
 
     check_tables()
     progress = progress or Logged()
-    cluster = local_cluster(workers) if scheduler is None else existing_cluster(scheduler)
     place = check_output(out, DESIGNS)
     with ExitStack() as stack:
-        client = stack.enter_context(cluster)
+        executor = stack.enter_context(executor_for(scheduler, workers))
         stack.enter_context(_held_folder(place))
         stack.enter_context(log_file(place / LOG_FILE))
-        work = DesignWork(request, asked, place / FOLDER, client, progress)
+        work = DesignWork(request, asked, place / FOLDER, executor, progress)
         found = searched(work)
         return finish(place, request, asked, found)
 
@@ -130,13 +129,13 @@ def searched(work: "DesignWork") -> DesignRecords:
 
 
 class DesignWork:
-    """What is done of a search: designs of an earlier one from its folder, and what is missing by a cluster."""
+    """What is done of a search: designs of an earlier one from its folder, and what is missing by an executor."""
 
     def __init__(
-        self, request: DesignRequest, asked: AskedReading, folder: Path, client: Any, progress: Progress
+        self, request: DesignRequest, asked: AskedReading, folder: Path, executor: Executor, progress: Progress
     ) -> None:
         self.request, self.found = request, DesignRecords()
-        self._asked, self._folder, self._client, self._progress = asked, folder, client, progress
+        self._asked, self._folder, self._executor, self._progress = asked, folder, executor, progress
         self._program = source_hash(design_record.__module__)
 
     def done(self, wanted: list[TriedDesign]) -> None:
@@ -158,7 +157,7 @@ class DesignWork:
         self._progress.stage("designs")
         self._progress.step(len(self.found.records), count, "")
         tasks = {name: (self._task(one),) for name, one in missing.items()}
-        for name, record in all_ended(self._client, design_record, tasks, AWAY):
+        for name, record in all_ended(self._executor, design_record, tasks):
             whole = {"readings": [], "least": None, "seconds": None, **record}  # a worker that died tells nothing
             self.found.records[name] = self._keep(missing[name], whole)
             self._progress.step(len(self.found.records), count, _in_short(name, whole))

@@ -20,7 +20,7 @@ GLUE = Candidate(
 def bridged(*known):
     """What is known after presses at some values have an equilibrium."""
     changes = {press_name(GLUE, (value,)): np.full((1, 3), value) for value in known}
-    known_of_it = SimpleNamespace(_changes=changes, shortfalls={})
+    known_of_it = SimpleNamespace(_changes=changes, shortfalls={}, _executor=None)
     Prepared._bridge(known_of_it, GLUE)
     return known_of_it
 
@@ -48,7 +48,7 @@ def test_a_layer_whose_memory_has_no_equilibrium_is_left_out_and_told(monkeypatc
     """Tried with fewer and fewer layers, as far as those that relax by rig.toml."""
     asked = []
 
-    def run_all(jobs, _report, first):
+    def run_all(jobs, _report, first, _executor):
         asked.append(first[0].relaxing)
         if len(first[0].relaxing) > 2:
             raise NoEquilibriumError("turned inside out", np.zeros(0), None)
@@ -58,7 +58,7 @@ def test_a_layer_whose_memory_has_no_equilibrium_is_left_out_and_told(monkeypatc
     rig = model()
     base = SimpleNamespace(model=rig)
     presses = SimpleNamespace(bases=(base, base), tet_mesh=None)
-    before = SimpleNamespace(model=rig, depth_mm=0.1, presses=presses, shortfalls={})
+    before = SimpleNamespace(model=rig, depth_mm=0.1, presses=presses, shortfalls={}, _executor=None)
     reduction, outputs = Prepared._reduced(before, [base], lambda *_: None)
     assert [len(layers) for layers in asked] == [4, 3, 2]
     assert reduction.relaxing == asked[-1]

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from geometry.executor import LocalProcesses
 from solve.tables import job as store
 from solve.tables import workers
 from tests.diagnose.segment.rigs import engine, silent
@@ -20,7 +21,9 @@ def test_a_process_answers_as_this_one_does(jobs, monkeypatch, tmp_path):
     monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path))
     here = [job.run()[0] for job in jobs]
     monkeypatch.setattr(workers, "WORTH_A_PROCESS", 1)
-    for found, wanted in zip(workers.run_all(jobs, silent), here, strict=True):
+    with LocalProcesses(2) as executor:
+        there = workers.run_all(jobs, silent, executor=executor)
+    for found, wanted in zip(there, here, strict=True):
         np.testing.assert_allclose(found, wanted, rtol=1e-9)
     assert all(store.recall(store.key(job)) is not None for job in jobs)
 

@@ -12,6 +12,7 @@ from softdot.arrays.kernel_checks import cells_by_chance, every_cell, places_by_
 from softdot.arrays.kernel_errors import check, kernel_of, measured, places_of
 from softdot.arrays.kernel_presses import KernelPress, KernelTask, filled, grid_of
 from softdot.arrays.matrix import crosstalk
+from softdot.arrays.presses import ArrayPresses
 from softdot.config import load_config
 
 CELL = Path(__file__).parents[3] / "examples" / "array-cell.toml"
@@ -186,7 +187,7 @@ def test_a_kernel_foretells_presses_that_took_no_part_in_it():
     ]  # fmt: skip
     config = load_config(CELL, settings)
     case = ArrayCase(config.model_copy(update={"dot": config.dot.model_copy(update={"cell": None})}))
-    matrix = crosstalk(case, lambda _: lambda *_: None)
+    matrix = crosstalk(case, ArrayPresses())
     kernel, stated = kernel_of(case, matrix, lambda *_: None)
     worst = max(one.charge_percent for one in stated)
     assert worst < 15.0  # twice the element sizes count too

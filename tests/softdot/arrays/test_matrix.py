@@ -8,8 +8,8 @@ import pytest
 from geometry.base import InputError
 from softdot.arrays import presses as presses_module
 from softdot.arrays.case import ArrayCase
-from softdot.arrays.matrix import CrosstalkMatrix, StoppedPressError, crosstalk
-from softdot.arrays.presses import Signals, signals
+from softdot.arrays.matrix import CrosstalkMatrix, crosstalk
+from softdot.arrays.presses import ArrayPresses, Signals, StoppedPressError, signals
 from softdot.arrays.side_stiffness import representatives, role
 from softdot.config.model import model_of
 from tests.verification.array_cases import array
@@ -24,10 +24,6 @@ def made_up(charges_pC, failure=None) -> Signals:
         charge_pC=charge, voltage_V=0.05 * charge, capacitance_pF=np.full(len(charges_pC), 20.0), film_strain=0.0,
         warnings=(), failure=failure, **numbers, **about,
     )  # fmt: skip
-
-
-def quiet(_name):
-    return lambda _step, _number, _count: None
 
 
 def test_mirror_images_are_not_solved_again():
@@ -97,12 +93,13 @@ def test_a_solved_press_is_kept(monkeypatch, tmp_path):
         signals(other.press_over(other.layout.places[0]))
 
 
-def test_a_press_that_stops_is_told_by_its_segment(monkeypatch):
+def test_a_press_that_stops_is_told_by_its_segment(monkeypatch, tmp_path):
     """Nothing is made of the others."""
+    monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path))
     stopped = replace(made_up([1.0, 1.0]), failure="step 1 of 2 stopped")
-    monkeypatch.setattr("softdot.arrays.matrix.signals", lambda _press, _on_step: stopped)
+    monkeypatch.setattr(presses_module, "signals_of_dot", lambda _config, _dot: stopped)
     with pytest.raises(StoppedPressError, match="the press of segment-r1c1 did not converge: step 1 of 2 stopped"):
-        crosstalk(array(), quiet)
+        crosstalk(array(), ArrayPresses())
 
 
 REFUSED = {

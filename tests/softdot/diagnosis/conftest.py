@@ -21,7 +21,7 @@ def diagnosed(monkeypatch, tmp_path, capfd, request):
     """Call the command on a folder; returns its status, its summary and what it complained of."""
     if "pictures" not in request.fixturenames:
         monkeypatch.setattr(page, "_pictures", lambda *_: [])
-    monkeypatch.setattr(engines, "engine_for", lambda rig, _report: ToyEngine(rig.recording))
+    monkeypatch.setattr(engines, "engine_for", lambda rig, *_: ToyEngine(rig.recording))
 
     def call(folder, *more):
         status = main(["diagnose", str(folder), "-o", str(tmp_path / "out"), "--json", *more])

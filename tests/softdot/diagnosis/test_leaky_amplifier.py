@@ -26,8 +26,8 @@ def test_the_leak_is_named_with_its_resistance(tmp_path, monkeypatch):
     """Among the candidates of the amplifier, which need no press of the 3D model but the baseline's."""
     engine_for = engines.engine_for
 
-    def of_the_amplifier(rig, report):
-        engine = engine_for(rig, report)
+    def of_the_amplifier(rig, report, executor):
+        engine = engine_for(rig, report, executor)
         engine.candidates = tuple(one for one in engine.candidates if one.component == "readout")
         return engine
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from geometry.executor import HERE
 from softdot.console import Logged
 from softdot.paper.beyond import search as searching
 from softdot.paper.beyond.designs import PAPERS, DesignPress, DesignTrial, coordinates, sample
@@ -74,7 +75,7 @@ def found():
     """A search in which the corrected parameters play the solver."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(searching, "solve_trials", lambda designs, *_: stand_in.trials(designs))
-        return searching.search(Logged(), stand_in.CONSTANTS)
+        return searching.search(Logged(), HERE, stand_in.CONSTANTS)
 
 
 @pytest.mark.slow

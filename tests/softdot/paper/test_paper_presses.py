@@ -3,6 +3,7 @@
 import pytest
 
 from geometry.base import InputError
+from geometry.executor import HERE
 from softdot.console import Logged
 from softdot.paper.published import segment_config
 from softdot.paper.section import NotSolvedError, solve_named
@@ -13,13 +14,13 @@ SOLVED = {"status": "solved", "reason": None}
 
 def solver(monkeypatch, *records):
     """Records in place of a cluster."""
-    monkeypatch.setattr("softdot.sweeps.cluster.solve_points", lambda _configs, _progress: list(records))
+    monkeypatch.setattr("softdot.sweeps.points.solve_points", lambda *_, **__: list(records))
 
 
 def test_outcomes_come_back_by_name(monkeypatch):
     solver(monkeypatch, {**SOLVED, "reaction_force_N": [0, 1]}, {**SOLVED, "reaction_force_N": [0, 2]})
     config = segment_config("free", 0.8, 5.0)
-    found = solve_named({("solid", "F1"): config, ("solid", "F2"): config}, Logged())
+    found = solve_named({("solid", "F1"): config, ("solid", "F2"): config}, Logged(), HERE)
     assert found["solid", "F2"]["reaction_force_N"] == [0, 2]
 
 
@@ -27,7 +28,7 @@ def test_a_press_without_result_is_named_in_one_sentence(monkeypatch):
     solver(monkeypatch, SOLVED, {"status": "not-converged", "reason": "contact at 0.2 mm"})
     config = segment_config("free", 0.8, 5.0)
     with pytest.raises(NotSolvedError, match=r"^solid, F2: not-converged, contact at 0\.2 mm$"):
-        solve_named({("solid", "F1"): config, ("solid", "F2"): config}, Logged())
+        solve_named({("solid", "F1"): config, ("solid", "F2"): config}, Logged(), HERE)
 
 
 def test_the_readings_differ_in_section_width_and_dot_alone():

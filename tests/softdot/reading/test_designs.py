@@ -176,7 +176,7 @@ class Workers:
     def __init__(self, stop_after=99, refuse=(), status="not-converged"):
         self.done, self.stop_after, self.refuse, self.status = [], stop_after, refuse, status
 
-    def all_ended(self, _client, _function, arguments, _away):
+    def all_ended(self, _executor, _function, arguments):
         for name, (asked,) in arguments.items():
             if len(self.done) == self.stop_after:
                 raise KeyboardInterrupt

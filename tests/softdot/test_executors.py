@@ -1,7 +1,6 @@
-"""Real Dask clusters: bad addresses, killed workers, a killed sweep, threads."""
+"""Processes and real Dask clusters: bad addresses, killed workers, a killed sweep, threads."""
 
 import json
-import multiprocessing
 import os
 import signal
 import socket
@@ -12,22 +11,25 @@ import time
 from contextlib import closing, contextmanager
 from pathlib import Path
 
+import psutil
 import pytest
 
 from geometry.base import InputError
+from geometry.executor import LocalProcesses, each_done
+from softdot import executors as scheduler_module
 from softdot.cli import main
 from softdot.config import Config, config_from
 from softdot.console import Logged
+from softdot.executors import TINY, executor_for
 from softdot.outcome import outcome
-from softdot.sweeps import cluster as scheduler_module
 from softdot.sweeps import read_table, run_sweep, solve_points, space_from
-from softdot.sweeps.cluster import NO_DASHBOARD, local_cluster
-from softdot.sweeps.points import TINY, solve_all
+from softdot.sweeps.points import solve_all
 from tests.softdot.complaints import complaints
 from tests.softdot.interrupts import heard
 from tests.softdot.sweep_spaces import DEPTHS, depths, space_of
 from tests.softdot.toml_text import toml_text
 
+NO_DASHBOARD = {"dashboard": False, "dashboard_address": "127.0.0.1:0"}
 DEPTHS_MM = [round(0.030 + 0.002 * number, 3) for number in range(12)]
 
 
@@ -168,12 +170,17 @@ def test_a_scheduler_that_goes_away_is_one_sentence_and_the_points_stay(tmp_path
         LocalCluster(
             n_workers=1, processes=False, protocol="tcp", host="127.0.0.1", scheduler_kwargs=NO_DASHBOARD
         ) as cluster,
-        pytest.raises(InputError, match="the Dask scheduler disappeared; finished points are kept"),
+        pytest.raises(InputError, match="the Dask scheduler disappeared; what was finished is kept"),
     ):
         run_sweep(given, tmp_path / "out", cluster.scheduler_address, Closer(cluster))
     kept = len(list(tmp_path.glob("out/points/*.json")))
     assert 1 <= kept < len(DEPTHS_MM)
     assert run_sweep(given, tmp_path / "out")["reused"] == kept
+
+
+def workers_alive():
+    """Numbers of the processes that this one has started and that do calls."""
+    return [child.pid for child in psutil.Process().children() if "geometry.beside" in child.cmdline()]
 
 
 class Killer(Logged):
@@ -184,7 +191,7 @@ class Killer(Logged):
 
     def step(self, number, count, text):
         if number == self.number:
-            worker = min(child.pid for child in multiprocessing.active_children())
+            worker = min(workers_alive())
             os.kill(worker, signal.SIGKILL)
             self.pids.append(worker)
 
@@ -213,8 +220,8 @@ class Deadly(Config):
 def test_a_point_that_kills_its_worker_becomes_a_row_with_its_reason():
     configs = {f"{depth:g}": at_depth(depth) for depth in (0.03, 0.04, 0.05)}
     configs = {"deadly": Deadly(**dict(at_depth(0.02))), **configs}
-    with local_cluster(2) as client:
-        records = dict(solve_all(client, configs))
+    with LocalProcesses(2) as executor:
+        records = dict(solve_all(executor, configs))
     assert {name: record["status"] for name, record in records.items()} == {
         "deadly": "lost",
         "0.03": "solved",
@@ -283,7 +290,7 @@ def test_many_points_are_what_each_gives_alone_on_one_thread_each():
         if one["status"] == "solved":
             assert one["reaction_force_N"][-1] == pytest.approx(outcome(config)["reaction_force_N"][-1], rel=1e-9)
     assert dict(os.environ) == before
-    assert multiprocessing.active_children() == []
+    assert workers_alive() == []
 
 
 def _threads():
@@ -292,17 +299,46 @@ def _threads():
 
     import solve.press  # noqa: F401  loads what a press loads
 
-    threads = max(pool["num_threads"] for pool in threadpool_info())
-    return numba.get_num_threads(), threads, os.environ.get("MALLOC_TRIM_THRESHOLD_")
+    return numba.get_num_threads(), max(pool["num_threads"] for pool in threadpool_info())
 
 
 @pytest.mark.slow
-def test_each_worker_calculates_on_one_thread_also_after_a_death(monkeypatch):
+def test_each_process_calculates_on_one_thread_also_after_a_death(monkeypatch):
     monkeypatch.setenv("OMP_NUM_THREADS", "7")
-    with local_cluster(2) as client:
-        assert set(client.run(_threads).values()) == {(1, 1, None)}
-        victim = min(child.pid for child in multiprocessing.active_children())
+    with LocalProcesses(1) as executor:
+        assert executor.submit(_threads).result() == (1, 1)
+        (victim,) = workers_alive()
         os.kill(victim, signal.SIGKILL)
-        while len({*client.run(os.getpid, on_error="ignore").values()} - {victim}) < 2:  # the dead may still be listed
-            time.sleep(0.1)
-        assert set(client.run(_threads).values()) == {(1, 1, None)}
+        assert executor.submit(_threads).result() == (1, 1)
+        assert workers_alive() != [victim]
+
+
+def slowly(number):
+    time.sleep(0.2)
+    return os.getpid(), number**2
+
+
+@pytest.mark.slow
+def test_a_worker_of_a_cluster_that_is_killed_loses_no_call():
+    """What it was doing is done by the other one."""
+    from distributed import LocalCluster
+
+    with (
+        LocalCluster(n_workers=2, threads_per_worker=1, scheduler_kwargs=NO_DASHBOARD) as running,
+        executor_for(running.scheduler_address) as cluster,
+    ):
+        assert cluster.places == 2
+        found = {}
+        for name, future in each_done(cluster, slowly, {number: (number,) for number in range(12)}):
+            found[name] = future.result()
+            if len(found) == 4:
+                os.kill(found[name][0], signal.SIGKILL)
+    assert {name: square for name, (_, square) in found.items()} == {number: number**2 for number in range(12)}
+
+
+def test_an_error_on_a_cluster_is_the_error_of_the_call(scheduler):
+    """And a call that is given up is told from it."""
+    with executor_for(scheduler.scheduler_address) as cluster:
+        with pytest.raises(InputError, match="indentation_mm = 9"):
+            cluster.submit(outcome, at_depth(9.0)).result()
+        assert cluster.submit(abs, -3).result() == 3

@@ -1,0 +1,139 @@
+"""Where heavy calls are done: in this process, in warm processes of this computer, or on what else is an Executor.
+
+A command makes one executor and hands it down; whatever presses asks that one. So the same presses run on the cores of
+one machine and on a cluster, and their processes are started once for a command, when the first call needs them.
+"""
+
+from collections.abc import Callable, Hashable, Iterator, Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
+from queue import SimpleQueue
+from threading import Lock
+from typing import Any, Protocol, Self, TypeVar
+
+from geometry.beside import Beside, ProcessDiedError
+from geometry.environment import ONE_THREAD
+from geometry.files import sweep_scratch
+
+DEATHS = 1
+"""A call whose process has died more often than this is given up."""
+Name = TypeVar("Name", bound=Hashable)
+
+
+class LostError(RuntimeError):
+    """A call was given up."""
+
+    def __init__(self, reason: str = "its worker died each time, perhaps for lack of memory") -> None:
+        super().__init__(reason)
+
+
+class Executor(Protocol):
+    """Does calls of functions that a module holds under their name."""
+
+    @property
+    def places(self) -> int:
+        """How many calls are done at a time."""
+
+    def submit(self, function: Callable[..., Any], /, *arguments: Any) -> "Future[Any]":
+        """What the function returns or raises, later. LostError where its process died each time."""
+
+
+def each_done(
+    executor: Executor, function: Callable[..., Any], calls: Mapping[Name, tuple[Any, ...]]
+) -> Iterator[tuple[Name, "Future[Any]"]]:
+    """Name and future of each call as it ends; calls : name -> arguments, begun in this order.
+
+    No more are under way than there are places, so that little is given up where the caller stops.
+    """
+    waiting, under_way = iter(calls.items()), dict["Future[Any]", Name]()
+    ended: SimpleQueue[Future[Any]] = SimpleQueue()
+
+    def fill() -> None:
+        while len(under_way) < executor.places and (following := next(waiting, None)) is not None:
+            name, arguments = following
+            future = executor.submit(function, *arguments)
+            under_way[future] = name
+            future.add_done_callback(ended.put)
+
+    fill()
+    while under_way:
+        future = ended.get()
+        yield under_way.pop(future), future
+        fill()
+
+
+class Here:
+    """Calls are done in this process, when they are asked for."""
+
+    places = 1
+
+    def submit(self, function: Callable[..., Any], /, *arguments: Any) -> "Future[Any]":
+        """Done already."""
+        future: Future[Any] = Future()
+        try:
+            future.set_result(function(*arguments))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
+HERE = Here()
+
+
+class LocalProcesses:
+    """Processes of one thread each, for the time of a block, as many as there are calls at a time.
+
+    Each is started when a call finds none that is free, and kept. One that dies is replaced, and its call tried again.
+    Ctrl-C does not reach them: all have ended when the block ends.
+    """
+
+    def __init__(self, places: int, prepare: Callable[[Executor], object] | None = None) -> None:
+        """prepare : called before the first call, such as to compile in one process what all of them need."""
+        self.places, self._prepare = places, prepare
+        self._threads, self._lock, self._over = ThreadPoolExecutor(places), Lock(), False
+        self._free, self._alive = list[Beside](), list[Beside]()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        with self._lock:
+            self._over = True
+            for process in self._alive:
+                process.kill()
+        self._threads.shutdown(cancel_futures=True)
+        sweep_scratch()
+
+    def submit(self, function: Callable[..., Any], /, *arguments: Any) -> "Future[Any]":
+        """See Executor."""
+        if self._prepare is not None:
+            prepare, self._prepare = self._prepare, None
+            prepare(self)
+        return self._threads.submit(self._answer, function, arguments)
+
+    def _answer(self, function: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
+        for _ in range(1 + DEATHS):
+            process = self._taken()
+            try:
+                return process.answer(function, *arguments)
+            except ProcessDiedError:
+                self._bury(process)
+            finally:
+                if process in self._alive:
+                    self._free.append(process)
+        raise LostError
+
+    def _taken(self) -> Beside:
+        """A free process, or a new one."""
+        with self._lock:
+            if self._over:
+                raise LostError("the work was stopped")
+            if self._free:
+                return self._free.pop()
+            process = Beside(ONE_THREAD)
+            self._alive.append(process)
+            return process
+
+    def _bury(self, process: Beside) -> None:
+        with self._lock:
+            process.kill()
+            self._alive.remove(process)
