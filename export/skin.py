@@ -186,7 +186,7 @@ def outer_facets(split: SplitNodes) -> Ints:
     # three numbers in one, which sort many times faster than rows
     keys = np.ravel_multi_index(tuple(corners.T), (int(split.node.max()) + 1,) * 3)
     _, first, count = np.unique(keys, return_index=True, return_counts=True)
-    return split.tets[:, FACES].reshape(-1, 6)[first[count == 1]]
+    return np.asarray(split.tets[:, FACES].reshape(-1, 6)[first[count == 1]])
 
 
 def film_top(nodes: NodalSteps, tet_mesh: TetMesh, level: int = 1) -> Skin:
