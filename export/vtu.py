@@ -12,7 +12,7 @@ import numpy as np
 from export.dot_surface import placed_dot
 from export.recovery import film_patches
 from export.skin import MM_PER_M, MPA_PER_PA, PC_PER_MM2_PER_C_PER_M2, split_nodes, spread
-from export.vtk_xml import Grid
+from export.vtk_xml import Arrays, Grid
 from geometry.arrays import Ints
 from geometry.dot import DotShape
 from geometry.files import whole_folder
@@ -115,7 +115,7 @@ def _segment(tet_mesh: TetMesh) -> WriteStep:
 
     def write(step: Step, path: Path) -> None:
         fields = step.fields
-        cell_data = {
+        cell_data: Arrays = {
             "cauchy_stress_MPa": (fields.cauchy_stress_Pa * MPA_PER_PA, GLOBAL_AXES),
             "green_lagrange_strain": (fields.green_lagrange_strain, GLOBAL_AXES),
             "von_mises_MPa": (fields.von_mises_Pa * MPA_PER_PA, ()),
@@ -136,7 +136,7 @@ def _parts(tet_mesh: TetMesh) -> WriteStep:
 
     def write(step: Step, path: Path) -> None:
         fields, folder = step.fields, path.with_suffix("")
-        everywhere = {
+        everywhere: Arrays = {
             "displacement_mm": (fields.displacement_m[split.node] * MM_PER_M, ()),
             "nodal_von_mises_MPa": (spread(split, fields.von_mises_Pa) * MPA_PER_PA, ()),
             "nodal_cauchy_stress_MPa": (spread(split, fields.cauchy_stress_Pa) * MPA_PER_PA, GLOBAL_AXES),
@@ -160,17 +160,17 @@ def _film(tet_mesh: TetMesh) -> WriteStep:
 
     def write(step: Step, path: Path) -> None:
         fields = step.fields
-        cell_data = {
+        cell_data: Arrays = {
             "film_strain": (fields.film_strain, FILM_AXES),
             "film_stress_MPa": (fields.film_stress_Pa * MPA_PER_PA, FILM_AXES),
             "charge_density_pC_per_mm2": (fields.charge_density_C_per_m2 * PC_PER_MM2_PER_C_PER_M2, ()),
         }
-        at_nodes = {
+        at_nodes: Arrays = {
             f"nodal_{name}": (patches.at_nodes(values, count)[nodes], axes)
             for name, (values, axes) in cell_data.items()
         }
-        moved = {"displacement_mm": (fields.displacement_m[nodes] * MM_PER_M, ())}
-        grid.write(path, moved | at_nodes, cell_data)
+        moved = (fields.displacement_m[nodes] * MM_PER_M, ())
+        grid.write(path, {"displacement_mm": moved, **at_nodes}, cell_data)
 
     return write
 
