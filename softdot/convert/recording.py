@@ -40,7 +40,7 @@ def write_recording(out: Path | str, rig: str, files: Mapping[str, Mapping[str, 
 
 def _refuse_outside(name: str) -> None:
     """InputError unless this is the name of a file of samples in the folder itself."""
-    if PurePosixPath(name).name != name or PureWindowsPath(name).name != name or name in (RIG_FILE, "..", "."):
+    if PurePosixPath(name).name != name or PureWindowsPath(name).name != name or name in (RIG_FILE, "", "..", "."):
         raise InputError(f"files: '{name[:60]}' must be the name of a file in the folder of the recording, not a path")
 
 
