@@ -37,7 +37,7 @@ Member = tuple[str, int]
 
 
 @dataclass(frozen=True)
-class Block:
+class KeywordBlock:
     """A keyword with its parameters, all names in capitals, and the data lines below it. place : where it stands."""
 
     name: str
@@ -96,7 +96,7 @@ class _Model:
         self.scope = self.root
         self.inside_instance = False
 
-    def take(self, block: Block) -> None:
+    def take(self, block: KeywordBlock) -> None:
         """One keyword after the other."""
         if block.name in GENERATORS:
             raise block.refused("is not read; write all nodes and elements out")
@@ -113,13 +113,13 @@ class _Model:
         elif block.name == "END INSTANCE":
             self.inside_instance = False
 
-    def _part(self, block: Block) -> None:
+    def _part(self, block: KeywordBlock) -> None:
         name = _stated(block, "NAME")
         if name in self.parts:
             raise block.refused(f"NAME = '{name}' appears twice")
         self.scope = self.parts[name] = Scope()
 
-    def _instance(self, block: Block) -> None:
+    def _instance(self, block: KeywordBlock) -> None:
         name, part = _stated(block, "NAME"), _stated(block, "PART")
         if name in self.instances:
             raise block.refused(f"NAME = '{name}' appears twice")
@@ -133,7 +133,7 @@ class _Model:
         self.instances[name] = Instance(part, shift, turn)
         self.inside_instance, self.scope = True, self.root
 
-    def _nodes(self, block: Block) -> None:
+    def _nodes(self, block: KeywordBlock) -> None:
         if block.parameters.get("SYSTEM", "R") != "R":
             raise block.refused("SYSTEM must be R; cylindrical and spherical coordinates are not read")
         for line in block.data:
@@ -143,7 +143,7 @@ class _Model:
             if self.scope.nodes.setdefault(number, (x, y, z)) != (x, y, z):
                 raise block.refused(f"node {number} is defined twice")
 
-    def _elements(self, block: Block) -> None:
+    def _elements(self, block: KeywordBlock) -> None:
         kind = _stated(block, "TYPE")
         count = _node_count(kind)
         if count is None:
@@ -157,7 +157,7 @@ class _Model:
         if "ELSET" in block.parameters:
             self.scope.sets.setdefault(block.parameters["ELSET"], set()).update(("", number) for number in numbers)
 
-    def _set(self, block: Block) -> None:
+    def _set(self, block: KeywordBlock) -> None:
         name, instance = _stated(block, "ELSET"), block.parameters.get("INSTANCE", "")
         if instance and instance not in self.instances:
             raise block.refused(f"INSTANCE = '{instance}' is not defined before it")
@@ -170,7 +170,7 @@ class _Model:
                 for text in texts:
                     found |= self._members(text, instance, block)
 
-    def _members(self, text: str, instance: str, block: Block) -> set[Member]:
+    def _members(self, text: str, instance: str, block: KeywordBlock) -> set[Member]:
         """What a number, the name of a set, or either behind the name of an instance, stands for."""
         place, _, rest = text.rpartition(".")
         inside = _name(place) in self.instances
@@ -245,7 +245,7 @@ def _node_count(kind: str) -> int | None:
     return {**TRIANGLES, **LINES, "S3R": 3, "S3RS": 3, "B31H": 2, "B32H": 3}.get(kind)
 
 
-def _blocks(path: Path, where: str, outer: tuple[Path, ...]) -> Iterator[Block]:
+def _blocks(path: Path, where: str, outer: tuple[Path, ...]) -> Iterator[KeywordBlock]:
     """The keywords of a file, those of included files at their place."""
     if len(outer) == DEEPEST or path.resolve() in outer:
         raise InputError(f"{where}: '{path.name}' is included in a circle or deeper than {DEEPEST} files")
@@ -275,7 +275,7 @@ def _blocks(path: Path, where: str, outer: tuple[Path, ...]) -> Iterator[Block]:
         elif block.name in ("NODE", "ELEMENT", "ELSET") and "INPUT" in block.parameters:
             rows = _text(path.parent / _file(block), where, True).splitlines()
             below = [row.strip() for row in rows if row.strip() and not row.startswith("**")]
-            yield Block(block.name, block.parameters, [*below, *data], block.place)
+            yield KeywordBlock(block.name, block.parameters, [*below, *data], block.place)
         else:
             yield block
 
@@ -296,7 +296,7 @@ def _is_keyword(line: str) -> bool:
     return stripped.startswith("*") and not stripped.startswith("**")
 
 
-def _block(line: str, data: list[str], place: str) -> Block:
+def _block(line: str, data: list[str], place: str) -> KeywordBlock:
     """*ELSET, elset="Medium2", generate -> ELSET, {ELSET: MEDIUM2, GENERATE: ""}."""
     first, *rest = [text.strip() for text in FIELD.findall(line)]
     parameters = {}
@@ -306,10 +306,10 @@ def _block(line: str, data: list[str], place: str) -> Block:
             parameters[" ".join(key.upper().split())] = (
                 value.strip() if key.strip().upper() == "INPUT" else _name(value)
             )
-    return Block(" ".join(first.lstrip("*").upper().split()), parameters, data, place)
+    return KeywordBlock(" ".join(first.lstrip("*").upper().split()), parameters, data, place)
 
 
-def _file(block: Block) -> str:
+def _file(block: KeywordBlock) -> str:
     """The file that a keyword names, as it is written."""
     file = block.parameters.get("INPUT", "").strip('"')
     if not file or "\0" in file:
@@ -321,7 +321,7 @@ def _name(text: str) -> str:
     return text.strip().strip('"').strip().upper()
 
 
-def _stated(block: Block, key: str) -> str:
+def _stated(block: KeywordBlock, key: str) -> str:
     if not block.parameters.get(key):
         raise block.refused(f"{key} is missing")
     return block.parameters[key]
@@ -334,7 +334,7 @@ def _fields(line: str) -> list[str]:
     return [text.strip() for text in line.split(",")]
 
 
-def _records(block: Block, length: int) -> Iterator[list[int]]:
+def _records(block: KeywordBlock, length: int) -> Iterator[list[int]]:
     """Whole numbers in rows of this length, each of one line or several that end with a comma."""
     record: list[int] = []
     for line in block.data:
@@ -348,7 +348,7 @@ def _records(block: Block, length: int) -> Iterator[list[int]]:
         raise block.refused(f"its last element must have {length} numbers")
 
 
-def _range(texts: Sequence[str], block: Block) -> range:
+def _range(texts: Sequence[str], block: KeywordBlock) -> range:
     """first, last, step -> numbers; a step of 1 may be left out."""
     numbers = [_whole(text, block) for text in texts]
     first, last, step = [*numbers, 1][:3] if len(numbers) == 2 else numbers if len(numbers) == 3 else (0, 0, 0)
@@ -357,14 +357,14 @@ def _range(texts: Sequence[str], block: Block) -> range:
     return range(first, last + 1, step)
 
 
-def _whole(text: str, block: Block) -> int:
+def _whole(text: str, block: KeywordBlock) -> int:
     own = text.strip()
     if not (own.isascii() and own.isdigit() and len(own) < 19):
         raise block.refused(f"'{own[:40]}' must be a whole number")
     return int(own)
 
 
-def _real(text: str, block: Block) -> float:
+def _real(text: str, block: KeywordBlock) -> float:
     own = text.strip()
     try:
         return float(own.upper().replace("D", "E").replace("_", "?"))
