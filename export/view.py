@@ -15,6 +15,7 @@ import numpy as np
 
 from geometry.arrays import Floats
 from geometry.base import InputError
+from geometry.environment import own_path, own_python
 
 WIDTH_IN, HEIGHT_IN, DPI = 8.0, 6.0, 200
 PICTURE_SIZE = (int(WIDTH_IN * DPI), int(HEIGHT_IN * DPI))
@@ -239,6 +240,8 @@ ADVICE = (
 )
 
 
+TRIAL_S = 60.0, 240.0
+"""How long a trial picture may take, and how long where none was drawn in that time."""
 _FOUND: list[str] = []
 _TRIAL = Lock()
 
@@ -259,18 +262,29 @@ def ensure_rendering(known: str | None = None) -> str:
 
 
 def _working_window() -> str:
-    """Name of VTK's window class; empty for VTK's own choice."""
-    for window in _candidates():
-        environment = {**os.environ, **({_SWITCH: window} if window else {})}
-        try:
-            run = subprocess.run(
-                [sys.executable, "-c", _PROBE], env=environment, capture_output=True, timeout=60, check=False
-            )
-        except subprocess.TimeoutExpired:
-            continue
-        if run.returncode == 0 and b"drawn" in run.stdout:
-            return window
+    """Name of VTK's window class; empty for VTK's own choice. A window that only was slow is tried once more."""
+    slow = _candidates()
+    for seconds in TRIAL_S:
+        waiting, slow = slow, []
+        for window in waiting:
+            try:
+                if _draws(window, seconds):
+                    return window
+            except subprocess.TimeoutExpired:
+                slow.append(window)
+    if slow:
+        raise InputError(
+            f"Pictures cannot be drawn: a trial picture took longer than {TRIAL_S[-1]:g} s; this machine or its "
+            "graphics is too slow or too busy, try again when it has less to do"
+        )
     raise InputError(ADVICE)
+
+
+def _draws(window: str, seconds: float) -> bool:
+    """Whether a process that draws with this window comes to its end. TimeoutExpired."""
+    environment = {**os.environ, **own_path(), **({_SWITCH: window} if window else {})}
+    run = subprocess.run(own_python("-c", _PROBE), env=environment, capture_output=True, timeout=seconds, check=False)
+    return run.returncode == 0 and b"drawn" in run.stdout
 
 
 def _candidates() -> list[str]:

@@ -15,6 +15,7 @@ from pathlib import Path
 from threading import Event
 from typing import Any
 
+from geometry.environment import own_path, own_python
 from geometry.files import end_with_parent, sweep_scratch
 
 OOM_SCORE = Path("/proc/self/oom_score_adj")
@@ -33,8 +34,8 @@ class Beside:
     """
 
     def __init__(self, variables: Mapping[str, str] | None = None) -> None:
-        command = [sys.executable, "-m", __name__, str(os.getpid())]
-        own = {**os.environ, **(variables or {}), "PYTHONPATH": os.pathsep.join(sys.path)}
+        command = own_python("-m", __name__, str(os.getpid()))
+        own = {**os.environ, **(variables or {}), **own_path()}
         pipe = subprocess.PIPE
         # in a session of its own: Ctrl-C in the terminal reaches this process alone, which ends it
         self._process = subprocess.Popen(command, env=own, stdin=pipe, stdout=pipe, start_new_session=True)

@@ -12,6 +12,9 @@ it, and the folders that hold them would hide a source checkout that is installe
 """
 
 import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 POOLS = {
@@ -20,6 +23,7 @@ POOLS = {
     "OMP_WAIT_POLICY": "PASSIVE",
     "KMP_BLOCKTIME": "0",  # MKL sets it by itself, and not to what OMP_WAIT_POLICY asks for
 }
+SAFE_PATH = "PYTHONSAFEPATH"
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
 
 
@@ -44,6 +48,31 @@ def keep_kernels_apart(package: Path) -> None:
         from platformdirs import user_cache_path
 
         os.environ.setdefault("NUMBA_CACHE_DIR", str(user_cache_path("softdot", appauthor=False) / "kernels"))
+
+
+def own_python(*arguments: str) -> list[str]:
+    """A command that runs this Python, to be started with own_path: the working folder holds no modules of ours."""
+    return [sys.executable, "-P", *arguments]
+
+
+def own_path() -> dict[str, str]:
+    """The variable by which a child process finds the modules of this one, and none in its working folder."""
+    program = str(Path(__file__).resolve().parents[1])
+    folders = [folder for folder in sys.path if folder]
+    return {"PYTHONPATH": os.pathsep.join([*folders, *({program} - set(folders))])}
+
+
+@contextmanager
+def without_working_folder() -> Iterator[None]:
+    """Python processes that libraries start inside this block do not look for modules in the working folder."""
+    before = os.environ.get(SAFE_PATH)
+    os.environ[SAFE_PATH] = "1"
+    try:
+        yield
+    finally:
+        os.environ.pop(SAFE_PATH)
+        if before is not None:
+            os.environ[SAFE_PATH] = before
 
 
 def usable_cores() -> int:

@@ -13,6 +13,7 @@ import numpy as np
 
 from geometry.arrays import Floats, Ints
 from geometry.base import load_alone
+from geometry.environment import own_path, own_python
 from geometry.files import end_with_parent, scratch_folder
 from mesh.types import MeshingError
 
@@ -25,7 +26,7 @@ def tetrahedralize(timeout_s: float, **arrays: object) -> tuple[Floats, Ints]:
     """
     with scratch_folder() as folder:
         np.savez(folder / "input.npz", timeout=timeout_s, **arrays)  # type: ignore[arg-type]
-        _run([sys.executable, "-P", "-m", "mesh.tetwild_process", str(folder), str(os.getpid())], timeout_s)
+        _run(own_python("-m", "mesh.tetwild_process", str(folder), str(os.getpid())), timeout_s)
         with np.load(folder / "output.npz") as data:
             return data["points"].astype(np.float64), data["tets"].astype(np.int64)
 
@@ -38,7 +39,7 @@ def _run(command: list[str], timeout_s: float) -> None:
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
-        env={**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)},
+        env={**os.environ, **own_path()},
         start_new_session=True,
     )
     try:

@@ -55,6 +55,7 @@ def parser() -> argparse.ArgumentParser:
     _add_run(commands)
     _add_paper(commands)
     _add_sweep(commands)
+    _add_convert(commands)
     _add_diagnose(commands)
     _add_prove(commands)
     _add_kit(commands)
@@ -111,6 +112,32 @@ def _add_sweep(commands: Any) -> None:
     _add_set(sweep)
     _add_scheduler(sweep)
     _add_output(sweep)
+
+
+def _add_convert(commands: Any) -> None:
+    convert = commands.add_parser(
+        "convert",
+        help="join logs of instruments into a recording",
+        description="Read what oscilloscope, stage and force gauge have written, in their own units, bring it to one "
+        "clock and write a recording for softdot diagnose; says what a drive costs that was logged too slowly.",
+        epilog="docs/recordings.md explains which files are read. " + EXIT_STATUS,
+    )
+    convert.add_argument("logs", nargs="+", metavar="LOG", help="files of one run: .csv, .txt, .xlsx, .tdms, .wfm, ...")
+    convert.add_argument("--rig", required=True, metavar="rig.toml", help="what was built, with one table [[runs]]")
+    convert.add_argument(
+        "--column", action="append", default=[], metavar="CHANNEL=COLUMN",
+        help="which channel becomes which column, such as CH1=voltage_V; by default units tell; may be repeated",
+    )  # fmt: skip
+    clocks = convert.add_mutually_exclusive_group()
+    clocks.add_argument(
+        "--offset", action="append", default=[], metavar="S",
+        help="seconds to add to the times of each LOG behind the first; by default one trigger started all clocks",
+    )  # fmt: skip
+    clocks.add_argument(
+        "--align", action="store_true", help="find the offsets by a force or displacement that the logs share"
+    )
+    convert.add_argument("-o", "--output", required=True, metavar="OUT", help="new folder to write")
+    convert.add_argument("-q", "--quiet", action="store_true", help="print only warnings and errors")
 
 
 def _add_diagnose(commands: Any) -> None:

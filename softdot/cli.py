@@ -20,6 +20,7 @@ COMMANDS = {
     "run": "softdot.commands.run",
     "paper": "softdot.commands.paper",
     "sweep": "softdot.commands.sweep",
+    "convert": "softdot.commands.convert",
     "diagnose": "softdot.commands.diagnose",
     "prove": "softdot.commands.prove",
     "kit": "softdot.commands.kit",

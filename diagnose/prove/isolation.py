@@ -3,14 +3,13 @@
 import json
 import os
 import subprocess
-import sys
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from geometry.environment import ONE_THREAD
+from geometry.environment import ONE_THREAD, own_python
 from geometry.files import scratch_folder
 
 KEPT = ("PATH", "LANG", "LC_ALL", "LD_LIBRARY_PATH")
@@ -37,7 +36,7 @@ def diagnosed(files: Mapping[str, str], cache: Path, limit_s: float, options: tu
         (folder / "tmp").mkdir()
         for file, text in files.items():
             (recording / file).write_text(text, "utf-8")
-        guard = [sys.executable, "-m", "diagnose.prove.guard", str(os.getpid()), str(folder), str(cache), PROGRAM]
+        guard = own_python("-m", "diagnose.prove.guard", str(os.getpid()), str(folder), str(cache), PROGRAM)
         begun = time.perf_counter()
         try:
             ended = subprocess.run(

@@ -22,7 +22,7 @@ from geometry.files import regular_file
 LARGEST_MB = 500  # of all files together: some 10 million rows, more than any fit could use
 LARGEST = 1e12  # squares and ratios of what is larger leave the range of a computer's numbers
 NAMES = ("time_s", "displacement_mm", "force_N", "voltage_V", "dot_x_mm", "dot_y_mm", "temperature_C")
-NUMBERED = re.compile(r"voltage_[1-9]\d*_V")
+NUMBERED = re.compile(r"voltage_[1-9][0-9]*_V")
 
 
 def refuse_by_size(files: Iterable[Path]) -> None:

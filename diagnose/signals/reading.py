@@ -22,6 +22,7 @@ from diagnose.signals.columns import (
     saturated,
     suspicions,
 )
+from diagnose.signals.drive_checks import drive_suspicions, refuse_unlike_drive
 from diagnose.signals.phases import Segmentation
 from diagnose.signals.recording import Recording, Run, RunTable, Specimen, one_after_the_other
 from geometry.arrays import Bools, Floats, Ints
@@ -32,28 +33,52 @@ COVARIATES = ("dot_x_mm", "dot_y_mm", "temperature_C")
 
 
 def read_recording(
-    folder: Path, runs: Sequence[RunTable], readouts: Sequence[Readout | None], specimen: Specimen | None
+    folder: Path,
+    runs: Sequence[RunTable],
+    readouts: Sequence[Readout | None],
+    specimen: Specimen | None,
+    height_mm: float = np.inf,
 ) -> Recording:
-    """All runs of a folder. InputError naming file, row and column; every size is checked before any file is read."""
-    names = [run.name for run in runs]
-    for number, name in enumerate(names):
-        if name in names[:number]:
-            raise InputError(f"recording '{folder / 'rig.toml'}': runs[{number}].label = '{name}' appears twice")
+    """All runs of a folder. InputError naming file, row and column; every size is checked before any file is read.
+
+    height_mm : of the segment, beyond which no dot goes in.
+    """
     refuse_by_size(folder / run.file for run in runs)
-    pairs = [
-        (read_run(folder, table, readout, touches=specimen is None), folder / table.file)
-        for table, readout in zip(runs, readouts, strict=True)
-    ]
+    pairs = []
+    for table, label, readout in zip(runs, distinct([run.name for run in runs]), readouts, strict=True):
+        run, path = replace(read_run(folder, table, readout), label=label), folder / table.file
+        refuse_unlike_drive(run, path, specimen, height_mm)
+        if specimen is None:  # a coupon is held from the start
+            refuse_untouched(run.drive, run.time_s, run.drive_values, path)
+        pairs.append((run, path))
     travel_mm = np.inf if specimen is None else LARGEST_STRAIN * specimen.gauge_mm
     warnings = [sentence for run, path in pairs for sentence in suspicions(run, path, travel_mm)]
+    if specimen is None:
+        warnings += [sentence for run, path in pairs for sentence in drive_suspicions(run, path)]
     new = [specimen is not None or number == 0 for number in range(len(runs))]
     told = [table.virgin if table.virgin is not None else usual for table, usual in zip(runs, new, strict=True)]
     ordered = one_after_the_other(replace(run, virgin=virgin) for (run, _), virgin in zip(pairs, told, strict=True))
     return Recording(tuple(ordered), specimen, tuple(warnings))
 
 
-def read_run(folder: Path, table: RunTable, readout: Readout | None, touches: bool = True) -> Run:
-    """One run. touches : whether the dot has to touch; a coupon is held from the start. InputError."""
+def distinct(labels: Sequence[str]) -> list[str]:
+    """Labels that differ: repeats of a press may have the same one, and are numbered.
+
+    >>> distinct(["slow", "fast", "slow"])
+    ['slow', 'fast', 'slow (2)']
+    """
+    found: list[str] = []
+    for label in labels:
+        name, number = label, 1
+        while name in found or (number > 1 and name in labels):
+            number += 1
+            name = f"{label} ({number})"
+        found.append(name)
+    return found
+
+
+def read_run(folder: Path, table: RunTable, readout: Readout | None) -> Run:
+    """One run. InputError."""
     path = folder / table.file
     columns = read_columns(path)
     refuse_bad_time(columns["time_s"], path)
@@ -63,8 +88,6 @@ def read_run(folder: Path, table: RunTable, readout: Readout | None, touches: bo
     driven = np.isfinite(channels[table.drive])
     valid = {name: np.isfinite(values) & driven for name, values in channels.items()}
     channels[table.drive] = _bridged(columns["time_s"], channels[table.drive])
-    if touches:
-        refuse_untouched(table.drive, columns["time_s"], channels[table.drive], path)
     return Run(
         label=table.name,
         file=table.file,

@@ -15,12 +15,13 @@ from geometry.base import InputError
 from geometry.files import regular_file
 from geometry.parameters import Segment
 from geometry.stack import layers
+from mesh.files.abaqus import AbaqusMesh, is_tet, is_triangle, read_abaqus
 from mesh.files.formats import REGIONS, SURFACES
 from mesh.layered import twins
 from mesh.outline import StackOutline, curved_surface, outline
 from mesh.quadratic import TOLERANCE_MM, named_facets, quadratic
 from mesh.quality import jacobians, volumes
-from mesh.types import TET_FACES, LinearMesh, MeshingError, TetMesh, face_neighbours, signed_volumes
+from mesh.types import TET_FACES, LinearMesh, MeshingError, TetMesh, face_neighbours, signed_volumes, unique_edges
 
 FLAT_PARTS, ROUND = 1e-4, 0.05
 """Relative error allowed of the volume of a part with plane faces, and of volume and size of a round effector."""
@@ -104,7 +105,9 @@ def refuse_open_interfaces(
     corner = points[tets[owner[:, None], TET_FACES[face, :3]]]
     z = corner[..., 2]
     ends = np.array([stack.half_x, stack.half_y])
-    on_sides = (np.abs(np.abs(corner[..., :2]) - ends) < TOLERANCE_MM).all(axis=1).any(axis=1)
+    on_sides = np.zeros(len(corner), dtype=bool)
+    for plane in (-ends, ends):  # a slice has corners on both of its faces alone: one plane at a time
+        on_sides |= (np.abs(corner[..., :2] - plane) < TOLERANCE_MM).all(axis=1).any(axis=1)
     is_skin = z.min(axis=1) > stack.medium1_top - TOLERANCE_MM
     if "effector" in names:
         is_skin &= (region[owner] != names.index("effector")) | (z.max(axis=1) > stack.medium1_top + TOLERANCE_MM)
@@ -116,6 +119,20 @@ def refuse_open_interfaces(
             f"z = {z[first].mean():.6g} mm, belong to one element only; neighbouring parts must share the nodes of "
             "their interface"
         )
+
+
+def refuse_unshared_middles(tets: Ints, where: str) -> None:
+    """InputError unless all elements (m, 10) of an edge have the same node in its middle, and no other edge has it."""
+    edges, number = unique_edges(tets[:, :4])
+    pairs = np.unique(np.column_stack([number.ravel(), tets[:, 4:].ravel()]), axis=0)
+    torn = len(pairs) - len(edges)
+    if torn:
+        raise InputError(
+            f"{where}: {torn} mid-side nodes are not shared by the elements of their edge; elements that meet must "
+            "share all nodes of the face or edge between them, those in the middle of edges too"
+        )
+    if len(np.unique(pairs[:, 1])) < len(pairs) or np.isin(pairs[:, 1], tets[:, :4]).any():
+        raise InputError(f"{where}: a mid-side node belongs to several edges, or is a corner; each edge needs its own")
 
 
 def refuse_other_slice(points: Floats, tets: Ints, stack: StackOutline, where: str) -> None:
@@ -130,9 +147,11 @@ def refuse_other_slice(points: Floats, tets: Ints, stack: StackOutline, where: s
         )
 
 
-READERS = {".msh": "gmsh", ".inp": "abaqus", ".xdmf": "xdmf"}
+READERS = {".msh": "gmsh", ".xdmf": "xdmf"}
 TETS, TRIANGLES = ("tetra", "tetra10"), ("triangle", "triangle6")
-OTHER_FILES = re.compile(rb"([^\s<>\"']+\.h5):|^\*include\s*,\s*input\s*=\s*([^\r\n]+)", re.IGNORECASE | re.MULTILINE)
+OTHER_FILES = re.compile(
+    rb"([^\s<>\"']+\.h5):|^\s*\*[^*\r\n][^\r\n]*\binput\s*=\s*([^\r\n,]+)", re.IGNORECASE | re.MULTILINE
+)
 
 
 @dataclass(frozen=True)
@@ -154,27 +173,32 @@ def told(file: str) -> str:
 
 
 def contents(file: str) -> bytes:
-    """All bytes of a mesh file and of the files that it names; of those that are missing, none."""
-    path = Path(file)
-    if not path.is_file():
-        return b""
-    whole = path.read_bytes()
-    if path.suffix.lower() == ".msh":
-        return whole
-    named = [(match[1] or match[2]).decode("utf-8", "replace").strip() for match in OTHER_FILES.finditer(whole)]
-    found = [beside for name in dict.fromkeys(named) if (beside := path.parent / name).is_file()]
-    return b"".join([whole, *(beside.read_bytes() for beside in found)])
+    """All bytes of a mesh file and of the files that it names, and those name; of those that are missing, none."""
+    found: dict[Path, bytes] = {}
+    waiting = [Path(file)]
+    for path in waiting:
+        if path in found or "\0" in str(path) or not path.is_file():
+            continue
+        found[path] = path.read_bytes()
+        if path.suffix.lower() not in (".msh", ".h5"):
+            names = ((match[1] or match[2]).decode("utf-8", "replace") for match in OTHER_FILES.finditer(found[path]))
+            waiting += [path.parent / name.strip().strip('"') for name in names]
+    return b"".join(found.values())
 
 
 def read_file(file: str) -> FileMesh:
     """Read a mesh of tetrahedra. InputError, naming mesh.file, for a file that is missing, no mesh, or has others."""
-    import meshio
-
     path, where = Path(file), told(file)
     kind = READERS.get(path.suffix.lower())
-    if kind is None:
+    if kind is None and path.suffix.lower() != ".inp":
         raise InputError(f"{where}: must end with .msh (Gmsh), .inp (Abaqus, CalculiX) or .xdmf")
     regular_file(path, where)
+    return _of_abaqus(read_abaqus(path, where), where) if kind is None else _by_meshio(path, kind, where)
+
+
+def _by_meshio(path: Path, kind: str, where: str) -> FileMesh:
+    import meshio
+
     try:
         found = getattr(meshio, kind).read(path)
     except Exception as error:  # meshio raises what a wrong file happens to lead to
@@ -185,6 +209,28 @@ def read_file(file: str) -> FileMesh:
     return _file_mesh(found, where)
 
 
+def _of_abaqus(found: AbaqusMesh, where: str) -> FileMesh:
+    """The tetrahedra, the sets that hold any of them as regions, and facets of sets that are named as a surface."""
+    number = [place for place, (kind, _) in enumerate(found.cells) if is_tet(kind)]
+    nodes = {len(found.cells[place][1]) for place in number}
+    if len(nodes) != 1:
+        held = "tetrahedra with 4 nodes and with 10" if nodes else "no solid elements"
+        raise InputError(f"{where}: holds {held}; all must be tetrahedra with 4 nodes, or all with 10")
+    masks = {name: np.isin(number, cells) for name, cells in found.sets.items() if name not in SURFACES}
+    facets = {
+        name: np.array([found.cells[cell][1][:3] for cell in cells if is_triangle(found.cells[cell][0])])
+        for name, cells in found.sets.items()
+        if name in SURFACES
+    }
+    tets = np.array([found.cells[place][1] for place in number], dtype=np.int64)
+    return FileMesh(
+        found.points_mm,
+        tets,
+        {name: mask for name, mask in masks.items() if mask.any()},
+        {name: corners.astype(np.int64) for name, corners in facets.items() if len(corners)},
+    )
+
+
 def _file_mesh(found: Any, where: str) -> FileMesh:
     """The tetrahedra of all blocks together. InputError for other solid elements and for a mixture."""
     kinds = {block.type for block in found.cells if block.dim == 3}
@@ -193,8 +239,8 @@ def _file_mesh(found: Any, where: str) -> FileMesh:
         raise InputError(f"{where}: holds {names}; all must be tetrahedra with 4 nodes, or all with 10")
     sets = _sets(found)
     tets = np.concatenate([block.data for block in found.cells if block.type in TETS]).astype(np.int64)
-    if found.points.shape[1] != 3 or not np.isfinite(found.points).all() or tets.min() < 0:
-        raise InputError(f"{where}: an element has a node without three finite coordinates")
+    if found.points.ndim != 2 or found.points.shape[1] != 3 or tets.min() < 0 or tets.max() >= len(found.points):
+        raise InputError(f"{where}: an element has a node without three coordinates")
     regions = {name: _mask(found, blocks) for name, blocks in sets.items() if name not in SURFACES}
     surfaces = {name: _triangles(found, blocks) for name, blocks in sets.items() if name in SURFACES}
     return FileMesh(
@@ -261,6 +307,8 @@ def own_mesh(file: str, segment: Segment) -> TetMesh:
 def _own_mesh(file: str, _content: str, segment: Segment) -> TetMesh:
     """Read and checked once for each content of the file."""
     where, read = told(file), read_file(file)
+    if not np.isfinite(read.points_mm[read.tets]).all():
+        raise InputError(f"{where}: an element has a node without three finite coordinates")
     names = tuple(layer.name for layer in layers(segment))
     region = _regions(read, names, where)
     points, tets, number = _corners_first(read)
@@ -269,6 +317,7 @@ def _own_mesh(file: str, _content: str, segment: Segment) -> TetMesh:
     if tets.shape[1] == 4:
         refuse_inverted_elements(points, tets, where)
         points, tets = quadratic(LinearMesh(points, tets, region, names), curved_surface(stack))
+    refuse_unshared_middles(tets, where)
     refuse_inverted_elements(points, tets, where)
     if stack.is_slice:
         refuse_other_slice(points, tets, stack, where)

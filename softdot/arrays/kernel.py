@@ -10,11 +10,11 @@ summed. What this misses is the stretch of the film, which is quadratic in what 
 """
 
 import json
-import zlib
+from collections.abc import Mapping
 from dataclasses import dataclass
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
-from zipfile import BadZipFile
 
 import numba as nb
 import numpy as np
@@ -24,6 +24,8 @@ from geometry.base import InputError
 
 FORMAT = "softdot-kernel/1"
 NPZ, JSON = "kernel.npz", "kernel.json"
+CHECKSUM = "checksum_sha256"
+AGAIN = "make it again by softdot array --kernel"
 TABLES = ("x_mm", "y_mm", "depth_mm", "charge_pC", "force_N", "place_x_mm", "place_y_mm", "load_mm", "sinking_mm")
 ROUNDS = 3
 """Of the depths of dots that press at once; each is about fifty times nearer than the one before."""
@@ -116,23 +118,40 @@ class ArrayKernel:
         tables = {name: getattr(self, name).astype(np.float32) for name in TABLES}
         with (folder / NPZ).open("wb") as file:
             np.savez_compressed(file, **tables)
-        text = json.dumps({"format": FORMAT, **self.about}, indent=1)
+        about = {"format": FORMAT, **self.about}
+        text = json.dumps({CHECKSUM: _checksum(tables, about), **about}, indent=1)
         (folder / JSON).write_text(text, encoding="utf-8")
 
 
 def load_kernel(folder: Path) -> ArrayKernel:
-    """Of a folder of softdot array. InputError for one that holds no kernel, or a broken one."""
+    """Of a folder of softdot array. InputError for one that holds no kernel, or one that was changed since."""
+    where = f"kernel '{folder}'"
     try:
         about = json.loads((folder / JSON).read_text("utf-8"))
         with np.load(folder / NPZ, allow_pickle=False) as file:
-            tables = {name: np.asarray(file[name], dtype=np.float64) for name in TABLES}
+            tables = {name: np.asarray(file[name]) for name in TABLES}
     except FileNotFoundError as error:
-        raise InputError(f"kernel '{folder}': {error.filename} is missing; softdot array --kernel writes it") from None
-    except (OSError, ValueError, KeyError, EOFError, BadZipFile, zlib.error) as error:
-        raise InputError(f"kernel '{folder}': cannot be read ({error})") from None
-    if about.get("format") != FORMAT:
-        raise InputError(f"kernel '{folder}': format = {about.get('format')!r}: must be '{FORMAT}'")
-    return ArrayKernel(**tables, about=about)
+        raise InputError(f"{where}: {error.filename} is missing; softdot array --kernel writes it") from None
+    except Exception as error:  # the readers raise what a damaged file happens to lead to
+        raise InputError(f"{where}: cannot be read ({error})") from None
+    if not isinstance(about, dict) or about.get("format") != FORMAT:
+        told = about.get("format") if isinstance(about, dict) else about
+        raise InputError(f"{where}: format = {str(told)[:40]!r}: must be '{FORMAT}'")
+    told = about.pop(CHECKSUM, None)
+    if told is None:
+        raise InputError(f"{where}: has no {CHECKSUM}, as kernels of earlier versions; {AGAIN}")
+    if told != _checksum(tables, about):
+        raise InputError(f"{where}: {CHECKSUM} is not that of {JSON} and {NPZ}, one of which was changed; {AGAIN}")
+    return ArrayKernel(**{name: table.astype(np.float64) for name, table in tables.items()}, about=about)
+
+
+def _checksum(tables: Mapping[str, Any], about: Mapping[str, Any]) -> str:
+    """SHA-256 of all that a kernel holds: what is said of it, and names, types, shapes and numbers of its tables."""
+    sha = sha256(json.dumps(about, sort_keys=True).encode())
+    for name in TABLES:
+        sha.update(f"{name} {tables[name].dtype} {tables[name].shape} ".encode())
+        sha.update(np.ascontiguousarray(tables[name]).tobytes())
+    return sha.hexdigest()
 
 
 def interpolated(axes: tuple[Floats, ...], table: Floats, at: list[Floats]) -> Floats:

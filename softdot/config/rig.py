@@ -6,12 +6,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
+import numpy as np
 from pydantic import Field, ValidationError, model_validator
 
 from diagnose.signals.reading import read_recording
 from diagnose.signals.recording import Recording, RigTables, Run, RunTable
 from geometry.base import InputError
 from geometry.parameters import Table
+from geometry.stack import layers
 from softdot.config import Config, config_from, with_built_in_constants
 from softdot.config.array_rig import as_one_segment
 from softdot.config.errors import refuse_absurd_numbers, sentence, without_round_off
@@ -72,7 +74,8 @@ def load_rig(folder: Path | str) -> Rig:
         own, config, bench, readouts = _believed(tables)
     except InputError as error:
         raise InputError(f"recording '{folder / RIG_FILE}': {error}") from None
-    recording = read_recording(folder, own.runs, readouts, own.specimen)
+    height_mm = np.inf if config is None else layers(config.segment)[-1].top_mm
+    recording = read_recording(folder, own.runs, readouts, own.specimen, height_mm)
     if config is not None:
         for run in recording.runs:
             _refuse_other_channels(run, config, folder)

@@ -4,18 +4,20 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from softdot.convert.instruments import read_mat, read_oscilloscope, read_sheet
+    from softdot.convert.files import read_log, read_mat, read_sheet
+    from softdot.convert.instruments import read_oscilloscope
     from softdot.convert.recording import run_text, white_noise, write_recording
 
 _HOMES = {
-    "read_mat": "instruments",
+    "read_log": "files",
+    "read_mat": "files",
     "read_oscilloscope": "instruments",
-    "read_sheet": "instruments",
+    "read_sheet": "files",
     "run_text": "recording",
     "white_noise": "recording",
     "write_recording": "recording",
 }
-__all__ = ["read_mat", "read_oscilloscope", "read_sheet", "run_text", "white_noise", "write_recording"]
+__all__ = ["read_log", "read_mat", "read_oscilloscope", "read_sheet", "run_text", "white_noise", "write_recording"]
 
 
 def __getattr__(name: str) -> Any:

@@ -1,200 +1,297 @@
-"""Files that instruments write: CSV of oscilloscopes, told apart by their headers; MATLAB .mat; spreadsheets.
+"""Text files of oscilloscopes, force gauges, stages and testers: a header with names and units, and samples below it.
 
 Tektronix TDS, TPS, TBS1000     Record Length,2.5e+03,,-0.25,2.0      settings on the left, time and value behind
 Rigol DS1000Z, MSO5000          X,CH1,CH2,Start,Increment             then Sequence,Volt,Volt,-6e-03,2e-06
 Keysight, Agilent InfiniiVision x-axis,1,2                            then second,Volt,Volt
-others (Tektronix MSO, Siglent) Time(s),CH1(V)  or  TIME,CH1          perhaps below some settings
+Siglent                         Second,Value                          below settings with units and source
+PicoScope                       Time,Channel A                        then (ms),(mV) and an empty line
+LeCroy                          Time,Ampl                             below settings with segments
+others                          Time(s),CH1(V), TIME,CH1, Zeit;Kraft  perhaps below settings, a row of units below
 """
 
-import csv
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from zipfile import BadZipFile
 
 import numpy as np
-from scipy.io import loadmat
-from scipy.io.matlab import MatReadError, matfile_version
 
 from geometry.arrays import Floats
-from geometry.base import InputError, nearest
-from geometry.files import regular_file
+from geometry.base import InputError
+from softdot.convert.text_table import TextTable, read_text_table
+from softdot.convert.units import Unit, known_unit, split_name, unit_of, usual_unit
 
-HEADER_ROWS = 60
-FACTORS = {"s": 1.0, "second": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "v": 1.0, "volt": 1.0, "volts": 1.0, "mv": 1e-3}
+HEADER_ROWS = 200
+TIME = re.compile(
+    r"#?(?:(?:elapsed|test|running|total|run|rel(?:ative)?|abs(?:olute)?)[ _]*)?"
+    r"(?:time|zeit|temps|tiempo|t|s|x|x[- ]?axis|seconds?|secs?|timestamp|time[ _]?stamp)"
+    r"(?:[ _]*(?:elapsed|axis|base))?",
+    re.IGNORECASE,
+)
+INDEX = re.compile(r"#|nr|no\.?|n|index|idx|sample|samples|point|points|row|scan|segment", re.IGNORECASE)
+"""Columns that count samples."""
+DIGITAL = re.compile(r"D\d+(?:-D\d+)?", re.IGNORECASE)
+"""Logic channels, whose cells are words of bits."""
+NAMELESS = {"value", "volt", "volts", "ampl", "amplitude"}
+"""Names of a channel that says its own in the settings, as source."""
+
+
+@dataclass(frozen=True)
+class LogChannel:
+    """values (t,) in the unit: V, N, mm or C; NaN where none was measured."""
+
+    values: Floats
+    unit: str
+
+
+@dataclass(frozen=True)
+class InstrumentLog:
+    """time_s (t,) rises; channels : by the names of the instrument."""
+
+    time_s: Floats
+    channels: Mapping[str, LogChannel]
 
 
 @dataclass(frozen=True)
 class Layout:
-    """first : row of the first sample. channels : name -> column and factor. time : column and factor, or None with
-    start_s and step_s.
+    """first : row of the first sample. time : column of the time, factor and offset to seconds. channels : name ->
+    column and unit.
     """
 
     first: int
-    channels: Mapping[str, tuple[int, float]]
-    time: tuple[int, float] | None = (0, 1.0)
-    start_s: float = 0.0
-    step_s: float = 0.0
+    time: tuple[int, float, float]
+    channels: Mapping[str, tuple[int, Unit]]
 
 
 def read_oscilloscope(file: Path | str) -> dict[str, Floats]:
-    """time_s and the channels by the names of the instrument, (t,) each in s and V; NaN where a cell is empty.
+    """time_s and the channels by the names of the instrument, (t,) each in s, V, N, mm or degrees C.
 
-    InputError for a file that cannot be read, a header of another kind and a cell that is no number.
+    NaN where a cell is empty. InputError for a file that cannot be read, a header or a unit that is not known, two
+    columns of one name and a cell that is no number.
     """
-    file = Path(file)
-    rows = _rows(file)
-    layout = _layout(rows, file)
-    body = [(n, row) for n, row in enumerate(rows[layout.first :], start=layout.first + 1) if any(map(str.strip, row))]
-    values = {
-        name: factor * np.array([_cell(row, column, n, file) for n, row in body])
-        for name, (column, factor) in layout.channels.items()
+    log = read_text_log(file)
+    return {"time_s": log.time_s, **{name: channel.values for name, channel in log.channels.items()}}
+
+
+def read_text_log(file: Path | str) -> InstrumentLog:
+    """The same with the unit of each channel. InputError."""
+    return log_of(read_text_table(Path(file)))
+
+
+def log_of(table: TextTable) -> InstrumentLog:
+    """What a table of text holds. InputError."""
+    layout = _layout(table)
+    rows = [row for row in range(layout.first, len(table.rows)) if any(table.rows[row])]
+    _refuse_wide(table, rows, layout)
+    column, factor, offset = layout.time
+    time = offset + factor * table.column(rows, column)
+    if (late := rising(time)) is not None:
+        where = f"{table.place(rows[late])}, column {column + 1}"
+        raise InputError(f"{where} = '{table.cell(rows[late], column)[:40]}': every sample needs its time, which rises")
+    channels = {
+        name: LogChannel(unit.factor * table.column(rows, place), unit.base)
+        for name, (place, unit) in layout.channels.items()
     }
-    if layout.time is None:
-        time = np.asarray(layout.start_s + layout.step_s * np.arange(len(body)), dtype=np.float64)
-    else:
-        column, factor = layout.time
-        time = factor * np.array([_cell(row, column, n, file) for n, row in body])
-    return {"time_s": time, **values}
+    return InstrumentLog(time, channels)
 
 
-def _rows(file: Path) -> list[list[str]]:
-    regular_file(file, f"'{file}'")
-    try:
-        with file.open(encoding="utf-8-sig", errors="replace", newline="") as stream:
-            return list(csv.reader(stream))
-    except (OSError, csv.Error) as error:
-        reason = error.strerror if isinstance(error, OSError) else error
-        raise InputError(f"'{file}': cannot be read ({reason})") from None
+def rising(time_s: Floats) -> int | None:
+    """The first sample (t,) without a time that is later than the one before it; None where there is none."""
+    late = np.flatnonzero(~(np.diff(time_s, prepend=-np.inf) > 0.0) | ~np.isfinite(time_s))
+    return int(late[0]) if len(late) else None
 
 
-def _layout(rows: Sequence[Sequence[str]], file: Path) -> Layout:
+def _refuse_wide(table: TextTable, rows: Sequence[int], layout: Layout) -> None:
+    """InputError for a row with more cells than the header has columns, as of a comma that is a decimal."""
+    most = max(len(table.rows[layout.first - 1 - n]) for n in range(min(3, layout.first))) if layout.first else 0
+    for row in rows:
+        if layout.first and any(table.rows[row][most:]):
+            raise InputError(
+                f"{table.place(row)}: has {len(table.rows[row])} cells, the header has {most} columns; where commas "
+                "are decimals, columns need another sign between them"
+            )
+
+
+def _layout(table: TextTable) -> Layout:
     """Where time and channels stand."""
-    first = rows[0][0].strip().lower() if rows and rows[0] else ""
-    if first == "record length" and len(rows[0]) > 4:
-        return _tektronix(rows)
-    if first == "x" and any(cell.strip().lower() == "increment" for cell in rows[0]):
-        return _rigol(rows, file)
-    if first == "x-axis" and len(rows) > 1:
-        return Layout(2, {f"CH{name.strip()}": (n, _factor(rows[1][n])) for n, name in _named(rows[0])})
-    for number, row in enumerate(rows[:HEADER_ROWS]):
-        if len(row) > 1 and row[0].strip().lower().startswith("time"):
-            channels = {_bare(name): (n, _factor(_unit(name))) for n, name in _named(row)}
-            return Layout(number + 1, channels, (0, _factor(_unit(row[0]))))
+    if _is_beside_settings(table):
+        return _beside_settings(table)
+    for row in range(min(HEADER_ROWS, len(table.rows))):
+        column = _time_column(table, row)
+        if column is not None:
+            return _below_header(table, row, column)
     raise InputError(
-        f"'{file}' row 1: no header of an oscilloscope; known are Tektronix, Rigol, Keysight and a row Time(s),CH1(V)"
+        f"'{table.file}' row 1: no header of an oscilloscope or another instrument; known are those of Tektronix, "
+        "Rigol, Keysight, Siglent, PicoScope and LeCroy, and a row with names and units such as Time(s),CH1(V)"
     )
 
 
-def _tektronix(rows: Sequence[Sequence[str]]) -> Layout:
-    """Settings in the first columns, time and value in the fourth and fifth."""
-    settings = {row[0].strip().lower(): row[1].strip() for row in rows[:HEADER_ROWS] if len(row) > 1}
-    name, unit = settings.get("source", "CH1"), settings.get("vertical units", "V")
-    return Layout(0, {name: (4, _factor(unit))}, (3, 1.0))
+def _time_column(table: TextTable, row: int) -> int | None:
+    """Where the time stands in a row that is a header: names alone, with numbers below them; None in any other."""
+    cells = table.rows[row]
+    if sum(bool(cell) for cell in cells) < 2 or any(table.is_number(cell) for cell in cells[:1]):
+        return None
+    for column, cell in enumerate(cells):
+        first = _first_sample(table, row, column) if _is_time(cell) else None
+        if first is not None and not any(_is_header(table.rows[below], table) for below in range(row + 1, first)):
+            return column
+    return None
 
 
-def _rigol(rows: Sequence[Sequence[str]], file: Path) -> Layout:
-    """Start and increment stand in the second row, in the columns that the first names."""
-    names = [cell.strip().lower() for cell in rows[0]]
-    start, step = names.index("start") if "start" in names else -1, names.index("increment")
-    values = rows[1] if len(rows) > 1 else []
-    if start < 0 or len(values) <= step:
-        raise InputError(f"'{file}' row 2: start and increment of the time are missing")
-    channels = {name: (n, _factor(values[n])) for n, name in _named(rows[0][: min(start, step)])}
-    return Layout(2, channels, None, _cell(values, start, 2, file), _cell(values, step, 2, file))
+def _is_header(cells: Sequence[str], table: TextTable) -> bool:
+    """Whether a row holds a time among names, and is more than a row of units, or of start and increment."""
+    told = (known_unit(_bare(cell)) or table.is_number(cell) for cell in cells if cell)
+    return any(_is_time(cell) for cell in cells) and not all(told)
 
 
-def _named(row: Sequence[str]) -> list[tuple[int, str]]:
-    """Columns behind the first that have a name."""
-    return [(n, name) for n, name in enumerate(row) if n > 0 and name.strip()]
+def _is_time(cell: str) -> bool:
+    """Whether a name, without its unit, is that of a time."""
+    bare = re.sub(r"\s*[(\[{].*", "", cell.strip())
+    parts = [bare, bare.rpartition("_")[0], bare.rpartition(",")[0], bare.rpartition("/")[0], bare.rpartition(" ")[0]]
+    return any(TIME.fullmatch(part.strip()) for part in parts if part.strip())
 
 
-def _unit(name: str) -> str:
-    """CH1(mV) -> mV; CH1 -> nothing."""
-    found = re.search(r"[(\[]\s*(\S+?)\s*[)\]]", name)
-    return found[1] if found else ""
+def _first_sample(table: TextTable, row: int, column: int) -> int | None:
+    """The row of the first number below a header, with a row of units and empty ones between them at most."""
+    between = 0
+    for below in range(row + 1, min(row + 6, len(table.rows))):
+        if table.is_number(table.cell(below, column).replace("\u2212", "-")):
+            return below
+        between += any(table.rows[below])
+        if between > 1:
+            return None
+    return None
 
 
-def _bare(name: str) -> str:
-    return re.sub(r"[(\[].*", "", name).strip()
+def _below_header(table: TextTable, row: int, column: int) -> Layout:
+    """Names in a row, units there, in the row below or in settings above."""
+    first = _first_sample(table, row, column)
+    assert first is not None
+    settings = _settings(table, row)
+    units = next((table.rows[n] for n in range(row + 1, first) if any(table.rows[n])), [])
+    header = table.rows[row]
+    steps = {cell.lower(): n for n, cell in enumerate(header) if cell.lower() in ("start", "increment")}
+    _refuse_segments(settings, table)
+    names = _channels(table, row, column, set(steps.values()))
+    sources, told = settings.get("source", []), settings.get("vertical units", [])
+    channels: dict[str, tuple[int, Unit]] = {}
+    for n, (place, cell) in enumerate(names):
+        name, unit = split_name(cell, table.place(row))
+        name, unit = name or cell, unit or known_unit(cell)
+        below = units[place] if place < len(units) else ""
+        above = told[n].rpartition(":")[2] if n < len(told) else ""
+        if name.lower() in NAMELESS and len(sources) == len(names):
+            name = sources[n]
+        name = f"CH{name}" if name.isdecimal() else name
+        if name in channels:
+            raise InputError(f"{table.place(row)}: two columns are called '{name[:40]}'; give each its own name")
+        channels[name] = (place, _agreed(unit, below, above, name, table.place(row)))
+    if not channels:
+        raise InputError(f"{table.place(row)}: has no column beside the time")
+    return Layout(first, _time(table, row, column, units, steps, settings), channels)
 
 
-def _factor(unit: str) -> float:
-    """To s or V; what has no unit, or one that is neither, is taken as it is."""
-    return FACTORS.get(unit.strip().lower(), 1.0)
-
-
-def _cell(row: Sequence[str], column: int, number: int, file: Path) -> float:
-    text = row[column].strip() if column < len(row) else ""
-    try:
-        return float(text) if text else float("nan")
-    except ValueError:
-        raise InputError(f"'{file}' row {number}, column {column + 1} = '{text[:40]}': must be a number") from None
-
-
-HDF5 = 2
-"""Major version of files that MATLAB calls 7.3: an HDF5 library more would save their user one save(..., '-v7')."""
-
-
-def read_mat(
-    file: Path | str, variables: Mapping[str, str], factors: Mapping[str, float] | None = None
-) -> dict[str, Floats]:
-    """Columns (t,) of a recording from the variables of a .mat file.
-
-    variables : column -> variable, 'name.field' for a field of a structure. factors : column -> number by which its
-    values are multiplied to be in the unit of the column. InputError for a file, variable or shape that does not fit.
-    """
-    tables = _loaded(Path(file))
-    return {
-        column: (factors or {}).get(column, 1.0) * _vector(tables, path, Path(file))
-        for column, path in variables.items()
-    }
-
-
-def _loaded(file: Path) -> Mapping[str, object]:
-    found: Mapping[str, object] = {}
-    try:
-        version, _ = matfile_version(file, appendmat=False)
-        if version != HDF5:
-            found = loadmat(file, squeeze_me=True, simplify_cells=True, appendmat=False)
-    except (OSError, ValueError, TypeError, MatReadError) as error:
-        reason = error.strerror if isinstance(error, OSError) and error.strerror else error
-        raise InputError(f"'{file}': cannot be read as a .mat file ({reason})") from None
-    if version == HDF5:
-        raise InputError(f"'{file}': is a version 7.3 file; save it again in MATLAB with save(..., '-v7')")
+def _channels(table: TextTable, row: int, column: int, without: set[int]) -> list[tuple[int, str]]:
+    """Column and name of what was measured. InputError for a second time, and for numbers without a name."""
+    found = []
+    for n, cell in enumerate(table.rows[row]):
+        if n == column or n in without or not cell or DIGITAL.fullmatch(cell):
+            continue
+        if n < column and INDEX.fullmatch(cell):
+            continue
+        if _is_time(cell):
+            raise InputError(
+                f"{table.place(row)}: two columns are times, '{table.rows[row][column]}' and '{cell[:40]}'"
+            )
+        found.append((n, cell))
     return found
 
 
-def _vector(tables: Mapping[str, object], path: str, file: Path) -> Floats:
-    """One real variable as (t,)."""
-    value: object = tables
-    for name in path.split("."):
-        known = {key for key in value if not key.startswith("__")} if isinstance(value, Mapping) else set()
-        if not isinstance(value, Mapping) or name not in known:
-            raise InputError(f"'{file}': has no variable '{path}'; {nearest(name, known)}")
-        value = value[name]
-    array = np.asarray(value)
-    if array.dtype.kind not in "fiu" or array.ndim != 1:
-        raise InputError(f"'{file}': variable '{path}' has shape {array.shape}, one column of real numbers is needed")
-    return array.astype(np.float64)
+def _agreed(unit: Unit | None, below: str, above: str, name: str, where: str) -> Unit:
+    """The unit of a channel by its header, the row below it or the settings above. InputError where they differ."""
+    told = [unit] if unit is not None else []
+    told += [unit_of(_bare(text), name, where) for text in (below, above) if _bare(text)]
+    if any(one != told[0] for one in told):
+        raise InputError(f"{where}: column '{name[:40]}' has two units, in its header and beside it")
+    return told[0] if told else usual_unit(name, where)
 
 
-def read_sheet(file: Path | str, first_row: int = 0, sheet: int = 0) -> Floats:
-    """Cells (r, c) of one sheet from a row on; NaN for what is no number. InputError; needs openpyxl."""
-    try:
-        from openpyxl import load_workbook  # type: ignore[import-untyped]
-    except ImportError:
-        raise InputError(f"'{file}': reading .xlsx needs openpyxl, pip install openpyxl") from None
-    try:
-        book = load_workbook(file, read_only=True, data_only=True)
-    except (OSError, BadZipFile, KeyError, ValueError) as error:
-        raise InputError(f"'{file}': cannot be read as .xlsx ({error})") from None
-    rows = list(book.worksheets[sheet].iter_rows(min_row=first_row + 1, values_only=True))
-    book.close()
-    width = max((len(row) for row in rows), default=0)
-    return np.array([[_number(cell) for cell in row] + [np.nan] * (width - len(row)) for row in rows])
+def _bare(cell: str) -> str:
+    """(mV) -> mV."""
+    return cell.strip().strip("()[]{}").strip()
 
 
-def _number(cell: object) -> float:
-    return float(cell) if isinstance(cell, int | float) and not isinstance(cell, bool) else float("nan")
+def _time(
+    table: TextTable, row: int, column: int, units: Sequence[str], steps: Mapping[str, int],
+    settings: Mapping[str, Sequence[str]],
+) -> tuple[int, float, float]:  # fmt: skip
+    """Column, factor and offset of the time; sequence numbers count from a start in steps."""
+    where = table.place(row)
+    below = _bare(units[column]) if column < len(units) else ""
+    name, unit = split_name(table.rows[row][column], where)
+    if below.lower() in ("sequence", "sample", "samples") and steps:
+        return column, *_start_and_step(table, row, steps)
+    named = known_unit(name) if unit is None else None  # second as a name
+    above = next(iter(settings.get("horizontal units", [])), "")
+    if named is not None and named.base == "s":
+        unit = named
+    elif unit is None and not below and not above and not steps:
+        unit = Unit("s", 1.0)
+    agreed = _agreed(unit, below, above, name, where)
+    if agreed.base != "s":
+        raise InputError(f"{where}: column '{name[:40]}' is a time and must be in a unit of time")
+    return column, agreed.factor, 0.0
+
+
+def _start_and_step(table: TextTable, row: int, steps: Mapping[str, int]) -> tuple[float, float]:
+    """Increment and start, which stand in the row of units. InputError where they are missing."""
+    below = row + 1
+    values = {}
+    for name in ("increment", "start"):
+        text = table.cell(below, steps[name]) if name in steps and below < len(table.rows) else ""
+        if not table.is_number(text):
+            raise InputError(f"{table.place(below)}: start and increment of the time are missing")
+        values[name] = table.number(below, steps[name])
+    return values["increment"], values["start"]
+
+
+def _settings(table: TextTable, row: int) -> dict[str, list[str]]:
+    """Key in small letters -> the values beside it, of the rows above a header."""
+    rows = (table.rows[n] for n in range(row))
+    return {
+        cells[0].lstrip("#").strip().lower(): [cell for cell in cells[1:] if cell] for cells in rows if any(cells[1:])
+    }
+
+
+def _refuse_segments(settings: Mapping[str, Sequence[str]], table: TextTable) -> None:
+    """InputError for several recordings in one file, as LeCroy writes a sequence."""
+    for key in ("segments", "fastframe count"):
+        value = next(iter(settings.get(key, [])), "1")
+        if table.is_number(value) and float(value.replace(",", ".")) > 1.0:
+            raise InputError(
+                f"'{table.file}': holds {value} segments one after the other; save each in a file of its own"
+            )
+
+
+def _is_beside_settings(table: TextTable) -> bool:
+    """Whether the first samples stand in the same rows as the settings, in the fourth and fifth column."""
+    cells = table.rows[0] if table.rows else []
+    return (
+        len(cells) > 4
+        and cells[0].lower() == "record length"
+        and table.is_number(cells[3])
+        and table.is_number(cells[4])
+    )
+
+
+def _beside_settings(table: TextTable) -> Layout:
+    """Settings in the first columns, time and value in the fourth and fifth."""
+    rows = (table.rows[n] for n in range(min(HEADER_ROWS, len(table.rows))))
+    first = {cells[0].lower(): cells[1] for cells in rows if len(cells) > 1}
+    where = table.place(0)
+    name = first.get("source", "") or "CH1"
+    time = unit_of(first.get("horizontal units", "") or "s", "time", where)
+    if time.base != "s":
+        raise InputError(f"{where}: the horizontal unit must be one of time")
+    unit = unit_of(first.get("vertical units", "") or "V", name, where)
+    return Layout(0, (3, time.factor, 0.0), {name: (4, unit)})

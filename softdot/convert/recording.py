@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Mapping
-from pathlib import Path
+from pathlib import Path, PurePosixPath, PureWindowsPath
 from tempfile import TemporaryDirectory
 
 import numpy as np
@@ -16,9 +16,12 @@ def write_recording(out: Path | str, rig: str, files: Mapping[str, Mapping[str, 
     """A new folder with rig.toml and one CSV per item, file name -> column -> samples (t,).
 
     It is read back by the rules of softdot diagnose before it takes its place. InputError when out exists and holds
-    anything, or when what was written is no recording.
+    anything, for a file that would not lie in it, and when what was written is no recording.
     """
     out = Path(out)
+    for name, columns in files.items():
+        _refuse_outside(name)
+        _refuse_uneven(name, columns)
     if out.exists() and (not out.is_dir() or any(out.iterdir())):
         raise InputError(f"output '{out}': exists already; name a new or empty folder")
     try:
@@ -33,6 +36,19 @@ def write_recording(out: Path | str, rig: str, files: Mapping[str, Mapping[str, 
             staging.replace(out)
     except OSError as error:
         raise InputError(f"output '{out}': cannot be written ({error.strerror})") from None
+
+
+def _refuse_outside(name: str) -> None:
+    """InputError unless this is the name of a file of samples in the folder itself."""
+    if PurePosixPath(name).name != name or PureWindowsPath(name).name != name or name in (RIG_FILE, "", "..", "."):
+        raise InputError(f"files: '{name[:60]}' must be the name of a file in the folder of the recording, not a path")
+
+
+def _refuse_uneven(name: str, columns: Mapping[str, Floats]) -> None:
+    """InputError unless the columns are of one length."""
+    sizes = {column: np.shape(values) for column, values in columns.items()}
+    if not sizes or len(set(sizes.values())) > 1 or len(next(iter(sizes.values()))) != 1:
+        raise InputError(f"files: the columns of '{name}' must have as many samples each; they have {sizes}")
 
 
 def _write_columns(file: Path, columns: Mapping[str, Floats]) -> None:

@@ -30,6 +30,8 @@ from geometry.plates.plate import (
 
 # a number with its points and commas; letters; Braille; anything else, one by one
 TOKEN = re.compile(r"(?:(?<![A-Za-z])\.)?[0-9][0-9.,]*|[A-Za-z]+|[\u2800-\u28ff]+|.", re.DOTALL)
+DIGIT = re.compile("[0-9]")
+"""Of the table: other characters that Unicode calls digits, such as \u00b2 or \u0663, have no cells here."""
 CAPITALS = re.compile(r"[A-Z]+|[a-z]+")
 
 
@@ -41,7 +43,7 @@ def english_cells(text: str, advice: str) -> str:
     cells, table = "", english_table()
     for token in TOKEN.finditer(text):
         word, follows = token.group(), text[token.end() : token.end() + 1]
-        if word[-1].isdigit() or word[0].isdigit():
+        if DIGIT.search(word):
             cells += _number(word, follows, table)
         elif word.isascii() and word.isalpha():
             cells += _letters(word, table)

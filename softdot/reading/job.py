@@ -1,11 +1,13 @@
 """The job of softdot read: a text through the voltages and back, and the content of reading.json and signals.npz."""
 
+import logging
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from geometry.arrays import Ints
+from geometry.base import InputError
 from softdot.arrays.kernel import ArrayKernel
 from softdot.console import Progress
 from softdot.reading.cells import braille, text_of
@@ -14,11 +16,16 @@ from softdot.reading.decoders import DECODERS, seen_of
 from softdot.reading.decoders.fitted import Track
 from softdot.reading.decoders.model import DecodedCells
 from softdot.reading.decoders.pressing import PressedCells
+from softdot.reading.kernels import electronics_of
 from softdot.reading.line import DotLine, cell_pitch_mm, made_line
 from softdot.reading.motion import ArrayPath, moved, press_times
 from softdot.reading.score import scores
 from softdot.reading.voltages import Reader, Voltages, recorded
 from solve.model import Readout
+
+LOG = logging.getLogger(__name__)
+MOST_SAMPLES = 1e8
+"""Of all segments together: half an hour at 10 kHz of six; they take a gigabyte in some of the steps."""
 
 
 @dataclass(frozen=True)
@@ -56,11 +63,13 @@ def read_line(
     known = conditions.resolved(kernel)
     chosen = standard_of(kernel, known.standard)
     times = press_times(known, cell_pitch_mm(chosen)) if known.mode == "press" else None
-    reader = Reader(kernel, chosen, readout, times)
+    behind, physics = electronics_of(kernel, readout)
+    reader = Reader(kernel, chosen, behind, times, physics)
     line: DotLine | None = None
     path: ArrayPath | None = None
     if recording is None:
         assert cells is not None
+        _refuse_too_much(known, len(cells), reader)
         progress.stage("simulate")
         random = np.random.default_rng(known.seed)
         line = made_line(cells, chosen, known, random)
@@ -75,6 +84,19 @@ def read_line(
         found[name] = DECODERS[name](reader, seen)
         progress.step(number, len(names), name)
     return LineReading(reader, known, cells, heard, line, path, seen, found)
+
+
+def _refuse_too_much(known: ReadingConditions, cells: int, reader: Reader) -> None:
+    """InputError for more samples than a machine holds; else their number is told before they are made."""
+    travel_mm = cells * cell_pitch_mm(reader.standard)
+    seconds = travel_mm / known.speed_mm_per_s if reader.presses is None else cells * reader.presses.period_s
+    count = seconds * known.sampling_Hz * len(reader.kernel.centres_mm)
+    if count > MOST_SAMPLES:
+        raise InputError(
+            f"--sampling-Hz = {known.sampling_Hz:g}: {cells} cells take {seconds:.4g} s and {count:.3g} samples "
+            f"of all segments, at most {MOST_SAMPLES:.3g} are made; sample slower, move faster or read less"
+        )
+    LOG.info("%d cells in %.4g s, %.3g samples of all segments", cells, seconds, count)
 
 
 def content(reading: LineReading, text: str | None, table: str | None) -> dict[str, Any]:

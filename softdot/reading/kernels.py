@@ -1,20 +1,38 @@
 """The kernel that a line is read with: checked against this program, the configuration and what a reader needs."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from pydantic import BaseModel, ConfigDict, ValidationError
 
 from geometry.base import InputError
-from softdot.arrays.kernel import TABLES, ArrayKernel, load_kernel
+from geometry.parameters import Finite, Positive
+from softdot.arrays.kernel import AGAIN, TABLES, ArrayKernel, load_kernel
 from softdot.config import Config, config_from, config_hash
 from softdot.console import installed_version
 from softdot.reading.conditions import PITCH_TOLERANCE_MM
-from solve.model import Readout
+from solve.mechanisms import with_mechanisms
+from solve.mechanisms.circuit.contact_electrification import CONTACT_ELECTRIFICATION
+from solve.model import Model, Physics, Readout
 
-NEEDED = (
-    "centres_mm", "capacitance_pF", "labels", "pitch_mm", "size_mm", "standard", "dot", "softdot_version",
-    "config_hash", "config",
-)  # fmt: skip
+
+class KernelAbout(BaseModel):
+    """What kernel.json says that a reader needs; errors and counts of presses beside it."""
+
+    model_config = ConfigDict(extra="allow", frozen=True, strict=True)
+    centres_mm: list[list[Finite]]
+    capacitance_pF: list[Positive]
+    labels: list[str]
+    pitch_mm: Positive
+    size_mm: list[Positive]
+    standard: str
+    dot: dict[str, Any]
+    softdot_version: str
+    config_hash: str
+    config: dict[str, Any]
+
+
 USUAL_READOUT = Readout(input_resistance_MOhm=10.0)
 """What a reader has where no [readout] is stated."""
 ROWS = 3
@@ -24,9 +42,13 @@ def opened_kernel(folder: Path, config: Config | None = None) -> ArrayKernel:
     """Of a folder. InputError for one that this program did not write, of another design, or that cannot read."""
     kernel = load_kernel(folder)
     where = f"kernel '{folder}'"
-    missing = [key for key in NEEDED if key not in kernel.about]
-    if missing:
-        raise InputError(f"{where}: {missing[0]} is missing; make it again by softdot array --kernel")
+    try:
+        KernelAbout.model_validate(kernel.about)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        key, said = ".".join(map(str, first["loc"])), first["msg"].lower()
+        reason = "is missing" if first["type"] == "missing" else f": {said}"
+        raise InputError(f"{where}: {key} {reason}; {AGAIN}") from None
     if kernel.about["softdot_version"] != installed_version():
         raise InputError(
             f"{where}: softdot_version = '{kernel.about['softdot_version']}': this is {installed_version()}; make the "
@@ -56,6 +78,25 @@ def readout_of(kernel: ArrayKernel, config: Config | None) -> Readout:
     return USUAL_READOUT if own is None else Readout.model_validate(own)
 
 
+def electronics_of(kernel: ArrayKernel, readout: Readout) -> tuple[Readout, Physics]:
+    """Read-out and stages with the mechanisms of the kernel's design that act behind the film.
+
+    The others are in the charges of the kernel. InputError for those of single channels, and for a charge that the dot
+    leaves: a reading knows neither.
+    """
+    config = config_from(kernel.about["config"])
+    behind = [one for one in config.mechanisms if one.traits.electrical]
+    model = with_mechanisms(Model(config.segment, {}, config.dot, readout=readout), behind)
+    apart = [told for told, _ in model.physics.of_channels]
+    apart += [one.name for one in config.mechanisms if one.name == CONTACT_ELECTRIFICATION.name and not one.is_off]
+    if apart:
+        raise InputError(
+            f"mechanisms: {', '.join(apart)}: a reading has one amplifier for all segments and no charge of the touch; "
+            "make a kernel without it"
+        )
+    return model.readout or readout, model.physics
+
+
 def _same_design(kernel: ArrayKernel, config: Config) -> bool:
     """Whether both are alike but for the read-out, which changes no kernel."""
     if config_hash(config) == kernel.about["config_hash"]:
@@ -80,6 +121,10 @@ def _refuse_damaged(kernel: ArrayKernel, where: str) -> None:
     for name, size in sizes.items():
         if getattr(kernel, name).shape != size:
             raise InputError(f"{where}: {name} has the size {getattr(kernel, name).shape}, not {size}; make it again")
+    for name in ("x_mm", "y_mm", "depth_mm", "place_x_mm", "place_y_mm", "load_mm"):
+        axis = getattr(kernel, name)
+        if axis.ndim != 1 or len(axis) < 2 or not (np.diff(axis) > 0.0).all():
+            raise InputError(f"{where}: {name} must rise from number to number; make it again")
     if not (kernel.capacitance_pF > 0.0).all():
         raise InputError(f"{where}: capacitance_pF must be above 0; make it again")
 

@@ -1,14 +1,20 @@
 """What a study of reading asks: one condition after the other away from the usual ones, or all together."""
 
 import itertools
-import tomllib
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, get_type_hints
+
+from pydantic import Field, ValidationError, create_model
 
 from geometry.base import InputError
+from geometry.files import read_text
+from geometry.parameters import Finite, Table
 from softdot.arrays.kernel import ArrayKernel
+from softdot.config.errors import sentence
+from softdot.config.toml import parse_toml
 from softdot.reading.cells import cells_of
 from softdot.reading.conditions import BOUNDS, ReadingConditions, standard_of
 from softdot.reading.decoders import named_decoders
@@ -18,7 +24,27 @@ USUAL_TEXT = (
     "at 7.45 for Vienna; who knows why? Six big quartz vaults, one jolly wizard."
 )
 MOST_READINGS = 20_000
-KEYS = ("text", "table", "decoder", "repeats", "accuracy", "combine", "base", "axes")
+MOST_CELLS = 2_000_000
+"""Of all readings together: a core reads about a hundred cells a second, so that these take hours."""
+BaseConditions = create_model(
+    "BaseConditions",
+    __base__=Table,
+    **{name: (kind | None, None) for name, kind in get_type_hints(ReadingConditions).items()},
+)  # type: ignore[call-overload]
+"""[base] : the conditions that differ from those of the command line."""
+
+
+class StudyTables(Table):
+    """A file of conditions."""
+
+    text: str = Field(USUAL_TEXT, description="what is read")
+    table: str | None = Field(None, description="a table of liblouis; none: plain English")
+    decoder: str = Field("model", description="one or several, as --decoders; the first decides")
+    repeats: int = Field(2, ge=1, le=100, description="seeds for each condition, counted together")
+    accuracy: float = Field(0.98, gt=0.0, le=1.0, description="share of the characters that must be read")
+    combine: bool = Field(False, description="every combination of the axes, else one after the other")
+    base: BaseConditions = Field(BaseConditions(), description="conditions away from those of the command line")
+    axes: dict[str, tuple[Finite, ...]] = Field({}, description="condition -> values")
 
 
 @dataclass(frozen=True)
@@ -57,22 +83,14 @@ def load_study(path: Path, kernel: ArrayKernel, base: ReadingConditions) -> Read
     """Of a TOML file. InputError for a key, an axis or a value that is not allowed."""
     where = f"conditions '{path}'"
     try:
-        tables = tomllib.loads(path.read_text("utf-8"))
-    except (OSError, ValueError) as error:
-        raise InputError(f"{where}: cannot be read ({error})") from None
-    for key in tables:
-        if key not in KEYS:
-            raise InputError(f"{where}: '{key}' is not a key; known are {', '.join(KEYS)}")
-    try:
-        stated: dict[str, Any] = tables.get("base", {})
-        changed = replace(base, **stated)
-        axes = {name: tuple(float(one) for one in values) for name, values in tables.get("axes", {}).items()}
-        study = ReadingStudy(
-            changed, axes or usual_axes(kernel, changed),
-            **{key: tables[key] for key in KEYS if key in tables and key not in ("base", "axes")},
-        )  # fmt: skip
-    except TypeError as error:
-        raise InputError(f"{where}: {error}") from None
+        tables = parse_toml(read_text(path, where), str(path))
+        asked = StudyTables.model_validate_json(json.dumps(tables, default=str), strict=True)
+    except ValidationError as error:
+        raise InputError(f"{where}: {sentence(error, tables, StudyTables)}") from None
+    changed = replace(base, **asked.base.model_dump(exclude_unset=True))
+    axes = dict(asked.axes) or usual_axes(kernel, changed)
+    given = {name: getattr(asked, name) for name in ("text", "table", "decoder", "repeats", "accuracy", "combine")}
+    study = ReadingStudy(changed, axes, **given)
     _check(study, where)
     return study
 
@@ -85,14 +103,15 @@ def _check(study: ReadingStudy, where: str) -> None:
             raise InputError(f"{where}: axes.{name} = []: needs at least one value")
         for value in values:
             with_value(study.base, name, value)
-    if not isinstance(study.repeats, int) or not 1 <= study.repeats <= 100:
-        raise InputError(f"{where}: repeats = {study.repeats}: must be a whole number from 1 to 100")
-    if not 0.0 < study.accuracy <= 1.0:
-        raise InputError(f"{where}: accuracy = {study.accuracy}: must be above 0 and at most 1")
     named_decoders(study.decoder)
     if (count := len(points(study)) * study.repeats) > MOST_READINGS:
         raise InputError(f"{where}: has {count} readings, at most {MOST_READINGS} are allowed")
-    cells_of(study.text, study.table)
+    cells = len(cells_of(study.text, study.table))
+    if cells * count > MOST_CELLS:
+        raise InputError(
+            f"{where}: {count} readings of {cells} cells are {cells * count} cells, at most {MOST_CELLS} are "
+            "read; shorten the text or leave out values"
+        )
 
 
 def points(study: ReadingStudy) -> list[ReadingConditions]:

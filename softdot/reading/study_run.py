@@ -1,6 +1,7 @@
 """A study of reading on all cores: its folder, which keeps what was read, its table and its picture."""
 
 import csv
+import logging
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -29,6 +30,7 @@ FOLDER, TABLE, PICTURE = "conditions", "reading_study.csv", "reading_study.png"
 STUDY = Product(
     "softdot-reading-study/1", "reading_study.json", frozenset({"reading_study.json", FOLDER, TABLE, PICTURE})
 )
+LOG = logging.getLogger(__name__)
 
 
 def run_reading_study(
@@ -60,6 +62,7 @@ def run_reading_study(
         if not (place / STUDY.summary).exists():
             write_json(place / STUDY.summary, {"format": STUDY.format, "complete": False})
         work = _Work(study, kernel_folder, place / FOLDER, readout_of(kernel, config).model_dump_json(), progress)
+        LOG.info("%d conditions, each read %d times; then what their limits ask for", len(points(study)), study.repeats)
         with executor_for(scheduler, workers) as executor:
             progress.stage("read")
             work.done(executor, points(study))

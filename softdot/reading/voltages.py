@@ -38,14 +38,16 @@ class Voltages:
 class Reader:
     """All that a decoder may know: the kernel, the nominal standard, the read-out, and whether the array slides.
 
-    presses : when it is set down, as told by the machine that does it; None where it slides. passing : charges of dots
-    that are passed, by offset and yaw, which decoders keep here.
+    physics : what acts behind the film besides the read-out. presses : when it is set down, as told by the machine
+    that does it; None where it slides. passing : charges of dots that are passed, by offset and yaw, which decoders
+    keep here.
     """
 
     kernel: ArrayKernel
     standard: BrailleStandard
     readout: Readout
     presses: PressTimes | None = None
+    physics: Physics = field(default_factory=Physics)
     passing: dict[tuple[float, float], tuple[Floats, Floats]] = field(default_factory=dict, compare=False, repr=False)
 
 
@@ -82,7 +84,9 @@ def behind_readout(reader: Reader, time_s: Floats, charge_pC: Floats, at_s: Floa
     spline = CubicSpline(time_s, 1e-12 * charge_pC)
     charge = spline(np.clip(time, time_s[0], time_s[-1]))
     voltages = [
-        amplify(time, np.ascontiguousarray(charge[:, j]), float(1e-12 * farads), reader.readout, Physics())[::parts]
+        amplify(time, np.ascontiguousarray(charge[:, j]), float(1e-12 * farads), reader.readout, reader.physics)[
+            ::parts
+        ]
         for j, farads in enumerate(reader.kernel.capacitance_pF)
     ]
     return np.stack(voltages, axis=1)

@@ -21,6 +21,7 @@ from multiprocessing.connection import Connection
 from typing import Any
 
 from geometry.base import InputError, without_collector
+from geometry.environment import without_working_folder
 from geometry.files import end_with_parent
 
 LOG = logging.getLogger(__name__)
@@ -46,7 +47,7 @@ class Worker:
         context = multiprocessing.get_context("spawn")
         self._connection, theirs = context.Pipe()
         self.process = context.Process(target=serve_tasks, args=(theirs, os.getpid(), warm_up), daemon=True)
-        with _deaf():
+        with _deaf(), without_working_folder():
             self.process.start()
         theirs.close()
         self._loop = asyncio.get_running_loop()

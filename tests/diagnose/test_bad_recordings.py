@@ -25,7 +25,6 @@ RIGS = {
     GOOD + "temperature_C = '23 C'": f"runs[0].temperature_C = '23 C': {NUMBER}",
     GOOD + "virgin = 'yes'": "runs[0].virgin = 'yes': must be true or false, without quotes",
     GOOD + "dot_offset_mm = [0.0]": "runs[0].dot_offset_mm[1] is missing",
-    GOOD + RUN: "runs[1].label = 'press' appears twice",
     GOOD + "[runs.nuisance]\ngian = 0.1": "runs[0].nuisance: 'gian' is not a nuisance parameter; did you mean 'gain'?",
     GOOD + "[runs.nuisance]\nmodulus.medium3 = 0.1": (
         "runs[0].nuisance: 'modulus.medium3' is not a nuisance parameter; did you mean 'modulus.medium2'?"

@@ -1,5 +1,6 @@
 """The kernel of an array: what its table gives for one dot and for several, and how it is filled and kept."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -85,6 +86,46 @@ def test_what_is_no_kernel_is_refused_in_a_sentence(tmp_path, damage, sentence):
     damage(tmp_path)
     with pytest.raises(InputError, match=sentence):
         load_kernel(tmp_path)
+
+
+def rewritten(change):
+    """A change of what kernel.json says."""
+
+    def damage(folder):
+        told = json.loads((folder / "kernel.json").read_text("utf-8"))
+        (folder / "kernel.json").write_text(json.dumps(change(told)), "utf-8")
+
+    return damage
+
+
+def with_axes_reversed(folder):
+    tables = dict(np.load(folder / "kernel.npz"))
+    np.savez(folder / "kernel.npz", **{**tables, "x_mm": tables["x_mm"][::-1]})
+
+
+@pytest.mark.parametrize(
+    ("damage", "sentence"),
+    [
+        (rewritten(lambda told: {**told, "labels": told["labels"][::-1]}), "one of which was changed; make it again"),
+        (rewritten(lambda told: {**told, "remark": "mine"}), "one of which was changed"),
+        (with_axes_reversed, "one of which was changed"),
+        (lambda folder: plane(0.3).save(folder.parent) or _exchanged(folder), "one of which was changed"),
+        (rewritten(lambda told: {n: v for n, v in told.items() if n != "checksum_sha256"}), "has no checksum_sha256"),
+        (rewritten(lambda told: [told]), "must be 'softdot-kernel/1'"),
+    ],
+)
+def test_a_kernel_that_was_changed_is_refused(tmp_path, damage, sentence):
+    (tmp_path / "kernel").mkdir()
+    plane().save(tmp_path / "kernel")
+    load_kernel(tmp_path / "kernel")
+    damage(tmp_path / "kernel")
+    with pytest.raises(InputError, match=sentence):
+        load_kernel(tmp_path / "kernel")
+
+
+def _exchanged(folder):
+    """The numbers of another kernel."""
+    (folder.parent / "kernel.npz").replace(folder / "kernel.npz")
 
 
 def known(case, nodes_mm, x, y):

@@ -58,12 +58,22 @@ def test_combined_axes_give_every_combination():
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("repeat = 3", "'repeat' is not a key; known are text"),
+        ("repeat = 3", "repeat is not a key; did you mean 'repeats'"),
         ("[axes]\ncolour = [1]", "axes.colour is no condition with a number"),
         ("[axes]\nnoise_mV = [-1]", "--noise-mV = -1: must be from 0"),
         ('decoder = "oracle"', "'oracle' is none of model"),
-        ("accuracy = 2.0", "accuracy = 2.0: must be above 0"),
-        ("[base]\nspeed = 3", "unexpected keyword argument 'speed'"),
+        ("accuracy = 2.0", "accuracy = 2: must be at most 1"),
+        ("[base]\nspeed = 3", "base.speed is not a key; did you mean"),
+        ("[base]\nspeed_mm_per_s = 'fast'", "base.speed_mm_per_s = 'fast': must be a plain number"),
+        ("base = 3", "base = 3: must be"),
+        ("axes = 'noise_mV'", "axes = 'noise_mV': must be"),
+        ("axes = { noise_mV = 'loud' }", "axes.noise_mV = 'loud': must be"),
+        ("text = 5", "text = 5: must be"),
+        ("combine = 'yes'", "combine = 'yes': must be true or false"),
+        (
+            "repeats = 100\n[axes]\nnoise_mV = [1, 2, 3]\nyaw_deg = [1, 2, 3]\ntremor_um = " + str(list(range(160))),
+            "cells",
+        ),
     ],
 )
 def test_bad_studies_are_one_sentence(kernel, tmp_path, text, said):

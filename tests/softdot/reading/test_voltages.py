@@ -1,10 +1,14 @@
 """From charges to voltages and back."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from geometry.base import InputError
 from geometry.braille import standard
 from softdot.reading.decoders.templates import Posture, templates
+from softdot.reading.kernels import electronics_of
 from softdot.reading.voltages import Reader, Voltages, behind_readout, charge_again_pC
 from solve.model import Readout
 from tests.softdot.reading.lines import NOMINAL, READOUT, simulated
@@ -22,6 +26,37 @@ def test_a_charge_that_rises_evenly_leaves_by_the_resistor(kernel):
     voltage = behind_readout(own, time, np.outer(time, np.full(6, 50.0)), at)
     closed = 1e9 * 50e-12 * -np.expm1(-at / 0.2)
     np.testing.assert_allclose(voltage, np.repeat(closed[:, None], 6, axis=1), rtol=1e-9, atol=1e-15)
+
+
+def with_mechanisms(kernel, *mechanisms):
+    """A kernel whose design states these mechanisms."""
+    stated = [{"name": name, "component": where, "parameters": values} for name, where, values in mechanisms]
+    return replace(kernel, about={**kernel.about, "config": {**kernel.about["config"], "mechanisms": stated}})
+
+
+def test_what_the_design_states_of_the_circuit_acts(kernel):
+    """A leak beside the input, a capacitance beside the film, and a low-pass behind it: that of first order."""
+    leak, farads = (
+        ("charge-leakage", "readout", {"resistance_MOhm": 1000.0}),
+        ("parasitic-capacitance", "readout", {"capacitance_pF": 180.0}),
+    )
+    low = ("low-pass", "readout", {"cutoff_Hz": 0.5})
+    readout, physics = electronics_of(with_mechanisms(kernel, leak, farads), Readout())
+    assert readout.input_resistance_MOhm == pytest.approx(1000.0)
+    assert readout.input_capacitance_pF == pytest.approx(180.0)
+    assert physics.electronics == ()
+    _, physics = electronics_of(with_mechanisms(kernel, low), Readout())
+    own = replace(reader(kernel, Readout()), physics=physics)
+    time = np.linspace(0.0, 2.0, 2001)
+    step = np.minimum(time[:, None] / 1e-3, 1.0) * np.full(6, 20.0)  # 1 V on 20 pF
+    voltage = behind_readout(own, time, step, time)[:, 0]
+    np.testing.assert_allclose(voltage, -np.expm1(-2.0 * np.pi * 0.5 * np.maximum(time - 5e-4, 0.0)), atol=2e-3)
+
+
+def test_what_a_reading_does_not_know_of_the_circuit_is_refused(kernel):
+    own = with_mechanisms(kernel, ("charge-leakage", "channel-1", {"resistance_MOhm": 1000.0}))
+    with pytest.raises(InputError, match="mechanisms: a leak of 'channel-1': a reading has one amplifier"):
+        electronics_of(own, Readout())
 
 
 @pytest.mark.parametrize(

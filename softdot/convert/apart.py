@@ -1,0 +1,176 @@
+"""Binary files are read in a process of its own, since what is wrong in them may take the interpreter with it.
+
+Started as a module with four arguments: the reader, the file, a folder and the process number of its parent. The folder
+holds asked.json, what the reader is asked; it leaves read.npz there, or refused.txt with one sentence.
+"""
+
+import json
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from geometry.arrays import Floats
+from geometry.base import InputError, nearest
+from geometry.environment import own_path, own_python
+from geometry.files import end_with_parent, regular_file, scratch_folder
+from softdot.convert.text_table import decoded
+
+LONGEST_S = 600.0
+HDF5 = 2
+"""Major version of files that MATLAB calls 7.3: an HDF5 library more would save their user one save(..., '-v7')."""
+Arrays = dict[str, Any]
+
+
+def read_apart(reader: str, file: Path, asked: Mapping[str, str] | None = None) -> Arrays:
+    """The arrays that a reader of READERS makes of a file. InputError, also where its process dies or is slow."""
+    regular_file(file, f"'{file}'")
+    with scratch_folder() as folder:
+        (folder / "asked.json").write_text(json.dumps(dict(asked or {})), "utf-8")
+        command = own_python("-m", "softdot.convert.apart", reader, str(file), str(folder), str(os.getpid()))
+        try:
+            done = subprocess.run(
+                command,
+                env={**os.environ, **own_path()},
+                stdin=subprocess.DEVNULL,
+                capture_output=True,
+                timeout=LONGEST_S,
+                start_new_session=True,
+                check=False,
+            )
+        except subprocess.TimeoutExpired:
+            raise InputError(f"'{file}': is not read within {LONGEST_S:g} s") from None
+        if (folder / "refused.txt").exists():
+            raise InputError((folder / "refused.txt").read_text("utf-8"))
+        if done.returncode != 0 or not (folder / "read.npz").exists():
+            raise InputError(f"'{file}': cannot be read as a {reader} file (its reader broke down; is it damaged?)")
+        with np.load(folder / "read.npz", allow_pickle=False) as kept:
+            return {name: kept[name] for name in kept.files}
+
+
+def main(reader: str, file: Path, folder: Path) -> None:
+    """Read and leave what was read, or why not."""
+    asked = json.loads((folder / "asked.json").read_text("utf-8"))
+    try:
+        found = READERS[reader](file, asked)
+    except InputError as error:
+        said = str(error)
+    except ImportError as error:
+        said = f"'{file}': reading it needs {error.name or 'a library'}, pip install 'softdot[convert]'"
+    except Exception as error:  # libraries raise what a wrong file happens to lead to
+        why = " ".join(str(error).split())[:200] or type(error).__name__
+        said = f"'{file}': cannot be read as a {reader} file ({why})"
+    else:
+        np.savez(folder / "read.npz", **found)
+        return
+    (folder / "refused.txt").write_text(said, "utf-8", errors="replace")
+
+
+def matlab_columns(file: Path, asked: Mapping[str, str]) -> Arrays:
+    """Column -> values (t,). asked : column -> variable, 'name.field' for a field of a structure. InputError."""
+    from scipy.io import loadmat
+    from scipy.io.matlab import matfile_version
+
+    version, _ = matfile_version(file, appendmat=False)
+    if version == HDF5:
+        raise InputError(f"'{file}': is a version 7.3 file; save it again in MATLAB with save(..., '-v7')")
+    tables = loadmat(file, squeeze_me=True, simplify_cells=True, appendmat=False)
+    return {column: _vector(tables, path, file) for column, path in asked.items()}
+
+
+def _vector(tables: Mapping[str, object], path: str, file: Path) -> Floats:
+    """One real variable as (t,)."""
+    value: object = tables
+    for name in path.split("."):
+        known = {key for key in value if not key.startswith("__")} if isinstance(value, Mapping) else set()
+        if not isinstance(value, Mapping) or name not in known:
+            raise InputError(f"'{file}': has no variable '{path}'; {nearest(name, known)}")
+        value = value[name]
+    array = np.asarray(value)
+    if array.dtype.kind not in "fiu" or array.ndim != 1:
+        raise InputError(f"'{file}': variable '{path}' has shape {array.shape}, one column of real numbers is needed")
+    return array.astype(np.float64)
+
+
+def tdms_log(file: Path, _asked: Mapping[str, str]) -> Arrays:
+    """LabVIEW's .tdms, by npTDMS: all channels, which must be sampled at the same times."""
+    from nptdms import TdmsFile  # type: ignore[import-not-found, unused-ignore]
+
+    with TdmsFile.open(file) as opened:
+        found = [channel for group in opened.groups() for channel in group.channels() if len(channel)]
+        timed = [channel for channel in found if "wf_increment" in channel.properties]
+        if not timed or len(timed) < len(found):
+            raise InputError(f"'{file}': a channel has no increment of time (wf_increment); save waveforms")
+        times = [np.asarray(channel.time_track(), dtype=np.float64) for channel in timed]
+        units = [str(channel.properties.get("unit_string", channel.properties.get("NI_UnitDescription", "")))
+                 for channel in timed]  # fmt: skip
+        values = [np.asarray(channel[:], dtype=np.float64) for channel in timed]
+        return _logged(file, times, [channel.name for channel in timed], units, values)
+
+
+def lvm_log(file: Path, _asked: Mapping[str, str]) -> Arrays:
+    """LabVIEW's .lvm, by lvm_read, which is given the text: a pickle beside the file is not read."""
+    import lvm_read  # type: ignore[import-not-found, unused-ignore]
+
+    found = lvm_read.read_str(decoded(file))
+    if found["Segments"] != 1:
+        raise InputError(f"'{file}': holds {found['Segments']} segments one after the other; save each in its own file")
+    if found.get("X_Columns", "One") == "Multi":
+        raise InputError(f"'{file}': has a column of times for each channel (X_Columns Multi); save it with one")
+    if found.get("Time_Pref", "Relative") not in ("Relative", "Absolute"):
+        raise InputError(f"'{file}': Time_Pref = '{found['Time_Pref']}' must be Relative or Absolute")
+    segment = found[0]
+    count = int(segment["Channels"])
+    table = np.asarray(segment["data"], dtype=np.float64)
+    if found.get("X_Columns", "One") == "No":
+        times = [x0 + step * np.arange(len(table)) for x0, step in zip(segment["X0"], segment["Delta_X"], strict=False)]
+        values, names = table, list(segment["Channel names"])
+    else:
+        times, values, names = [table[:, 0]] * count, table[:, 1:], list(segment["Channel names"])[1:]
+    units = [text.strip() for text in segment.get("Y_Unit_Label", [""] * count)]
+    return _logged(file, times[:count], names[:count], units[:count], list(values.T[:count]))
+
+
+def waveform_log(file: Path, _asked: Mapping[str, str]) -> Arrays:
+    """Binary waveforms of Rigol, Tektronix, LeCroy, Keysight, Siglent, Rohde & Schwarz and Yokogawa, by RigolWFM."""
+    from RigolWFM.wfm import Wfm  # type: ignore[import-not-found, unused-ignore]
+
+    shown = [channel for channel in Wfm.from_file(str(file)).channels if channel.volts is not None]
+    units = [{"v": "V", "a": "A", "w": "W"}.get(channel.unit.name, "of its own") for channel in shown]
+    names = [re.sub(r"\s+", "", channel.name) for channel in shown]
+    return _logged(file, [channel.times for channel in shown], names, units, [channel.volts for channel in shown])
+
+
+def _logged(
+    file: Path, times: Sequence[Floats], names: Sequence[str], units: Sequence[str], values: Sequence[Floats]
+) -> Arrays:
+    """time_s (t,), names and units (n,), values (n, t). InputError for channels that were sampled at other times."""
+    if not times or len({len(names), len(units), len(values), len(times)}) != 1:
+        raise InputError(f"'{file}': holds no channel, or channels without name or unit")
+    for name, time, column in zip(names, times, values, strict=True):
+        if len(time) != len(times[0]) or len(column) != len(time) or not np.allclose(time, times[0]):
+            raise InputError(f"'{file}': '{name}' was sampled at other times than '{names[0]}'; save them apart")
+    return {
+        "time_s": np.asarray(times[0]),
+        "names": np.array(names),
+        "units": np.array(units),
+        "values": np.array(values),
+    }
+
+
+READERS: dict[str, Callable[[Path, Mapping[str, str]], Arrays]] = {
+    ".mat": matlab_columns,
+    ".tdms": tdms_log,
+    ".lvm": lvm_log,
+    "waveform": waveform_log,
+}
+
+
+if __name__ == "__main__":
+    end_with_parent(int(sys.argv[4]))
+    main(sys.argv[1], Path(sys.argv[2]), Path(sys.argv[3]))

@@ -1,0 +1,229 @@
+"""Logs of several instruments, each with its own clock and rate, joined into the columns of one run.
+
+Times are those of the log that holds the voltages, else of the finest; the others are interpolated by monotone cubics
+(Fritsch and Carlson, SIAM J. Numer. Anal. 17 (1980) 238), which do not overshoot. What that costs the drive is asked of
+the drive itself: every second sample is left out, and found again from the rest.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from diagnose.signals.align import lag_between
+from geometry.arrays import Floats
+from geometry.base import InputError, nearest
+from softdot.convert.instruments import InstrumentLog, LogChannel
+
+COLUMNS = {"V": "voltage_V", "N": "force_N", "mm": "displacement_mm", "C": "temperature_C"}
+"""Unit of a channel -> the column that it becomes where there is no other of the unit."""
+COARSE = 1.5
+"""Steps of the drive, in steps of the recording, above which its interpolation is judged."""
+FEWEST = 8
+ALIKE = 0.8
+"""Correlation of two channels that record the same, once they are aligned."""
+
+
+@dataclass(frozen=True)
+class NamedLog:
+    """A log and the file that it is from."""
+
+    file: Path
+    log: InstrumentLog
+
+    @property
+    def step_s(self) -> float:
+        """Median step of its times."""
+        return float(np.median(np.diff(self.log.time_s)))
+
+    def shifted(self, by_s: float) -> "NamedLog":
+        """The same on another clock."""
+        return replace(self, log=replace(self.log, time_s=self.log.time_s + by_s))
+
+
+@dataclass(frozen=True)
+class JoinedRun:
+    """columns : name -> samples (t,), time_s first. said, warnings : a sentence each."""
+
+    columns: Mapping[str, Floats]
+    said: Sequence[str]
+    warnings: Sequence[str]
+
+
+def joined(logs: Sequence[NamedLog], named: Mapping[str, str], offsets_s: Sequence[float], align: bool) -> JoinedRun:
+    """One run of logs. named : channel -> column, none where units tell. InputError.
+
+    offsets_s : what is added to the times of each log behind the first, none where one trigger started all. align : by
+    a channel of force or displacement that each log shares with the first.
+    """
+    for one in logs:
+        if len(one.log.time_s) < FEWEST:
+            raise InputError(f"'{one.file}': has {len(one.log.time_s)} samples, at least {FEWEST} are needed")
+    places, shared = _columns(logs, named, align)
+    logs, said = _on_one_clock(logs, offsets_s, align, shared)
+    main = min(range(len(logs)), key=lambda n: (not _has_voltage(n, places), logs[n].step_s))
+    start = max(float(one.log.time_s[0]) for one in logs)
+    end = min(float(one.log.time_s[-1]) for one in logs)
+    time = logs[main].log.time_s
+    time = time[(time >= start) & (time <= end)]
+    if len(time) < FEWEST:
+        names = ", ".join(f"'{one.file}'" for one in logs)
+        raise InputError(
+            f"{names}: share {max(end - start, 0.0):.3g} s, less than {FEWEST} "
+            "samples; state by --offset how much later each clock began"
+        )
+    columns = {"time_s": time}
+    warnings = []
+    for column, (number, name) in places.items():
+        one = logs[number]
+        values = one.log.channels[name].values
+        columns[column] = _at(time, one.log.time_s, values) if number != main else values[np.isin(one.log.time_s, time)]
+        said.append(f"{column} is '{name}' of '{one.file.name}', a sample every {one.step_s:.3g} s")
+        if column in ("displacement_mm", "force_N") and one.step_s > COARSE * logs[main].step_s:
+            warnings.append(_cost(column, one, values, logs[main].step_s, time))
+    return JoinedRun(columns, said, warnings)
+
+
+def _columns(
+    logs: Sequence[NamedLog], named: Mapping[str, str], align: bool
+) -> tuple[dict[str, tuple[int, str]], dict[int, str]]:
+    """Column -> log and channel; and, to align, log -> its channel of the quantity that the first log has too."""
+    every = [(n, name, channel) for n, one in enumerate(logs) for name, channel in one.log.channels.items()]
+    shared = {n: _shared(logs[0], one) for n, one in enumerate(logs) if n > 0} if align else {}
+    if named:
+        return {column: _found(every, channel, column) for channel, column in named.items()}, shared
+    twice = set(shared.items())
+    left = [(n, name, channel) for n, name, channel in every if (n, name) not in twice]
+    found: dict[str, tuple[int, str]] = {}
+    for unit, column in COLUMNS.items():
+        mine = [(n, name) for n, name, channel in left if channel.unit == unit]
+        if unit == "V" and len(mine) > 1:
+            found |= {f"voltage_{number}_V": one for number, one in enumerate(mine, 1)}
+        elif len(mine) > 1:
+            names = ", ".join(f"'{name}' of '{logs[n].file.name}'" for n, name in mine)
+            raise InputError(
+                f"--column: {names} could all be {column}; say which, such as --column '{mine[0][1]}={column}'"
+            )
+        elif mine:
+            found[column] = mine[0]
+    return found, shared
+
+
+def _found(every: Sequence[tuple[int, str, LogChannel]], channel: str, column: str) -> tuple[int, str]:
+    """Where a channel is. InputError where none, or several, are called so, or where it has another unit."""
+    mine = [(n, name, one) for n, name, one in every if name == channel]
+    if len(mine) != 1:
+        known = nearest(channel, [name for _, name, _ in every])
+        told = f"{len(mine)} logs have one" if mine else f"there is none; {known}"
+        raise InputError(f"--column '{channel}={column}': {told}")
+    number, name, one = mine[0]
+    unit = column.rpartition("_")[2]
+    if one.unit != unit:
+        raise InputError(f"--column '{channel}={column}': is in {one.unit}, which is no {unit}")
+    return number, name
+
+
+def _shared(first: NamedLog, other: NamedLog) -> str:
+    """The channel of another log that records what one of the first does: force, else displacement. InputError."""
+    for unit in ("N", "mm"):
+        if _of_unit(first, unit) is not None and (name := _of_unit(other, unit)) is not None:
+            return name
+    raise InputError(
+        f"--align: '{first.file}' and '{other.file}' do not both hold one channel of force or displacement; state how "
+        "much later the clock began by --offset"
+    )
+
+
+def _of_unit(one: NamedLog, unit: str) -> str | None:
+    """The only channel of a unit."""
+    names = [name for name, channel in one.log.channels.items() if channel.unit == unit]
+    return names[0] if len(names) == 1 else None
+
+
+def _has_voltage(number: int, places: Mapping[str, tuple[int, str]]) -> bool:
+    return any(column.startswith("voltage") and place[0] == number for column, place in places.items())
+
+
+def _on_one_clock(
+    logs: Sequence[NamedLog], offsets_s: Sequence[float], align: bool, shared: Mapping[int, str]
+) -> tuple[list[NamedLog], list[str]]:
+    """The logs by the clock of the first, and how that is known. InputError."""
+    first, *others = logs
+    if align and offsets_s:
+        raise InputError("--offset: is found by --align; give one of them")
+    if offsets_s and len(offsets_s) != len(others):
+        raise InputError(
+            f"--offset: {len(offsets_s)} are given; needs one for each log behind the first, {len(others)}"
+        )
+    if offsets_s:
+        moved = [one.shifted(by) for one, by in zip(others, offsets_s, strict=True)]
+        return [first, *moved], [f"'{one.file.name}' begins at {one.log.time_s[0]:.6g} s, as stated" for one in moved]
+    if not align:
+        return list(logs), ["all clocks are taken as started by one trigger"] if others else []
+    moved, said = [], []
+    for number, one in enumerate(others, 1):
+        by, told = _lag(first, one, shared[number])
+        moved.append(one.shifted(by))
+        said.append(told)
+    return [first, *moved], said
+
+
+def _lag(first: NamedLog, other: NamedLog, channel: str) -> tuple[float, str]:
+    """What is added to the times of another log, by the channel that it shares with the first. InputError."""
+    unit = other.log.channels[channel].unit
+    own = _of_unit(first, unit)
+    assert own is not None
+    step = max(first.step_s, other.step_s)
+    even = []
+    for one, name in ((first, own), (other, channel)):
+        count = int((one.log.time_s[-1] - one.log.time_s[0]) / step) + 1
+        at = one.log.time_s[0] + step * np.arange(count)
+        even.append(_at(at, one.log.time_s, one.log.channels[name].values))
+    try:
+        found = lag_between(even[0], even[1], step)
+    except (ValueError, np.linalg.LinAlgError):
+        raise InputError(f"--align: '{own}' or '{channel}' never changes; state --offset") from None
+    if not found.correlation > ALIKE:
+        raise InputError(
+            f"--align: '{own}' and '{channel}' do not run alike (correlation {found.correlation:.2f}); state --offset"
+        )
+    by = float(first.log.time_s[0] - other.log.time_s[0]) - found.lag_s
+    told = (
+        f"'{other.file.name}' is moved by {by:.6g} s, standard error {found.sigma_s:.2g} s, by '{channel}' and '{own}'"
+    )
+    return by, told
+
+
+def _at(time_s: Floats, given_s: Floats, values: Floats) -> Floats:
+    """Values at other times; those that were not measured are bridged."""
+    there = np.isfinite(values)
+    if there.sum() < 2:
+        raise InputError("a channel holds less than two samples that were measured")
+    curve = PchipInterpolator(given_s[there], values[there], extrapolate=False)
+    return np.asarray(curve(np.clip(time_s, given_s[there][0], given_s[there][-1])))
+
+
+def _cost(column: str, one: NamedLog, values: Floats, step_s: float, time_s: Floats) -> str:
+    """What a coarse drive costs, by the same drive with half of its samples.
+
+    The error of such a curve falls at least with the square of the step, that of its rate with the step; so what is
+    seen at twice the step is four times, and twice, what the whole drive has. Its noise is counted in.
+    """
+    there = np.isfinite(values)
+    given, known = one.log.time_s[there], values[there]
+    coarse, whole = PchipInterpolator(given[::2], known[::2]), PchipInterpolator(given, known)
+    inside = time_s[(time_s >= given[0]) & (time_s <= given[::2][-1])]
+    depth = _rms(coarse(inside) - whole(inside)) / max(float(np.ptp(known)), 1e-300) / 4.0
+    rate = _rms(coarse(inside, 1) - whole(inside, 1)) / max(_rms(whole(inside, 1)), 1e-300) / 2.0
+    return (
+        f"{column} has a sample every {one.step_s:.3g} s, {one.step_s / step_s:.3g} times as far apart as those of the "
+        f"recording: between them it is off by about {100.0 * depth:.2g} % of its range and {100.0 * rate:.2g} % of "
+        "its rate, which the voltage follows; a diagnosis may take that for missing physics. Log the drive faster, or "
+        "press more slowly"
+    )
+
+
+def _rms(values: Floats) -> float:
+    return float(np.sqrt(np.mean(values**2))) if len(values) else 0.0

@@ -1,0 +1,132 @@
+"""A table in a text file: its encoding, the sign between its columns, point or comma in its numbers."""
+
+import csv
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from io import StringIO
+from pathlib import Path
+
+import numpy as np
+
+from geometry.arrays import Floats
+from geometry.base import InputError
+from geometry.files import regular_file
+
+LARGEST_MB = 500
+MARKS = {b"\xef\xbb\xbf": "utf-8-sig", b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
+"""First bytes of a file -> its encoding."""
+NUMBER = re.compile(r"[+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eEdD][+-]?\d+)?", re.ASCII)
+NO_NUMBER = re.compile(r"[+-]?(?:nan|inf|infinity|\u221e)", re.IGNORECASE)
+"""A sample that is missing, or beyond the range of its channel as PicoScope writes it."""
+LOOKED_AT = 200  # rows
+
+
+@dataclass(frozen=True)
+class TextTable:
+    """rows : the cells of every line, blanks around them taken off. decimal : '.' or ','. file : that it is from."""
+
+    rows: Sequence[Sequence[str]]
+    decimal: str
+    file: Path
+
+    def place(self, row: int) -> str:
+        """Where a row stands, counted from 1."""
+        return f"'{self.file}' row {row + 1}"
+
+    def cell(self, row: int, column: int) -> str:
+        """The cell, empty where the row ends before it."""
+        cells = self.rows[row]
+        return cells[column] if column < len(cells) else ""
+
+    def is_number(self, text: str) -> bool:
+        """Whether a cell is one, in this file's way of writing it."""
+        return bool(NUMBER.fullmatch(text)) and ("," if self.decimal == "." else ".") not in text
+
+    def number(self, row: int, column: int) -> float:
+        """NaN for an empty cell and for what is not measured. InputError for what is no number."""
+        text = self.cell(row, column).replace("\u2212", "-")
+        if not text or NO_NUMBER.fullmatch(text):
+            return float("nan")
+        if not self.is_number(text):
+            raise InputError(f"{self.place(row)}, column {column + 1} = '{text[:40]}': must be a number")
+        return float(text.upper().replace("D", "E").replace(",", "."))
+
+    def column(self, rows: Sequence[int], column: int) -> Floats:
+        """The numbers of one column, (t,)."""
+        return np.array([self.number(row, column) for row in rows], dtype=np.float64)
+
+
+def read_text_table(file: Path) -> TextTable:
+    """InputError for a file that cannot be read, is none of text or mixes points and commas in its numbers."""
+    text = decoded(file)
+    text, told = _told_separator(text)
+    separator = told or _separator(text)
+    try:
+        rows = [
+            [" ".join(cell.split()) for cell in row]
+            for row in csv.reader(StringIO(text, newline=""), delimiter=separator)
+        ]
+    except csv.Error as error:
+        raise InputError(f"'{file}': cannot be read ({error})") from None
+    return TextTable(rows, _decimal(rows, file), file)
+
+
+def decoded(file: Path) -> str:
+    """The text of a file in UTF-8, UTF-16 or, where it is neither, Latin-1. InputError."""
+    if (size := regular_file(file, f"'{file}'")) > 1e6 * LARGEST_MB:
+        raise InputError(f"'{file}': has {size / 1e6:.0f} MB, at most {LARGEST_MB} MB are read")
+    try:
+        content = file.read_bytes()
+        return content.decode(_encoding(content)).replace("\0", "")
+    except OSError as error:
+        raise InputError(f"'{file}': cannot be read ({error.strerror})") from None
+    except UnicodeDecodeError as error:
+        raise InputError(f"'{file}': no text in UTF-16 (byte {error.start})") from None
+
+
+def _encoding(content: bytes) -> str:
+    for mark, encoding in MARKS.items():
+        if content.startswith(mark):
+            return encoding
+    head = content[:200]
+    if head[1::2].count(0) > len(head) // 4:  # UTF-16 without its mark: every other byte of western text is zero
+        return "utf-16-le"
+    if head[::2].count(0) > len(head) // 4:
+        return "utf-16-be"
+    try:
+        content.decode("utf-8")
+    except UnicodeDecodeError:
+        return "latin-1"
+    return "utf-8"
+
+
+def _told_separator(text: str) -> tuple[str, str]:
+    """What spreadsheets write into a first line of its own, sep=;"""
+    found = re.match(r'"?sep=(.)"?[ \t]*\r?\n', text)
+    return (text[found.end() :], found[1]) if found else (text, "")
+
+
+def _separator(text: str) -> str:
+    """Semicolon or tab where most of the first lines have one, else comma."""
+    lines = [line for line in text.splitlines()[:LOOKED_AT] if line.strip()]
+    for mark in (";", "\t"):
+        if 2 * sum(mark in line for line in lines) > len(lines):
+            return mark
+    return ","
+
+
+def _decimal(rows: Sequence[Sequence[str]], file: Path) -> str:
+    """Comma or point, whichever the samples have. InputError where they have both."""
+    marks: dict[str, str] = {}
+    for number, row in enumerate(rows):
+        numbers = [cell for cell in row if NUMBER.fullmatch(cell)]
+        if len(numbers) < 2:  # a setting, such as a version
+            continue
+        for mark in ".,":
+            found = next((cell for cell in numbers if mark in cell), None)
+            if found is not None:
+                marks.setdefault(mark, f"row {number + 1}: '{found[:40]}'")
+    if len(marks) == 2:
+        raise InputError(f"'{file}': numbers have points ({marks['.']}) and commas ({marks[',']}); which are decimals?")
+    return next(iter(marks), ".")

@@ -1,0 +1,132 @@
+"""Units as instruments write them into the headers of their files, and the factor of each to that of a recording.
+
+A unit stands in brackets, behind a slash, a comma or an underscore, at the end of a name, or in a row of its own. What
+is not known is refused by name: a factor of a thousand is no matter of guessing.
+"""
+
+import re
+from dataclasses import dataclass
+
+from geometry.base import InputError
+
+STANDARD_GRAVITY = 9.80665  # m/s2: gram-force and its kin (3rd General Conference on Weights and Measures, 1901)
+POUND_KG = 0.45359237
+PREFIXES = {"": 1.0, "n": 1e-9, "u": 1e-6, "\u00b5": 1e-6, "\u03bc": 1e-6, "m": 1e-3, "k": 1e3}
+"""Micro is a sign of its own, and the Greek letter."""
+
+
+@dataclass(frozen=True)
+class Unit:
+    """base : s, V, N, mm or C, the units of a recording. factor : to it."""
+
+    base: str
+    factor: float
+
+
+def _with_prefixes(base: str, *names: str) -> dict[str, Unit]:
+    return {f"{prefix}{name}": Unit(base, factor) for prefix, factor in PREFIXES.items() for name in names}
+
+
+EXACT = {
+    **_with_prefixes("s", "s", "sec"),
+    **_with_prefixes("V", "V", "v"),
+    **_with_prefixes("N", "N"),
+    **{name: Unit("mm", 1e3 * unit.factor) for name, unit in _with_prefixes("mm", "m").items()},
+    "S": Unit("s", 1.0), "min": Unit("s", 60.0), "h": Unit("s", 3600.0), "hr": Unit("s", 3600.0),
+    "cm": Unit("mm", 10.0), "in": Unit("mm", 25.4), '"': Unit("mm", 25.4),
+    "gf": Unit("N", 1e-3 * STANDARD_GRAVITY), "kgf": Unit("N", STANDARD_GRAVITY),
+    "kp": Unit("N", STANDARD_GRAVITY), "mgf": Unit("N", 1e-6 * STANDARD_GRAVITY),
+    "lbf": Unit("N", POUND_KG * STANDARD_GRAVITY), "ozf": Unit("N", POUND_KG / 16.0 * STANDARD_GRAVITY),
+    "°C": Unit("C", 1.0), "℃": Unit("C", 1.0), "degC": Unit("C", 1.0),
+}  # fmt: skip
+"""Letters count: mV is not MV, N no n, s no S of conductance but where it stands alone."""
+WORDS = {
+    **{f"{prefix}{name}": Unit(base, factor * size)
+       for prefix, factor in {"": 1.0, "milli": 1e-3, "micro": 1e-6, "nano": 1e-9, "kilo": 1e3}.items()
+       for name, base, size in (("second", "s", 1.0), ("volt", "V", 1.0), ("newton", "N", 1.0), ("meter", "mm", 1e3),
+                                ("metre", "mm", 1e3))},
+    **{name: EXACT[short] for name, short in {
+        "sec": "s", "msec": "ms", "usec": "us", "nsec": "ns", "minute": "min", "hour": "h", "micron": "um",
+        "inch": "in", "gram-force": "gf", "pound-force": "lbf", "kilogram-force": "kgf", "min": "min",
+        "kgf": "kgf", "lbf": "lbf", "ozf": "ozf", "degc": "degC"}.items()},
+}  # fmt: skip
+"""In capitals or small letters, in the singular or the plural."""
+WEIGHTS = {"g": "gf", "kg": "kgf", "mg": "mgf", "lb": "lbf", "lbs": "lbf", "oz": "ozf"}
+"""Of a load cell, whose scale counts masses: their weight is meant."""
+LOAD = re.compile(r"load|force|cell|weight|scale|kraft|last", re.IGNORECASE)
+TEMPERATURE = re.compile(r"temp|t_?room", re.IGNORECASE)
+CURRENT = re.compile(r"(?:[nu\u00b5\u03bcmk]?A|amps?|amperes?|milliamps?)", re.IGNORECASE)
+NAMED_CURRENT = re.compile(r"\b(?:current|strom|amperage)\b", re.IGNORECASE)
+QUANTITY = re.compile(
+    r"time|zeit|load|force|weight|volt|pos|displ|travel|stroke|extension|height|depth|ch(?:annel)?\b|temp",
+    re.IGNORECASE,
+)
+SHOWN = "ns, us, ms, s, min, h, nV, uV, mV, V, kV, mN, N, kN, gf, kgf, lbf, um, mm, cm, m, in, °C"
+
+
+def unit_of(text: str, name: str, where: str) -> Unit:
+    """The unit of a column. name : of the column. InputError, which begins with where, for one that is not known."""
+    found = known_unit(text, name)
+    if found is not None:
+        return found
+    shown = f"{where}: column '{name[:40]}' is in '{text[:20]}'"
+    if CURRENT.fullmatch(text):
+        raise InputError(f"{shown}, a current: no channel of a recording; leave this column out")
+    if text in WEIGHTS:
+        raise InputError(f"{shown}, a mass or an acceleration; a load cell's column is named as one, such as Load (g)")
+    raise InputError(f"{shown}, which is not a known unit; known are {SHOWN}")
+
+
+def known_unit(text: str, name: str = "") -> Unit | None:
+    """The unit, or None for one that is not known."""
+    text = text.strip().rstrip(".")
+    if text in WEIGHTS and LOAD.search(name):
+        return EXACT[WEIGHTS[text]]
+    if text == "C" and TEMPERATURE.match(name):  # elsewhere it is a charge
+        return EXACT["°C"]
+    low = text.lower()
+    return EXACT.get(text) or WORDS.get(low) or WORDS.get(low.removesuffix("s")) or WORDS.get(low.removesuffix("es"))
+
+
+def split_name(cell: str, where: str) -> tuple[str, Unit | None]:
+    """CH1(mV) -> CH1 and the unit; without a unit None. InputError for one that is not known."""
+    text = cell.strip()
+    bracket = re.fullmatch(r"(.*?)\s*[(\[{]\s*([^()\[\]{}]*?)\s*[)\]}]\s*(.*)", text)
+    if bracket:
+        name = " ".join(f"{bracket[1]} {bracket[3]}".split())
+        return name, unit_of(bracket[2], name or text, where)
+    for mark, strict in ((",", True), ("/", False), ("_", False)):
+        head, _, tail = (part.strip() for part in text.rpartition(mark))
+        if head and tail and (strict or known_unit(tail, head) or _is_current(head, tail)):
+            return head, unit_of(tail, head, where)
+    head, _, tail = text.rpartition(" ")
+    if QUANTITY.search(head) and known_unit(tail, head):
+        return head.strip(), known_unit(tail, head)
+    glued = re.fullmatch(r"(CH\d)([nu\u00b5\u03bcmk]?V)", text)  # of Rigol's newer instruments
+    if glued:
+        return glued[1], known_unit(glued[2])
+    if NAMED_CURRENT.search(text):
+        raise InputError(f"{where}: column '{text[:40]}' is a current: no channel of a recording; leave it out")
+    return text, None
+
+
+def _is_current(head: str, tail: str) -> bool:
+    """Whether I_mA is meant, and not channel_A."""
+    return CURRENT.fullmatch(tail) is not None and re.fullmatch(r"(?:ch|channel)\s*", head, re.IGNORECASE) is None
+
+
+SCOPE_CHANNEL = re.compile(
+    r"(?:ch|chan|channel|c|math|ref|trace|wfm|waveform|m|r|f)?[ _-]*\d{1,2}|(?:ch|chan|channel)?[ _-]*[A-H]|"
+    r"ampl|amplitude|value|y|volts?|(?:.*[ _])?voltage(?:[ _].*)?|spannung",
+    re.IGNORECASE,
+)
+
+
+def usual_unit(name: str, where: str) -> Unit:
+    """Of a column without any: volts for channels that are named as oscilloscopes do. InputError for another."""
+    if SCOPE_CHANNEL.fullmatch(name.strip()):
+        return Unit("V", 1.0)
+    raise InputError(
+        f"{where}: column '{name[:40]}' has no unit; write it behind the name in the header, such as Force (N) or "
+        "Position (mm)"
+    )

@@ -1,0 +1,242 @@
+"""One set of samples, written as instruments write them in any unit, sign and encoding, is read as the same columns.
+
+Factors of units are those of the SI brochure and of the pound and the standard weight; none is taken from the readers.
+"""
+
+import sys
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from geometry.base import InputError
+from softdot.convert import apart, read_log, read_mat, read_oscilloscope
+
+ON_DISK = settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+COUNT = 6
+TIME_S = 3600.0 * np.array([0.0, 1.0, 2.0, 3.0, 5.0, 8.0])
+TIMES = {
+    "ns": 1e9,
+    "us": 1e6,
+    "µs": 1e6,
+    "μs": 1e6,
+    "ms": 1e3,
+    "msec": 1e3,
+    "s": 1.0,
+    "sec": 1.0,
+    "min": 1 / 60,
+    "h": 1 / 3600,
+}
+VOLTS = {"nV": 1e9, "uV": 1e6, "µV": 1e6, "μV": 1e6, "mV": 1e3, "V": 1.0, "kV": 1e-3}
+FORCES = {"mN": 1e3, "N": 1.0, "kN": 1e-3, "gf": 1e3 / 9.80665, "g": 1e3 / 9.80665, "kgf": 1 / 9.80665,
+          "lbf": 1 / (0.45359237 * 9.80665)}  # fmt: skip
+LENGTHS = {"mm": 1.0, "um": 1e3, "µm": 1e3, "in": 1 / 25.4}
+QUANTITIES = {"CH2": VOLTS, "Load cell": FORCES, "Position": LENGTHS, "CH1": VOLTS, "Kraft": FORCES}
+VALUES = {name: np.round(np.sin(np.arange(COUNT) + 2.0 * n), 6) for n, name in enumerate(QUANTITIES)}
+BESIDE = {
+    "brackets": "{} ({})", "tight": "{}({})", "square": "{} [{}]", "comma": "{}, {}", "slash": "{} / {}",
+    "underscore": "{}_{}",
+}  # fmt: skip
+
+
+def shown(value, decimal):
+    return f"{value:.12e}".replace(".", decimal)
+
+
+@st.composite
+def tables(draw):
+    """Text, encoding and the names of the columns in a file of any instrument with a header."""
+    names = draw(st.lists(st.sampled_from(list(QUANTITIES)), min_size=1, max_size=4, unique=True))
+    units = {name: draw(st.sampled_from(list(QUANTITIES[name]))) for name in names}
+    time = draw(st.sampled_from(list(TIMES)))
+    separator, decimal = draw(st.sampled_from([(",", "."), (";", "."), (";", ","), ("\t", "."), ("\t", ",")]))
+    style = draw(st.sampled_from([*BESIDE, "row", "row of brackets"]))
+    cells = [(draw(st.sampled_from(["Time", "time", "Elapsed Time", "t"])), time), *units.items()]
+    if style.startswith("row"):
+        rows = [[name for name, _ in cells], [f"({unit})" if style != "row" else unit for _, unit in cells]]
+    else:
+        rows = [[BESIDE[style].format(name, unit) for name, unit in cells]]
+    if style == "comma" and separator == ",":
+        rows = [[f'"{cell}"' for cell in row] for row in rows]
+    columns = [TIMES[time] * TIME_S, *(QUANTITIES[name][unit] * VALUES[name] for name, unit in units.items())]
+    rows += [[shown(value, decimal) for value in row] for row in zip(*columns, strict=True)]
+    if draw(st.booleans()):
+        rows.insert(0, ["Model", "X1"])
+    text = "\n".join(separator.join(row) for row in rows) + draw(st.sampled_from(["", "\n", "\n\n"]))
+    encodings = ["utf-8", "utf-8-sig", "utf-16", "utf-16-le"]
+    encodings += ["latin-1"] if "μ" not in text else []
+    return text.replace("\n", draw(st.sampled_from(["\n", "\r\n"]))), draw(st.sampled_from(encodings)), names
+
+
+@ON_DISK
+@given(table=tables())
+def test_units_signs_and_encodings_change_no_column(table, tmp_path):
+    text, encoding, names = table
+    (tmp_path / "log.csv").write_bytes(text.encode(encoding))
+    found = read_oscilloscope(tmp_path / "log.csv")
+    assert list(found) == ["time_s", *names]
+    assert found["time_s"] == pytest.approx(TIME_S, rel=1e-9)
+    for name in names:
+        assert found[name] == pytest.approx(VALUES[name], rel=1e-9)
+
+
+def keysight(time, unit, rows):
+    return f"x-axis,1,2\n{time},{unit},{unit}\n" + rows
+
+
+def rigol(time, unit, rows):
+    return f"X,CH1,CH2,\n{time},{unit},{unit},\n" + rows.replace("\n", ",\n")
+
+
+def rigol_with_steps(time, unit, rows):
+    return f"X,CH1,CH2,Start,Increment\n{time},{unit},{unit},-7.0,3.0\n" + rows
+
+
+def tektronix(time, unit, rows):
+    return f"Model,MSO24\nHorizontal Units,{time}\nVertical Units,{unit},{unit}\nLabel,,\n\nTIME,CH1,CH2\n" + rows
+
+
+def siglent(time, unit, rows):
+    settings_ = (
+        f"Record Length,Analog:6\nVertical Units,CH1:{unit},CH2:{unit},\nHorizontal Units,{time}\nSource,CH1,CH2\n"
+    )
+    return settings_ + "Time,Value,Value\n" + rows
+
+
+def picoscope(time, unit, rows):
+    return f"Time,CH1,CH2\n({time}),({unit}),({unit})\n\n" + rows
+
+
+MADE_BY = (keysight, rigol, rigol_with_steps, tektronix, siglent, picoscope)
+
+
+@ON_DISK
+@given(make=st.sampled_from(MADE_BY), time=st.sampled_from(list(TIMES)), unit=st.sampled_from(list(VOLTS)))
+def test_units_of_an_oscilloscope_change_no_column(make, time, unit, tmp_path):
+    columns = (TIMES[time] * TIME_S, VOLTS[unit] * VALUES["CH1"], VOLTS[unit] * VALUES["CH2"])
+    rows = "".join(f"{a:.12e},{b:.12e},{c:.12e}\n" for a, b, c in zip(*columns, strict=True))
+    (tmp_path / "scope.csv").write_text(make(time, unit, rows), "utf-8")
+    found = read_oscilloscope(tmp_path / "scope.csv")
+    assert list(found) == ["time_s", "CH1", "CH2"]
+    for name, values in (("time_s", TIME_S), ("CH1", VALUES["CH1"]), ("CH2", VALUES["CH2"])):
+        assert found[name] == pytest.approx(values, rel=1e-9)
+
+
+@ON_DISK
+@given(time=st.sampled_from(list(TIMES)), unit=st.sampled_from(list(VOLTS)))
+def test_units_beside_samples_change_no_column(time, unit, tmp_path):
+    """Tektronix TDS: settings in the first two columns, samples in the fourth and fifth."""
+    words = ["Record Length,6", "Source,CH2", f"Horizontal Units,{time}", f"Vertical Units,{unit}", ",", ","]
+    pairs = zip(words, TIMES[time] * TIME_S, VOLTS[unit] * VALUES["CH2"], strict=True)
+    (tmp_path / "tek.csv").write_text("".join(f"{w},,{t:.12e},{v:.12e}\n" for w, t, v in pairs), "utf-8")
+    found = read_oscilloscope(tmp_path / "tek.csv")
+    assert found["time_s"] == pytest.approx(TIME_S, rel=1e-9)
+    assert found["CH2"] == pytest.approx(VALUES["CH2"], rel=1e-9)
+
+
+@given(start=st.floats(-1.0, 1.0), step=st.floats(1e-6, 1.0), skipped=st.integers(0, 3))
+@ON_DISK
+def test_sequence_numbers_count_from_the_start(start, step, skipped, tmp_path):
+    """Rows that are left out take their time with them."""
+    head = f"X,CH1,Start,Increment\nSequence,Volt,{start:.9e},{step:.9e}\n"
+    (tmp_path / "scope.csv").write_text(head + f"0,1\n1,2\n{2 + skipped},3\n", "utf-8")
+    found = read_oscilloscope(tmp_path / "scope.csv")
+    assert found["time_s"] == pytest.approx(start + step * np.array([0, 1, 2 + skipped]), rel=1e-6, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("a,b\n1,2\n", "row 1: no header of an oscilloscope or another instrument"),
+        ("Time(s),CH1(A)\n0,1\n", "column 'CH1' is in 'A', a current"),
+        ("Time(s),Acceleration (g)\n0,1\n", "column 'Acceleration' is in 'g', a mass or an acceleration"),
+        ("Time(MS),CH1(V)\n0,1\n", "column 'Time' is in 'MS', which is not a known unit; known are ns, us"),
+        ("Time(V),CH1(V)\n0,1\n", "column 'Time' is a time and must be in a unit of time"),
+        ("Time(s),Force\n0,1\n", "column 'Force' has no unit; write it behind the name"),
+        ("Time(s),CH1(V),CH1(mV)\n0,1,1\n", "two columns are called 'CH1'"),
+        ("Time(s),CH1(V),Time(s)\n0,1,1\n", "two columns are times"),
+        ("Time(s),CH1(V)\n(ms),(V)\n0,1\n", "column 'Time' has two units"),
+        ("Time(s);CH1(V)\n0,5;1.5\n", "numbers have points (row 2: '1.5') and commas (row 2: '0,5')"),
+        ("Time(s),CH1(V)\n0,001,0,5\n", "row 2: has 4 cells, the header has 2 columns"),
+        ("Time(s),CH1(V)\n0,1\n1,over\n", "row 3, column 2 = 'over': must be a number"),
+        ("Time(s),CH1(V)\n0,1\n0,2\n", "row 3, column 1 = '0': every sample needs its time, which rises"),
+        ("X,CH1,Start,Increment\nSequence,Volt\n0,1\n", "row 2: start and increment of the time are missing"),
+        ("Segments,2\nTime,Ampl\n0,1\n", "holds 2 segments one after the other"),
+    ],
+)
+def test_what_is_not_understood_is_refused_by_name(text, said, tmp_path):
+    (tmp_path / "scope.csv").write_text(text, "utf-8")
+    with pytest.raises(InputError, match=r"scope.csv'") as caught:
+        read_oscilloscope(tmp_path / "scope.csv")
+    assert said in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+VALID = "Time(ms),CH1(V),Load cell (g)\n0,1,2\n1,2,3\n2,3,5\n"
+
+
+@ON_DISK
+@given(data=st.data())
+def test_nothing_but_an_input_error_leaves_the_reader_of_text(data, tmp_path):
+    kind = data.draw(st.sampled_from(["bytes", "text", "mutated"]))
+    content = VALID.encode()
+    if kind == "bytes":
+        content = data.draw(st.binary(max_size=200))
+    elif kind == "text":
+        content = data.draw(st.text("0123456789.,;\t\n\"'()[]-+eEµμsVXTimeCH∞²٣ ", max_size=120)).encode()
+    for _ in range(data.draw(st.integers(0, 4)) if kind == "mutated" else 0):
+        place = data.draw(st.integers(0, len(content)))
+        content = content[:place] + data.draw(st.binary(max_size=3)) + content[place + data.draw(st.integers(0, 3)) :]
+    (tmp_path / "log.csv").write_bytes(content)
+    try:
+        found = read_log(tmp_path / "log.csv")
+    except InputError:
+        return
+    assert np.isfinite(found.time_s).all()
+    assert all(len(channel.values) == len(found.time_s) for channel in found.channels.values())
+
+
+@pytest.mark.parametrize("name", ["a.mat", "a.tdms", "a.wfm", "a.xlsx", "a.doc"])
+def test_nothing_but_an_input_error_leaves_readers_of_binary_files(name, tmp_path):
+    (tmp_path / name).write_bytes(bytes(range(256)) * 3)
+    with pytest.raises(InputError, match=rf"'.*{name}'"):
+        read_mat(tmp_path / name, {"time_s": "t"}) if name == "a.mat" else read_log(tmp_path / name)
+
+
+def test_a_reader_that_takes_its_interpreter_with_it_is_told(tmp_path, monkeypatch):
+    (tmp_path / "a.mat").write_bytes(b"")
+    monkeypatch.setattr(apart, "own_python", lambda *_: [sys.executable, "-c", "import os; os.abort()"])
+    with pytest.raises(InputError, match="its reader broke down; is it damaged"):
+        read_mat(tmp_path / "a.mat", {"time_s": "t"})
+
+
+def test_labview_files(tmp_path):
+    nptdms = pytest.importorskip("nptdms")
+    pytest.importorskip("lvm_read")
+    steps = {"wf_increment": 0.5, "wf_start_offset": 1.0, "wf_samples": 3}
+    with nptdms.TdmsWriter(tmp_path / "a.tdms") as file:
+        for name, unit in (("film", "mV"), ("Load cell", "g")):
+            channel = nptdms.ChannelObject("daq", name, np.array([1.0, 2.0, 4.0]), {**steps, "unit_string": unit})
+            file.write_segment([channel])
+    lines = ["LabVIEW Measurement", "Separator\tTab", "Decimal_Separator\t,", "X_Columns\tOne", "Time_Pref\tRelative"]
+    lines += ["***End_of_Header***\t", "\t", "Channels\t2\t\t", "Y_Unit_Label\tmV\tg\t", "***End_of_Header***\t\t\t"]
+    lines += ["X_Value\tfilm\tLoad cell\tComment", "1,0\t1,0\t1", "1,5\t2,0\t2", "2,0\t4,0\t4"]
+    (tmp_path / "a.lvm").write_text("\n".join(lines) + "\n", "utf-8")
+    for name in ("a.tdms", "a.lvm"):
+        found = read_log(tmp_path / name)
+        assert found.time_s == pytest.approx([1.0, 1.5, 2.0])
+        assert found.channels["film"].values == pytest.approx([1e-3, 2e-3, 4e-3])
+        assert found.channels["Load cell"].values == pytest.approx([0.00980665, 0.0196133, 0.0392266])
+
+
+def test_a_spreadsheet_is_read_as_its_text(tmp_path):
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.Workbook()
+    for row in (["Time (ms)", "Force (mN)"], [0.0, 1.5], [1, 2]):
+        book.active.append(row)
+    book.save(tmp_path / "a.xlsx")
+    found = read_log(tmp_path / "a.xlsx")
+    assert found.time_s == pytest.approx([0.0, 1e-3])
+    assert found.channels["Force"].values == pytest.approx([1.5e-3, 2e-3])
+    assert found.channels["Force"].unit == "N"
