@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, ValidationError
 
 from diagnose.signals.reading import read_recording
 from diagnose.signals.recording import Recording, RigTables, Run, RunTable
@@ -31,12 +31,6 @@ class Bench(Table):
     materials: dict[str, AnyMaterial] = Field({}, description="materials beside or instead of the built-in ones")
     readout: Readout | None = Field(None, description="the amplifier; leave out for open circuit")
     seed: int = Field(0, ge=0, description="seed of everything random")
-
-    @model_validator(mode="after")
-    def _charge_mode(self) -> "Bench":
-        if self.readout is not None and self.readout.mode == "charge" and self.readout.feedback_pF is None:
-            raise ValueError("readout.feedback_pF is missing: mode = 'charge' needs a feedback capacitance")
-        return self
 
 
 @dataclass(frozen=True)
