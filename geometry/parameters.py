@@ -88,6 +88,13 @@ class ActsWith:
         return {**made, "x-acts-with": [*made.get("x-acts-with", []), self.tags]}
 
 
+def _shown(value: Any) -> str:
+    """A value as messages show it."""
+    if isinstance(value, float):
+        return f"{value:g}"
+    return repr(value) if isinstance(value, str) else json.dumps(value, default=str)
+
+
 class Table(BaseModel):
     """A configuration table: unknown keys are refused, and so are those that do not act beside the others.
 
@@ -109,9 +116,8 @@ class Table(BaseModel):
             if value is None and acts.needed and acts.holds(self):
                 raise ValueError(f"{name} is missing: {acts.here(self)} needs it")
             if name in self.model_fields_set and value is not None and not acts.holds(self):
-                shown = json.dumps(value, default=str) if not isinstance(value, str | float) else f"{value!r}"
                 here = acts.here(self)
-                raise ValueError(f"{name} = {shown}: acts only {acts.words}{f', here {here}' if here else ''}")
+                raise ValueError(f"{name} = {_shown(value)}: acts only {acts.words}{f', here {here}' if here else ''}")
         return self
 
     @model_serializer(mode="wrap")
