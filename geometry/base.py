@@ -25,8 +25,8 @@ def nearest(word: str, known: Iterable[str]) -> str:
     "did you mean 'thickness_mm'?"
     """
     names = sorted(known)
-    best = max(names, key=lambda name: _likeness(word, name), default="")
-    return f"did you mean '{best}'?" if _likeness(word, best) > 0.5 else f"known are {', '.join(names)}"
+    best = max(names, key=lambda name: (_likeness(word, name), name), default="")
+    return f"did you mean '{best}'?" if _likeness(word, best) >= 0.5 else f"known are {', '.join(names)}"
 
 
 def _likeness(word: str, name: str) -> float:

@@ -5,7 +5,7 @@ z from the base towards the dot. Lengths in millimetres, the film in micrometres
 """
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import (
@@ -44,9 +44,9 @@ class ActsWith:
         """needed : the key must be stated where it acts."""
         self.tags, self.needed = tags, needed
 
-    def holds(self, table: BaseModel) -> bool:
-        """Whether the key acts in a table."""
-        return any(self._has(getattr(table, key), wanted) for key, wanted in self.tags.items())
+    def holds(self, values: Mapping[str, Any]) -> bool:
+        """Whether the key acts beside the values of a table."""
+        return any(self._has(values[key], wanted) for key, wanted in self.tags.items())
 
     @staticmethod
     def _has(value: Any, wanted: tuple[str, ...] | str) -> bool:
@@ -109,20 +109,28 @@ class Table(BaseModel):
         fields = cls.model_fields.items()
         return [(name, one) for name, field in fields for one in field.metadata if isinstance(one, ActsWith)]
 
+    @classmethod
+    def overridden(cls, inherited: Mapping[str, Any], stated: Mapping[str, Any]) -> dict[str, Any]:
+        """Inherited keys with those stated in their place; an inherited one that no longer acts is left out."""
+        merged = {**inherited, **stated}
+        values = {**{name: field.default for name, field in cls.model_fields.items()}, **merged}
+        idle = {name for name, acts in cls.acting() if name not in stated and not acts.holds(values)}
+        return {name: value for name, value in merged.items() if name not in idle}
+
     @model_validator(mode="after")
     def _each_key_acts(self) -> Self:
         for name, acts in self.acting():
             value = getattr(self, name)
-            if value is None and acts.needed and acts.holds(self):
+            if value is None and acts.needed and acts.holds(self.__dict__):
                 raise ValueError(f"{name} is missing: {acts.here(self)} needs it")
-            if name in self.model_fields_set and value is not None and not acts.holds(self):
+            if name in self.model_fields_set and value is not None and not acts.holds(self.__dict__):
                 here = acts.here(self)
                 raise ValueError(f"{name} = {_shown(value)}: acts only {acts.words}{f', here {here}' if here else ''}")
         return self
 
     @model_serializer(mode="wrap")
     def _what_acts(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        idle = {name for name, acts in self.acting() if not acts.holds(self)}
+        idle = {name for name, acts in self.acting() if not acts.holds(self.__dict__)}
         return {name: value for name, value in write(self).items() if name not in idle}
 
     @classmethod

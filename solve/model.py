@@ -27,8 +27,8 @@ class Waveform(Table):
     shape: Literal["ramp", "half-sine", "raised-cosine", "trapezoid", "file"] = Field(
         "ramp", description="ramp: up, then hold; trapezoid: up, hold, down; file: two CSV columns time_s, fraction"
     )
-    rise_s: Annotated[Positive, ActsWith(shape=("ramp", "half-sine", "raised-cosine", "trapezoid"))] = Field(
-        0.5, description="time from touch to full depth"
+    rise_s: Positive = Field(
+        0.5, description="time from touch to full depth; file: to its first row, where that is pressed already"
     )
     hold_s: Annotated[NonNegative, ActsWith(shape=("ramp", "trapezoid"))] = Field(
         0.0, description="time at full depth"

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from importlib.resources import files
 from typing import Any
 
+from geometry.parameters import ActsWith
 from softdot.config import config_schema
 from softdot.console import GOOD
 
@@ -171,7 +172,14 @@ def _about(key: str, value: Json, required: bool) -> str:
     said.append(f"allowed: {allowed(value)}".replace("`", ""))
     default = f"default {toml(value['default'])}" if _has_default(value) else "may be left out"
     said.append("required" if required else default)
+    said += [acting(value)] if acting(value) else []
     return "; ".join(part for part in said if part)
+
+
+def acting(value: Json) -> str:
+    """Beside which other keys a key acts, in words, nothing where it always does."""
+    conditions = [ActsWith(**{key: tuple(w) if isinstance(w, list) else w for key, w in tags.items()}) for tags in value.get("x-acts-with", [])]
+    return " and ".join(f"acts only {one.words}" if n == 0 else one.words for n, one in enumerate(conditions))
 
 
 def _has_default(value: Json) -> bool:

@@ -36,7 +36,7 @@ RIGS = {
         "runs[0].readout.input_resistance_MOhm = -1: must be above 0"
     ),
     GOOD + "[runs.readout]\nmode = 'charge'": (
-        "runs[0].readout.feedback_pF is missing: mode = 'charge' needs a feedback capacitance"
+        "runs[0].readout.feedback_pF is missing: mode = 'charge' needs it"
     ),
     # the configuration
     HEAD + RUN: "segment.medium1.thickness_mm is missing: thickness in z",

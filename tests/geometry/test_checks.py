@@ -124,7 +124,6 @@ ALLOWED = {
     "touching electrodes": {"film": film(("a", (-0.625, 0.0), (1.25, 2.5)), ("b", (0.625, 0.0), (1.25, 2.5)))},
     "bonds in either order": {"bonds": bonds(("base", "medium2"), ("medium1", "film"), ("medium1", "effector"))},
     "springs without stiffness": {"boundary": "elastic", "side_stiffness_N_per_mm3": 0.0},
-    "free with nothing held": {"boundary": "free", "held_layers": ()},
 }
 
 
