@@ -30,9 +30,7 @@ class Waveform(Table):
     rise_s: Positive = Field(
         0.5, description="time from touch to full depth; file: to its first row, where that is pressed already"
     )
-    hold_s: Annotated[NonNegative, ActsWith(shape=("ramp", "trapezoid"))] = Field(
-        0.0, description="time at full depth"
-    )
+    hold_s: Annotated[NonNegative, ActsWith(shape=("ramp", "trapezoid"))] = Field(0.0, description="time at full depth")
     fall_s: Annotated[Positive, ActsWith(shape=("trapezoid",))] = Field(0.5, description="time of the release")
     file: Annotated[str | None, ActsWith(needed=True, shape=("file",))] = Field(None, description="the CSV file")
     _samples: Floats | None = PrivateAttr(None)

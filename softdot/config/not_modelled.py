@@ -28,7 +28,9 @@ NOT_MODELLED = (
         "diameter radius shape round circle circular ring polygon",
         "segment.film.electrodes",
     ),
-    _entry("thick or stiff electrodes", "electrodes have no thickness", "thickness material", "segment.film.electrodes"),
+    _entry(
+        "thick or stiff electrodes", "electrodes have no thickness", "thickness material", "segment.film.electrodes"
+    ),
     _entry("a curved base", "the base and all layers are flat", "curved curvature bent"),
     _entry(
         "a dot from a STEP or STL file, or a scanned one",
@@ -48,16 +50,28 @@ NOT_MODELLED = (
         "medium0 medium3 medium4 film1 film2 films layers substrate",
         "segment",
     ),
-    _entry("humidity, swelling, shrinkage", "a material has the constants that you state", "humidity moisture swelling shrinkage"),
+    _entry(
+        "humidity, swelling, shrinkage",
+        "a material has the constants that you state",
+        "humidity moisture swelling shrinkage",
+    ),
     _entry(
         "thermal expansion, conduction of heat, constants that depend on temperature",
         "the mechanism pyroelectric-drift gives the charge of a warmer film",
         "expansion conduction conductivity thermal",
     ),
     _entry("ageing, fatigue, wear", "state the constants and sizes of today", "ageing aging fatigue wear"),
-    _entry("depolarisation of the film", "a run warns of a field that could do it", "depolarisation depolarization depoling poling"),
+    _entry(
+        "depolarisation of the film",
+        "a run warns of a field that could do it",
+        "depolarisation depolarization depoling poling",
+    ),
     _entry("shear coefficients of the film", "d31, d32 and d33 are all that load electrodes on its faces", "d15 d24"),
-    _entry("tearing, cracks, failure of glue", "a run warns beyond the yield stress and the fitted range", "tear tearing crack fracture failure"),
+    _entry(
+        "tearing, cracks, failure of glue",
+        "a run warns beyond the yield stress and the fitted range",
+        "tear tearing crack fracture failure",
+    ),
     _entry("gravity", "a segment weighs some 20 mg", "gravity weight"),
     _entry("adhesion of the dot", "contact only pushes; friction is a mechanism", "adhesion sticky"),
 )

@@ -60,7 +60,9 @@ def test_what_is_commented_out_can_be_switched_on():
 
 def _comment(lines, number):
     """What stands above a key."""
-    above = itertools.takewhile(lambda line: re.match(r"# .*[^=]|#   ", line) and " = " not in line[:40], reversed(lines[:number]))
+    above = itertools.takewhile(
+        lambda line: re.match(r"# .*[^=]|#   ", line) and " = " not in line[:40], reversed(lines[:number])
+    )
     return " ".join(above)
 
 
