@@ -32,7 +32,8 @@ def nearest(word: str, known: Iterable[str]) -> str:
 def _likeness(word: str, name: str) -> float:
     """How alike two names are: letter by letter and by the words that they are made of, whichever is more.
 
-    >>> _likeness("feedback_capacitance_pF", "feedback_pF") > _likeness("feedback_capacitance_pF", "input_capacitance_pF")
+    >>> typed = "feedback_capacitance_pF"
+    >>> _likeness(typed, "feedback_pF") > _likeness(typed, "input_capacitance_pF")
     True
     """
     letters = difflib.SequenceMatcher(None, name, word).ratio()

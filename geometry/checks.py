@@ -87,6 +87,8 @@ def _over_edge(dot_shape: DotShape, segment: Segment, indentation_mm: float) -> 
     if dot_shape.kind == "plate" or isinstance(top, Dome):
         return []
     ball = dot_shape.origin_mm + dot_shape.rotation @ [0.0, 0.0, radius]
+    if top.distance(ball) - radius > indentation_mm:  # it may not touch, which is told
+        return []
     reach = sqrt(radius * indentation_mm)
     across = np.eye(3)[: 1 if dot_shape.kind == "ridge" or segment.section == "plane-strain" else 2]
     beyond = max(abs(float(axis @ ball)) + reach - top.reach(axis) for axis in across)
@@ -94,8 +96,8 @@ def _over_edge(dot_shape: DotShape, segment: Segment, indentation_mm: float) -> 
         return []
     part = "segment" if covers_footprint(segment) else "effector"
     return [
-        f"the dot presses about {beyond:.2g} mm beyond the edge of the {part}, whose sides are no contact surface: force "
-        "and voltage are those of a dot that may pass through them"
+        f"the dot presses about {beyond:.2g} mm beyond the edge of the {part}, whose sides are no contact surface: "
+        "force and voltage are those of a dot that may pass through them"
     ]
 
 

@@ -98,7 +98,7 @@ def _shown(value: Any) -> str:
 class Table(BaseModel):
     """A configuration table: unknown keys are refused, and so are those that do not act beside the others.
 
-    Values cannot change after reading. What does not act is not written either, so that whatever is written can be read.
+    Values cannot change after reading. What does not act is not written either: whatever is written can be read.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=False)

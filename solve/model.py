@@ -36,7 +36,7 @@ class Waveform(Table):
     _samples: Floats | None = PrivateAttr(None)
 
     @classmethod
-    def through(cls, time_s: Floats, fraction: Floats) -> Self:
+    def through(cls, time_s: Floats, fraction: Floats) -> "Waveform":
         """Straight lines through fractions (t,) at increasing times (t,), as a file would state them."""
         made = cls.model_construct(shape="file")
         made._samples = np.column_stack([time_s, fraction])

@@ -70,8 +70,9 @@ def _collapsed(model: Model, result: PressResult) -> Iterator[str]:
     tet_mesh = result.tet_mesh
     steps = [smallest_volumes(tet_mesh, step.fields.displacement_m) for step in result.steps]
     inside, elsewhere = (np.min([step[n] for step in steps], axis=0) for n in (0, 1))
+    layers = [(layer, material) for layer, material in model.materials.items() if layer in tet_mesh.region_names]
     advice = "what is computed near it is not to be trusted; press less deep or mesh finer"
-    for layer, material in model.materials.items():
+    for layer, material in layers:
         tets = tet_mesh.region_tets(layer)
         soft = not isinstance(material, PiezoelectricFilm) and material.law.compressible
         limit = 0.0 if soft else CRUSHED
@@ -91,7 +92,7 @@ def _at(tet_mesh: TetMesh, element: int) -> str:
 def _unstable(model: Model, result: PressResult) -> Iterator[str]:
     tet_mesh = result.tet_mesh
     for layer, material in model.materials.items():
-        if isinstance(material, PiezoelectricFilm):
+        if isinstance(material, PiezoelectricFilm) or layer not in tet_mesh.region_names:
             continue
         tets = tet_mesh.region_tets(layer)
         for step in result.steps:

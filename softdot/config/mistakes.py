@@ -101,7 +101,8 @@ class _Rest:
         """A key is missing that others ask for: those are what can be set aside."""
         tags = {tag for table in tables_at(way[:-1], Config) for name, acts in table.acting() if name == way[-1]
                 for tag in acts.tags}  # fmt: skip
-        return any([self._remove((*way[:-1], tag)) for tag in sorted(tags)])
+        removed = [self._remove((*way[:-1], tag)) for tag in sorted(tags)]
+        return any(removed)
 
     def _remove(self, way: Way) -> bool:
         *above, last = way

@@ -130,7 +130,8 @@ CASES = {
         "mechanisms[0].parameters.coupling = 0.1: is of one channel, two take capacitance_pF"
     ),
     "[[mechanisms]]\nname = 'low-pass'\ncomponent = 'channel-2'\nparameters = {cutoff_Hz = 9}": (
-        "mechanisms[0].component = 'channel-2': low-pass needs that electrode and another one; segment.film.electrodes has 0"
+        "mechanisms[0].component = 'channel-2': low-pass needs that electrode and another one; "
+        "segment.film.electrodes has 0"
     ),
     "[[mechanisms]]\nname = 'crosstalk'\ncomponent = 'channel-2'\nparameters = {coupling = 0.1}": (
         "mechanisms[0].component = 'channel-2': crosstalk needs that electrode and another one; "

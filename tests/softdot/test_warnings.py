@@ -1,9 +1,11 @@
 """Good results that a user should still doubt."""
 
 import dataclasses
+from contextlib import nullcontext
 
 import pytest
 
+from geometry.base import InputError
 from geometry.dot import resolve_dot
 from softdot.checks import design_warnings, refuse_held_rim, result_warnings
 from softdot.config import config_from, load_config
@@ -22,7 +24,7 @@ def test_holding_medium2_closes_a_cavity():
     (warning,) = warn(boundary="clamped", held_layers=every)
     assert "enclose a nearly incompressible material" in warning
     assert "0.495" in warning
-    assert warn(boundary="free", held_layers=every) == []
+    assert warn(boundary="free") == []
     assert warn(boundary="clamped") == []
     assert warn(boundary="clamped", held_layers=every, medium2={"thickness_mm": 2, "material": "sponge"}) == []
 
@@ -58,7 +60,7 @@ def test_neighbours_on_the_held_rim(length_mm, reaches):
     config = config_from({"segment": tables, "dot": {"cell": "⠿", "cell_dot": 2}})
     dot = resolve_dot(config.dot, config.segment)
     refuse_held_rim(config.segment, dot, 0.17)
-    with pytest.raises(InputError, match="held rim of the segment at 0.172 mm") if reaches else nullcontext():
+    with pytest.raises(InputError, match=r"held rim of the segment at 0\.172 mm") if reaches else nullcontext():
         refuse_held_rim(config.segment, dot, 0.3)
 
 
