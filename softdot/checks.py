@@ -192,8 +192,8 @@ def refuse_held_rim(segment: Segment, dot_shape: DotShape, indentation_mm: float
     if free_mm < indentation_mm:
         raise InputError(
             f"press.indentation_mm = {indentation_mm:g}: the dot meets the held rim of the segment at {free_mm:.3g} "
-            "mm, and neither can deform; press less deep, move the dot (dot.offset_mm), enlarge the segment or hold fewer "
-            "layers (segment.held_layers)"
+            "mm, and neither can deform; press less deep, move the dot (dot.offset_mm), enlarge the segment or hold "
+            "fewer layers (segment.held_layers)"
         )
 
 
