@@ -16,7 +16,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from geometry.arrays import Floats
+from geometry.arrays import Bools, Floats
 from mesh.types import TetMesh
 from solve.fem.kinematics import quadratic, tetrahedron
 from solve.materials.isochoric import from_voigt
@@ -96,7 +96,8 @@ def _unstable(model: Model, result: PressResult) -> Iterator[str]:
             continue
         tets = tet_mesh.region_tets(layer)
         for step in result.steps:
-            squared = 2.0 * np.linalg.eigvalsh(from_voigt(step.fields.green_lagrange_strain[tets])) + 1.0
+            strain = from_voigt(step.fields.green_lagrange_strain[tets])
+            squared: Floats = np.asarray(2.0 * np.linalg.eigvalsh(strain) + 1.0, dtype=np.float64)
             stiff = has_positive_stiffness(material.law, squared)
             if not stiff.all():
                 stretch = float(np.sqrt(squared[~stiff]).max())
@@ -108,7 +109,7 @@ def _unstable(model: Model, result: PressResult) -> Iterator[str]:
                 break
 
 
-def has_positive_stiffness(law: MediumLaw, squared_stretches: Floats) -> Floats:
+def has_positive_stiffness(law: MediumLaw, squared_stretches: Floats) -> Bools:
     """Whether a law has it at squares of principal stretches (n, 3), shape (n,)."""
     stress, tangent = law.stress(squared_stretches[:, :, None] * np.eye(3))
     square = squared_stretches
