@@ -27,7 +27,8 @@ Finite = Annotated[float, Field(allow_inf_nan=False)]
 LayerName = Literal["effector", "medium1", "film", "medium2"]
 
 
-STATED, ABSENT = "stated", "absent"
+STATED: Literal["stated"] = "stated"
+ABSENT: Literal["absent"] = "absent"
 JsonSchema = dict[str, Any]
 
 

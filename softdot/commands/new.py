@@ -178,11 +178,11 @@ def _about(key: str, value: Json, required: bool) -> str:
 
 def acting(value: Json) -> str:
     """Beside which other keys a key acts, in words, nothing where it always does."""
-    conditions = [
-        ActsWith(**{key: tuple(w) if isinstance(w, list) else w for key, w in tags.items()})
-        for tags in value.get("x-acts-with", [])
-    ]
-    return " and ".join(f"acts only {one.words}" if n == 0 else one.words for n, one in enumerate(conditions))
+    said = []
+    for tags in value.get("x-acts-with", []):
+        wanted: Json = {key: tuple(one) if isinstance(one, list) else one for key, one in tags.items()}
+        said.append(ActsWith(**wanted).words)
+    return f"acts only {' and '.join(said)}" if said else ""
 
 
 def _has_default(value: Json) -> bool:

@@ -110,7 +110,7 @@ def _take_out_idle(place: Any, key: Key) -> None:
 
     for kind in tables_at(key[:-1], Config):
         if any(key[-1] in acts.tags for _, acts in kind.acting()):
-            kept = kind.overridden(place, {key[-1]: place[key[-1]]} if key[-1] in place else {})
+            kept = kind.overridden(place, {str(key[-1]): place[key[-1]]} if key[-1] in place else {})
             for name in [name for name in place if name not in kept]:
                 del place[name]
 
