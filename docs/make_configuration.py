@@ -2,7 +2,7 @@
 
 Run ``python docs/make_configuration.py`` at the top of the repository after a key, a material or a Braille
 standard has changed. It writes docs/configuration.md and the marked blocks of docs/geometry.md,
-docs/kit_parts.md and docs/mechanisms.md; tests/softdot/test_docs.py fails while they are out of step.
+docs/kit_parts.md, docs/limits.md and docs/mechanisms.md; tests/softdot/test_docs.py fails while they are out of step.
 """
 
 import sys
@@ -21,11 +21,13 @@ from geometry.fabrication.parameters import (  # noqa: E402
     recipe_for,
 )
 from softdot.commands.new import (  # noqa: E402
+    acting,
     allowed,
     config_schema,
     toml,
     unit,
 )
+from softdot.config.not_modelled import NOT_MODELLED  # noqa: E402
 from solve.materials.parameters import library_tables  # noqa: E402
 from solve.mechanisms import MECHANISMS  # noqa: E402
 from solve.mechanisms.base import in_short  # noqa: E402
@@ -102,6 +104,7 @@ def _section(title: str, name: str, definitions: Json, examples: Json) -> str:
     for key in keys:
         value, required = table["properties"][key], key in table.get("required", [])
         meaning = value.get("description") or _description(value, definitions)
+        meaning = "; ".join(part for part in (meaning, acting(value)) if part)
         bounds = HINTS.get(f"{name}.{key}") or allowed(value)
         rows.append(
             [f"`{key}`", meaning, unit(key), _default(value, required), bounds, _example(title, key, value, examples)]
@@ -233,9 +236,15 @@ def casting_table() -> str:
     return _table(heads, rows)
 
 
+def table_of_nothing() -> str:
+    """What this program does not have, as the hints of softdot check say it."""
+    return _table(["there is none of", "there is"], [[one.what, one.instead] for one in NOT_MODELLED])
+
+
 BLOCKS: dict[str, tuple[str, Callable[[], str]]] = {
     "geometry.md": ("Braille table", braille_table),
     "kit_parts.md": ("casting table", casting_table),
+    "limits.md": ("table of what there is not", table_of_nothing),
     "mechanisms.md": ("mechanism table", mechanism_table),
 }
 """Document -> its generated block."""

@@ -5,6 +5,7 @@ Large libraries, of which a few modules are loaded without the rest.
 
 import difflib
 import gc
+import re
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
@@ -24,8 +25,21 @@ def nearest(word: str, known: Iterable[str]) -> str:
     "did you mean 'thickness_mm'?"
     """
     names = sorted(known)
-    near = difflib.get_close_matches(word, names, n=1, cutoff=0.5)
-    return f"did you mean '{near[0]}'?" if near else f"known are {', '.join(names)}"
+    best = max(names, key=lambda name: (_likeness(word, name), name), default="")
+    return f"did you mean '{best}'?" if _likeness(word, best) >= 0.5 else f"known are {', '.join(names)}"
+
+
+def _likeness(word: str, name: str) -> float:
+    """How alike two names are: letter by letter and by the words that they are made of, whichever is more.
+
+    >>> typed = "feedback_capacitance_pF"
+    >>> _likeness(typed, "feedback_pF") > _likeness(typed, "input_capacitance_pF")
+    True
+    """
+    letters = difflib.SequenceMatcher(None, name, word).ratio()
+    mine, theirs = set(re.split("[_-]", word)), set(re.split("[_-]", name))
+    words = len(mine & theirs) / len(mine | theirs)
+    return max(letters, words) + 0.5 * words if len(mine & theirs) > 1 else letters
 
 
 Report = Callable[[str, int, int], None]

@@ -226,13 +226,6 @@ def refuse_cell_of(dot: Dot, height_mm: float) -> tuple[Floats, float]:
     """The one tip (1, 3) of a dot without a cell, and its height. InputError when a cell is asked for."""
     if dot.cell is not None:
         raise InputError(f"dot.cell = '{dot.cell}': a cell has dots of dot.shape = 'cap', not '{dot.shape}'")
-    if dot.cell_dot != 1:
-        raise InputError(f"dot.cell_dot = {dot.cell_dot}: has a meaning only together with dot.cell")
-    if dot.cell_heights_mm:
-        raise InputError(
-            f"dot.cell_heights_mm = {list(dot.cell_heights_mm)}: has a meaning only together with dot.cell; "
-            "dot.height_mm is the height of one dot"
-        )
     return np.zeros((1, 3)), height_mm
 
 

@@ -1,13 +1,16 @@
 """Impossible geometry is refused by name before any solid is built."""
 
 from itertools import pairwise
+from math import sqrt
+
+import numpy as np
 
 from geometry.assembly import case_outside
 from geometry.base import InputError
 from geometry.dot import DotShape
 from geometry.parameters import Dot, Segment
 from geometry.part_checks import check_effector, check_electrodes, covers_footprint
-from geometry.stack import bodies, layers
+from geometry.stack import Dome, bodies, layers
 
 
 def check_segment(segment: Segment) -> list[str]:
@@ -59,6 +62,7 @@ def press_warnings(dot_shape: DotShape, segment: Segment, indentation_mm: float)
     return [
         *warnings,
         *_far_dot(dot_shape, segment, indentation_mm),
+        *_over_edge(dot_shape, segment, indentation_mm),
         *_hit_case(dot_shape, segment, indentation_mm),
     ]
 
@@ -71,6 +75,29 @@ def _far_dot(dot_shape: DotShape, segment: Segment, indentation_mm: float) -> li
     return [
         f"the pressed dot stays {clear:.3g} mm clear of the top of the segment at rest, more than the "
         f"indentation of {indentation_mm:.3g} mm: it may not touch"
+    ]
+
+
+def _over_edge(dot_shape: DotShape, segment: Segment, indentation_mm: float) -> list[str]:
+    """Sides are no contact surface: a dot that presses over an edge passes through them.
+
+    A ball touches a flat body to a radius of sqrt(R d) at a depth d (Hertz).
+    """
+    top, radius = bodies(segment)[-1], dot_shape.radius_mm
+    if dot_shape.kind == "plate" or isinstance(top, Dome):
+        return []
+    ball = dot_shape.origin_mm + dot_shape.rotation @ [0.0, 0.0, radius]
+    if top.distance(ball) - radius > indentation_mm:  # it may not touch, which is told
+        return []
+    reach = sqrt(radius * indentation_mm)
+    across = np.eye(3)[: 1 if dot_shape.kind == "ridge" or segment.section == "plane-strain" else 2]
+    beyond = max(abs(float(axis @ ball)) + reach - top.reach(axis) for axis in across)
+    if beyond <= 0.0:
+        return []
+    part = "segment" if covers_footprint(segment) else "effector"
+    return [
+        f"the dot presses about {beyond:.2g} mm beyond the edge of the {part}, whose sides are no contact surface: "
+        "force and voltage are those of a dot that may pass through them"
     ]
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.base import InputError
-from geometry.braille import SIZES, DotSize, cell_tips, dot_size, refuse_cell_of
+from geometry.braille import DotSize, cell_tips, dot_size, refuse_cell_of
 from geometry.parameters import Dot, Segment
 from geometry.stack import bodies, layers
 
@@ -161,7 +161,7 @@ def resolve_dot(dot: Dot, segment: Segment) -> DotShape:
     cell and for a dot, plate or neighbour that would overlap the resting segment.
     """
     _refuse_out_of_plane(dot, segment)
-    size = _plate_size(dot) if dot.shape == "plate" else dot_size(dot)
+    size = DotSize(0.0, 0.0, 0.0) if dot.shape == "plate" else dot_size(dot)
     tips, height = cell_tips(dot, size.height_mm) if dot.shape == "cap" else refuse_cell_of(dot, size.height_mm)
     turned = DotShape(dot.shape, size.radius_mm, height, tips, np.zeros(3), rotation_of(dot.tilt_deg))
     origin = rest_origin(turned, segment, dot.offset_mm) + np.array([0.0, 0.0, dot.gap_mm])
@@ -183,12 +183,3 @@ def _refuse_out_of_plane(dot: Dot, segment: Segment) -> None:
         raise InputError(f"dot.offset_mm[1] = {dot.offset_mm[1]:g}: {plane}; must be 0")
     if dot.tilt_deg[0] != 0.0:
         raise InputError(f"dot.tilt_deg[0] = {dot.tilt_deg[0]:g}: {plane}; the tilt about x must be 0")
-
-
-def _plate_size(dot: Dot) -> DotSize:
-    """A plate has no sizes; InputError when some are given."""
-    for name in ("standard", *SIZES):
-        value = getattr(dot, name)
-        if value is not None:
-            raise InputError(f"dot.{name} = {value!r}: dot.shape = 'plate' has no size, leave it out")
-    return DotSize(0.0, 0.0, 0.0)

@@ -4,10 +4,20 @@ Origin: centre of the base of medium 2. x along the length, y along the width,
 z from the base towards the dot. Lengths in millimetres, the film in micrometres.
 """
 
-from collections.abc import Sequence
+import json
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    GetJsonSchemaHandler,
+    SerializerFunctionWrapHandler,
+    model_serializer,
+    model_validator,
+)
+from pydantic_core import CoreSchema
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NonNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
@@ -17,10 +27,126 @@ Finite = Annotated[float, Field(allow_inf_nan=False)]
 LayerName = Literal["effector", "medium1", "film", "medium2"]
 
 
+STATED: Literal["stated"] = "stated"
+ABSENT: Literal["absent"] = "absent"
+JsonSchema = dict[str, Any]
+
+
+class ActsWith:
+    """Where a key acts: one of the keys named here has one of these values, is STATED at all or is ABSENT.
+
+    Annotated[NonNegative, ActsWith(shape=("ramp", "trapezoid"))] is the type of a key that acts with two shapes. It is
+    the member of a tagged union to which the key belongs, said at the key. Classes of their own for all members would
+    say the same, but a segment would need one for each boundary, and whoever reads segment.boundary would have to
+    distinguish them; here all members are one class, whose other keys hold their defaults.
+    """
+
+    def __init__(self, needed: bool = False, **tags: tuple[str, ...] | Literal["stated", "absent"]) -> None:
+        """needed : the key must be stated where it acts."""
+        self.tags, self.needed = tags, needed
+
+    def holds(self, values: Mapping[str, Any]) -> bool:
+        """Whether the key acts beside the values of a table."""
+        return any(self._has(values[key], wanted) for key, wanted in self.tags.items())
+
+    @staticmethod
+    def _has(value: Any, wanted: tuple[str, ...] | str) -> bool:
+        if isinstance(wanted, tuple):
+            return value in wanted
+        return (value is not None) == (wanted == STATED)
+
+    @property
+    def words(self) -> str:
+        """For example "with shape = 'ramp' or 'trapezoid'"."""
+        return " or ".join(self._said(key, wanted) for key, wanted in self.tags.items())
+
+    @staticmethod
+    def _said(key: str, wanted: tuple[str, ...] | str) -> str:
+        if isinstance(wanted, tuple):
+            return f"with {key} = {' or '.join(repr(one) for one in wanted)}"
+        return f"with{'' if wanted == STATED else 'out'} {key}"
+
+    def here(self, table: BaseModel) -> str:
+        """What the tags are in a table, for example "shape = 'half-sine'"; nothing where one is missing."""
+        stated = {key: getattr(table, key) for key in self.tags}
+        return ", ".join(f"{key} = {value!r}" for key, value in stated.items() if value is not None)
+
+    def condition(self, defaults: JsonSchema) -> JsonSchema:
+        """The same as JSON Schema of the whole table. defaults : of its keys, which need not be stated."""
+        return {"anyOf": [self._condition(key, wanted, defaults.get(key)) for key, wanted in self.tags.items()]}
+
+    @staticmethod
+    def _condition(key: str, wanted: tuple[str, ...] | str, default: Any) -> JsonSchema:
+        if isinstance(wanted, tuple):
+            one_of: JsonSchema = {"properties": {key: {"enum": list(wanted)}}}
+            return one_of if default in wanted else {**one_of, "required": [key]}
+        stated = {"required": [key], "properties": {key: {"not": {"type": "null"}}}}
+        return stated if wanted == STATED else {"not": stated}
+
+    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchema:
+        """The schema of the key says what it acts with: of all conditions one of the tags."""
+        made = handler(core)
+        return {**made, "x-acts-with": [*made.get("x-acts-with", []), self.tags]}
+
+
+def _shown(value: Any) -> str:
+    """A value as messages show it."""
+    if isinstance(value, float):
+        return f"{value:g}"
+    return repr(value) if isinstance(value, str) else json.dumps(value, default=str)
+
+
 class Table(BaseModel):
-    """A configuration table: unknown keys are refused, values cannot change after reading."""
+    """A configuration table: unknown keys are refused, and so are those that do not act beside the others.
+
+    Values cannot change after reading. What does not act is not written either: whatever is written can be read.
+    """
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=False)
+
+    @classmethod
+    def acting(cls) -> list[tuple[str, ActsWith]]:
+        """The keys that act beside some others only, once for each of their conditions."""
+        fields = cls.model_fields.items()
+        return [(name, one) for name, field in fields for one in field.metadata if isinstance(one, ActsWith)]
+
+    @classmethod
+    def overridden(cls, inherited: Mapping[str, Any], stated: Mapping[str, Any]) -> dict[str, Any]:
+        """Inherited keys with those stated in their place; an inherited one that no longer acts is left out."""
+        merged = {**inherited, **stated}
+        values = {**{name: field.default for name, field in cls.model_fields.items()}, **merged}
+        idle = {name for name, acts in cls.acting() if name not in stated and not acts.holds(values)}
+        return {name: value for name, value in merged.items() if name not in idle}
+
+    @model_validator(mode="after")
+    def _each_key_acts(self) -> Self:
+        for name, acts in self.acting():
+            value = getattr(self, name)
+            if value is None and acts.needed and acts.holds(self.__dict__):
+                raise ValueError(f"{name} is missing: {acts.here(self)} needs it")
+            if name in self.model_fields_set and value is not None and not acts.holds(self.__dict__):
+                here = acts.here(self)
+                raise ValueError(f"{name} = {_shown(value)}: acts only {acts.words}{f', here {here}' if here else ''}")
+        return self
+
+    @model_serializer(mode="wrap")
+    def _what_acts(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        idle = {name for name, acts in self.acting() if not acts.holds(self.__dict__)}
+        return {name: value for name, value in write(self).items() if name not in idle}
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchema:
+        """With the conditions of the keys that act beside some others only, as a JSON Schema states them."""
+        made = handler(core)
+        table = handler.resolve_ref_schema(made)
+        defaults = {name: field.default for name, field in cls.model_fields.items()}
+        for name, acts in cls.acting():
+            condition = acts.condition(defaults)
+            conditions = table.setdefault("dependentSchemas", {}).setdefault(name, {"allOf": []})
+            conditions["allOf"].append(condition)
+            if acts.needed:
+                table.setdefault("allOf", []).append({"if": condition, "then": {"required": [name]}})
+        return made
 
 
 def require_one_of_each(per: str, **lists: Sequence[float]) -> None:
@@ -38,9 +164,11 @@ class Effector(Table):
         "layer", description="layer covers the whole footprint; block, cylinder and dome stand on medium 1"
     )
     height_mm: Positive = Field(1.0, description="height above medium 1")
-    length_mm: Positive | None = Field(None, description="block only: size in x")
-    width_mm: Positive | None = Field(None, description="block only: size in y")
-    diameter_mm: Positive | None = Field(None, description="cylinder and dome: diameter of the base")
+    length_mm: Annotated[Positive | None, ActsWith(shape=("block",))] = Field(None, description="size in x")
+    width_mm: Annotated[Positive | None, ActsWith(shape=("block",))] = Field(None, description="size in y")
+    diameter_mm: Annotated[Positive | None, ActsWith(shape=("cylinder", "dome"))] = Field(
+        None, description="diameter of the base"
+    )
     material: str = Field("rubber", description="name of a material")
 
 
@@ -89,11 +217,11 @@ class Segment(Table):
         "solid", description="plane-strain: one thin slice without strain in y"
     )
     boundary: Literal["free", "clamped", "elastic"] = Field("clamped", description="what the case does to the sides")
-    held_layers: tuple[LayerName, ...] = Field(
-        ("effector", "medium1", "film"), description="layers whose sides the case holds (clamped, elastic)"
+    held_layers: Annotated[tuple[LayerName, ...], ActsWith(boundary=("clamped", "elastic"))] = Field(
+        ("effector", "medium1", "film"), description="layers whose sides the case holds"
     )
-    side_stiffness_N_per_mm3: NonNegative = Field(
-        5.0, description="elastic only: normal and tangential traction per displacement of the held sides"
+    side_stiffness_N_per_mm3: Annotated[NonNegative, ActsWith(boundary=("elastic",))] = Field(
+        5.0, description="normal and tangential traction per displacement of the held sides"
     )
     effector: Effector | None = Field(None, description="leave the table out for a segment without effector")
     medium1: Medium
@@ -102,22 +230,29 @@ class Segment(Table):
     bonds: tuple[Bond, ...] = Field((), description="compliant bonds; none: perfect")
 
 
+ROUND = ActsWith(shape=("cap", "ridge"))
+
+
 class Dot(Table):
     """The rigid object that is pressed onto the segment."""
 
     shape: Literal["cap", "ridge", "plate"] = Field(
         "cap", description="cap: spherical, on a plate; ridge: a cylinder along y; plate: flat"
     )
-    standard: str | None = Field(None, description="Braille standard whose nominal sizes are used")
-    base_diameter_mm: Positive | None = Field(None, description="with height_mm: explicit size of a cap or ridge")
-    height_mm: Positive | None = Field(None, description="height of the dot over its plate")
-    radius_mm: Positive | None = Field(None, description="radius of the sphere or cylinder instead of base_diameter_mm")
+    standard: Annotated[str | None, ROUND] = Field(None, description="Braille standard whose nominal sizes are used")
+    base_diameter_mm: Annotated[Positive | None, ROUND] = Field(None, description="with height_mm: explicit size")
+    height_mm: Annotated[Positive | None, ROUND] = Field(None, description="height of the dot over its plate")
+    radius_mm: Annotated[Positive | None, ROUND] = Field(
+        None, description="radius of the sphere or cylinder instead of base_diameter_mm"
+    )
     offset_mm: tuple[Finite, Finite] = Field((0.0, 0.0), description="position of the pressed dot, x and y")
     tilt_deg: tuple[Finite, Finite] = Field((0.0, 0.0), description="rotation of the dot about x and y")
     gap_mm: NonNegative = Field(0.0, description="gap between the dot at rest and its first touch")
     cell: str | None = Field(None, description="a Braille character: its other dots surround the pressed one")
-    cell_dot: Annotated[int, Field(ge=1, le=8)] = Field(1, description="which dot of the cell is pressed")
-    cell_heights_mm: tuple[Positive, ...] = Field(
+    cell_dot: Annotated[int, Field(ge=1, le=8), ActsWith(cell=STATED)] = Field(
+        1, description="which dot of the cell is pressed"
+    )
+    cell_heights_mm: Annotated[tuple[Positive, ...], ActsWith(cell=STATED)] = Field(
         (), description="height of each raised dot of the cell, in the order of their numbers; none: the standard's"
     )
 

@@ -48,10 +48,6 @@ def _check_sizes(segment: Segment, effector: Effector) -> None:
         value = getattr(effector, name)
         if value is None and name in used and not (sliced and name == "width_mm"):
             raise InputError(f"segment.effector.{name} is missing: shape = '{effector.shape}' needs it")
-        if value is not None and name not in used:
-            raise InputError(
-                f"segment.effector.{name} = {value:g}: shape = '{effector.shape}' has no such size, leave it out"
-            )
     if sliced and effector.width_mm not in (None, segment.width_mm):
         raise InputError(
             f"segment.effector.width_mm = {effector.width_mm:g}: segment.section = 'plane-strain' has "

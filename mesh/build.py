@@ -7,46 +7,46 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from geometry.cache import data_hash, folder, read_arrays, source_hash, write_arrays
 from geometry.dot import DotShape
-from geometry.parameters import Positive, Segment, Table
+from geometry.parameters import ABSENT, ActsWith, Positive, Segment, Table
 from mesh.types import LinearMesh, Planes
 
 if TYPE_CHECKING:
     from mesh.types import TetMesh
 
 
+MESHED = ActsWith(file=ABSENT)
+TETWILD = ActsWith(mesher=("pytetwild",))
+
+
 class MeshOptions(Table):
     """Element sizes and the mesher."""
 
-    element_size_mm: Positive = Field(0.3, description="edge length away from contact and film")
-    contact_element_size_mm: Positive = Field(0.1, description="edge length under the dot")
-    film_element_size_mm: Positive | None = Field(
+    element_size_mm: Annotated[Positive, MESHED] = Field(0.3, description="edge length away from contact and film")
+    contact_element_size_mm: Annotated[Positive, MESHED] = Field(0.1, description="edge length under the dot")
+    film_element_size_mm: Annotated[Positive | None, MESHED] = Field(
         None, description="edge length on the film; none: geometric mean of the two"
     )
-    accuracy_percent: Annotated[float, Field(ge=0.4, le=20.0)] | None = Field(
+    accuracy_percent: Annotated[Annotated[float, Field(ge=0.4, le=20.0)] | None, MESHED] = Field(
         None, description="all sizes are scaled together until force and voltages are so accurate; none: as stated"
     )
-    mesher: Literal["pytetwild", "layered"] = Field("pytetwild", description="layered: extruded, deterministic")
+    mesher: Annotated[Literal["pytetwild", "layered"], MESHED] = Field(
+        "pytetwild", description="layered: extruded, deterministic"
+    )
     file: str | None = Field(
         None, description="your own mesh instead: .msh, .inp or .xdmf in mm, with the names of the parts"
     )
-    film_layers: Annotated[int, Field(ge=1, le=8)] = Field(1, description="quadratic elements through the film")
-    coarsen: bool = Field(
-        False, description="pytetwild: merge elements smaller than requested; half as many where sizes are large"
+    film_layers: Annotated[int, Field(ge=1, le=8), MESHED] = Field(1, description="quadratic elements through the film")
+    coarsen: Annotated[bool, MESHED, TETWILD] = Field(
+        False, description="merge elements smaller than requested; half as many where sizes are large"
     )
-    symmetry: Literal["auto", "none"] = Field(
+    symmetry: Annotated[Literal["auto", "none"], MESHED] = Field(
         "auto", description="auto: mesh a half or a quarter where all is symmetric; results are those of the whole"
     )
-    timeout_s: Positive = Field(300.0, description="the mesher is stopped after this time")
-
-    @model_validator(mode="after")
-    def _sizes_can_change(self) -> Self:
-        if self.accuracy_percent is not None and self.file is not None:
-            raise ValueError(f"accuracy_percent = {self.accuracy_percent:g}: the mesh of a file has sizes of its own")
-        return self
+    timeout_s: Annotated[Positive, MESHED, TETWILD] = Field(300.0, description="the mesher is stopped after this time")
 
     def scaled(self, factor: float) -> Self:
         """All sizes times a factor, now as stated."""

@@ -17,7 +17,7 @@ import geometry  # noqa: F401 - sets the thread pools before NumPy is loaded
 if TYPE_CHECKING:
     from geometry.base import InputError
     from mesh.types import MeshingError
-    from softdot.case import Case, Pressed
+    from softdot.case import Case, ConvergenceWarning, Pressed
     from softdot.commands.run import run_config
     from softdot.config import Config, config_hash, config_schema, load_config
     from softdot.outcome import derivatives
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Case",
     "Config",
+    "ConvergenceWarning",
     "InputError",
     "MeshingError",
     "Pressed",
@@ -44,6 +45,7 @@ __all__ = [
 _HOMES = {
     "Case": "softdot.case",
     "Config": "softdot.config",
+    "ConvergenceWarning": "softdot.case",
     "InputError": "geometry.base",
     "MeshingError": "mesh.types",
     "Pressed": "softdot.case",

@@ -15,6 +15,7 @@ from html import escape
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from warnings import warn
 
 import numpy as np
 
@@ -37,6 +38,10 @@ if TYPE_CHECKING:
     from softdot.outcome import Derivative
 
 OnStep = Callable[[Step, int, int], None]
+
+
+class ConvergenceWarning(UserWarning):
+    """A press ended before the depth or force that was asked for: its last numbers are those of less."""
 
 
 class Case:
@@ -140,10 +145,14 @@ class Case:
         return {**measure(self.solved_mesh, self.model.segment).as_dict(), **sizes}
 
     def press(self, on_step: OnStep | None = None) -> "Pressed":
-        """The press, as far as it converged: .converged says whether, .failure why not. InputError, MeshingError."""
+        """The press, as far as it converged: .converged says whether, .failure why not. InputError, MeshingError.
 
+        A press that ended early warns by ConvergenceWarning.
+        """
         if "_pressed" not in self.__dict__:
             self.__dict__["_pressed"] = Pressed(self, self.solve(on_step))
+            if not self.__dict__["_pressed"].converged:
+                warn(f"not converged, {self.__dict__['_pressed'].failure}", ConvergenceWarning, stacklevel=2)
         return self.__dict__["_pressed"]  # type: ignore[no-any-return]
 
     def solve(self, on_step: OnStep | None = None, tet_mesh: TetMesh | None = None) -> PressResult:

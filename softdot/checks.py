@@ -28,6 +28,7 @@ from solve.result import PressResult
 from solve.solution.schedule import duration_s
 from solve.symmetry import meshed_planes
 from solve.terms.contact import RigidDot
+from solve.validity import doubts
 
 TOO_MANY = 1_000_000
 POINTS = 100_000
@@ -132,7 +133,7 @@ def result_warnings(model: Model, dot_shape: DotShape, result: PressResult) -> l
     data.
     """
     yields = model.physics.film_yield is not None
-    warnings = [*result.warnings, *([] if yields else _yield(model, result))]
+    warnings = [*result.warnings, *([] if yields else _yield(model, result)), *doubts(model, result)]
     for layer, material in model.materials.items():
         warnings += _beyond_fit(layer, material, result)
     if model.press.indentation_mm is None:
@@ -185,15 +186,15 @@ SAMPLES = 201
 """Points along each edge of the rim."""
 
 
-def held_rim_warnings(segment: Segment, dot_shape: DotShape, indentation_mm: float) -> list[str]:
-    """A warning where the dot, of any shape and tilt, reaches the held rim before the final depth in mm."""
+def refuse_held_rim(segment: Segment, dot_shape: DotShape, indentation_mm: float) -> None:
+    """InputError where the dot, of any shape and tilt, reaches the held rim before the final depth in mm."""
     free_mm = travel_to_rim_mm(segment, dot_shape, indentation_mm)
-    if free_mm >= indentation_mm:
-        return []
-    return [
-        f"a dot meets the held rim of the segment at an indentation of {free_mm:.3g} mm, and neither can deform: the "
-        "computation will stop there or soon after; move the dot, enlarge the segment or hold fewer layers"
-    ]
+    if free_mm < indentation_mm:
+        raise InputError(
+            f"press.indentation_mm = {indentation_mm:g}: the dot meets the held rim of the segment at {free_mm:.3g} "
+            "mm, and neither can deform; press less deep, move the dot (dot.offset_mm), enlarge the segment or hold "
+            "fewer layers (segment.held_layers)"
+        )
 
 
 def travel_to_rim_mm(segment: Segment, dot_shape: DotShape, indentation_mm: float) -> float:
@@ -242,5 +243,5 @@ def check_case(model: Model, options: MeshOptions) -> tuple[DotShape, list[str]]
     refuse_huge_mesh(segment, dot_shape, options, meshed_planes(model, dot_shape, options))
     if depth is not None:
         warnings += press_warnings(dot_shape, segment, depth)
-        warnings += held_rim_warnings(segment, dot_shape, depth)
+        refuse_held_rim(segment, dot_shape, depth)
     return dot_shape, warnings

@@ -148,11 +148,11 @@ GOOD, BAD_INPUT, NOT_CONVERGED, INTERRUPTED = 0, 2, 3, 130
 
 
 def show(summary: dict[str, Any], chosen: Namespace, short_text: Callable[[dict[str, Any], str], str]) -> None:
-    """The summary as JSON when asked for, else in short on a terminal; its warnings always on standard error."""
+    """The summary as JSON when asked for, else in short, in a pipe too; its warnings always on standard error."""
     warn(summary.get("warnings", []))
     if chosen.json:
         sys.stdout.write(json_text(summary))
-    elif sys.stdout.isatty() and not chosen.quiet:
+    elif not chosen.quiet:
         print(short_text(summary, chosen.output))
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import Field, PrivateAttr, model_validator
 
 from geometry.arrays import Floats
-from geometry.parameters import Dot, Finite, NonNegative, Positive, Segment, Table
+from geometry.parameters import STATED, ActsWith, Dot, Finite, NonNegative, Positive, Segment, Table
 from solve.materials.inelastic import Prony, Softening
 from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.readout.stages import Stage
@@ -27,16 +27,18 @@ class Waveform(Table):
     shape: Literal["ramp", "half-sine", "raised-cosine", "trapezoid", "file"] = Field(
         "ramp", description="ramp: up, then hold; trapezoid: up, hold, down; file: two CSV columns time_s, fraction"
     )
-    rise_s: Positive = Field(0.5, description="time from touch to full depth")
-    hold_s: NonNegative = Field(0.0, description="ramp and trapezoid: time at full depth")
-    fall_s: Positive = Field(0.5, description="trapezoid: time of the release")
-    file: str | None = Field(None, description="shape = file: the CSV file")
+    rise_s: Positive = Field(
+        0.5, description="time from touch to full depth; file: to its first row, where that is pressed already"
+    )
+    hold_s: Annotated[NonNegative, ActsWith(shape=("ramp", "trapezoid"))] = Field(0.0, description="time at full depth")
+    fall_s: Annotated[Positive, ActsWith(shape=("trapezoid",))] = Field(0.5, description="time of the release")
+    file: Annotated[str | None, ActsWith(needed=True, shape=("file",))] = Field(None, description="the CSV file")
     _samples: Floats | None = PrivateAttr(None)
 
     @classmethod
-    def through(cls, time_s: Floats, fraction: Floats) -> Self:
+    def through(cls, time_s: Floats, fraction: Floats) -> "Waveform":
         """Straight lines through fractions (t,) at increasing times (t,), as a file would state them."""
-        made = cls(shape="file")
+        made = cls.model_construct(shape="file")
         made._samples = np.column_stack([time_s, fraction])
         return made
 
@@ -86,13 +88,23 @@ class Readout(Table):
     """The amplifier behind the film."""
 
     mode: Literal["voltage", "charge"] = Field("voltage", description="voltage: R parallel C; charge: with feedback")
-    input_resistance_MOhm: Positive | None = Field(None, description="voltage mode; none: infinite")
-    input_capacitance_pF: NonNegative = Field(0.0, description="voltage mode: amplifier and cable")
-    feedback_pF: Positive | None = Field(None, description="charge mode: feedback capacitance")
-    feedback_MOhm: Positive | None = Field(None, description="charge mode: feedback resistance; none: infinite")
+    input_resistance_MOhm: Annotated[Positive | None, ActsWith(mode=("voltage",))] = Field(
+        None, description="parallel to the film; none: infinite"
+    )
+    input_capacitance_pF: Annotated[NonNegative, ActsWith(mode=("voltage",))] = Field(
+        0.0, description="of amplifier and cable"
+    )
+    feedback_pF: Annotated[Positive | None, ActsWith(needed=True, mode=("charge",))] = Field(
+        None, description="feedback capacitance"
+    )
+    feedback_MOhm: Annotated[Positive | None, ActsWith(mode=("charge",))] = Field(
+        None, description="feedback resistance; none: infinite"
+    )
     low_pass_Hz: Positive | None = Field(None, description="Butterworth low-pass; none: no filter")
     high_pass_Hz: Positive | None = Field(None, description="Butterworth high-pass; none: no filter")
-    filter_order: Annotated[int, Field(ge=1, le=8)] = Field(1, description="order of both filters")
+    filter_order: Annotated[int, Field(ge=1, le=8), ActsWith(low_pass_Hz=STATED, high_pass_Hz=STATED)] = Field(
+        1, description="order of both filters"
+    )
     limit_V: Positive | None = Field(None, description="the amplifier saturates at plus and minus this voltage")
     polarity: Literal[1, -1] = Field(1, description="sign of the voltage, as wired")
     noise_V: Positive = Field(1e-3, description="noise (one sigma) for the least detectable indentation")

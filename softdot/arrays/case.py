@@ -20,7 +20,7 @@ from geometry.parameters import Dot, Segment
 from mesh.array.mesh import array_mesh
 from mesh.array.sizing import expected_elements
 from mesh.types import Planes, TetMesh
-from softdot.checks import Cost, cost_of, design_warnings, held_rim_warnings, refuse_many_elements
+from softdot.checks import Cost, cost_of, design_warnings, refuse_held_rim, refuse_many_elements
 from softdot.config import Config
 from softdot.config.model import model_of
 from solve.materials.film import FilmLaw, film_law
@@ -66,7 +66,7 @@ class ArrayCase:
                 check_pushed_dot(press.config.dot, self.layout.whole)
             else:
                 warnings += press_warnings(press.dot, self.layout.whole, depth)
-                warnings += held_rim_warnings(self.layout.whole, press.dot, depth)
+                refuse_held_rim(self.layout.whole, press.dot, depth)
         refuse_many_elements(max(self._elements), self.config.mesh, False)
         return list(dict.fromkeys([*warnings, *design_warnings(self.presses[0].model)]))
 

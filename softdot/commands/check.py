@@ -30,7 +30,7 @@ def command(chosen: Namespace) -> int:
 def check_file(path: Path, settings: list[str]) -> dict[str, Any]:
     """Mistakes, warnings and the expected cost of a configuration."""
     from softdot.config import config_from
-    from softdot.config.errors import mistakes
+    from softdot.config.mistakes import mistakes
     from softdot.config.toml import completed, from_default, read_toml, with_settings
 
     def check(tables: Mapping[str, Any]) -> tuple[Any, ...]:

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from importlib.resources import files
 from typing import Any
 
+from geometry.parameters import ActsWith
 from softdot.config import config_schema
 from softdot.console import GOOD
 
@@ -171,7 +172,17 @@ def _about(key: str, value: Json, required: bool) -> str:
     said.append(f"allowed: {allowed(value)}".replace("`", ""))
     default = f"default {toml(value['default'])}" if _has_default(value) else "may be left out"
     said.append("required" if required else default)
+    said += [acting(value)] if acting(value) else []
     return "; ".join(part for part in said if part)
+
+
+def acting(value: Json) -> str:
+    """Beside which other keys a key acts, in words, nothing where it always does."""
+    said = []
+    for tags in value.get("x-acts-with", []):
+        wanted: Json = {key: tuple(one) if isinstance(one, list) else one for key, one in tags.items()}
+        said.append(ActsWith(**wanted).words)
+    return f"acts only {' and '.join(said)}" if said else ""
 
 
 def _has_default(value: Json) -> bool:

@@ -10,6 +10,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from threading import Thread
 from typing import TYPE_CHECKING, Any
+from warnings import catch_warnings, simplefilter
 
 from geometry.base import InputError, without_collector
 from softdot.console import (
@@ -190,13 +191,14 @@ def command(chosen: Namespace) -> int:
     with SecondProcess() as ask:  # at once: it loads its libraries while this one does
         with without_collector():
             Thread(target=_try_to_draw, daemon=True).start()
-            from softdot.case import Case
+            from softdot.case import Case, ConvergenceWarning
             from softdot.config import load_config
             from softdot.console import progress_of
             from softdot.tolerances.uncertainty import uncertainty  # noqa: F401 - loads the solver
 
         config = load_config(chosen.config, chosen.set)
-        with only_the_summary_on_stdout(), progress_of(chosen) as progress:
+        with catch_warnings(), only_the_summary_on_stdout(), progress_of(chosen) as progress:
+            simplefilter("ignore", ConvergenceWarning)  # it is told below, and by the exit code
             summary = run_case(Case(config), Path(chosen.output), progress, chosen.mesh_format, ask)
     show(summary, chosen, short_text)
     if summary["solver"]["converged"]:

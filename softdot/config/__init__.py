@@ -50,11 +50,6 @@ class Config(Table):
     def _consistent(self) -> Self:
         if self.press.indentation_mm is not None and self.press.force_N is not None:
             raise ValueError(f"press.force_N = {self.press.force_N:g}: give either indentation_mm or force_N, not both")
-        if self.readout is not None and self.readout.mode == "charge" and self.readout.feedback_pF is None:
-            raise ValueError("readout.feedback_pF is missing: mode = 'charge' needs a feedback capacitance")
-        waveform = self.press.waveform
-        if waveform is not None and waveform.shape == "file" and waveform.file is None:
-            raise ValueError("press.waveform.file is missing: shape = 'file' needs the name of a CSV file")
         refuse_repeated(self.mechanisms)
         self.layer_materials()
         return self

@@ -1,21 +1,16 @@
-"""What is wrong with a configuration, in sentences: the dotted key, its value, what is allowed; all mistakes at once.
+"""What is wrong with a configuration, in a sentence: the dotted key, its value, what is allowed."""
 
-Each check of a run stops at the first mistake. Here that mistake is noted, its key set aside, and the rest checked
-again, until nothing is refused: every sentence is the one that a run would say.
-"""
-
-import copy
 import json
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import suppress
-from typing import Any, TypeVar, get_args
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, get_args
 
-from pydantic import BaseModel, ValidationError
+from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from geometry.base import InputError, nearest
-from softdot.config.toml import parsed
+from geometry.parameters import Table
+from softdot.config.not_modelled import not_modelled
 
 BOUNDS = {
     "greater_than": ("gt", "above"),
@@ -40,12 +35,25 @@ KINDS = {
 }
 
 
-def sentence(error: ValidationError, tables: Mapping[str, Any], model: type[BaseModel]) -> str:
+def sentence(error: ValidationError, tables: Mapping[str, Any], model: type[Table]) -> str:
     """One sentence on the most telling problem: a mistyped key first, a missing one last."""
     rank = {"extra_forbidden": 0, "missing": 2}
     problems = sorted(error.errors(include_url=False), key=lambda p: rank.get(p["type"], 1))
     choices = [p["ctx"]["expected"] for p in problems if p["type"] == "literal_error" and _same_value(p, problems[0])]
-    return _explain(problems[0], tables, model, choices)
+    said = _explain(problems[0], tables, model, choices)
+    hint = not_modelled(*_asked_for(problems[0]))
+    return f"{said}; {hint}" if hint else said
+
+
+def _asked_for(problem: ErrorDetails) -> tuple[str, str]:
+    """The key that is none, or the value that is none, and the dotted key of its table."""
+    *table, last = problem["loc"] or ("",)
+    if problem["type"] == "extra_forbidden":
+        return str(last), dotted(table)
+    if problem["type"] == "literal_error":
+        return str(problem["input"]), dotted(table)
+    unknown = re.match("name = '(.*?)'", str(problem.get("ctx", {}).get("error", "")))
+    return (unknown[1] if unknown else ""), dotted(problem["loc"])
 
 
 def _same_value(one: ErrorDetails, other: ErrorDetails) -> bool:
@@ -53,12 +61,12 @@ def _same_value(one: ErrorDetails, other: ErrorDetails) -> bool:
     return one["loc"][:-1] == other["loc"][:-1] and one["input"] == other["input"]
 
 
-def _explain(problem: ErrorDetails, tables: Mapping[str, Any], model: type[BaseModel], choices: Sequence[str]) -> str:
+def _explain(problem: ErrorDetails, tables: Mapping[str, Any], model: type[Table], choices: Sequence[str]) -> str:
     kind, context = problem["type"], problem.get("ctx", {})
     path = _existing(problem["loc"], tables, kind)
     key = dotted(path)
     if kind == "extra_forbidden":
-        known = {name for table in _tables_at(problem["loc"][:-1], model) for name in table.model_fields}
+        known = {name for table in tables_at(problem["loc"][:-1], model) for name in table.model_fields}
         return f"{key} is not a key; {_meant(path, known, model)}"
     if kind == "missing":
         return f"{key} is missing{_described(problem['loc'], model)}"
@@ -80,10 +88,10 @@ def _explain(problem: ErrorDetails, tables: Mapping[str, Any], model: type[BaseM
     return f"{key} = {shown(problem['input'])}: {text}"
 
 
-def _meant(path: Sequence[str | int], known: set[str], model: type[BaseModel]) -> str:
+def _meant(path: Sequence[str | int], known: set[str], model: type[Table]) -> str:
     """What an unknown key was probably meant to be; a table of the segment may stand outside it by mistake."""
     name = str(path[-1])
-    inner = {key for table in _tables_at(("segment",), model) for key in table.model_fields}
+    inner = {key for table in tables_at(("segment",), model) for key in table.model_fields}
     if len(path) == 1 and name in inner:
         return f"did you mean 'segment.{name}'?"
     text = nearest(name, known)
@@ -96,14 +104,14 @@ def _unitless(key: str) -> str:
     return re.sub(r"_(mm|um|deg|pF|MOhm|Hz|MPa|kPa|GPa|Pa|m|cm|V|mV|N|mN|s|ms)$", "", key)
 
 
-def _own_message(key: str, problem: ErrorDetails, model: type[BaseModel]) -> str:
+def _own_message(key: str, problem: ErrorDetails, model: type[Table]) -> str:
     """A message of our own validators: about a value, about a key in a table, or about the whole."""
     text = str(problem["ctx"]["error"])
     if not isinstance(problem["input"], dict):
         return f"{key} = {shown(problem['input'])}: {text}"
     if not key:
         return text
-    names = {name for table in _tables_at(problem["loc"], model) for name in table.model_fields}
+    names = {name for table in tables_at(problem["loc"], model) for name in table.model_fields}
     first = re.split(r"[\s.:\[]", text, maxsplit=1)[0]
     return f"{key}.{text}" if first in names else f"{key}: {text}"
 
@@ -139,7 +147,7 @@ def _existing(loc: Sequence[str | int], tables: Any, kind: str) -> list[str | in
     return path
 
 
-def _tables_at(loc: Sequence[str | int], model: type[BaseModel]) -> list[type[BaseModel]]:
+def tables_at(loc: Sequence[str | int], model: type[Table]) -> list[type[Table]]:
     """The models that may stand at a location of the configuration."""
     here = [model]
     for part in loc:
@@ -154,15 +162,15 @@ def _tables_at(loc: Sequence[str | int], model: type[BaseModel]) -> list[type[Ba
     return here
 
 
-def _models_in(annotation: Any) -> list[type[BaseModel]]:
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+def _models_in(annotation: Any) -> list[type[Table]]:
+    if isinstance(annotation, type) and issubclass(annotation, Table):
         return [annotation]
     return [found for inner in get_args(annotation) for found in _models_in(inner)]
 
 
-def _described(loc: Sequence[str | int], model: type[BaseModel]) -> str:
+def _described(loc: Sequence[str | int], model: type[Table]) -> str:
     """': ' and the description of the missing key."""
-    for table in _tables_at(loc[:-1], model):
+    for table in tables_at(loc[:-1], model):
         field = table.model_fields.get(str(loc[-1]))
         if field is not None and field.description:
             return f": {field.description}"
@@ -214,58 +222,3 @@ def _numbers(value: Any, path: tuple[str | int, ...]) -> Iterator[tuple[tuple[st
             yield from _numbers(item, (*path, index))
     elif isinstance(value, int | float) and not isinstance(value, bool):
         yield path, value
-
-
-MOST = 100
-DECIDES = {"shape", "model", "mode", "name", "component"}
-"""What these say decides what else a table may hold: without it the table cannot be judged."""
-KEY = re.compile(r'(?:[\w-]+|"[^"]+")(?:\.[\w-]+|\."[^"]+"|\[\d+\])*')
-Checked = TypeVar("Checked")
-
-
-def mistakes(
-    tables: Mapping[str, Any], check: Callable[[Mapping[str, Any]], Checked]
-) -> tuple[list[str], Checked | None]:
-    """Every sentence with which check refuses the tables, and what it returns when there is none."""
-    found: list[str] = []
-    rest: dict[str, Any] = copy.deepcopy(dict(tables))
-    while len(found) < MOST:
-        try:
-            checked = check(rest)
-        except InputError as error:
-            if str(error) not in found:
-                found.append(str(error))
-            if not _set_aside(rest, str(error)):
-                return found, None
-        else:
-            return found, None if found else checked
-    return found, None
-
-
-def _set_aside(tables: dict[str, Any], sentence: str) -> bool:
-    """Remove the key that a sentence begins with, or the nearest table above it; whether there was one."""
-    match = KEY.match(sentence)
-    if match is None:
-        return False
-    with suppress(ValueError):
-        way = list(parsed(match[0]))
-        if way[-1] in DECIDES and len(way) > 1:
-            way.pop()
-        while way:
-            if _removed(tables, way):
-                return True
-            way.pop()
-    return False
-
-
-def _removed(tables: Any, way: list[str | int]) -> bool:
-    for part in way[:-1]:
-        try:
-            tables = tables[part]
-        except (KeyError, IndexError, TypeError):
-            return False
-    try:
-        del tables[way[-1]]
-    except (KeyError, IndexError, TypeError):
-        return False
-    return True

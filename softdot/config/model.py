@@ -7,7 +7,8 @@ from geometry.parameters import Table
 from geometry.part_checks import check_patch
 from softdot.config import Config
 from softdot.config.errors import sentence
-from solve.mechanisms import Mechanism, with_mechanisms
+from solve.mechanisms import MECHANISMS, Mechanism, with_mechanisms
+from solve.mechanisms.base import channels_of
 from solve.model import Model, Physics, declared_bonds
 
 STIFFEST_BOND_N_PER_MM3 = 1e6  # as in segment.bonds
@@ -30,9 +31,12 @@ def model_of(config: Config) -> Model:
         except ValueError as error:
             raise InputError(f"{key}.{error}") from None
         _refuse_beyond_bounds(key, model)
-    _refuse_viscous_perfect_bonds(model)
     _refuse_patches_outside(model)
-    _refuse_missing_channels(model)
+    for number, mechanism in enumerate(config.mechanisms):
+        key = f"mechanisms[{number}].component = '{mechanism.component}'"
+        _refuse_viscous_perfect_bond(key, mechanism, model)
+        _refuse_missing_channels(key, mechanism, model)
+        _refuse_unfelt_input(key, mechanism, model)
     return model
 
 
@@ -70,13 +74,12 @@ def _refuse_beyond_bounds(key: str, model: Model) -> None:
             )
 
 
-def _refuse_viscous_perfect_bonds(model: Model) -> None:
-    for name in model.physics.viscosity:
-        if name.startswith("bond-") and name not in model.physics.bonds:
-            raise InputError(
-                f"mechanisms: viscoelasticity of '{name}' needs a compliant bond there; "
-                "add adhesive-compliance or segment.bonds"
-            )
+def _refuse_viscous_perfect_bond(key: str, mechanism: Mechanism, model: Model) -> None:
+    name = mechanism.component
+    if name in model.physics.viscosity and name.startswith("bond-") and name not in model.physics.bonds:
+        raise InputError(
+            f"{key}: {mechanism.name} needs a compliant bond there; add adhesive-compliance or segment.bonds"
+        )
 
 
 def _refuse_patches_outside(model: Model) -> None:
@@ -84,11 +87,19 @@ def _refuse_patches_outside(model: Model) -> None:
         check_patch(model.segment, patch.bond, patch.center_mm, patch.diameter_mm)
 
 
-def _refuse_missing_channels(model: Model) -> None:
-    channels = max(1, len(model.segment.film.electrodes))
-    for what, channel in model.physics.of_channels:
-        if channel > channels or channels == 1:
-            raise InputError(
-                f"mechanisms: {what} needs that electrode and another one; "
-                f"segment.film.electrodes has {len(model.segment.film.electrodes)}"
-            )
+def _refuse_missing_channels(key: str, mechanism: Mechanism, model: Model) -> None:
+    channels, needed = len(model.segment.film.electrodes), channels_of(mechanism.component)
+    if needed and (max(needed) > channels or channels == 1):
+        raise InputError(
+            f"{key}: {mechanism.name} needs that electrode and another one; segment.film.electrodes has {channels}"
+        )
+
+
+def _refuse_unfelt_input(key: str, mechanism: Mechanism, model: Model) -> None:
+    """The input of a charge amplifier is a virtual ground: what is parallel to it carries nothing."""
+    charge = model.readout is not None and model.readout.mode == "charge"
+    if charge and mechanism.component in MECHANISMS[mechanism.name].parallel_to_input:
+        raise InputError(
+            f"{key}: {mechanism.name} acts only with readout.mode = 'voltage', here readout.mode = 'charge', whose "
+            "input is a virtual ground"
+        )

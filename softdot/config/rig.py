@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, ValidationError
 
 from diagnose.signals.reading import read_recording
 from diagnose.signals.recording import Recording, RigTables, Run, RunTable
@@ -33,12 +33,6 @@ class Bench(Table):
     materials: dict[str, AnyMaterial] = Field({}, description="materials beside or instead of the built-in ones")
     readout: Readout | None = Field(None, description="the amplifier; leave out for open circuit")
     seed: int = Field(0, ge=0, description="seed of everything random")
-
-    @model_validator(mode="after")
-    def _charge_mode(self) -> "Bench":
-        if self.readout is not None and self.readout.mode == "charge" and self.readout.feedback_pF is None:
-            raise ValueError("readout.feedback_pF is missing: mode = 'charge' needs a feedback capacitance")
-        return self
 
 
 @dataclass(frozen=True)
@@ -111,7 +105,7 @@ def _readout(run: RunTable, number: int, rest: Mapping[str, Any], bench: Bench) 
         return bench.readout
     given = rest.get("readout", {})
     try:
-        return _checked(Bench, {"readout": {**given, **run.readout}}).readout
+        return _checked(Bench, {"readout": Readout.overridden(given, run.readout)}).readout
     except InputError as error:
         raise InputError(f"runs[{number}].{error}") from None
 

@@ -164,7 +164,7 @@ def segment_config(
                 "width_mm": LENGTH_MM if solid else FILM_WIDTH_MM,
                 "section": reading,
                 "boundary": boundary,
-                "held_layers": list(held_layers),
+                **({} if boundary == "free" else {"held_layers": list(held_layers)}),
                 "effector": {"shape": "layer", "height_mm": effector_height_mm, "material": "effector"},
                 "medium1": {"thickness_mm": h1_mm, "material": "medium1"},
                 "film": {"thickness_um": film_um, "material": "pvdf"},

@@ -9,10 +9,13 @@ from typing import Annotated, Any, Literal, Self
 import numpy as np
 from pydantic import AfterValidator, Field, TypeAdapter, model_validator
 
+from geometry.arrays import Floats
 from geometry.base import InputError, nearest
 from geometry.parameters import Finite, Positive, Table, require_one_of_each
 from solve.materials import laws
 from solve.materials.principal_stretches import HyperfoamLaw
+
+VACUUM_PERMITTIVITY = 8.8541878128e-12  # F/m, CODATA 2018
 
 
 def _poisson_ratio(value: float) -> float:
@@ -236,7 +239,9 @@ class PiezoelectricFilm(MaterialTable):
     d31_pC_per_N: Finite = Field(23.0, description="charge per force along the draw direction")
     d32_pC_per_N: Finite = Field(2.3, description="charge per force across the draw direction")
     d33_pC_per_N: Finite = Field(-33.0, description="charge per force along the normal")
-    relative_permittivity: Positive = Field(12.0, description="at constant stress, along the normal")
+    relative_permittivity: Annotated[float, Field(ge=1, allow_inf_nan=False)] = Field(
+        12.0, description="at constant stress, along the normal"
+    )
     pyroelectric_uC_per_m2_K: Finite = Field(30.0, description="charge per area and temperature")
     yield_stress_MPa: Positive | None = Field(50.0, description="a run warns if the stress of the film exceeds it")
     density_kg_m3: Positive = Field(1780.0, description="density in the undeformed state")
@@ -252,7 +257,47 @@ class PiezoelectricFilm(MaterialTable):
         if e2 is not None and 2.0 * nu**2 * e2 >= (1.0 - nu) * e1:
             limit = (1.0 - nu) * e1 / (2.0 * nu**2)
             raise ValueError(f"youngs_modulus_2_MPa = {e2:g}: must be below {limit:.4g} for this poisson_ratio")
+        square = self.coupling_squared
+        if square >= 1.0:
+            name = max(("d31", "d32", "d33"), key=lambda one: abs(getattr(self, f"{one}_pC_per_N")))
+            raise ValueError(
+                f"{name}_pC_per_N = {getattr(self, f'{name}_pC_per_N'):g}: with relative_permittivity = "
+                f"{self.relative_permittivity:g} and these moduli the film would give more energy than it takes "
+                f"(d.C.d / eps = {square:.3g}, must be below 1)"
+            )
         return self
+
+    @property
+    def stiffness_MPa(self) -> Floats:
+        """(6, 6) stiffness in its own axes: isotropic, or with another modulus across the draw direction."""
+        e1, nu = self.youngs_modulus_MPa, self.poisson_ratio
+        e2 = self.youngs_modulus_2_MPa or e1
+        compliance = np.zeros((6, 6))
+        compliance[:3, :3] = [
+            [1 / e1, -nu / e1, -nu / e1],
+            [-nu / e1, 1 / e2, -nu / e2],
+            [-nu / e1, -nu / e2, 1 / e2],
+        ]
+        in_plane_shear = np.sqrt(e1 * e2) / (2.0 * (1.0 + nu))
+        transverse_shear = e2 / (2.0 * (1.0 + nu))
+        compliance[range(3, 6), range(3, 6)] = 1 / in_plane_shear, 1 / transverse_shear, 1 / in_plane_shear
+        return np.asarray(np.linalg.inv(compliance), dtype=np.float64)
+
+    @property
+    def coupling_C_per_N(self) -> Floats:
+        """(6,) d31, d32, d33 and no shear, in its own axes."""
+        return 1e-12 * np.array([self.d31_pC_per_N, self.d32_pC_per_N, self.d33_pC_per_N, 0.0, 0.0, 0.0])
+
+    @property
+    def coupling_squared(self) -> float:
+        """d.C.d / eps: the share of energy that the film turns into the other kind; from 1 on the clamped permittivity
+        eps - d.C.d, and with it the energy, is no longer positive.
+
+        >>> round(PiezoelectricFilm().coupling_squared, 3)
+        0.024
+        """
+        d = self.coupling_C_per_N
+        return float(d @ (1e6 * self.stiffness_MPa) @ d / (self.relative_permittivity * VACUUM_PERMITTIVITY))
 
     @property
     def shear_modulus_MPa(self) -> float:

@@ -86,6 +86,8 @@ class MechanismType:
     off : parameters with which it changes nothing, None where no value does (then it is left out instead).
     example : parameters to begin with, those of examples/mechanisms.
     typical : parameter -> typical values and their source, in words.
+    parallel_to_input : components at which it lies parallel to the amplifier's input, where a charge amplifier has none
+    of it.
     """
 
     name: str
@@ -96,6 +98,7 @@ class MechanismType:
     example: Mapping[str, Any] = field(default_factory=dict)
     typical: Mapping[str, str] = field(default_factory=dict)
     traits: Traits = Traits()
+    parallel_to_input: tuple[str, ...] = ()
 
     def is_off(self, values: Parameters) -> bool:
         """Whether checked values are those with which it changes nothing."""

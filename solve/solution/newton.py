@@ -70,6 +70,8 @@ def equilibrate(
             exact = correction <= ROUND_OFF and relative <= ROUNDED_TOLERANCE
             if (relative <= TOLERANCE or exact) and settled:
                 converged = State(time, load, x, previous.histories, scale, iteration, relative)
+                if rim_met(system, converged, load, OVERLAP) is not None:
+                    raise NoEquilibriumError("the dot overlaps the held rim", x, None)
                 trial = system.trial(x, load, time, previous, damped)
                 return replace(converged, histories=system.advance(trial, previous.histories))
             if not np.isfinite(norm):
@@ -189,6 +191,7 @@ RIM = (
     "less deep"
 )
 NEAR_RIM = 0.01  # of the segment's length: a force stops a dot just short of the rim
+OVERLAP = -1e-6  # of the segment's length: contact does not act on nodes that are held, so none may be overlapped
 CRUSHED = 0.3  # det F: below it the element is to blame, whatever ended the iteration
 TIE = 1e-6  # of det F: round-off must not choose between two elements
 OVER = "keep the dot over the segment (dot.offset_mm, press.path_xy_mm), or prescribe the depth (press.indentation_mm)"
@@ -218,15 +221,20 @@ def explained(system: System, failure: NoEquilibriumError, last: State, load: Lo
     return f"{failure}{_place(system, failure)}; {_advice(system, failure)}"
 
 
-def rim_met(system: System, last: State, load: Load) -> int | None:
-    """The node of the held rim that the dot would overlap most under a load after a state; None where it is clear."""
+def rim_met(system: System, last: State, load: Load, gap_left: float | None = None) -> int | None:
+    """The node of the held rim that the dot would overlap most under a load after a state; None where it is clear.
+
+    gap_left : from which gap on it counts as met; none: 0, and a little more where a force stops short of it.
+    """
+    if gap_left is None:
+        gap_left = NEAR_RIM if system.force_driven else 0.0
     nodes = np.unique(system.contact.facets)
     held = nodes[(system.unknowns.displacement[nodes] < 0).all(axis=1)]
     if len(held) == 0:
         return None
     gap = system.contact.dot.distance(system.points[held], system.move(last.x, load))[0]
     deepest = int(np.argmin(gap))
-    return int(held[deepest]) if gap[deepest] < (NEAR_RIM if system.force_driven else 0.0) else None
+    return int(held[deepest]) if gap[deepest] < gap_left else None
 
 
 def smallest_volumes(region: SolidRegion | FilmRegion, displacement: Floats) -> Floats:

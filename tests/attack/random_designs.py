@@ -9,10 +9,14 @@ from typing import get_args
 from pydantic import BaseModel
 
 from geometry.fabrication.parameters import Fabrication
+from geometry.parameters import Segment
+from mesh.build import MeshOptions
 from solve.mechanisms import MECHANISMS
+from solve.model import Waveform
 from tests.attack.drawing import Draw
 from tests.attack.random_materials import film_material, medium_material, modulus_MPa
 from tests.attack.random_mechanisms import mechanism
+from tests.softdot.random_configurations import felt_behind
 
 SEED = 20261123
 LAYERS = ("effector", "medium1", "film", "medium2")
@@ -73,6 +77,7 @@ def design(number: int) -> dict:
         tables["press"].pop("path_xy_mm", None)
     if draw.perhaps(0.6):
         tables["readout"] = _readout(draw)
+        tables["mechanisms"] = felt_behind(tables["readout"], tables["mechanisms"])
     if draw.perhaps(0.3):
         tables["mesh"]["symmetry"] = "none"
     if not solid and draw.perhaps(0.05):
@@ -122,7 +127,7 @@ def _segment(draw, solid, round_one, reducible, halves):
                 "shear_stiffness_N_per_mm3": draw.log(5.0, 1e6),
             }
         ]
-    return table
+    return Segment.overridden(table, {})
 
 
 def _one_of_several(table):
@@ -211,7 +216,7 @@ def _press(draw, segment, softest_MPa, clear_mm, by_depth):
     shapes = ("ramp", "raised-cosine", "trapezoid") if slide else ("ramp", "half-sine", "raised-cosine", "trapezoid")
     if draw.perhaps(0.6):
         times = {key: draw.log(0.02, 1.0) for key in ("rise_s", "hold_s", "fall_s")}
-        table["waveform"] = {"shape": draw.among(shapes), **times}
+        table["waveform"] = Waveform.overridden({"shape": draw.among(shapes), **times}, {})
     return table
 
 
@@ -225,7 +230,7 @@ def _mesh(draw, solid, round_one):
         table["film_layers"] = 2
     if round_one:
         table["coarsen"] = True
-    return table
+    return MeshOptions.overridden(table, {})
 
 
 def _readout(draw):

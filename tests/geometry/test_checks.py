@@ -50,14 +50,6 @@ REFUSED = {
         {"effector": Effector(shape="dome")},
         "segment.effector.diameter_mm is missing: shape = 'dome' needs it",
     ),
-    "sized layer": (
-        {"effector": Effector(width_mm=1.0)},
-        "segment.effector.width_mm = 1: shape = 'layer' has no such size, leave it out",
-    ),
-    "block with diameter": (
-        {"effector": Effector(shape="block", length_mm=1.0, width_mm=1.0, diameter_mm=1.0)},
-        "segment.effector.diameter_mm = 1: shape = 'block' has no such size, leave it out",
-    ),
     "pointed dome": (
         {"effector": Effector(shape="dome", diameter_mm=1.6, height_mm=0.81)},
         "segment.effector.height_mm = 0.81: a dome is at most half as high as its foot is wide, 0.8 for "
@@ -132,7 +124,6 @@ ALLOWED = {
     "touching electrodes": {"film": film(("a", (-0.625, 0.0), (1.25, 2.5)), ("b", (0.625, 0.0), (1.25, 2.5)))},
     "bonds in either order": {"bonds": bonds(("base", "medium2"), ("medium1", "film"), ("medium1", "effector"))},
     "springs without stiffness": {"boundary": "elastic", "side_stiffness_N_per_mm3": 0.0},
-    "free with nothing held": {"boundary": "free", "held_layers": ()},
 }
 
 

@@ -93,14 +93,6 @@ REFUSED = {
         Dot(base_diameter_mm=1.5),
         "dot.base_diameter_mm = 1.5: a base alone is not a dot; add dot.height_mm",
     ),
-    "sized plate": (
-        Dot(shape="plate", height_mm=0.5),
-        "dot.height_mm = 0.5: dot.shape = 'plate' has no size, leave it out",
-    ),
-    "standard plate": (
-        Dot(shape="plate", standard="nls"),
-        "dot.standard = 'nls': dot.shape = 'plate' has no size, leave it out",
-    ),
     "cell of ridges": (
         Dot(shape="ridge", cell="⠿"),
         "dot.cell = '⠿': a cell has dots of dot.shape = 'cap', not 'ridge'",
@@ -115,10 +107,6 @@ REFUSED = {
         "dot.cell_dot = 4: not raised in dot.cell = '⠇', which has 1, 2, 3",
     ),
     "empty cell": (Dot(cell="\u2800"), "dot.cell_dot = 1: not raised in dot.cell = '\u2800', which has none"),
-    "cell dot without cell": (
-        Dot(cell_dot=2),
-        "dot.cell_dot = 2: has a meaning only together with dot.cell",
-    ),
     "unknown standard": (
         Dot(standard="marburg"),
         "dot.standard = 'marburg': no such Braille standard; did you mean 'marburg-medium'?",
@@ -126,11 +114,6 @@ REFUSED = {
     "too few heights": (
         Dot(cell="⠇", standard="nls", cell_heights_mm=(0.5, 0.4)),
         "dot.cell_heights_mm = [0.5, 0.4]: dot.cell = '⠇' has 3 raised dots; give as many heights",
-    ),
-    "heights without cell": (
-        Dot(cell_heights_mm=(0.4,)),
-        "dot.cell_heights_mm = [0.4]: has a meaning only together with dot.cell; dot.height_mm is the height of "
-        "one dot",
     ),
     "upended": (Dot(tilt_deg=(0.0, 90.0)), "dot.tilt_deg[1] = 90: must be above -90 and below 90"),
 }

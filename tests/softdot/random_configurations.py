@@ -2,6 +2,9 @@
 
 from hypothesis import strategies as st
 
+from geometry.parameters import Segment
+from solve.mechanisms import MECHANISMS
+from solve.model import Waveform
 from tests.softdot.random_mechanisms import mechanisms
 from tests.softdot.random_numbers import between, log_between
 
@@ -37,7 +40,16 @@ def valid_configurations(draw, shapes=FLAT):
         "mechanisms": chosen,
     }
     readout = draw(st.none() | readouts())
-    return tables if readout is None else {**tables, "readout": readout}
+    if readout is not None:
+        tables["readout"] = readout
+        tables["mechanisms"] = felt_behind(readout, chosen)
+    return tables
+
+
+def felt_behind(readout, mechanisms):
+    """Those that act behind an amplifier: nothing parallel to the input of a charge amplifier does."""
+    charge = readout.get("mode") == "charge"
+    return [one for one in mechanisms if not (charge and one["component"] in MECHANISMS[one["name"]].parallel_to_input)]
 
 
 @st.composite
@@ -68,7 +80,7 @@ def segments(draw, section, shapes):
         for key in ("normal_stiffness_N_per_mm3", "shear_stiffness_N_per_mm3"):
             bond[key] = draw(log_between(1.0, 1e6))
         table["bonds"] = [bond]
-    return table
+    return Segment.overridden(table, {})
 
 
 @st.composite
@@ -166,6 +178,7 @@ def presses(draw, segment, softest_MPa):
         table["waveform"] = {"shape": draw(st.sampled_from(shapes))}
         for key in ("rise_s", "hold_s", "fall_s"):
             table["waveform"][key] = draw(log_between(0.01, 1.0))
+        table["waveform"] = Waveform.overridden(table["waveform"], {})
     return table
 
 

@@ -4,6 +4,7 @@ import numpy as np
 
 from geometry.dot import DotShape
 from mesh.types import TetMesh
+from solve.fem.kinematics import TET_EDGES
 from solve.result import Fields, FilmPeak, PressResult, Step, Trace
 
 
@@ -11,6 +12,7 @@ def one_tetrahedron() -> TetMesh:
     """A mesh of one element, called film."""
     points = np.zeros((10, 3))
     points[1, 0] = points[2, 1] = points[3, 2] = 1.0
+    points[4:] = [points[list(edge)].mean(axis=0) for edge in TET_EDGES]
     return TetMesh(points, np.arange(10)[None], np.zeros(1, int), ("film",), {}, np.arange(10), 1.0)
 
 
@@ -38,7 +40,7 @@ def step_at(depth_mm: float, stretch: float = 1.0) -> Step:
 def fields_with_stretch(stretch: float) -> Fields:
     """Fields of the one element, empty but for the stretch."""
     nothing = {name: np.zeros(0) for name in Fields.__dataclass_fields__}
-    return Fields(**{**nothing, "max_stretch": np.array([stretch])})
+    return Fields(**{**nothing, "max_stretch": np.array([stretch]), "displacement_m": np.zeros((10, 3))})
 
 
 def result_of(depths_mm: list[float], failure: str | None = None, stress_MPa: float = 10.0) -> PressResult:

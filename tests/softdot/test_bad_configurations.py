@@ -62,8 +62,8 @@ CASES = {
     "[press]\nindentation_mm = 0.3\nforce_N = 2.0": (
         "press.force_N = 2: give either indentation_mm or force_N, not both"
     ),
-    "[readout]\nmode = 'charge'": "readout.feedback_pF is missing: mode = 'charge' needs a feedback capacitance",
-    "[press.waveform]\nshape = 'file'": "press.waveform.file is missing: shape = 'file' needs the name of a CSV file",
+    "[readout]\nmode = 'charge'": "readout.feedback_pF is missing: mode = 'charge' needs it",
+    "[press.waveform]\nshape = 'file'": "press.waveform.file is missing: shape = 'file' needs it",
     # materials
     "[materials.vnr]\npoisson_ratio = 0.5": "materials.vnr.poisson_ratio = 0.5: must be above -1 and below 0.5",
     "[materials.vnr]\npoisson_ratio = -1.0": "materials.vnr.poisson_ratio = -1: must be above -1 and below 0.5",
@@ -119,21 +119,23 @@ CASES = {
     ),
     "[[mechanisms]]\nname = 'viscoelasticity'\ncomponent = 'bond-film-medium2'\n"
     "parameters = {relative_moduli = [0.5], relaxation_times_s = [1.0]}": (
-        "mechanisms: viscoelasticity of 'bond-film-medium2' needs a compliant bond there; "
+        "mechanisms[0].component = 'bond-film-medium2': viscoelasticity needs a compliant bond there; "
         "add adhesive-compliance or segment.bonds"
     ),
     "[[mechanisms]]\nname = 'crosstalk'\ncomponent = 'channel-2-channel-3'\nparameters = {capacitance_pF = 9}": (
-        "mechanisms: crosstalk between 'channel-2' and 'channel-3' needs that electrode and another one; "
+        "mechanisms[0].component = 'channel-2-channel-3': crosstalk needs that electrode and another one; "
         "segment.film.electrodes has 0"
     ),
     "[[mechanisms]]\nname = 'crosstalk'\ncomponent = 'channel-2-channel-3'\nparameters = {coupling = 0.1}": (
         "mechanisms[0].parameters.coupling = 0.1: is of one channel, two take capacitance_pF"
     ),
     "[[mechanisms]]\nname = 'low-pass'\ncomponent = 'channel-2'\nparameters = {cutoff_Hz = 9}": (
-        "mechanisms: a filter of 'channel-2' needs that electrode and another one; segment.film.electrodes has 0"
+        "mechanisms[0].component = 'channel-2': low-pass needs that electrode and another one; "
+        "segment.film.electrodes has 0"
     ),
     "[[mechanisms]]\nname = 'crosstalk'\ncomponent = 'channel-2'\nparameters = {coupling = 0.1}": (
-        "mechanisms: crosstalk into 'channel-2' needs that electrode and another one; segment.film.electrodes has 0"
+        "mechanisms[0].component = 'channel-2': crosstalk needs that electrode and another one; "
+        "segment.film.electrodes has 0"
     ),
     f"[[segment.bonds]]\nbetween = ['film', 'glue']\n{BOND}": (
         "segment.bonds[0].between[1] = 'glue': must be 'effector', 'medium1', 'film', 'medium2' or 'base'"

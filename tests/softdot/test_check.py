@@ -11,7 +11,7 @@ from softdot.case import Case
 from softdot.checks import expected_cost
 from softdot.cli import main
 from softdot.config import config_from, load_config
-from softdot.config.errors import mistakes
+from softdot.config.mistakes import mistakes
 from softdot.config.toml import completed
 from tests.softdot.random_mistakes import invalid_configurations
 from tests.softdot.toml_text import toml_text

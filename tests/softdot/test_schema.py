@@ -12,7 +12,7 @@ EVERY_KEY = """
 length_mm = 2.5
 width_mm = 2.5
 section = "solid"
-boundary = "clamped"
+boundary = "elastic"
 held_layers = ["effector", "medium1", "film"]
 side_stiffness_N_per_mm3 = 5.0
 [segment.effector]
@@ -69,14 +69,14 @@ load_steps = 6
 path_xy_mm = [[0, 0], [0.5, 0]]
 [press.waveform]
 shape = "trapezoid"
+rise_s = 0.1
 hold_s = 0.2
+fall_s = 0.1
 [readout]
 input_resistance_MOhm = 1.0
 input_capacitance_pF = 100.0
 low_pass_Hz = 60.0
 mode = "voltage"
-feedback_pF = 100.0
-feedback_MOhm = 1000.0
 high_pass_Hz = 0.1
 filter_order = 1
 limit_V = 10.0
@@ -96,6 +96,8 @@ def test_every_fixed_key_is_read():
     tables = tomllib.loads(EVERY_KEY)
     dumped = config_from(tables).model_dump(mode="json")
     assert _covers(dumped, tables) == []
+    charge = {"mode": "charge", "feedback_pF": 100.0, "feedback_MOhm": 1000.0}
+    assert _covers(config_from({**tables, "readout": charge}).readout.model_dump(), charge) == []
 
 
 def _covers(dumped, tables, path=""):

@@ -170,7 +170,7 @@ def test_elements_of_lists_materials_texts_and_switches_can_vary():
         {"key": "mechanisms[0].parameters.coefficient", "values": [0.2]},
         {"key": "dot.offset_mm[1]", "values": [0.1]},
         {"key": "materials.vnr.youngs_modulus_MPa", "values": [4.0]},
-        {"key": "segment.boundary", "values": ["free"]},
+        {"key": "segment.boundary", "values": ["elastic"]},
         {"key": "segment.held_layers", "values": [["film"]]},
     )
     tables |= {"mechanisms": [{"name": "friction", "component": "dot"}], "dot": {"offset_mm": [0.0, 0.0]}}
@@ -179,7 +179,7 @@ def test_elements_of_lists_materials_texts_and_switches_can_vary():
     assert config.dot.offset_mm == (0.0, 0.1)
     assert config.materials["vnr"].youngs_modulus_MPa == 4.0
     assert config.materials["vnr"].poisson_ratio == 0.495  # what the file does not state stays the library's
-    assert (config.segment.boundary, config.segment.held_layers) == ("free", ("film",))
+    assert (config.segment.boundary, config.segment.held_layers) == ("elastic", ("film",))
 
 
 LOG = {"key": T2, "low": 0.01, "high": 1.0, "scale": "log"}

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from solve.fem.sparsity import Trial
-from solve.materials.film import VACUUM_PERMITTIVITY, film_law
-from solve.materials.parameters import PiezoelectricFilm
+from solve.materials.film import film_law
+from solve.materials.parameters import VACUUM_PERMITTIVITY, PiezoelectricFilm
 from solve.terms.film import film_region
 from solve.terms.rig import Circuit
 from tests.solve.box import box

@@ -20,7 +20,7 @@ FINE = {"element_size_mm": 0.6, "contact_element_size_mm": 0.2}
 def lone(boundary, mesh=None, **segment):
     """Force (N) and charge (pC) of one segment of 2.3 mm by the mesher and the pipeline of one segment."""
     case = Case(
-        segment={"length_mm": 2.3, "width_mm": 2.3, "boundary": boundary, "held_layers": list(HELD), **segment},
+        segment={"length_mm": 2.3, "width_mm": 2.3, "boundary": boundary, **segment},
         press={"indentation_mm": 0.2, "load_steps": 2},
         mesh=mesh or {"mesher": "layered", **FINE},
     )

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from solve.materials.film import VACUUM_PERMITTIVITY, FilmLaw, film_law
+from solve.materials.film import FilmLaw, film_law
 from solve.materials.laws import LinearLaw, bulk_modulus
-from solve.materials.parameters import PiezoelectricFilm
+from solve.materials.parameters import VACUUM_PERMITTIVITY, PiezoelectricFilm
 from solve.terms.film import film_region
 from tests.verification.body import Body
 from tests.verification.lattice import grid

@@ -56,7 +56,7 @@ def by_ngsolve(tet_mesh, held, path):
 def test_plate(held, tmp_path, monkeypatch):
     for module in ("terms.solid", "terms.film", "result"):
         monkeypatch.setattr(f"solve.{module}.tetrahedron", lambda: tetrahedron(5))
-    stack = segment(boundary="clamped" if held else "free", held_layers=held or ("film",))
+    stack = segment(boundary="clamped", held_layers=held) if held else segment(boundary="free")
     top = np.array([0.0, 0.0, layers(stack)[-1].top_mm])
     plate = DotShape("plate", 1.0, 0.0, np.zeros((1, 3)), top, np.eye(3))
     tet_mesh = build(stack, plate, COARSE)

@@ -34,8 +34,7 @@ from softdot.paper.published import (
     Reading,
     segment_config,
 )
-from solve.materials.film import VACUUM_PERMITTIVITY
-from solve.materials.parameters import PiezoelectricFilm, find_material
+from solve.materials.parameters import VACUUM_PERMITTIVITY, PiezoelectricFilm, find_material
 
 FILMS_UM = (9.0, 28.0, 52.0, 110.0)
 """Thicknesses of drawn PVDF film that are sold: MSI Piezo Film Sensors Technical Manual, p. 3."""

@@ -35,7 +35,7 @@ from softdot.paper.beyond.designs import (
 from softdot.paper.beyond.ranking import SLICE_MESH, Ranking, Surrogate, rank
 from softdot.paper.published import LENGTH_MM, Reading, segment_config
 from softdot.paper.section import NotSolvedError, solve_named
-from solve.materials.film import VACUUM_PERMITTIVITY
+from solve.materials.parameters import VACUUM_PERMITTIVITY
 
 MESH = {"element_size_mm": 0.8, "contact_element_size_mm": 0.4, "mesher": "layered"}
 """Coarse: some 10 % off in voltage. What the search finds is solved again on finer meshes."""

@@ -12,7 +12,7 @@ from softdot.arrays.case import ArrayCase
 from softdot.case import Case
 from softdot.checks import design_warnings, expected_cost
 from softdot.config import Config, config_from, input_hash
-from softdot.config.errors import mistakes
+from softdot.config.mistakes import mistakes
 from softdot.config.toml import completed, parse_toml
 from softdot.console import plain
 from softdot.second_process import PARTS

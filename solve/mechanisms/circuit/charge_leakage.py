@@ -53,6 +53,7 @@ CHARGE_LEAKAGE = register(
                 "and cables are worse: 0.1 to 10 GΩ (rule of thumb)"
             ),
         },
+        parallel_to_input=("readout", "film", *CHANNELS),
         traits=Traits(adds_up=True, electrical=True, acts_on_tables=True),
     )
 )

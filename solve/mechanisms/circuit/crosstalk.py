@@ -58,6 +58,7 @@ CROSSTALK = register(
             "coupling": "measure it: drive one channel, read the others",
             "capacitance_pF": "50 pF for each metre of ribbon cable, 0.1 to 5 pF between traces (rule of thumb)",
         },
+        parallel_to_input=CHANNEL_PAIRS,
         traits=Traits(electrical=True, acts_on_tables=True),
     )
 )

@@ -36,6 +36,7 @@ PARASITIC_CAPACITANCE = register(
                 "film of 2.5 × 2.5 mm and 28 µm itself has 24 pF"
             ),
         },
+        parallel_to_input=("readout",),
         traits=Traits(adds_up=True, electrical=True, acts_on_tables=True),
     )
 )

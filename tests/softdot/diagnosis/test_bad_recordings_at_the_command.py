@@ -69,7 +69,7 @@ RIGS = {
     ),
     "not TOML": ("[[runs", "not valid TOML"),
     "no readout of that mode": (
-        GOOD + "[runs.readout]\nmode = 'charge'", "mode = 'charge' needs a feedback capacitance",
+        GOOD + "[runs.readout]\nmode = 'charge'", "mode = 'charge' needs it",
     ),
 }  # fmt: skip
 

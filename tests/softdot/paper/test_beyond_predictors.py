@@ -19,7 +19,7 @@ from softdot.paper.beyond.designs import (
     spread_softness,
 )
 from softdot.paper.published import INDENTATION_MM, LENGTH_MM
-from solve.materials.film import VACUUM_PERMITTIVITY
+from solve.materials.parameters import VACUUM_PERMITTIVITY
 
 GIVE, REST = 0.5, 0.3
 

@@ -22,7 +22,14 @@ export class Form {
   resolved(schema) {
     const named = (one) => (one.$ref ? { ...this.about.schema.$defs[one.$ref.split("/").pop()], description: one.description } : one);
     const some = (schema.anyOf || [schema]).filter((one) => one.type !== "null");
-    return { ...named(some[0]), description: schema.description, optional: Boolean(schema.anyOf), default: schema.default };
+    return { ...named(some[0]), description: schema.description, optional: Boolean(schema.anyOf), default: schema.default, actsWith: schema["x-acts-with"] || [] };
+  }
+
+  // Whether a key acts beside the values of its table: of each condition one tag has one of its values, or is there.
+  acts(found, path) {
+    const table = at(this.values, path.slice(0, -1)) || {};
+    const has = (value, wanted) => Array.isArray(wanted) ? wanted.includes(value) : (value !== undefined && value !== null) === (wanted === "stated");
+    return found.actsWith.every((tags) => Object.entries(tags).some(([key, wanted]) => has(table[key], wanted)));
   }
 
   update(values, stated, mistakes) {
@@ -136,7 +143,9 @@ export class Form {
     const start = dotted(path);
     box.dataset.key = start;
     this.follow(box, () => {
-      control.show(at(this.values, path));
+      const value = at(this.values, path);
+      box.hidden = !this.acts(found, path) && at(this.stated, path) === undefined;
+      control.show(value === undefined ? found.default : value);
       const bad = this.mistakes.some((one) => one.startsWith(start) && !/[\w.]/.test(one[start.length] || " "));
       box.classList.toggle("bad", bad);
       box.classList.toggle("stated", at(this.stated, path) !== undefined);

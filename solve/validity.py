@@ -1,0 +1,130 @@
+"""What a converged press says that no real segment does: elements near collapse, laws without stiffness, wild fields.
+
+det F is looked at where it is integrated and at all nodes, and each element also with straight edges between its
+corners: a state that is in balance between the quadrature points may be turned inside out beside them.
+
+A law has positive stiffness where the Hencky strain and the Kirchhoff stress grow together,
+    d tau : d eps > 0 for every d eps (of an incompressible law, every isochoric one)
+(Hill, Proc. R. Soc. A 314 (1970) 457), for an isotropic law in its principal axes a matrix of three by three.
+
+Fields: 30 V/um is the largest direct voltage and 80 V/um the breakdown that the maker of PVDF film states (Measurement
+Specialties, Piezo Film Sensors Technical Manual); from its coercive field, some 50 V/um, on the polarisation turns
+(Furukawa, Phase Transitions 18 (1989) 143).
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from geometry.arrays import Bools, Floats
+from mesh.types import TetMesh
+from solve.fem.kinematics import quadratic, tetrahedron
+from solve.materials.isochoric import from_voigt
+from solve.materials.laws import MediumLaw
+from solve.materials.parameters import PiezoelectricFilm
+from solve.model import Model
+from solve.result import PressResult
+
+CORNERS_AND_MIDDLES = np.array(
+    [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0.5, 0, 0], [0.5, 0.5, 0], [0, 0.5, 0], [0, 0, 0.5], [0.5, 0, 0.5],
+     [0, 0.5, 0.5]]
+)  # fmt: skip
+CRUSHED = 0.1
+"""det F of a law that hardly changes its volume; a foam may be crushed to little of it."""
+FIELDS_V_PER_UM = (
+    (80.0, "the breakdown strength of PVDF, about 80 V/um: a real film is destroyed before"),
+    (50.0, "the coercive field of PVDF, about 50 V/um: the polarisation of a real film turns before"),
+    (30.0, "the largest direct voltage that makers of PVDF film allow, 30 V/um"),
+)
+
+
+def doubts(model: Model, result: PressResult) -> list[str]:
+    """Warnings, one for each kind and layer."""
+    return [*_collapsed(model, result), *_unstable(model, result), *_wild_field(model, result)]
+
+
+def smallest_volumes(tet_mesh: TetMesh, displacement_m: Floats) -> tuple[Floats, Floats]:
+    """Of each element (m,) the smallest det F where it is integrated, and elsewhere: at its nodes and of its straight
+    edges."""
+    before = tet_mesh.points_mm[tet_mesh.tets]
+    after = before + 1e3 * displacement_m[tet_mesh.tets]
+    inside = _determinants(before, after, tetrahedron()[0])
+    straight = _edges(after) / _edges(before)
+    at_nodes = _determinants(before, after, CORNERS_AND_MIDDLES)
+    return inside.min(axis=1), np.minimum(at_nodes.min(axis=1), straight)
+
+
+def _determinants(before: Floats, after: Floats, points: Floats) -> Floats:
+    """det F (m, q) at reference points (q, 3) of elements with nodes (m, 10, 3)."""
+    slope = quadratic(points)[1]
+    jacobians = [np.linalg.det(np.einsum("qna,mni->mqia", slope, nodes, optimize=True)) for nodes in (before, after)]
+    return np.asarray(jacobians[1] / jacobians[0])
+
+
+def _edges(nodes: Floats) -> Floats:
+    """Six times the volume (m,) of the tetrahedra of the corners."""
+    return np.asarray(np.linalg.det(nodes[:, 1:4] - nodes[:, :1]))
+
+
+def _collapsed(model: Model, result: PressResult) -> Iterator[str]:
+    tet_mesh = result.tet_mesh
+    steps = [smallest_volumes(tet_mesh, step.fields.displacement_m) for step in result.steps]
+    inside, elsewhere = (np.min([step[n] for step in steps], axis=0) for n in (0, 1))
+    layers = [(layer, material) for layer, material in model.materials.items() if layer in tet_mesh.region_names]
+    advice = "what is computed near it is not to be trusted; press less deep or mesh finer"
+    for layer, material in layers:
+        tets = tet_mesh.region_tets(layer)
+        soft = not isinstance(material, PiezoelectricFilm) and material.law.compressible
+        limit = 0.0 if soft else CRUSHED
+        turned, crushed = int(tets[np.argmin(elsewhere[tets])]), int(tets[np.argmin(inside[tets])])
+        if elsewhere[turned] <= 0.0:
+            yield f"an element of {layer} is turned inside out at a corner{_at(tet_mesh, turned)}: {advice}"
+        elif inside[crushed] <= limit:
+            volume = f"{100.0 * inside[crushed]:.2g} % of its volume"
+            yield f"an element of {layer} is crushed to {volume}{_at(tet_mesh, crushed)}: {advice}"
+
+
+def _at(tet_mesh: TetMesh, element: int) -> str:
+    x, y, z = tet_mesh.points_mm[tet_mesh.tets[element, :4]].mean(axis=0)
+    return f" at x = {x:.2f}, y = {y:.2f}, z = {z:.2f} mm"
+
+
+def _unstable(model: Model, result: PressResult) -> Iterator[str]:
+    tet_mesh = result.tet_mesh
+    for layer, material in model.materials.items():
+        if isinstance(material, PiezoelectricFilm) or layer not in tet_mesh.region_names:
+            continue
+        tets = tet_mesh.region_tets(layer)
+        for step in result.steps:
+            strain = from_voigt(step.fields.green_lagrange_strain[tets])
+            squared: Floats = np.asarray(2.0 * np.linalg.eigvalsh(strain) + 1.0, dtype=np.float64)
+            stiff = has_positive_stiffness(material.law, squared)
+            if not stiff.all():
+                stretch = float(np.sqrt(squared[~stiff]).max())
+                yield (
+                    f"the law of {layer} ({material.model}) has no positive stiffness at the strain of "
+                    f"{int((~stiff).sum())} elements (stretches up to {stretch:.3g}) at an indentation of "
+                    f"{1e3 * step.indentation_m:.3g} mm: beyond it the law means nothing"
+                )
+                break
+
+
+def has_positive_stiffness(law: MediumLaw, squared_stretches: Floats) -> Bools:
+    """Whether a law has it at squares of principal stretches (n, 3), shape (n,)."""
+    stress, tangent = law.stress(squared_stretches[:, :, None] * np.eye(3))
+    square = squared_stretches
+    slope = square[:, :, None] * tangent[:, :3, :3] * square[:, None, :]
+    slope[:, range(3), range(3)] += 2.0 * square * stress[:, :3]
+    if not law.compressible:
+        isochoric = np.linalg.svd(np.ones((1, 3)))[2][1:]
+        slope = isochoric @ slope @ isochoric.T
+    return np.asarray(np.linalg.eigvalsh(0.5 * (slope + slope.swapaxes(1, 2)))[:, 0] > 0.0)
+
+
+def _wild_field(model: Model, result: PressResult) -> Iterator[str]:
+    voltage = max(float(np.abs(step.open_circuit_voltage_V).max()) for step in result.steps)
+    field = voltage / model.segment.film.thickness_um
+    for limit, said in FIELDS_V_PER_UM:
+        if field > limit:
+            yield f"the open-circuit voltage of {voltage:.3g} V is {field:.3g} V/um across the film, beyond {said}"
+            return

@@ -1,0 +1,231 @@
+"""A key stands only where it acts: stated elsewhere it is refused by name, once, in program and schema alike."""
+
+import copy
+
+import numpy as np
+import pytest
+
+from geometry.base import InputError, nearest
+from geometry.parameters import Dot, Effector, Segment
+from mesh.build import MeshOptions
+from softdot import Case
+from softdot.config import Config, config_from, config_schema
+from softdot.config.errors import tables_at
+from softdot.config.mistakes import mistakes
+from softdot.config.not_modelled import NOT_MODELLED, not_modelled
+from softdot.config.toml import completed
+from solve.model import Readout, Waveform
+
+TABLES = {
+    ("press", "waveform"): Waveform,
+    ("readout",): Readout,
+    ("segment",): Segment,
+    ("segment", "effector"): Effector,
+    ("dot",): Dot,
+    ("mesh",): MeshOptions,
+}
+SCHEMA = config_schema()
+
+
+def example(name, schema):
+    """A value that a key allows, other than its default."""
+    kinds = [one for one in schema.get("anyOf", [schema]) if one.get("type") != "null"]
+    (kind,) = kinds
+    if "enum" in kind:
+        return kind["enum"][-1]
+    if kind["type"] == "array":
+        return ["film"] if name == "held_layers" else [0.5]
+    return {"string": "a", "boolean": True, "integer": 2, "number": 1.5}[kind["type"]]
+
+
+def beside(tag, wanted, schema, holds):
+    """Values of a tag with which a condition holds, or does not."""
+    if isinstance(wanted, str):
+        return [{tag: "⠃" if tag == "cell" else example(tag, schema)} if (wanted == "stated") == holds else {}]
+    return [{tag: one} for one in schema["enum"] if (one in wanted) == holds]
+
+
+def conditions():
+    """Way of a table, key, a table in which one condition of the key holds, and whether it does."""
+    for way, kind in TABLES.items():
+        properties = SCHEMA["$defs"][kind.__name__]["properties"]
+        for name, acts in kind.acting():
+            for holds in (True, False):
+                for tag, wanted in acts.tags.items():
+                    for tags in beside(tag, wanted, properties[tag], holds):
+                        yield way, name, {**tags, name: example(name, properties[name])}, holds
+
+
+CONDITIONS = list(conditions())
+
+
+def put(way, table):
+    """A configuration with this table."""
+    tables = table
+    for part in reversed(way):
+        tables = {part: tables}
+    return tables
+
+
+def test_there_are_such_keys():
+    assert len({(way, name) for way, name, _, holds in CONDITIONS if not holds}) >= 21
+
+
+@pytest.mark.parametrize(
+    ("way", "name", "table"),
+    [(way, name, table) for way, name, table, holds in CONDITIONS if not holds],
+    ids=lambda value: str(value)[:60],
+)
+def test_a_key_that_does_not_act_is_refused_by_name_and_said_once(way, name, table):
+    tables = put(way, table)
+    key = ".".join([*way, name])
+
+    def check(found):
+        return config_from(completed(found))
+
+    with pytest.raises(InputError) as refused:
+        check(tables)
+    assert str(refused.value).startswith(f"{key} = ")
+    assert ": acts only with" in str(refused.value)
+    found, _ = mistakes(tables, check)
+    assert [one for one in found if one.startswith(f"{key} ")] == [str(refused.value)]
+
+
+@pytest.mark.parametrize(("way", "name", "table"), [one[:3] for one in CONDITIONS if one[3]], ids=str)
+def test_where_it_acts_nothing_is_said_of_it_and_what_is_written_can_be_read(way, name, table):
+    kind = TABLES[way]
+    needed = {one: example(one, SCHEMA["$defs"][kind.__name__]["properties"][one]) for one, acts in kind.acting()
+              if acts.needed and all(table.get(tag) in wanted for tag, wanted in acts.tags.items())}  # fmt: skip
+    try:
+        written = config_from(completed(put(way, {**needed, **table}))).model_dump(mode="json", exclude_none=True)
+    except InputError as error:
+        assert not str(error).startswith(".".join([*way, name]))  # noqa: PT017 - another key of a table made at random
+    else:
+        assert config_from(written).model_dump(mode="json", exclude_none=True) == written
+
+
+@pytest.mark.parametrize("boundary", ["free", "clamped", "elastic"])
+def test_an_inherited_key_is_no_statement(boundary):
+    assert Case.load(settings=[f"segment.boundary={boundary}"]).config.segment.boundary == boundary
+
+
+def test_an_overridden_table_keeps_what_still_acts():
+    inherited = {"mode": "voltage", "input_capacitance_pF": 9.0, "low_pass_Hz": 60.0, "filter_order": 2}
+    found = Readout.overridden(inherited, {"mode": "charge", "feedback_pF": 100.0})
+    assert found == {"mode": "charge", "feedback_pF": 100.0, "low_pass_Hz": 60.0, "filter_order": 2}
+    stated = Readout.overridden(inherited, {"mode": "charge", "input_capacitance_pF": 1.0})
+    assert stated["input_capacitance_pF"] == 1.0  # and so it is refused
+
+
+CHARGE = {"mode": "charge", "feedback_pF": 100.0}
+TWO = [{"name": name, "center_mm": [x, 0.0], "size_mm": [1.0, 2.0]} for name, x in (("a", -0.6), ("b", 0.6))]
+
+
+@pytest.mark.parametrize(
+    ("name", "component", "parameters"),
+    [
+        ("parasitic-capacitance", "readout", {"capacitance_pF": 10.0}),
+        ("charge-leakage", "readout", {"resistance_MOhm": 10.0}),
+        ("charge-leakage", "film", {"resistance_MOhm": 10.0}),
+        ("charge-leakage", "channel-2", {"resistance_MOhm": 10.0}),
+        ("crosstalk", "channel-1-channel-2", {"capacitance_pF": 10.0}),
+    ],
+)
+def test_what_lies_parallel_to_a_virtual_ground_is_refused(name, component, parameters):
+    one = {"name": name, "component": component, "parameters": parameters}
+    tables = {"segment": {"film": {"electrodes": TWO}}, "mechanisms": [one]}
+    assert Case(**tables, readout={}).model
+    with pytest.raises(InputError, match=rf"mechanisms\[0\].component = '{component}': {name} acts only with"):
+        _ = Case(**tables, readout=CHARGE).model
+
+
+def test_the_schema_refuses_the_same_keys():
+    jsonschema = pytest.importorskip("jsonschema")
+    validator = jsonschema.Draft202012Validator(SCHEMA)
+    base = config_from(completed({})).model_dump(mode="json", exclude_none=True)
+    assert validator.is_valid(base)
+    for way, name, table, holds in CONDITIONS:
+        stated = copy.deepcopy(base)
+        place = stated
+        for part in way:
+            place = place.setdefault(part, {})
+        place.update(table)
+        assert holds or not validator.is_valid(stated), (way, name, table)
+
+
+TYPED = {
+    ("readout", "feedback_capacitance_pF"): "feedback_pF",
+    ("readout", "input_res_MOhm"): "input_resistance_MOhm",
+    ("press", "indentation"): "indentation_mm",
+    ("segment", "side_stiffness"): "side_stiffness_N_per_mm3",
+    ("mesh", "contact_size_mm"): "contact_element_size_mm",
+}
+
+
+@pytest.mark.parametrize(("typed", "meant"), TYPED.items(), ids=str)
+def test_a_hint_is_by_words_and_letters(typed, meant):
+    known = {key for table in tables_at(typed[:1], Config) for key in table.model_fields}
+    assert nearest(typed[1], known) == f"did you mean '{meant}'?"
+
+
+def test_mistakes_keep_the_indices_of_the_file():
+    wrong = [{"name": "friction", "component": place, "parameters": {"coefficient": 0.1}} for place in "abc"]
+    right = {"name": "friction", "component": "dot", "parameters": {"coefficient": -1.0}}
+    found, _ = mistakes({"mechanisms": [*wrong, right]}, lambda tables: config_from(completed(tables)))
+    assert [one.split(" ")[0] for one in found] == [
+        *(f"mechanisms[{n}].component" for n in range(3)),
+        "mechanisms[3].parameters.coefficient",
+    ]
+
+
+FOLLOWS = {
+    "a material without a constant": {"segment": {"medium1": {"material": "x"}}, "materials": {"x": {"model": "yeoh"}}},
+    "an effector without a size": {
+        "segment": {"effector": {"shape": "dome"}, "held_layers": ["effector"]},
+        "mechanisms": [{"name": "property-error", "component": "effector", "parameters": {"modulus_factor": 1.1}}],
+    },
+    "a dot of no size": {"dot": {"base_diameter_mm": -1.0, "height_mm": 0.5}},
+    "a mistyped key that is needed": {"readout": {"mode": "charge", "feedback_capacitance_pF": 1.0}},
+    "an electrode without a size": {
+        "segment": {"film": {"electrodes": [TWO[0], {"name": "b"}]}},
+        "mechanisms": [{"name": "crosstalk", "component": "channel-2", "parameters": {"coupling": 0.1}}],
+    },
+    "a boundary that is none": {"segment": {"boundary": "fre", "side_stiffness_N_per_mm3": 1.0}},
+}
+
+
+@pytest.mark.parametrize("tables", FOLLOWS.values(), ids=FOLLOWS)
+def test_what_follows_from_a_mistake_is_no_second_one(tables):
+    found, _ = mistakes(tables, lambda rest: Case(config_from(completed(rest))).checked)
+    assert len(found) == 1
+
+
+def test_what_there_is_not_is_said():
+    for one in NOT_MODELLED:
+        for word in one.words:
+            assert not_modelled(f"{word}_mm", one.under).startswith("not modelled: ")
+    for table in tables_at((), Config), *(tables_at(way, Config) for way in TABLES):
+        known = [key for kind in table for key in kind.model_fields]
+        assert all(nearest(key, known) == f"did you mean '{key}'?" for key in known)
+    with pytest.raises(InputError, match="not modelled: humidity"):
+        Case(mechanisms=[{"name": "humidity", "component": "film"}])
+
+
+def test_the_order_of_mechanisms_does_not_matter():
+    """Of those that do not act on one another, on a coarse slice."""
+    coarse = {
+        "segment": {"section": "plane-strain"},
+        "dot": {"shape": "ridge"},
+        "press": {"load_steps": 1},
+        "mesh": {"mesher": "layered", "element_size_mm": 0.8, "contact_element_size_mm": 0.3},
+        "readout": {"input_resistance_MOhm": 10.0},
+    }
+    every = [
+        {"name": "film-prestretch", "component": "film", "parameters": {"strain_x": 0.01, "strain_y": 0.0}},
+        {"name": "property-error", "component": "medium2", "parameters": {"modulus_factor": 1.2}},
+        {"name": "parasitic-capacitance", "component": "readout", "parameters": {"capacitance_pF": 50.0}},
+        {"name": "charge-leakage", "component": "film", "parameters": {"resistance_MOhm": 50.0}},
+    ]
+    one, other = (Case(**coarse, mechanisms=order).press() for order in (every, every[::-1]))
+    np.testing.assert_allclose(one.readout_voltage_V, other.readout_voltage_V, rtol=1e-9)
+    np.testing.assert_allclose(one.reaction_force_N, other.reaction_force_N, rtol=1e-9)
