@@ -15,7 +15,7 @@ from solve.fem.kernels import scatter
 from solve.fem.sparsity import Term, Trial, build_pattern
 from solve.materials.laws import MediumLaw
 from solve.terms.solid import solid_region
-from tests.verification.lattice import grid
+from softdot.verify.lattice import grid
 
 MAX_ITERATIONS = 60  # an interface that peels opens about one node an iteration
 ROUND_OFF = 1e-14  # of forces where stresses are about 1

@@ -5,8 +5,8 @@ import pytest
 from scipy.special import iv
 
 from solve.materials.laws import InvariantLaw, bulk_modulus
-from tests.verification.body import solid_body
-from tests.verification.lattice import disc, graded, grid
+from softdot.verify.body import solid_body
+from softdot.verify.lattice import disc, graded, grid
 from tests.verification.row import agrees
 
 YOUNG = 5.0

@@ -6,9 +6,9 @@ import scipy.linalg
 
 from solve.fem.sparsity import Tangent, build_pattern
 from solve.materials.laws import InvariantLaw, LinearLaw, bulk_modulus
-from tests.verification.body import Body, solid_body
-from tests.verification.lattice import Grid, grid
-from tests.verification.loads import traction_force
+from softdot.verify.body import Body, solid_body
+from softdot.verify.lattice import Grid, grid
+from softdot.verify.loads import traction_force
 from tests.verification.row import agrees
 
 TRACTION = 6.25  # upwards on the right edge

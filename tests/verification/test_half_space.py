@@ -6,8 +6,8 @@ import pytest
 from geometry.dot import DotShape
 from solve.materials.laws import InvariantLaw, bulk_modulus
 from solve.terms.contact import HATS, SHAPES, RigidDot
-from tests.verification.body import Body, solid_body
-from tests.verification.lattice import Grid, disc, graded
+from softdot.verify.body import Body, solid_body
+from softdot.verify.lattice import Grid, disc, graded
 from tests.verification.row import agrees
 
 RADIUS, DEPTH = 40.0, 0.025  # of the sphere and its approach, so a = 1; depth / radius = 0.0006

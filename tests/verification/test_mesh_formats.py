@@ -20,7 +20,7 @@ from softdot.config.toml import completed
 from softdot.outcome import solved
 from solve.materials.laws import LinearLaw, bulk_modulus
 from tests.solve.segments import cap, coarse_mesh, segment
-from tests.verification.body import Body
+from softdot.verify.body import Body
 from tests.verification.ccx_slide import CCX
 from tests.verification.row import agrees
 

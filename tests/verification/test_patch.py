@@ -17,8 +17,8 @@ from solve.materials.parameters import (
 )
 from solve.terms.contact import RigidDot
 from solve.terms.film import film_region
-from tests.verification.body import Body, solid_body
-from tests.verification.lattice import grid
+from softdot.verify.body import Body, solid_body
+from softdot.verify.lattice import grid
 
 MEDIA = {
     "neo-hookean 0.3": NeoHookean(youngs_modulus_MPa=1.0, poisson_ratio=0.3),

@@ -7,8 +7,8 @@ from solve.materials.film import VACUUM_PERMITTIVITY, FilmLaw, film_law
 from solve.materials.laws import LinearLaw, bulk_modulus
 from solve.materials.parameters import PiezoelectricFilm
 from solve.terms.film import film_region
-from tests.verification.body import Body
-from tests.verification.lattice import grid
+from softdot.verify.body import Body
+from softdot.verify.lattice import grid
 from tests.verification.row import agrees
 
 YOUNG, POISSON, D31, EPSILON = 2e9, 0.29, 23e-12, 12.0 * VACUUM_PERMITTIVITY

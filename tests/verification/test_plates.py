@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from solve.materials.laws import LinearLaw, bulk_modulus
-from tests.verification.body import solid_body
-from tests.verification.lattice import disc, graded, grid
-from tests.verification.loads import traction_force
+from softdot.verify.body import solid_body
+from softdot.verify.lattice import disc, graded, grid
+from softdot.verify.loads import traction_force
 from tests.verification.row import agrees
-from tests.verification.von_karman import centre_deflection
+from softdot.verify.von_karman import centre_deflection
 
 THICKNESS = 0.02  # of the plate of radius 1
 

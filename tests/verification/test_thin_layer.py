@@ -6,8 +6,8 @@ import pytest
 from geometry.dot import DotShape
 from solve.materials.laws import InvariantLaw
 from solve.terms.contact import RigidDot
-from tests.verification.body import solid_body
-from tests.verification.lattice import disc, graded
+from softdot.verify.body import solid_body
+from softdot.verify.lattice import disc, graded
 from tests.verification.row import agrees
 
 SHEAR = 1.0 / 3.0  # E = 1

@@ -14,7 +14,7 @@ from solve.materials.laws import MediumLaw
 from solve.terms.contact import ContactFacets, RigidDot, contact_facets
 from solve.terms.friction import FrictionalContact
 from solve.terms.solid import solid_region
-from tests.verification.lattice import Grid
+from softdot.verify.lattice import Grid
 
 MAX_ITERATIONS, TOLERANCE = 30, 1e-10  # of the contact forces
 

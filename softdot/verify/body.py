@@ -15,7 +15,7 @@ from solve.fem.sparsity import Tangent, Term, Trial, build_pattern
 from solve.solution.linear import LinearSolver
 from solve.terms.contact import ContactFacets, RigidDot, contact_facets
 from solve.terms.solid import solid_region
-from tests.verification.loads import FollowerPressure
+from softdot.verify.loads import FollowerPressure
 
 FREE = np.nan
 MAX_ITERATIONS = 30
