@@ -119,6 +119,7 @@ PROBLEMS = (
         reference=lambda: 92.7,
         solved=le1,
         meshes=(6, 12),
+        limit=True,
     ),
     Problem(
         name="nafems-le10",
@@ -130,5 +131,6 @@ PROBLEMS = (
         reference=lambda: -5.38,
         solved=le10,
         meshes=(4, 8),
+        limit=True,
     ),
 )
