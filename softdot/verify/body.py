@@ -18,7 +18,7 @@ from solve.terms.solid import solid_region
 from softdot.verify.loads import FollowerPressure
 
 FREE = np.nan
-MAX_ITERATIONS = 30
+MAX_ITERATIONS = 60  # an interface that peels opens about one node an iteration
 
 
 @dataclass
