@@ -41,7 +41,9 @@ def command(chosen: Namespace) -> int:
     failed = [problem["name"] for problem in summary["problems"] if not problem["passed"]]
     if not failed:
         return GOOD
-    complain(f"{len(failed)} of {len(problems)} problems failed: {', '.join(failed)}; see '{chosen.output}/verify.html'")
+    complain(
+        f"{len(failed)} of {len(problems)} problems failed: {', '.join(failed)}; see '{chosen.output}/verify.html'"
+    )
     return NOT_CONVERGED
 
 

@@ -10,19 +10,19 @@ from types import SimpleNamespace
 import numpy as np
 
 from geometry.arrays import Floats, Ints
+from softdot.verify.loads import FollowerPressure
 from solve.fem.kernels import scatter
 from solve.fem.sparsity import Tangent, Term, Trial, build_pattern
 from solve.solution.linear import LinearSolver
 from solve.terms.contact import ContactFacets, RigidDot, contact_facets
 from solve.terms.solid import solid_region
-from softdot.verify.loads import FollowerPressure
 
 FREE = np.nan
 MAX_ITERATIONS = 60  # an interface that peels opens about one node an iteration
 
 
 @dataclass
-class Body:
+class ElasticBody:
     """points (n, 3); displacement (n, 3) numbers of its unknowns; pressure : region -> (m, 4); x (count,) the state."""
 
     points: Floats
@@ -146,10 +146,10 @@ class Body:
         raise ArithmeticError(f"no equilibrium: residual {np.linalg.norm(self.residual[~fixed]) / scale:.1e}")
 
 
-def solid_body(points: Floats, law, tets: Ints, twin: Ints | None = None) -> Body:
+def solid_body(points: Floats, law, tets: Ints, twin: Ints | None = None) -> ElasticBody:
     """One medium; twin (n,) names the node whose displacement each node shares."""
     _, local = np.unique(np.arange(len(points)) if twin is None else twin, return_inverse=True)
     numbers = 3 * local.reshape(-1, 1) + np.arange(3)
-    body = Body(points, numbers, int(numbers.max()) + 1)
+    body = ElasticBody(points, numbers, int(numbers.max()) + 1)
     body.add_region("body", law, tets, twin)
     return body

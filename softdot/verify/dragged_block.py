@@ -9,12 +9,12 @@ from scipy.sparse.linalg import splu
 
 from geometry.arrays import Floats, Ints
 from geometry.dot import DotShape
+from softdot.verify.lattice import Grid
 from solve.fem.sparsity import Term, Trial, Unknowns
 from solve.materials.laws import MediumLaw
 from solve.terms.contact import ContactFacets, RigidDot, contact_facets
 from solve.terms.friction import FrictionalContact
 from solve.terms.solid import solid_region
-from softdot.verify.lattice import Grid
 
 MAX_ITERATIONS, TOLERANCE = 30, 1e-10  # of the contact forces
 
@@ -25,9 +25,7 @@ class DraggedBlock:
     radius : of a cylinder along y, None for a flat plate. level : all nodes of one height move alike.
     """
 
-    def __init__(
-        self, block: Grid, law: MediumLaw, radius: float | None, friction: float, level: bool = False
-    ) -> None:
+    def __init__(self, block: Grid, law: MediumLaw, radius: float | None, friction: float, level: bool = False) -> None:
         points, tets = block.points, block.tets
         top = points[:, 2].max()
         numbers = _numbers(points, level)

@@ -7,11 +7,11 @@ import numpy as np
 from scipy.sparse.linalg import spsolve
 
 from geometry.arrays import Floats, Ints
+from softdot.verify.lattice import KUHN
 from solve.fem.kernels import scatter
 from solve.fem.kinematics import TET_EDGES
 from solve.fem.sparsity import build_pattern
 from solve.materials.laws import MediumLaw
-from softdot.verify.lattice import KUHN
 from solve.terms.solid import SolidRegion, solid_region
 from tests.solve.trial import trial
 

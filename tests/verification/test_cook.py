@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import scipy.linalg
 
+from softdot.verify.problems.cook import TRACTION, corner_rise, panel, rubber, slice_of
 from solve.fem.sparsity import Tangent, build_pattern
 from solve.materials.laws import LinearLaw, bulk_modulus
-from softdot.verify.problems.cook import TRACTION, corner_rise, panel, rubber, slice_of
 from tests.verification.row import agrees
 
 

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from solve.materials.laws import InvariantLaw
 from softdot.verify.body import solid_body
 from softdot.verify.lattice import disc
+from solve.materials.laws import InvariantLaw
 from tests.verification.row import agrees
 
 MU = 1.0

@@ -1,4 +1,4 @@
-"""Layers bonded between rigid plates, nearly incompressible: apparent compression modulus without volumetric locking."""
+"""Layers bonded between rigid plates, nearly incompressible: apparent modulus without volumetric locking."""
 
 from collections.abc import Callable
 
@@ -6,10 +6,10 @@ import numpy as np
 from scipy.special import iv
 
 from geometry.arrays import Floats
-from solve.materials.laws import InvariantLaw, bulk_modulus
 from softdot.verify.body import solid_body
 from softdot.verify.lattice import Grid, disc, graded, grid
 from softdot.verify.problem import Problem
+from solve.materials.laws import InvariantLaw, bulk_modulus
 
 YOUNG = 5.0
 STRAIN = 1e-4
@@ -21,9 +21,7 @@ def rubber(poisson_ratio: float) -> InvariantLaw:
     return InvariantLaw(shear / 2.0, 0.0, 0.0, 0.0, bulk_modulus(shear, poisson_ratio))
 
 
-def compress(
-    shape: Grid, law: InvariantLaw, area: float, half_height: float, held: Callable[[Floats], None]
-) -> float:
+def compress(shape: Grid, law: InvariantLaw, area: float, half_height: float, held: Callable[[Floats], None]) -> float:
     """Apparent modulus of the upper half of a layer: bonded on top, symmetric at z = 0."""
     body = solid_body(shape.points, law, shape.tets)
     prescribed = body.free()

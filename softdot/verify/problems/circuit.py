@@ -1,11 +1,11 @@
-"""The read-out of a film: voltage and charge amplifier and their filters, against the closed forms of linear circuits."""
+"""The read-out of a film: voltage and charge amplifier and filters against closed forms."""
 
 import numpy as np
 
 from geometry.arrays import Floats
+from softdot.verify.problem import Problem
 from solve.model import Physics, Readout
 from solve.readout.amplifier import amplify
-from softdot.verify.problem import Problem
 
 FILM_F, CHARGE_C = 100e-12, 1e-9
 TIME_S = np.linspace(0.0, 1.0, 4001)

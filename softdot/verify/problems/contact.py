@@ -4,11 +4,11 @@ import numpy as np
 
 from geometry.arrays import Floats
 from geometry.dot import DotShape
-from solve.materials.laws import InvariantLaw, bulk_modulus
-from solve.terms.contact import HATS, SHAPES, RigidDot
-from softdot.verify.body import Body, solid_body
+from softdot.verify.body import ElasticBody, solid_body
 from softdot.verify.lattice import Grid, disc, graded
 from softdot.verify.problem import Problem
+from solve.materials.laws import InvariantLaw, bulk_modulus
+from solve.terms.contact import HATS, SHAPES, RigidDot
 
 RADIUS, DEPTH = 40.0, 0.025
 """Of the sphere and its approach: the radius of contact is 1, and depth over radius 0.0006, where Hertz is a limit."""
@@ -26,7 +26,7 @@ def cylinder(size: float, inner: Floats, step: float) -> Grid:
     return disc(np.concatenate([inner, outer[1:]]), np.linspace(0.0, np.pi / 2, 4), depth)
 
 
-def body_on_smooth_base(shape: Grid, size: float) -> tuple[Body, Floats]:
+def body_on_smooth_base(shape: Grid, size: float) -> tuple[ElasticBody, Floats]:
     """And its prescribed displacements (n, 3): base and planes of symmetry."""
     body = solid_body(shape.points, LAW, shape.tets)
     prescribed = body.free()
@@ -65,7 +65,7 @@ PROBLEMS = (
     Problem(
         name="hertz",
         title="Rigid sphere on a half-space, radius of contact a fortieth of its own, force over E",
-        source="Hertz, J. reine angew. Math. 92, 1882: F = 4/3 E* √R d^(3/2) (Johnson, Contact Mechanics, 1985, eq. 4.23)",
+        source="Hertz, J. reine angew. Math. 92, 1882: F = 4/3 E* √R d^(3/2) (Johnson, 1985, eq. 4.23)",
         unit="1",
         bound_percent=1.5,
         basis="the half-space is extrapolated from cylinders of 12 and 24 radii of contact: (1/12)² is left, 0.7 %",

@@ -3,12 +3,12 @@
 import numpy as np
 
 from geometry.arrays import Floats, Ints
-from solve.materials.laws import InvariantLaw, MediumLaw
-from softdot.verify.body import Body, solid_body
+from softdot.verify.body import ElasticBody, solid_body
 from softdot.verify.lattice import Grid, grid
 from softdot.verify.loads import traction_force
 from softdot.verify.other_codes import reference
 from softdot.verify.problem import Problem
+from solve.materials.laws import InvariantLaw, MediumLaw
 
 TRACTION = 6.25  # upwards on the right edge
 THICKNESS = 4.0
@@ -33,7 +33,7 @@ def twins(shape: Grid) -> Ints:
     return np.asarray(first[same.ravel()])
 
 
-def slice_of(shape: Grid, law: MediumLaw, tied: bool) -> tuple[Body, Floats]:
+def slice_of(shape: Grid, law: MediumLaw, tied: bool) -> tuple[ElasticBody, Floats]:
     """The body and its prescribed displacements: no strain in y, by twins or by holding the two faces only."""
     body = solid_body(shape.points, law, shape.tets, twins(shape) if tied else None)
     prescribed = body.free()

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from solve.materials.laws import InvariantLaw
 from softdot.verify.body import solid_body
 from softdot.verify.lattice import disc
 from softdot.verify.problem import Problem
+from solve.materials.laws import InvariantLaw
 
 MU = 1.0
 LAW = InvariantLaw(MU / 2.0, 0.0, 0.0, 0.0, 1e8)
@@ -38,7 +38,7 @@ PROBLEMS = (
         source="p = μ [ln(a/b) + (b⁻² - a⁻²) / 2] of the stretches a, b (Holzapfel, Nonlinear Solid Mechanics, 2000)",
         unit="1",
         bound_percent=0.2,
-        basis="third order: the size of 4 elements through the wall over the mean diameter, cubed, is 0.06 %, times the growth",
+        basis="third order: a fourth of the wall over the mean diameter, cubed, is 0.06 %",
         reference=lambda: STRETCH,
         solved=inner_radius,
         meshes=(2, 4),

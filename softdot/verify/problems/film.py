@@ -5,13 +5,13 @@ from functools import partial
 import numpy as np
 
 from geometry.arrays import Floats
+from softdot.verify.body import ElasticBody
+from softdot.verify.lattice import Grid, grid
+from softdot.verify.problem import Problem
 from solve.materials.film import VACUUM_PERMITTIVITY, FilmLaw, film_law
 from solve.materials.laws import LinearLaw, bulk_modulus
 from solve.materials.parameters import PiezoelectricFilm
 from solve.terms.film import FilmRegion, film_region
-from softdot.verify.body import Body
-from softdot.verify.lattice import Grid, grid
-from softdot.verify.problem import Problem
 
 YOUNG, POISSON, D31, EPSILON = 2e9, 0.29, 23e-12, 12.0 * VACUUM_PERMITTIVITY
 EVERYWHERE = np.array([[-np.inf, np.inf, -np.inf, np.inf]])
@@ -39,7 +39,7 @@ def stretched(open_circuit: bool, d31: float) -> tuple[float, float]:
     """Stress (Pa) per strain in direction 1, and charge (C), of a free film of 1 m in all directions."""
     shape = grid([np.linspace(0.0, 1.0, 4)] * 3, jitter=0.2)
     numbers = np.arange(shape.points.size).reshape(-1, 3)
-    body = Body(shape.points, numbers, numbers.size)
+    body = ElasticBody(shape.points, numbers, numbers.size)
     voltage = body.number(1)
     film = film_region(scaled_law(d31), shape.points, shape.tets, numbers, voltage, EVERYWHERE, 1.0)
     body.terms.append(film)
@@ -66,7 +66,7 @@ def unimorph_voltage() -> float:
     bottom = -SUBSTRATE
     shape = grid((np.linspace(0.0, LENGTH, 4), np.linspace(0.0, 1e-3, 3), np.append(np.linspace(bottom, 0.0, 4), FILM)))
     numbers = np.arange(shape.points.size).reshape(-1, 3)
-    body = Body(shape.points, numbers, numbers.size)
+    body = ElasticBody(shape.points, numbers, numbers.size)
     above = shape.centres[:, 2] > 0.0
     shear = SOFT / STRESS / (2.0 * (1.0 + POISSON))
     body.add_region("substrate", LinearLaw(shear, bulk_modulus(shear, POISSON)), shape.tets[~above])
@@ -99,7 +99,7 @@ def bimorph_tip() -> float:
     axes = np.linspace(0.0, BIMORPH_LENGTH, 21), [0.0, BIMORPH_WIDTH], [-LAYER, 0.0, LAYER]
     shape = grid([np.asarray(axis) for axis in axes])
     numbers = np.arange(shape.points.size).reshape(-1, 3)
-    body = Body(shape.points, numbers, numbers.size)
+    body = ElasticBody(shape.points, numbers, numbers.size)
     voltage = body.number(2)
     for index, (sign, own) in enumerate(((1.0, shape.centres[:, 2] > 0.0), (-1.0, shape.centres[:, 2] < 0.0))):
         body.terms.append(_poled(sign, shape, own, numbers, voltage[index : index + 1]))
@@ -108,7 +108,7 @@ def bimorph_tip() -> float:
     prescribed[fixed, 0] = 0.0
     prescribed[fixed & (shape.points[:, 2] == 0.0), 2] = 0.0
     prescribed[fixed & (shape.points[:, 2] == 0.0) & (shape.points[:, 1] == 0.0), 1] = 0.0
-    body.solve(prescribed, held={v: 0.5 / VOLT for v in voltage}, tolerance=1e-6)
+    body.solve(prescribed, held=dict.fromkeys(voltage, 0.5 / VOLT), tolerance=1e-6)
     end = (shape.points[:, 0] == BIMORPH_LENGTH) & (shape.points[:, 2] == 0.0)
     return abs(float(body.u[end, 2].mean()))
 

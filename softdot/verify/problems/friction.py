@@ -7,10 +7,10 @@ W = G/2 (J^(-2/3) I1 - 3) + K/2 (J - 1)^2, I1 = 2 + g^2 + a^2 and J = a, its for
 import numpy as np
 from scipy.optimize import brentq
 
-from solve.materials.laws import InvariantLaw, bulk_modulus
 from softdot.verify.dragged_block import DraggedBlock
 from softdot.verify.lattice import grid
 from softdot.verify.problem import Problem
+from solve.materials.laws import InvariantLaw, bulk_modulus
 
 DEPTH, SHEAR, POISSON, COEFFICIENT = 0.04, 1.0, 0.45, 0.3
 LEFT = 1.0 - DEPTH

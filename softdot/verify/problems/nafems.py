@@ -3,12 +3,12 @@
 import numpy as np
 
 from geometry.arrays import Floats
-from solve.fem.kinematics import deformation_gradient, physical_gradients, quadratic
-from solve.materials.laws import LinearLaw, bulk_modulus
-from softdot.verify.body import Body, solid_body
+from softdot.verify.body import ElasticBody, solid_body
 from softdot.verify.lattice import Grid, grid
 from softdot.verify.loads import traction_force
 from softdot.verify.problem import Problem
+from solve.fem.kinematics import deformation_gradient, physical_gradients, quadratic
+from solve.materials.laws import LinearLaw, bulk_modulus
 
 YOUNG_MPA, POISSON = 210e3, 0.3
 SHEAR = YOUNG_MPA / (2.0 * (1.0 + POISSON))
@@ -47,7 +47,7 @@ def elliptic(n: int, heights: Floats) -> Grid:
     return grid((share, np.linspace(0.0, np.pi / 2, 2 * n + 1), heights), ellipses, between)
 
 
-def stress_yy(body: Body, tets: np.ndarray, node: int) -> float:
+def stress_yy(body: ElasticBody, tets: np.ndarray, node: int) -> float:
     """At a corner node: mean over its elements of deviatoric stress and nodal pressure, for small strain."""
     mine = np.flatnonzero((tets[:, :4] == node).any(axis=1))
     reference = np.vstack([np.zeros(3), np.eye(3)])
@@ -82,7 +82,7 @@ def le10(n: int) -> float:
     return stress_yy(body, shape.tets, _corner(shape, 0.3)) / SMALL
 
 
-def _on_planes_of_symmetry(shape: Grid) -> tuple[Body, Floats]:
+def _on_planes_of_symmetry(shape: Grid) -> tuple[ElasticBody, Floats]:
     body = solid_body(shape.points, STEEL, shape.tets)
     prescribed = body.free()
     for axis in range(2):

@@ -86,7 +86,7 @@ PROBLEMS = (
         source=reference("slice-press").source,
         unit="N/mm",
         bound_percent=1.0,
-        basis="its penalty of 1000 MPa/mm overlaps by 0.3 % of the depth, 0.5 % of the force; it has no pressure unknown",
+        basis="its penalty of 1000 MPa/mm overlaps by 0.3 % of the depth, 0.5 % of the force",
         reference=lambda: reference("slice-press").value,
         solved=pressed_force,
     ),

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from solve.materials.parameters import NeoHookean
 from softdot.verify.body import solid_body
 from softdot.verify.lattice import grid
 from softdot.verify.problem import Problem
+from solve.materials.parameters import NeoHookean
 
 STRAIN = np.array([[0.2, 0.1, 0.0], [0.05, -0.1, 0.1], [0.0, -0.1, -0.05]])
 """Displacement gradient."""

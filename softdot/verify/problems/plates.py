@@ -3,12 +3,12 @@
 import numpy as np
 
 from geometry.arrays import Floats
-from solve.materials.laws import LinearLaw, bulk_modulus
 from softdot.verify.body import solid_body
 from softdot.verify.lattice import Grid, disc, graded, grid
 from softdot.verify.loads import traction_force
 from softdot.verify.problem import Problem
 from softdot.verify.von_karman import centre_deflection
+from solve.materials.laws import LinearLaw, bulk_modulus
 
 THIN, THICK = 0.02, 0.2  # of the plates of radius 1
 POISSON = 0.3

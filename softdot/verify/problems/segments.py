@@ -52,7 +52,7 @@ def _pair(tables: dict[str, Any]) -> ArrayCase:
         "segment": {"length_mm": 2.3, "width_mm": 2.3, "boundary": "free"},
         "array": {"columns": 2, "rows": 1, "shared": [], "pitch_mm": 2.5},
         "press": {"indentation_mm": 0.2, "load_steps": 2},
-        "mesh": {"element_size_mm": 0.9, "contact_element_size_mm": 0.3},
+        "mesh": {"element_size_mm": 0.6, "contact_element_size_mm": 0.2},
         **tables,
     }
     return ArrayCase(config_from(completed(stated)))
@@ -64,7 +64,7 @@ def force_alone() -> float:
     case = Case(
         segment={"length_mm": 2.3, "width_mm": 2.3, "boundary": "free"},
         press={"indentation_mm": 0.2, "load_steps": 2},
-        mesh={"mesher": "layered", "element_size_mm": 0.9, "contact_element_size_mm": 0.3},
+        mesh={"mesher": "layered", "element_size_mm": 0.6, "contact_element_size_mm": 0.2},
     )
     return float(case.solve().trace.reaction_force_N[-1])
 
@@ -92,10 +92,10 @@ PROBLEMS = (
     Problem(
         name="array-of-two",
         title="Two segments that share nothing, pressed by two dots at once, force",
-        source="superposition: twice the force of a lone segment, which another mesher meshed",
+        source="superposition: twice the force of a lone segment, from the mesher and pipeline of one",
         unit="N",
         bound_percent=1.0,
-        basis="two meshes of a press, each about 0.5 % from the limit at this size",
+        basis="two meshers, whose meshes may each be 0.5 % from the limit at this size",
         reference=lambda: 2.0 * force_alone(),
         solved=force_of_two,
     ),

@@ -10,11 +10,11 @@ from functools import partial
 import numpy as np
 from scipy.optimize import brentq
 
-from solve.materials.laws import MediumLaw
-from solve.materials.parameters import Hyperfoam, Knowles, Linear, MooneyRivlin, NeoHookean, Ogden, Yeoh
 from softdot.verify.body import solid_body
 from softdot.verify.lattice import grid
 from softdot.verify.problem import Problem
+from solve.materials.laws import MediumLaw
+from solve.materials.parameters import Hyperfoam, Knowles, Linear, MooneyRivlin, NeoHookean, Ogden, Yeoh
 
 Energy = Callable[[complex, complex], complex]  # of the stretch along, and the two alike across
 STRETCH = 4.0
