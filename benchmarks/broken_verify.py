@@ -67,10 +67,11 @@ def wrong_shapes() -> Iterator[None]:
 def rubbing_more() -> Iterator[None]:
     """The coefficient of friction a tenth too large."""
 
-    def term(contact: Any, dofs: Any, coefficient: float) -> FrictionalContact:
-        return FrictionalContact(contact, dofs, TOO_MUCH * coefficient)
+    class Rougher(FrictionalContact):
+        def __post_init__(self) -> None:
+            object.__setattr__(self, "coefficient", TOO_MUCH * self.coefficient)
 
-    with patch("softdot.verify.dragged_block.FrictionalContact", term):
+    with patch("softdot.verify.dragged_block.FrictionalContact", Rougher):
         yield
 
 

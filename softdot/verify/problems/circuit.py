@@ -14,7 +14,7 @@ FREQUENCY_HZ = 20.0
 
 def ramp() -> Floats:
     """Charge (t,) that rises evenly over the whole time."""
-    return CHARGE_C * TIME_S / TIME_S[-1]
+    return np.asarray(CHARGE_C * TIME_S / TIME_S[-1])
 
 
 def last_voltage(charge_C: Floats, readout: Readout) -> float:
