@@ -6,7 +6,7 @@ A problem that passes with its break has seen nothing: exit 1, and its name.
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 from unittest.mock import patch
 
@@ -67,7 +67,10 @@ def wrong_shapes() -> Iterator[None]:
 def rubbing_more() -> Iterator[None]:
     """The coefficient of friction a tenth too large."""
 
+    @dataclass(frozen=True)
     class Rougher(FrictionalContact):
+        """With its coefficient as wrong."""
+
         def __post_init__(self) -> None:
             object.__setattr__(self, "coefficient", TOO_MUCH * self.coefficient)
 
