@@ -4,7 +4,7 @@ from functools import partial
 
 import numpy as np
 
-from geometry.arrays import Floats
+from geometry.arrays import Bools
 from softdot.verify.body import ElasticBody
 from softdot.verify.lattice import Grid, grid
 from softdot.verify.problem import Problem
@@ -113,7 +113,7 @@ def bimorph_tip() -> float:
     return abs(float(body.u[end, 2].mean()))
 
 
-def _poled(sign: float, shape: Grid, own: Floats, numbers: np.ndarray, voltage: np.ndarray) -> FilmRegion:
+def _poled(sign: float, shape: Grid, own: Bools, numbers: np.ndarray, voltage: np.ndarray) -> FilmRegion:
     law = scaled_law(sign * BIMORPH_D31)
     return film_region(law, shape.points, shape.tets[own], numbers, voltage, EVERYWHERE, LAYER)
 

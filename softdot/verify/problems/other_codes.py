@@ -37,11 +37,11 @@ def pressed_force() -> float:
 
 
 def dragged_force() -> float:
-    """Along the surface, with friction 0.3, 0.1 mm deep and dragged by 0.06 mm, N/mm."""
+    """Along the surface, with friction 0.3, 0.1 mm deep and dragged by 0.1 mm, N/mm."""
     slice_of_block = dragged(0.3)
     for number in range(1, 6):
         slice_of_block.drag(0.0, -0.02 * number)
-    for number in range(1, 7):
+    for number in range(1, 11):
         slice_of_block.drag(0.01 * number, -0.1)
     return float(slice_of_block.force[0]) / CELL_MM
 
@@ -92,7 +92,7 @@ PROBLEMS = (
     ),
     Problem(
         name="slice-drag",
-        title="The same slice with friction 0.3 dragged by 0.06 mm, force along the surface per width",
+        title="The same slice with friction 0.3 dragged by 0.1 mm, force along the surface per width",
         source=reference("slice-drag").source,
         unit="N/mm",
         bound_percent=2.0,

@@ -74,7 +74,7 @@ def _knowles(along: complex, across: complex) -> complex:
 
 
 def _fung(along: complex, across: complex) -> complex:
-    return 0.3 / 0.1 * (np.exp(0.1 * _first(along, across)) - 1.0)
+    return complex(0.3 / 0.1 * (np.exp(0.1 * _first(along, across)) - 1.0))
 
 
 def _ogden(along: complex, across: complex) -> complex:
@@ -150,7 +150,7 @@ PROBLEMS = tuple(
         bound_percent=1e-5,
         basis="a homogeneous state lies in the finite-element space: round-off and the tolerance of the equilibrium",
         reference=partial(exact_stress, energy),
-        solved=lambda material=material: nominal_stress(material.law),  # type: ignore[misc]
+        solved=lambda material=material: nominal_stress(material.law),
     )
     for name, (material, energy, source) in LAWS.items()
 )
