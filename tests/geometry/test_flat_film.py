@@ -31,7 +31,7 @@ def by_name(kit):
 
 
 def test_film_is_footprint_flange_tab_and_head(segment):
-    """ElasticBody 2.5 + 2 x 0.8 squared, tab 1.6 wide up to 12 beyond the footprint, head 6.15 by 2.54 + 1.5 + 4 x 0.15."""
+    """Body 2.5 + 2 x 0.8 squared, tab 1.6 wide up to 12 beyond the footprint, head 6.15 by 2.54 + 1.5 + 4 x 0.15."""
     outline = by_name(flat_kit(lone_device(segment), Fabrication()))["film"].cuts[-1]
     assert outline.area_mm2 == pytest.approx(4.1**2 + (12.0 - 0.8) * 1.6 + 6.15 * 4.64)
 
