@@ -62,6 +62,7 @@ def parser() -> argparse.ArgumentParser:
     _add_plate(commands)
     _add_array(commands)
     _add_read(commands)
+    _add_verify(commands)
     _add_studio(commands)
     _add_check(commands)
     _add_new(commands)
@@ -311,6 +312,21 @@ def _add_read(commands: Any) -> None:
     )
     _add_scheduler(read, " of a study or search")
     _add_output(read)
+
+
+def _add_verify(commands: Any) -> None:
+    verify = commands.add_parser(
+        "verify",
+        help="solve problems with known answers: is it right on this machine?",
+        description="Solve named verification problems on this machine and compare them with closed forms, published "
+        "benchmarks and other codes, each within a bound: a table, a page and verify.json.",
+        epilog="docs/verification.md says what is verified, what is validated, and what is neither. Exit status: 0 all "
+        "passed, 2 bad input, 3 a problem failed, 130 interrupted.",
+    )
+    verify.add_argument(
+        "--only", action="append", default=[], metavar="NAME", help="this problem alone; may be repeated"
+    )
+    _add_output(verify)
 
 
 def _add_studio(commands: Any) -> None:

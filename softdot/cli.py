@@ -27,6 +27,7 @@ COMMANDS = {
     "plate": "softdot.commands.plate",
     "array": "softdot.commands.array",
     "read": "softdot.commands.read",
+    "verify": "softdot.commands.verify",
     "studio": "softdot.commands.studio",
     "check": "softdot.commands.check",
     "new": "softdot.commands.new",

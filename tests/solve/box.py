@@ -7,14 +7,13 @@ import numpy as np
 from scipy.sparse.linalg import spsolve
 
 from geometry.arrays import Floats, Ints
+from softdot.verify.lattice import KUHN
 from solve.fem.kernels import scatter
 from solve.fem.kinematics import TET_EDGES
 from solve.fem.sparsity import build_pattern
 from solve.materials.laws import MediumLaw
 from solve.terms.solid import SolidRegion, solid_region
 from tests.solve.trial import trial
-
-KUHN = [list(itertools.accumulate((0, *(1 << a for a in axes)))) for axes in itertools.permutations(range(3))]
 
 
 def box(cells: int, size: tuple[float, float, float] = (1.0, 1.0, 1.0), jitter: float = 0.0) -> tuple[Floats, Ints]:

@@ -11,11 +11,11 @@ from scipy.sparse.linalg import spsolve
 from geometry.arrays import Bools, Floats, Ints
 from mesh.layered import twins
 from mesh.types import TetMesh
+from softdot.verify.lattice import grid
 from solve.fem.kernels import scatter
 from solve.fem.sparsity import Term, Trial, build_pattern
 from solve.materials.laws import MediumLaw
 from solve.terms.solid import solid_region
-from tests.verification.lattice import grid
 
 MAX_ITERATIONS = 60  # an interface that peels opens about one node an iteration
 ROUND_OFF = 1e-14  # of forces where stresses are about 1

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from geometry.arrays import Floats, Ints
-from tests.verification.lattice import FACES, Grid, disc
+from softdot.verify.lattice import FACES, Grid, disc
 
 CCX = shutil.which("ccx")
 FACE_NUMBER = (1, 2, 3, 4)  # CalculiX numbers the faces 123, 142, 243, 341: the order of FACES

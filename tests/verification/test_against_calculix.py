@@ -7,10 +7,10 @@ CalculiX has no pressure unknown, hence nu = 0.45. Its penalties let the bodies 
 
 import pytest
 
+from softdot.verify.dragged_block import DraggedBlock
+from softdot.verify.lattice import graded, grid
 from solve.materials.laws import InvariantLaw, bulk_modulus
 from tests.verification.ccx_slide import CCX, Slide, forces
-from tests.verification.dragged_block import DraggedBlock
-from tests.verification.lattice import graded, grid
 from tests.verification.row import agrees
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(CCX is None, reason="CalculiX (ccx) is not installed")]

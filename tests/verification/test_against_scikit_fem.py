@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import spsolve
 
+from softdot.verify.body import solid_body
 from solve.fem.sparsity import build_pattern
 from solve.materials.film import FilmLaw
 from solve.materials.laws import LinearLaw, bulk_modulus
 from solve.terms.film import film_region
 from tests.solve.box import box
 from tests.solve.trial import trial
-from tests.verification.body import solid_body
 
 skfem = pytest.importorskip("skfem")
 SHEAR, NU = 1.0, 0.3

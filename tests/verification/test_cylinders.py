@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from softdot.verify.body import solid_body
+from softdot.verify.lattice import disc
 from solve.materials.laws import InvariantLaw
-from tests.verification.body import solid_body
-from tests.verification.lattice import disc
 from tests.verification.row import agrees
 
 MU = 1.0

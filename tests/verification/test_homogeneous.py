@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from softdot.verify.body import solid_body
+from softdot.verify.lattice import grid
 from solve.materials.laws import InvariantLaw
-from tests.verification.body import solid_body
-from tests.verification.lattice import grid
 
 INCOMPRESSIBLE = InvariantLaw(0.5, 0.0, 0.0, 0.0, 1e6)  # mu = 1
 ROUNDING = 5.01e-5  # of the four decimals in the table

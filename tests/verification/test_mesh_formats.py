@@ -18,9 +18,9 @@ from softdot.case import Case
 from softdot.config import config_from
 from softdot.config.toml import completed
 from softdot.outcome import solved
+from softdot.verify.body import ElasticBody
 from solve.materials.laws import LinearLaw, bulk_modulus
 from tests.solve.segments import cap, coarse_mesh, segment
-from tests.verification.body import Body
 from tests.verification.ccx_slide import CCX
 from tests.verification.row import agrees
 
@@ -90,7 +90,7 @@ def test_calculix_loads_the_faces_of_the_exported_surface(tmp_path):
 
 def pressed(mesh):
     """Force that holds the base, of softdot's own elements with a pressure unknown."""
-    body = Body(mesh.points_mm, np.arange(3 * len(mesh.points_mm)).reshape(-1, 3), 3 * len(mesh.points_mm))
+    body = ElasticBody(mesh.points_mm, np.arange(3 * len(mesh.points_mm)).reshape(-1, 3), 3 * len(mesh.points_mm))
     for name in mesh.region_names:
         shear = YOUNG[name] / (2 * (1 + POISSON_RATIO))
         law = LinearLaw(shear, bulk_modulus(shear, POISSON_RATIO))

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from geometry.dot import DotShape
+from softdot.verify.body import ElasticBody, solid_body
+from softdot.verify.lattice import grid
 from solve.materials.film import FilmLaw, film_law
 from solve.materials.parameters import (
     Hyperfoam,
@@ -17,8 +19,6 @@ from solve.materials.parameters import (
 )
 from solve.terms.contact import RigidDot
 from solve.terms.film import film_region
-from tests.verification.body import Body, solid_body
-from tests.verification.lattice import grid
 
 MEDIA = {
     "neo-hookean 0.3": NeoHookean(youngs_modulus_MPa=1.0, poisson_ratio=0.3),
@@ -38,7 +38,7 @@ def distorted():
     return grid([np.linspace(0.0, 1.0, 4)] * 3, jitter=0.2)
 
 
-def surface_held(body: Body, shape, field):
+def surface_held(body: ElasticBody, shape, field):
     """Displacement prescribed on the whole surface, free inside."""
     prescribed = body.free()
     outside = np.unique(shape.skin)
@@ -65,7 +65,7 @@ def test_an_affine_displacement_of_the_film_under_voltage_is_affine_inside():
     unit = 1e9  # Pa and V: stress and field of order one
     law = FilmLaw(si.stiffness / unit, si.coupling * unit, si.permittivity * unit, si.to_film_axes)
     numbers = np.arange(shape.points.size).reshape(-1, 3)
-    body, affine = Body(shape.points, numbers, numbers.size), shape.points @ STRAIN.T
+    body, affine = ElasticBody(shape.points, numbers, numbers.size), shape.points @ STRAIN.T
     voltage = body.number(1)
     everywhere = np.array([[-np.inf, np.inf, -np.inf, np.inf]])
     body.terms.append(film_region(law, shape.points, shape.tets, numbers, voltage, everywhere, 1.0))

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
+from softdot.verify.body import ElasticBody
+from softdot.verify.lattice import grid
 from solve.materials.film import FilmLaw, film_law
 from solve.materials.laws import LinearLaw, bulk_modulus
 from solve.materials.parameters import VACUUM_PERMITTIVITY, PiezoelectricFilm
 from solve.terms.film import film_region
-from tests.verification.body import Body
-from tests.verification.lattice import grid
 from tests.verification.row import agrees
 
 YOUNG, POISSON, D31, EPSILON = 2e9, 0.29, 23e-12, 12.0 * VACUUM_PERMITTIVITY
@@ -35,7 +35,7 @@ def stiffness(open_circuit: bool, d31: float) -> float:
     """Stress per strain in direction 1 of a free block of film, electroded on its faces 3."""
     shape = grid([np.linspace(0.0, 1.0, 4)] * 3, jitter=0.2)
     numbers = np.arange(shape.points.size).reshape(-1, 3)
-    body = Body(shape.points, numbers, numbers.size)
+    body = ElasticBody(shape.points, numbers, numbers.size)
     voltage = body.number(1)
     body.terms.append(film_region(scaled_law(d31), shape.points, shape.tets, numbers, voltage, EVERYWHERE, 1.0))
     prescribed, strain = body.free(), 1e-6
@@ -64,7 +64,7 @@ def test_unimorph_voltage_is_the_curvature_times_the_distance_from_the_neutral_a
     bottom, curvature, length = -substrate, 0.05, 2e-3
     shape = grid((np.linspace(0.0, length, 4), np.linspace(0.0, 1e-3, 3), np.append(np.linspace(bottom, 0.0, 4), film)))
     numbers = np.arange(shape.points.size).reshape(-1, 3)
-    body = Body(shape.points, numbers, numbers.size)
+    body = ElasticBody(shape.points, numbers, numbers.size)
     above = shape.centres[:, 2] > 0.0
     shear = soft / STRESS / (2.0 * (1.0 + POISSON))
     body.add_region("substrate", LinearLaw(shear, bulk_modulus(shear, POISSON)), shape.tets[~above])

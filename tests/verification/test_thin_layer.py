@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from geometry.dot import DotShape
+from softdot.verify.body import solid_body
+from softdot.verify.lattice import disc, graded
 from solve.materials.laws import InvariantLaw
 from solve.terms.contact import RigidDot
-from tests.verification.body import solid_body
-from tests.verification.lattice import disc, graded
 from tests.verification.row import agrees
 
 SHEAR = 1.0 / 3.0  # E = 1

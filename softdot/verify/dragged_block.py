@@ -1,4 +1,4 @@
-"""A block on a rigid base, in plane strain along y, under a rigid cylinder that presses and drags.
+"""A block on a rigid base, in plane strain along y, under a rigid dot that presses and drags.
 
 Newton's method on the solver's own solid and contact terms, with SciPy's SuperLU.
 """
@@ -7,43 +7,46 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
-from geometry.arrays import Floats
+from geometry.arrays import Floats, Ints
 from geometry.dot import DotShape
+from softdot.verify.lattice import Grid
 from solve.fem.sparsity import Term, Trial, Unknowns
 from solve.materials.laws import MediumLaw
 from solve.terms.contact import ContactFacets, RigidDot, contact_facets
 from solve.terms.friction import FrictionalContact
 from solve.terms.solid import solid_region
-from tests.verification.lattice import Grid
 
 MAX_ITERATIONS, TOLERANCE = 30, 1e-10  # of the contact forces
 
 
 class DraggedBlock:
-    """block : base at z = 0; x, u, move : unknowns, displacement (n, 3) and that of the cylinder, last converged."""
+    """block : base at z = 0; x, u, move : unknowns, displacement (n, 3) and that of the dot, last converged.
 
-    def __init__(self, block: Grid, law: MediumLaw, radius: float, friction: float) -> None:
+    radius : of a cylinder along y, None for a flat plate. level : all nodes of one height move alike.
+    """
+
+    def __init__(self, block: Grid, law: MediumLaw, radius: float | None, friction: float, level: bool = False) -> None:
         points, tets = block.points, block.tets
         top = points[:, 2].max()
-        numbers = np.full(points.shape, -1)
-        moving = np.flatnonzero(points[:, 2] > 0.0)
-        numbers[moving[:, None], [0, 2]] = np.arange(2 * len(moving)).reshape(-1, 2)
+        numbers = _numbers(points, level)
+        count = int(numbers.max()) + 1
         corners, local = np.unique(tets[:, :4], return_inverse=True)
-        count = 2 * len(moving) + len(corners)
-        pressure = 2 * len(moving) + local.reshape(-1, 4)
+        pressure = count + local.reshape(-1, 4)
+        count += len(corners)
         solid = solid_region("block", law, points, tets, np.hstack([numbers[tets].reshape(-1, 30), pressure]))
         facets = block.facets(lambda p: np.isclose(p[:, 2], top))
         surface = np.unique(facets)
         contact = np.full(len(points), -1)
-        contact[surface] = count + np.arange(len(surface))
-        dot = DotShape("ridge", radius, radius, np.zeros((1, 3)), np.array([0.0, 0.0, top]), np.eye(3))
+        contact[surface] = count + (0 if level else np.arange(len(surface)))
+        place = np.zeros((1, 3)), np.array([0.0, 0.0, top]), np.eye(3)
+        dot = DotShape("plate", 0.0, 0.0, *place) if radius is None else DotShape("ridge", radius, radius, *place)
         none = np.zeros((0, 4), int)
         unknowns = Unknowns(numbers, none, none, contact, -1)
         self.contact = contact_facets(points, facets, unknowns, RigidDot(dot, 1.0))
         self.touch: Term = self.contact
-        count += len(surface)
+        count = int(contact.max()) + 1
         if friction > 0.0:
-            tau = count + np.arange(3 * len(surface)).reshape(-1, 3)
+            tau = count + np.arange(3 * len(self.contact.pressure_dofs)).reshape(-1, 3)
             self.touch = FrictionalContact(self.contact, tau, friction)
             count += tau.size
         self.terms, self.numbers = (solid, self.touch), numbers
@@ -51,7 +54,7 @@ class DraggedBlock:
 
     @property
     def force(self) -> Floats:
-        """Of the cylinder on the block (3,)."""
+        """Of the dot on the block (3,)."""
         pressure = self.x[self.contact.pressure_dofs]
         if isinstance(self.touch, ContactFacets):
             return self.contact.force(self.u, self.move, pressure)
@@ -59,7 +62,7 @@ class DraggedBlock:
         return self.touch.force(self.u, self.move, pressure, self.x[self.touch.friction_dofs])
 
     def drag(self, x: float, z: float) -> Floats:
-        """Move the cylinder to (x, z) in one step; the force there. ArithmeticError."""
+        """Move the dot to (x, z) in one step; the force there. ArithmeticError."""
         move, unknown, before = np.array([x, 0.0, z]), self.x.copy(), None
         for _ in range(MAX_ITERATIONS):
             u = np.append(unknown, 0.0)[self.numbers]
@@ -87,3 +90,13 @@ class DraggedBlock:
                 entries.append((ke[inside], rows[inside], columns[inside]))
         data, rows, columns = (np.concatenate(e) for e in zip(*entries, strict=True))
         return residual[:count], sp.csc_matrix((data, (rows, columns)), (count, count))
+
+
+def _numbers(points: Floats, level: bool) -> Ints:
+    """Unknowns (n, 3) of the displacements along x and z above the base, -1 for what is held."""
+    numbers = np.full(points.shape, -1)
+    _, own = np.unique(np.round(points[:, 2], 9), return_inverse=True)
+    moving = own > 0
+    group = own[moving] - 1 if level else np.arange(moving.sum())
+    numbers[np.flatnonzero(moving)[:, None], [0, 2]] = 2 * group[:, None] + [0, 1]
+    return numbers

@@ -4,25 +4,28 @@ Newton's method on the solver's own terms, pattern, scatter and linear solver; o
 the test's own. All unknowns are numbered, the prescribed ones too, so that reactions are plain residuals.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from types import SimpleNamespace
 
 import numpy as np
+from numpy.typing import ArrayLike
+from scipy.sparse import csr_matrix
 
-from geometry.arrays import Floats, Ints
+from geometry.arrays import Bools, Floats, Ints
+from softdot.verify.loads import FollowerPressure
 from solve.fem.kernels import scatter
-from solve.fem.sparsity import Tangent, Term, Trial, build_pattern
+from solve.fem.sparsity import Pattern, Tangent, Term, Trial, Unknowns, build_pattern
+from solve.materials.laws import MediumLaw
 from solve.solution.linear import LinearSolver
 from solve.terms.contact import ContactFacets, RigidDot, contact_facets
 from solve.terms.solid import solid_region
-from tests.verification.loads import FollowerPressure
 
 FREE = np.nan
-MAX_ITERATIONS = 30
+MAX_ITERATIONS = 60  # an interface that peels opens about one node an iteration
 
 
 @dataclass
-class Body:
+class ElasticBody:
     """points (n, 3); displacement (n, 3) numbers of its unknowns; pressure : region -> (m, 4); x (count,) the state."""
 
     points: Floats
@@ -50,7 +53,7 @@ class Body:
         self.x, self.residual = np.zeros(self.count), np.zeros(self.count)
         return np.arange(self.count - count, self.count)
 
-    def add_region(self, name: str, law, tets: Ints, twin: Ints | None = None) -> None:
+    def add_region(self, name: str, law: MediumLaw, tets: Ints, twin: Ints | None = None) -> None:
         """A medium of tets (m, 10), with its own pressures unless its law is compressible."""
         dofs = self.displacement[tets].reshape(-1, 30)
         if not law.compressible:
@@ -61,21 +64,23 @@ class Body:
 
     def add_pressure(self, facets: Ints) -> FollowerPressure:
         """A follower pressure, zero until its value is set."""
-        self.terms.append(FollowerPressure(self.points, facets, self.displacement[facets].reshape(-1, 18)))
-        return self.terms[-1]
+        load = FollowerPressure(self.points, facets, self.displacement[facets].reshape(-1, 18))
+        self.terms.append(load)
+        return load
 
     def add_contact(self, facets: Ints, dot: RigidDot) -> ContactFacets:
         """Frictionless contact of facets (k, 6) with a dot whose displacement is move."""
         nodes = np.unique(self.displacement[facets, 0], return_inverse=True)[1].reshape(facets.shape)
         contact = np.full(len(self.points), -1)
         contact[facets] = self.number(int(nodes.max()) + 1)[nodes]
-        unknowns = SimpleNamespace(displacement=self.displacement, contact=contact, approach=-1)
-        self.terms.append(contact_facets(self.points, facets, unknowns, dot))
-        return self.terms[-1]
+        none = np.zeros((0, 4), int)
+        term = contact_facets(self.points, facets, Unknowns(self.displacement, none, none, contact, -1), dot)
+        self.terms.append(term)
+        return term
 
     def reaction(self, nodes: Ints) -> Floats:
         """Force (3,) that holds the nodes."""
-        return self.residual[np.unique(self.displacement[nodes], axis=0)].sum(axis=0)
+        return np.asarray(self.residual[np.unique(self.displacement[nodes], axis=0)].sum(axis=0))
 
     def reactions(self) -> Floats:
         """Forces (n, 3) that hold each node; a body with twins shows each force at every twin."""
@@ -86,7 +91,13 @@ class Body:
         return np.full(self.points.shape, FREE)
 
     def solve(
-        self, prescribed: Floats, force: Floats | float = 0.0, steps: int = 1, held=None, move=None, tolerance=1e-10
+        self,
+        prescribed: Floats,
+        force: Floats | float = 0.0,
+        steps: int = 1,
+        held: Mapping[int, float] | None = None,
+        move: ArrayLike | None = None,
+        tolerance: float = 1e-10,
     ) -> None:
         """Move from the present state to prescribed (n, 3), NaN = free, and dead nodal forces (n, 3).
 
@@ -121,7 +132,7 @@ class Body:
                 shift[term.pressure_dofs] = -1e-4 * term.nodal_area
         return shift
 
-    def assemble(self, pattern, external: Floats):
+    def assemble(self, pattern: Pattern, external: Floats) -> tuple[Floats, csr_matrix]:
         """Residual and tangent (upper triangle) with all unknowns free."""
         residual, data, first = -external, np.zeros(len(pattern.indices)), 0
         for term in self.terms:
@@ -130,7 +141,9 @@ class Body:
             first += len(term.groups)
         return residual, pattern.matrix(data)
 
-    def _newton(self, pattern, linear, fixed, aim, external, tolerance) -> None:
+    def _newton(
+        self, pattern: Pattern, linear: LinearSolver, fixed: Bools, aim: Floats, external: Floats, tolerance: float
+    ) -> None:
         change, before = np.where(fixed, aim - self.x, 0.0), None
         for _ in range(MAX_ITERATIONS):
             self.residual, tangent = self.assemble(pattern, external)
@@ -146,10 +159,10 @@ class Body:
         raise ArithmeticError(f"no equilibrium: residual {np.linalg.norm(self.residual[~fixed]) / scale:.1e}")
 
 
-def solid_body(points: Floats, law, tets: Ints, twin: Ints | None = None) -> Body:
+def solid_body(points: Floats, law: MediumLaw, tets: Ints, twin: Ints | None = None) -> ElasticBody:
     """One medium; twin (n,) names the node whose displacement each node shares."""
     _, local = np.unique(np.arange(len(points)) if twin is None else twin, return_inverse=True)
     numbers = 3 * local.reshape(-1, 1) + np.arange(3)
-    body = Body(points, numbers, int(numbers.max()) + 1)
+    body = ElasticBody(points, numbers, int(numbers.max()) + 1)
     body.add_region("body", law, tets, twin)
     return body

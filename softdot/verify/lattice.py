@@ -1,15 +1,20 @@
 """Structured meshes of quadratic tetrahedra: boxes, slices, discs and rings, graded and curved."""
 
-from collections.abc import Callable
+import itertools
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from geometry.arrays import Bools, Floats, Ints
 from solve.fem.kinematics import TET_EDGES
-from tests.solve.box import KUHN
 
+KUHN = [list(itertools.accumulate((0, *(1 << a for a in axes)))) for axes in itertools.permutations(range(3))]
 FACES = np.array([[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 3, 2, 7, 9, 6]])  # outward
+
+Axes = Sequence[ArrayLike]
+Middle = Callable[[Floats, Floats], Floats]  # of edges, from both ends
 
 
 @dataclass(frozen=True)
@@ -25,15 +30,17 @@ class Grid:
         return self.skin[where(self.points)[self.skin].all(axis=1)]
 
     def nodes(self, where: Callable[[Floats], Bools]) -> Ints:
+        """Nodes that satisfy a condition on the points (n, 3)."""
         return np.flatnonzero(where(self.points))
 
     @property
     def centres(self) -> Floats:
         """Mean of the corners of each tetrahedron, (m, 3)."""
-        return self.points[self.tets[:, :4]].mean(axis=1)
+        return np.asarray(self.points[self.tets[:, :4]].mean(axis=1))
 
 
 def straight(a: Floats, b: Floats) -> Floats:
+    """The middle of a straight edge."""
     return 0.5 * (a + b)
 
 
@@ -45,18 +52,21 @@ def around_axis(a: Floats, b: Floats) -> Floats:
     return middle
 
 
-def grid(axes, mapping=lambda p: p, middle=straight, jitter: float = 0.0) -> Grid:
+def grid(
+    axes: Axes, mapping: Callable[[Floats], Floats] = lambda p: p, middle: Middle = straight, jitter: float = 0.0
+) -> Grid:
     """Six tetrahedra in each cell of a lattice with the given coordinates along its three axes.
 
     mapping : lattice (n, 3) -> points; corners that fall together are one, and cells may so become wedges.
     middle : position of the mid-side node from the two ends. jitter moves inner corners, as a share of the cell.
     """
-    counts = np.array([len(a) for a in axes])
+    lines = [np.asarray(a, float) for a in axes]
+    counts = np.array([len(a) for a in lines])
     index = np.stack(np.meshgrid(*(np.arange(n) for n in counts), indexing="ij"), -1).reshape(-1, 3)
-    corners = np.column_stack([np.asarray(a, float)[i] for a, i in zip(axes, index.T, strict=True)])
+    corners = np.column_stack([a[i] for a, i in zip(lines, index.T, strict=True)])
     if jitter:
         inner = ((index > 0) & (index < counts - 1)).all(axis=1)
-        cell = np.array([np.diff(a).min() for a in axes])
+        cell = np.array([np.diff(a).min() for a in lines])
         corners[inner] += np.random.default_rng(1).uniform(-jitter, jitter, (inner.sum(), 3)) * cell
     corners = mapping(corners)
     scale = np.ptp(corners, axis=0).max()
@@ -73,7 +83,7 @@ def _linear_tets(counts: Ints) -> Ints:
     return np.concatenate([cells[:, None] + offset[path] for path in np.array(KUHN)])
 
 
-def _quadratic(corners: Floats, linear: Ints, middle) -> Grid:
+def _quadratic(corners: Floats, linear: Ints, middle: Middle) -> Grid:
     edge = corners[linear[:, 1:]] - corners[linear[:, :1]]
     flip = np.linalg.det(edge) < 0
     linear[flip, 2:] = linear[flip, :1:-1]
@@ -91,7 +101,7 @@ def polar(p: Floats) -> Floats:
     return np.column_stack([p[:, 0] * np.cos(p[:, 1]), p[:, 0] * np.sin(p[:, 1]), p[:, 2]])
 
 
-def disc(r, angle, z) -> Grid:
+def disc(r: ArrayLike, angle: ArrayLike, z: ArrayLike) -> Grid:
     """A disc or ring about the z axis from its radii, angles and heights, with curved elements."""
     return grid((r, angle, z), polar, around_axis)
 

@@ -1,11 +1,13 @@
 """Loads on facets: dead tractions and a pressure that follows the surface."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from geometry.arrays import Floats, Ints
-from solve.fem.sparsity import Term
+from solve.fem.sparsity import Block, History, Term, Trial
 from solve.terms.contact import SHAPES, SLOPES, WEIGHTS
 
 
@@ -23,10 +25,12 @@ class FollowerPressure(Term):
     value: float = 0.0
 
     @property
-    def groups(self):
+    def groups(self) -> tuple[Ints, ...]:
+        """Unknowns of the facets."""
         return (self.dofs,)
 
-    def elements(self, trial, history):
+    def elements(self, trial: Trial, history: History) -> Iterator[Block]:
+        """Matrices and residuals of the facets."""
         position = (self.points + trial.displacement)[self.facets]
         a, b = np.einsum("qnd,kni->dkqi", SLOPES, position)
         re = self.value * np.einsum("q,qn,kqi->kni", WEIGHTS, SHAPES, np.cross(a, b)).reshape(-1, 18)
@@ -34,10 +38,10 @@ class FollowerPressure(Term):
         slope = np.einsum("qm,kqji->kqmij", SLOPES[..., 1], skew_a)
         slope -= np.einsum("qm,kqji->kqmij", SLOPES[..., 0], skew_b)
         ke = self.value * np.einsum("q,qn,kqmij->knimj", WEIGHTS, SHAPES, slope).reshape(-1, 18, 18)
-        yield 0, slice(None), 0.5 * (ke + ke.swapaxes(1, 2)), re
+        yield Block(0, slice(None), 0.5 * (ke + ke.swapaxes(1, 2)), re)
 
 
-def traction_force(points: Floats, facets: Ints, traction) -> Floats:
+def traction_force(points: Floats, facets: Ints, traction: ArrayLike) -> Floats:
     """Nodal forces (n, 3) of a dead traction (3,), or (k, q, 3) at the quadrature points, on facets (k, 6)."""
     tangent = np.einsum("qnd,kni->dkqi", SLOPES, points[facets])
     area = np.linalg.norm(np.cross(*tangent), axis=-1) * WEIGHTS

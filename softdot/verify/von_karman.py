@@ -1,7 +1,11 @@
 """Von Karman's plate equations for a clamped disc, integrated as a boundary-value problem: nu = 0.3, axisymmetric."""
 
+from collections.abc import Callable
+
 import numpy as np
 from scipy.integrate import solve_bvp
+
+from geometry.arrays import Floats
 
 POISSON = 0.3
 START = 1e-4  # radius at which the regular solution begins
@@ -22,10 +26,10 @@ def centre_deflection(load: float, patch: float) -> float:
     return float(state[0, 0])
 
 
-def _equations(load: float, patch: float):
+def _equations(load: float, patch: float) -> Callable[[Floats, Floats], Floats]:
     """Derivatives of (w, w', w'', u, u')."""
 
-    def derivatives(r, y):
+    def derivatives(r: Floats, y: Floats) -> Floats:
         _, slope, curvature, u, stretch = y
         shear = load / (2.0 * np.pi * r) * np.minimum(r / patch, 1.0) ** 2
         membrane = stretch + POISSON * u / r + slope**2 / 2.0
@@ -36,6 +40,6 @@ def _equations(load: float, patch: float):
     return derivatives
 
 
-def _edges(centre, edge):
+def _edges(centre: Floats, edge: Floats) -> Floats:
     """Smooth at the centre (w' and u linear in r), clamped at the edge."""
     return np.array([centre[1] - START * centre[2], centre[3] - START * centre[4], edge[0], edge[1], edge[3]])

@@ -1,0 +1,112 @@
+"""softdot verify: the named verification problems on this machine, as a table, a page and verify.json."""
+
+import platform
+import sys
+from argparse import Namespace
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from export.page import page_environment
+from softdot.console import (
+    GOOD,
+    NOT_CONVERGED,
+    Logged,
+    Progress,
+    complain,
+    installed_version,
+    json_text,
+    only_the_summary_on_stdout,
+    plain,
+    progress_of,
+    write_json,
+)
+from softdot.output import Product, staged_folder
+from softdot.verify.catalogue import chosen_problems
+from softdot.verify.problem import Problem
+
+VERIFY = Product("softdot-verify/1", "verify.json", frozenset({"verify.json", "verify.html"}))
+HEADS = ("problem", "reference", "value", "unit", "deviation", "bound", "")
+
+
+def command(chosen: Namespace) -> int:
+    """Run the problems that are asked for into chosen.output; 0, or 3 where one fails. InputError."""
+    problems = chosen_problems(chosen.only)
+    with only_the_summary_on_stdout(), progress_of(chosen) as progress:
+        summary = run_verification(problems, Path(chosen.output), progress)
+    if chosen.json:
+        sys.stdout.write(json_text(summary))
+    elif not chosen.quiet:
+        _print_table(summary["problems"])
+    failed = [problem["name"] for problem in summary["problems"] if not problem["passed"]]
+    if not failed:
+        return GOOD
+    complain(
+        f"{len(failed)} of {len(problems)} problems failed: {', '.join(failed)}; see '{chosen.output}/verify.html'"
+    )
+    return NOT_CONVERGED
+
+
+def run_verification(problems: Sequence[Problem], out: Path, progress: Progress | None = None) -> dict[str, Any]:
+    """Solve problems, write verify.json and verify.html into the folder out and return what the former holds.
+
+    InputError before any work when out cannot be written.
+    """
+    told = progress or Logged()
+    with staged_folder(out, VERIFY) as folder:
+        told.stage("verify")
+        outcomes = []
+        for number, problem in enumerate(problems, start=1):
+            outcomes.append(problem.outcome())
+            told.step(number, len(problems), f"{problem.name} {verdict(outcomes[-1])}")
+        summary: dict[str, Any] = plain(
+            {
+                "format": VERIFY.format,
+                "softdot_version": installed_version(),
+                "python": platform.python_version(),
+                "machine": f"{platform.system()} {platform.machine()}",
+                "passed": all(outcome["passed"] for outcome in outcomes),
+                "problems": outcomes,
+            }
+        )
+        _write_page(summary, folder / "verify.html")
+        write_json(folder / VERIFY.summary, summary)
+    return summary
+
+
+def verdict(outcome: dict[str, Any]) -> str:
+    """In one word."""
+    return "passed" if outcome["passed"] else "failed"
+
+
+def cells(outcome: dict[str, Any]) -> tuple[str, ...]:
+    """A row of the table, as HEADS name it."""
+    deviation = "no solution" if outcome["deviation_percent"] is None else f"{outcome['deviation_percent']:+.2g} %"
+    value = "-" if outcome["value"] is None else f"{outcome['value']:.6g}"
+    bound = f"{outcome['bound_percent']:g} %"
+    unit = "" if outcome["unit"] == "1" else outcome["unit"]
+    return outcome["name"], f"{outcome['reference']:.6g}", value, unit, deviation, bound, verdict(outcome)
+
+
+def _print_table(outcomes: list[dict[str, Any]]) -> None:
+    """In colour on a terminal; in a pipe as plain columns."""
+    rows = [cells(outcome) for outcome in outcomes]
+    if not sys.stdout.isatty():
+        widths = [max(len(row[column]) for row in [HEADS, *rows]) for column in range(len(HEADS))]
+        for row in [HEADS, *rows]:
+            print("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
+        return
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(*HEADS)
+    for row, outcome in zip(rows, outcomes, strict=True):
+        table.add_row(*row, style="green" if outcome["passed"] else "bold red")
+    Console().print(table)
+
+
+def _write_page(summary: dict[str, Any], path: Path) -> None:
+    environment = page_environment(Path(__file__).parent)
+    rows = [(outcome, cells(outcome)) for outcome in summary["problems"]]
+    page = environment.get_template("verify.html").render(summary=summary, rows=rows)
+    path.write_text(page, "utf-8")

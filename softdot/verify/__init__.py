@@ -1,0 +1,1 @@
+"""The named verification problems, which a user runs on his own machine: `softdot verify`."""

@@ -1,0 +1,34 @@
+"""All problems of softdot verify, in the order in which they are told."""
+
+from geometry.base import InputError, nearest
+from softdot.verify.problem import Problem
+from softdot.verify.problems import (
+    bonded,
+    circuit,
+    contact,
+    cook,
+    cylinder,
+    delamination,
+    film,
+    friction,
+    nafems,
+    other_codes,
+    patch,
+    plates,
+    segments,
+    tension,
+)
+
+FAMILIES = (
+    patch, tension, cylinder, plates, nafems, bonded, cook, contact, friction, delamination, film, circuit, segments,
+    other_codes,
+)  # fmt: skip
+PROBLEMS: dict[str, Problem] = {problem.name: problem for family in FAMILIES for problem in family.PROBLEMS}
+
+
+def chosen_problems(names: list[str]) -> list[Problem]:
+    """Those of these names, in the order of the catalogue; all for no name. InputError for one that is unknown."""
+    for name in names:
+        if name not in PROBLEMS:
+            raise InputError(f"--only {name}: no such problem; {nearest(name, PROBLEMS)}")
+    return [problem for problem in PROBLEMS.values() if not names or problem.name in names]

@@ -1,0 +1,1 @@
+"""The problems, a family in each module."""
