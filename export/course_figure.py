@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from geometry.arrays import Floats
-from solve.readout.course import Course
+from solve.readout.course import PressCourse
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -13,7 +13,7 @@ SIZE_IN = (9.0, 5.6)
 GREY = "#33658a"
 
 
-def course_figure(along: Course, electrodes: Sequence[str]) -> "Figure":
+def course_figure(along: PressCourse, electrodes: Sequence[str]) -> "Figure":
     """Four panels over time; dots are the solved states. Voltages are those behind the amplifiers where there are any,
     of the open circuit else.
     """
@@ -36,7 +36,7 @@ def course_figure(along: Course, electrodes: Sequence[str]) -> "Figure":
     return figure
 
 
-def _curves(axes: Any, along: Course, curves: dict[str, Floats], label: str) -> None:
+def _curves(axes: Any, along: PressCourse, curves: dict[str, Floats], label: str) -> None:
     for name, values in curves.items():
         colour = GREY if len(curves) == 1 else None
         (line,) = axes.plot(along.time_s, values, color=colour, lw=1.6, label=name)

@@ -13,7 +13,7 @@ from geometry.arrays import Floats
 from geometry.dot import DotShape
 from geometry.files import whole_folder
 from mesh.types import TetMesh
-from solve.readout.course import Course
+from solve.readout.course import PressCourse
 from solve.result import PressResult, Step
 
 RED, GREEN = "#b5263b", "#3f7a4d"
@@ -84,7 +84,7 @@ def write_pictures(
     result: PressResult,
     dot_shape: DotShape,
     folder: Path,
-    along: Course,
+    along: PressCourse,
 ) -> dict[str, Path]:
     """Write <name>.png for every name in FILES; return them by name. The folder appears whole or not at all.
 

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from geometry.solids import Part
     from softdot.outcome import Derivative
-    from solve.readout.course import Course
+    from solve.readout.course import PressCourse
 
 OnStep = Callable[[Step, int, int], None]
 
@@ -165,7 +165,7 @@ class Case:
 
         return amplifier(self.model.readout, self.model.physics) is not None
 
-    def course(self, result: PressResult) -> "Course":
+    def course(self, result: PressResult) -> "PressCourse":
         """The course of a result in time: drive, force, charges, voltages, and what each amplifier gives."""
         from solve.readout.course import course
 
@@ -250,7 +250,7 @@ class Pressed:
         return [*told, *course_warnings(model, self.result, self.course)]
 
     @cached_property
-    def course(self) -> "Course":
+    def course(self) -> "PressCourse":
         """The whole press in time, SI units: what comes between the steps, a hold and the way back included."""
         return self.case.course(self.result)
 

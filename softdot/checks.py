@@ -24,7 +24,7 @@ from softdot.config import Config
 from softdot.machine import needed_GB, refuse_too_little_memory
 from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.model import Model
-from solve.readout.course import Course
+from solve.readout.course import PressCourse
 from solve.result import PressResult
 from solve.solution.schedule import duration_s
 from solve.symmetry import meshed_planes
@@ -146,7 +146,7 @@ READOUT_ERROR_PERCENT = 5.0
 """From which a run warns; what it is stands in the summary whatever it is."""
 
 
-def course_warnings(model: Model, result: PressResult, along: Course) -> list[str]:
+def course_warnings(model: Model, result: PressResult, along: PressCourse) -> list[str]:
     """A warning where too few states were solved to tell what an amplifier gives."""
     error = along.readout_error_percent
     if along.together_V is None or error <= READOUT_ERROR_PERCENT or not result.converged:

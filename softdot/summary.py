@@ -13,7 +13,7 @@ from geometry.arrays import Floats
 from softdot.config import Config, config_hash
 from softdot.output import RUN
 from solve.model import Model, Readout, Waveform
-from solve.readout.course import Course
+from solve.readout.course import PressCourse
 from solve.result import PressResult
 from solve.solution.schedule import fraction
 
@@ -106,7 +106,7 @@ def heading(config: Config) -> dict[str, Any]:
     }
 
 
-def press_part(model: Model, result: PressResult, along: Course) -> dict[str, Any]:
+def press_part(model: Model, result: PressResult, along: PressCourse) -> dict[str, Any]:
     """The part of the summary that the press gives; along : its course."""
     past, solved = history(result), along.solved
     readout_voltage_V = None if along.together_V is None else along.together_V[solved]
@@ -135,7 +135,7 @@ def press_part(model: Model, result: PressResult, along: Course) -> dict[str, An
     return {**found, "solver": _solver_of(found, result)}
 
 
-def _instants(past: History, voltage_V: Floats, along: Course, readout: Readout | None) -> dict[str, float | None]:
+def _instants(past: History, voltage_V: Floats, along: PressCourse, readout: Readout | None) -> dict[str, float | None]:
     """When the voltage per depth holds, and when the least detectable depth is reached on the way in."""
     times = along.time_s[along.solved]
     deepest = int(np.argmax(past.indentation_mm))
@@ -150,7 +150,7 @@ TOGETHER = "together"
 """The channel of all electrodes in parallel, beside those of each."""
 
 
-def channels(along: Course, names: Sequence[str]) -> dict[str, Floats]:
+def channels(along: PressCourse, names: Sequence[str]) -> dict[str, Floats]:
     """What each amplifier gives over time (n,) by the name of its electrode; of several also of all in parallel."""
     if along.channels_V is None or along.together_V is None:
         return {}
@@ -158,7 +158,7 @@ def channels(along: Course, names: Sequence[str]) -> dict[str, Floats]:
     return {**together, **dict(zip(names, along.channels_V.T, strict=True))}
 
 
-def course_part(model: Model, result: PressResult, along: Course) -> dict[str, Any]:
+def course_part(model: Model, result: PressResult, along: PressCourse) -> dict[str, Any]:
     """The course of a press: drive, force, charge, voltage and read-out at its times, electrodes by name."""
     names, press = result.electrode_names, model.press
     drive = {"indentation_mm": MM * along.indentation_m}
@@ -220,7 +220,7 @@ def film(result: PressResult) -> dict[str, Any]:
     }
 
 
-def electrodes(result: PressResult, along: Course) -> list[dict[str, Any]]:
+def electrodes(result: PressResult, along: PressCourse) -> list[dict[str, Any]]:
     """Charge and voltage of each electrode by itself at the steps."""
     return [
         {

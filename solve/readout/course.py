@@ -33,7 +33,7 @@ MARGIN = 2.0  # of the error over what changes without every other state
 
 
 @dataclass(frozen=True)
-class Course:
+class PressCourse:
     """time_s (n,); indentation_m (n,) of the displacement sensor; reaction_force_N (n,) of the force sensor; charge_C
     (n, e) at short circuit and voltage_V (n, e) at open circuit, one column for each electrode.
 
@@ -54,7 +54,7 @@ class Course:
 
 
 @dataclass(frozen=True)
-class Circuit:
+class AmplifierChain:
     """What stands behind electrodes with capacitances (e,); readout : None for nothing."""
 
     readout: Readout | None
@@ -91,9 +91,9 @@ class Circuit:
 
 def course(
     result: PressResult, press: Press, readout: Readout | None, physics: Physics, time_s: Floats | None = None
-) -> Course:
+) -> PressCourse:
     """The course of a press behind its amplifier, as far as it converged; time_s (n,) : on these times only."""
-    circuit = Circuit(amplifier(readout, physics), physics, result.capacitance_F)
+    circuit = AmplifierChain(amplifier(readout, physics), physics, result.capacitance_F)
     trace, legs = result.trace, legs_of(result, press)
     states_s = trace.time_s if result.follows_time else first_reached_s(result.progress, press)
     solved_s = states_s[np.searchsorted(trace.time_s, [step.time_s for step in result.steps])]
@@ -104,7 +104,7 @@ def course(
     finer = circuit.read(legs, halved(time_s))[:, ::2]
     off = MARGIN * _share(read - rougher, read, axis=1) + _share(read - finer, read, axis=1)
     amplified = circuit.readout is not None
-    return Course(
+    return PressCourse(
         time_s=time_s,
         indentation_m=found[:, 0],
         reaction_force_N=found[:, 1] + 0.0,
@@ -124,7 +124,7 @@ def read_together(
 
     On one grid it depends smoothly on the states, so that differences of it are derivatives.
     """
-    circuit = Circuit(amplifier(readout, physics), physics, capacitance_F)
+    circuit = AmplifierChain(amplifier(readout, physics), physics, capacitance_F)
     if circuit.readout is None:
         return None
     return np.asarray(circuit.read(legs_through(trace, press), time_s)[-1])
@@ -147,7 +147,7 @@ def values(legs: Sequence[PressLeg], time_s: Floats) -> Floats:
     return found
 
 
-def _first_times(legs: Sequence[PressLeg], press: Press, circuit: Circuit, states_s: Floats) -> Floats:
+def _first_times(legs: Sequence[PressLeg], press: Press, circuit: AmplifierChain, states_s: Floats) -> Floats:
     """Times (n,) to begin with: all corners and states, some between, and enough for the hum of the mains."""
     begin, end = legs[0].begin_s, legs[-1].end_s
     waveform = press.waveform or Waveform()
@@ -164,7 +164,7 @@ def _first_times(legs: Sequence[PressLeg], press: Press, circuit: Circuit, state
     return np.asarray(times[apart])
 
 
-def _refined(legs: Sequence[PressLeg], circuit: Circuit, time_s: Floats) -> Floats:
+def _refined(legs: Sequence[PressLeg], circuit: AmplifierChain, time_s: Floats) -> Floats:
     """Times (n,) halved where straight lines between them do not follow every curve."""
     least = SAME_TIME * (time_s[-1] - time_s[0])
     for _ in range(MOST_ROUNDS):

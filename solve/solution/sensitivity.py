@@ -28,7 +28,7 @@ from mesh.types import TetMesh
 from solve.fem.sparsity import Tangent
 from solve.model import Model, Press
 from solve.press import Setup, discretise, set_up
-from solve.readout.course import Course, course, read_together
+from solve.readout.course import PressCourse, course, read_together
 from solve.recorder import Recorder
 from solve.result import PressResult, Trace
 from solve.solution.linear import LinearSolver
@@ -89,7 +89,7 @@ class Twin:
         trial = self.setup.system.trial(x, self.load(base.load), base.time, self.state, base.damped)
         return self.setup.system.evaluate(trial, self.state.histories).residual
 
-    def history(self, base: Course, press: Press) -> Slopes:
+    def history(self, base: PressCourse, press: Press) -> Slopes:
         """The histories themselves, not yet derivatives; the read-out on the times of the base's course.
 
         press : the base's, whose waveform gives the times.

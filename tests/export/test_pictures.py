@@ -17,11 +17,11 @@ from geometry.dot import DotShape
 from geometry.solids import PART_COLOURS
 from mesh.types import TetMesh
 from solve.model import Physics, Press, Readout
-from solve.readout.course import Course, course
+from solve.readout.course import PressCourse, course
 from solve.result import PressResult
 
 
-def course_of(press: PressResult, readout: Readout | None = None) -> Course:
+def course_of(press: PressResult, readout: Readout | None = None) -> PressCourse:
     return course(press, Press(), readout, Physics())
 
 
