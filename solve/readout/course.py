@@ -100,9 +100,9 @@ def course(
     if time_s is None:
         time_s = _refined(legs, circuit, _first_times(legs, press, circuit, states_s))
     found, read = values(legs, time_s), circuit.read(legs, time_s)
-    rougher = circuit.read([leg.rougher for leg in legs], time_s)
+    rougher = [read - circuit.read([leg.rougher(first) for leg in legs], time_s) for first in (0, 1)]
     finer = circuit.read(legs, halved(time_s))[:, ::2]
-    off = MARGIN * _share(read - rougher, read, axis=1) + _share(read - finer, read, axis=1)
+    off = MARGIN * np.max([_share(off, read, axis=1) for off in rougher], axis=0) + _share(read - finer, read, axis=1)
     amplified = circuit.readout is not None
     return PressCourse(
         time_s=time_s,

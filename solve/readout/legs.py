@@ -42,14 +42,14 @@ class PressLeg:
     at: Floats
     known: Floats
 
-    @property
-    def rougher(self) -> "PressLeg":
-        """With every other state, its ends kept; with two only, a parabola from the first in place of the line."""
+    def rougher(self, first: int) -> "PressLeg":
+        """With every other state, from the first (0) or to the last (1), its ends kept; with two only, a parabola from the first in place of the line."""
         if len(self.at) == 2:
             middle, quarter = 0.5 * (self.at[0] + self.at[1]), 0.75 * self.known[0] + 0.25 * self.known[1]
             known = np.vstack([self.known[0], quarter, self.known[1]])
             return replace(self, at=np.array([self.at[0], middle, self.at[1]]), known=known)
-        kept = np.unique([0, *range(len(self.at) - 1, -1, -2)])
+        last = len(self.at) - 1
+        kept = np.unique([0, *range((last % 2) * first, last, 2), last])
         return replace(self, at=self.at[kept], known=self.known[kept])
 
     @cached_property
