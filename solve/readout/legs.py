@@ -43,7 +43,10 @@ class PressLeg:
     known: Floats
 
     def rougher(self, first: int) -> "PressLeg":
-        """With every other state, from the first (0) or to the last (1), its ends kept; with two only, a parabola from the first in place of the line."""
+        """With every other state, from the first (0) or to the last (1), its ends kept.
+
+        With two only, a parabola from the first in place of the line.
+        """
         if len(self.at) == 2:
             middle, quarter = 0.5 * (self.at[0] + self.at[1]), 0.75 * self.known[0] + 0.25 * self.known[1]
             known = np.vstack([self.known[0], quarter, self.known[1]])
