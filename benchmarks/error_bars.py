@@ -76,10 +76,11 @@ def effector(shape: str, length: float, between: Any, material: str) -> dict[str
 def pressed(tables: dict[str, Any], factor: float) -> tuple[list[float], int]:
     """Force and the voltage of each electrode at full depth on elements larger by the factor, and the unknowns."""
     config = Case(**tables).config
-    result = Case(config.model_copy(update={"mesh": config.mesh.scaled(factor)})).solve()
+    case = Case(config.model_copy(update={"mesh": config.mesh.scaled(factor)}))
+    result = case.solve()
     if not result.converged:
         raise SystemExit(f"{tables}: {result.failure}")
-    found = answers_of(press_part(None, result, None))
+    found = answers_of(press_part(case.model, result, case.course(result)))
     return [float(found.force_N[-1]), *map(float, found.electrode_voltages_V[-1])], result.unknowns
 
 

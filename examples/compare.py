@@ -18,14 +18,11 @@ mpl.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
-from scipy.interpolate import PchipInterpolator
 
 from geometry.arrays import Floats
 from softdot.case import Case
 from softdot.config import Config, load_config
 from solve.materials.parameters import Hyperfoam, Material, NeoHookean, PiezoelectricFilm
-from solve.model import Readout
-from solve.readout.recording import channel_voltages, record
 
 BLUE, ORANGE = "#2a6db0", "#d1600a"
 
@@ -44,29 +41,16 @@ class Curves(NamedTuple):
 def solve(config: Config) -> Curves:
     """Press the segment of a configuration. SystemExit where it does not converge."""
     case = Case(config)
-    told, physics, result = case.model, case.model.physics, case.solve()
+    told, result = case.model, case.solve()
     if not result.converged:
         raise SystemExit(result.failure)
-    electrodes, amplifier = len(result.capacitance_F), told.readout or Readout()
-    recording = record(result, told.press, amplifier, np.ones(electrodes), physics)
-    slides, trace = bool(told.press.path_xy_mm), result.trace
-    if result.follows_time or slides:
-        time, depth = trace.time_s, 1e3 * trace.indentation_m
-        force = trace.contact_force_N[:, 0] if slides else trace.reaction_force_N
-    else:  # the way back is the way in
-        time = recording.time_s
-        depth = 1e3 * _along(np.array([step.indentation_m for step in result.steps]), recording.progress)
-        force = _along(np.array([step.reaction_force_N for step in result.steps]), recording.progress)
-    at, voltage = recording.time_s, recording.voltage_V
-    if electrodes > 1:
-        at = np.array([step.time_s for step in result.steps])
-        voltage = channel_voltages(result, told.press, amplifier, physics)[0]
-    return Curves(time, depth, force, at, np.interp(at, time, depth), voltage)
-
-
-def _along(values: Floats, progress: Floats) -> Floats:
-    """Values of the load steps (s,) at fractions of their number (t,)."""
-    return np.asarray(PchipInterpolator(np.arange(len(values)), values)(progress))
+    along, slides = case.course(result), bool(told.press.path_xy_mm)
+    force = along.reaction_force_N
+    if slides:
+        force = np.interp(along.time_s, result.trace.time_s, result.trace.contact_force_N[:, 0])
+    read = along.voltage_V[:, 0] if along.channels_V is None else along.channels_V[:, 0]
+    depth = 1e3 * along.indentation_m
+    return Curves(along.time_s, depth, force, along.time_s, depth, read)
 
 
 def baseline(config: Config) -> Config:

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from export.course_figure import course_figure
 from export.cutaway import draw_parts, draw_von_mises, film_figure, open_scene
 from export.skin import MM_PER_M
 from export.view import DPI, HEIGHT_IN, INK, WIDTH_IN, save
@@ -12,6 +13,7 @@ from geometry.arrays import Floats
 from geometry.dot import DotShape
 from geometry.files import whole_folder
 from mesh.types import TetMesh
+from solve.readout.course import PressCourse
 from solve.result import PressResult, Step
 
 RED, GREEN = "#b5263b", "#3f7a4d"
@@ -74,7 +76,7 @@ def _label(axes: Any, below: str, label: str) -> None:
     axes.tick_params(labelsize=11)
 
 
-FILES = ("undeformed", "deformed", "von_mises", "film", "force_voltage")
+FILES = ("undeformed", "deformed", "von_mises", "film", "force_voltage", "course")
 
 
 def write_pictures(
@@ -82,11 +84,11 @@ def write_pictures(
     result: PressResult,
     dot_shape: DotShape,
     folder: Path,
-    readout_voltage_V: Floats | None = None,
+    along: PressCourse,
 ) -> dict[str, Path]:
     """Write <name>.png for every name in FILES; return them by name. The folder appears whole or not at all.
 
-    readout_voltage_V : (s,) voltage behind the amplifier at each step, where there is one.
+    along : its course in time.
     Raises InputError when this machine lacks the system libraries to draw.
     """
     first, last = result.steps[0], deepest(result)
@@ -99,7 +101,9 @@ def write_pictures(
         draw_parts(scene, pressed, files["deformed"])
         draw_von_mises(scene, pressed, files["von_mises"])
         save(film_figure(tet_mesh, last, result.film_peak), files["film"])
-        draw_curves(abscissa(result), *_history(result), readout_voltage_V, files["force_voltage"])
+        read = None if along.together_V is None else along.together_V[along.solved]
+        draw_curves(abscissa(result), *_history(result), read, files["force_voltage"])
+        save(course_figure(along, result.electrode_names), files["course"])
     return {name: folder / f"{name}.png" for name in FILES}
 
 

@@ -34,6 +34,11 @@ CAPTIONS = {
         "Force and voltage while pressing",
         "Force on the dot and open-circuit voltage of the film (no charge is drawn).",
     ),
+    "course": (
+        "The press in time",
+        "Depth, force, charge of each electrode and what is read, along the whole waveform; dots are the states that "
+        "were solved.",
+    ),
 }
 """Title and one plain sentence for each picture, in the order in which the report shows them."""
 SLICE_CAPTIONS = {
@@ -110,14 +115,16 @@ def headline(summary: Mapping[str, Any]) -> list[dict[str, str]]:
     where = "mean through the film" + (f", at least {number(away)} mm from held sides" if away else "")
     of_force, of_voltage = (plus_minus(summary, name, ", ") for name in ("force_percent", "voltage_percent"))
     at_noise = f"for a noise of {number(1e3 * noise)} mV" if noise else "for the stated noise"
+    at = f", at {number(sensitivity['at_time_s'])} s" if sensitivity.get("at_time_s") is not None else ""
     rows = [
         ("Depth reached", _last(summary, "indentation_mm"), "mm", "travel of the dot"),
         ("Reaction force", _last(summary, "reaction_force_N"), "N", "on the dot at that depth" + of_force),
         ("Open-circuit voltage", _last(summary, "open_circuit_voltage_V"), "V", "charge over capacitance" + of_voltage),
         ("Read-out voltage", _last(summary, "readout_voltage_V"), "V", "after the given amplifier"),
+        *_peak_readout(summary),
         ("Charge", _last(summary, "film_charge_pC"), "pC", "freed by the film at short circuit"),
         ("Capacitance", film.get("capacitance_pF"), "pF", "of the film at rest"),
-        ("Voltage per depth", sensitivity.get("voltage_per_mm"), "V/mm", "at the deepest step"),
+        ("Voltage per depth", sensitivity.get("voltage_per_mm"), "V/mm", "at the deepest step" + at),
         ("Charge per force", sensitivity.get("charge_pC_per_N"), "pC/N", "at the deepest step"),
         ("Least detectable press", sensitivity.get("least_detectable_indentation_um"), "µm", at_noise),
         ("Largest film strain", _percent(film.get("max_principal_strain")), "%", f"principal, {where}"),
@@ -129,6 +136,18 @@ def headline(summary: Mapping[str, Any]) -> list[dict[str, str]]:
         for label, value, unit, note in rows
         if value is not None
     ]
+
+
+def _peak_readout(summary: Mapping[str, Any]) -> list[tuple[str, Any, str, str]]:
+    """The largest voltage behind an amplifier along the course, with its sign, when, and how far it may be off."""
+    course = summary.get("course", {})
+    peaks = [(max(curve, key=abs), curve, name) for name, curve in course.get("readout_V", {}).items()]
+    if not peaks:
+        return []
+    value, curve, name = max(peaks, key=lambda peak: abs(peak[0]))
+    when, error = course["time_s"][curve.index(value)], course["readout_error_percent"]
+    note = f"'{name}' at {number(when)} s; may be off by {number(error, 2)} % between solved states"
+    return [("Largest read-out", value, "V", note)]
 
 
 def plus_minus(summary: Mapping[str, Any], name: str, before: str = " ") -> str:

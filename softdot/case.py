@@ -25,7 +25,7 @@ from mesh.types import Planes, TetMesh
 from softdot.config import Config, config_from, input_hash, load_config
 from softdot.config.model import model_of
 from softdot.config.toml import completed
-from softdot.summary import history
+from softdot.summary import course_columns, course_part, history
 from solve.model import Model
 from solve.result import PressResult, Step
 
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 
     from geometry.solids import Part
     from softdot.outcome import Derivative
+    from solve.readout.course import PressCourse
 
 OnStep = Callable[[Step, int, int], None]
 
@@ -62,7 +63,7 @@ class Case:
     >>> pressed.converged, pressed.indentation_mm.tolist()
     (True, [0.0, 0.05, 0.1])
     >>> list(pressed.to_dataframe())
-    ['time_s', 'indentation_mm', 'reaction_force_N', 'film_charge_pC', 'open_circuit_voltage_V']
+    ['time_s', 'indentation_mm', 'reaction_force_N', 'charge_pC_film', 'voltage_V_film', 'solved']
     """
 
     def __init__(self, config: Config | None = None, **tables: Any) -> None:
@@ -163,23 +164,21 @@ class Case:
 
         on_mesh = self.solved_mesh if tet_mesh is None else tet_mesh
         key = press_key(self, on_mesh)
-        return press_segment(self.model, on_mesh, on_step, Checkpoint(folder() / f"press-{key}.npz", key), self.dot)
+        kept, asked = Checkpoint(folder() / f"press-{key}.npz", key), self.config.mesh.accuracy_percent
+        return press_segment(self.model, on_mesh, on_step, kept, self.dot, asked)
 
     @property
     def is_amplified(self) -> bool:
         """Whether something stands between the film and what is read."""
-        physics = self.model.physics
-        return bool(self.model.readout or physics.electronics or physics.of_channels)
+        from solve.readout.amplifier import amplifier
 
-    def amplified(self, result: PressResult) -> tuple[Floats, Floats] | None:
-        """Voltage in V at each step: electrodes in parallel (s,), each alone (e, s); None without an amplifier."""
-        if not self.is_amplified:
-            return None
-        from solve.model import Readout
-        from solve.readout.recording import channel_voltages, readout_voltage
+        return amplifier(self.model.readout, self.model.physics) is not None
 
-        told = (result, self.model.press, self.model.readout or Readout(), self.model.physics)
-        return readout_voltage(*told), channel_voltages(*told)
+    def course(self, result: PressResult) -> "PressCourse":
+        """The course of a result in time: drive, force, charges, voltages, and what each amplifier gives."""
+        from solve.readout.course import course
+
+        return course(result, self.model.press, self.model.readout, self.model.physics)
 
     def uncertainty(self, summary: dict[str, Any]) -> dict[str, Any]:
         """How far the last force and voltage of a summary can be trusted."""
@@ -238,6 +237,7 @@ class Pressed:
         self.indentation_mm, self.reaction_force_N = past.indentation_mm, past.reaction_force_N
         self.film_charge_pC, self.open_circuit_voltage_V = past.film_charge_pC, past.open_circuit_voltage_V
         self.time_s: Floats = np.array([step.time_s for step in result.steps])
+        """When the waveform first comes to each step."""
 
     @property
     def converged(self) -> bool:
@@ -252,22 +252,28 @@ class Pressed:
     @property
     def warnings(self) -> list[str]:
         """What a user should know, before and after the solution."""
-        from softdot.checks import design_warnings, result_warnings
+        from softdot.checks import course_warnings, design_warnings, result_warnings
 
         model = self.case.model
-        return [*self.case.checked[1], *design_warnings(model), *result_warnings(model, self.case.dot, self.result)]
+        told = [*self.case.checked[1], *design_warnings(model), *result_warnings(model, self.case.dot, self.result)]
+        return [*told, *course_warnings(model, self.result, self.course)]
 
     @cached_property
+    def course(self) -> "PressCourse":
+        """The whole press in time, SI units: what comes between the steps, a hold and the way back included."""
+        return self.case.course(self.result)
+
+    @property
     def readout_voltage_V(self) -> Floats | None:
         """Behind the amplifier (s,); None without one."""
-        amplified = self.case.amplified(self.result)
-        return None if amplified is None else amplified[0]
+        found = self.course.together_V
+        return None if found is None else found[self.course.solved]
 
-    @cached_property
+    @property
     def channel_voltages_V(self) -> Floats | None:
         """Of each electrode behind an amplifier of its own, (e, s); None without one."""
-        amplified = self.case.amplified(self.result)
-        return None if amplified is None else amplified[1]
+        found = self.course.channels_V
+        return None if found is None else found[self.course.solved].T
 
     @property
     def film_capacitance_pF(self) -> float:
@@ -280,10 +286,12 @@ class Pressed:
         return self.result.film_peak.strain
 
     def to_dataframe(self) -> "pd.DataFrame":
-        """One row a step; columns as the arrays are called."""
+        """The course, one row a time; electrodes and channels by name, as charge_pC_film; solved : of the steps."""
         import pandas as pd
 
-        return pd.DataFrame(self._columns())
+        table = pd.DataFrame(course_columns(course_part(self.case.model, self.result, self.course)))
+        table["solved"] = table.index.isin(self.course.solved)
+        return table
 
     def _columns(self) -> dict[str, Floats]:
         columns = {
@@ -325,19 +333,18 @@ class Pressed:
         return grid
 
     def plot(self) -> "Figure":
-        """Force, and voltage behind the amplifier or of the open circuit, against depth, or time where that counts."""
+        """Force and voltage against depth; with a waveform or an amplifier the whole course over time."""
         from matplotlib.figure import Figure
 
+        from export.course_figure import course_figure
+
+        if self.case.is_amplified or self.result.follows_time or self.case.model.press.waveform is not None:
+            return _shown(course_figure(self.course, self.result.electrode_names))
         figure = Figure(figsize=FIGURE_SIZE_IN, layout="constrained")
-        by_time = self.result.follows_time
-        abscissa, label = (self.time_s, "time (s)") if by_time else (self.indentation_mm, "indentation (mm)")
-        open_circuit = self.readout_voltage_V is None
-        voltage = self.open_circuit_voltage_V if self.readout_voltage_V is None else self.readout_voltage_V
-        shown = {"reaction force (N)": self.reaction_force_N}
-        shown["open-circuit voltage (V)" if open_circuit else "voltage at the amplifier (V)"] = voltage
+        shown = {"reaction force (N)": self.reaction_force_N, "open-circuit voltage (V)": self.open_circuit_voltage_V}
         for axes, (name, values) in zip(figure.subplots(1, 2), shown.items(), strict=True):
-            axes.plot(abscissa, values, "o-", markersize=3)
-            axes.set(xlabel=label, ylabel=name)
+            axes.plot(self.indentation_mm, values, "o-", markersize=3)
+            axes.set(xlabel="indentation (mm)", ylabel=name)
             axes.grid(alpha=0.3)
         return _shown(figure)
 

@@ -24,6 +24,7 @@ from softdot.config import Config
 from softdot.machine import needed_GB, refuse_too_little_memory
 from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.model import Model
+from solve.readout.course import PressCourse
 from solve.result import PressResult
 from solve.solution.schedule import duration_s
 from solve.symmetry import meshed_planes
@@ -140,6 +141,22 @@ def result_warnings(model: Model, dot_shape: DotShape, result: PressResult) -> l
         deepest_mm = 1e3 * max(step.indentation_m for step in result.steps)
         warnings += press_warnings(dot_shape, model.segment, deepest_mm)
     return warnings
+
+
+READOUT_ERROR_PERCENT = 5.0
+"""From which a run warns; what it is stands in the summary whatever it is."""
+
+
+def course_warnings(model: Model, result: PressResult, along: PressCourse) -> list[str]:
+    """A warning where too few states were solved to tell what an amplifier gives."""
+    error = along.readout_error_percent
+    if along.together_V is None or error <= READOUT_ERROR_PERCENT or not result.converged:
+        return []
+    return [
+        f"the read-out may be off by {error:.2g} % of its largest value, as the charge between {len(result.steps)} "
+        f"solved states is interpolated: press.load_steps = {model.press.load_steps} is too few, or state "
+        "mesh.accuracy_percent"
+    ]
 
 
 def design_warnings(model: Model) -> list[str]:

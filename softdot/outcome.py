@@ -10,7 +10,7 @@ from geometry.base import InputError
 from geometry.cache import data_hash, recall, remember, source_hash
 from mesh.types import MeshingError, TetMesh
 from softdot.case import Case, OnStep
-from softdot.checks import design_warnings, result_warnings
+from softdot.checks import course_warnings, design_warnings, result_warnings
 from softdot.config import Config, config_from, input_hash
 from softdot.config.model import model_of
 from softdot.console import plain
@@ -67,9 +67,9 @@ def solved(config: Config, on_step: OnStep | None = None) -> dict[str, Any]:
     except MeshingError as error:
         return {**numbers, "solver": stopped_solver(f"meshing: {error}")}
     result = case.solve(on_step)
-    readout, channels = case.amplified(result) or (None, None)
-    numbers |= {"mesh": mesh_part(quality, result.unknowns), **press_part(model.readout, result, readout, channels)}
-    numbers["warnings"] += result_warnings(model, case.dot, result)
+    along = case.course(result)
+    numbers |= {"mesh": mesh_part(quality, result.unknowns), **press_part(model, result, along)}
+    numbers["warnings"] += [*result_warnings(model, case.dot, result), *course_warnings(model, result, along)]
     return dict(plain(numbers))
 
 
@@ -80,7 +80,7 @@ RELATIVE_STEP = 1e-4
 class Derivative:
     """d(quantity)/d(key), in the quantity's unit over the key's own; (t,) over the times of the press.
 
-    readout_voltage_V is None without a [readout].
+    readout_voltage_V is None without an amplifier: no [readout] and no mechanism of one.
     """
 
     key: str

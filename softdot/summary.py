@@ -3,7 +3,7 @@
 How much signal a press gives, and the least press that noise lets through.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,8 +12,10 @@ import numpy as np
 from geometry.arrays import Floats
 from softdot.config import Config, config_hash
 from softdot.output import RUN
-from solve.model import Readout
+from solve.model import Model, Readout, Waveform
+from solve.readout.course import PressCourse
 from solve.result import PressResult
+from solve.solution.schedule import fraction
 
 
 def sensitivity(
@@ -104,14 +106,10 @@ def heading(config: Config) -> dict[str, Any]:
     }
 
 
-def press_part(
-    readout: Readout | None, result: PressResult, readout_voltage_V: Floats | None, channels_V: Floats | None = None
-) -> dict[str, Any]:
-    """The part of the summary that the press gives.
-
-    readout_voltage_V : (s,) electrodes in parallel, channels_V : (e, s) each alone; None without a circuit.
-    """
-    past = history(result)
+def press_part(model: Model, result: PressResult, along: PressCourse) -> dict[str, Any]:
+    """The part of the summary that the press gives; along : its course."""
+    past, solved = history(result), along.solved
+    readout_voltage_V = None if along.together_V is None else along.together_V[solved]
     voltage = past.open_circuit_voltage_V if readout_voltage_V is None else readout_voltage_V
     part = {
         "indentation_mm": past.indentation_mm,
@@ -123,13 +121,70 @@ def press_part(
         part["time_s"] = np.array([step.time_s for step in result.steps])
     if readout_voltage_V is not None:
         part["readout_voltage_V"] = readout_voltage_V
+        part["time_s"] = along.time_s[solved]
     found = {
         **part,
         "film": film(result),
-        "electrodes": electrodes(result, channels_V),
-        "sensitivity": sensitivity(past.indentation_mm, past.reaction_force_N, past.film_charge_pC, voltage, readout),
+        "electrodes": electrodes(result, along),
+        "sensitivity": {
+            **sensitivity(past.indentation_mm, past.reaction_force_N, past.film_charge_pC, voltage, model.readout),
+            **_instants(past, voltage, along, model.readout),
+        },
+        "course": course_part(model, result, along),
     }
     return {**found, "solver": _solver_of(found, result)}
+
+
+def _instants(past: History, voltage_V: Floats, along: PressCourse, readout: Readout | None) -> dict[str, float | None]:
+    """When the voltage per depth holds, and when the least detectable depth is reached on the way in."""
+    times = along.time_s[along.solved]
+    deepest = int(np.argmax(past.indentation_mm))
+    least = least_detectable(past.indentation_mm, voltage_V, (readout or Readout()).noise_V)
+    way_in = slice(0, int(along.solved[deepest]) + 1)
+    depth = np.maximum.accumulate(MM * along.indentation_m[way_in])
+    when = None if least is None else float(np.interp(least, depth, along.time_s[way_in]))
+    return {"at_time_s": float(times[deepest]), "least_detectable_at_time_s": when}
+
+
+TOGETHER = "together"
+"""The channel of all electrodes in parallel, beside those of each."""
+
+
+def channels(along: PressCourse, names: Sequence[str]) -> dict[str, Floats]:
+    """What each amplifier gives over time (n,) by the name of its electrode; of several also of all in parallel."""
+    if along.channels_V is None or along.together_V is None:
+        return {}
+    together = {TOGETHER: along.together_V} if len(names) > 1 else {}
+    return {**together, **dict(zip(names, along.channels_V.T, strict=True))}
+
+
+def course_part(model: Model, result: PressResult, along: PressCourse) -> dict[str, Any]:
+    """The course of a press: drive, force, charge, voltage and read-out at its times, electrodes by name."""
+    names, press = result.electrode_names, model.press
+    drive = {"indentation_mm": MM * along.indentation_m}
+    if press.force_N is not None:
+        drive["force_N"] = press.force_N * fraction(press.waveform or Waveform(), along.time_s)
+    return {
+        "time_s": along.time_s,
+        **drive,
+        "reaction_force_N": along.reaction_force_N,
+        "charge_pC": dict(zip(names, PC * along.charge_C.T, strict=True)),
+        "voltage_V": dict(zip(names, along.voltage_V.T, strict=True)),
+        "readout_V": channels(along, names),
+        "solved": along.solved,
+        "readout_error_percent": along.readout_error_percent,
+    }
+
+
+def course_columns(part: Mapping[str, Any]) -> dict[str, Floats]:
+    """The curves of a course_part as columns, electrodes and channels behind what they are: charge_pC_left."""
+    columns: dict[str, Floats] = {}
+    for key, value in part.items():
+        if isinstance(value, Mapping):
+            columns |= {f"{key}_{name}": curve for name, curve in value.items()}
+        elif key not in ("solved", "readout_error_percent"):
+            columns[key] = value
+    return columns
 
 
 def _solver_of(found: Mapping[str, Any], result: PressResult) -> dict[str, Any]:
@@ -165,15 +220,15 @@ def film(result: PressResult) -> dict[str, Any]:
     }
 
 
-def electrodes(result: PressResult, channels_V: Floats | None = None) -> list[dict[str, Any]]:
-    """Charge and voltage of each electrode by itself; channels_V : (e, s) behind amplifiers of their own."""
+def electrodes(result: PressResult, along: PressCourse) -> list[dict[str, Any]]:
+    """Charge and voltage of each electrode by itself at the steps."""
     return [
         {
             "name": name,
             "capacitance_pF": PF * result.capacitance_F[number],
             "film_charge_pC": [PC * step.film_charge_C[number] for step in result.steps],
             "open_circuit_voltage_V": [step.open_circuit_voltage_V[number] for step in result.steps],
-            **({} if channels_V is None else {"readout_voltage_V": channels_V[number]}),
+            **({} if along.channels_V is None else {"readout_voltage_V": along.channels_V[along.solved, number]}),
         }
         for number, name in enumerate(result.electrode_names)
     ]

@@ -56,7 +56,9 @@ class Press(Table):
 
     indentation_mm: Positive | None = Field(None, description="final depth; 0.3 when neither depth nor force is given")
     force_N: Positive | None = Field(None, description="final force instead of indentation_mm")
-    load_steps: Annotated[int, Field(ge=1, le=1000)] = Field(6, description="equal steps that are reported")
+    load_steps: Annotated[int, Field(ge=1, le=1000)] = Field(
+        6, description="least number of equal steps that are reported; of a file spread over its pieces"
+    )
     path_xy_mm: tuple[tuple[Finite, Finite], ...] = Field(
         (), description="waypoints of a slide at full load; within the hold of a trapezoid, else after the waveform"
     )

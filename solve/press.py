@@ -19,6 +19,7 @@ from solve.problem import (
     refuse_unresolved,
     with_rims_of_patches,
 )
+from solve.readout.course import course
 from solve.recorder import Recorder
 from solve.result import PressResult, Step
 from solve.solution.checkpoint import Checkpoint
@@ -102,16 +103,36 @@ def press_segment(
     on_step: OnStep | None = None,
     checkpoint: Checkpoint | None = None,
     dot: DotShape | None = None,
+    accuracy_percent: float | None = None,
 ) -> PressResult:
     """Solve the press of a model on a mesh of its segment. on_step(step, number, count) follows the progress.
 
     The read-out matters only where the film's voltage acts back on it (coupling = "two-way").
     checkpoint : where a long press leaves its state, and goes on from one that was killed.
     dot : at rest, where it is not the one that the model's table describes.
+    accuracy_percent : load steps are doubled until the read-out between them is so accurate; None: as stated.
     Want of convergence raises nothing: the result then holds what converged and says where and why it ended.
     InputError for a delaminated patch outside its interface.
     """
-    setup = discretise(model, tet_mesh, dot or resolve_dot(model.dot, model.segment))
+    result = _pressed(model, tet_mesh, on_step, checkpoint, dot or resolve_dot(model.dot, model.segment))
+    for _ in range(MOST_DOUBLINGS):
+        press = model.press.model_copy(update={"load_steps": 2 * model.press.load_steps})
+        if accuracy_percent is None or not result.converged or press.load_steps > MOST_STEPS:
+            break
+        if course(result, model.press, model.readout, model.physics).readout_error_percent <= accuracy_percent:
+            break
+        model = replace(model, press=press)
+        result = _pressed(model, tet_mesh, on_step, None, dot or resolve_dot(model.dot, model.segment))
+    return result
+
+
+MOST_DOUBLINGS, MOST_STEPS = 4, 1000
+
+
+def _pressed(
+    model: Model, tet_mesh: TetMesh, on_step: OnStep | None, checkpoint: Checkpoint | None, dot: DotShape
+) -> PressResult:
+    setup = discretise(model, tet_mesh, dot)
     linear = LinearSolver(setup.system.factorisation_shift)
     failure = _follow(setup, linear, on_step, checkpoint)
     linear.close()

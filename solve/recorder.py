@@ -22,7 +22,7 @@ from solve.problem import meshed_share, whole_charge
 from solve.readout.amplifier import other_charge_C
 from solve.result import PressResult, Record, Step, Trace, fields, film_peak
 from solve.solution.march import SMALLEST_IN_TIME, TIME_TOLERANCE
-from solve.solution.schedule import fraction
+from solve.solution.schedule import first_reached_s, fraction
 from solve.system import State, System
 
 PENETRATION_LIMIT = 0.05  # of the depth; contact holds in weighted means, so a coarse surface can overlap at points
@@ -189,11 +189,15 @@ class Recorder:
     def result(self, failure: str | None, linear_solver: str, press: Press, follows_time: bool) -> PressResult:
         """The whole history; sources of charge that do not depend on the mechanics are added here."""
         trace = self.trace(press)
-        charge = trace.film_charge_C
+        charge, progress = trace.film_charge_C, trace.time_s
         at = np.searchsorted(trace.time_s, [step.time_s for step in self.steps])
+        if not follows_time:
+            progress = trace.time_s / (press.waveform or Waveform()).rise_s
+            trace = replace(trace, time_s=first_reached_s(progress, press))
         steps = tuple(
             replace(
                 step,
+                time_s=float(trace.time_s[i]),
                 reaction_force_N=float(trace.reaction_force_N[i]),
                 film_charge_C=charge[i],
                 open_circuit_voltage_V=charge[i] / self.capacitance_F,
@@ -204,6 +208,7 @@ class Recorder:
             steps=steps,
             trace=trace,
             follows_time=follows_time,
+            progress=progress,
             tet_mesh=self.whole.tet_mesh,
             planes=self.tet_mesh.planes,
             converged=failure is None,

@@ -138,6 +138,8 @@ class PressResult:
 
     follows_time : the press followed its waveform; else only loads were solved, whose order matters but not their time.
     tet_mesh : the mesh of the fields and of the whole segment, its nodes doubled where an interface opens.
+    progress : (t,) of the states of the trace where time does not count: shares of the full drive, then 1 + the legs of
+        the slide that are done; their times are those at which the waveform first comes there. Else the times.
     planes : mirror planes at which the mesh that was solved ends (mesh.symmetry).
 
     converged is False when the last asked depth was not reached; failure then says where and why.
@@ -158,6 +160,7 @@ class PressResult:
     film_peak: FilmPeak
     warnings: tuple[str, ...] = field(default=())
     planes: Planes = ()
+    progress: Floats = field(default_factory=lambda: np.zeros(0))
 
 
 RIM_THICKNESSES = 5.0

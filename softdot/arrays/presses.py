@@ -21,9 +21,8 @@ from geometry.parameters import Dot
 from softdot.arrays.case import ArrayCase, ArrayPress
 from softdot.checks import result_warnings
 from softdot.config import Config, input_hash
-from solve.model import Readout
 from solve.press import OnStep, press_segment
-from solve.readout.recording import channel_voltages
+from solve.readout.course import course
 from solve.result import PressResult
 from solve.solution.checkpoint import Checkpoint
 
@@ -166,9 +165,8 @@ def _path(press: ArrayPress) -> Path:
 def signals_of(press: ArrayPress, result: PressResult, solve_s: float) -> Signals:
     """The numbers of a result."""
     model = press.model
-    amplified = None
-    if model.readout is not None or model.physics.electronics or model.physics.of_channels:
-        amplified = channel_voltages(result, model.press, model.readout or Readout(), model.physics).T
+    along = course(result, model.press, model.readout, model.physics)
+    amplified = None if along.channels_V is None else along.channels_V[along.solved]
     steps = result.steps
     return Signals(
         depth_mm=np.array([1e3 * step.indentation_m for step in steps]),

@@ -102,7 +102,7 @@ def _fill(
     """Everything but summary.json; returns the summary. Parts and pictures are made beside mesh, press and files."""
     from mesh.files.formats import write_mesh
     from mesh.types import MeshingError
-    from softdot.checks import design_warnings, result_warnings
+    from softdot.checks import course_warnings, design_warnings, result_warnings
     from softdot.summary import heading, mesh_part, press_part, stopped_solver
     from softdot.tolerances.uncertainty import prepare
     from solve.fem.warm_up import compile_cheap
@@ -129,13 +129,13 @@ def _fill(
         if not ask.kernels.done():
             compile_cheap()
             wait((ask.kernels,))
-        result = case.press(_reporting(progress)).result
-        readout, channels = case.amplified(result) or (None, None)
+        pressed = case.press(_reporting(progress))
+        result, along = pressed.result, pressed.course
     if ahead is not None and ahead.cancel():  # not begun: it is done here, while the second process draws
         ahead = None
-    pictures = ask(draw, result.tet_mesh, result, case.dot, folder / "pictures", readout)
-    summary |= {"mesh": mesh_part(quality, result.unknowns), **press_part(model.readout, result, readout, channels)}
-    late = result_warnings(model, case.dot, result)
+    pictures = ask(draw, result.tet_mesh, result, case.dot, folder / "pictures", along)
+    summary |= {"mesh": mesh_part(quality, result.unknowns), **press_part(model, result, along)}
+    late = [*result_warnings(model, case.dot, result), *course_warnings(model, result, along)]
     warn(late)
     summary["warnings"] += late
     if result.converged:

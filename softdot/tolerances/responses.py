@@ -235,8 +235,8 @@ def remembered(config: Config, what: str, make: Callable[[], Any]) -> Any:
 def _response(config: Config, result: PressResult) -> Response:
     if not result.converged:
         raise StoppedShortError(result.failure)
-    amplified = Case(config).amplified(result)
-    voltage = history(result).open_circuit_voltage_V if amplified is None else amplified[0]
+    along = Case(config).course(result)
+    voltage = history(result).open_circuit_voltage_V if along.together_V is None else along.together_V[along.solved]
     step = _deepest(result)
     return Response(result.steps[step].reaction_force_N, float(voltage[step]))
 

@@ -18,11 +18,24 @@ from solve.readout.stages import Saturation, Stage
 
 def amplify(time_s: Floats, charge_C: Floats, capacitance_F: float, readout: Readout, physics: Physics) -> Floats:
     """Voltage (t,) from the film's short-circuit charge (t,) at times (t,), from rest."""
-    capacitance, resistance = input_of(readout, capacitance_F)
-    voltage = leaky_integral(time_s, charge_C, capacitance, resistance)
-    for stage in stages(readout, physics):
-        voltage = stage.applied(time_s, voltage)
-    return np.asarray(readout.polarity * voltage)
+    voltage = leaky_integral(time_s, charge_C, *input_of(readout, capacitance_F))
+    return behind_input(time_s, voltage, readout, physics)
+
+
+def behind_input(time_s: Floats, voltage_V: Floats, readout: Readout, physics: Physics, channel: int = 0) -> Floats:
+    """What an amplifier gives (t,) for the voltage (t,) at its input; channel as in stages."""
+    for stage in stages(readout, physics, channel):
+        voltage_V = stage.applied(time_s, voltage_V)
+    return np.asarray(readout.polarity * voltage_V)
+
+
+def amplifier(readout: Readout | None, physics: Physics) -> Readout | None:
+    """What stands between the film and what is read: the read-out as stated, an ideal one where only mechanisms of the
+    amplifier are, None where nothing is.
+    """
+    if readout is None and (physics.electronics or physics.of_channels):
+        return Readout()
+    return readout
 
 
 def input_of(readout: Readout, film_capacitance_F: float) -> tuple[float, float]:
@@ -57,6 +70,26 @@ def leaky_integral(time: Floats, charge: Floats, capacitance: float, resistance:
             decay = step / (resistance * capacitance)
             fade, gain, last = np.exp(-decay), mean_decay(decay), step
         voltage[n + 1] = fade * voltage[n] + gain * (charge[n + 1] - charge[n]) / capacitance
+    return voltage
+
+
+@nb.njit(cache=True)
+def curved_integral(time: Floats, charge: Floats, capacitance: float, resistance: float) -> Floats:
+    """As leaky_integral, exact for a charge that is a parabola over each two equal steps; n is odd.
+
+    With x = t / RC, p1 = (1 - exp(-x)) / x and p2 = (1 - p1) / x, a charge a t + b t^2 gives (a t p1 + 2 b t^2 p2) / C.
+    """
+    voltage = np.zeros(len(time))
+    for n in range(0, len(time) - 2, 2):
+        step = time[n + 1] - time[n]
+        bend = 0.5 * (charge[n] - 2.0 * charge[n + 1] + charge[n + 2])
+        rise = charge[n + 1] - charge[n] - bend
+        for steps in (1, 2):
+            decay = steps * step / (resistance * capacitance)
+            first = mean_decay(decay)
+            second = (1.0 - first) / decay if decay > 1e-3 else 0.5 - decay / 6.0 + decay**2 / 24.0
+            gained = rise * steps * first + 2.0 * bend * steps**2 * second
+            voltage[n + steps] = np.exp(-decay) * voltage[n] + gained / capacitance
     return voltage
 
 

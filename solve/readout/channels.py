@@ -9,14 +9,14 @@ and each of them is integrated exactly for charges that are linear between the s
 are virtual grounds: a capacitance between them carries nothing.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 from scipy.linalg import eigh
 
 from geometry.arrays import Floats
 from solve.model import Physics, Readout
-from solve.readout.amplifier import input_of, leaky_integral, mixed_channels, stages
+from solve.readout.amplifier import behind_input, input_of, leaky_integral, mixed_channels
 
 
 def amplify_channels(
@@ -27,31 +27,43 @@ def amplify_channels(
     From rest at times (t,). What leaks from one input, ties two together, filters one channel or mixes what they give
     is in the physics, with channels numbered from 1.
     """
-    alone = []
-    for number, voltage in enumerate(input_voltages(time_s, charge_C, capacitance_F, readout, physics), start=1):
-        for stage in stages(readout, physics, number):
-            voltage = stage.applied(time_s, voltage)
-        alone.append(readout.polarity * voltage)
+    return behind_inputs(time_s, input_voltages(time_s, charge_C, capacitance_F, readout, physics), readout, physics)
+
+
+def behind_inputs(time_s: Floats, voltage_V: Floats, readout: Readout, physics: Physics) -> Floats:
+    """What all channels give (e, t) for the voltages (e, t) at their inputs, crosstalk included."""
+    alone = [behind_input(time_s, own, readout, physics, number) for number, own in enumerate(voltage_V, start=1)]
     return mixed_channels(np.array(alone), physics)
 
 
+Integral = Callable[[Floats, Floats, float, float], Floats]
+
+
 def input_voltages(
-    time_s: Floats, charge_C: Floats, capacitance_F: Floats, readout: Readout, physics: Physics
+    time_s: Floats,
+    charge_C: Floats,
+    capacitance_F: Floats,
+    readout: Readout,
+    physics: Physics,
+    integral: Integral = leaky_integral,
 ) -> Floats:
-    """Voltage (e, t) at every input. ValueError for a pair with a channel that is not there."""
+    """Voltage (e, t) at every input; integral : leaky_integral or curved_integral of solve.readout.amplifier.
+
+    ValueError for a pair with a channel that is not there.
+    """
     inputs = [input_of(readout, float(one)) for one in capacitance_F]
     if readout.mode == "charge":
         charges = zip(charge_C.T, inputs, strict=True)
-        return np.array([leaky_integral(time_s, np.ascontiguousarray(q), c, r) for q, (c, r) in charges])
+        return np.array([integral(time_s, np.ascontiguousarray(q), c, r) for q, (c, r) in charges])
     leak = [1e-6 * physics.channel_leak_uS.get(number, 0.0) for number in range(1, len(inputs) + 1)]
     conductance = np.array([1.0 / r for _, r in inputs]) + leak
     capacitance = np.array([c for c, _ in inputs])
     if not physics.mutual_pF:
         told = zip(charge_C.T, capacitance, conductance, strict=True)
-        return np.array([leaky_integral(time_s, np.ascontiguousarray(q), c, _resistance(g)) for q, c, g in told])
+        return np.array([integral(time_s, np.ascontiguousarray(q), c, _resistance(g)) for q, c, g in told])
     rate, shape = eigh(np.diag(conductance), np.diag(capacitance) + mutual_F(physics.mutual_pF, len(inputs)))
     driven = np.ascontiguousarray((charge_C @ shape).T)
-    modes = [leaky_integral(time_s, own, 1.0, _resistance(a)) for own, a in zip(driven, rate, strict=True)]
+    modes = [integral(time_s, own, 1.0, _resistance(a)) for own, a in zip(driven, rate, strict=True)]
     return np.asarray(shape @ np.array(modes))
 
 

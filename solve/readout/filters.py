@@ -9,7 +9,7 @@ Integrated exactly for what is linear between the samples: a first-order hold (F
 Control of Dynamic Systems, 1998, section 6.3).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import hypot, sqrt
 from typing import ClassVar, Literal
@@ -18,10 +18,10 @@ import numba as nb
 import numpy as np
 from scipy.linalg import expm
 
-from geometry.arrays import Floats
+from geometry.arrays import Floats, Ints
 from solve.readout.stages import FILTER
 
-SAMPLES = 4001  # of the even grid of a filter, at least
+SAME_STEP = 1e-9  # relative difference of two steps that count as one
 
 
 @dataclass(frozen=True)
@@ -50,15 +50,10 @@ class Filter:
         return np.array([natural**2]), np.array([1.0, natural / self.quality, natural**2])
 
     def applied(self, time_s: Floats, voltage_V: Floats) -> Floats:
-        """Filtered voltage (n,) at times (n,), on an even grid as fine as the samples' mean."""
-        even = np.linspace(time_s[0], time_s[-1], max(len(time_s), SAMPLES))
-        step = float(even[1] - even[0])
-        recurrence = _discrete(self, step)
-        if self.delay_s == 0.0 and len(even) == len(time_s) and np.abs(even - time_s).max() < 1e-9 * step:
-            return np.asarray(_march(*recurrence, voltage_V))
-        return np.asarray(
-            np.interp(time_s - self.delay_s, even, _march(*recurrence, np.interp(even, time_s, voltage_V)))
-        )
+        """Filtered voltage (n,) at increasing times (n,), even or not."""
+        number, recurrences = _steps(self, time_s)
+        filtered = _march(number, *recurrences, voltage_V)
+        return filtered if self.delay_s == 0.0 else np.interp(time_s - self.delay_s, time_s, filtered)
 
     def largest_gain(self) -> float:
         """Integral of |impulse response|: by how much it can enlarge the largest value, at any corner."""
@@ -71,18 +66,40 @@ def corner_over_natural(quality: float) -> float:
     return 1.0 / sqrt(hypot(half, 1.0) - half)
 
 
+Recurrences = tuple[Floats, Floats, Floats, Floats, float]
+
+
+def _steps(own: Filter, time_s: Floats) -> tuple[Ints, Recurrences]:
+    """Which recurrence each step between the times takes (n - 1,), and the recurrences of all sizes of step."""
+    step = np.diff(time_s)
+    if len(step) == 0:
+        return np.zeros(0, dtype=np.int64), _discrete(own, (1.0,))
+    mean = float(time_s[-1] - time_s[0]) / len(step)
+    even = time_s[0] + mean * np.arange(len(time_s))
+    if np.abs(even - time_s).max() < SAME_STEP * mean:
+        return np.zeros(len(step), dtype=np.int64), _discrete(own, (mean,))
+    _, first, number = np.unique(np.round(np.log(step) / SAME_STEP), return_index=True, return_inverse=True)
+    return number.ravel(), _discrete(own, tuple(step[first].tolist()))
+
+
 @lru_cache(maxsize=64)
-def _discrete(own: Filter, step: float) -> tuple[Floats, Floats, Floats, Floats, float]:
-    """A, the gains of the sample before and of this one, c and d of _march, by the exponential of one matrix."""
+def _discrete(own: Filter, steps: tuple[float, ...]) -> Recurrences:
+    """A, the gains of the sample before and of this one for each step, c and d of _march, by exponentials of matrices.
+
+    Time is counted in units of the corner, so that no coefficient of a high order is out of range.
+    """
     from scipy.signal import tf2ss
 
-    a, b, c, d = tf2ss(*own.transfer())
-    order = own.order
-    generator = np.zeros((order + 2, order + 2))
-    generator[:order, :order], generator[:order, order], generator[order, order + 1] = step * a, step * b[:, 0], 1.0
+    corner = 2.0 * np.pi * own.corner_Hz
+    a, b, c, d = tf2ss(*replace(own, corner_Hz=0.5 / np.pi).transfer())
+    order, size = own.order, corner * np.array(steps)
+    generator = np.zeros((len(size), order + 2, order + 2))
+    generator[:, :order, :order] = size[:, None, None] * a
+    generator[:, :order, order] = size[:, None] * b[:, 0]
+    generator[:, order, order + 1] = 1.0
     held = expm(generator)
-    rising = held[:order, order + 1].copy()
-    return np.ascontiguousarray(held[:order, :order]), held[:order, order] - rising, rising, c[0], float(d[0, 0])
+    rising = held[:, :order, order + 1].copy()
+    return np.ascontiguousarray(held[:, :order, :order]), held[:, :order, order] - rising, rising, c[0], float(d[0, 0])
 
 
 @lru_cache(maxsize=64)
@@ -100,18 +117,19 @@ def _largest_gain(own: Filter) -> float:
 
 
 @nb.njit(cache=True)
-def _march(a: Floats, first: Floats, second: Floats, c: Floats, d: float, given: Floats) -> Floats:
-    """x <- A x + first v_n + second v_(n+1) from x = 0; y = c x + d v."""
-    order = len(a)
+def _march(number: Ints, a: Floats, first: Floats, second: Floats, c: Floats, d: float, given: Floats) -> Floats:
+    """x <- A x + first v_n + second v_(n+1) from x = 0, with the A and gains of each step; y = c x + d v."""
+    order = len(c)
     state, new = np.zeros(order), np.zeros(order)
     answer = np.empty(len(given))
     for n in range(len(given)):
         answer[n] = d * given[n]
         for i in range(order):
             if n > 0:
-                new[i] = first[i] * given[n - 1] + second[i] * given[n]
+                k = number[n - 1]
+                new[i] = first[k, i] * given[n - 1] + second[k, i] * given[n]
                 for j in range(order):
-                    new[i] += a[i, j] * state[j]
+                    new[i] += a[k, i, j] * state[j]
         state[:] = new
         for i in range(order):
             answer[n] += c[i] * state[i]

@@ -13,9 +13,13 @@ from geometry.arrays import Bools, Floats
 from geometry.base import InputError
 from geometry.files import read_text, regular_file
 from solve.model import Press, Waveform
+from solve.solution.thinning import thinned
 from solve.system import Load
 
 LARGEST_S = 1e12
+BISECTIONS = 60
+TINY = 1e-300
+ROUND_OFF = 1e-9
 
 
 def duration_s(waveform: Waveform) -> float:
@@ -29,16 +33,46 @@ def duration_s(waveform: Waveform) -> float:
 
 
 def corners_s(waveform: Waveform) -> Floats:
-    """Times (n,) from 0 to the end at which the rate may jump; of a file its samples, thinned to 200."""
+    """Times (n,) from the first to the last at which the rate may jump; of a file all its rows."""
     if waveform.shape == "file":
-        table = _table(waveform)
-        return np.asarray(table[np.unique(np.linspace(0, len(table) - 1, min(len(table), 200)).astype(int)), 0])
+        return np.asarray(_table(waveform)[:, 0])
     corners = [0.0, waveform.rise_s]
     if waveform.shape in ("ramp", "trapezoid") and waveform.hold_s > 0.0:
         corners.append(waveform.rise_s + waveform.hold_s)
     if duration_s(waveform) > corners[-1]:
         corners.append(duration_s(waveform))
     return np.array(corners)
+
+
+MOST_ROWS, STRAIGHT = 200, 1e-4
+"""Of a file, rows between which states are solved, and the share of the drive within which rows lie on a line."""
+
+
+def stretches_s(waveform: Waveform) -> Floats:
+    """Times (n,) between which the drive is smooth: all corners, of a file those that its straight lines need."""
+    corners = corners_s(waveform)
+    if waveform.shape != "file":
+        return corners
+    return corners[thinned(corners, fraction(waveform, corners), STRAIGHT, MOST_ROWS)]
+
+
+def largest_fraction(waveform: Waveform) -> float:
+    """What the waveform reaches: 1, of a file perhaps less."""
+    return float(fraction(waveform, corners_s(waveform)).max())
+
+
+def first_time_s(waveform: Waveform, share: Floats) -> Floats:
+    """When each fraction (n,) is first reached; the time of the largest fraction for what never is."""
+    corners = corners_s(waveform)
+    reached = np.maximum.accumulate(fraction(waveform, corners))
+    share = np.minimum(share, reached[-1])
+    after = np.searchsorted(reached, share)
+    low, high = corners[np.maximum(after - 1, 0)], corners[after]
+    for _ in range(BISECTIONS):  # between two corners every waveform rises or falls all the way
+        middle = 0.5 * (low + high)
+        below = fraction(waveform, middle) < share
+        low, high = np.where(below, middle, low), np.where(below, high, middle)
+    return np.asarray(np.where(share == reached[after], corners[after], high))
 
 
 def fraction(waveform: Waveform, time_s: Floats) -> Floats:
@@ -58,6 +92,14 @@ def fraction(waveform: Waveform, time_s: Floats) -> Floats:
 
 
 def _table(waveform: Waveform) -> Floats:
+    """The rows time_s, fraction (n, 2); what starts pressed is reached from rest in the time of a rise before."""
+    rows = _rows(waveform)
+    if rows[0, 1] == 0.0:
+        return rows
+    return np.vstack([[rows[0, 0] - waveform.rise_s, 0.0], rows])
+
+
+def _rows(waveform: Waveform) -> Floats:
     """The columns time_s, fraction of a file, or what was given in its place, (n, 2)."""
     if waveform.samples is not None:
         return waveform.samples
@@ -92,6 +134,8 @@ def _read(file: Path, _modified_ns: int, _size: int) -> Floats:
         )
     if len(table) < 2 or not (np.diff(table[:, 0]) > 0).all() or table[:, 1].min() < 0 or table[:, 1].max() > 1:
         raise InputError(f"{where}: time_s must increase and fraction stay between 0 and 1, in at least two rows")
+    if table[:, 1].max() == 0.0:
+        raise InputError(f"{where}: fraction is 0 in every row, so nothing is pressed")
     table.flags.writeable = False
     return table
 
@@ -112,14 +156,15 @@ class Target:
 def schedule(press: Press, full: float, unit_length: float, follows_time: bool) -> list[Target]:
     """Targets in solver units, the first one at rest; full : depth or force at the end of the press.
 
-    follows_time : along the waveform to its end, else once up to full in equal steps, in the time of its rise; then
-    along the legs of the slide at that load, each in the time of the rise. In a trapezoid the slide takes its hold.
+    follows_time : along the waveform to its end, else once up to what it reaches in equal steps, in the time of its
+    rise; then along the legs of the slide at that load, each in the time of the rise. In a trapezoid the slide takes
+    its hold.
     """
     waveform = press.waveform or Waveform()
     if press.slides_in_hold:
         return _press_slide_lift(press, waveform, full, unit_length)
     if follows_time:
-        times, kinks = _sampled(waveform, 1 if waveform.shape == "file" else press.load_steps)
+        times, kinks = _sampled(waveform, press.load_steps)
         share = fraction(waveform, times)
         share[share < 1e-12] = 0.0  # released, not all but
 
@@ -130,11 +175,10 @@ def schedule(press: Press, full: float, unit_length: float, follows_time: bool) 
             Target(float(t), Load((0.0, 0.0), full * float(f)), bool(k), drive_at)
             for t, f, k in zip(times, share, kinks, strict=True)
         ]
-        if targets[0].load.drive > 0.0:  # a file that starts pressed: get there from rest in the time of the rise
-            targets.insert(0, Target(targets[0].time - waveform.rise_s, Load((0.0, 0.0), 0.0), True))
     else:
-        share = np.linspace(0.0, 1.0, press.load_steps + 1)
-        targets = [Target(waveform.rise_s * f, Load((0.0, 0.0), full * f), f in (0.0, 1.0)) for f in share]
+        share = largest_fraction(waveform) * np.linspace(0.0, 1.0, press.load_steps + 1)
+        last = press.load_steps
+        targets = [Target(waveform.rise_s * f, Load((0.0, 0.0), full * f), n in (0, last)) for n, f in enumerate(share)]
     return targets + _slide(press, targets[-1], waveform.rise_s, unit_length)
 
 
@@ -149,11 +193,37 @@ def _press_slide_lift(press: Press, waveform: Waveform, full: float, unit_length
 
 
 def _sampled(waveform: Waveform, steps: int) -> tuple[Floats, Bools]:
-    """Times between the corners of a waveform, steps to each piece, and which are corners."""
-    corners = corners_s(waveform)
-    pieces = [np.linspace(a, b, steps + 1)[1:] for a, b in pairwise(corners)]
+    """Times to solve at, and which are corners: steps to each piece of a waveform.
+
+    Of a file, whose pieces are many, as many as its share of the drive or of the time asks for, at least one.
+    """
+    corners = stretches_s(waveform)
+    counts = np.full(len(corners) - 1, steps)
+    if waveform.shape == "file":
+        drive = fraction(waveform, corners)
+        change = np.abs(np.diff(drive)) / max(float(drive.max()), TINY)
+        lasts = np.diff(corners) / (corners[-1] - corners[0])
+        counts = np.maximum(1, np.ceil(steps * np.maximum(change, lasts) - 1e-9)).astype(int)
+    pieces = [np.linspace(a, b, n + 1)[1:] for (a, b), n in zip(pairwise(corners), counts, strict=True)]
     times = np.concatenate([corners[:1], *pieces])
     return times, np.isin(times, corners)
+
+
+def slide_s(press: Press) -> Floats:
+    """Times (w + 1,) of the start of a slide and of its waypoints; one time only without a slide."""
+    waveform = press.waveform or Waveform()
+    legs = np.arange(len(press.path_xy_mm) + 1.0)
+    if press.slides_in_hold:
+        return waveform.rise_s + waveform.hold_s / len(press.path_xy_mm) * legs
+    return duration_s(waveform) + waveform.rise_s * legs
+
+
+def first_reached_s(progress: Floats, press: Press) -> Floats:
+    """When states of a press in which time does not count are first reached; progress (t,) as in PressResult."""
+    slides = slide_s(press)
+    along = np.interp(progress, 1.0 + np.arange(len(slides)), slides)
+    pressed = first_time_s(press.waveform or Waveform(), np.minimum(progress, 1.0))
+    return np.where(progress <= 1.0 + ROUND_OFF, pressed, along)
 
 
 def _slide(press: Press, start: Target, leg_s: float, unit_length: float) -> list[Target]:

@@ -19,14 +19,16 @@ from dataclasses import dataclass, fields, replace
 from itertools import pairwise
 from typing import NamedTuple
 
+import numpy as np
+
 from geometry.arrays import Floats
 from geometry.dot import resolve_dot
 from mesh.interfaces import morphed
 from mesh.types import TetMesh
 from solve.fem.sparsity import Tangent
-from solve.model import Model
+from solve.model import Model, Press
 from solve.press import Setup, discretise, set_up
-from solve.readout.amplifier import amplify
+from solve.readout.course import PressCourse, course, read_together
 from solve.recorder import Recorder
 from solve.result import PressResult, Trace
 from solve.solution.linear import LinearSolver
@@ -87,15 +89,18 @@ class Twin:
         trial = self.setup.system.trial(x, self.load(base.load), base.time, self.state, base.damped)
         return self.setup.system.evaluate(trial, self.state.histories).residual
 
-    def history(self) -> Slopes:
-        """The histories themselves, not yet derivatives."""
+    def history(self, base: PressCourse, press: Press) -> Slopes:
+        """The histories themselves, not yet derivatives; the read-out on the times of the base's course.
+
+        press : the base's, whose waveform gives the times.
+        """
         model, recorder = self.setup.model, self.setup.recorder
         trace, capacitance = recorder.trace(model.press), float(recorder.capacitance_F.sum())
-        charge = trace.film_charge_C.sum(axis=1)
-        amplified = None
-        if model.readout is not None:
-            amplified = amplify(trace.time_s, charge, capacitance, model.readout, model.physics)
-        return Slopes(trace, charge / capacitance, amplified)
+        open_circuit = trace.film_charge_C.sum(axis=1) / capacitance
+        read = read_together(trace, recorder.capacitance_F, press, model.readout, model.physics, base.time_s)
+        if read is None:
+            return Slopes(trace, open_circuit, None)
+        return Slopes(trace, open_circuit, read[np.searchsorted(base.time_s, trace.time_s)])
 
     def follow(self, x: Floats, base: State) -> None:
         """Take the step to the unknowns x."""
@@ -122,7 +127,12 @@ def press_with_sensitivities(
     failure = _march(base, linear, twins)
     linear.close()
     result = base.recorder.result(failure, linear.name, model.press, follows_time=True)
-    return result, {name: _difference(*pair, variations[name].span) for name, pair in twins.items()}
+    along = course(result, model.press, model.readout, model.physics)
+    slopes = {}
+    for name, pair in twins.items():
+        low, high = (twin.history(along, model.press) for twin in pair)
+        slopes[name] = _difference(low, high, variations[name].span)
+    return result, slopes
 
 
 def twins_of(name: str, variation: Variation, base: Setup) -> tuple[Twin, Twin]:
@@ -185,9 +195,8 @@ def tow(pair: tuple[Twin, Twin], linear: LinearSolver, tangent: Tangent, state: 
     above.follow(state.x + half, state)
 
 
-def _difference(below: Twin, above: Twin, span: float) -> Slopes:
+def _difference(low: Slopes, high: Slopes, span: float) -> Slopes:
     """Central differences of the two histories; the times are the same."""
-    low, high = below.history(), above.history()
     trace = {f.name: (getattr(high.trace, f.name) - getattr(low.trace, f.name)) / span for f in fields(Trace)}
     amplified = None
     if low.readout_voltage_V is not None and high.readout_voltage_V is not None:

@@ -113,6 +113,7 @@ def made_up_press(tet_mesh: TetMesh, converged: bool = True) -> PressResult:
         steps=steps,
         trace=_trace(steps),
         follows_time=False,
+        progress=np.linspace(0.0, 1.0, len(steps)),
         tet_mesh=tet_mesh,
         converged=converged,
         failure=None if converged else "the contact did not converge beyond 0.2 mm",

@@ -16,21 +16,34 @@ from export.view import ADVICE, PICTURE_SIZE, View
 from geometry.dot import DotShape
 from geometry.solids import PART_COLOURS
 from mesh.types import TetMesh
+from solve.model import Physics, Press, Readout
+from solve.readout.course import PressCourse, course
 from solve.result import PressResult
+
+
+def course_of(press: PressResult, readout: Readout | None = None) -> PressCourse:
+    return course(press, Press(), readout, Physics())
 
 
 @pytest.fixture(scope="module")
 def pictures(
     segment: TetMesh, press: PressResult, dot: DotShape, tmp_path_factory: pytest.TempPathFactory
 ) -> dict[str, Path]:
-    return write_pictures(segment, press, dot, tmp_path_factory.mktemp("run") / "pictures", np.arange(4) * 1e-3)
+    return write_pictures(
+        segment,
+        press,
+        dot,
+        tmp_path_factory.mktemp("run") / "pictures",
+        course_of(press, Readout(input_resistance_MOhm=0.1)),
+    )
 
 
 @pytest.fixture(scope="module")
 def slice_pictures(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     thin = box_mesh(16, 0.15, 1)
     folder = tmp_path_factory.mktemp("run") / "pictures"
-    return write_pictures(thin, made_up_press(thin), box_dot("ridge"), folder)
+    pressed = made_up_press(thin)
+    return write_pictures(thin, pressed, box_dot("ridge"), folder, course_of(pressed))
 
 
 def pixels(path: Path) -> np.ndarray:
@@ -46,7 +59,7 @@ def test_pictures_are_png_not_blank_and_not_clipped(pictures: dict[str, Path], n
     with Image.open(pictures[name]) as image:
         assert image.format == "PNG"
         assert image.size[0] == PICTURE_SIZE[0]
-        assert name in ("film", "force_voltage") or image.size == PICTURE_SIZE
+        assert name in ("film", "force_voltage", "course") or image.size == PICTURE_SIZE
     shown = pixels(pictures[name])
     assert shown.std() > 20
     border = np.concatenate([shown[:4].reshape(-1, 3), shown[-4:].reshape(-1, 3), shown[:, :4].reshape(-1, 3), shown[:, -4:].reshape(-1, 3)])  # noqa: E501  # fmt: skip

@@ -11,12 +11,12 @@ from unittest.mock import patch
 import numpy as np
 
 from softdot.arrays.case import ArrayCase
-from softdot.arrays.presses import signals_of
 from softdot.case import Case
 from softdot.config import config_from
 from solve import press as press_module
 from solve.fem.kinematics import deformation_gradient, linear, quadratic, tetrahedron
 from solve.materials.isochoric import from_voigt
+from solve.readout.course import course
 from solve.terms.contact import HATS, SHAPES, facet_area
 from solve.terms.jump import UnilateralInterface
 
@@ -49,8 +49,16 @@ def solved(tables) -> Pressed:
     set_up = press_module.set_up
     with patch.object(press_module, "set_up", lambda *given: kept.append(set_up(*given)) or kept[0]):
         result = case.solve()
-    voltage = case.amplified(result)
+    voltage = amplified(case, result)
     return Pressed(case.model, case.dot, result, voltage, kept[0].system, kept[0].tet_mesh, kept[0].recorder._last)
+
+
+def amplified(case, result):
+    """Voltages at the steps: of all electrodes together (s,), of each (e, s); None without an amplifier."""
+    along = course(result, case.model.press, case.model.readout, case.model.physics)
+    if along.together_V is None:
+        return None
+    return along.together_V[along.solved], along.channels_V[along.solved].T
 
 
 def first_press(config):
@@ -59,16 +67,11 @@ def first_press(config):
     _ = array.checked
     press = array.press_over(array.layout.places[0])
 
-    def amplified(result):
-        channels = signals_of(press, result, 0.0).readout_voltage_V
-        return None if channels is None else (channels.sum(axis=1), channels.T)
-
     return SimpleNamespace(
         model=press.model,
         dot=press.dot,
         solved_mesh=press.mesh,
         solve=lambda: press_module.press_segment(press.model, press.mesh, dot=press.dot),
-        amplified=amplified,
     )
 
 

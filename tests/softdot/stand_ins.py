@@ -67,5 +67,6 @@ def result_of(depths_mm: list[float], failure: str | None = None, stress_MPa: fl
         unknowns=30,
         linear_solver="stand-in",
         max_relative_residual=1e-12,
+        progress=depths / max(depths.max(), 1e-9),
         film_peak=FilmPeak(0.01, 1e6 * stress_MPa, (0.0, 1e-5), 1.4e-4, 0.03, 3e6 * stress_MPa),
     )

@@ -54,9 +54,10 @@ def test_units_stand_in_the_names_of_a_press(case):
     assert pressed.readout_voltage_V is None
     table = pressed.to_dataframe()
     assert list(table.columns) == [
-        "time_s", "indentation_mm", "reaction_force_N", "film_charge_pC", "open_circuit_voltage_V"
+        "time_s", "indentation_mm", "reaction_force_N", "charge_pC_film", "voltage_V_film", "solved"
     ]  # fmt: skip
-    assert table["reaction_force_N"].iloc[-1] == pressed.reaction_force_N[-1]
+    assert table["reaction_force_N"].iloc[-1] == pytest.approx(pressed.reaction_force_N[-1])
+    assert table["indentation_mm"][table["solved"]].to_list() == pytest.approx(pressed.indentation_mm)
     assert "converged" in pressed._repr_html_()
     assert len(pressed.plot().axes) == 2
 

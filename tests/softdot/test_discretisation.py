@@ -57,7 +57,7 @@ def pressed(tables, factor=1.0):
     config = config_from({**tables, "mesh": {**tables["mesh"], "element_size_mm": 0.3 * factor,
                                              "contact_element_size_mm": 0.1 * factor}})  # fmt: skip
     case = Case(config)
-    summary = press_part(None, case.solve(), None)
+    summary = press_part(case.model, case.press().result, case.press().course)
     return summary, case.uncertainty(summary)
 
 
@@ -102,7 +102,9 @@ def sized(accuracy_percent, **change):
 def test_sizes_are_chosen_so_that_the_stated_error_is_as_small_as_asked():
     coarse, fine = sized(5.0), sized(0.5)
     for case, asked in ((coarse, 5.0), (fine, 0.5)):
-        found = case.uncertainty(press_part(None, case.solve(), None))["discretisation_error"]
+        found = case.uncertainty(press_part(case.model, case.press().result, case.press().course))[
+            "discretisation_error"
+        ]
         assert max(found["force_percent"], found["voltage_percent"]) <= asked
     assert fine.sized.mesh.element_size_mm < 0.8 * coarse.sized.mesh.element_size_mm
     ratios = [case.sized.mesh.contact_element_size_mm / case.sized.mesh.element_size_mm for case in (coarse, fine)]

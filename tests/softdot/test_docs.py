@@ -6,7 +6,6 @@ import tomllib
 from importlib import import_module
 from pathlib import Path
 
-import numpy as np
 import pytest
 from pydantic import TypeAdapter
 
@@ -19,8 +18,10 @@ import solve.mechanisms
 import solve.model
 from softdot.commands.new import config_schema
 from softdot.config import Config, config_from
+from softdot.config.model import model_of
 from softdot.config.toml import completed
 from softdot.summary import heading, mesh_part, press_part
+from solve.readout.course import course
 from tests.softdot.stand_ins import result_of
 
 ROOT = Path(__file__).parents[2]
@@ -75,8 +76,9 @@ def test_every_whole_file_that_is_shown_is_accepted():
 def test_every_key_of_the_summary_is_explained():
     config = config_from(completed(tomllib.loads(toml_blocks()[0])))
     history = result_of([0.0, 0.15, 0.3])
-    voltage = np.zeros(3)
-    summary = {**heading(config), **press_part(config.readout, history, voltage), "mesh": mesh_part({}, 1)}
+    model = model_of(config)
+    along = course(history, model.press, model.readout, model.physics)
+    summary = {**heading(config), **press_part(model, history, along), "mesh": mesh_part({}, 1)}
     flat = [
         f"{key}.{inner}" if isinstance(value, dict) and key != "config" else key
         for key, value in summary.items()

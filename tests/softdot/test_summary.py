@@ -2,16 +2,28 @@
 
 import dataclasses
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from softdot.console import json_text
 from softdot.summary import history, press_part
-from solve.model import Readout
+from solve.model import Physics, Press, Readout
+from solve.readout.course import course
 from tests.softdot.stand_ins import result_of
 
 LAYERS = {"medium1": {"thickness_mm": 0.5}, "film": {"thickness_um": 28}, "medium2": {"thickness_mm": 2}}
+
+
+def model_with(readout=None):
+    """What a summary asks of a model: a ramp of half a second."""
+    return SimpleNamespace(readout=readout, press=Press(), physics=Physics())
+
+
+def part_of(result, readout=None):
+    model = model_with(readout)
+    return press_part(model, result, course(result, model.press, readout, model.physics))
 
 
 def two_electrodes():
@@ -21,9 +33,10 @@ def two_electrodes():
         dataclasses.replace(step, film_charge_C=share * charge, open_circuit_voltage_V=share * charge / capacitance)
         for step, share in zip(result_of([0.0, 0.3]).steps, [0.0, 1.0], strict=True)
     ]
-    return dataclasses.replace(
-        result_of([0.0]), steps=tuple(steps), capacitance_F=capacitance, electrode_names=("left", "right")
-    )
+    whole = result_of([0.0, 0.3])
+    trace = dataclasses.replace(whole.trace, film_charge_C=np.array([0.0 * charge, charge]))
+    names = ("left", "right")
+    return dataclasses.replace(whole, trace=trace, steps=tuple(steps), capacitance_F=capacitance, electrode_names=names)
 
 
 def test_electrodes_are_read_in_parallel():
@@ -33,16 +46,18 @@ def test_electrodes_are_read_in_parallel():
 
 
 def test_each_electrode_is_also_listed_by_itself():
-    part = press_part(None, two_electrodes(), None)
+    part = part_of(two_electrodes())
     assert [electrode["name"] for electrode in part["electrodes"]] == ["left", "right"]
     assert [electrode["capacitance_pF"] for electrode in part["electrodes"]] == pytest.approx([10.0, 30.0])
     assert part["electrodes"][1]["open_circuit_voltage_V"] == pytest.approx([0.0, 1.0])
 
 
 def test_sensitivity_is_that_of_the_amplifier_and_its_noise():
-    behind_amplifier = np.array([0.0, 0.15, 0.3])  # 1 V per mm
-    part = press_part(Readout(noise_V=0.01), result_of([0.0, 0.15, 0.3]), behind_amplifier)
-    assert part["readout_voltage_V"] == pytest.approx(behind_amplifier)
+    """20 pC per mm into 10 pF of film and 10 of cable: 1 V per mm."""
+    part = part_of(result_of([0.0, 0.15, 0.3]), Readout(noise_V=0.01, input_capacitance_pF=10.0))
+    assert part["readout_voltage_V"] == pytest.approx([0.0, 0.15, 0.3])
+    assert part["sensitivity"]["at_time_s"] == pytest.approx(0.5)
+    assert part["sensitivity"]["least_detectable_at_time_s"] == pytest.approx(0.5 * 0.01 / 0.3, rel=1e-3)
     assert part["sensitivity"]["voltage_per_mm"] == pytest.approx(1.0)
     assert part["sensitivity"]["least_detectable_indentation_um"] == pytest.approx(10.0)
     assert part["sensitivity"]["noise_V"] == 0.01
@@ -55,7 +70,9 @@ def test_json_has_no_nan():
 
 @pytest.mark.parametrize("nonsense", [np.nan, np.inf, -np.inf])
 def test_a_number_that_is_none_is_no_converged_result(nonsense):
-    voltage = np.array([0.0, nonsense])
-    solver = press_part(None, two_electrodes(), voltage)["solver"]
+    model, result = model_with(Readout()), two_electrodes()
+    along = course(result, model.press, model.readout, model.physics)
+    along.together_V[-1] = nonsense
+    solver = press_part(model, result, along)["solver"]
     assert not solver["converged"]
     assert solver["failure"] == "readout_voltage_V[1] is not a finite number"

@@ -22,7 +22,8 @@ SLICE = {
 
 
 def summary(config):
-    return press_part(None, Case(config).solve(), None)
+    case = Case(config)
+    return press_part(case.model, case.press().result, case.press().course)
 
 
 def pressed(*mechanisms, mesh=None):

@@ -9,18 +9,29 @@ from pydantic import ValidationError
 from geometry.base import InputError
 from solve.model import Physics, Press, Readout, Waveform
 from solve.readout.amplifier import leaky_integral
-from solve.readout.recording import readout_voltage
+from solve.readout.course import course
 from solve.readout.stages import Saturation
 from solve.solution.schedule import fraction
 
 FILM_F = 971e-12  # 16 x 16 mm, 28 um
 
 
-def press_with(charge_C, capacitance_F=FILM_F):
-    """A result that carries only what the circuit needs."""
-    steps = tuple(SimpleNamespace(film_charge_C=np.array([q])) for q in charge_C)
-    trace = SimpleNamespace(film_charge_C=np.array(charge_C)[:, None])
-    return SimpleNamespace(steps=steps, trace=trace, follows_time=False, capacitance_F=np.array([capacitance_F]))
+def press_with(charge_C, capacitance_F=FILM_F, times_s=None):
+    """A result that carries only what the circuit needs; times_s : where it followed time."""
+    charge, progress = np.array(charge_C)[:, None], np.linspace(0.0, 1.0, len(charge_C))
+    times = progress if times_s is None else np.array(times_s)
+    trace = SimpleNamespace(time_s=times, indentation_m=progress, reaction_force_N=progress, film_charge_C=charge)
+    steps = tuple(SimpleNamespace(time_s=time) for time in times)
+    return SimpleNamespace(
+        steps=steps, trace=trace, progress=progress, follows_time=times_s is not None,
+        capacitance_F=np.array([capacitance_F]),
+    )  # fmt: skip
+
+
+def readout_voltage(result, press, readout, physics=None):
+    """At the steps."""
+    along = course(result, press, readout, physics or Physics())
+    return along.together_V[along.solved]
 
 
 LINEAR = press_with(np.linspace(0.0, 1e-9, 7))
@@ -113,9 +124,7 @@ def test_the_charge_of_a_ramp_and_hold_keeps_its_corner():
     """Q rises linearly in 0.1 s and stays: V at the end of the rise is Q / C (tau / T)(1 - exp(-T / tau))."""
     time, tau = np.array([0.0, 0.05, 0.1, 0.3, 0.5]), 1e9 * FILM_F / 100.0
     charge = np.array([0.0, 0.5e-9, 1e-9, 1e-9, 1e-9])
-    trace = SimpleNamespace(time_s=time, film_charge_C=charge[:, None])
-    steps = tuple(SimpleNamespace(time_s=t) for t in time)
-    result = SimpleNamespace(trace=trace, steps=steps, follows_time=True, capacitance_F=np.array([FILM_F]))
+    result = press_with(charge, times_s=time)
     press = Press(waveform=Waveform(rise_s=0.1, hold_s=0.4))
     voltage = readout_voltage(result, press, Readout(input_resistance_MOhm=10.0))
     assert voltage[2] == pytest.approx(1e-9 / FILM_F * tau / 0.1 * (1.0 - np.exp(-0.1 / tau)), rel=1e-6)

@@ -51,7 +51,9 @@ def test_every_waveform_starts_at_rest_and_passes_through_its_peak(shape):
 def test_a_file_that_starts_pressed_is_reached_from_rest(tmp_path):
     table = tmp_path / "w.csv"
     table.write_text("time_s,fraction\n0,0.5\n1,1\n", "utf-8")
-    targets = schedule(Press(waveform=Waveform(shape="file", file=str(table), rise_s=0.25)), 2.0, 1.0, True)
+    targets = schedule(
+        Press(load_steps=1, waveform=Waveform(shape="file", file=str(table), rise_s=0.25)), 2.0, 1.0, True
+    )
     np.testing.assert_allclose(times(targets), [-0.25, 0.0, 1.0])
     np.testing.assert_allclose(drives(targets), [0.0, 1.0, 2.0])
 

@@ -7,7 +7,7 @@ from geometry.dot import resolve_dot
 from geometry.parameters import Dot
 from solve.mechanisms import Mechanism, with_mechanisms
 from solve.model import Model, Press, Readout
-from solve.readout.recording import readout_voltage
+from solve.readout.course import course
 from tests.pressing import press_segment
 from tests.solve.segments import coarse_mesh, materials
 from tests.verification.slices import OF_SLICES, STACK, mesh_of, waved
@@ -35,8 +35,8 @@ def numbers(solved):
     """Largest force (N), its charge (C), and voltage behind the amplifier."""
     result, model = solved
     force, charge = result.trace.reaction_force_N, result.trace.film_charge_C[:, 0]
-    behind = readout_voltage(result, model.press, model.readout or Readout(), model.physics)
-    return force.max(), charge[np.argmax(force)], behind[-1]
+    behind = course(result, model.press, model.readout or Readout(), model.physics)
+    return force.max(), charge[np.argmax(force)], behind.together_V[behind.solved[-1]]
 
 
 @pytest.fixture(scope="module")

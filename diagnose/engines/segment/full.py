@@ -14,12 +14,13 @@ from diagnose.engines.segment.answer import Drive, FilmPlate, Mechanics, shown
 from diagnose.engines.segment.presses import ungapped
 from diagnose.forward import Signals
 from diagnose.signals.recording import Run
-from geometry.arrays import Bools, Floats, Ints
+from geometry.arrays import Floats, Ints
 from geometry.base import Report
 from solve.model import Model, Press, Waveform
 from solve.press import press_segment
 from solve.result import PressResult, Trace
 from solve.solution.newton import NoEquilibriumError
+from solve.solution.thinning import thinned
 from solve.tables.rig_mesh import Mesh
 
 SLOPE = 0.06, 0.2, 0.4, 0.6, 0.8, 0.94  # of a slope: closest where softened rubber leaves its first curve
@@ -32,7 +33,7 @@ def knots(time: Floats, share: Floats, tolerance: float, most: int) -> Ints:
 
     What is clear of the segment has no points of its own.
     """
-    kept = np.flatnonzero(corners(time, share, tolerance, most // 2))
+    kept = np.flatnonzero(thinned(time, share, tolerance, most // 2))
     more: list[int] = []
     for first, last in pairwise(kept):
         rise = abs(share[last] - share[first])
@@ -42,34 +43,6 @@ def knots(time: Floats, share: Floats, tolerance: float, most: int) -> Ints:
         more += [int(np.searchsorted(time, time[first] + p * (time[last] - time[first]))) for p in places]
     found = np.unique([*kept, *more])
     return found if len(found) <= most else kept
-
-
-def corners(time: Floats, values: Floats, tolerance: float, most: int) -> Bools:
-    """Which samples (t,) to keep so that straight lines between them stay within a tolerance of all values.
-
-    The sample farthest from its line is added until none is too far (Ramer 1972; Douglas and Peucker 1973), or until
-    there are as many as allowed.
-    """
-    kept = np.zeros(len(time), dtype=np.bool_)
-    kept[[0, -1]] = True
-    spans = [_farthest(time, values, 0, len(time) - 1)]
-    while spans and int(kept.sum()) < most:
-        worst = max(range(len(spans)), key=lambda n: spans[n][0])
-        distance, place, first, last = spans.pop(worst)
-        if distance <= tolerance:
-            break
-        kept[place] = True
-        spans += [_farthest(time, values, *part) for part in ((first, place), (place, last)) if part[1] - part[0] > 1]
-    return kept
-
-
-def _farthest(time: Floats, values: Floats, first: int, last: int) -> tuple[float, int, int, int]:
-    """Largest distance from the line between two samples, where, and these samples."""
-    inner = slice(first + 1, last)
-    line = np.interp(time[inner], time[[first, last]], values[[first, last]])
-    off = np.abs(values[inner] - line)
-    worst = int(np.argmax(off)) if len(off) else 0
-    return (float(off[worst]) if len(off) else 0.0), first + 1 + worst, first, last
 
 
 LOAD_STEPS = 8  # of a press in which time does not count
@@ -143,7 +116,7 @@ def _through_time(task: Task, report: Report) -> Mechanics:
     kept = knots(time, share, TOLERANCE, MOST_POINTS - 3)
     lead_s, lead = _earlier_press(task)
     waveform = Waveform.through(np.append(lead_s[:-1], lead_s[-1] + time[kept]), np.append(lead[:-1], share[kept]))
-    trace = _press(task, Press(**_largest(task), waveform=waveform), report).trace
+    trace = _press(task, Press(**_largest(task), waveform=waveform, load_steps=1), report).trace
     first = int(np.searchsorted(trace.time_s, lead_s[-1]))
     at, found = trace.time_s[first:] - lead_s[-1], _columns(trace, task)[first:]
     found[:, 3:] -= found[0, 3:]  # what yield left before has leaked away

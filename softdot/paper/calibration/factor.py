@@ -5,7 +5,7 @@ The read-out of the rig while the same press is repeated once a second.
 The film's charge Q(t) drives R parallel to film and cable, and an eighth-order low-pass follows:
     (C_f + C) V' + V / R = Q',        V_hat = i w Q_hat / (1/R + i w (C_f + C)) H(w).
 Everything is linear and periodic, so that the steady state after many presses follows exactly from the Fourier series
-of one period. A single press from rest is integrated in time by solve.readout.recording.
+of one period. A single press from rest is integrated in time by solve.readout.course.
 
 The range of p over all unknown inputs at once, and which of them makes it.
 """

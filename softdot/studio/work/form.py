@@ -33,4 +33,4 @@ def _mechanism(kind: MechanismType) -> dict[str, Any]:
 def warm_up() -> None:
     """Load what the form takes."""
     form()
-    from solve.readout import recording  # noqa: F401 - the filters of the first circuit
+    from solve.readout import course  # noqa: F401 - the filters of the first circuit

@@ -12,7 +12,7 @@ from mesh.types import MeshingError
 from softdot.arrays.case import ArrayCase
 from softdot.arrays.presses import remembered, signals_of
 from softdot.case import Case
-from softdot.checks import result_warnings
+from softdot.checks import course_warnings, result_warnings
 from softdot.console import plain
 from softdot.studio.processes import Tell
 from softdot.studio.work.design import case_of, config_of, pressed_part
@@ -76,10 +76,10 @@ def _pressed(case: Case, progress: "TaskProgress", quality: str) -> dict[str, An
     progress.stage("mesh")
     unknown = case.mesh_quality
     progress.stage("press")
-    result = case.press(progress.on_step).result
-    amplified = case.amplified(result) or (None, None)
-    numbers = {"mesh": mesh_part(unknown, result.unknowns), **press_part(case.model.readout, result, *amplified)}
-    warnings = result_warnings(case.model, case.dot, result)
+    pressed = case.press(progress.on_step)
+    result = pressed.result
+    numbers = {"mesh": mesh_part(unknown, result.unknowns), **press_part(case.model, result, pressed.course)}
+    warnings = [*result_warnings(case.model, case.dot, result), *course_warnings(case.model, result, pressed.course)]
     numbers |= {"warnings": warnings, "remedies": late_remedies(case.config, warnings)}
     view = viewer_data(result.tet_mesh, result, case.dot) if len(result.steps) > 1 else None
     return {
@@ -124,20 +124,11 @@ def circuit(text: str, history: bytes) -> dict[str, Any] | None:
 
     history : as a press gave it. None where the design has no amplifier.
     """
-    import numpy as np
-
-    from solve.model import Readout
-    from solve.readout.recording import record
-
-    case, result = case_of(text), pickle.loads(history)
-    amplified = case.amplified(result)
-    if amplified is None:
+    along = case_of(text).course(pickle.loads(history))
+    if along.together_V is None:
         return None
-    wired = np.ones(len(result.capacitance_F))
-    over = record(result, case.model.press, case.model.readout or Readout(), wired, case.model.physics)
-    shown = np.linspace(0, len(over.time_s) - 1, 200).astype(int)
     told: Mapping[str, Any] = {
-        "readout_voltage_V": amplified[0], "time_s": over.time_s[shown], "voltage_V": over.voltage_V[shown],
+        "readout_voltage_V": along.together_V[along.solved], "time_s": along.time_s, "voltage_V": along.together_V,
     }  # fmt: skip
     return dict(plain(told))
 

@@ -1,0 +1,149 @@
+"""What a press gives at any time of its waveform, between the states that were solved.
+
+A leg is a stretch of the press over which force and charge are smooth: the way in, a hold, a way back, a stretch of a
+slide. On each they follow cubics whose slope at a state is that of the parabola through it and its neighbours (Bessel's
+interpolation: de Boor, A Practical Guide to Splines, 1978, chapter IV). It is linear, so that charges which add up in
+the states add up between them; and local: where contact grows node by node, splines of higher order ring, and the
+read-out is their slope. Over the drive where that rises or falls, as force and charge have no corner there when its
+rate has; else over time.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from scipy.interpolate import CubicHermiteSpline
+
+from geometry.arrays import Floats
+from solve.model import Press, Waveform
+from solve.result import PressResult, Trace
+from solve.solution.schedule import corners_s, duration_s, first_time_s, fraction, slide_s, stretches_s
+
+FASTER = 2.0
+"""Ratio of two rates of loading from which relaxing stress has a corner between them that counts."""
+FAST = 0.3
+"""Of the fastest rate: below it no change counts, such as near the top of a sampled sine."""
+ROUND_OFF = 1e-9
+Coordinate = Callable[[Floats], Floats]
+
+
+@dataclass(frozen=True)
+class PressLeg:
+    """From begin_s to end_s; along(time) : its coordinate, which grows or falls from end to end.
+
+    at (s,) : the coordinates of its states; known (s, k) : what is known there.
+    """
+
+    begin_s: float
+    end_s: float
+    along: Coordinate
+    at: Floats
+    known: Floats
+
+    def rougher(self, first: int) -> "PressLeg":
+        """With every other state, from the first (0) or to the last (1), its ends kept.
+
+        With two only, a parabola from the first in place of the line.
+        """
+        if len(self.at) == 2:
+            middle, quarter = 0.5 * (self.at[0] + self.at[1]), 0.75 * self.known[0] + 0.25 * self.known[1]
+            known = np.vstack([self.known[0], quarter, self.known[1]])
+            return replace(self, at=np.array([self.at[0], middle, self.at[1]]), known=known)
+        last = len(self.at) - 1
+        kept = np.unique([0, *range((last % 2) * first, last, 2), last])
+        return replace(self, at=self.at[kept], known=self.known[kept])
+
+    @cached_property
+    def curve(self) -> Coordinate:
+        """Values (n, k) at coordinates (n,)."""
+        return cubic(self.at, self.known)
+
+    def of(self, time_s: Floats) -> Floats:
+        """Values (n, k) at times (n,) of this leg."""
+        low, high = min(self.at[0], self.at[-1]), max(self.at[0], self.at[-1])
+        return self.curve(np.clip(self.along(time_s), low, high))
+
+
+def cubic(at: Floats, known: Floats) -> Coordinate:
+    """The cubic curve through what is known (s, k) at rising or falling (s,): values (n, k) at places (n,)."""
+    if at[-1] < at[0]:
+        at, known = at[::-1], known[::-1]
+    fresh = np.append(True, np.diff(at) > ROUND_OFF * max(at[-1] - at[0], ROUND_OFF))
+    at, known = at[fresh], known[fresh]
+    if len(at) == 1:
+        return lambda where: np.repeat(known, len(where), axis=0)
+    slopes = np.gradient(known, at, axis=0, edge_order=2 if len(at) > 2 else 1)
+    change, size = np.abs(np.diff(known[:, 1:], axis=0)), np.abs(known[:, 1:]).max(axis=0)
+    idle = (change <= ROUND_OFF * size).all(axis=1)
+    slopes[np.append(idle, False) | np.append(False, idle)] = 0.0  # clear of the segment nothing swings below zero
+    curve = CubicHermiteSpline(at, known, slopes)
+    return lambda where: np.asarray(curve(where))
+
+
+def legs_of(result: PressResult, press: Press) -> list[PressLeg]:
+    """The legs of a press as far as it went; known : depth in m, force in N and charges in C, (s, 2 + e)."""
+    if result.follows_time or len(result.trace.time_s) == 1:
+        return legs_through(result.trace, press)
+    return _by_load(result.progress, press, press.waveform or Waveform(), _known(result.trace))
+
+
+def legs_through(trace: Trace, press: Press) -> list[PressLeg]:
+    """Of a press that followed its waveform: between the corners at which its rate turns or changes much."""
+    known, begin = _known(trace), float(trace.time_s[0])
+    if len(known) == 1:
+        return [PressLeg(begin, begin, lambda time: time, np.array([begin]), known)]
+    return _through_time(trace.time_s, press, press.waveform or Waveform(), known)
+
+
+def _known(trace: Trace) -> Floats:
+    return np.column_stack([trace.indentation_m, trace.reaction_force_N, trace.film_charge_C])
+
+
+def _by_load(done: Floats, press: Press, waveform: Waveform, known: Floats) -> list[PressLeg]:
+    """Where time does not matter: the waveform passes the states of the way in, up and down; then it slides.
+
+    done : (t,) progress of the states as in PressResult.
+    """
+    pressed = done <= 1.0 + ROUND_OFF
+    begin, end = float(corners_s(waveform)[0]), duration_s(waveform)
+    reached = float(done[pressed][-1])
+    if not reached >= float(fraction(waveform, corners_s(waveform)).max()) * (1.0 - ROUND_OFF):  # it stopped short
+        end = float(first_time_s(waveform, np.array([reached]))[0])
+    legs = [PressLeg(begin, end, lambda time: fraction(waveform, time), done[pressed], known[pressed])]
+    for number, (start, stop) in enumerate(pairwise(slide_s(press)), start=1):
+        on = (done >= number - ROUND_OFF) & (done <= number + 1 + ROUND_OFF)
+        if on.sum() < 2:
+            break
+        leg_s = stop - start
+        stop = start + leg_s * min(1.0, float(done[on][-1]) - number)
+        legs.append(PressLeg(start, stop, lambda time: time, start + leg_s * (done[on] - number), known[on]))
+    return legs
+
+
+def _through_time(time_s: Floats, press: Press, waveform: Waveform, known: Floats) -> list[PressLeg]:
+    edges = np.union1d(_turns_s(waveform), slide_s(press)) if press.path_xy_mm else _turns_s(waveform)
+    begin, end = time_s[0], time_s[-1]
+    apart = np.diff(edges, prepend=-np.inf) > ROUND_OFF * (end - begin)
+    edges = np.append(edges[apart & (edges < end - ROUND_OFF * (end - begin))], end)
+    legs = []
+    for begin, stop in pairwise(edges):
+        slack = ROUND_OFF * (stop - begin)
+        on = (time_s >= begin - slack) & (time_s <= stop + slack)
+        drive = fraction(waveform, time_s[on])
+        steps = np.diff(drive)
+        one_way = bool((steps > ROUND_OFF).all() or (steps < -ROUND_OFF).all())
+        along: Coordinate = (lambda time: fraction(waveform, time)) if one_way else (lambda time: time)
+        legs.append(PressLeg(float(begin), float(stop), along, drive if one_way else time_s[on], known[on]))
+    return legs
+
+
+def _turns_s(waveform: Waveform) -> Floats:
+    """Times (n,) of the first and the last corner, and of those at which the rate turns or changes by a factor."""
+    corners = stretches_s(waveform)
+    rate = np.diff(fraction(waveform, corners)) / np.diff(corners)
+    before, after = rate[:-1], rate[1:]
+    fast, slow = np.maximum(np.abs(before), np.abs(after)), np.minimum(np.abs(before), np.abs(after))
+    turns = (before * after <= 0.0) & (fast > 0.0) | (fast > FASTER * slow) & (fast > FAST * fast.max(initial=0.0))
+    return np.asarray(corners[np.concatenate([[True], turns, [True]])])
