@@ -13,7 +13,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
 from threading import Event
-from typing import Any
+from typing import Any, Self
 
 from geometry.environment import own_path, own_python
 from geometry.files import end_with_parent, sweep_scratch
@@ -41,7 +41,7 @@ class Beside:
         self._process = subprocess.Popen(command, env=own, stdin=pipe, stdout=pipe, start_new_session=True)
         self._over, self._pool = Event(), ThreadPoolExecutor(1)
 
-    def __enter__(self) -> "Beside":
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:

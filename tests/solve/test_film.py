@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from solve.materials.film import VACUUM_PERMITTIVITY, film_law
+from solve.materials.film import film_law
+from solve.materials.parameters import VACUUM_PERMITTIVITY
 from solve.materials.parameters import PiezoelectricFilm
 from solve.terms.film import film_region
 from tests.solve.box import box

@@ -8,7 +8,8 @@ from geometry.arrays import Bools
 from softdot.verify.body import ElasticBody
 from softdot.verify.lattice import Grid, grid
 from softdot.verify.problem import Problem
-from solve.materials.film import VACUUM_PERMITTIVITY, FilmLaw, film_law
+from solve.materials.film import FilmLaw, film_law
+from solve.materials.parameters import VACUUM_PERMITTIVITY
 from solve.materials.laws import LinearLaw, bulk_modulus
 from solve.materials.parameters import PiezoelectricFilm
 from solve.terms.film import FilmRegion, film_region
