@@ -17,6 +17,7 @@ from geometry.dot import DotShape
 from geometry.solids import PART_COLOURS
 from mesh.types import TetMesh
 from solve.result import PressResult
+from tests.cases import for_each
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +42,8 @@ def share_of(image: np.ndarray, colour: str, tolerance: int = 12) -> float:
     return float((np.abs(image - np.round(np.array(to_rgb(colour)) * 255)).max(axis=2) <= tolerance).mean())
 
 
-@pytest.mark.parametrize("name", FILES)
+@pytest.mark.press
+@for_each("name", FILES)
 def test_pictures_are_png_not_blank_and_not_clipped(pictures: dict[str, Path], name: str) -> None:
     with Image.open(pictures[name]) as image:
         assert image.format == "PNG"

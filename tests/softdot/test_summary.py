@@ -9,6 +9,7 @@ import pytest
 from softdot.console import json_text
 from softdot.summary import history, press_part
 from solve.model import Readout
+from tests.cases import for_each
 from tests.softdot.stand_ins import result_of
 
 LAYERS = {"medium1": {"thickness_mm": 0.5}, "film": {"thickness_um": 28}, "medium2": {"thickness_mm": 2}}
@@ -53,7 +54,7 @@ def test_json_has_no_nan():
     assert json.loads(text) == {"a": None, "b": [None, 1.0], "c": [0, 1], "d": True}
 
 
-@pytest.mark.parametrize("nonsense", [np.nan, np.inf, -np.inf])
+@for_each("nonsense", [np.nan, np.inf, -np.inf])
 def test_a_number_that_is_none_is_no_converged_result(nonsense):
     voltage = np.array([0.0, nonsense])
     solver = press_part(None, two_electrodes(), voltage)["solver"]

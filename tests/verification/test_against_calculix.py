@@ -13,7 +13,7 @@ from tests.verification.dragged_block import DraggedBlock
 from tests.verification.lattice import graded, grid
 from tests.verification.row import agrees
 
-pytestmark = [pytest.mark.slow, pytest.mark.skipif(CCX is None, reason="CalculiX (ccx) is not installed")]
+pytestmark = [pytest.mark.evidence, pytest.mark.skipif(CCX is None, reason="CalculiX (ccx) is not installed")]
 CELL_MM = 0.1
 PRESS = Slide(
     radius_mm=1.0,

@@ -6,6 +6,7 @@ import scipy.linalg
 
 from solve.fem.sparsity import Tangent, build_pattern
 from solve.materials.laws import InvariantLaw, LinearLaw, bulk_modulus
+from tests.cases import for_each
 from tests.verification.body import Body, solid_body
 from tests.verification.lattice import Grid, grid
 from tests.verification.loads import traction_force
@@ -60,16 +61,16 @@ def rubber(shear: float, bulk: float) -> InvariantLaw:
     return InvariantLaw(shear / 2.0, 0.0, 0.0, 0.0, bulk)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("tied", [True, False], ids=["twins", "faces held"])
+@pytest.mark.press
+@for_each("tied", [True, False], ids=["twins", "faces held"])
 def test_compressible_linear_panel(tied):
     """E 70, nu 1/3: corner rise 32.22 (own Q2; the CoFEA codes give 32.20 to 32.28)."""
     small = 1e-5
     agrees("Cook, linear", corner_rise(32, linear_law(1 / 3), tied, small * TRACTION) / small, 32.22, 0.002)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("tied", [True, False], ids=["twins", "faces held"])
+@pytest.mark.press
+@for_each("tied", [True, False], ids=["twins", "faces held"])
 def test_nearly_incompressible_neo_hookean_panel(tied):
     """mu 80.194, kappa 400889.8: 6.920 with 16 Q2/P1 elements a side, still rising slightly."""
     agrees("Cook, neo-Hookean", corner_rise(24, rubber(80.194, 400889.8), tied), 6.920, 0.01)
@@ -103,7 +104,7 @@ def inf_sup(n: int, tied: bool) -> float:
     return float(np.sqrt(scipy.linalg.eigh(schur, mass, eigvals_only=True)[0]))
 
 
-@pytest.mark.parametrize("tied", [True, False], ids=["twins", "faces held"])
+@for_each("tied", [True, False], ids=["twins", "faces held"])
 def test_a_slice_of_one_element_has_no_spurious_pressure_mode(tied):
     """The inf-sup constant stays away from zero under refinement: no mode odd in y, no chequerboard."""
     coarse, fine = inf_sup(3, tied), inf_sup(6, tied)

@@ -52,7 +52,7 @@ def hertz(size: float) -> np.ndarray:
     return np.array([force, np.sqrt(area / np.pi), np.sqrt(2.5 * moment)])
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_hertz():
     """F = 4/3 E* R^(1/2) d^(3/2), a = sqrt(R d) (Johnson, Contact Mechanics, 1985, eqs. 4.22 to 4.24)."""
     force, by_area, by_moment = 2.0 * hertz(32.0) - hertz(16.0)
@@ -73,7 +73,7 @@ def punch(size: float) -> float:
     return -4.0 * body.reactions()[under, 2].sum() / depth
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_flat_punch():
     """F = 2 a E* d (Johnson, Contact Mechanics, 1985, eq. 3.36)."""
     near, far = punch(12.0), punch(24.0)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from solve.materials.laws import InvariantLaw
+from tests.cases import for_each
 from tests.verification.body import solid_body
 from tests.verification.lattice import grid
 
@@ -24,8 +25,8 @@ def nominal_stress(stretch: float, driven: tuple[int, ...], held: tuple[int, ...
     return body.reaction(np.flatnonzero(shape.points[:, 0] == 1.0))[0]
 
 
-@pytest.mark.parametrize("stretch", [0.7, 0.8, 1.5, 2.0])
-@pytest.mark.parametrize(
+@for_each("stretch", [0.7, 0.8, 1.5, 2.0])
+@for_each(
     ("power", "driven", "held"),
     [(2, (0,), ()), (5, (0, 1), ()), (3, (0,), (1,))],
     ids=["uniaxial", "equibiaxial", "plane strain"],

@@ -7,6 +7,7 @@ from geometry.braille import standard
 from softdot.reading.decoders.templates import Posture, templates
 from softdot.reading.voltages import Reader, Voltages, behind_readout, charge_again_pC
 from solve.model import Readout
+from tests.cases import for_each
 from tests.softdot.reading.lines import NOMINAL, READOUT, simulated
 
 
@@ -24,7 +25,7 @@ def test_a_charge_that_rises_evenly_leaves_by_the_resistor(kernel):
     np.testing.assert_allclose(voltage, np.repeat(closed[:, None], 6, axis=1), rtol=1e-9, atol=1e-15)
 
 
-@pytest.mark.parametrize(
+@for_each(
     "readout",
     [READOUT, Readout(), Readout(input_resistance_MOhm=500.0), Readout(mode="charge", feedback_pF=100.0, polarity=-1)],
 )
