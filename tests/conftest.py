@@ -32,8 +32,3 @@ def browser() -> Iterator[Any]:
         found = engine.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
         yield found
         found.close()
-
-
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Put the references that we did not write first: where time ends, it ends for the others."""
-    items.sort(key=lambda item: "verification" not in item.path.parts)

@@ -87,7 +87,7 @@ def the_file(folder: Path) -> Path:
     return file
 
 
-@pytest.mark.slow
+@pytest.mark.press
 @pytest.mark.parametrize("kind", KINDS)
 def test_damage_is_noticed_and_told_once(kind, folder, caplog):
     write, read = KINDS[kind]

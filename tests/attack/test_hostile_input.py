@@ -11,7 +11,7 @@ from softdot.cli import main
 from tests.diagnose.rigs import HEAD, RUN, SEGMENT, csv_text, samples
 
 LIMIT_S, LONGEST = 30, 2_100
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.evidence
 CONFIG = (
     SEGMENT
     + """

@@ -14,7 +14,7 @@ import pytest
 
 from tests.softdot.interrupts import heard
 
-pytestmark = [pytest.mark.slow, pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="needs /proc")]
+pytestmark = [pytest.mark.evidence, pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="needs /proc")]
 KILLS = 10  # of each signal for each of the commands: 60 in all
 AFTER_S = 3.0
 SLICE = """

@@ -11,9 +11,10 @@ from copy import deepcopy
 import numpy as np
 import pytest
 
+from tests.cases import for_each
 from tests.softdot.press_checks import solved
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.evidence
 ANOTHER_MESH = 0.01
 """Of force and charge, between two coarse meshes of one design."""
 SLICE = {
@@ -85,7 +86,7 @@ def same(one, other, force=1.0, charge=1.0, voltage=1.0, rel=1e-6):
         np.testing.assert_allclose(b, factor * np.asarray(a), rtol=rel)
 
 
-@pytest.mark.parametrize("name", DESIGNS)
+@for_each("name", DESIGNS)
 def test_a_design_mirrored_in_x_gives_the_same(name, end):
     tables = DESIGNS[name]
     (x, y), (about_x, about_y) = tables["dot"]["offset_mm"], tables["dot"].get("tilt_deg", (0.0, 0.0))
@@ -102,13 +103,13 @@ def test_a_square_segment_turned_by_a_quarter_gives_the_same(end):
     same(end(tables), end(turned), rel=ANOTHER_MESH)
 
 
-@pytest.mark.parametrize("name", DESIGNS)
+@for_each("name", DESIGNS)
 def test_a_draw_direction_has_no_head_and_no_tail(name, end):
     same(end(DESIGNS[name]), end(changed(DESIGNS[name], segment__film__draw_angle_deg=200.0)), rel=1e-9)
 
 
-@pytest.mark.parametrize("name", DESIGNS)
-@pytest.mark.parametrize("factor", [0.1, 4.0])
+@for_each("name", DESIGNS)
+@for_each("factor", [0.1, 4.0])
 def test_a_design_of_another_size(name, factor, end):
     """All lengths times s: forces times s^2, charge times s^2, capacitance times s, so voltage times s."""
     same(end(DESIGNS[name]), end(sized(DESIGNS[name], factor)), factor**2, factor**2, factor, rel=ANOTHER_MESH)
@@ -129,7 +130,7 @@ def sized(table, factor):
     return scaled
 
 
-@pytest.mark.parametrize("name", DESIGNS)
+@for_each("name", DESIGNS)
 def test_a_design_of_other_moduli(name, end):
     """All moduli, of film, media, glue and sides, times m: at the same depth force, stress and charge times m."""
     same(end(DESIGNS[name]), end(stiffened(DESIGNS[name], 2.5)), 2.5, 2.5, 2.5)
@@ -148,7 +149,7 @@ def stiffened(table, factor):
     return scaled
 
 
-@pytest.mark.parametrize("name", ["slice"])
+@for_each("name", ["slice"])
 def test_other_piezoelectric_constants_give_other_charge_and_the_same_force(name, end):
     plain = changed(DESIGNS[name], materials__foil__d31_pC_per_N=20.0, materials__foil__d32_pC_per_N=3.0,
                     materials__foil__d33_pC_per_N=-30.0)  # fmt: skip
@@ -157,7 +158,7 @@ def test_other_piezoelectric_constants_give_other_charge_and_the_same_force(name
     same(end(plain), end(twice), 1.0, 2.0, 2.0)
 
 
-@pytest.mark.parametrize("name", DESIGNS)
+@for_each("name", DESIGNS)
 def test_the_charges_of_two_halves_add_up_to_that_of_the_whole(name, end):
     length, width = DESIGNS[name]["segment"]["length_mm"], DESIGNS[name]["segment"]["width_mm"]
     halves = [
@@ -169,7 +170,7 @@ def test_the_charges_of_two_halves_add_up_to_that_of_the_whole(name, end):
     assert cut[1].sum() == pytest.approx(whole[1].sum(), rel=1e-9)
 
 
-@pytest.mark.parametrize("name", DESIGNS)
+@for_each("name", DESIGNS)
 def test_the_end_does_not_hang_on_the_number_of_load_steps(name, end):
     same(end(DESIGNS[name]), end(changed(DESIGNS[name], press__load_steps=5)))
 

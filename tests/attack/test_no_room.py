@@ -10,7 +10,9 @@ from typing import NamedTuple
 
 import pytest
 
-pytestmark = [pytest.mark.slow, pytest.mark.skipif(sys.platform != "linux", reason="limits of Linux")]
+from tests.cases import for_each
+
+pytestmark = [pytest.mark.evidence, pytest.mark.skipif(sys.platform != "linux", reason="limits of Linux")]
 TINY = (Path(__file__).parent / "tiny.toml").read_text("utf-8")
 KB, MB = 1024, 1024**2
 
@@ -46,7 +48,7 @@ def sentence(done: "subprocess.CompletedProcess[str]") -> str:
     return said[0]
 
 
-@pytest.mark.parametrize("size", [1 * KB, 5 * KB, 20 * KB, 60 * KB, 200 * KB], ids=lambda size: f"{size // KB} KB")
+@for_each("size", [1 * KB, 5 * KB, 20 * KB, 60 * KB, 200 * KB], ids=lambda size: f"{size // KB} KB")
 def test_a_limit_of_the_size_of_files(size, result):
     folder, before = result
     assert "a limit of the size of files" in sentence(run(folder, (resource.RLIMIT_FSIZE, (size, size))))
@@ -54,7 +56,7 @@ def test_a_limit_of_the_size_of_files(size, result):
     assert not list(folder.glob(".*"))
 
 
-@pytest.mark.parametrize("size", [600 * MB, 1000 * MB, 2000 * MB, 2800 * MB], ids=lambda size: f"{size // MB} MB")
+@for_each("size", [600 * MB, 1000 * MB, 2000 * MB, 2800 * MB], ids=lambda size: f"{size // MB} MB")
 def test_little_memory(size, result):
     folder, before = result
     assert "memory" in sentence(run(folder, (resource.RLIMIT_AS, (size, size))))

@@ -24,6 +24,7 @@ from softdot.summary import mesh_part, press_part
 from solve.mechanisms import MECHANISMS
 from solve.solution.newton import ROUNDED_TOLERANCE
 from tests.attack.random_designs import design, keys_of_schema, keys_set
+from tests.cases import for_each
 from tests.softdot.press_checks import solved, wrong
 from tests.softdot.toml_text import toml_text
 
@@ -57,8 +58,8 @@ def test_the_random_designs_set_every_key_of_the_configuration():
     assert keys_of_schema(Config) - drawn - NOT_HERE == set()
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("block", range(BLOCKS))
+@pytest.mark.evidence
+@for_each("block", range(BLOCKS))
 def test_a_random_design_gives_a_right_result_or_says_in_one_sentence_why_not(block, ledger):
     seen = [outcome(number) for number in range(block, DESIGNS, BLOCKS)]
     assert [one for one in seen if one["faults"]] == []
@@ -158,7 +159,7 @@ def judge(seen):
     assert {name: per_mechanism[name] for name in MECHANISMS if per_mechanism[name] < EACH} == {}
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 @pytest.mark.parametrize("number", [3, 28, 75])
 def test_the_command_gives_a_random_design_its_folder(number, tmp_path):
     path, out = tmp_path / "design.toml", tmp_path / "out"

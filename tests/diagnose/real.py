@@ -8,7 +8,7 @@ import pytest
 
 RECORDINGS = os.environ.get("SOFTDOT_RECORDINGS", "")
 EXAMPLES = Path(__file__).parents[2] / "examples" / "recordings"
-NEEDED = [pytest.mark.slow, pytest.mark.skipif(not RECORDINGS, reason="SOFTDOT_RECORDINGS names no folder")]
+NEEDED = [pytest.mark.evidence, pytest.mark.skipif(not RECORDINGS, reason="SOFTDOT_RECORDINGS names no folder")]
 
 
 def converted(data, out):

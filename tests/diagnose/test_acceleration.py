@@ -6,6 +6,7 @@ import pytest
 from diagnose.signals.acceleration import acceleration_mm_per_s2, noise_mm
 from diagnose.signals.recording import Run
 from geometry.arrays import Floats
+from tests.cases import for_each
 
 TIME = np.arange(0.0, 3.0, 0.002)
 RISE_S, DEPTH_MM = 0.3, 0.5
@@ -21,8 +22,8 @@ def quintic(time: Floats) -> tuple[Floats, Floats]:
     return path, acceleration
 
 
-@pytest.mark.parametrize("noise", [0.1e-3, 0.5e-3, 2e-3])
-@pytest.mark.parametrize("seed", range(3))
+@for_each("noise", [0.1e-3, 0.5e-3, 2e-3])
+@for_each("seed", range(3))
 def test_noise_of_the_encoder_is_no_acceleration(noise: float, seed: int) -> None:
     path, truth = quintic(TIME)
     measured = path + np.random.default_rng(seed).normal(0.0, noise, len(TIME))
@@ -32,7 +33,7 @@ def test_noise_of_the_encoder_is_no_acceleration(noise: float, seed: int) -> Non
     assert np.std(found - truth) < 0.2 * np.std(truth)
 
 
-@pytest.mark.parametrize("digit_mm", [1e-3, 5e-3])
+@for_each("digit_mm", [1e-3, 5e-3])
 def test_nor_is_the_last_digit_of_a_scale(digit_mm: float) -> None:
     path, truth = quintic(TIME)
     found = acceleration_mm_per_s2(TIME, np.round(path / digit_mm) * digit_mm)
@@ -53,7 +54,7 @@ def test_a_crosshead_that_starts_at_once_passes_on_its_pulse() -> None:
     assert float(found[:-1].sum()) * 0.002 == pytest.approx(speed, rel=1e-6)
 
 
-@pytest.mark.parametrize("noise", [0.2e-3, 1e-3])
+@for_each("noise", [0.2e-3, 1e-3])
 def test_the_noise_of_a_moving_column_is_told_without_a_rest(noise: float) -> None:
     path = quintic(TIME)[0][(TIME > 1.0) & (TIME < 2.3)]
     measured = path + np.random.default_rng(7).normal(0.0, noise, len(path))

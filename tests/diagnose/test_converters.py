@@ -91,7 +91,7 @@ SETS = {
 }
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 @needs_recordings
 @pytest.mark.parametrize("script", SETS)
 def test_real_recordings(script, tmp_path):
@@ -105,7 +105,7 @@ def test_real_recordings(script, tmp_path):
         assert all(noise.rms > 0.0 for noise in noise_models(recording).values())
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 @needs_recordings
 def test_noise_of_real_presses_whitens_a_trial_that_it_has_not_seen():
     files = sorted((Path(RECORDINGS) / "pvdf-presses").glob("*Sp300*.npz"))[:2]
@@ -117,7 +117,7 @@ def test_noise_of_real_presses_whitens_a_trial_that_it_has_not_seen():
     assert np.abs([np.mean(white[k:] * white[:-k]) for k in range(1, 6)]).max() < 0.06
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 @needs_recordings
 def test_a_trial_whose_streams_are_not_of_one_press_is_left_out(tmp_path, capsys):
     """The first at speed 150 holds its force for 1.8 s and its voltage for 1.5 s."""
@@ -129,7 +129,7 @@ def test_a_trial_whose_streams_are_not_of_one_press_is_left_out(tmp_path, capsys
     assert "Cube10_Seq1_Sp150_t01 is left out" in capsys.readouterr().err
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 @needs_recordings
 def test_pulls_of_the_adhesive_are_as_fast_as_their_files_say(tmp_path):
     runpy.run_path(str(EXAMPLES / "adhesive_shear.py"))["convert"](

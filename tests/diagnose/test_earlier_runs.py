@@ -10,6 +10,7 @@ from diagnose.engines.proportional.engine import proportional_engine
 from diagnose.forward import Setting
 from diagnose.signals.recording import Recording, Run, one_after_the_other
 from softdot.config.rig import load_rig
+from tests.cases import for_each
 from tests.diagnose.coupon.coupons import RUBBER, silent, specimen
 from tests.diagnose.rigs import COUPON, HEAD, SEGMENT, csv_text, samples, trapezoid, write_rig
 from tests.diagnose.segment import rigs
@@ -55,8 +56,8 @@ def second_half(whole, parts, answer):
     return (signal / np.abs(expected).max() for signal in (expected, told, virgin))
 
 
-@pytest.mark.parametrize("drive", ["displacement_mm", "force_N"])
-@pytest.mark.parametrize("second", [3.0, 7.0])
+@for_each("drive", ["displacement_mm", "force_N"])
+@for_each("second", [3.0, 7.0])
 def test_a_coupon_that_was_pulled_before_is_softer_up_to_there(drive, second):
     answer = "force_N" if drive == "displacement_mm" else "displacement_mm"
     recordings = whole_and_parts(drive, answer, 5.0, second, specimen())
@@ -72,7 +73,7 @@ def test_a_sensor_of_unknown_geometry_that_was_pressed_before_is_softer():
     assert np.abs(virgin - expected).max() > 0.02
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_a_segment_that_was_pressed_deeper_before_is_softer():
     """As the 3D model that was pressed deeper first."""
     deep, shallow = (rigs.run(values=rigs.press(TIME, depth, **QUICK), label=f"{depth}") for depth in (0.25, 0.18))

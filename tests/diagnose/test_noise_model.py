@@ -7,6 +7,7 @@ from scipy.stats import chi2, multivariate_normal
 
 from diagnose.noise.autoregression import Autoregression
 from diagnose.noise.model import Line, NoiseModel, basis, find_lines, quantisation_step
+from tests.cases import for_each
 
 AR = Autoregression(np.array([1.2, -0.5, 0.1]), 0.04)
 HUM = Line(50.0, 0.7)
@@ -21,8 +22,8 @@ def dense(model, count):
     return toeplitz(model.autoregression.autocovariance(count)) + columns @ columns.T
 
 
-@pytest.mark.parametrize("missing", GAPS.values(), ids=GAPS.keys())
-@pytest.mark.parametrize("model", [PLAIN, HUMMING], ids=["plain", "humming"])
+@for_each("missing", GAPS.values(), ids=GAPS.keys())
+@for_each("model", [PLAIN, HUMMING], ids=["plain", "humming"])
 def test_log_density_is_the_normal_density_of_the_samples_that_are_there(model, missing):
     residual = model.draw(np.random.default_rng(3), 60)
     residual[missing] = np.nan
@@ -31,7 +32,7 @@ def test_log_density_is_the_normal_density_of_the_samples_that_are_there(model, 
     assert model.log_density(residual) == pytest.approx(reference, rel=1e-9)
 
 
-@pytest.mark.parametrize("missing", GAPS.values(), ids=GAPS.keys())
+@for_each("missing", GAPS.values(), ids=GAPS.keys())
 def test_whitening_is_a_root_of_the_inverse_covariance(missing):
     there = np.ones(60, dtype=bool)
     there[missing] = False

@@ -5,6 +5,7 @@ import pytest
 
 from diagnose.signals.phases import PHASES, segmented
 from diagnose.signals.recording import even_pieces, gaps, rates_Hz
+from tests.cases import for_each
 from tests.diagnose.rigs import trapezoid
 
 TIME = 1e-3 * np.arange(4000)
@@ -15,7 +16,7 @@ def seconds(press):
     return [bound * 1e-3 for bound in press.bounds]
 
 
-@pytest.mark.parametrize("noise_mm", [0.0, 0.001])
+@for_each("noise_mm", [0.0, 0.001])
 def test_a_trapezoid_has_five_phases(noise_mm):
     drive = trapezoid(TIME, 0.3) + noise_mm * np.random.default_rng(1).standard_normal(len(TIME))
     (press,) = segmented(TIME, drive).presses

@@ -13,6 +13,7 @@ from export.build_sheet.steps import steps
 from geometry.base import InputError
 from softdot.commands.kit import contents_of
 from softdot.config import config_from
+from tests.cases import for_each
 
 EFFECTORS = {
     "none": None,
@@ -138,6 +139,7 @@ def refuse_parts_that_are_not_there(contents):
     assert ("cavit" in text) == bool(contents.solid.pours)
 
 
+@pytest.mark.press
 def test_every_part_can_be_printed(contents):
     refuse_unprintable(contents)
 
@@ -150,7 +152,7 @@ def test_every_instruction_names_what_is_there(contents):
     refuse_parts_that_are_not_there(contents)
 
 
-@pytest.mark.parametrize("name", [*ARRAYS, *(pytest.param(one, marks=pytest.mark.slow) for one in MORE_ARRAYS)])
+@pytest.mark.parametrize("name", [*ARRAYS, *(pytest.param(one, marks=pytest.mark.press) for one in MORE_ARRAYS)])
 def test_arrays_of_all_kinds(name):
     found = contents_for((ARRAYS | MORE_ARRAYS)[name])
     refuse_unprintable(found)
@@ -178,6 +180,7 @@ def test_a_narrow_effector_is_centred_and_not_pushed_against_the_stops(contents)
     assert ("centres it" in text) == narrow
 
 
+@pytest.mark.press
 def test_a_dome_is_measured_at_its_crown():
     """Its edge is thin by design."""
     found = contents_for(DESIGNS["dome"])
@@ -194,8 +197,8 @@ def test_a_dome_too_low_for_a_mould_is_not_sent_to_a_sheet():
         contents_for((low, {}, {}))
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", MORE)
+@pytest.mark.press
+@for_each("name", MORE)
 def test_other_sizes_and_other_frames(name):
     found = contents_for(MORE[name])
     refuse_unprintable(found)

@@ -139,7 +139,7 @@ def slicer_info(path: Path) -> dict[str, str]:
     return {key.strip(): value.strip() for key, value in lines}
 
 
-@pytest.mark.slow
+@pytest.mark.press
 @pytest.mark.skipif(shutil.which("prusa-slicer") is None, reason="PrusaSlicer is not installed")
 def test_prusaslicer_finds_every_part_manifold(written):
     parts, folder = written
@@ -150,7 +150,7 @@ def test_prusaslicer_finds_every_part_manifold(written):
     assert slicer_info(folder / "segment.3mf")["manifold"] == "yes"
 
 
-@pytest.mark.slow
+@pytest.mark.press
 @pytest.mark.skipif(shutil.which("prusa-slicer") is None, reason="PrusaSlicer is not installed")
 def test_prusaslicer_reports_a_hole(written, tmp_path):
     _, folder = written

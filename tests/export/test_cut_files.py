@@ -12,6 +12,7 @@ from geometry.fabrication.device import lone_device
 from geometry.fabrication.parameters import Fabrication
 from geometry.flat.sheets import flat_kit
 from geometry.parameters import Film, Medium, Segment
+from tests.cases import for_each
 
 SVG = "{http://www.w3.org/2000/svg}"
 KERF = 0.2
@@ -60,7 +61,7 @@ def expected(pattern):
     return lengths
 
 
-@pytest.mark.parametrize("name", ["film", "adhesive-flange-lower", "adhesive-base-medium2", "sheet-medium2"])
+@for_each("name", ["film", "adhesive-flange-lower", "adhesive-base-medium2", "sheet-medium2"])
 def test_cut_lines_read_back_have_the_right_lengths(patterns, folder, name):
     wanted = sorted(expected(patterns[name]))
     assert sorted(dxf_lengths(ezdxf.readfile(folder / f"{name}.dxf"), "CUT")) == pytest.approx(wanted)

@@ -8,13 +8,14 @@ import trimesh
 from pressed_box import box_dot
 
 from export.dot_surface import PLATE_THICKNESS_MM, DotPart, dot_parts, in_segment_frame
+from tests.cases import for_each
 
 
 def solid(part: DotPart) -> trimesh.Trimesh:
     return trimesh.Trimesh(part.points_mm, part.triangles, process=True)
 
 
-@pytest.mark.parametrize("kind", ["cap", "ridge", "plate"])
+@for_each("kind", ["cap", "ridge", "plate"])
 def test_every_part_is_a_closed_outward_surface(kind: str) -> None:
     for part in dot_parts(box_dot(kind), (1.0, 1.0)):
         assert solid(part).is_volume

@@ -43,7 +43,7 @@ def pvpython(display: str, script: Path, *arguments: Path) -> "subprocess.Comple
     )  # fmt: skip
 
 
-@pytest.mark.slow
+@pytest.mark.press
 @pytest.mark.skipif(bool(MISSING), reason=f"not installed: {', '.join(MISSING)}")
 def test_paraview_opens_times_fields_and_draws(
     segment: TetMesh, press: PressResult, dot: DotShape, tmp_path: Path, display: str
@@ -56,7 +56,7 @@ def test_paraview_opens_times_fields_and_draws(
     assert np.asarray(Image.open(picture).convert("L")).std() > 10
 
 
-@pytest.mark.slow
+@pytest.mark.press
 @pytest.mark.skipif(bool(MISSING), reason=f"needs Debian's {' and '.join(MISSING)}")
 def test_the_script_beside_the_results_draws_them(
     segment: TetMesh, press: PressResult, dot: DotShape, tmp_path: Path, display: str

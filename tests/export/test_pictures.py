@@ -19,6 +19,7 @@ from mesh.types import TetMesh
 from solve.model import Physics, Press, Readout
 from solve.readout.course import PressCourse, course
 from solve.result import PressResult
+from tests.cases import for_each
 
 
 def course_of(press: PressResult, readout: Readout | None = None) -> PressCourse:
@@ -54,7 +55,8 @@ def share_of(image: np.ndarray, colour: str, tolerance: int = 12) -> float:
     return float((np.abs(image - np.round(np.array(to_rgb(colour)) * 255)).max(axis=2) <= tolerance).mean())
 
 
-@pytest.mark.parametrize("name", FILES)
+@pytest.mark.press
+@for_each("name", FILES)
 def test_pictures_are_png_not_blank_and_not_clipped(pictures: dict[str, Path], name: str) -> None:
     with Image.open(pictures[name]) as image:
         assert image.format == "PNG"

@@ -16,6 +16,7 @@ from export.printability.measure import measure, surface_of
 from export.view import frame, page
 from geometry.base import InputError
 from geometry.fabrication.part import LimitName
+from tests.cases import for_each
 
 FDM, SLA = printer_profile("fdm"), printer_profile("sla")
 UP = (0.0, 0.0, 1.0)
@@ -68,7 +69,7 @@ def test_a_stout_block_has_no_findings():
         assert (answer.advised_process, answer.advice) == (profile.process, f"print this by {profile.process.upper()}")
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("thickness", "fdm", "sla"),
     [(0.3, "error", "error"), (0.5, "error", "warning"), (0.7, "error", None), (0.8, None, None), (1.5, None, None)],
 )
@@ -84,7 +85,7 @@ def test_a_thin_wall_is_measured_where_it_is(thickness, fdm, sla):
             assert 4.0 <= z <= 10.0
 
 
-@pytest.mark.parametrize("angles", [(30, 0, 0), (10, 50, 70), (45, 45, 0)])
+@for_each("angles", [(30, 0, 0), (10, 50, 70), (45, 45, 0)])
 def test_thickness_does_not_depend_on_how_the_part_lies(angles):
     turned = Rot(*angles) * fin(0.5)
     assert measure(turned, UP).walls.length_mm[0] == pytest.approx(0.5, abs=1e-3)
@@ -104,7 +105,7 @@ def test_a_thin_wall_that_is_no_sheet_goes_to_the_finer_printer():
     assert check_part("frame", fin(0.2), FDM).advised_process == "cast"
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("diameter", "fdm", "sla"),
     [(0.3, "error", "error"), (0.7, "error", None), (1.5, "warning", None), (2.1, None, None)],
 )
@@ -118,7 +119,7 @@ def test_a_thin_pin_is_a_feature_and_no_wall(diameter, fdm, sla):
             assert findings["feature"].place_mm[:2] == pytest.approx((2, 1), abs=0.05)
 
 
-@pytest.mark.parametrize("sign", [1, -1])
+@for_each("sign", [1, -1])
 def test_a_braille_dot_is_measured_as_a_bump_and_its_mould_as_a_dent(sign):
     findings = found(bump(1.5, 0.5, sign), FDM)
     assert findings["feature"].value == pytest.approx(1.5, abs=0.01)
@@ -159,7 +160,7 @@ def test_an_underside_is_measured_in_the_orientation_of_the_printer():
     assert "overhang" not in found(table(12, 8), FDM, up=(0.0, 0.0, -1.0))
 
 
-@pytest.mark.parametrize(("slope", "needs_support"), [(40.0, True), (50.0, False)])
+@for_each(("slope", "needs_support"), [(40.0, True), (50.0, False)])
 def test_a_slope_steeper_than_the_limit_holds_itself(slope, needs_support):
     run = 10.0
     rise = run * np.tan(np.radians(slope))
@@ -227,7 +228,7 @@ def test_several_printers_answer_as_each_alone():
     assert check_on_printers("part", body, (FDM, SLA)) == (check_part("part", body, FDM), check_part("part", body, SLA))
 
 
-@pytest.mark.parametrize("name", printer_names())
+@for_each("name", printer_names())
 def test_every_number_of_a_profile_has_a_source_and_a_confidence(name):
     profile = printer_profile(name)
     assert set(profile.limits) == set(get_args(LimitName))

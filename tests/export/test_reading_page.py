@@ -9,6 +9,7 @@ import pytest
 from export.array.reading_page import MOST_BINS, MOST_VALUES, binned, differing, player_data, write_reading_page
 from geometry.base import InputError
 from geometry.braille import dot_offset_mm, raised_dots
+from tests.cases import for_each
 
 LETTERS = dict(zip("abcdefghijklmnopqrstuvwxyz ", "⠁⠃⠉⠙⠑⠋⠛⠓⠊⠚⠅⠇⠍⠝⠕⠏⠟⠗⠎⠞⠥⠧⠺⠭⠽⠵⠀", strict=True))
 CENTRES = np.array([[x, y] for y in (-2.5, 0.0, 2.5) for x in (-1.25, 1.25)])
@@ -191,7 +192,7 @@ def seen(page):
     return page.locator(".cells > span:not(.unread)").count()
 
 
-@pytest.mark.slow
+@pytest.mark.browser
 def test_it_plays_and_is_scrubbed_by_keys(page_at):
     page = page_at()
     assert seen(page) == 1  # it begins where the first cell is read
@@ -213,7 +214,7 @@ def test_it_plays_and_is_scrubbed_by_keys(page_at):
     assert seen(page) == 0
 
 
-@pytest.mark.slow
+@pytest.mark.browser
 def test_where_motion_is_not_wanted_it_goes_from_cell_to_cell(page_at):
     page = page_at(reduced_motion="reduce")
     page.locator(".line").focus()
@@ -226,8 +227,8 @@ def test_where_motion_is_not_wanted_it_goes_from_cell_to_cell(page_at):
     assert any(shown.startswith(one) for one in times)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("scheme", "width"), [("light", 1366), ("dark", 1366), ("light", 400), ("dark", 400)])
+@pytest.mark.browser
+@for_each(("scheme", "width"), [("light", 1366), ("dark", 1366), ("light", 400), ("dark", 400)])
 def test_axe_finds_nothing_serious_in_a_reading(page_at, scheme, width):
     axe_package = pytest.importorskip("axe_playwright_python.sync_playwright")
     page = page_at(width, color_scheme=scheme, bypass_csp=True)
@@ -238,7 +239,7 @@ def test_axe_finds_nothing_serious_in_a_reading(page_at, scheme, width):
     assert page.evaluate("document.documentElement.scrollWidth") <= width
 
 
-@pytest.mark.slow
+@pytest.mark.browser
 def test_without_javascript_every_cell_is_seen(page_at):
     page = page_at(java_script_enabled=False)
     assert seen(page) == len(TRUE)

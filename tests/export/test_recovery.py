@@ -7,11 +7,12 @@ from export.recovery import film_patches
 from mesh.types import TetMesh
 from softdot.case import Case
 from solve.result import film_columns
+from tests.cases import for_each
 
 COARSE = {"mesher": "layered", "element_size_mm": 0.7, "contact_element_size_mm": 0.35}
 
 
-@pytest.mark.parametrize(
+@for_each(
     "tables",
     [
         {"mesh": COARSE},
@@ -52,7 +53,7 @@ def weighted_means(tet_mesh: TetMesh, values):
     return total / np.maximum(count, 1.0)
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_charge_along_a_held_rim_does_not_follow_the_elements():
     pressed = Case(mesh={"mesher": "layered"}, press={"load_steps": 1}).press()
     tet_mesh, charge = pressed.result.tet_mesh, pressed.result.steps[-1].fields.charge_density_C_per_m2

@@ -16,6 +16,7 @@ from export.viewer_data import viewer_data
 from geometry.dot import DotShape
 from mesh.types import TetMesh
 from solve.result import PressResult
+from tests.cases import for_each
 
 PIXEL = base64.b64decode(
     "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg=="
@@ -155,7 +156,7 @@ def test_failed_write_leaves_nothing_behind(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("value", "text"),
     [(0.0, "0"), (1.23456, "1.235"), (-0.5, "\u22120.5"), (100.0, "100"), (3e-12, "3.000e-12"),
      (13600, "13\u202f600"),

@@ -20,6 +20,7 @@ from export.skin import (
 )
 from mesh.types import TetMesh
 from solve.result import PressResult
+from tests.cases import for_each
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +33,7 @@ def normals(skin: Skin) -> np.ndarray:
     return np.cross(b - a, c - a) / 2
 
 
-@pytest.mark.parametrize("level", [0, 1, 2])
+@for_each("level", [0, 1, 2])
 def test_patterns_reproduce_a_quadratic_field(level: int) -> None:
     weights, small = triangle_pattern(level)
     x = np.array([0.0, 1.0, 0.0, 0.5, 0.5, 0.0])

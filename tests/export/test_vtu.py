@@ -14,6 +14,7 @@ from export.vtu import write_results
 from geometry.dot import DotShape
 from mesh.types import TetMesh
 from solve.result import PressResult
+from tests.cases import for_each
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +28,7 @@ def times(pvd: Path) -> list[float]:
     return [float(row.attrib["timestep"]) for row in ElementTree.parse(pvd).iter("DataSet")]
 
 
-@pytest.mark.parametrize("name", ["segment", "film", "contact", "dot"])
+@for_each("name", ["segment", "film", "contact", "dot"])
 def test_time_of_a_collection_is_the_indentation(results: Path, name: str) -> None:
     assert times(results / f"{name}.pvd") == pytest.approx(DEPTHS_MM)
     assert pyvista.get_reader(results / f"{name}.pvd").time_values == pytest.approx(DEPTHS_MM)

@@ -11,6 +11,7 @@ from geometry.base import InputError
 from geometry.braille import dot_offset_mm
 from geometry.dot import resolve_dot
 from geometry.parameters import Dot, Effector, Electrode, Film, Medium, Segment
+from tests.cases import for_each
 
 ALL = ("effector", "medium1", "film", "medium2")
 
@@ -128,7 +129,7 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("case", REFUSED)
+@for_each("case", REFUSED)
 def test_impossible_arrays_are_refused_by_name(case):
     array, changes, sentence = REFUSED[case]
     with pytest.raises(InputError, match=sentence):

@@ -17,6 +17,7 @@ from geometry.flat.escape import Lattice
 from geometry.flat.pattern import shared_area_mm2
 from geometry.flat.sheets import flat_kit
 from geometry.parameters import Dot, Effector, Film, Medium, Segment
+from tests.cases import for_each
 
 FINE = {"trace_width_mm": 0.1, "trace_gap_mm": 0.05, "kerf_mm": 0.02}
 ARRAYS = {
@@ -183,7 +184,7 @@ def squares(count, gap, ranks=3):
     }
 
 
-@pytest.mark.parametrize("traces", [1, 2, 3])
+@for_each("traces", [1, 2, 3])
 def test_a_gap_takes_as_many_traces_as_it_is_wide_for(traces):
     """n traces of w and n + 1 gaps of g beside them."""
     exact = traces * 0.3 + (traces + 1) * 0.2
@@ -199,7 +200,7 @@ def test_a_trace_of_a_farthest_electrode_goes_around_where_the_gaps_are_full():
     assert (through.behind, through.beside) == (0.0, pytest.approx(0.5))
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("array", "made", "sentence"),
     [
         (

@@ -4,9 +4,10 @@ import pytest
 
 from geometry.base import InputError
 from geometry.braille import dot_offset_mm, raised_dots
+from tests.cases import for_each
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("character", "dots"),
     [
         ("\u2801", (1,)),  # a
@@ -23,13 +24,13 @@ def test_bits_of_the_code_point_are_raised_dots(character, dots):
     assert raised_dots(character) == dots
 
 
-@pytest.mark.parametrize("wrong", ["a", "", "⠁⠁", "\u27ff", "\u2900"])
+@for_each("wrong", ["a", "", "⠁⠁", "\u27ff", "\u2900"])
 def test_anything_else_is_refused(wrong):
     with pytest.raises(InputError, match=f"^dot.cell = '{wrong}': must be one Unicode Braille character"):
         raised_dots(wrong)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("dot", "column", "row"),
     [(1, 0, 0), (2, 0, 1), (3, 0, 2), (4, 1, 0), (5, 1, 1), (6, 1, 2), (7, 0, 3), (8, 1, 3)],
 )

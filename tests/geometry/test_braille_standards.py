@@ -4,6 +4,7 @@ import pytest
 
 from geometry.base import InputError
 from geometry.braille import QUANTITIES, standard, standard_names
+from tests.cases import for_each
 
 NONE = (None, None, None)
 # minimum, nominal, maximum of base diameter, height, dot pitch, cell pitch, line pitch
@@ -45,7 +46,7 @@ def test_every_standard_of_the_table_is_checked_here():
     assert set(standard_names()) == set(TABLE)
 
 
-@pytest.mark.parametrize(("name", "expected"), TABLE.items())
+@for_each(("name", "expected"), TABLE.items())
 def test_numbers_are_those_of_the_sources(name, expected):
     quantities = standard(name).quantities
     for quantity, numbers in zip(QUANTITIES, expected, strict=True):
@@ -54,14 +55,14 @@ def test_numbers_are_those_of_the_sources(name, expected):
             assert value == (None if number is None else pytest.approx(number, abs=1e-12)), quantity
 
 
-@pytest.mark.parametrize("name", TABLE)
+@for_each("name", TABLE)
 def test_every_number_has_a_source_and_a_confidence(name):
     for quantity in standard(name).quantities.values():
         assert quantity.source
         assert quantity.confidence in ("high", "medium", "low")
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("name", "quantity", "flag"),
     [
         ("ada", "height_mm", True),
@@ -87,7 +88,7 @@ def test_an_alias_is_the_same_standard():
     assert standard("iso-17351") == standard("en-15823")
 
 
-@pytest.mark.parametrize(("wrong", "near"), [("marburg", "marburg-medium"), ("NLS", "nls"), ("iso17049", "iso-17049")])
+@for_each(("wrong", "near"), [("marburg", "marburg-medium"), ("NLS", "nls"), ("iso17049", "iso-17049")])
 def test_a_wrong_name_suggests_the_nearest(wrong, near):
     with pytest.raises(InputError) as error:
         standard(wrong)

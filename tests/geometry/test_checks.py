@@ -7,6 +7,7 @@ from geometry.base import InputError
 from geometry.checks import check_press_depth, check_segment, press_warnings
 from geometry.dot import resolve_dot
 from geometry.parameters import Bond, Dot, Effector, Electrode, Film
+from tests.cases import for_each
 
 
 def film(*electrodes):
@@ -104,7 +105,7 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize(("changes", "sentence"), REFUSED.values(), ids=REFUSED)
+@for_each(("changes", "sentence"), REFUSED.values(), ids=REFUSED)
 def test_an_impossible_segment_is_refused_in_one_sentence(make_segment, changes, sentence):
     with pytest.raises(InputError) as error:
         check_segment(make_segment(**changes))
@@ -127,12 +128,12 @@ ALLOWED = {
 }
 
 
-@pytest.mark.parametrize("changes", ALLOWED.values(), ids=ALLOWED)
+@for_each("changes", ALLOWED.values(), ids=ALLOWED)
 def test_a_possible_segment_passes_without_a_word(make_segment, changes):
     assert check_segment(make_segment(**changes)) == []
 
 
-@pytest.mark.parametrize(
+@for_each(
     "effector",
     [Effector(shape="block", length_mm=2.5, width_mm=1.0), Effector(shape="cylinder", diameter_mm=2.5)],
 )

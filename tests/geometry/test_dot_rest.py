@@ -9,6 +9,7 @@ from geometry.base import InputError
 from geometry.dot import resolve_dot
 from geometry.parameters import Dot, Effector
 from geometry.stack import Box, Disc, Dome
+from tests.cases import for_each
 
 TOP = 3.528
 MARBURG_RADIUS = 0.8125
@@ -56,7 +57,7 @@ def test_a_tilted_neighbour_over_a_long_segment_is_refused(make_segment):
     resolve_dot(Dot(cell="⠉", tilt_deg=(0.0, -2.0)), make_segment(length_mm=8.0))
 
 
-@pytest.mark.parametrize("tilt", [(4.0, 2.0), (-3.0, 5.0)])
+@for_each("tilt", [(4.0, 2.0), (-3.0, 5.0)])
 def test_a_tilted_plate_touches_the_highest_corner_only(make_segment, tilt):
     segment = make_segment(effector=Effector(shape="block", length_mm=1.0, width_mm=2.0))
     shape = resolve_dot(Dot(shape="plate", tilt_deg=tilt, offset_mm=(0.1, 0.0)), segment)
@@ -67,7 +68,7 @@ def test_a_tilted_plate_touches_the_highest_corner_only(make_segment, tilt):
     assert shape.origin_mm[:2] == pytest.approx([0.1, 0.0])
 
 
-@pytest.mark.parametrize(("tilt", "offset"), [((6.0, 0.0), (0.0, 0.0)), ((-5.0, 4.0), (0.2, 0.3))])
+@for_each(("tilt", "offset"), [((6.0, 0.0), (0.0, 0.0)), ((-5.0, 4.0), (0.2, 0.3))])
 def test_a_ridge_tilted_along_its_axis_touches_the_edge_only(segment, tilt, offset):
     shape = resolve_dot(Dot(shape="ridge", radius_mm=1.0, tilt_deg=tilt, offset_mm=offset), segment)
     angle, along = np.meshgrid(np.linspace(-1, 1, 2001), np.linspace(-4, 4, 2001))
@@ -107,7 +108,7 @@ def skin_points(body):
 BODIES = [Box(1.25, 1.0, 0.0, 2.5), Disc(0.8, 2.5, 3.5), Dome(1.0, 2.5, 3.1), Dome(1.0, 2.5, 3.5)]
 
 
-@pytest.mark.parametrize("body", BODIES, ids=["box", "disc", "dome", "hemisphere"])
+@for_each("body", BODIES, ids=["box", "disc", "dome", "hemisphere"])
 def test_reach_and_distance_are_those_of_the_nearest_skin_point(body):
     skin = skin_points(body)
     random = np.random.default_rng(1)

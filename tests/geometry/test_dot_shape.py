@@ -7,9 +7,10 @@ from geometry.base import InputError
 from geometry.braille import dot_size
 from geometry.dot import resolve_dot
 from geometry.parameters import Dot
+from tests.cases import for_each
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("base", "height", "radius"),
     [(1.5, 0.6, 0.769), (1.44, 0.48, 0.780), (1.5, 0.5, 0.812), (1.6, 0.2, 1.70), (1.6, 0.8, 0.800)],
 )
@@ -38,7 +39,7 @@ def test_a_cap_that_would_undercut_is_a_hemisphere_on_a_foot(segment):
     assert shape.base_diameter_mm == pytest.approx(1.6)
 
 
-@pytest.mark.parametrize("kind", ["cap", "ridge"])
+@for_each("kind", ["cap", "ridge"])
 def test_a_radius_alone_stands_out_by_itself(segment, kind):
     size = dot_size(Dot(shape=kind, radius_mm=1.15))
     assert (size.radius_mm, size.height_mm, size.foot_mm) == (1.15, 1.15, 0.0)
@@ -119,7 +120,7 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize(("dot", "sentence"), REFUSED.values(), ids=REFUSED)
+@for_each(("dot", "sentence"), REFUSED.values(), ids=REFUSED)
 def test_an_impossible_dot_is_refused_in_one_sentence(segment, dot, sentence):
     with pytest.raises(InputError) as error:
         resolve_dot(dot, segment)
@@ -138,7 +139,7 @@ OUT_OF_PLANE = {
 }
 
 
-@pytest.mark.parametrize(("dot", "sentence"), OUT_OF_PLANE.values(), ids=OUT_OF_PLANE)
+@for_each(("dot", "sentence"), OUT_OF_PLANE.values(), ids=OUT_OF_PLANE)
 def test_nothing_varies_out_of_plane(make_segment, dot, sentence):
     with pytest.raises(InputError) as error:
         resolve_dot(dot, make_segment(section="plane-strain"))

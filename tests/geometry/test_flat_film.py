@@ -11,6 +11,7 @@ from geometry.flat.electrodes import stray_area_mm2
 from geometry.flat.pattern import Label, gap_mm, shared_area_mm2
 from geometry.flat.sheets import flat_kit
 from geometry.parameters import Electrode, Film
+from tests.cases import for_each
 
 EXITS = ("+x", "-x", "+y", "-y")
 TWO = (
@@ -42,7 +43,7 @@ def test_free_film_has_no_flange_and_no_ring(make_segment):
     assert not [name for name in by_name(kit) if name.startswith("adhesive-flange")]
 
 
-@pytest.mark.parametrize("way", EXITS)
+@for_each("way", EXITS)
 def test_active_film_is_where_both_faces_have_metal(make_segment, way):
     """The electrodes of the configuration overlap the common one entirely; no lead overlaps another on the tab."""
     kit = flat_kit(lone_device(side_by_side(make_segment, way)), Fabrication(cable_exit=way, tab_width_mm=2.4))
@@ -81,7 +82,7 @@ def test_leads_of_one_face_keep_their_distance(make_segment):
     assert min(gap_mm(a, b) for a in one.lead for b in other.lead) >= 0.2
 
 
-@pytest.mark.parametrize("way", EXITS)
+@for_each("way", EXITS)
 def test_metal_ends_before_the_edge_of_the_film(make_segment, way):
     """Both outlines span a box; that of the metal lies inside, bare film all around but at free edges."""
     pattern = by_name(flat_kit(lone_device(make_segment()), Fabrication(cable_exit=way)))["film"]
@@ -136,7 +137,7 @@ def test_draw_direction_lies_as_in_the_configuration(make_segment):
         assert tips[0][0] == pytest.approx(tips[1][0])
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("made", "electrodes", "sentence"),
     [
         ({"tab_width_mm": 1.0}, (), r"tab_width_mm = 1: leaves 2 leads of 0.2 mm, below the limit of 0.3 mm"),

@@ -21,6 +21,7 @@ print(hasattr(build123d, "__wrapped__"), build123d.Box.__name__, build123d.Solid
 """
 
 
+@pytest.mark.process
 def test_build123d_is_loaded_in_part_and_as_a_whole_when_more_is_asked_for():
     done = subprocess.run(
         [sys.executable, "-c", CODE.format(parts=PARTS)], capture_output=True, encoding="utf-8", check=True

@@ -8,6 +8,7 @@ from geometry.base import InputError
 from geometry.braille import standard_names
 from geometry.plates import braille_sizes, height_series, indenter_tip, text_plate
 from geometry.plates.plate import lay_out
+from tests.cases import for_each
 
 BRAILLE = "⠃⠗⠁⠊⠇⠇⠑"
 MARBURG = braille_sizes("marburg-medium")
@@ -94,7 +95,7 @@ def test_a_series_grows_from_left_to_right():
         assert not plate.part.solid.is_inside((dot.x_mm, dot.y_mm, top + 1e-3))
 
 
-@pytest.mark.parametrize(("thread", "hole"), [("M6", 6.0 - 1.0), ("M4", 4.0 - 0.7), ("10-32", 4.04)])
+@for_each(("thread", "hole"), [("M6", 6.0 - 1.0), ("M4", 4.0 - 0.7), ("10-32", 4.04)])
 def test_a_tip_has_the_hole_for_a_tap_and_the_dot_on_its_axis(thread, hole):
     tip = indenter_tip(1.5, 0.5, thread)
     solid, top = tip.part.solid, tip.size_mm[2]
@@ -106,7 +107,7 @@ def test_a_tip_has_the_hole_for_a_tap_and_the_dot_on_its_axis(thread, hole):
     assert solid.is_inside((0.74, 0.0, top - 0.499))
 
 
-@pytest.mark.parametrize("name", sorted(COMPLETE))
+@for_each("name", sorted(COMPLETE))
 def test_every_complete_standard_gives_one_sound_solid(name):
     plate = text_plate(["⠃⠗"], braille_sizes(name))
     assert plate.part.solid.is_valid
@@ -121,7 +122,7 @@ def test_every_standard_is_tried():
     assert COMPLETE | set(LACKING) == set(standard_names())
 
 
-@pytest.mark.parametrize(("name", "option"), LACKING.items())
+@for_each(("name", "option"), LACKING.items())
 def test_a_standard_that_lacks_a_size_names_the_option(name, option):
     with pytest.raises(InputError, match=f"--standard '{name}': has no .*; give it by --{option} or choose another"):
         text_plate(["⠃⠗"], braille_sizes(name))
@@ -139,7 +140,7 @@ def test_one_line_needs_no_line_pitch():
         text_plate(["⠁", "⠁"], braille_sizes("japan"))
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("given", "lines", "words"),
     [
         ({"base_diameter_mm": 2.5}, ["⠁"], "dot_pitch_mm = 2.5: neighbouring dots would touch"),

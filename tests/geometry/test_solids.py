@@ -10,6 +10,7 @@ from geometry.assembly import CLEARANCE_MM, FLOOR_MM, PLATE_THICKNESS_MM, WALL_M
 from geometry.dot import resolve_dot
 from geometry.parameters import Dot, Effector
 from geometry.solids import PART_COLOURS
+from tests.cases import for_each
 
 EXACT = 1e-9
 CURVED = 1e-6  # OCC follows the circle between a sphere and a plane within its tolerance
@@ -36,7 +37,7 @@ def test_layers_fill_the_footprint(segment):
     assert volumes["effector"] == pytest.approx(area * 1.0, rel=EXACT)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("effector", "volume"),
     [
         (Effector(shape="block", length_mm=1.5, width_mm=1.0, height_mm=0.7), 1.5 * 1.0 * 0.7),
@@ -65,14 +66,14 @@ DOTS = {
 }
 
 
-@pytest.mark.parametrize(("dot", "volume"), DOTS.values(), ids=DOTS)
+@for_each(("dot", "volume"), DOTS.values(), ids=DOTS)
 def test_dots_on_their_plate(segment, dot, volume):
     found, size = bump_volume(dot, segment)
     assert found == pytest.approx(volume, rel=CURVED)
     assert pytest.approx(resolve_dot(dot, segment).height_mm + PLATE_THICKNESS_MM, abs=1e-6) == size.Z
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("dot", "section_area"),
     [
         (Dot(shape="ridge", radius_mm=1.15), pi * 1.15**2 / 2),
@@ -152,7 +153,7 @@ HELD = [("effector", "medium1", "film"), ("film",), ("medium2",), ("effector",)]
 EFFECTORS = [Effector(), Effector(shape="dome", diameter_mm=2.0)]
 
 
-@pytest.mark.parametrize(("held", "effector"), [*product(HELD, EFFECTORS), (HELD[0], None)])
+@for_each(("held", "effector"), [*product(HELD, EFFECTORS), (HELD[0], None)])
 def test_soft_parts_and_case_do_not_overlap(make_segment, held, effector):
     parts = list(parts_of(make_segment(held_layers=held, effector=effector)).values())[:-1]
     for k, one in enumerate(parts):
@@ -179,8 +180,8 @@ def test_without_effector_there_is_no_such_part(make_segment):
     assert list(parts_of(make_segment(effector=None))) == ["medium1", "film", "medium2", "case", "dot"]
 
 
-@pytest.mark.parametrize("thickness", [0.0, 0.1])
-@pytest.mark.parametrize("shape", ["layer", "dome"])
+@for_each("thickness", [0.0, 0.1])
+@for_each("shape", ["layer", "dome"])
 def test_another_film_moves_what_lies_above_it(make_segment, thickness, shape):
     effector = Effector(shape=shape, diameter_mm=None if shape == "layer" else 2.0)
     solids = layer_solids(make_segment(effector=effector), thickness)

@@ -15,6 +15,7 @@ from mesh.build import MeshOptions
 from mesh.symmetry import unfolded
 from mesh.types import face_neighbours, signed_volumes
 from solve.fem.kinematics import physical_gradients, quadratic, tetrahedron
+from tests.cases import for_each
 from tests.geometry.test_array import ALL, segment
 
 COARSE = MeshOptions(element_size_mm=0.9, contact_element_size_mm=0.4)
@@ -52,7 +53,7 @@ VOLUMES = {  # length x width x height, by hand
 }
 
 
-@pytest.mark.parametrize("name", VOLUMES)
+@for_each("name", VOLUMES)
 def test_parts_have_their_exact_volume(name):
     _, found = mesh_of(name)
     volume = signed_volumes(found.points_mm, found.tets[:, :4])
@@ -61,7 +62,7 @@ def test_parts_have_their_exact_volume(name):
         assert volume[found.region_tets(part)].sum() == pytest.approx(expected, rel=1e-9)
 
 
-@pytest.mark.parametrize("name", ROUND)
+@for_each("name", ROUND)
 def test_round_effectors_have_their_volume_and_skin(name):
     """Curved elements: within 0.5 %, and every node of the skin on a sphere or cylinder around its segment."""
     one, found = mesh_of(name)
@@ -81,14 +82,16 @@ def test_round_effectors_have_their_volume_and_skin(name):
         assert (np.isclose(beside, 0.8, atol=1e-6) | np.isclose(skin[:, 2], 3.528)).all()
 
 
-@pytest.mark.parametrize("name", ARRAYS)
+@pytest.mark.press
+@for_each("name", ARRAYS)
 def test_no_node_is_an_orphan_and_no_face_has_three_elements(name):
     _, found = mesh_of(name)
     assert (np.unique(found.tets) == np.arange(len(found.points_mm))).all()
     face_neighbours(found.tets[:, :4])  # raises where three share a face
 
 
-@pytest.mark.parametrize("name", ARRAYS)
+@pytest.mark.press
+@for_each("name", ARRAYS)
 def test_a_quarter_unfolds_to_the_whole(name):
     """As many elements in each part, and facets of the same names and areas."""
     _, whole = mesh_of(name)

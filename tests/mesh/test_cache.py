@@ -9,6 +9,7 @@ from mesh_samples import dot, options, segment
 from geometry.parameters import Medium
 from mesh.build import key, remembered
 from mesh.types import LinearMesh
+from tests.cases import for_each
 
 ONE = LinearMesh(np.vstack([np.zeros(3), np.eye(3)]), np.array([[0, 1, 2, 3]]), np.array([0]), ("medium2",))
 
@@ -32,7 +33,7 @@ def test_a_mesh_is_made_once(store: Path) -> None:
     assert [p.name for p in store.iterdir()] == ["mesh-abc.npz"]
 
 
-@pytest.mark.parametrize("damage", [b"", b"not a mesh", None])
+@for_each("damage", [b"", b"not a mesh", None])
 def test_a_damaged_file_is_a_miss_and_is_replaced(store: Path, damage: bytes | None) -> None:
     remembered("abc", lambda: ONE)
     file = store / "mesh-abc.npz"

@@ -66,6 +66,7 @@ def test_output_of_the_child_is_not_shown(capfd: pytest.CaptureFixture[str]) -> 
     assert said.out + said.err == ""
 
 
+@pytest.mark.press
 def test_a_cube_is_filled() -> None:
     corners = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
     quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]

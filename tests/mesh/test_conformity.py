@@ -33,6 +33,7 @@ def contact_area(name: str, thickness: float) -> float:
     return foot + extra[shape]
 
 
+@pytest.mark.press
 def test_every_face_belongs_to_two_tetrahedra_or_to_the_outside(sample: Sample) -> None:
     _, tet_mesh = sample
     _, count = np.unique(corner_faces(tet_mesh.tets), axis=0, return_counts=True)

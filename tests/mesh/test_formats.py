@@ -17,6 +17,7 @@ ALL = ("msh", "inp", "xdmf")
 NAMES = ("none solid layered", "cylinder solid layered", "block plane-strain layered", "dome solid pytetwild")
 
 
+@pytest.mark.press
 @pytest.mark.parametrize("extension", ALL)
 @pytest.mark.parametrize("name", NAMES)
 def test_a_file_gives_the_same_mesh_back(name: str, extension: str, tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ from mesh_samples import built, corner_faces, facet_area
 from geometry.base import InputError
 from mesh.interfaces import INTERFACES, inner_nodes, interface_facets, split_interface
 from mesh.types import TET_FACES, TetMesh
+from tests.cases import for_each
 
 SAMPLES = ["cylinder solid layered", "block plane-strain layered"]
 FOOT = {"cylinder solid layered": np.pi * 0.75**2, "block plane-strain layered": 1.2 * 0.2}
@@ -37,8 +38,8 @@ def in_a_disc(tet_mesh: TetMesh, facets: np.ndarray, radius_mm: float = 0.5) -> 
     return np.linalg.norm(corners.mean(axis=1), axis=1) < radius_mm
 
 
-@pytest.mark.parametrize("sample", SAMPLES)
-@pytest.mark.parametrize("name", INTERFACES)
+@for_each("sample", SAMPLES)
+@for_each("name", INTERFACES)
 def test_an_interface_covers_the_foot_of_the_part_above_and_faces_up(sample, name):
     tet_mesh = built(sample)
     facets = interface_facets(tet_mesh, name)
@@ -49,8 +50,8 @@ def test_an_interface_covers_the_foot_of_the_part_above_and_faces_up(sample, nam
     assert facet_area(tet_mesh.points_mm, facets) == pytest.approx(expected, rel=0.05)
 
 
-@pytest.mark.parametrize("sample", SAMPLES)
-@pytest.mark.parametrize("name", INNER)
+@for_each("sample", SAMPLES)
+@for_each("name", INNER)
 def test_a_split_interface_joins_nothing_and_its_faces_match(sample, name):
     tet_mesh, (below, above) = built(sample), INTERFACES[name]
     split, lower, upper = split_interface(tet_mesh, name)
@@ -63,8 +64,8 @@ def test_a_split_interface_joins_nothing_and_its_faces_match(sample, name):
     np.testing.assert_array_equal(split.points_mm[split.tets], tet_mesh.points_mm[tet_mesh.tets])
 
 
-@pytest.mark.parametrize("sample", SAMPLES)
-@pytest.mark.parametrize("order", [1, -1], ids=["upwards", "downwards"])
+@for_each("sample", SAMPLES)
+@for_each("order", [1, -1], ids=["upwards", "downwards"])
 def test_named_facets_stay_with_their_part_when_all_interfaces_are_split(sample, order):
     tet_mesh = built(sample)
     split = split_all(tet_mesh, INNER[::order])
@@ -93,8 +94,8 @@ def test_a_slice_stays_free_of_y_in_every_part():
     assert len(np.unique(np.concatenate(twins))) == sum(map(len, twins))
 
 
-@pytest.mark.parametrize("sample", SAMPLES)
-@pytest.mark.parametrize("name", ["bond-film-medium2", "bond-medium1-film"])
+@for_each("sample", SAMPLES)
+@for_each("name", ["bond-film-medium2", "bond-medium1-film"])
 def test_a_patch_doubles_the_nodes_inside_and_leaves_its_rim_joined(sample, name):
     tet_mesh = built(sample)
     facets = interface_facets(tet_mesh, name)

@@ -10,9 +10,10 @@ from mesh.layered import refine, start_triangulation
 from mesh.outline import outline
 from mesh.sizing import graded, graded_through
 from mesh.types import split_prisms
+from tests.cases import for_each
 
 
-@pytest.mark.parametrize("section", ["solid", "plane-strain"])
+@for_each("section", ["solid", "plane-strain"])
 def test_the_same_input_gives_the_same_mesh_bit_for_bit(section: str) -> None:
     of = segment("block", section)
     one, other = (mesh.build(of, dot(of), options("layered")) for _ in range(2))
@@ -20,7 +21,7 @@ def test_the_same_input_gives_the_same_mesh_bit_for_bit(section: str) -> None:
     assert one.tets.tobytes() == other.tets.tobytes()
 
 
-@pytest.mark.parametrize("section", ["solid", "plane-strain"])
+@for_each("section", ["solid", "plane-strain"])
 def test_a_dome_is_refused_in_one_sentence(section: str) -> None:
     of = segment("dome", section)
     with pytest.raises(InputError, match=r"cannot mesh segment\.effector\.shape = dome: use pytetwild"):
@@ -38,7 +39,7 @@ def test_prisms_that_share_a_side_agree_on_its_diagonal() -> None:
         assert (count == 1).sum() == 12  # two on each of four free sides, four lids
 
 
-@pytest.mark.parametrize("effector", ["none", "block", "cylinder"])
+@for_each("effector", ["none", "block", "cylinder"])
 def test_bisection_keeps_the_area_conforms_and_reaches_the_size(effector: str) -> None:
     stack = outline(segment(effector))
     radius = stack.effector_half_x if effector == "cylinder" else None

@@ -16,6 +16,7 @@ from mesh.quality import measure
 BLOCK, SLICE = "block solid layered", "block plane-strain layered"
 
 
+@pytest.mark.press
 @pytest.mark.parametrize("name", ["cylinder solid layered", BLOCK, SLICE])
 def test_four_node_tetrahedra_become_the_mesh_that_the_mesher_makes_of_them(name: str, tmp_path: Path) -> None:
     """Names in capitals, as Abaqus writes them; mid-side nodes on the round skin."""

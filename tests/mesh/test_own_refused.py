@@ -82,6 +82,7 @@ BAD: list[tuple[Change, str]] = [
 ]
 
 
+@pytest.mark.press
 @pytest.mark.parametrize(("change", "said"), BAD)
 def test_a_mesh_that_is_not_of_the_segment_is_refused(change: Change, said: str, tmp_path: Path) -> None:
     file = change(built(BLOCK), tmp_path / "mine.inp")
@@ -104,6 +105,7 @@ def test_a_part_that_the_segment_does_not_have_is_refused(tmp_path: Path) -> Non
         own_mesh(linear(built(BLOCK), tmp_path / "mine.inp"), segment("none"))
 
 
+@pytest.mark.press
 def test_a_bulging_skin_and_a_thick_slice_are_refused(tmp_path: Path) -> None:
     of, stack = built("cylinder solid layered"), outline(segment("cylinder"))
     surface = curved_surface(stack)

@@ -8,6 +8,7 @@ import mesh
 from mesh.outline import outline
 from mesh.sizing import sizing
 from mesh.types import TetMesh
+from tests.cases import for_each
 
 SIZES = {"element_size_mm": 0.4, "contact_element_size_mm": 0.12}
 
@@ -19,7 +20,8 @@ def edges_mm(tet_mesh: TetMesh, facets: np.ndarray, radius: float) -> np.ndarray
     return np.linalg.norm(corner[near] - np.roll(corner[near], 1, axis=1), axis=2).ravel()
 
 
-@pytest.mark.parametrize("mesher", ["layered", "pytetwild"])
+@pytest.mark.press
+@for_each("mesher", ["layered", "pytetwild"])
 def test_sizes_are_those_asked_for(mesher: str) -> None:
     of = segment()
     tet_mesh = mesh.build(of, dot(of), options(mesher, film_layers=1, **SIZES))

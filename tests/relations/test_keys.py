@@ -15,6 +15,7 @@ from softdot.config.mistakes import mistakes
 from softdot.config.not_modelled import NOT_MODELLED, not_modelled
 from softdot.config.toml import completed
 from solve.model import Readout, Waveform
+from tests.cases import for_each
 
 TABLES = {
     ("press", "waveform"): Waveform,
@@ -71,7 +72,7 @@ def test_there_are_such_keys():
     assert len({(way, name) for way, name, _, holds in CONDITIONS if not holds}) >= 21
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("way", "name", "table"),
     [(way, name, table) for way, name, table, holds in CONDITIONS if not holds],
     ids=lambda value: str(value)[:60],
@@ -91,7 +92,7 @@ def test_a_key_that_does_not_act_is_refused_by_name_and_said_once(way, name, tab
     assert [one for one in found if one.startswith(f"{key} ")] == [str(refused.value)]
 
 
-@pytest.mark.parametrize(("way", "name", "table"), [one[:3] for one in CONDITIONS if one[3]], ids=str)
+@for_each(("way", "name", "table"), [one[:3] for one in CONDITIONS if one[3]], ids=str)
 def test_where_it_acts_nothing_is_said_of_it_and_what_is_written_can_be_read(way, name, table):
     kind = TABLES[way]
     needed = {one: example(one, SCHEMA["$defs"][kind.__name__]["properties"][one]) for one, acts in kind.acting()
@@ -104,7 +105,7 @@ def test_where_it_acts_nothing_is_said_of_it_and_what_is_written_can_be_read(way
         assert config_from(written).model_dump(mode="json", exclude_none=True) == written
 
 
-@pytest.mark.parametrize("boundary", ["free", "clamped", "elastic"])
+@for_each("boundary", ["free", "clamped", "elastic"])
 def test_an_inherited_key_is_no_statement(boundary):
     assert Case.load(settings=[f"segment.boundary={boundary}"]).config.segment.boundary == boundary
 
@@ -121,7 +122,7 @@ CHARGE = {"mode": "charge", "feedback_pF": 100.0}
 TWO = [{"name": name, "center_mm": [x, 0.0], "size_mm": [1.0, 2.0]} for name, x in (("a", -0.6), ("b", 0.6))]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("name", "component", "parameters"),
     [
         ("parasitic-capacitance", "readout", {"capacitance_pF": 10.0}),
@@ -162,7 +163,7 @@ TYPED = {
 }
 
 
-@pytest.mark.parametrize(("typed", "meant"), TYPED.items(), ids=str)
+@for_each(("typed", "meant"), TYPED.items(), ids=str)
 def test_a_hint_is_by_words_and_letters(typed, meant):
     known = {key for table in tables_at(typed[:1], Config) for key in table.model_fields}
     assert nearest(typed[1], known) == f"did you mean '{meant}'?"
@@ -194,7 +195,7 @@ FOLLOWS = {
 }
 
 
-@pytest.mark.parametrize("tables", FOLLOWS.values(), ids=FOLLOWS)
+@for_each("tables", FOLLOWS.values(), ids=FOLLOWS)
 def test_what_follows_from_a_mistake_is_no_second_one(tables):
     found, _ = mistakes(tables, lambda rest: Case(config_from(completed(rest))).checked)
     assert len(found) == 1

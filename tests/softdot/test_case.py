@@ -74,6 +74,7 @@ def test_fields_of_a_step_as_pyvista_has_them(case):
     assert np.isnan(grid.cell_data["film_strain"][~film]).all()
 
 
+@pytest.mark.press
 def test_saving_a_case_is_a_run(case, tmp_path):
     summary = case.save(tmp_path / "out")
     assert summary["reaction_force_N"] == pytest.approx(case.press().reaction_force_N, rel=1e-11)
@@ -89,7 +90,7 @@ def test_derivatives_of_a_case(case):
     assert total == pytest.approx(case.press().film_charge_pC[-1], rel=1e-4)
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_a_sweep_is_a_data_frame(tmp_path):
     axis = {"key": "press.indentation_mm", "values": [0.05, 0.1]}
     table = softdot.sweep({**TABLES, "sweep": {"workers": 1, "axes": [axis]}}, tmp_path / "sweep")

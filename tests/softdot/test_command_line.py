@@ -9,6 +9,7 @@ import pytest
 
 import softdot
 from softdot.cli import main
+from tests.cases import for_each
 
 HEAVY = (
     "build123d",
@@ -24,7 +25,7 @@ HEAVY = (
 )
 
 
-@pytest.mark.parametrize("command", [[], ["run"], ["schema"], ["check"], ["new"], ["list"], ["kit"]])
+@for_each("command", [[], ["run"], ["schema"], ["check"], ["new"], ["list"], ["kit"]])
 def test_help_loads_nothing_heavy(command):
     code = (
         "import sys\n"
@@ -47,6 +48,7 @@ def test_help_takes_less_than_half_a_second():
     assert min(once() for _ in range(3)) < 0.5
 
 
+@pytest.mark.process
 def test_a_configuration_is_written_in_utf8_in_every_locale():
     """TOML knows no other encoding; a cluster's jobs may run in the locale POSIX."""
     ascii_only = {**os.environ, "LC_ALL": "POSIX", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
@@ -82,6 +84,7 @@ def test_version_is_the_installed_one(capsys):
     assert capsys.readouterr().out == f"softdot {softdot.__version__}\n"
 
 
+@pytest.mark.process
 def test_a_reader_that_leaves_early_is_no_error():
     command = f"{sys.executable} -m softdot.cli schema | head -c 10; exit ${{PIPESTATUS[0]}}"
     done = subprocess.run(["bash", "-c", command], capture_output=True, encoding="utf-8", check=False)

@@ -26,6 +26,7 @@ sys.exit(main(["run", "-o", "out"]))
 """
 
 
+@pytest.mark.process
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupted_process_exits_130_and_leaves_nothing(tmp_path, number):
     process = subprocess.Popen(

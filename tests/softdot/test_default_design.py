@@ -6,6 +6,7 @@ from geometry.base import InputError
 from softdot.case import Case
 from softdot.config import config_hash, load_config
 from softdot.config.rig import load_rig
+from tests.cases import for_each
 
 DEFAULT = load_config()
 
@@ -102,7 +103,7 @@ def test_set_changes_a_value_after_the_file(loaded):
     assert "dot.standard" not in config.from_default
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("setting", "said"),
     [
         ("press", "--set press: must be key=value"),

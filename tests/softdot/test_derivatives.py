@@ -7,6 +7,7 @@ import softdot
 from geometry.base import InputError
 from softdot.config import config_from
 from softdot.outcome import derivatives, value_of
+from tests.cases import for_each
 
 TABLES = {
     "segment": {
@@ -38,7 +39,7 @@ def test_voltage_follows_d_and_the_circuit():
     assert not found[film[0]].reaction_force_N.any()
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("key", "sentence"),
     [
         ("segment.film.colour", "segment.film.colour: the configuration has no such key"),

@@ -68,7 +68,7 @@ CHANGES = (
 )
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 def test_the_stated_error_covers_the_true_one_and_is_of_its_size():
     """The true one is that against elements a quarter as large; a bar is a rate and not a bound."""
     ratios = []
@@ -84,6 +84,7 @@ def test_the_stated_error_covers_the_true_one_and_is_of_its_size():
     assert np.median(ratios) < 3.0
 
 
+@pytest.mark.press
 def test_each_electrode_has_an_error_of_its_own():
     electrodes = [{"name": name, "center_mm": [x, 0.0], "size_mm": [1.1, 2.5]} for name, x in (("a", -0.6), ("b", 0.6))]
     film = {"thickness_um": 52.0, "electrodes": electrodes}
@@ -99,6 +100,7 @@ def sized(accuracy_percent, **change):
     return Case(config_from({**SLICE, **change, "mesh": options}))
 
 
+@pytest.mark.press
 def test_sizes_are_chosen_so_that_the_stated_error_is_as_small_as_asked():
     coarse, fine = sized(5.0), sized(0.5)
     for case, asked in ((coarse, 5.0), (fine, 0.5)):

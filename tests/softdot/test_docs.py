@@ -6,7 +6,6 @@ import tomllib
 from importlib import import_module
 from pathlib import Path
 
-import pytest
 from pydantic import TypeAdapter
 
 import docs.make_configuration as maker
@@ -22,6 +21,7 @@ from softdot.config.model import model_of
 from softdot.config.toml import completed
 from softdot.summary import heading, mesh_part, press_part
 from solve.readout.course import course
+from tests.cases import for_each
 from tests.softdot.stand_ins import result_of
 
 ROOT = Path(__file__).parents[2]
@@ -34,7 +34,7 @@ HOMES = (
 EXAMPLES = tomllib.loads((ROOT / "docs" / "configuration_examples.toml").read_text("utf-8"))
 
 
-@pytest.mark.parametrize("file", ["configuration.md", "geometry.md", "kit_parts.md", "mechanisms.md"])
+@for_each("file", ["configuration.md", "geometry.md", "kit_parts.md", "mechanisms.md"])
 def test_generated_text_is_in_step(file):
     assert (ROOT / "docs" / file).read_text("utf-8") == maker.pages()[file]
 
@@ -43,7 +43,7 @@ def test_every_table_of_the_schema_has_its_section():
     assert set(maker.TABLES.values()) == {"Config", *config_schema()["$defs"]}
 
 
-@pytest.mark.parametrize("table", EXAMPLES)
+@for_each("table", EXAMPLES)
 def test_every_example_is_allowed(table):
     model = Config if table == "Config" else next(getattr(h, table) for h in HOMES if hasattr(h, table))
     for key, value in EXAMPLES[table].items():
@@ -88,7 +88,7 @@ def test_every_key_of_the_summary_is_explained():
     assert [key for key in flat if f"`{key}" not in text] == []
 
 
-@pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.relative_to(ROOT).as_posix())
+@for_each("path", DOCUMENTS, ids=lambda path: path.relative_to(ROOT).as_posix())
 def test_relative_links_resolve(path):
     targets = re.findall(r"\]\(([^)\s]+)\)", path.read_text("utf-8"))
     broken = [target for target in targets if not _resolves(path, target)]
@@ -109,7 +109,7 @@ def _anchors(path):
     return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
 
 
-@pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.relative_to(ROOT).as_posix())
+@for_each("path", DOCUMENTS, ids=lambda path: path.relative_to(ROOT).as_posix())
 def test_named_source_files_exist(path):
     named = re.findall(r"`((?:geometry|mesh|solve|export|softdot|docs|tests)/[\w./]+\.\w+)`", path.read_text("utf-8"))
     to_be_measured = {"docs/verification.md", "docs/_site/index.html"}  # the last one is built
@@ -119,7 +119,7 @@ def test_named_source_files_exist(path):
     assert [name for name in bare if name not in known] == []
 
 
-@pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.relative_to(ROOT).as_posix())
+@for_each("path", DOCUMENTS, ids=lambda path: path.relative_to(ROOT).as_posix())
 def test_math_survives_markdown(path):
     text = re.sub(r"```.*?```|`[^`\n]*`", "", path.read_text("utf-8"), flags=re.DOTALL)
     assert text.count("$$") % 2 == 0

@@ -23,6 +23,7 @@ from softdot.summary import history
 from solve.mechanisms import MECHANISMS
 from solve.readout.course import course
 from solve.result import PressResult
+from tests.cases import for_each
 
 FOLDER = Path(__file__).parents[2] / "examples"
 SHORT = FOLDER / "mechanisms"
@@ -62,19 +63,19 @@ def voltage_V(name: str, **changes: str) -> float:
     return summary_of(name, **changes)["open_circuit_voltage_V"][-1]
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_final_clamped_design():
     assert force_N("paper-final-clamped") == pytest.approx(14.44, rel=0.03)
     assert voltage_V("paper-final-clamped") == pytest.approx(FACTOR * 0.419, rel=0.04)
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_final_free_design():
     assert force_N("paper-final-free") == pytest.approx(5.05, rel=0.03)
     assert voltage_V("paper-final-free") == pytest.approx(FACTOR * 0.058, rel=0.04)
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_plane_strain_case_c1():
     """The voltage of the other code is that of C1 and F4 together; F4 differs by its free sides."""
     name = "paper-plane-strain"
@@ -83,7 +84,7 @@ def test_plane_strain_case_c1():
     assert total == pytest.approx(FACTOR * 0.433, rel=0.04)
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_readout_obeys_kirchhoff():
     """What flowed through R is what the film freed less what is left on the capacitors, through both filters.
 
@@ -104,7 +105,7 @@ def test_true_segment_is_the_default():
     assert config_hash(load_config(FOLDER / "true-segment.toml")) == config_hash(load_config())
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_true_segment_agrees_with_the_other_mesher():
     """As it is, against extruded layers of other sizes."""
     name = "true-segment"
@@ -112,7 +113,7 @@ def test_true_segment_agrees_with_the_other_mesher():
     assert voltage_V(name) == pytest.approx(voltage_V(name, mesher="layered"), rel=0.02)
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_dome_is_between_hertz_and_a_bonded_layer():
     """A shallow press: the dome is stiffer than a half-space of its rubber, softer than a layer on a rigid base.
 
@@ -133,7 +134,7 @@ def test_dome_is_between_hertz_and_a_bonded_layer():
     assert half_space < summary["reaction_force_N"][-1] < layer
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_true_segment_is_between_half_spaces_of_its_rubbers():
     """Hertz for the softest (1 MPa) and the hardest (5 MPa) rubber: F = 4/3 E / (1 - nu^2) R^0.5 d^1.5."""
     radius, depth, nu = 0.8125, 0.3, 0.495
@@ -141,7 +142,7 @@ def test_true_segment_is_between_half_spaces_of_its_rubbers():
     assert 1.0 * per_modulus < force_N("true-segment", mesher="layered") < 5.0 * per_modulus
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_neighbours_never_reach_a_segment_as_wide_as_the_pitch():
     """On one mesh the whole cell gives what the pressed dot gives alone."""
     cell = changed(load_config(FOLDER / "braille-cell.toml"), mesher="layered")
@@ -152,7 +153,7 @@ def test_neighbours_never_reach_a_segment_as_wide_as_the_pitch():
     assert found["open_circuit_voltage_V"] == pytest.approx(alone.open_circuit_voltage_V, rel=1e-6)
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_a_wider_segment_feels_all_six_dots():
     """Six times Hertz for the softest and the hardest rubber, in a shallow press; a lone dot is far below."""
     config = load_config(FOLDER / "braille-cell-wide.toml")
@@ -172,18 +173,18 @@ def test_no_example_is_left_out():
     assert {path.stem for path in RUNS if path.parent == FOLDER} == tested
 
 
-@pytest.mark.parametrize("path", RUNS, ids=lambda path: path.stem)
+@for_each("path", RUNS, ids=lambda path: path.stem)
 def test_every_example_passes_the_checks_of_a_run(path):
     _ = Case.load(path).checked
 
 
-@pytest.mark.parametrize("name", MECHANISMS)
+@for_each("name", MECHANISMS)
 def test_every_mechanism_has_its_example(name):
     config = load_config(SHORT / f"{name}.toml")
     assert [mechanism.name for mechanism in config.mechanisms] == [name]
 
 
-@pytest.mark.parametrize("name", LAWS)
+@for_each("name", LAWS)
 def test_every_law_has_its_example(name):
     config = load_config(SHORT / f"{name}.toml")
     assert name in {material.model for material in config.materials.values()}
@@ -212,7 +213,7 @@ def press_of(name: str, with_mechanisms: bool = True) -> PressResult:
     return result
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_a_leaking_film_decays_with_its_time_constant():
     """At depth V = V0 exp(-t / (R C)), with C the film's alone."""
     told = model_of(load_config(SHORT / "charge-leakage.toml"))
@@ -223,6 +224,7 @@ def test_a_leaking_film_decays_with_its_time_constant():
     assert v[1] / v[0] == pytest.approx(np.exp(-0.3 / tau), rel=1e-4)
 
 
+@pytest.mark.press
 def test_a_cable_divides_the_voltage_of_the_open_film():
     """Q / (C_f + C) at every depth."""
     told = model_of(load_config(SHORT / "parasitic-capacitance.toml"))
@@ -232,6 +234,7 @@ def test_a_cable_divides_the_voltage_of_the_open_film():
     assert recording.together_V[-1] == pytest.approx(expected, rel=1e-6)
 
 
+@pytest.mark.press
 def test_lost_motion_shifts_the_press_along_its_depth():
     """0.3 mm with a gap of 0.05 mm is 0.25 mm without: the fifth of six steps."""
     late, plain = press_of("contact-gap"), press_of("contact-gap", with_mechanisms=False)
@@ -244,7 +247,7 @@ def test_the_rig_bends_by_its_compliance_times_the_force():
     assert 1e3 * (trace.indentation_m - trace.dot_path_m) == pytest.approx(0.005 * trace.reaction_force_N, abs=1e-9)
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_a_softened_segment_gives_back_less_work_than_it_took():
     trace = press_of("stress-softening").trace
     deepest = int(np.argmax(trace.indentation_m))
@@ -254,14 +257,14 @@ def test_a_softened_segment_gives_back_less_work_than_it_took():
     assert 0.6 * taken < given_back < 0.95 * taken  # at most loss_ratio = 0.4 of it is lost
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_a_film_that_flowed_is_left_with_a_charge_of_the_other_sign():
     charge = press_of("film-yield").trace.film_charge_C[:, 0]
     assert charge.max() > 0.0
     assert charge[-1] < -0.01 * charge.max()
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_a_dragged_dot_is_held_back_by_friction():
     """Coulomb bounds the sideways force; the walls of the dent, up to acos(1 - 0.2 / 1.15) steep, add to it."""
     trace = press_of("friction").trace
@@ -271,7 +274,7 @@ def test_a_dragged_dot_is_held_back_by_friction():
     assert 0.25 * down < -sideways < np.tan(np.arctan(0.5) + steepest) * down
 
 
-@pytest.mark.slow
+@pytest.mark.press
 @pytest.mark.parametrize("name", [*MECHANISMS, *LAWS])
 def test_every_short_example_runs_to_its_end(name, tmp_path):
     summary = run_config(load_config(SHORT / f"{name}.toml"), tmp_path / "out")

@@ -161,7 +161,7 @@ class Closer(Logged):
             self.cluster.close()
 
 
-@pytest.mark.slow
+@pytest.mark.process
 def test_a_scheduler_that_goes_away_is_one_sentence_and_the_points_stay(tmp_path):
     from distributed import LocalCluster
 
@@ -196,7 +196,7 @@ class Killer(Logged):
             self.pids.append(worker)
 
 
-@pytest.mark.slow
+@pytest.mark.process
 def test_a_worker_that_is_killed_loses_no_point(tmp_path):
     killer = Killer(4)
     summary = run_sweep(space_from(space_of(depths(*DEPTHS_MM), workers=2)), tmp_path / "out", progress=killer)
@@ -216,7 +216,7 @@ class Deadly(Config):
         os.kill(os.getpid(), signal.SIGKILL)
 
 
-@pytest.mark.slow
+@pytest.mark.process
 def test_a_point_that_kills_its_worker_becomes_a_row_with_its_reason():
     configs = {f"{depth:g}": at_depth(depth) for depth in (0.03, 0.04, 0.05)}
     configs = {"deadly": Deadly(**dict(at_depth(0.02))), **configs}
@@ -231,7 +231,7 @@ def test_a_point_that_kills_its_worker_becomes_a_row_with_its_reason():
     assert records["deadly"]["reason"] == "its worker died each time, perhaps for lack of memory"
 
 
-@pytest.mark.slow
+@pytest.mark.process
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT])
 def test_a_sweep_that_is_stopped_goes_on_with_what_is_missing(number, tmp_path):
     space, out = tmp_path / "space.toml", tmp_path / "out"
@@ -278,7 +278,7 @@ def _group_and_state(path):
     return (0 if state in "ZX" else int(group)), state
 
 
-@pytest.mark.slow
+@pytest.mark.process
 def test_many_points_are_what_each_gives_alone_on_one_thread_each():
     """In order, a repeated one too, with the reason of one that cannot be."""
     given = [at_depth(depth) for depth in (0.05, 0.03, 9.0, 0.05)]
@@ -302,7 +302,7 @@ def _threads():
     return numba.get_num_threads(), max(pool["num_threads"] for pool in threadpool_info())
 
 
-@pytest.mark.slow
+@pytest.mark.process
 def test_each_process_calculates_on_one_thread_also_after_a_death(monkeypatch):
     monkeypatch.setenv("OMP_NUM_THREADS", "7")
     with LocalProcesses(1) as executor:
@@ -318,7 +318,7 @@ def slowly(number):
     return os.getpid(), number**2
 
 
-@pytest.mark.slow
+@pytest.mark.process
 def test_a_worker_of_a_cluster_that_is_killed_loses_no_call():
     """What it was doing is done by the other one."""
     from distributed import LocalCluster

@@ -16,6 +16,7 @@ from softdot.tolerances.responses import Response
 from softdot.tolerances.tolerances import Tolerance
 from solve.solution.linear import LinearSolveError
 from solve.solution.sensitivity import StoppedShortError
+from tests.cases import for_each
 from tests.softdot.conftest import MINIMAL
 
 FREE = """
@@ -97,6 +98,7 @@ def summary(kit):
     return json.loads((kit / "kit.json").read_text("utf-8"))
 
 
+@pytest.mark.press
 def test_everything_is_there(kit, summary):
     assert {entry.name for entry in kit.iterdir()} == make.KIT.files
     assert summary["format"] == "softdot-kit/1"
@@ -147,7 +149,7 @@ def test_page_needs_nothing_else(kit):
     assert "@page" in page
 
 
-@pytest.mark.parametrize(
+@for_each(
     "head",
     [
         "What you build", "What you need", "Parts to print", "Can they be printed?", "Moulds and pours",
@@ -195,6 +197,7 @@ def prepared(monkeypatch):
     monkeypatch.setattr(make, "draw_all", white_pictures)
 
 
+@pytest.mark.press
 @pytest.mark.parametrize(
     ("error", "plain"),
     [
@@ -223,6 +226,7 @@ def test_a_budget_that_fails_leaves_a_kit_without_it(tmp_path, monkeypatch, caps
     assert str(error) not in page
 
 
+@pytest.mark.press
 def test_the_kit_is_there_before_its_budget(tmp_path, monkeypatch):
     """Complete, and the page says that the budget is still to come."""
     seen = {}
@@ -246,6 +250,7 @@ def test_the_kit_is_there_before_its_budget(tmp_path, monkeypatch):
     assert "The tolerance budget comes later" not in (tmp_path / "out" / "kit.html").read_text("utf-8")
 
 
+@pytest.mark.press
 def test_a_budget_does_not_go_into_another_kit(tmp_path, monkeypatch, capsys):
     """A second command that wrote its own kit into the folder meanwhile keeps it."""
 
@@ -281,6 +286,7 @@ def test_an_impossible_kit_is_refused_in_one_sentence(tmp_path, monkeypatch, cap
     assert [path.name for path in tmp_path.iterdir()] == ["dome.toml"]
 
 
+@pytest.mark.press
 @pytest.mark.parametrize(("when", "left"), [("draw_all", ["free.toml"]), ("budget_of", ["free.toml", "out"])])
 def test_an_interrupt_leaves_a_whole_kit_or_nothing(tmp_path, monkeypatch, when, left):
     def interrupt(*_):
@@ -303,7 +309,7 @@ def test_another_folder_is_not_touched(tmp_path, monkeypatch, capsys):
     assert (tmp_path / "out" / "letter.txt").read_text(encoding="utf-8") == "mine"
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_whole_kit_of_a_coarse_segment(tmp_path, capsys):
     """With its own budget and pictures: a picture for every step, none of them empty, and a budget in order."""
     from matplotlib.image import imread

@@ -7,6 +7,7 @@ from softdot.tolerances import responses
 from softdot.tolerances.budget import budget_of
 from softdot.tolerances.responses import KitPress, Response, coarser, mesh_of, path_matters, slopes_along, value_along
 from softdot.tolerances.tolerances import FACTORS, factor_key, shifts, tolerances, with_factors
+from tests.cases import for_each
 
 TABLES = {
     "segment": {
@@ -44,6 +45,7 @@ def total(found, terms):
     return [sum(weight * found[key][k] for key, weight in terms.items()) for k in (0, 1)]
 
 
+@pytest.mark.press
 def test_full_load_has_the_derivatives_of_the_whole_press(config, solved):
     """Without memory the way there does not matter; differentiated along it, the press gives the same."""
     nominal, found = solved
@@ -60,7 +62,7 @@ def test_a_press_beside_is_the_whole_press(config, pressed):
     assert pressed.value(moved) == pytest.approx(value_along(moved, mesh_of(config)), rel=1e-6)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("more", "matters"),
     [
         ({}, False),

@@ -19,6 +19,7 @@ def _softdot(folder, *arguments):
     return subprocess.run(command, cwd=folder, capture_output=True, encoding="utf-8", check=True)
 
 
+@pytest.mark.process
 def test_in_a_pipe_each_stage_is_a_line_with_its_time_on_stderr_and_in_the_log(tmp_path):
     done = _softdot(tmp_path, *DOT)
     assert done.stdout == ""
@@ -28,6 +29,7 @@ def test_in_a_pipe_each_stage_is_a_line_with_its_time_on_stderr_and_in_the_log(t
     assert "INFO    export" in (tmp_path / "out" / LOG_FILE).read_text(encoding="utf-8")
 
 
+@pytest.mark.process
 def test_quiet_tells_nothing_and_json_alone_is_on_stdout(tmp_path):
     done = _softdot(tmp_path, *DOT, "--quiet", "--json")
     assert done.stderr == ""

@@ -98,6 +98,7 @@ def on(k_per_V2):
     return {"name": NAME, "component": "readout", "parameters": {"k_per_V2": k_per_V2}}
 
 
+@pytest.mark.process
 @pytest.mark.usefixtures("registered")
 def test_it_runs_and_its_off_value_changes_nothing(tmp_path):
     """V (1 + k V^2) is the voltage without it."""
@@ -108,6 +109,7 @@ def test_it_runs_and_its_off_value_changes_nothing(tmp_path):
     assert found[-1] < 0.9 * plain[-1]
 
 
+@pytest.mark.process
 @pytest.mark.usefixtures("registered")
 def test_it_has_derivatives():
     """dV/dk = -V^3 / (1 + 3 k V^2) at the amplifier, and nothing changes before it."""
@@ -122,7 +124,7 @@ def readout_voltage_V(config):
     return outcome(config)["readout_voltage_V"][-1]
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 @pytest.mark.usefixtures("registered")
 def test_a_diagnosis_names_it(tmp_path, monkeypatch):
     """A recording of an amplifier that does not leak, whose input grows; among the candidates of the amplifier."""
@@ -151,6 +153,7 @@ def test_a_diagnosis_names_it(tmp_path, monkeypatch):
     assert any("the capacitance of the amplifier grows with the voltage" in said for said in verdict["summary"])
 
 
+@pytest.mark.process
 def test_a_name_stands_in_no_product_module_but_its_own_two_and_the_hidden_worlds():
     """Texts and docstrings may speak of friction; no string is the name."""
     found = {name: set() for name in MECHANISMS}

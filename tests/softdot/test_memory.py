@@ -6,6 +6,7 @@ import pytest
 from geometry.base import InputError
 from softdot import machine as memory
 from softdot.cli import main
+from tests.cases import for_each
 
 
 def test_the_estimate_agrees_with_the_measured_peaks():
@@ -21,7 +22,7 @@ def test_more_than_the_limit_is_refused_by_name(monkeypatch):
         memory.refuse_too_little_memory(100_000, False, "element_size_mm", 0.1)
 
 
-@pytest.mark.parametrize("factor", [100, 1000])
+@for_each("factor", [100, 1000])
 def test_a_segment_of_metres_is_meshed_or_refused_but_never_fills_the_memory(factor):
     """All lengths times a factor, element sizes too: as many points as the segment of millimetres."""
     from geometry.dot import resolve_dot

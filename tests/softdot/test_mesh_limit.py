@@ -7,12 +7,13 @@ from geometry.dot import resolve_dot
 from mesh.build import MeshOptions, build
 from softdot.checks import expected_tetrahedra, refuse_huge_mesh
 from softdot.config import load_config
+from tests.cases import for_each
 
 SEGMENT = load_config().segment
 DOT = resolve_dot(load_config().dot, SEGMENT)
 
 
-@pytest.mark.parametrize("name", ["element_size_mm", "contact_element_size_mm", "film_element_size_mm"])
+@for_each("name", ["element_size_mm", "contact_element_size_mm", "film_element_size_mm"])
 def test_a_slip_of_the_decimal_point_is_refused(name):
     with pytest.raises(InputError, match=f"mesh.{name} = 0.001: means about"):
         refuse_huge_mesh(SEGMENT, DOT, MeshOptions(**{name: 0.001}))

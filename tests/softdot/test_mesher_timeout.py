@@ -2,9 +2,12 @@
 
 import json
 
+import pytest
+
 from softdot.cli import main
 
 
+@pytest.mark.process
 def test_a_mesher_out_of_time_keeps_the_cad_files_and_exits_3(write_config, tmp_path, capfd):
     config = write_config("[mesh]\ntimeout_s = 0.05\nelement_size_mm = 0.3137")
     assert main(["run", str(config), "-o", str(tmp_path / "out")]) == 3

@@ -11,6 +11,7 @@ from softdot.case import Case
 from softdot.cli import main
 from softdot.commands.new import TABLES, config_schema, template_text
 from softdot.config import config_from, config_hash, load_config
+from tests.cases import for_each
 
 
 @pytest.mark.parametrize("name", TEMPLATES)
@@ -30,7 +31,7 @@ def test_each_template_is_another_design():
     assert len({config_hash(config_from(tomllib.loads(template_text(name)))) for name in TEMPLATES}) == len(TEMPLATES)
 
 
-@pytest.mark.parametrize("name", TEMPLATES)
+@for_each("name", TEMPLATES)
 def test_every_key_stands_there_with_its_meaning(name):
     text = template_text(name)
     schema = config_schema()

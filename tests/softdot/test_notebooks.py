@@ -12,6 +12,7 @@ import pytest
 from nbclient import NotebookClient
 
 from geometry.environment import ONE_THREAD
+from tests.cases import for_each
 
 ROOT = Path(__file__).parents[2]
 NOTEBOOKS = sorted((ROOT / "examples" / "notebooks").glob("*.ipynb"))
@@ -59,7 +60,7 @@ def test_every_notebook_states_a_fact():
     assert [path.stem for path in NOTEBOOKS] == sorted(FACTS)
 
 
-@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+@for_each("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_a_notebook_is_stored_without_results(path):
     notebook = nbformat.read(path, as_version=nbformat.NO_CONVERT)
     nbformat.validate(notebook)
@@ -70,7 +71,7 @@ def test_a_notebook_is_stored_without_results(path):
     assert [cell.id for cell in code if cell.outputs or cell.execution_count is not None] == []
 
 
-@pytest.mark.slow
+@pytest.mark.process
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_a_notebook_runs_and_finds_what_it_explains(path, tmp_path, monkeypatch):
     for name, value in {**ONE_THREAD, "SOFTDOT_CACHE": str(tmp_path / "cache"), "PYTHONPATH": str(ROOT)}.items():

@@ -65,6 +65,7 @@ def test_the_film_picture_ends_at_the_headline_values(pressed, stated):
     assert strain.colorbar.extend == "max"
 
 
+@pytest.mark.press
 def test_cells_of_paraview_away_from_held_sides_reach_the_headline_values(pressed, stated, tmp_path):
     import pyvista
 

@@ -6,6 +6,7 @@ import pytest
 
 from geometry.base import InputError
 from softdot.printed_braille.request import english_table, liblouis, translate
+from tests.cases import for_each
 
 # examples of The Rules of Unified English Braille, 2013: sections 4.1, 6.1-6.5, 7, 8.3-8.6
 RULES = {
@@ -35,7 +36,7 @@ def fresh_liblouis():
     liblouis.cache_clear()
 
 
-@pytest.mark.parametrize(("text", "cells"), RULES.items())
+@for_each(("text", "cells"), RULES.items())
 def test_uncontracted_english(text, cells):
     assert translate(text).lines == (cells,)
 
@@ -50,7 +51,7 @@ def test_cells_follow_the_decades_of_braille():
     assert [digits[digit] for digit in "1234567890"] == [letters[letter] for letter in "abcdefghij"]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("text", "words"),
     [
         ("naïve", r"'ï' \(U\+00EF, latin small letter i with diaeresis\) at place 3"),

@@ -3,10 +3,10 @@
 from dataclasses import replace
 
 import numpy as np
-import pytest
 
 from softdot.case import Case, press_key
 from softdot.config import Config, config_from, input_hash
+from tests.cases import for_each
 from tests.softdot.stand_ins import one_tetrahedron
 
 SLOW, FAST = "time_s,fraction\n0,0\n2,1\n", "time_s,fraction\n0,0\n1,1\n"
@@ -41,7 +41,7 @@ def test_an_own_mesh_that_was_edited_is_another_input(tmp_path):
 TOP = {"contact": np.array([[0, 1, 2, 3, 4, 5]])}
 
 
-@pytest.mark.parametrize("change", [{"facets": TOP}, {"thickness_mm": 2.0}, {"twin": np.zeros(10, int)}])
+@for_each("change", [{"facets": TOP}, {"thickness_mm": 2.0}, {"twin": np.zeros(10, int)}])
 def test_other_contact_facets_thickness_or_twins_are_another_press(change):
     config, same = configured("none.csv"), one_tetrahedron()
     assert press_key(Case(config), replace(same, **change)) != press_key(Case(config), same)

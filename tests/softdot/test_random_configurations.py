@@ -134,6 +134,7 @@ def all_keys(tables):
             yield from all_keys(value)
 
 
+@pytest.mark.press
 def test_a_random_configuration_converges_to_a_right_result_or_is_refused():
     assert "converged" in outcomes(0)
 
@@ -142,21 +143,21 @@ def test_a_random_mistake_is_refused_in_one_sentence(tmp_path):
     drawn(invalid_configurations(), 0, refused(tmp_path), count=20)
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 def test_two_hundred_random_configurations_converge_to_right_results_or_are_refused():
     seen = [one for block in range(1, 21) for one in outcomes(block)]
     assert len(seen) >= 200
     assert seen.count("converged") >= 0.9 * len(seen)  # else the random numbers, or the solver, are bad
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 def test_random_cylinders_and_domes_converge_to_right_results_or_are_refused():
     seen = []
     drawn(valid_configurations(ROUND), 1, lambda tables: seen.append(outcome(tables, LIMIT_OF_ROUND_S)), count=6)
     assert seen.count("converged") >= 4
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 @pytest.mark.parametrize("block", range(1, 26))
 def test_more_random_mistakes_are_refused_in_one_sentence(block, tmp_path):
     drawn(invalid_configurations(), block, refused(tmp_path))

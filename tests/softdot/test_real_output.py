@@ -24,7 +24,7 @@ NEEDED = ["pvpython"] if os.environ.get("DISPLAY") else ["pvpython", "Xvfb"]
 MISSING = [tool for tool in NEEDED if shutil.which(tool) is None]
 SLICER = shutil.which("prusa-slicer")
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.process
 
 
 def coarse_default() -> Config:

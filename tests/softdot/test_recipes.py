@@ -35,6 +35,7 @@ def apply(folder: Path, where: str, text: str) -> None:
     path.write_text(source.replace(quoted, new), "utf-8")
 
 
+@pytest.mark.process
 @pytest.mark.parametrize("name", RECIPES)
 def test_a_recipe_works(name, tmp_path):
     program, here = tmp_path / "program", tmp_path / "here"

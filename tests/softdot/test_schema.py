@@ -2,10 +2,9 @@
 
 import tomllib
 
-import pytest
-
 from softdot.commands.new import config_schema
 from softdot.config import config_from, config_hash, load_config
+from tests.cases import for_each
 
 EVERY_KEY = """
 [segment]
@@ -188,7 +187,7 @@ def test_hash_is_of_the_meaning_not_of_the_text():
     assert len(hashes[0]) == 64
 
 
-@pytest.mark.parametrize("change", ["poisson_ratio = 0.495", "d32_pC_per_N = 2.3"])
+@for_each("change", ["poisson_ratio = 0.495", "d32_pC_per_N = 2.3"])
 def test_hash_follows_the_materials(change):
     more = change.replace("0.495", "0.4").replace("2.3", "2.4")
     name = "pvdf" if "d32" in change else "vnr"

@@ -83,14 +83,14 @@ def site(tmp_path_factory):
     return folder
 
 
-@pytest.mark.slow
+@pytest.mark.process
 def test_site_has_every_document(site):
     for name in (*NAV, "docs/api/index.md"):
         page = re.sub(r"README\.md$", "index.md", name).removesuffix(".md") + ".html"
         assert (site / page).is_file()
 
 
-@pytest.mark.slow
+@pytest.mark.process
 def test_site_loads_nothing_from_the_net(site):
     pages = sorted(site.rglob("*.html"))
     assert len(pages) > len(ON_SITE)
@@ -104,7 +104,7 @@ def test_site_loads_nothing_from_the_net(site):
         assert re.findall(r"(?:url\(|@import)\s*['\"]?(?:https?:)?//", sheet.read_text("utf-8")) == []
 
 
-@pytest.mark.slow
+@pytest.mark.process
 def test_every_formula_of_the_site_is_drawn(site):
     solve = (site / "docs" / "solve.html").read_text("utf-8")
     assert solve.count("<math") > 100

@@ -11,6 +11,7 @@ from mesh.build import MeshOptions
 from mesh.build import key as mesh_key
 from softdot.case import Case, press_key
 from softdot.outcome import outcome_key
+from tests.cases import for_each
 
 PROGRAM = cache.PROGRAM
 PACKAGES = ("geometry", "mesh", "solve", "export", "diagnose", "softdot")
@@ -44,7 +45,8 @@ def kept(copied: Path, monkeypatch: pytest.MonkeyPatch):
     cache.source_hash.cache_clear()
 
 
-@pytest.mark.parametrize(
+@pytest.mark.process
+@for_each(
     ("edited", "made_anew"),
     [
         ("geometry/stack.py", {"mesh", "press", "outcome"}),
@@ -68,6 +70,7 @@ def test_an_edited_source_makes_anew_what_depends_on_it(edited, made_anew, copie
     assert kept() == before
 
 
+@pytest.mark.process
 def test_no_import_of_this_program_is_overlooked():
     """Against Python's own syntax tree, for every module."""
     for path in (path for package in PACKAGES for path in (PROGRAM / package).rglob("*.py")):

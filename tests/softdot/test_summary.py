@@ -11,6 +11,7 @@ from softdot.console import json_text
 from softdot.summary import history, press_part
 from solve.model import Physics, Press, Readout
 from solve.readout.course import course
+from tests.cases import for_each
 from tests.softdot.stand_ins import result_of
 
 LAYERS = {"medium1": {"thickness_mm": 0.5}, "film": {"thickness_um": 28}, "medium2": {"thickness_mm": 2}}
@@ -68,7 +69,7 @@ def test_json_has_no_nan():
     assert json.loads(text) == {"a": None, "b": [None, 1.0], "c": [0, 1], "d": True}
 
 
-@pytest.mark.parametrize("nonsense", [np.nan, np.inf, -np.inf])
+@for_each("nonsense", [np.nan, np.inf, -np.inf])
 def test_a_number_that_is_none_is_no_converged_result(nonsense):
     model, result = model_with(Readout()), two_electrodes()
     along = course(result, model.press, model.readout, model.physics)

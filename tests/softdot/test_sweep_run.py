@@ -186,6 +186,7 @@ def test_the_table_of_the_last_complete_sweep_stays_until_the_next_is_complete(p
 ENDS = {CRASHED: [0.2], LOST: [0.2], REFUSED: [], NOT_CONVERGED: []}
 
 
+@pytest.mark.press
 @pytest.mark.parametrize(("accident", "again"), ENDS.items())
 def test_only_accidents_are_tried_again(presses, monkeypatch, tmp_path, out, accident, again):
     def unlucky(config):

@@ -14,6 +14,7 @@ from softdot.cli import main
 from softdot.config.toml import parsed, with_value
 from softdot.executors import TINY
 from softdot.sweeps.space import load_space, space_from
+from tests.cases import for_each
 from tests.softdot.sweep_spaces import depths, space_of
 from tests.softdot.toml_text import toml_text
 
@@ -186,7 +187,7 @@ LOG = {"key": T2, "low": 0.01, "high": 1.0, "scale": "log"}
 TEXT = {"key": "segment.boundary", "values": ["free", "clamped"]}
 
 
-@pytest.mark.parametrize("sampling", ["latin-hypercube", "sobol"])
+@for_each("sampling", ["latin-hypercube", "sobol"])
 def test_a_random_design_has_its_points_inside_the_bounds_and_repeats_by_seed(sampling):
     def design(seed):
         space = space_from(space_of(RANGE, LOG, TEXT, sampling=sampling, points=32, seed=seed))
@@ -216,7 +217,7 @@ def test_sobol_points_fill_every_cell_of_a_grid_once():
     assert cells == set(itertools.product(range(4), range(4)))
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("key", "way"),
     {
         "seed": ("seed",),
@@ -230,7 +231,7 @@ def test_dotted_keys(key, way):
     assert parsed(key) == way
 
 
-@pytest.mark.parametrize("key", ["", ".", "a.", "a..b", "[0]", "a[x]", "a[-1]", 'a."b', "a b"])
+@for_each("key", ["", ".", "a.", "a..b", "[0]", "a[x]", "a[-1]", 'a."b', "a b"])
 def test_what_is_no_dotted_key(key):
     with pytest.raises(ValueError, match="must"):
         parsed(key)

@@ -36,6 +36,7 @@ def test_its_commands_exist(capsys):
     capsys.readouterr()
 
 
+@pytest.mark.press
 def test_its_diagnosis_finds_the_stiffening(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (script,) = blocks("python")

@@ -8,6 +8,7 @@ from benchmarks.broken_verify import BREAKS, broken
 from softdot.cli import main
 from softdot.verify.catalogue import PROBLEMS
 from softdot.verify.other_codes import references
+from tests.cases import for_each
 
 KEYS = {"name", "source", "reference", "value", "unit", "deviation_percent", "bound_percent", "passed"}
 QUICK = ("patch", "rc-voltage", "film-stretch")
@@ -64,13 +65,13 @@ def test_every_problem_has_a_break_a_source_and_a_bound():
     assert all("python -m" in one.command and one.source for one in references().values())
 
 
-@pytest.mark.parametrize("name", QUICK)
+@for_each("name", QUICK)
 def test_a_broken_constant_is_seen(name):
     assert not broken(name)["passed"]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", [name for name in PROBLEMS if name not in QUICK])
+@pytest.mark.press
+@for_each("name", [name for name in PROBLEMS if name not in QUICK])
 def test_every_problem_passes_and_sees_its_break(name):
     assert PROBLEMS[name].outcome()["passed"]
     assert not broken(name)["passed"]

@@ -10,6 +10,7 @@ from geometry.dot import resolve_dot
 from softdot.checks import design_warnings, refuse_held_rim, result_warnings
 from softdot.config import config_from, load_config
 from softdot.config.model import model_of
+from tests.cases import for_each
 from tests.softdot.stand_ins import cap_of_height, result_of, step_at
 
 LAYERS = {"medium1": {"thickness_mm": 0.5}, "film": {"thickness_um": 28}, "medium2": {"thickness_mm": 2}}
@@ -53,7 +54,7 @@ def test_a_force_can_press_deeper_than_the_dot():
     assert any("exceeds the dot's height of 0.2 mm" in warning for warning in warnings)
 
 
-@pytest.mark.parametrize(("length_mm", "reaches"), [(2.5, False), (6.0, True), (7.0, False)])
+@for_each(("length_mm", "reaches"), [(2.5, False), (6.0, True), (7.0, False)])
 def test_neighbours_on_the_held_rim(length_mm, reaches):
     """Neighbours at 2.5 mm, radius 0.8125 mm: 0.5 mm from the rim of 6 mm the sphere is 0.172 mm higher."""
     tables = {**LAYERS, "effector": {}, "length_mm": length_mm, "width_mm": length_mm}
@@ -64,7 +65,7 @@ def test_neighbours_on_the_held_rim(length_mm, reaches):
         refuse_held_rim(config.segment, dot, 0.3)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("dot", "section", "met_mm"),
     [
         ({"shape": "plate", "tilt_deg": [0.0, 3.0]}, "solid", 0.0),

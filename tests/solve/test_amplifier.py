@@ -1,12 +1,12 @@
 """The compiled recurrences against scipy.signal's integration of the same circuit."""
 
 import numpy as np
-import pytest
 from scipy.signal import butter, lsim
 
 from solve.model import Physics, Readout
 from solve.readout.amplifier import amplify
 from solve.readout.filters import Filter
+from tests.cases import for_each
 
 FILM_F = 24e-12
 
@@ -21,7 +21,7 @@ def by_scipy(time, charge, resistance, capacitance, readout, low_pass):
     return readout.polarity * voltage
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("readout", "resistance", "capacitance"),
     [
         (Readout(input_resistance_MOhm=10.0, input_capacitance_pF=100.0, polarity=-1), 10e6, 124e-12),

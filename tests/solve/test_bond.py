@@ -10,6 +10,7 @@ from solve.materials.inelastic import Prony
 from solve.materials.laws import InvariantLaw
 from solve.terms.contact import SHAPES, facet_area
 from solve.terms.springs import bond, layer_stiffness
+from tests.cases import for_each
 from tests.solve.term_body import TermBody, layers, tangent_error
 
 G, K = 1.0, 20.0
@@ -52,7 +53,7 @@ def test_tension_adds_the_compliance_of_the_bond_to_that_of_the_blocks():
     np.testing.assert_allclose(state.displacement[tet_mesh.facets["top"], 2], expected, rtol=1e-6)
 
 
-@pytest.mark.parametrize("name", ["bond-film-medium2", "bond-base"])
+@for_each("name", ["bond-film-medium2", "bond-base"])
 def test_confined_tension_adds_the_compliance_of_the_bond_to_that_of_the_blocks(name):
     """h / M + 1 / kn when nothing moves but along z; the bond at the base opens between block and ground."""
     tet_mesh, load, normal = two_blocks(jitter=0.1), 1e-7, 3.0
@@ -64,7 +65,7 @@ def test_confined_tension_adds_the_compliance_of_the_bond_to_that_of_the_blocks(
     np.testing.assert_allclose(state.displacement[tet_mesh.facets["top"], 2], expected, rtol=1e-6)
 
 
-@pytest.mark.parametrize("name", ["bond-film-medium2", "bond-base"])
+@for_each("name", ["bond-film-medium2", "bond-base"])
 def test_shear_adds_the_compliance_of_the_bond_to_that_of_the_blocks(name):
     """h / G + 1 / ks when nothing moves but along x."""
     tet_mesh, load, shear = two_blocks(jitter=0.1), 1e-7, 0.7
@@ -133,8 +134,8 @@ def test_neither_face_is_the_master():
     np.testing.assert_allclose(total[0], total[1], atol=1e-13)
 
 
-@pytest.mark.parametrize("laws", [(), (Prony((0.3, 0.2), (0.5, 2.0)),)], ids=["elastic", "viscous"])
-@pytest.mark.parametrize("name", ["bond-film-medium2", "bond-base"])
+@for_each("laws", [(), (Prony((0.3, 0.2), (0.5, 2.0)),)], ids=["elastic", "viscous"])
+@for_each("name", ["bond-film-medium2", "bond-base"])
 def test_tangent_is_the_derivative_of_the_residual_at_a_large_rotation(name, laws):
     ends = np.array([0.0, 1.0])
     tet_mesh = layers(ends, ends, [[0.0, 0.6], [0.6, 1.0]])

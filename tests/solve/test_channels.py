@@ -8,6 +8,7 @@ from solve.model import Physics, Readout
 from solve.readout.amplifier import amplify
 from solve.readout.channels import amplify_channels, input_voltages
 from solve.readout.filters import Filter
+from tests.cases import for_each
 from tests.diagnose.segment.rigs import model
 
 TIME = np.linspace(0.0, 2.0, 2001)
@@ -72,7 +73,7 @@ def test_a_leak_and_a_filter_of_one_channel_leave_the_others_alone():
     np.testing.assert_allclose(other, amplify(TIME, STEP, 1e-12 * FILM_PF, half, Physics()), rtol=1e-9, atol=1e-12)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("component", "parameters", "said"),
     [
         ("channel-1-channel-2", {"coupling": 0.1}, "parameters.coupling = 0.1: is of one channel"),

@@ -32,7 +32,7 @@ def kill_at(step):
     return on_step
 
 
-@pytest.mark.slow
+@pytest.mark.process
 def test_a_killed_press_ends_as_one_that_was_not(tmp_path, monkeypatch):
     monkeypatch.setattr(solve.solution.checkpoint, "EVERY_S", 0.0)
     file = Checkpoint(tmp_path / "press.npz", "key")
@@ -52,7 +52,7 @@ def test_a_killed_press_ends_as_one_that_was_not(tmp_path, monkeypatch):
     np.testing.assert_allclose(strain, reference, rtol=0.0, atol=1e-11 * np.abs(reference).max())
 
 
-@pytest.mark.slow
+@pytest.mark.process
 def test_a_checkpoint_of_another_press_is_not_used(tmp_path, monkeypatch):
     monkeypatch.setattr(solve.solution.checkpoint, "EVERY_S", 0.0)
     with pytest.raises(KilledError):

@@ -7,6 +7,7 @@ from solve.model import Physics, Readout
 from solve.readout.amplifier import leaky_integral
 from solve.readout.channels import input_voltages
 from solve.terms.rig import Circuit, Tied
+from tests.cases import for_each
 from tests.solve.trial import trial
 
 C_FILM, C_INPUT = 3.0, 2.0
@@ -31,7 +32,7 @@ def circuit(resistance, input_capacitance=C_INPUT):
     return Circuit(0, C_FILM, input_capacitance, resistance)
 
 
-@pytest.mark.parametrize("resistance", [0.02, 0.1, 3.0])
+@for_each("resistance", [0.02, 0.1, 3.0])
 def test_it_is_the_read_out_after_the_press(resistance):
     expected = leaky_integral(TIME, CHARGE, C_FILM + C_INPUT, resistance)
     np.testing.assert_allclose(voltages(circuit(resistance)), expected, atol=1e-14)
@@ -74,7 +75,7 @@ def test_long_at_rest_it_is_discharged():
     assert block.matrices[0, 0, 0] < -1e8
 
 
-@pytest.mark.parametrize(("resistance", "error"), [(np.inf, 1e-12), (0.3, 2e-4)])
+@for_each(("resistance", "error"), [(np.inf, 1e-12), (0.3, 2e-4)])
 def test_tied_inputs_are_the_channels_of_the_read_out(resistance, error):
     """Two films whose charges flow into circuits with a capacitance between them, against the exact modes of both."""
     time = np.linspace(0.0, 1.0, 401)

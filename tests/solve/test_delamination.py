@@ -9,6 +9,7 @@ from solve.materials.laws import InvariantLaw
 from solve.model import Delamination
 from solve.problem import delaminated_facets
 from solve.terms.jump import opening_nodes, unilateral_interface
+from tests.cases import for_each
 from tests.solve.term_body import TermBody, layers, tangent_error
 
 RUBBER = InvariantLaw(0.5, 0.0, 0.0, 0.0, 20.0)
@@ -37,9 +38,9 @@ def delaminated(tet_mesh, name, center=(0.0, 0.0), diameter=0.6, is_slice=False,
     return body, patch, fixed
 
 
-@pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("is_slice", [False, True], ids=["solid", "slice"])
-@pytest.mark.parametrize("outside", [False, True], ids=["patch", "rim"])
+@for_each("name", NAMES)
+@for_each("is_slice", [False, True], ids=["solid", "slice"])
+@for_each("outside", [False, True], ids=["patch", "rim"])
 def test_even_compression_passes_through_a_closed_patch(name, is_slice, outside):
     """u = -0.1 z in a confined block, as without the patch, and the same pressure at every node of the patch."""
     body, patch, fixed = delaminated(blocks(is_slice=is_slice), name, is_slice=is_slice, outside=outside)
@@ -52,7 +53,7 @@ def test_even_compression_passes_through_a_closed_patch(name, is_slice, outside)
     np.testing.assert_allclose(state.x[patch.multipliers], -body.force(state, top)[2] / area, rtol=1e-8)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@for_each("name", NAMES)
 def test_tension_opens_the_patch_and_meets_no_traction_there(name):
     body, patch, fixed = delaminated(blocks(), name)
     top = body.points[:, 2] == 1.0
@@ -82,7 +83,8 @@ def blistered(push: float):
     return body, patch, state
 
 
-@pytest.mark.parametrize(("push", "touches"), [(2e-4, False), (-1e-3, True)], ids=["pushed up", "pushed down"])
+@pytest.mark.press
+@for_each(("push", "touches"), [(2e-4, False), (-1e-3, True)], ids=["pushed up", "pushed down"])
 def test_a_buckling_skin_neither_passes_through_its_substrate_nor_sticks_to_it(push, touches):
     """lambda >= 0, g >= 0 and lambda g = 0 at every node of a patch whose skin has lifted by more than its own
     thickness (it buckles at pi^2 h^2 / (3 l^2) = 0.4 %)."""
@@ -96,7 +98,8 @@ def test_a_buckling_skin_neither_passes_through_its_substrate_nor_sticks_to_it(p
     assert (pressure.max() > 0.1) == touches
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.press
+@for_each("name", NAMES)
 def test_tangent_is_the_derivative_of_the_residual(name):
     """Some nodes open and some closed, at a large rotation and an opening of the size of the facets."""
     ends = np.array([-0.5, 0.0, 0.5])
@@ -141,7 +144,7 @@ def test_a_strip_takes_whole_rectangles_of_a_slice():
     assert inside.sum() == 2 * 4
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("center", "diameter", "allowed"),
     [
         ((0.4, 0.0), 0.6, "x from -0.5 to 0.5 mm, y from -0.5 to 0.5 mm"),

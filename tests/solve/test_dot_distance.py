@@ -5,6 +5,7 @@ import pytest
 
 from geometry.dot import DotShape
 from solve.terms.contact import RigidDot
+from tests.cases import for_each
 
 AT_REST = np.zeros(3)
 
@@ -57,7 +58,7 @@ def test_a_lower_neighbour_is_farther_away():
 TILTED = np.array([[0.8, 0.0, 0.6], [0.0, 1.0, 0.0], [-0.6, 0.0, 0.8]])
 
 
-@pytest.mark.parametrize(
+@for_each(
     "rigid",
     [dot(), dot("ridge"), dot(radius=0.8, height=1.5), dot(rotation=TILTED), dot("plate", rotation=TILTED)],
 )

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from solve.materials.film import film_law
-from solve.materials.parameters import VACUUM_PERMITTIVITY
-from solve.materials.parameters import PiezoelectricFilm
+from solve.materials.parameters import VACUUM_PERMITTIVITY, PiezoelectricFilm
 from solve.terms.film import film_region
+from tests.cases import for_each
 from tests.solve.box import box
 from tests.solve.trial import trial
 
@@ -40,7 +40,7 @@ def stretched(points, material, stress):
 PVDF = PiezoelectricFilm(youngs_modulus_MPa=2500.0, poisson_ratio=0.29)
 
 
-@pytest.mark.parametrize(("stress", "d"), [((1e4, 0, 0), 23.0), ((0, 1e4, 0), 2.3), ((0, 0, 1e4), -33.0)])
+@for_each(("stress", "d"), [((1e4, 0, 0), 23.0), ((0, 1e4, 0), 2.3), ((0, 0, 1e4), -33.0)])
 def test_charge_of_a_uniform_stress_is_d_times_stress_times_area(stress, d):
     points, region = film(PVDF)
     charge = charge_of(region, stretched(points, PVDF, stress))[0]
@@ -59,7 +59,7 @@ def test_capacitance_of_a_segment():
     assert film(PVDF)[1].capacitance()[0] == pytest.approx(12 * VACUUM_PERMITTIVITY * AREA / THICKNESS)
 
 
-@pytest.mark.parametrize(("angle", "d"), [(90.0, 2.3), (45.0, (23.0 + 2.3) / 2), (180.0, 23.0)])
+@for_each(("angle", "d"), [(90.0, 2.3), (45.0, (23.0 + 2.3) / 2), (180.0, 23.0)])
 def test_draw_angle_turns_the_coupling(angle, d):
     """d(angle) along x = d31 cos^2 + d32 sin^2."""
     points, region = film(PVDF, angle)

@@ -10,6 +10,7 @@ from mesh.build import MeshOptions
 from mesh.types import TetMesh
 from solve.model import Press
 from solve.result import RIM_THICKNESSES, film_columns, film_peak
+from tests.cases import for_each
 from tests.export.pressed_box import box_mesh, made_up_press
 from tests.pressing import press_segment
 from tests.solve import segments
@@ -26,7 +27,7 @@ def centroids(tet_mesh: TetMesh) -> np.ndarray:
     return tet_mesh.points_mm[tet_mesh.tets[tet_mesh.region_tets("film"), :4]].mean(axis=1)
 
 
-@pytest.mark.parametrize("rows", [6, 1], ids=["solid", "slice"])
+@for_each("rows", [6, 1], ids=["solid", "slice"])
 def test_pure_bending_about_the_middle_has_no_mean_strain(rows):
     """A plate bent to the curvature k is strained by k z; the mean over -t/2 to t/2 is zero, the surface k t/2."""
     tet_mesh = box_mesh(6, 2.5 if rows > 1 else 0.4, rows)
@@ -73,7 +74,7 @@ def test_a_singular_rim_is_told_apart(press_with_rim):
     assert peak.rim_distance_m == pytest.approx(5 * 28e-6)
 
 
-@pytest.mark.parametrize("sides", [{"boundary": "free"}, {"boundary": "clamped", "held_layers": ("medium1",)}])
+@for_each("sides", [{"boundary": "free"}, {"boundary": "clamped", "held_layers": ("medium1",)}])
 def test_a_film_whose_sides_are_not_held_has_no_rim(press_with_rim, sides):
     tet_mesh, steps = press_with_rim
     peak = film_peak(steps, tet_mesh, segment(**sides))
@@ -81,7 +82,7 @@ def test_a_film_whose_sides_are_not_held_has_no_rim(press_with_rim, sides):
     assert peak.strain == peak.rim_strain == pytest.approx(1.0)
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_the_headline_strain_does_not_depend_on_the_mesh():
     """Of a clamped slice, on elements of the whole, half and a quarter of the size, crowded at the film."""
     slice_ = segments.segment(section="plane-strain", boundary="clamped")

@@ -5,6 +5,7 @@ import pytest
 
 from solve.materials.film import YieldLaw, film_law, von_mises
 from solve.materials.parameters import PiezoelectricFilm
+from tests.cases import for_each
 
 E, NU, G, YIELD = 2000.0, 0.29, 2000.0 / 2.58, 50.0  # MPa
 ISOTROPIC = film_law(PiezoelectricFilm(youngs_modulus_MPa=E, poisson_ratio=NU), 0.0).stiffness / 1e6
@@ -49,8 +50,8 @@ class Specimen:
         raise AssertionError("no equilibrium across the specimen")
 
 
-@pytest.mark.parametrize("stiffness", [ISOTROPIC, DRAWN], ids=["isotropic", "drawn"])
-@pytest.mark.parametrize("hardening", [0.01, 300.0, 4000.0])
+@for_each("stiffness", [ISOTROPIC, DRAWN], ids=["isotropic", "drawn"])
+@for_each("hardening", [0.01, 300.0, 4000.0])
 def test_tension_is_elastic_and_then_climbs_with_the_elastoplastic_modulus(stiffness, hardening):
     """S = E e up to sigma_y, then sigma_y + E H / (E + H) (e - sigma_y / E)."""
     specimen = Specimen(YieldLaw(stiffness, YIELD, hardening))
@@ -61,7 +62,7 @@ def test_tension_is_elastic_and_then_climbs_with_the_elastoplastic_modulus(stiff
     assert specimen.kappa[0] == pytest.approx(0.075 * E / (E + hardening), rel=1e-9)
 
 
-@pytest.mark.parametrize("stiffness", STIFFNESS.values(), ids=STIFFNESS)
+@for_each("stiffness", STIFFNESS.values(), ids=STIFFNESS)
 def test_perfect_plasticity_stays_on_the_yield_surface(stiffness):
     rng = np.random.default_rng(1)
     strain = 0.1 * rng.standard_normal((200, 6))
@@ -73,7 +74,7 @@ def test_perfect_plasticity_stays_on_the_yield_surface(stiffness):
     np.testing.assert_allclose(change_of_volume, 0.0, atol=1e-14 * np.abs(answer.plastic_strain).max())
 
 
-@pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
+@for_each("law", LAWS.values(), ids=LAWS)
 def test_projection_satisfies_hookes_law_flow_rule_and_hardening(law):
     rng = np.random.default_rng(7)
     strain, kappa = 0.08 * rng.standard_normal((100, 6)), 0.02 * rng.random(100)
@@ -104,7 +105,7 @@ def test_isotropic_projection_is_the_radial_return():
     np.testing.assert_allclose(answer.stress, expected, rtol=1e-12, atol=1e-12)
 
 
-@pytest.mark.parametrize("hardening", [0.0, 300.0])
+@for_each("hardening", [0.0, 300.0])
 def test_unloading_is_elastic_and_leaves_a_permanent_strain(hardening):
     """From strain e the stress falls by E de and vanishes at e - S / E."""
     specimen = Specimen(YieldLaw(DRAWN, YIELD, hardening))
@@ -117,7 +118,7 @@ def test_unloading_is_elastic_and_leaves_a_permanent_strain(hardening):
     np.testing.assert_array_equal(specimen.kappa, kappa)
 
 
-@pytest.mark.parametrize("stiffness", [ISOTROPIC, DRAWN], ids=["isotropic", "drawn"])
+@for_each("stiffness", [ISOTROPIC, DRAWN], ids=["isotropic", "drawn"])
 def test_a_closed_cycle_of_strain_dissipates_the_area_of_its_loop(stiffness):
     """Shear between -g and g: a parallelogram of area 2 t (2 g - 2 t / G) with t = sigma_y / sqrt(3)."""
     law, shear = YieldLaw(stiffness, YIELD), stiffness[3, 3]
@@ -136,7 +137,7 @@ def test_a_closed_cycle_of_strain_dissipates_the_area_of_its_loop(stiffness):
     assert work == pytest.approx(exact, rel=1e-10)
 
 
-@pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
+@for_each("law", LAWS.values(), ids=LAWS)
 def test_tangent_is_the_derivative_of_the_stress(law):
     rng = np.random.default_rng(11)
     strain, kappa = 0.06 * rng.standard_normal((30, 6)), 0.01 * rng.random(30)
@@ -148,8 +149,8 @@ def test_tangent_is_the_derivative_of_the_stress(law):
         np.testing.assert_allclose(answer.tangent[:, :, k], (above - below) / 2e-6, atol=1e-6 * E)
 
 
-@pytest.mark.parametrize("stiffness", STIFFNESS.values(), ids=STIFFNESS)
-@pytest.mark.parametrize("yield_stress", [1e9, np.inf])
+@for_each("stiffness", STIFFNESS.values(), ids=STIFFNESS)
+@for_each("yield_stress", [1e9, np.inf])
 def test_without_yield_the_film_is_elastic_to_round_off(stiffness, yield_stress):
     strain = 0.1 * np.random.default_rng(0).standard_normal((20, 6))
     answer = YieldLaw(stiffness, yield_stress).project(strain, np.zeros(20))
@@ -159,8 +160,8 @@ def test_without_yield_the_film_is_elastic_to_round_off(stiffness, yield_stress)
     assert not answer.kappa.any()
 
 
-@pytest.mark.parametrize("overshoot", [1e-15, 1e-13, 1e-9, 1e-4, 1.0, 1e3])
-@pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
+@for_each("overshoot", [1e-15, 1e-13, 1e-9, 1e-4, 1.0, 1e3])
+@for_each("law", LAWS.values(), ids=LAWS)
 def test_projection_converges_just_beyond_yield_and_far_beyond_it(law, overshoot):
     direction = np.array([1.0, -0.4, 0.1, 0.5, -0.3, 0.2])
     direction *= law.yield_stress / von_mises((direction @ law.stiffness)[None])
@@ -170,7 +171,7 @@ def test_projection_converges_just_beyond_yield_and_far_beyond_it(law, overshoot
     assert answer.kappa >= 0.0
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("changes", "message"),
     [
         ({"yield_stress": 0.0}, "yield stress = 0: must be above 0"),

@@ -6,6 +6,7 @@ from scipy.optimize import least_squares
 from scipy.signal import bessel, butter, cheby1, freqs, lsim
 
 from solve.readout.filters import Filter
+from tests.cases import for_each
 
 CORNER_HZ = 12.0
 ANGULAR = 2.0 * np.pi * CORNER_HZ
@@ -22,7 +23,7 @@ def chebyshev():
     return quality, (numerator * 10.0 ** (RIPPLE_DB / 20.0), denominator)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("quality", "prototype"),
     [
         (np.sqrt(1.0 / 3.0), bessel(2, ANGULAR, analog=True, norm="mag")),
@@ -40,7 +41,7 @@ def test_quality_is_the_shape_at_the_same_corner(quality, prototype):
     np.testing.assert_allclose(found, expected, atol=1e-9)
 
 
-@pytest.mark.parametrize(("order", "quality"), [(5, None), (2, None), (2, 2.0), (2, 0.05)])
+@for_each(("order", "quality"), [(5, None), (2, None), (2, 2.0), (2, 0.05)])
 def test_half_the_power_is_left_at_the_corner(order, quality):
     own = Filter(CORNER_HZ, order, quality=quality)
     _, response = freqs(*own.transfer(), worN=[ANGULAR])
@@ -56,7 +57,7 @@ def test_dead_time_shifts_what_leaves_the_filter():
     assert not late[:200].any()
 
 
-@pytest.mark.parametrize("prototype", [bessel, butter], ids=["Bessel", "Butterworth"])
+@for_each("prototype", [bessel, butter], ids=["Bessel", "Butterworth"])
 def test_order_two_and_dead_time_come_close_to_order_four(prototype):
     """A trapezoid through scipy's filter: the shape is missed by three times less than without dead time."""
     time = np.linspace(0.0, 2.0, 4001)

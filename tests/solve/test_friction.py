@@ -7,6 +7,7 @@ from geometry.dot import DotShape
 from solve.fem.sparsity import Trial, Unknowns
 from solve.terms.contact import RigidDot, contact_facets
 from solve.terms.friction import FrictionalContact
+from tests.cases import for_each
 from tests.slip_work import slip_work
 
 NOTHING = np.zeros((0, 4), int)
@@ -82,8 +83,9 @@ def random_state(rng, roughness, drag):
 STATES = {"stick": (60.0, 0.2, 0.0), "slip": (0.2, 0.3, 0.4), "mixed": (0.6, 0.3, 0.1), "frictionless": (0.0, 0.3, 0.1)}
 
 
-@pytest.mark.parametrize("name", STATES)
-@pytest.mark.parametrize("kind", ["cap", "ridge", "plate"])
+@pytest.mark.press
+@for_each("name", STATES)
+@for_each("kind", ["cap", "ridge", "plate"])
 def test_tangent_is_the_derivative_of_the_residual(name, kind):
     """In all unknowns, the dot's approach too, with a tilted dot that moves sideways and some held displacements."""
     coefficient, drag, lateral = STATES[name]

@@ -8,6 +8,7 @@ from solve.fem.kernels import compressible_solid
 from solve.fem.kinematics import physical_gradients, quadratic, tetrahedron
 from solve.materials.isochoric import from_voigt
 from solve.materials.principal_stretches import HyperfoamLaw
+from tests.cases import for_each
 from tests.solve.box import box
 
 MU, ALPHA, BETA = np.array([0.025, 0.01]), np.array([12.0, -3.0]), np.array([0.05 / 0.9, 0.5])
@@ -25,7 +26,7 @@ def nominal(law, stretches):
     return stretches * law.stress(np.diag(np.square(stretches))[None])[0][0, :3]
 
 
-@pytest.mark.parametrize("x", [0.3, 0.6, 0.95, 1.0, 1.2])
+@for_each("x", [0.3, 0.6, 0.95, 1.0, 1.2])
 def test_uniaxial_compression_and_tension(x):
     lateral = brentq(lambda y: closed_form(y, x * y * y), 0.5, 2.0, xtol=1e-15)
     p = nominal(FOAM, np.array([x, lateral, lateral]))
@@ -33,7 +34,7 @@ def test_uniaxial_compression_and_tension(x):
     np.testing.assert_allclose(p[1:], 0.0, atol=1e-13)
 
 
-@pytest.mark.parametrize("x", [0.3, 0.7, 1.2])
+@for_each("x", [0.3, 0.7, 1.2])
 def test_confined_and_volumetric_deformation(x):
     """P along the side walls of a stiff box follows from stretch 1; equal stretches give equal stresses."""
     np.testing.assert_allclose(
@@ -42,7 +43,7 @@ def test_confined_and_volumetric_deformation(x):
     np.testing.assert_allclose(nominal(FOAM, np.full(3, x)), 3 * [closed_form(x, x**3)], rtol=1e-12)
 
 
-@pytest.mark.parametrize("poisson_ratio", [-0.2, 0.0, 0.05, 0.3, 0.45])
+@for_each("poisson_ratio", [-0.2, 0.0, 0.05, 0.3, 0.45])
 def test_one_term_keeps_its_poisson_ratio_at_any_strain(poisson_ratio):
     """Zero lateral stress at the lateral stretch L^(-nu) (Storakers 1986)."""
     law = HyperfoamLaw((0.025,), (8.0,), (poisson_ratio / (1.0 - 2.0 * poisson_ratio),))

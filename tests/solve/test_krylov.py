@@ -5,6 +5,7 @@ import pytest
 from scipy.sparse.linalg import gmres
 
 from solve.solution.krylov import flexible_gmres
+from tests.cases import for_each
 
 COUNT = 60
 RNG = np.random.default_rng(3)
@@ -20,7 +21,7 @@ def by_the_diagonal(vector):
     return vector / np.diag(MATRIX)
 
 
-@pytest.mark.parametrize("tolerance", [1e-3, 1e-8, 1e-13])
+@for_each("tolerance", [1e-3, 1e-8, 1e-13])
 def test_the_residual_is_as_small_as_asked(tolerance):
     found = flexible_gmres(product, by_the_diagonal, RHS, tolerance, COUNT)
     assert np.linalg.norm(RHS - MATRIX @ found) <= 1.01 * tolerance * np.linalg.norm(RHS)

@@ -8,6 +8,7 @@ from solve.materials.isochoric import from_voigt, to_voigt
 from solve.materials.laws import InvariantLaw, KnowlesLaw, LinearLaw, OgdenLaw, bulk_modulus
 from solve.materials.parameters import Hyperfoam, Linear, MooneyRivlin, NeoHookean, Ogden, PiezoelectricFilm, Yeoh
 from solve.materials.principal_stretches import HyperfoamLaw
+from tests.cases import for_each
 
 LAWS = {
     "neo-hookean": InvariantLaw(0.5, 0.0, 0.0, 0.0, 100.0),
@@ -49,7 +50,7 @@ def nominal_stress(law, stretches, free_direction):
     return stretches[0] * (s[0, 0] + pressure / c[0, 0])
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("stretch", "uniaxial", "equibiaxial", "plane_strain"),
     [
         (0.7, -1.3408, -5.2499, -2.2155),
@@ -66,7 +67,7 @@ def test_neo_hookean_table(stretch, uniaxial, equibiaxial, plane_strain):
     assert nominal_stress(law, [x, 1.0, 1 / x], 2) == pytest.approx(plane_strain, abs=5.01e-5)
 
 
-@pytest.mark.parametrize("x", [0.6, 0.9, 1.3, 2.5])
+@for_each("x", [0.6, 0.9, 1.3, 2.5])
 def test_mooney_rivlin_and_yeoh_in_uniaxial_tension(x):
     """P = 2 (L - L^-2)(W1 + W2 / L) with W1 = c10 + 2 c20 (I1 - 3) + 3 c30 (I1 - 3)^2."""
     i1 = x**2 + 2 / x - 3.0
@@ -77,8 +78,8 @@ def test_mooney_rivlin_and_yeoh_in_uniaxial_tension(x):
     assert nominal_stress(LAWS["yeoh"], stretches, 2) == pytest.approx(yeoh, rel=1e-12)
 
 
-@pytest.mark.parametrize("x", [0.6, 0.9, 1.3, 2.5])
-@pytest.mark.parametrize(
+@for_each("x", [0.6, 0.9, 1.3, 2.5])
+@for_each(
     ("law", "slope"),
     [
         (LAWS["knowles"], lambda excess: 0.5 * (1 + 1.2 / 3.5 * excess) ** 2.5),
@@ -98,8 +99,8 @@ def test_knowles_in_uniaxial_tension(law, slope, x):
     assert nominal_stress(law, stretches, 2) == pytest.approx(expected, rel=1e-12)
 
 
-@pytest.mark.parametrize("stretches", STRETCHES.values(), ids=STRETCHES)
-@pytest.mark.parametrize("name", LAWS)
+@for_each("stretches", STRETCHES.values(), ids=STRETCHES)
+@for_each("name", LAWS)
 def test_tangent_is_the_derivative_of_the_stress(name, stretches):
     law, c = LAWS[name], stretched(stretches)
     tangent = law.stress(c[None])[1][0]
@@ -109,7 +110,7 @@ def test_tangent_is_the_derivative_of_the_stress(name, stretches):
     np.testing.assert_allclose(tangent, tangent.T, atol=1e-12)
 
 
-@pytest.mark.parametrize("name", LAWS)
+@for_each("name", LAWS)
 def test_tangent_is_the_derivative_of_the_stress_at_random_states(name):
     rng = np.random.default_rng(0)
     f = np.eye(3) + 0.15 * rng.standard_normal((40, 3, 3))
@@ -122,8 +123,8 @@ def test_tangent_is_the_derivative_of_the_stress_at_random_states(name):
         np.testing.assert_allclose(tangent[:, :, column] / scale, difference / scale, atol=1e-8)
 
 
-@pytest.mark.parametrize("stretches", STRETCHES.values(), ids=STRETCHES)
-@pytest.mark.parametrize("name", LAWS)
+@for_each("stretches", STRETCHES.values(), ids=STRETCHES)
+@for_each("name", LAWS)
 def test_stress_is_the_derivative_of_the_energy(name, stretches):
     """S = 2 dW/dC; W vanishes in the undeformed state."""
     law, c = LAWS[name], stretched(stretches)
@@ -133,14 +134,14 @@ def test_stress_is_the_derivative_of_the_energy(name, stretches):
     np.testing.assert_allclose(law.energy(np.eye(3)[None]), 0.0, atol=1e-16)
 
 
-@pytest.mark.parametrize("name", ["neo-hookean", "mooney-rivlin", "yeoh", "knowles", "fung", "linear"])
+@for_each("name", ["neo-hookean", "mooney-rivlin", "yeoh", "knowles", "fung", "linear"])
 def test_stress_is_the_complex_step_derivative_of_the_energy(name):
     c = stretched((0.7, 1.1, 1.4))
     slope = LAWS[name].energy(c + 1e-30j * 2.0 * from_voigt(np.eye(6), 2.0)).imag / 1e-30
     np.testing.assert_allclose(LAWS[name].stress(c[None])[0][0], slope, rtol=1e-12)
 
 
-@pytest.mark.parametrize("name", LAWS)
+@for_each("name", LAWS)
 def test_a_law_does_not_know_the_axes_or_the_unit(name):
     law, turn = LAWS[name], Rotation.from_rotvec([0.2, 0.9, -0.4]).as_matrix()
     c = stretched((0.7, 1.1, 1.4))
@@ -151,7 +152,7 @@ def test_a_law_does_not_know_the_axes_or_the_unit(name):
     assert law.scaled(1e6).bulk_modulus == pytest.approx(1e6 * law.bulk_modulus)
 
 
-@pytest.mark.parametrize("name", SOFTENING_LAWS)
+@for_each("name", SOFTENING_LAWS)
 def test_a_law_beyond_its_ellipticity_still_answers_with_numbers(name):
     """Strong ellipticity needs A_2121 = F22^2 CC_1212 + S_11 > 0 (Ogden, Non-linear Elastic Deformations, 1984,
     sec. 6.2); a pressure p J C^-1 cancels from it."""
@@ -167,7 +168,7 @@ def test_a_law_beyond_its_ellipticity_still_answers_with_numbers(name):
     assert acoustic.min() < 0.0 < acoustic[7]  # lost somewhere, but not in the undeformed state
 
 
-@pytest.mark.parametrize("name", LAWS)
+@for_each("name", LAWS)
 def test_small_strain_is_hookes_law(name):
     """At C = 1 the isochoric tangent is 2 mu times the deviatoric projector; the whole one adds K tr E."""
     law = LAWS[name]

@@ -10,6 +10,7 @@ import solve.solution.linear
 from solve.fem.sparsity import Tangent
 from solve.solution.factorisation import Pardiso, PivotingPardiso, SinglePardiso, SuperLU
 from solve.solution.linear import LinearSolveError, LinearSolver
+from tests.cases import for_each
 
 TOLERANCE = 1e-10
 
@@ -35,7 +36,7 @@ def shift(upper, contact_rows=20):
     return value
 
 
-@pytest.mark.parametrize(
+@for_each(
     "registry",
     [[SinglePardiso], [Pardiso], [PivotingPardiso], [SuperLU]],
     ids=["single", "pardiso", "pivoting", "superlu"],
@@ -62,7 +63,7 @@ def test_a_matrix_beyond_single_precision_is_solved_in_double_without_a_warning(
     solver.close()
 
 
-@pytest.mark.parametrize(
+@for_each(
     "registry",
     [[SinglePardiso], [Pardiso], [PivotingPardiso], [SuperLU]],
     ids=["single", "pardiso", "pivoting", "superlu"],
@@ -110,7 +111,7 @@ class Absent(SuperLU):
         raise ImportError("no MKL here")
 
 
-@pytest.mark.parametrize("bad", [Wrong, Absent])
+@for_each("bad", [Wrong, Absent])
 def test_a_bad_factorisation_is_noticed_and_replaced(saddle, bad):
     upper, rhs = saddle
     solver = LinearSolver(shift(upper))
@@ -157,7 +158,7 @@ def stiff_on_soft():
     return upper, np.full(2 * n, 1.0)
 
 
-@pytest.mark.parametrize(
+@for_each(
     "registry",
     [[SinglePardiso], [Pardiso], [PivotingPardiso], [SuperLU]],
     ids=["single", "pardiso", "pivoting", "superlu"],

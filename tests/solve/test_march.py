@@ -128,6 +128,7 @@ def test_the_guess_for_the_next_state_is_exact_on_a_line():
     np.testing.assert_allclose(_ahead(state(0.3), state(0.4), 0.9), state(0.9).x, rtol=1e-13)
 
 
+@pytest.mark.press
 def test_a_dot_that_is_lifted_clear_takes_no_work_that_the_segment_never_held(elastic):
     """Down in eight steps across a gap of 0.07 mm, up in three, the last of which leaves the surface."""
     rest = ridge(STACK)

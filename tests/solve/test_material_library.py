@@ -3,6 +3,7 @@
 import pytest
 
 from solve.materials.parameters import PiezoelectricFilm, Yeoh, library
+from tests.cases import for_each
 
 # stress at 100 % strain in kPa of the tensile data that the silicones were fitted to
 STRESS_AT_100_PERCENT_KPA = {
@@ -17,7 +18,7 @@ STRESS_AT_100_PERCENT_KPA = {
 }
 
 
-@pytest.mark.parametrize(("name", "stress_kPa"), STRESS_AT_100_PERCENT_KPA.items())
+@for_each(("name", "stress_kPa"), STRESS_AT_100_PERCENT_KPA.items())
 def test_a_silicone_pulled_to_twice_its_length_has_the_measured_stress(name, stress_kPa):
     material = library()[name]
     assert isinstance(material, Yeoh)
@@ -32,7 +33,7 @@ def test_every_material_states_its_source_and_confidence():
     assert [name for name, material in library().items() if not (material.source and material.confidence)] == []
 
 
-@pytest.mark.parametrize(("name", "g31"), [("pvdf", 0.216), ("pvdf-trfe", 0.162)])
+@for_each(("name", "g31"), [("pvdf", 0.216), ("pvdf-trfe", 0.162)])
 def test_charge_and_voltage_constants_of_a_film_agree(name, g31):
     film = library()[name]
     assert isinstance(film, PiezoelectricFilm)

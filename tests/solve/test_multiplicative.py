@@ -1,13 +1,13 @@
 """Maxwell branches that flow, at a material point."""
 
 import numpy as np
-import pytest
 from scipy.integrate import solve_ivp
 
 from solve.materials.inelastic import Prony, StressResponse
 from solve.materials.isochoric import from_voigt, to_voigt
 from solve.materials.laws import InvariantLaw
 from solve.materials.multiplicative import MultiplicativeMaxwell
+from tests.cases import for_each
 
 LAW = InvariantLaw(0.4, 0.1, 0.05, 0.01, 20.0)
 G, TAU = (0.3, 0.2), (0.3, 2.0)
@@ -111,7 +111,7 @@ def test_what_does_not_flow_is_the_series_of_the_stress():
     np.testing.assert_allclose(partly, 0.3 * flows + 0.7 * plain, atol=1e-12)
 
 
-@pytest.mark.parametrize("flowing", [1.0, 0.4])
+@for_each("flowing", [1.0, 0.4])
 def test_the_tangent_is_the_derivative_of_the_stress_and_symmetric(flowing):
     rng = np.random.default_rng(0)
     history = np.array([f.T @ f for f in np.eye(3) + 0.4 * rng.standard_normal((4, 3, 3))])
@@ -127,7 +127,7 @@ def test_the_tangent_is_the_derivative_of_the_stress_and_symmetric(flowing):
     np.testing.assert_allclose(tangent, tangent.T, atol=1e-12)
 
 
-@pytest.mark.parametrize("angle", [0.3, 2.0])
+@for_each("angle", [0.3, 2.0])
 def test_a_rotation_of_the_reference_turns_the_stress_with_it(angle):
     turn = np.array([[np.cos(angle), -np.sin(angle), 0.0], [np.sin(angle), np.cos(angle), 0.0], [0.0, 0.0, 1.0]])
     time = np.linspace(0.0, 1.0, 11)

@@ -51,6 +51,7 @@ def plain() -> Equilibria:
     return equilibria(press())
 
 
+@pytest.mark.press
 @pytest.mark.parametrize(
     "other",
     [{"e_medium2": 2.0}, {"e_medium1": 1.0}, {"e_effector": 9.0}, {"physics": GLUE}],
@@ -83,7 +84,7 @@ def test_every_unknown_of_a_plain_press_is_read_back():
     np.testing.assert_allclose(back.unknowns, [x for _, x in found], rtol=1e-12)
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_equilibria_of_other_elements_are_no_guide(plain):
     setup, _ = press(ridge)
     other: TetMesh = setup.recorder.tet_mesh

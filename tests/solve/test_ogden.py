@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from solve.materials.laws import InvariantLaw, OgdenLaw
+from tests.cases import for_each
 from tests.solve.test_laws import STRETCHES, nominal_stress, stretched
 
 # Ogden, Proc. R. Soc. Lond. A 326, 1972: three terms for the vulcanised rubber of Treloar (MPa)
@@ -11,7 +12,7 @@ MU, ALPHA = np.array([0.63, 0.0012, -0.01]), np.array([1.3, 5.0, -2.0])
 TRELOAR = OgdenLaw(tuple(MU), tuple(ALPHA), 1000.0)
 
 
-@pytest.mark.parametrize("x", [0.4, 0.7, 0.999, 1.0, 1.001, 2.0, 4.0, 7.0])
+@for_each("x", [0.4, 0.7, 0.999, 1.0, 1.001, 2.0, 4.0, 7.0])
 def test_treloars_rubber_in_tension_sheet_stretching_and_plane_strain(x):
     """P1 = sum mu (L^(alpha - 1) - L3^alpha / L) with the stretch L3 along the free direction."""
 
@@ -34,7 +35,7 @@ def test_simple_shear_of_treloars_rubber():
     assert cauchy[0, 1] == pytest.approx(np.sum(MU * (x**ALPHA - x**-ALPHA)) / (x + 1.0 / x), rel=1e-12)
 
 
-@pytest.mark.parametrize("stretches", STRETCHES.values(), ids=STRETCHES)
+@for_each("stretches", STRETCHES.values(), ids=STRETCHES)
 def test_exponents_2_and_minus_2_are_mooney_rivlin_to_round_off(stretches):
     """I1 - 3 and I2 - 3 are the sums of l^2 - 1 and l^-2 - 1: no digit is lost at equal or close stretches."""
     mooney, ogden = InvariantLaw(0.3, 0.2, 0.0, 0.0, 100.0), OgdenLaw((0.6, -0.4), (2.0, -2.0), 100.0)
@@ -44,7 +45,7 @@ def test_exponents_2_and_minus_2_are_mooney_rivlin_to_round_off(stretches):
     np.testing.assert_allclose(ogden.energy(c), mooney.energy(c), rtol=0.0, atol=1e-14)
 
 
-@pytest.mark.parametrize("factor", [0.8, 1.25])
+@for_each("factor", [0.8, 1.25])
 def test_a_change_of_volume_alone_costs_no_isochoric_energy(factor):
     c = factor**2 * np.eye(3)[None]
     np.testing.assert_allclose(TRELOAR.stress(c)[0], 0.0, atol=1e-15)

@@ -7,6 +7,7 @@ import scipy.sparse as sp
 from solve.fem.sparsity import Tangent
 from solve.solution.factorisation import Pardiso, SuperLU
 from solve.solution.preconditioner import Preconditioner
+from tests.cases import for_each
 
 BODY, HELD = 120, 16
 
@@ -44,7 +45,7 @@ def tangent_on(largest, full):
     return Tangent(upper)
 
 
-@pytest.mark.parametrize(("kind", "digits"), [(SuperLU, 9), (Pardiso, 3)])
+@for_each(("kind", "digits"), [(SuperLU, 9), (Pardiso, 3)])
 def test_released_constraints_are_as_if_they_had_never_been_held(closed, kind, digits):
     rows = BODY + np.array([1, 4, 5, 11])
     inverse = Preconditioner(kind(), np.arange(BODY, BODY + HELD))
@@ -60,7 +61,7 @@ def test_released_constraints_are_as_if_they_had_never_been_held(closed, kind, d
     inverse.direct.free()
 
 
-@pytest.mark.parametrize(("kind", "digits"), [(SuperLU, 9), (Pardiso, 3)])
+@for_each(("kind", "digits"), [(SuperLU, 9), (Pardiso, 3)])
 def test_constraints_that_close_are_as_if_they_had_always_been_held(closed, kind, digits):
     """Some close, some open, and some do so again; a gap is scaled otherwise than a pressure."""
     closed[BODY:] *= 1e-4

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from solve.materials.inelastic import Prony, StressResponse
+from tests.cases import for_each
 
 G, TAU = (0.3, 0.2), (0.05, 0.7)
 SERIES = Prony(G, TAU)
@@ -41,7 +42,7 @@ def test_a_ramp_and_the_hold_after_it_are_exact_whatever_the_steps():
     np.testing.assert_allclose(answer(SERIES, np.minimum(time, 0.5), time), expected, atol=1e-13)
 
 
-@pytest.mark.parametrize("frequency", [0.2, 1.0, 3.0])
+@for_each("frequency", [0.2, 1.0, 3.0])
 def test_a_sine_has_the_storage_and_loss_moduli_of_the_series(frequency):
     """G' = 1 - sum g / (1 + (w tau)^2), G'' = sum g w tau / (1 + (w tau)^2); the work lost in a cycle is pi G''."""
     w, cycles, per_cycle = 2.0 * np.pi * frequency, 20, 400
@@ -76,7 +77,7 @@ def relaxed_raised_cosine():
     )
 
 
-@pytest.mark.parametrize("series", [Prony((), ()), Prony((0.0,), (0.5,))])
+@for_each("series", [Prony((), ()), Prony((0.0,), (0.5,))])
 def test_without_relaxing_share_it_is_elastic(series):
     time = np.linspace(0.0, 1.0, 8)
     np.testing.assert_allclose(answer(series, np.sin(time), time), np.sin(time), rtol=1e-15)

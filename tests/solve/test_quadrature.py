@@ -7,6 +7,7 @@ import pytest
 
 from solve.fem.kinematics import tetrahedron, triangle
 from solve.terms.contact import HATS, POINTS, WEIGHTS
+from tests.cases import for_each
 
 
 def monomials(dimension: int, degree: int):
@@ -19,7 +20,7 @@ def exact(powers) -> float:
     return np.prod([factorial(p) for p in powers]) / factorial(sum(powers) + len(powers))
 
 
-@pytest.mark.parametrize("degree", [3, 5])
+@for_each("degree", [3, 5])
 def test_tetrahedron(degree):
     points, weights = tetrahedron(degree)
     assert (weights > 0).all()
@@ -27,7 +28,7 @@ def test_tetrahedron(degree):
         assert weights @ np.prod(points**powers, axis=1) == pytest.approx(exact(powers), abs=1e-15)
 
 
-@pytest.mark.parametrize("rule", [triangle(), (POINTS, WEIGHTS)], ids=["triangle", "four quarters"])
+@for_each("rule", [triangle(), (POINTS, WEIGHTS)], ids=["triangle", "four quarters"])
 def test_triangle(rule):
     points, weights = rule
     for powers in monomials(2, 4):

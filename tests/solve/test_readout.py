@@ -12,6 +12,7 @@ from solve.readout.amplifier import leaky_integral
 from solve.readout.course import course
 from solve.readout.stages import Saturation
 from solve.solution.schedule import fraction
+from tests.cases import for_each
 
 FILM_F = 971e-12  # 16 x 16 mm, 28 um
 
@@ -48,7 +49,7 @@ def test_cable_capacitance_divides_the_voltage():
     assert 1e-9 / 23.8e-12 / voltage[-1] == pytest.approx(5.2, abs=0.005)
 
 
-@pytest.mark.parametrize(("rise_s", "ratio"), [(0.1, 103), (0.2, 206), (0.3, 308), (0.5, 514), (1.0, 1028)])
+@for_each(("rise_s", "ratio"), [(0.1, 103), (0.2, 206), (0.3, 308), (0.5, 514), (1.0, 1028)])
 def test_ramp_into_one_megohm(rise_s, ratio):
     """V(T) = V_oc (tau / T)(1 - exp(-T / tau)), tau = 0.973 ms."""
     result = press_with(np.linspace(0.0, 1e-9, 7), 973e-12)
@@ -67,7 +68,7 @@ def test_saturation_and_polarity():
     assert readout_voltage(LINEAR, Press(), readout)[-1] == pytest.approx(0.3)
 
 
-@pytest.mark.parametrize(("limit_V", "shown_V"), [(0.5, 0.3), (0.2, 0.2)])
+@for_each(("limit_V", "shown_V"), [(0.5, 0.3), (0.2, 0.2)])
 def test_of_two_limits_in_a_row_the_lower_one_counts(limit_V, shown_V):
     readout = Readout(mode="charge", feedback_pF=1000.0, limit_V=0.3)
     physics = Physics(electronics=(Saturation(limit_V),))
@@ -90,7 +91,7 @@ def test_sine_through_the_high_pass_of_the_input():
     np.testing.assert_allclose(voltage[-50_000:], expected[-50_000:], atol=1e-5)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("waveform", "at_rise"),
     [("ramp", 1.0), ("half-sine", 1.0), ("raised-cosine", 1.0), ("trapezoid", 1.0)],
 )

@@ -16,6 +16,7 @@ from solve.reduced import model as store
 from solve.reduced.fit import CELLS, ResponseTable
 from solve.reduced.model import Accuracy, ReducedModel
 from solve.terms.guide import GuideFriction
+from tests.cases import for_each
 
 STIFFNESS, FULL, SHARE, TAU = 2.0, 0.5, 0.3, 0.2
 SOLID = Physics(viscosity={"medium2": Prony((SHARE,), (TAU,))})
@@ -119,7 +120,7 @@ def test_a_prescribed_path_adds_the_force_of_the_mass():
     np.testing.assert_allclose((with_mass - without)[1:-1], expected[1:-1], atol=1e-4 * np.abs(expected).max())
 
 
-@pytest.mark.parametrize("compliance", [0.0, 0.25])
+@for_each("compliance", [0.0, 0.25])
 def test_a_guide_rubs_where_the_rig_travels_and_the_dot_feels_nothing(compliance):
     """0.3 N more on the way in and less on the way out, once it has slipped after 0.02 mm."""
     depth = 0.2 * (1.0 - np.abs(np.linspace(-1.0, 1.0, 401)))
@@ -155,7 +156,7 @@ def test_heat_begins_with_the_touch_and_not_with_the_first_sample():
 TIME = np.linspace(0.0, 1.0, 11)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("asked", "reason"),
     [
         ({"depth_mm": 0.6 * TIME}, "depth 0.6 mm: the reduced model knows up to 0.5 mm"),

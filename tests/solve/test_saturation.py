@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from solve.readout.stages import Saturation
+from tests.cases import for_each
 
 VOLTAGE = np.linspace(-50.0, 50.0, 2001)
 TIME = np.zeros(1)
@@ -19,7 +20,7 @@ def test_a_very_sharp_knee_is_none():
     )
 
 
-@pytest.mark.parametrize("sharpness", [1.0, 2.0, 8.0])
+@for_each("sharpness", [1.0, 2.0, 8.0])
 def test_the_knee_lies_between_line_and_limit(sharpness):
     """V_max / 2^(1/p) at V_max, slope one at zero, odd, and the limit far away."""
     law = Saturation(0.5, sharpness)

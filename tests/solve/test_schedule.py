@@ -6,6 +6,7 @@ import pytest
 from solve.model import Press, Waveform
 from solve.solution.schedule import Target, load_between, schedule
 from solve.system import Load
+from tests.cases import for_each
 
 TRAPEZOID = Waveform(shape="trapezoid", rise_s=0.2, hold_s=0.5, fall_s=0.1)
 
@@ -40,7 +41,7 @@ def test_a_release_ends_at_exactly_nothing():
     assert schedule(half_sine, 2.0, 1.0, follows_time=True)[-1].load.drive == 0.0
 
 
-@pytest.mark.parametrize("shape", ["ramp", "half-sine", "raised-cosine", "trapezoid"])
+@for_each("shape", ["ramp", "half-sine", "raised-cosine", "trapezoid"])
 def test_every_waveform_starts_at_rest_and_passes_through_its_peak(shape):
     targets = schedule(Press(waveform=Waveform(shape=shape)), 2.0, 1.0, follows_time=True)
     assert targets[0].load.drive == 0.0

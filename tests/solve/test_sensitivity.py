@@ -87,7 +87,8 @@ CASES = {
 SLIDES = "friction"  # on the finer mesh, half a minute
 
 
-@pytest.mark.parametrize("case", [pytest.param(n, marks=pytest.mark.slow if n == SLIDES else ()) for n in CASES])
+@pytest.mark.press
+@pytest.mark.parametrize("case", [pytest.param(n, marks=pytest.mark.press if n == SLIDES else ()) for n in CASES])
 def test_sensitivity_is_the_difference_of_two_presses(case, monkeypatch):
     monkeypatch.setattr(solve.solution.march, "TIME_TOLERANCE", np.inf)  # the same times for all presses
     value, at = CASES[case]

@@ -5,6 +5,7 @@ import pytest
 from scipy.special import erf
 
 from solve.materials.inelastic import Softening, StressResponse
+from tests.cases import for_each
 
 STIFFNESS = 3.0
 LAW = Softening(0.4, 0.01, 0.2)
@@ -59,8 +60,8 @@ def test_no_loss_is_elastic():
     assert np.array_equal(cycle(Softening(0.0), strains)[0], STIFFNESS * strains)
 
 
-@pytest.mark.parametrize("energy", [-5e-17, 0.0, 2e-16])
-@pytest.mark.parametrize("largest", [0.0, 1e-16])
+@for_each("energy", [-5e-17, 0.0, 2e-16])
+@for_each("largest", [0.0, 1e-16])
 def test_rounding_of_the_energy_at_rest_softens_nothing(energy, largest):
     elastic = StressResponse(np.zeros((1, 6)), STIFFNESS * np.eye(6)[None], np.array([energy]))
     softened, _ = Softening(0.4, 0.0, 0.2).update(elastic, (np.array([largest]),), 0.1)

@@ -11,6 +11,7 @@ from solve.mechanisms import Mechanism, with_mechanisms
 from solve.model import Model, Press, Readout
 from solve.readout.amplifier import amplify
 from solve.terms.guide import GuideFriction
+from tests.cases import for_each
 from tests.solve.segments import materials, segment
 
 
@@ -23,7 +24,7 @@ def switched(model, name, component, **parameters):
     return with_mechanisms(model, [Mechanism(name=name, component=component, parameters=parameters)])
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("name", "component", "parameters"),
     [
         ("viscoelasticity", "medium2", {"relative_moduli": [0.0], "relaxation_times_s": [0.5]}),
@@ -83,7 +84,7 @@ def test_offsets_and_gaps_add(model):
     assert twice.dot.gap_mm == 0.03
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("parameters", "kind"),
     [
         ({"c20_MPa": 0.1}, Yeoh),

@@ -12,6 +12,7 @@ from solve.problem import build_system
 from solve.solution.linear import LinearSolver
 from solve.solution.march import march
 from solve.system import Load
+from tests.cases import for_each
 from tests.pressing import press_segment
 from tests.solve.segments import cap, coarse_mesh, materials, ridge, segment
 
@@ -24,7 +25,7 @@ def last(stack, stuff, dot, press=SHALLOW):
     return result.steps[-1]
 
 
-@pytest.mark.parametrize("force_driven", [False, True])
+@for_each("force_driven", [False, True])
 def test_tangent_is_the_derivative_of_the_residual(force_driven):
     """Solid, film with two-way coupling, elastic sides, contact and dot together, in a random direction."""
     stack = segment(boundary="elastic", side_stiffness_N_per_mm3=3.0)
@@ -70,6 +71,7 @@ def test_switched_constraints_are_those_of_a_state_that_has_them():
     np.testing.assert_allclose(there.residual[rows][wanted], -gap[wanted], atol=1e-12)
 
 
+@pytest.mark.press
 def test_a_force_of_what_the_depth_took_gives_the_depth():
     stack = segment()
     deep = last(stack, materials(), cap(stack))
@@ -78,7 +80,7 @@ def test_a_force_of_what_the_depth_took_gives_the_depth():
     assert pushed.open_circuit_voltage_V == pytest.approx(deep.open_circuit_voltage_V, rel=1e-8)
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_elastic_sides_lie_between_free_and_clamped():
     """Stiffness 0 is free; a very stiff case is clamped."""
 
@@ -130,7 +132,7 @@ def test_a_surface_too_coarse_for_the_dot_is_told():
     assert "overlaps the surface" in warnings(1.2)[0]
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_the_contact_area_is_where_the_surface_lies_on_the_dot():
     """Nodes count where the gap around them is nil; open ones have a pressure too, of round-off."""
     stack = segment()
@@ -155,6 +157,7 @@ def test_rubber_of_poisson_ratio_0_4995_converges():
     assert last(stack, materials(poisson_ratio=0.4995), cap(stack)).reaction_force_N > 0
 
 
+@pytest.mark.press
 def test_a_slide_keeps_its_depth_and_ends_where_it_was_sent():
     stack = segment(boundary="free")
     press = Press(indentation_mm=0.2, load_steps=2, path_xy_mm=((0.2, 0.1),))

@@ -4,10 +4,11 @@ import time
 
 import pytest
 
+from tests.cases import for_each
 from tests.studio.test_array import PAIR
 
 axe_package = pytest.importorskip("axe_playwright_python.sync_playwright")
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.browser
 SERIOUS = ("serious", "critical")
 
 
@@ -17,7 +18,7 @@ def serious(page):
     return [(one["id"], [node["html"][:120] for node in one["nodes"][:3]]) for one in found if one["impact"] in SERIOUS]
 
 
-@pytest.mark.parametrize(("scheme", "width"), [("light", 1366), ("dark", 1366), ("light", 400)])
+@for_each(("scheme", "width"), [("light", 1366), ("dark", 1366), ("light", 400)])
 def test_axe_finds_nothing_serious(studio, browser, scheme, width):
     """bypass_csp : the policy of the page does not let a script be put into it, that of axe-core neither."""
     context = browser.new_context(color_scheme=scheme, viewport={"width": width, "height": 768}, bypass_csp=True)
@@ -34,7 +35,7 @@ def test_axe_finds_nothing_serious(studio, browser, scheme, width):
     assert across <= width
 
 
-@pytest.mark.parametrize(("scheme", "width"), [("dark", 1366), ("light", 400)])
+@for_each(("scheme", "width"), [("dark", 1366), ("light", 400)])
 def test_axe_finds_nothing_serious_in_an_array(start_studio, browser, scheme, width):
     context = browser.new_context(color_scheme=scheme, viewport={"width": width, "height": 768}, bypass_csp=True)
     page = context.new_page()

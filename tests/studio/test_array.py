@@ -79,7 +79,7 @@ def test_each_segment_under_a_raised_dot_reads_most():
     assert {one["progress"]["stage"] for one in told} == {"mesh", "press"}
 
 
-@pytest.mark.slow
+@pytest.mark.browser
 def test_the_report_of_an_array_is_that_of_softdot_array(tmp_path):
     found = files.report(PAIR, str(tmp_path), lambda _: None)
     with zipfile.ZipFile(found["file"]) as archive:
@@ -95,7 +95,7 @@ def volts(tab):
     return {label: float(value) for label, value in re.findall(r"(r\dc\d) ([-\d.e]+) V", said)}
 
 
-@pytest.mark.slow
+@pytest.mark.browser
 def test_dots_are_toggled_and_the_segments_under_them_read(start_studio, open_tab):
     tab = open_tab(start_studio(CELL).address)
     until(lambda: len(volts(tab)) == 6, 90.0)
@@ -117,7 +117,7 @@ def test_dots_are_toggled_and_the_segments_under_them_read(start_studio, open_ta
     assert max(volts(tab), key=volts(tab).get) == "r1c2"
 
 
-@pytest.mark.slow
+@pytest.mark.browser
 def test_the_press_of_a_cell_is_cancelled(start_studio, open_tab):
     fine = CELL.replace("element_size_mm = 0.15", "element_size_mm = 0.08").replace("⠿", "⠙")
     tab = open_tab(start_studio(fine).address)

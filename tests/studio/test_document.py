@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from geometry.base import InputError
 from softdot.studio.document import LARGEST, MOST_KEPT, Document
+from tests.cases import for_each
 
 TEXT = """# my segment
 [segment.medium1]
@@ -81,9 +82,7 @@ def test_what_is_kept_for_undo_is_bounded():
     assert document.text == f"seed = {2 * MOST_KEPT - 1}\n"
 
 
-@pytest.mark.parametrize(
-    "key", [["segment", "medium1", "thickness_mm", "x"], ["mechanisms", 7, "name"], ["segment", 0]]
-)
+@for_each("key", [["segment", "medium1", "thickness_mm", "x"], ["mechanisms", 7, "name"], ["segment", 0]])
 def test_a_place_that_cannot_be_is_refused_in_one_sentence(key):
     document = Document(TEXT)
     with pytest.raises(InputError, match="there is no such place in this design"):

@@ -12,7 +12,7 @@ import pytest
 from tests.diagnose.rigs import write_rig
 from tests.studio.conftest import Tab
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.browser
 LONG_S = 120.0  # a process that loads the solver first
 DROP = """
 ([place, files]) => {

@@ -14,11 +14,12 @@ import pytest
 
 from geometry.environment import ONE_THREAD
 from softdot.commands.studio import start_text
+from tests.cases import for_each
 from tests.diagnose.rigs import COUPON, HEAD, write_rig
 from tests.studio.conftest import QUICK
 from tests.studio.test_page import SLIDERS, listen, slide, until
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.browser
 
 
 def children(number: int) -> list[int]:
@@ -75,7 +76,7 @@ def test_a_press_is_cancelled_and_one_whose_process_is_killed_is_told(start_stud
     assert running.end() == 0
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+@for_each("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_no_process_is_left_however_the_command_ends(start_studio, open_tab, number):
     running = start_studio(SLOW_PRESS)
     tab = open_tab(running.address)

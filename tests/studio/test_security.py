@@ -21,6 +21,7 @@ from tornado.websocket import WebSocketClosedError, websocket_connect
 from softdot.commands import studio as command
 from softdot.studio.guard import Guard
 from softdot.studio.server import MOST_TABS, application
+from tests.cases import for_each
 from tests.diagnose.rigs import HEAD, RUN, SEGMENT, write_rig
 
 FAR = "http://evil.example"
@@ -66,7 +67,7 @@ def asked_raw(studio, path, headers):
         return int(line.recv(4096).split()[1])
 
 
-@pytest.mark.parametrize("key", ["", "wrong", "wslink-secret", "é", "x" * 5000])
+@for_each("key", ["", "wrong", "wslink-secret", "é", "x" * 5000])
 def test_without_the_key_of_this_start_nothing_is_answered(studio, key):
     quoted = "%C3%A9" if key == "é" else key
     assert asked(studio, f"/?key={quoted}")[0] == 403
@@ -84,9 +85,7 @@ def test_the_key_is_long_and_of_this_start(studio, start_studio):
     assert other.end() == 0
 
 
-@pytest.mark.parametrize(
-    "host", ["evil.example", "evil.example:{port}", "127.0.0.1", "127.0.0.1.evil.example:{port}", None]
-)
+@for_each("host", ["evil.example", "evil.example:{port}", "127.0.0.1", "127.0.0.1.evil.example:{port}", None])
 def test_another_name_is_refused_so_that_rebinding_a_name_leads_nowhere(studio, host):
     named = host and host.format(port=studio.port)
     paths = [f"/?key={studio.key}", "/assets/main.js"]
@@ -94,7 +93,7 @@ def test_another_name_is_refused_so_that_rebinding_a_name_leads_nowhere(studio, 
     assert handshake(studio, studio.key, Host=named, Origin=f"http://{named}") in (400, 403)
 
 
-@pytest.mark.parametrize(
+@for_each(
     "far", [FAR, "null", "http://127.0.0.1:1", "https://127.0.0.1:{port}", "http://127.0.0.1.evil.example:{port}", None]
 )
 def test_a_page_from_elsewhere_opens_no_socket_and_sends_nothing(studio, far):
@@ -132,7 +131,7 @@ def test_the_page_holds_no_script_or_style_and_names_no_other_place(studio):
     assert re.search(r"\beval\(|new Function\(|innerHTML|document\.write|insertAdjacentHTML", everything) is None
 
 
-@pytest.mark.parametrize(
+@for_each(
     "path",
     [
         "/assets/../server.py",
@@ -224,7 +223,7 @@ def spoken(studio, *messages, answers):
     return IOLoop().run_sync(talk, timeout=60)
 
 
-@pytest.mark.parametrize(
+@for_each(
     "message",
     [
         "",
@@ -261,8 +260,8 @@ def test_a_message_that_is_too_long_closes_the_socket(studio):
     assert spoken(studio, "x" * (2 << 20), answers=["never"]) == {"closed": True}
 
 
-@pytest.mark.parametrize("name", ["/etc/passwd", "../secret.csv", "C:\\secret.csv", "/dev/zero"])
-@pytest.mark.parametrize("key", ["mesh", "press.waveform"])
+@for_each("name", ["/etc/passwd", "../secret.csv", "C:\\secret.csv", "/dev/zero"])
+@for_each("key", ["mesh", "press.waveform"])
 def test_a_design_of_somebody_else_reads_no_file_outside(studio, name, key):
     shape = 'shape = "file"\n' if key != "mesh" else ""
     text = f"[{key}]\n{shape}file = {json.dumps(name)}\n"

@@ -10,6 +10,7 @@ from geometry.base import InputError
 from softdot.studio import uploads
 from softdot.studio.server import split
 from softdot.studio.uploads import unpack
+from tests.cases import for_each
 
 
 def zipped(files, compression=zipfile.ZIP_DEFLATED):
@@ -39,7 +40,7 @@ FILES = {
 }
 
 
-@pytest.mark.parametrize("sent", [list(FILES.items()), zipped(FILES)], ids=["folder", "zip"])
+@for_each("sent", [list(FILES.items()), zipped(FILES)], ids=["folder", "zip"])
 def test_tables_and_samples_are_unpacked_and_the_rest_is_left_out(inner, sent):
     assert unpack(sent, inner) == inner / "rig"
     assert everything_below(inner) == ["rig/press.csv", "rig/rig.toml"]
@@ -60,8 +61,8 @@ OUTSIDE = [
 ]
 
 
-@pytest.mark.parametrize("name", OUTSIDE)
-@pytest.mark.parametrize("as_zip", [False, True])
+@for_each("name", OUTSIDE)
+@for_each("as_zip", [False, True])
 def test_no_name_leads_out_of_the_folder(inner, name, as_zip):
     sent = zipped({name: b"x"}) if as_zip else [(name, b"x")]
     with pytest.raises(InputError, match=r"not allowed|no rig\.toml"):
@@ -96,7 +97,7 @@ def test_too_many_files_are_refused(inner):
     assert everything_below(inner) == []
 
 
-@pytest.mark.parametrize("content", [b"PK\x03\x04" + bytes(range(256)) * 40, zipped(FILES)[0][1][:-30], b"PK\x03\x04"])
+@for_each("content", [b"PK\x03\x04" + bytes(range(256)) * 40, zipped(FILES)[0][1][:-30], b"PK\x03\x04"])
 def test_a_damaged_zip_file_is_refused_in_one_sentence(inner, content):
     with pytest.raises(InputError, match="damaged"):
         unpack([("x.zip", content)], inner)
@@ -107,7 +108,7 @@ def test_the_same_name_twice_is_refused(inner):
         unpack([("rig.toml", b"1"), ("rig.toml", b"2")], inner)
 
 
-@pytest.mark.parametrize(
+@for_each(
     "body",
     [b"", b"[]", b"[[1]]\n", b'[["a", 5]]\nabc', b'[["a", -1], ["b", 4]]\nabc', b"[" * 100_000 + b"\n", b"\xff\n"],
 )

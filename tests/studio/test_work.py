@@ -16,6 +16,7 @@ from softdot.studio.document import Document
 from softdot.studio.work import design, influences, press
 from softdot.studio.work.form import form
 from solve.mechanisms import MECHANISMS
+from tests.cases import for_each
 from tests.studio.conftest import QUICK
 
 DEFAULT = files("softdot.config").joinpath("default.toml").read_text("utf-8")
@@ -28,7 +29,8 @@ def changed(text, *changes):
     return document.text
 
 
-@pytest.mark.parametrize("name", MECHANISMS)
+@pytest.mark.press
+@for_each("name", MECHANISMS)
 def test_every_mechanism_can_be_switched_on_with_its_example(name):
     """At one of its components at least, on the default design with two electrodes."""
     (about,) = [one for one in form()["mechanisms"] if one["name"] == name]
@@ -59,7 +61,7 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize("sentence", WRONG)
+@for_each("sentence", WRONG)
 def test_a_mistake_is_mended_by_its_button(sentence):
     text = DEFAULT.replace(*WRONG[sentence])
     told = design.examine(text)
@@ -121,7 +123,7 @@ ELECTRICAL = ["[readout]\ninput_resistance_MOhm = 3.0\n", "[press.waveform]\nris
               LOW_PASS]  # fmt: skip
 
 
-@pytest.mark.parametrize("more", ELECTRICAL)
+@for_each("more", ELECTRICAL)
 def test_what_stands_behind_the_film_needs_no_other_press(more):
     assert design.examine(QUICK + more)["press_hash"] == design.examine(QUICK)["press_hash"]
 
@@ -139,6 +141,7 @@ def test_time_counts_where_a_medium_creeps():
     assert design.examine(QUICK + slow + CREEP)["press_hash"] != design.examine(QUICK + quick + CREEP)["press_hash"]
 
 
+@pytest.mark.press
 def test_influences_are_those_of_two_presses():
     """A tenth of the effect of a thousandth, by central differences on the same extruded elements."""
     rows = {row["label"]: row for row in influences.influences(QUICK, lambda _: None)["rows"]}

@@ -13,7 +13,7 @@ from solve.materials.laws import InvariantLaw, bulk_modulus
 from tests.verification.ccx_slide import CCX, Slide, forces
 from tests.verification.row import agrees
 
-pytestmark = [pytest.mark.slow, pytest.mark.skipif(CCX is None, reason="CalculiX (ccx) is not installed")]
+pytestmark = [pytest.mark.evidence, pytest.mark.skipif(CCX is None, reason="CalculiX (ccx) is not installed")]
 CELL_MM = 0.1
 PRESS = Slide(
     radius_mm=1.0,

@@ -104,6 +104,7 @@ STRIPS = pytest.mark.parametrize(
 )
 
 
+@pytest.mark.press
 @STRIPS
 def test_ramp_into_a_resistor(d31, share_of_input):
     """Within 1e-4 of the largest voltage, and of the stress, at every one of 60 steps over three tau."""
@@ -116,7 +117,7 @@ def test_ramp_into_a_resistor(d31, share_of_input):
     np.testing.assert_allclose(stress, expected_stress, atol=1e-4 * expected_stress.max())
 
 
-@pytest.mark.slow
+@pytest.mark.press
 @STRIPS
 def test_sine_into_a_resistor(d31, share_of_input):
     """From rest through the transient into the phase-shifted sine: 1e-3 of the amplitude at 100 steps a period."""

@@ -21,7 +21,7 @@ from tests.verification.quarter import mirrored, quarter, save_case
 from tests.verification.row import agrees
 
 pytestmark = [
-    pytest.mark.slow,
+    pytest.mark.press,
     pytest.mark.skipif(importlib.util.find_spec("ngsolve") is None, reason="ngsolve is not installed"),
     pytest.mark.skipif(importlib.util.find_spec("pypardiso") is None, reason="NGSolve borrows MKL's PARDISO"),
 ]

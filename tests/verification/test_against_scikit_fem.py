@@ -72,6 +72,7 @@ def same_order(numbers, corners):
     return np.concatenate([numbers.ravel(), numbers.size + np.arange(corners)])
 
 
+@pytest.mark.press
 def test_mixed_stiffness_times_any_displacement_and_pressure(block):
     points, tets, motion, pressure, numbers = block
     order = same_order(numbers, pressure.N)

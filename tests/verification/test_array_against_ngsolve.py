@@ -22,7 +22,7 @@ from softdot.config.toml import completed
 from tests.verification.row import agrees
 
 pytestmark = [
-    pytest.mark.slow,
+    pytest.mark.evidence,
     pytest.mark.skipif(importlib.util.find_spec("ngsolve") is None, reason="ngsolve is not installed"),
     pytest.mark.skipif(importlib.util.find_spec("pypardiso") is None, reason="NGSolve borrows MKL's PARDISO"),
 ]

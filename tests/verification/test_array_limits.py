@@ -9,6 +9,7 @@ from mesh.array.mesh import array_mesh
 from mesh.symmetry import unfolded
 from softdot.case import Case
 from solve.press import discretise
+from tests.cases import for_each
 from tests.verification.array_cases import array, solved
 from tests.verification.energies import follow
 from tests.verification.row import agrees
@@ -39,13 +40,14 @@ def agrees_with_lone(name, case, boundary):
     assert abs(charges_pC[1]) < 1e-3 * charges_pC[0]
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_a_groove_as_wide_as_the_gap_leaves_free_segments():
     """Only medium 2 runs through, and a groove takes all but 0.1 mm of it, which the base holds."""
     groove = {"layer": "medium2", "width_mm": 2.7, "depth_mm": 1.9}
     agrees_with_lone("wide groove", array(mesh=FINE, pitch_mm=5.0, shared=["medium2"], grooves=[groove]), "free")
 
 
+@pytest.mark.press
 def test_a_rigid_grid_leaves_clamped_segments():
     """The grid holds what the case of one segment holds; the sides of medium 2 are free in both."""
     agrees_with_lone("rigid grid", array(mesh=FINE, shared=["film"], grid_layers=list(HELD)), "clamped")
@@ -61,6 +63,7 @@ def test_a_press_and_its_mirror_image():
     assert other.reaction_force_N == pytest.approx(one.reaction_force_N, rel=1e-6)
 
 
+@pytest.mark.press
 def test_half_an_array_is_the_whole():
     """The press of a row is its own image in y = 0; a half of the mesh gives what all of it gives."""
     press = array().press_over(array().layout.places[0])
@@ -69,6 +72,7 @@ def test_half_an_array_is_the_whole():
     np.testing.assert_allclose(half.film_charge_C, whole.film_charge_C, rtol=1e-6)
 
 
+@pytest.mark.press
 def test_dots_of_a_cell_press_by_their_own_heights():
     """Islands: the dot that is 0.06 mm lower presses its segment as one dot does that is pressed 0.06 mm less."""
     dots = {"cell": "⠉", "standard": "marburg-medium", "cell_heights_mm": [0.5, 0.44]}
@@ -80,6 +84,7 @@ def test_dots_of_a_cell_press_by_their_own_heights():
     assert both.reaction_force_N == pytest.approx(deep.reaction_force_N + shallow.reaction_force_N, rel=5e-3)
 
 
+@pytest.mark.press
 def test_electrodes_share_the_charge_of_the_film():
     """Electrodes without a gap collect together what one electrode over everything does."""
     case = array(segment={"length_mm": 2.5, "width_mm": 2.5}, shared=["effector", "medium1", "film", "medium2"])
@@ -92,8 +97,8 @@ def test_electrodes_share_the_charge_of_the_film():
     assert separate.sum() == pytest.approx(together[0], rel=1e-9)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("shape", ["dome", "cylinder"])
+@pytest.mark.press
+@for_each("shape", ["dome", "cylinder"])
 def test_round_effectors_are_those_of_one_segment(shape):
     """Extruded here, meshed by pytetwild there; the other effector is not touched."""
     effector = {"shape": shape, "diameter_mm": 1.6, "height_mm": 0.5, "material": "rubber"}
@@ -105,7 +110,7 @@ def test_round_effectors_are_those_of_one_segment(shape):
     agrees(f"{shape}, charge (pC)", 1e12 * press.film_charge_C[0], charge_pC, 0.015)
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_rows_and_columns_are_alike_for_a_film_that_is():
     """Film of equal constants along and across, two by two segments: a neighbour in x reads as one in y."""
     film = {"my-film": {"model": "piezoelectric-film", "d31_pC_per_N": 20.0, "d32_pC_per_N": 20.0}}
@@ -115,7 +120,7 @@ def test_rows_and_columns_are_alike_for_a_film_that_is():
     assert charge[1] == pytest.approx(charge[2], abs=5e-3 * charge[0])
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_the_dot_does_the_work_that_the_array_stores():
     """Over twelve steps the work of the dot is the elastic energy, within 1 %: the rule of the trapezoid ends there."""
     press = array(press={"load_steps": 12}).press_over(array().layout.places[0])

@@ -8,6 +8,7 @@ import pytest
 
 from solve.model import Physics, Pyroelectric, Readout
 from solve.readout.course import course
+from tests.cases import for_each
 from tests.verification.slices import charge, force, pressed, waved
 
 STRONG = {"d31_pC_per_N": 60.0, "d32_pC_per_N": 60.0}
@@ -88,7 +89,7 @@ def test_heat_comes_with_its_time_constant(plain):
     np.testing.assert_allclose(share, np.expm1(-time / 0.04) / np.expm1(-time[-1] / 0.04), atol=1e-9)
 
 
-@pytest.mark.parametrize("exponent", [1.0, 0.5, 2.0])
+@for_each("exponent", [1.0, 0.5, 2.0])
 def test_touch_leaves_its_charge_by_a_power_of_the_area(plain, exponent):
     touched = pressed(PRESS, Physics(contact_charge_pC=5.0, contact_charge_exponent=exponent))
     area = plain.trace.contact_area_m2

@@ -7,6 +7,7 @@ import scipy.linalg
 from softdot.verify.problems.cook import TRACTION, corner_rise, panel, rubber, slice_of
 from solve.fem.sparsity import Tangent, build_pattern
 from solve.materials.laws import LinearLaw, bulk_modulus
+from tests.cases import for_each
 from tests.verification.row import agrees
 
 
@@ -15,8 +16,8 @@ def linear_law(poisson_ratio: float) -> LinearLaw:
     return LinearLaw(shear, bulk_modulus(shear, poisson_ratio))
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("tied", [True, False], ids=["twins", "faces held"])
+@pytest.mark.press
+@for_each("tied", [True, False], ids=["twins", "faces held"])
 def test_compressible_linear_panel(tied):
     """E 70, nu 1/3: corner rise 32.22 (own Q2; the CoFEA codes give 32.20 to 32.28)."""
     small = 1e-5
@@ -51,7 +52,7 @@ def inf_sup(n: int, tied: bool) -> float:
     return float(np.sqrt(scipy.linalg.eigh(schur, mass, eigvals_only=True)[0]))
 
 
-@pytest.mark.parametrize("tied", [True, False], ids=["twins", "faces held"])
+@for_each("tied", [True, False], ids=["twins", "faces held"])
 def test_a_slice_of_one_element_has_no_spurious_pressure_mode(tied):
     """The inf-sup constant stays away from zero under refinement: no mode odd in y, no chequerboard."""
     coarse, fine = inf_sup(3, tied), inf_sup(6, tied)

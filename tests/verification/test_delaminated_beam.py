@@ -40,6 +40,7 @@ def line(body, x: float, z: float) -> np.ndarray:
     return np.flatnonzero((np.abs(body.points[:, 0] - x) < 1e-9) & (np.abs(body.points[:, 2] - z) < 1e-9))
 
 
+@pytest.mark.press
 def test_arms_pulled_apart_open_as_cantilevers():
     """Double cantilever beam: opening 8 P (a + chi h)^3 / (E' h^3) at its ends, with the compliance of the root
     chi^2 = E' / (11 G) (3 - 2 (q / (1 + q))^2), q = 1.18 E' / G (Williams, Eng. Fract. Mech. 33, 1989).

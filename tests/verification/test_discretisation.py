@@ -6,10 +6,11 @@ import pytest
 
 from mesh.build import MeshOptions, build
 from solve.model import Press
+from tests.cases import for_each
 from tests.pressing import press_segment
 from tests.solve.segments import cap, materials, segment
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.evidence
 
 
 @functools.cache
@@ -29,7 +30,7 @@ def agree(a, b, force, voltage):
     assert a[1] == pytest.approx(b[1], rel=voltage)
 
 
-@pytest.mark.parametrize("boundary", ["free", "clamped"])
+@for_each("boundary", ["free", "clamped"])
 def test_one_quadratic_layer_of_film_is_enough(boundary):
     """Against the film resolved by two quadratic layers: 2 %."""
     one, two = (force_and_voltage(boundary, "layered", 0.2, 0.5, layers) for layers in (1, 2))

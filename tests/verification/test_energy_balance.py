@@ -10,6 +10,7 @@ from solve.materials.parameters import Linear
 from solve.model import Physics, Yield
 from solve.solution.schedule import Target
 from solve.system import Load
+from tests.cases import for_each
 from tests.solve.segments import materials
 from tests.verification.energies import follow
 from tests.verification.slices import DEPTH_MM, setup_of, waved
@@ -30,7 +31,7 @@ def cycle(physics, own=None, steps=24, depth_mm=DEPTH_MM, **times):
     return follow(setup, setup.targets(True))
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_an_elastic_press_stores_all_work_and_gives_it_back():
     balance = cycle(Physics())
     assert balance.error < TOLERANCE
@@ -38,7 +39,7 @@ def test_an_elastic_press_stores_all_work_and_gives_it_back():
     assert balance.dissipated[-1] == 0.0
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_viscosity(monkeypatch):
     monkeypatch.setattr("solve.solution.march.TIME_TOLERANCE", np.inf)
     series = Prony((0.3, 0.2), (0.05, 0.5))
@@ -47,7 +48,7 @@ def test_viscosity(monkeypatch):
     assert balance.error < TOLERANCE
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_stress_softening():
     law = Softening(0.4, 0.0, 0.3)
     balance = cycle(Physics(softening={"medium2": law, "effector": law}), steps=40)
@@ -55,15 +56,15 @@ def test_stress_softening():
     assert balance.error < TOLERANCE
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("hardening_MPa", [0.0, 200.0])
+@pytest.mark.press
+@for_each("hardening_MPa", [0.0, 200.0])
 def test_film_yield(hardening_MPa):
     balance = cycle(Physics(film_yield=Yield(3.0, hardening_MPa)), steps=40)
     assert balance.loss > 0.02
     assert balance.error < TOLERANCE
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_friction():
     """Down 0.2 mm, 0.1 mm aside, back and up."""
     setup = setup_of(waved("ramp"), Physics(friction=0.4))

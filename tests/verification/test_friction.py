@@ -16,6 +16,7 @@ from solve.materials.laws import InvariantLaw, bulk_modulus
 from solve.terms.contact import ContactFacets, RigidDot, contact_facets
 from solve.terms.friction import FrictionalContact
 from solve.terms.solid import InvertedElementError, solid_region
+from tests.cases import for_each
 from tests.slip_work import slip_work
 from tests.solve.box import box
 
@@ -222,7 +223,7 @@ def top(body):
     return body.displacement(body.x)[body.surface]
 
 
-@pytest.mark.parametrize("coefficient", [0.1, 0.3, 0.8])
+@for_each("coefficient", [0.1, 0.3, 0.8])
 def test_a_block_sticks_below_the_limit_and_slips_at_it(coefficient):
     limit = brentq(lambda g: shear_force(g) - coefficient * normal_force(g), 0.0, 2.0, xtol=1e-15)
     body = column(coefficient)
@@ -256,7 +257,7 @@ def test_slip_loses_friction_times_path():
     assert body.dissipated - lost == pytest.approx(0.4 * traction, rel=1e-8)
 
 
-@pytest.mark.parametrize("coefficient", [0.1, 0.2, 0.3])
+@for_each("coefficient", [0.1, 0.2, 0.3])
 def test_a_plate_that_slides_drags_with_the_coefficient_times_its_force(coefficient):
     """And drags back when it turns; once the block keeps still, all its surface slips in one direction."""
     body = press(block("plate", coefficient), 0.02)
@@ -278,8 +279,8 @@ def test_a_cap_that_slides_drags_with_about_the_coefficient_times_its_pressure()
         assert area @ body.friction[:, 0] == pytest.approx(sign * 0.3 * (area @ body.pressure), rel=0.05)
 
 
-@pytest.mark.parametrize("coefficient", [0.3, 0.8])
-@pytest.mark.parametrize("kind", ["plate", "cap"])
+@for_each("coefficient", [0.3, 0.8])
+@for_each("kind", ["plate", "cap"])
 def test_newton_needs_few_iterations(kind, coefficient):
     body = press(block(kind, coefficient, cells=3), 0.08)
     slide(body, (0.06, 0.02), 2)
@@ -298,8 +299,8 @@ def energy_error(kind, coefficient, steps):
     return abs(body.work - body.energy - body.dissipated) / body.work
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("kind", "steps"), [("plate", 16), ("cap", 32)])
+@pytest.mark.press
+@for_each(("kind", "steps"), [("plate", 16), ("cap", 32)])
 def test_work_of_a_cycle_is_stored_or_lost_in_slip(kind, steps):
     """The cap needs smaller steps on this surface of 25 nodes: each that closes or opens within a step is an error."""
     assert energy_error(kind, 0.3, steps) < 1e-3

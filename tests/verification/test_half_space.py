@@ -8,7 +8,7 @@ from softdot.verify.problems.contact import DEPTH, PLANE_MODULUS, RADIUS, body_o
 from tests.verification.row import agrees
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_the_radius_of_contact_is_that_of_hertz():
     """a = sqrt(R d) (Johnson, Contact Mechanics, 1985, eqs. 4.22 to 4.24)."""
     _, by_area, by_moment = on_half_space()
@@ -28,7 +28,7 @@ def punch(size: float) -> float:
     return -4.0 * body.reactions()[under, 2].sum() / depth
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_flat_punch():
     """F = 2 a E* d (Johnson, Contact Mechanics, 1985, eq. 3.36)."""
     near, far = punch(12.0), punch(24.0)

@@ -6,6 +6,7 @@ import pytest
 from softdot.verify.body import solid_body
 from softdot.verify.lattice import grid
 from solve.materials.laws import InvariantLaw
+from tests.cases import for_each
 
 INCOMPRESSIBLE = InvariantLaw(0.5, 0.0, 0.0, 0.0, 1e6)  # mu = 1
 ROUNDING = 5.01e-5  # of the four decimals in the table
@@ -24,8 +25,8 @@ def nominal_stress(stretch: float, driven: tuple[int, ...], held: tuple[int, ...
     return body.reaction(np.flatnonzero(shape.points[:, 0] == 1.0))[0]
 
 
-@pytest.mark.parametrize("stretch", [0.7, 0.8, 1.5, 2.0])
-@pytest.mark.parametrize(
+@for_each("stretch", [0.7, 0.8, 1.5, 2.0])
+@for_each(
     ("power", "driven", "held"),
     [(2, (0,), ()), (5, (0, 1), ()), (3, (0,), (1,))],
     ids=["uniaxial", "equibiaxial", "plane strain"],

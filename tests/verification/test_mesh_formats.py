@@ -67,7 +67,7 @@ NEEDS_CALCULIX = pytest.mark.skipif(CCX is None, reason="CalculiX (ccx) is not i
 
 
 @NEEDS_CALCULIX
-@pytest.mark.slow
+@pytest.mark.press
 def test_calculix_presses_the_exported_mesh_with_the_same_force(tmp_path):
     """The contact surface goes down by 0.1 um, free to move sideways, over a base that is held.
 
@@ -80,7 +80,7 @@ def test_calculix_presses_the_exported_mesh_with_the_same_force(tmp_path):
 
 
 @NEEDS_CALCULIX
-@pytest.mark.slow
+@pytest.mark.press
 def test_calculix_loads_the_faces_of_the_exported_surface(tmp_path):
     """A pressure on the surface contact: the base carries its projected area, which is the footprint."""
     write_mesh(coarse_mesh(STACK, cap(STACK), MESH), ["inp"], tmp_path)
@@ -129,6 +129,7 @@ SLICE = {
 SOLID = {"press": {"indentation_mm": 0.1, "load_steps": 1}, "mesh": {**SLICE["mesh"], "contact_element_size_mm": 0.5}}
 
 
+@pytest.mark.press
 @pytest.mark.parametrize(
     ("name", "tables", "extension"),
     [("slice", SLICE, "msh"), ("slice", SLICE, "inp"), ("slice", SLICE, "xdmf"), ("solid", SOLID, "msh")],

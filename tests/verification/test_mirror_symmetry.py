@@ -10,6 +10,7 @@ import pytest
 from mesh.symmetry import unfolded
 from softdot.case import Case
 from solve.press import press_segment
+from tests.cases import for_each
 
 COARSE = {"mesher": "layered", "element_size_mm": 0.7, "contact_element_size_mm": 0.35}
 PRESS = {"indentation_mm": 0.2, "load_steps": 2}
@@ -122,10 +123,11 @@ SLOW = {
     ),
 }
 ALL = [pytest.param(*case, id=name) for name, case in QUICK.items()]
-ALL += [pytest.param(*case, id=name, marks=pytest.mark.slow) for name, case in SLOW.items()]
+ALL += [pytest.param(*case, id=name, marks=pytest.mark.evidence) for name, case in SLOW.items()]
 
 
-@pytest.mark.parametrize(("planes", "tables"), ALL)
+@pytest.mark.press
+@for_each(("planes", "tables"), ALL)
 def test_part_and_whole_agree(planes, tables):
     case = Case(**{"mesh": COARSE, "press": PRESS, **tables})
     assert case.planes == planes
@@ -181,7 +183,7 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize(("planes", "tables"), REFUSED.values(), ids=REFUSED)
+@for_each(("planes", "tables"), REFUSED.values(), ids=REFUSED)
 def test_a_plane_is_refused_where_something_is_not_its_own_image(planes, tables):
     assert Case(**{"mesh": COARSE, "press": PRESS, **tables}).planes == planes
 
@@ -203,8 +205,8 @@ MIRRORED = {
 }
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("tables", "mirrored"), MIRRORED.values(), ids=MIRRORED)
+@pytest.mark.evidence
+@for_each(("tables", "mirrored"), MIRRORED.values(), ids=MIRRORED)
 def test_a_mirrored_configuration_gives_the_mirrored_results(tables, mirrored):
     """About x = 0, on a mesh that is its own image: forces along x change sign and nothing else does."""
     tet_mesh = Case(mesh=COARSE).mesh

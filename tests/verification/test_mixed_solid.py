@@ -1,18 +1,18 @@
 """Patch test and observed order of convergence of the mixed quadratic element at finite strain."""
 
 import numpy as np
-import pytest
 
 from solve.fem.kernels import mixed_solid
 from solve.fem.kinematics import linear, physical_gradients, quadratic, tetrahedron
 from solve.materials.isochoric import from_voigt
 from solve.materials.laws import InvariantLaw, LinearLaw
+from tests.cases import for_each
 from tests.solve.box import box, mixed_body
 
 NEARLY_INCOMPRESSIBLE = InvariantLaw(0.4, 0.1, 0.02, 0.0, 1000.0)  # K / G = 1000: nu = 0.4995
 
 
-@pytest.mark.parametrize("law", [NEARLY_INCOMPRESSIBLE, LinearLaw(1.0, 2.0)], ids=["nu 0.4995", "nu 0.29"])
+@for_each("law", [NEARLY_INCOMPRESSIBLE, LinearLaw(1.0, 2.0)], ids=["nu 0.4995", "nu 0.29"])
 def test_patch(law):
     """An affine boundary displacement is reproduced inside a distorted mesh, with the pressure K (J - 1)."""
     points, tets = box(2, jitter=0.2)

@@ -8,6 +8,7 @@ from geometry.parameters import Dot
 from solve.mechanisms import Mechanism, with_mechanisms
 from solve.model import Model, Press, Readout
 from solve.readout.course import course
+from tests.cases import for_each
 from tests.pressing import press_segment
 from tests.solve.segments import coarse_mesh, materials
 from tests.verification.slices import OF_SLICES, STACK, mesh_of, waved
@@ -69,7 +70,7 @@ OFF = [
 ]
 
 
-@pytest.mark.parametrize(("name", "component", "parameters"), OFF)
+@for_each(("name", "component", "parameters"), OFF)
 def test_the_off_value_restores_the_baseline(name, component, parameters, baseline):
     np.testing.assert_allclose(numbers(solve(name, component, **parameters)), baseline, rtol=ROUND_OFF)
 
@@ -105,7 +106,7 @@ FORCE_ON = [
 ]
 
 
-@pytest.mark.parametrize(("name", "component", "parameters", "sign"), FORCE_ON)
+@for_each(("name", "component", "parameters", "sign"), FORCE_ON)
 def test_what_stiffens_raises_the_force_and_what_yields_lowers_it(name, component, parameters, sign, baseline):
     assert sign * (numbers(solve(name, component, **parameters))[0] / baseline[0] - 1.0) > 1e-6
 
@@ -118,7 +119,8 @@ def test_an_elastic_press_returns_to_nothing():
     assert charge[-1] <= ROUND_OFF * charge.max()
 
 
-@pytest.mark.parametrize(
+@pytest.mark.press
+@for_each(
     ("name", "component", "parameters"),
     [
         ("viscoelasticity", "medium2", {"relative_moduli": [0.3], "relaxation_times_s": [0.2]}),
@@ -132,7 +134,7 @@ def test_what_creeps_or_yields_leaves_a_charge_when_the_dot_has_gone(name, compo
     assert charge[-1] > 1e-3 * charge.max()
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_a_creeping_segment_recovers_and_a_yielded_one_does_not(tmp_path):
     """Ten relaxation times after the release."""
     table = tmp_path / "rest.csv"

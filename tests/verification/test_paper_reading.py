@@ -13,8 +13,9 @@ import pytest
 
 from softdot.outcome import solved
 from softdot.paper.published import segment_config
+from tests.cases import for_each
 
-MESHERS = [pytest.param("layered"), pytest.param("pytetwild", marks=pytest.mark.slow)]
+MESHERS = [pytest.param("layered"), pytest.param("pytetwild", marks=pytest.mark.evidence)]
 FINE_MM = 0.15, 0.151, 0.152  # half the default, a fourth of the error; every size is another mesh of pytetwild
 DEFAULT_MM = [round(0.3 + 1e-4 * number, 4) for number in range(8)]
 SOFT, MIDDLE, HARD = 0.05, 1.0, 5.0  # modulus of medium 2, MPa
@@ -34,8 +35,9 @@ def reading(mesher, boundary, h1_mm, e2_MPa):
     return np.mean([force_and_millivolts(mesher, boundary, h1_mm, e2_MPa, size) for size in sizes_mm], axis=0)
 
 
-@pytest.mark.parametrize("mesher", MESHERS)
-@pytest.mark.parametrize(
+@pytest.mark.press
+@for_each("mesher", MESHERS)
+@for_each(
     ("boundary", "h1_mm", "e2_MPa", "force_N"),
     [
         ("free", 0.8, SOFT, 0.61),
@@ -50,8 +52,8 @@ def test_forces(mesher, boundary, h1_mm, e2_MPa, force_N):
     assert reading(mesher, boundary, h1_mm, e2_MPa)[0] == pytest.approx(force_N, rel=0.03)
 
 
-@pytest.mark.parametrize("mesher", MESHERS)
-@pytest.mark.parametrize(
+@for_each("mesher", MESHERS)
+@for_each(
     ("cases", "millivolts"),
     [
         ((("clamped", 0.8, SOFT), ("free", 0.8, SOFT)), 433),
@@ -66,8 +68,8 @@ def test_voltages(mesher, cases, millivolts):
     assert total == pytest.approx(millivolts, rel=0.04)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
+@pytest.mark.evidence
+@for_each(
     "case",
     [("free", 0.8, SOFT), ("clamped", 0.8, SOFT), ("free", 0.5, MIDDLE), ("clamped", 0.5, MIDDLE)],
 )

@@ -1,7 +1,6 @@
 """Patch tests: an affine field is an equilibrium, whatever the element, the law or the distortion of the mesh."""
 
 import numpy as np
-import pytest
 
 from geometry.dot import DotShape
 from softdot.verify.body import ElasticBody, solid_body
@@ -19,6 +18,7 @@ from solve.materials.parameters import (
 )
 from solve.terms.contact import RigidDot
 from solve.terms.film import film_region
+from tests.cases import for_each
 
 MEDIA = {
     "neo-hookean 0.3": NeoHookean(youngs_modulus_MPa=1.0, poisson_ratio=0.3),
@@ -46,7 +46,7 @@ def surface_held(body: ElasticBody, shape, field):
     return prescribed
 
 
-@pytest.mark.parametrize("name", MEDIA)
+@for_each("name", MEDIA)
 def test_an_affine_displacement_of_the_surface_is_affine_inside(name):
     shape = distorted()
     law = MEDIA[name].law.scaled(1e6)
@@ -73,7 +73,7 @@ def test_an_affine_displacement_of_the_film_under_voltage_is_affine_inside():
     np.testing.assert_allclose(body.u, affine, atol=1e-10)
 
 
-@pytest.mark.parametrize("name", ["neo-hookean 0.3", "neo-hookean 0.4999"])
+@for_each("name", ["neo-hookean 0.3", "neo-hookean 0.4999"])
 def test_a_plate_presses_uniformly_on_a_distorted_block(name):
     """Contact patch test: the nominal contact pressure is the same at every node, the block stays a block."""
     shape = distorted()

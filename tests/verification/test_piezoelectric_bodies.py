@@ -1,7 +1,6 @@
 """The film as a solid: voltage of a unimorph, stiffness in short and open circuit."""
 
 import numpy as np
-import pytest
 
 from softdot.verify.body import ElasticBody
 from softdot.verify.lattice import grid
@@ -9,6 +8,7 @@ from solve.materials.film import FilmLaw, film_law
 from solve.materials.laws import LinearLaw, bulk_modulus
 from solve.materials.parameters import VACUUM_PERMITTIVITY, PiezoelectricFilm
 from solve.terms.film import film_region
+from tests.cases import for_each
 from tests.verification.row import agrees
 
 YOUNG, POISSON, D31, EPSILON = 2e9, 0.29, 23e-12, 12.0 * VACUUM_PERMITTIVITY
@@ -47,7 +47,7 @@ def stiffness(open_circuit: bool, d31: float) -> float:
     return body.reaction(end)[0] / strain * STRESS
 
 
-@pytest.mark.parametrize("d31", [23e-12, 115e-12], ids=["PVDF", "five times"])
+@for_each("d31", [23e-12, 115e-12], ids=["PVDF", "five times"])
 def test_open_circuit_stiffens_the_film(d31):
     """Y in short circuit, Y / (1 - k31^2) in open circuit, k31^2 = d31^2 Y / eps (IEEE Std 176-1987)."""
     short, opened = stiffness(False, d31), stiffness(True, d31)

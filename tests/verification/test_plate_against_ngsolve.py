@@ -22,7 +22,7 @@ from tests.pressing import press_segment
 from tests.solve.segments import materials, segment
 
 pytestmark = [
-    pytest.mark.slow,
+    pytest.mark.press,
     pytest.mark.skipif(importlib.util.find_spec("ngsolve") is None, reason="ngsolve is not installed"),
 ]
 COARSE = MeshOptions(mesher="layered", element_size_mm=0.9, contact_element_size_mm=0.45)

@@ -1,13 +1,13 @@
 """Clamped plates and beams of solid elements against the theories of thin bodies, beside those of softdot verify."""
 
 import numpy as np
-import pytest
 
 from softdot.verify.body import solid_body
 from softdot.verify.lattice import grid
 from softdot.verify.loads import traction_force
 from softdot.verify.problems.plates import hooke, thin_plate
 from softdot.verify.von_karman import centre_deflection
+from tests.cases import for_each
 from tests.verification.row import agrees
 
 
@@ -24,8 +24,8 @@ def central_load(ratio: float) -> float:
 CASES = [("pressure", pressure_load, 1.0), ("central force", central_load, 0.05)]
 
 
-@pytest.mark.parametrize(("name", "load", "patch"), CASES, ids=["pressure", "central force"])
-@pytest.mark.parametrize("ratio", [0.1, 1.0, 2.0])
+@for_each(("name", "load", "patch"), CASES, ids=["pressure", "central force"])
+@for_each("ratio", [0.1, 1.0, 2.0])
 def test_clamped_plate_follows_von_karman(name, load, patch, ratio):
     """Within 1 % of the plate equations, and up to w/t = 1 within 5 % of the cubic formula (Timoshenko, sec. 97).
 
@@ -37,7 +37,7 @@ def test_clamped_plate_follows_von_karman(name, load, patch, ratio):
         agrees(f"clamped plate, {name}, w/t {ratio}, cubic formula", ours, ratio, 0.05)
 
 
-@pytest.mark.parametrize(("height", "tolerance"), [(0.1, 0.05), (0.32, 0.1)])
+@for_each(("height", "tolerance"), [(0.1, 0.05), (0.32, 0.1)])
 def test_clamped_beam_with_shear(height, tolerance):
     """F l^3 / (192 E I) + F l / (4 k G A), k = 5/6 (Timoshenko beam), l = 1, a narrow section."""
     width, load, small = 0.05, 1.0, 1e-6

@@ -5,6 +5,7 @@ import pytest
 
 from solve.materials.inelastic import Prony
 from solve.model import Physics
+from tests.cases import for_each
 from tests.verification.slices import charge, force, pressed, waved
 
 G, TAU = (0.3, 0.2), (0.05, 0.7)
@@ -40,7 +41,7 @@ def test_a_ramp_and_its_hold_follow_the_hereditary_integral():
     np.testing.assert_allclose(force(result), expected, atol=1e-3 * full)
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_a_cycle_loses_the_work_of_the_loss_modulus(tmp_path):
     """Depth d (1 - cos(w t)) / 2 of a plate that stays in contact: the work of the last cycle is pi G'' k (d/2)^2.
 
@@ -63,7 +64,7 @@ def test_a_cycle_loses_the_work_of_the_loss_modulus(tmp_path):
     assert work == pytest.approx(expected, rel=0.02)  # 24 chords a cycle are (2 pi / 24)^2 / 6 = 1.1 % short
 
 
-@pytest.mark.parametrize("series", [Prony((), ()), Prony((0.0,), (0.5,))])
+@for_each("series", [Prony((), ()), Prony((0.0,), (0.5,))])
 def test_without_relaxing_share_the_segment_is_elastic(series):
     press = waved("ramp", 3, rise_s=0.1)
     viscous, elastic = pressed(press, Physics(viscosity={"medium2": series, "film": series})), pressed(press)
@@ -74,7 +75,7 @@ def test_without_relaxing_share_the_segment_is_elastic(series):
 RUBBER = Physics(viscosity={"medium2": SERIES, "effector": SERIES})
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_the_raised_cosine_press_is_second_order_in_time(monkeypatch):
     """Force at the end of the rise against Richardson's limit of the two finest."""
     monkeypatch.setattr("solve.solution.march.TIME_TOLERANCE", np.inf)
@@ -84,7 +85,7 @@ def test_the_raised_cosine_press_is_second_order_in_time(monkeypatch):
     np.testing.assert_allclose(np.log2(errors[:-1] / errors[1:]), 2.0, atol=0.3)
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_a_smaller_tolerance_gives_a_smaller_error(monkeypatch):
     """The targets along the waveform stay: what changes is only the steps between them."""
 

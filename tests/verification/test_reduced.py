@@ -13,6 +13,7 @@ from solve.materials.inelastic import Prony
 from solve.model import BondLine, Physics, Press, Readout, Waveform
 from solve.readout.amplifier import amplify
 from solve.reduced.build import BETWEEN, build_reduced, refined, relative_error
+from tests.cases import for_each
 from tests.pressing import press_segment
 from tests.solve.segments import cap, coarse_mesh, materials, segment
 
@@ -72,8 +73,8 @@ CASES = {
 }
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.evidence
+@for_each("case", CASES)
 def test_the_reduced_model_answers_as_the_3d_model_does(case, reduced, mesh_3d):
     waveform, depth_mm, physics, gap_mm = CASES[case]
     found, bounds = errors(reduced, mesh_3d, waveform, depth_mm, physics, gap_mm)
@@ -81,7 +82,7 @@ def test_the_reduced_model_answers_as_the_3d_model_does(case, reduced, mesh_3d):
     assert all(found[name] <= bounds[name] for name in found)
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 def test_a_viscous_bond_and_film_answer_as_in_the_3d_model(mesh_3d):
     name, bonds = "bond-film-medium2", {"bond-film-medium2": BondLine(20.0, 5.0)}
     relaxing = {name: 0.4, "film": 0.1}

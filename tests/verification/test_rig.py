@@ -7,6 +7,7 @@ import pytest
 
 from solve.model import Physics, Press
 from solve.terms.guide import GuideFriction
+from tests.cases import for_each
 from tests.pressing import press_segment
 from tests.solve.segments import materials, ridge
 from tests.verification.slices import BLOCK, STACK, charge, foams, force, mesh_of, plate, pressed, waved
@@ -63,7 +64,7 @@ def test_a_mass_on_a_prescribed_path_adds_its_inertia():
     np.testing.assert_allclose(extra, 1e-3 * MASS_G * acceleration, atol=5e-3 * 1e-3 * MASS_G * acceleration.max())
 
 
-@pytest.mark.parametrize(("forces_N", "presliding_mm"), [((2.0,), (0.1,)), ((0.5, 3.0), (0.02, 0.7))])
+@for_each(("forces_N", "presliding_mm"), [((2.0,), (0.1,)), ((0.5, 3.0), (0.02, 0.7))])
 def test_a_loop_loses_coulombs_force_times_the_way_that_slips(forces_N, presliding_mm):
     """Between A and -A each slider slips 2 A - 2 d either way: together they lose sum 4 F (A - d)."""
     amplitude_mm = 1.5
@@ -109,7 +110,7 @@ def tapped(stiffness, steps):
     return result.trace.dot_path_m / REACH_M, exact
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_a_tapped_mass_follows_the_linear_oscillator(stiffness, monkeypatch):
     """x = F0/k (sin r w t - r sin w t) / (1 - r^2), within the block's own 0.4 % and the step; of second order."""
     monkeypatch.setattr("solve.solution.march.TIME_TOLERANCE", np.inf)
@@ -126,7 +127,8 @@ def put_in(result):
     return np.append(0.0, np.cumsum(0.5 * (contact[1:] + contact[:-1]) * np.diff(path)))
 
 
-@pytest.mark.parametrize("steps", [1, 2, 3])
+@pytest.mark.press
+@for_each("steps", [1, 2, 3])
 def test_a_light_dot_that_strikes_too_fast_for_the_steps_gains_nothing_from_the_blow_and_the_result_says_so(steps):
     """0.03 g under a force, across a gap: it would rebound within a thousandth of a load step."""
     away = plate(BLOCK)

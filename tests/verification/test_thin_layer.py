@@ -8,6 +8,7 @@ from softdot.verify.body import solid_body
 from softdot.verify.lattice import disc, graded
 from solve.materials.laws import InvariantLaw
 from solve.terms.contact import RigidDot
+from tests.cases import for_each
 from tests.verification.row import agrees
 
 SHEAR = 1.0 / 3.0  # E = 1
@@ -38,7 +39,7 @@ def forces():
     return {x: force(x**2 / depth, depth) / (16 / 9 * x * depth) for x in (0.4, 0.8)}
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_sphere_on_a_bonded_layer_by_the_small_contact_series(forces):
     """F / Hertz = 1 + 1.133 x + 1.283 x^2 + 0.769 x^3 + 0.0975 x^4, nu 0.5 (Dimitriadis et al., Biophys. J. 82, 2002).
 
@@ -48,7 +49,7 @@ def test_sphere_on_a_bonded_layer_by_the_small_contact_series(forces):
     agrees("bonded layer, x 0.4, Dimitriadis", forces[0.4], series, 0.1)
 
 
-@pytest.mark.parametrize("x", [0.4, 0.8])
+@for_each("x", [0.4, 0.8])
 def test_sphere_on_a_bonded_layer_by_the_fit_for_any_thickness(forces, x):
     """F / Hertz = (1 + 1.15 v + 9.5 v^3 + 4.212 v^6) / (1 + 2.3 v^3), v = x (Long et al., Biophys. J. 101, 2011).
 

@@ -8,6 +8,7 @@ import pytest
 from geometry.parameters import Film, Medium
 from solve.materials.inelastic import Prony
 from solve.model import Physics, Press, Waveform
+from tests.cases import for_each
 from tests.pressing import press_segment
 from tests.solve.segments import materials, ridge, segment
 from tests.verification.slices import mesh_of
@@ -52,8 +53,8 @@ def press(scale, physics):
     return press_segment(stack, materials(), dot, way, tet_mesh, None, physics)
 
 
-@pytest.mark.parametrize("case", CASES)
-@pytest.mark.parametrize("scale", [1e3, 1e-3], ids=["metres", "micrometres"])
+@for_each("case", CASES)
+@for_each("scale", [1e3, 1e-3], ids=["metres", "micrometres"])
 def test_the_answer_does_not_depend_on_the_unit_of_length(case, scale, in_millimetres):
     ours, reference = press(scale, CASES[case](scale)), in_millimetres(case)
     assert ours.converged

@@ -9,9 +9,8 @@ from softdot.verify.body import ElasticBody
 from softdot.verify.lattice import Grid, grid
 from softdot.verify.problem import Problem
 from solve.materials.film import FilmLaw, film_law
-from solve.materials.parameters import VACUUM_PERMITTIVITY
 from solve.materials.laws import LinearLaw, bulk_modulus
-from solve.materials.parameters import PiezoelectricFilm
+from solve.materials.parameters import VACUUM_PERMITTIVITY, PiezoelectricFilm
 from solve.terms.film import FilmRegion, film_region
 
 YOUNG, POISSON, D31, EPSILON = 2e9, 0.29, 23e-12, 12.0 * VACUUM_PERMITTIVITY

@@ -10,6 +10,7 @@ from solve.materials.inelastic import Prony, Softening, StressResponse
 from solve.materials.laws import InvariantLaw
 from solve.materials.multiplicative import MultiplicativeMaxwell
 from solve.terms.solid import solid_region
+from tests.cases import for_each
 from tests.solve.box import box
 from tests.solve.trial import trial
 
@@ -71,7 +72,8 @@ def everywhere(points):
     return np.tile(~inner[:, None], (1, 3))
 
 
-@pytest.mark.parametrize("series", [SERIES, FLOWING])
+@pytest.mark.press
+@for_each("series", [SERIES, FLOWING])
 def test_a_strip(series):
     coupon, found = Coupon(grips, series), []
     for strain, step in zip(STRAIN, np.diff(TIME, prepend=0.0), strict=True):
@@ -83,7 +85,8 @@ def test_a_strip(series):
     np.testing.assert_allclose(point.answer(TIME, SIZE[0] * STRAIN, "displacement_mm"), found, rtol=1e-9, atol=1e-11)
 
 
-@pytest.mark.parametrize("series", [SERIES, FLOWING])
+@pytest.mark.press
+@for_each("series", [SERIES, FLOWING])
 def test_a_sheared_layer(series):
     coupon, found = Coupon(everywhere, series), []
     for strain, step in zip(STRAIN, np.diff(TIME, prepend=0.0), strict=True):
@@ -95,7 +98,7 @@ def test_a_sheared_layer(series):
     np.testing.assert_allclose(point.answer(TIME, SIZE[1] * STRAIN, "displacement_mm"), found, rtol=1e-9, atol=1e-11)
 
 
-@pytest.mark.parametrize("law", [SERIES, SOFTENING])
+@for_each("law", [SERIES, SOFTENING])
 def test_a_whole_history_is_what_the_law_makes_step_by_step(law):
     rng = np.random.default_rng(0)
     stress, energy = rng.standard_normal((40, 6)), rng.uniform(0.0, 1.0, 40)

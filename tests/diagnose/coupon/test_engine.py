@@ -14,6 +14,7 @@ from diagnose.vocabulary.layers.viscoelasticity import LINEAR
 from geometry.base import InputError
 from softdot.config import config_from
 from solve.materials.parameters import Hyperfoam, Linear, MooneyRivlin, NeoHookean, Ogden, PiezoelectricFilm, Yeoh
+from tests.cases import for_each
 from tests.diagnose.coupon.coupons import RUBBER, TIME, TRAVEL, candidate, engine, run, silent, specimen
 
 MATERIALS = [
@@ -110,8 +111,9 @@ def test_a_grip_of_a_test_by_force_is_not_sought():
     assert not [one for one in engine(drive="force_N").candidates if one.mechanism == "inertia"]
 
 
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("material", MATERIALS)
+@pytest.mark.press
+@for_each("kind", KINDS)
+@for_each("material", MATERIALS)
 def test_every_candidate_is_off_at_zero_and_answers_within_its_bounds(kind, material):
     of = engine(kind, material)
     for one in of.candidates:
@@ -128,7 +130,7 @@ def test_every_candidate_is_off_at_zero_and_answers_within_its_bounds(kind, mate
                 assert one.derived(tuple(at)).keys() | one.parameters(tuple(at)).keys() <= one.units.keys()
 
 
-@pytest.mark.parametrize("material", MATERIALS)
+@for_each("material", MATERIALS)
 def test_the_answer_leaves_the_baseline_smoothly(material):
     """Twice a small value does twice as much; laws of another family (linear, foam) start with a jump of their own."""
     of, other = engine("tension", material), isinstance(material, Linear)
@@ -146,7 +148,7 @@ def test_the_answer_leaves_the_baseline_smoothly(material):
             np.testing.assert_allclose(twice, 2.0 * once, atol=2e-3 * np.abs(twice).max() + 1e-9)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@for_each("kind", KINDS)
 def test_driven_by_its_force_a_coupon_answers_with_travel(kind):
     of = engine(kind, drive="force_N")
     for one in of.candidates:
@@ -168,8 +170,8 @@ def test_modulus_thickness_and_zero_are_nuisances():
     assert of.nuisance("d31") is None
 
 
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("material", [RUBBER, MATERIALS[3], MATERIALS[4], MATERIALS[5]])
+@for_each("kind", KINDS)
+@for_each("material", [RUBBER, MATERIALS[3], MATERIALS[4], MATERIALS[5]])
 def test_force_ratio_is_the_force_with_over_without_at_the_largest_strain(kind, material):
     of = engine(kind, material)
     one = candidate(of, "hyperelastic-stiffening")
@@ -181,9 +183,7 @@ def test_force_ratio_is_the_force_with_over_without_at_the_largest_strain(kind, 
     assert force(of, Setting(one, values))[early] == pytest.approx(force(of)[early], rel=0.06)
 
 
-@pytest.mark.parametrize(
-    "law", [np.arcsinh, lambda shear: np.sinh(0.5 * np.arcsinh(0.5 * shear)) / np.hypot(1.0, 0.5 * shear)]
-)
+@for_each("law", [np.arcsinh, lambda shear: np.sinh(0.5 * np.arcsinh(0.5 * shear)) / np.hypot(1.0, 0.5 * shear)])
 def test_a_layer_gives_way_at_large_shear_by_laws_that_are_not_the_family(law):
     """The second is Ogden's of the exponent 1/2. To a shear of ten the family is within 1 % of either."""
     shear = np.linspace(0.0, 10.0, len(TIME))
@@ -219,7 +219,7 @@ def test_solve_with_the_mechanism_is_predict_with_its_setting():
         assert np.array_equal(solved, force(of, setting))
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@for_each("kind", KINDS)
 def test_an_answer_from_the_last_one_is_the_same(kind):
     of = engine(kind)
     quick = replace(of, last={})

@@ -13,6 +13,7 @@ from scipy.integrate import cumulative_trapezoid
 from diagnose.engines.coupon.engine import coupon_engine
 from diagnose.inference.diagnose import diagnose
 from diagnose.signals.recording import Recording
+from tests.cases import for_each
 from tests.diagnose.coupon.coupons import RUBBER, TIME, run, silent, specimen
 
 STIFFNESS = 0.4 * 100.0 / 20.0
@@ -55,7 +56,8 @@ def loss_N_mm(forces_N, presliding_mm):
     return sum(2.0 * force * (8.0 - 2.0 * d) for force, d in zip(forces_N, presliding_mm, strict=True))
 
 
-@pytest.mark.parametrize("presliding", [0.02, 0.07, 0.2, 0.7])
+@pytest.mark.press
+@for_each("presliding", [0.02, 0.07, 0.2, 0.7])
 def test_a_name_needs_no_certain_presliding(presliding):
     """Sliders half a decade apart stand for it; what they lose in a loop is right within 6 %."""
     findings = found(partial(rubbed, presliding=presliding), RATES)
@@ -72,7 +74,8 @@ def test_a_name_needs_no_certain_presliding(presliding):
     )
 
 
-@pytest.mark.parametrize(("force_of", "mechanism"), [(rubbed, "guide-friction"), (relaxed, "viscoelasticity")])
+@pytest.mark.press
+@for_each(("force_of", "mechanism"), [(rubbed, "guide-friction"), (relaxed, "viscoelasticity")])
 def test_two_rates_tell_friction_from_relaxation(force_of, mechanism):
     findings = found(force_of, RATES)
     assert findings.best is not None, findings.reasons
@@ -81,7 +84,8 @@ def test_two_rates_tell_friction_from_relaxation(force_of, mechanism):
     assert {one.candidate.mechanism for one in alike} == {mechanism}
 
 
-@pytest.mark.parametrize(("force_of", "mechanism"), [(rubbed, "guide-friction"), (relaxed, "viscoelasticity")])
+@pytest.mark.press
+@for_each(("force_of", "mechanism"), [(rubbed, "guide-friction"), (relaxed, "viscoelasticity")])
 def test_one_rate_names_nothing_wrong(force_of, mechanism):
     """The truth alone or in a group, or no name."""
     findings = found(force_of, RATES[:1])
@@ -90,7 +94,8 @@ def test_one_rate_names_nothing_wrong(force_of, mechanism):
     assert findings.best is None or mechanism in {one.candidate.mechanism for one in alike}
 
 
-@pytest.mark.parametrize("rates", [pytest.param(RATES, marks=pytest.mark.slow), RATES[:1]])
+@pytest.mark.press
+@pytest.mark.parametrize("rates", [pytest.param(RATES, marks=pytest.mark.evidence), RATES[:1]])
 @pytest.mark.parametrize(("force_of", "mechanism"), [(rubbed, "guide-friction"), (relaxed, "viscoelasticity")])
 def test_neither_is_named_for_the_other(force_of, mechanism, rates):
     findings = found(force_of, rates, without=mechanism)

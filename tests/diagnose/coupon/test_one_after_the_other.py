@@ -13,6 +13,7 @@ from scipy.integrate import cumulative_trapezoid
 from diagnose.engines.coupon.engine import coupon_engine
 from diagnose.inference.diagnose import diagnose
 from diagnose.signals.recording import Recording
+from tests.cases import for_each
 from tests.diagnose.coupon.coupons import RUBBER, run, silent, specimen
 
 SIGMA_N = 0.01
@@ -53,13 +54,13 @@ def names(findings):
     return [one.candidate.mechanism for one in findings.best.settings]
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 def test_what_only_relaxes_only_relaxes():
     assert names(found()) == ["viscoelasticity"]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("c01", [0.1, 0.2])
+@pytest.mark.evidence
+@for_each("c01", [0.1, 0.2])
 def test_relaxation_and_another_elastic_law_are_both_named(c01):
     findings = found(c10=0.05, c01=c01)
     assert sorted(names(findings)) == ["hyperelastic-stiffening", "viscoelasticity"]

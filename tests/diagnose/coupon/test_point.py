@@ -13,6 +13,7 @@ from solve.materials.laws import InvariantLaw, LinearLaw, OgdenLaw
 from solve.materials.multiplicative import MultiplicativeMaxwell
 from solve.materials.principal_stretches import HyperfoamLaw
 from solve.solution.newton import NoEquilibriumError
+from tests.cases import for_each
 
 C10, C20, C30, STIFF = 0.4, 0.05, 0.01, 1e7
 YEOH = InvariantLaw(C10, 0.0, C20, C30, STIFF)
@@ -33,7 +34,7 @@ def yeoh_slope(excess):
     return C10 + 2.0 * C20 * excess + 3.0 * C30 * excess**2
 
 
-@pytest.mark.parametrize(("kinematics", "stretch"), [(TENSION, 1.0 + TIME / 5.0), (COMPRESSION, 1.0 - TIME / 20.0)])
+@for_each(("kinematics", "stretch"), [(TENSION, 1.0 + TIME / 5.0), (COMPRESSION, 1.0 - TIME / 20.0)])
 def test_incompressible_yeoh_along_a_strip_and_through_a_block(kinematics, stretch):
     """P = 2 (l - l^-2) dW/dI1 (Treloar, The Physics of Rubber Elasticity)."""
     travel = LENGTH * np.abs(stretch - 1.0)
@@ -123,9 +124,9 @@ def test_a_second_cycle_is_softer_by_the_error_function():
     np.testing.assert_allclose(soft[:100], elastic[:100], rtol=1e-12)
 
 
-@pytest.mark.parametrize("kinematics", [TENSION, COMPRESSION, SHEAR])
-@pytest.mark.parametrize("series", [NO_SERIES, Prony(*BRANCHES), MultiplicativeMaxwell(*BRANCHES, 0.6)])
-@pytest.mark.parametrize("law", [InvariantLaw(C10, 0.0, C20, C30, 80.0), OgdenLaw((0.5, 0.01), (1.5, 5.0), 80.0)])
+@for_each("kinematics", [TENSION, COMPRESSION, SHEAR])
+@for_each("series", [NO_SERIES, Prony(*BRANCHES), MultiplicativeMaxwell(*BRANCHES, 0.6)])
+@for_each("law", [InvariantLaw(C10, 0.0, C20, C30, 80.0), OgdenLaw((0.5, 0.01), (1.5, 5.0), 80.0)])
 def test_the_travel_of_a_force_is_the_travel_that_makes_it(kinematics, law, series):
     point = MaterialPoint(kinematics, law, 0.49, None, series)
     there = point.answer(TIME, UP_AND_DOWN, "displacement_mm")

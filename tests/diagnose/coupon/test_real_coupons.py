@@ -9,6 +9,7 @@ from diagnose.inference.diagnose import diagnose
 from diagnose.signals.reading import thinned
 from softdot.commands.diagnose import engine_for
 from softdot.config.rig import load_rig
+from tests.cases import for_each
 from tests.diagnose.real import NEEDED, RECORDINGS, control, converted, silent
 
 pytestmark = NEEDED
@@ -53,7 +54,7 @@ def test_an_adhesive_relaxes(tmp_path):
     assert found.held_out.nrmse_after < 1.2 * 0.13
 
 
-@pytest.mark.parametrize("name", ["shuffled", "reversed_answers", "replicates"])
+@for_each("name", ["shuffled", "reversed_answers", "replicates"])
 def test_controls_of_the_seal_name_nothing(name):
     rig = load_rig(Path(RECORDINGS) / "oring-friction")
     rig = replace(rig, recording=control(name)(rig.recording))

@@ -12,6 +12,7 @@ from diagnose.signals.recording import Recording
 from diagnose.statistics.abstain import Decision
 from diagnose.vocabulary.base import vocabulary
 from solve.model import Readout
+from tests.cases import for_each
 from tests.diagnose.inference.toy import (
     CANDIDATES,
     CONCEALED,
@@ -48,12 +49,12 @@ def quiet(cases, first=0):
     return sum(f.best is not None for f in all_of_them), sum(f.mismatch for f in all_of_them)
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 def test_no_effect_is_named_in_forty_recordings():
     assert quiet(40) == (0, 0)
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 def test_no_effect_is_named_in_at_most_four_of_four_hundred():
     named, mismatches = quiet(400, first=1000)
     assert named <= 4
@@ -112,7 +113,7 @@ def test_an_unknown_effect_is_left_unexplained():
     assert not found(small(7, Sensor(step_charge=0.3), runs=4)).best
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 def test_what_comes_closest_is_told_by_the_error_that_a_reader_counts(monkeypatch):
     """Nothing is named; by the noise alone another explanation comes first, which predicts worse."""
     recording, others = small(5, Sensor(leak=1.0), runs=4, noise=0.001), tuple(c for c in FEW if c.name != LEAK)
@@ -124,12 +125,14 @@ def test_what_comes_closest_is_told_by_the_error_that_a_reader_counts(monkeypatc
     assert "closest" in findings.reasons[-1]
 
 
-@pytest.mark.parametrize("noise", [0.01, 0.001])
+@pytest.mark.press
+@for_each("noise", [0.01, 0.001])
 def test_a_law_of_another_form_is_named_at_any_noise(noise):
     name = ("viscoelasticity", "medium2")
     assert names(found(small(11, concealed(name), runs=4, noise=noise), FEW[:4])) == (name,)
 
 
+@pytest.mark.press
 def test_mechanisms_that_act_alike_are_one_group():
     twin = one("pyroelectric-drift", "film", "leak", 0.0, 20.0, 0.5)
     findings = found(small(5, Sensor(leak=1.0), runs=3), (CANDIDATES[0], CANDIDATES[1], twin))
@@ -139,6 +142,7 @@ def test_mechanisms_that_act_alike_are_one_group():
     assert "cannot tell it from" in " ".join(findings.reasons)
 
 
+@pytest.mark.press
 def test_four_that_act_alike_are_not_named():
     twins = [one("friction", name, "leak", 0.0, 20.0, 0.5) for name in ("dot", "rig", "film")]
     findings = found(small(5, Sensor(leak=1.0), runs=3), (CANDIDATES[0], *twins))
@@ -147,6 +151,7 @@ def test_four_that_act_alike_are_not_named():
     assert (findings.kind, findings.grade, findings.ambiguous) == ("", Grade.UNEXPLAINED, True)
 
 
+@pytest.mark.press
 def test_of_four_that_act_alike_the_kind_is_told():
     twins = [one("charge-leakage", name, "leak", 0.0, 20.0, 0.5) for name in ("dot", "rig", "film")]
     findings = found(small(5, Sensor(leak=1.0), runs=3), (CANDIDATES[0], *twins))
@@ -168,7 +173,8 @@ class Rippled(ToyEngine):
         return found | {"voltage_V": found["voltage_V"] * (1.0 + wave)}
 
 
-@pytest.mark.parametrize(("ripples", "alike"), [(0.003, 2), (0.03, 1)])
+@pytest.mark.press
+@for_each(("ripples", "alike"), [(0.003, 2), (0.03, 1)])
 def test_what_differs_by_less_than_two_codes_do_is_one_group(ripples, alike):
     """By the noise alone both ripples tell the two leaks apart."""
     recorded = small(5, Sensor(leak=1.0), runs=3, noise=0.0005, distort=0.001)
@@ -179,6 +185,7 @@ def test_what_differs_by_less_than_two_codes_do_is_one_group(ripples, alike):
     assert len(findings.groups[0]) == alike
 
 
+@pytest.mark.press
 def test_a_second_mechanism_that_may_be_a_flaw_of_the_rig_is_not_named():
     """A leak, and lost motion of 6 um that leaves half a per cent of the signal."""
     sensor, sure = Sensor(leak=1.0, gap_mm=0.006), {"force_N": 0.003, "voltage_V": 0.003}
@@ -187,7 +194,7 @@ def test_a_second_mechanism_that_may_be_a_flaw_of_the_rig_is_not_named():
     assert "contact-gap (dot) is not named for that" in " ".join(findings.reasons)
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 def test_what_too_many_pairs_have_in_them_is_the_main_part():
     """A leak, and lost motion that four candidates describe alike."""
     sensor, sure = Sensor(leak=1.0, gap_mm=0.006), {"force_N": 0.003, "voltage_V": 0.003}
@@ -197,6 +204,7 @@ def test_what_too_many_pairs_have_in_them_is_the_main_part():
     assert (findings.grade, names(findings)) == (Grade.MAIN_PART, (LEAK,))
 
 
+@pytest.mark.press
 def test_of_two_equals_the_one_that_a_real_part_can_have_is_named():
     capped = one("pyroelectric-drift", "film", "leak", 0.0, 0.98, 0.5)
     richer = replace(CANDIDATES[0], coordinates=(*CANDIDATES[0].coordinates, *CANDIDATES[13].coordinates))
@@ -233,6 +241,7 @@ def test_shares_are_of_squares_above_noise():
     assert replace(fit, nrmse_before=0.1, nrmse_after=0.1).share == 0.0
 
 
+@pytest.mark.press
 def test_beside_something_without_a_name_the_main_part_is_named():
     """A leak, and contact charge that is no candidate."""
     findings = found(small(5, Sensor(leak=1.0, touch_charge=0.02), runs=4, noise=0.001), FEW[:3])
@@ -246,7 +255,8 @@ def test_beside_something_without_a_name_the_main_part_is_named():
     assert low < 1.0 < high
 
 
-@pytest.mark.parametrize(("touch_charge", "grade"), [(0.02, Grade.MAIN_PART), (0.05, Grade.UNEXPLAINED)])
+@pytest.mark.press
+@for_each(("touch_charge", "grade"), [(0.02, Grade.MAIN_PART), (0.05, Grade.UNEXPLAINED)])
 def test_a_wrong_number_leaves_no_more_than_the_flaws_of_a_rig(touch_charge, grade):
     """A modulus beside contact charge that is no candidate; what is left is 1 and 1.7 % of the signal."""
     errors = tuple(c for c in CANDIDATES if c.mechanism == "property-error")
@@ -262,12 +272,13 @@ def test_flaws_of_a_rig_alone_have_no_main_part():
     assert findings.grade in (Grade.AGREEMENT, Grade.UNEXPLAINED)
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 def test_two_mechanisms_are_a_pair():
     findings = found(small(12, Sensor(leak=1.0, friction=0.1), runs=4))
     assert set(names(findings)) == {LEAK, ("friction", "dot")}
 
 
+@pytest.mark.press
 def test_a_modulus_beyond_its_declared_scatter_is_a_mismatch():
     name = ("property-error", "medium1")
     errors = tuple(c for c in CANDIDATES if c.mechanism == "property-error")
@@ -285,6 +296,7 @@ def test_one_press_is_judged_by_its_phases_and_says_so():
     assert "only one press" in " ".join(findings.warnings)
 
 
+@pytest.mark.press
 def test_a_value_at_the_edge_of_what_parts_have_is_the_main_part_where_it_leaves_next_to_nothing():
     recording = small(5, Sensor(leak=5.0), runs=3)
     findings = found(recording, (one(*LEAK, "leak", 0.0, 4.9, 0.5),))
@@ -301,6 +313,7 @@ def test_a_sensor_of_unknown_sensitivity_is_no_mismatch():
     assert findings.nuisances["d31"][0] == pytest.approx(4.0, rel=0.1)
 
 
+@pytest.mark.press
 def test_missing_samples_are_left_out():
     recording = small(16, Sensor(leak=1.0), runs=3)
     runs = []
@@ -313,6 +326,7 @@ def test_missing_samples_are_left_out():
     assert names(found(Recording(tuple(runs)))) == (LEAK,)
 
 
+@pytest.mark.press
 def test_a_limit_that_nobody_stated_is_a_saturation_and_one_that_is_stated_is_no_mismatch():
     candidate = one("saturation", "readout", "inverse_limit", 0.0, 20.0, 3.0, 6.0)
     recording = small(17, runs=3)
@@ -335,8 +349,8 @@ def test_the_same_seed_gives_the_same_findings():
     assert found(recording).models[0] == found(recording).models[0]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", CONCEALED, ids=" ".join)
+@pytest.mark.evidence
+@for_each("name", CONCEALED, ids=" ".join)
 def test_every_mechanism_is_named_by_another_law_and_missed_when_it_is_not_listed(name):
     recording = small(31, concealed(name), noise=0.005)
     assert names(found(recording, CANDIDATES)) == (name,)

@@ -94,9 +94,10 @@ def test_noise_that_channels_share_is_white_once_it_is_known():
         assert least < float(np.mean(left**2)) < most
 
 
+@pytest.mark.press
 @pytest.mark.parametrize(
     "name",
-    [("rig-compliance", "rig"), pytest.param(("charge-leakage", "readout"), marks=pytest.mark.slow)],
+    [("rig-compliance", "rig"), pytest.param(("charge-leakage", "readout"), marks=pytest.mark.evidence)],
     ids=" ".join,
 )
 def test_a_mechanism_is_identified_on_a_stage_that_trembles(name):

@@ -20,6 +20,7 @@ from diagnose.inference.choice import Judge, partners
 from diagnose.inference.forecasts import excess, share_left
 from diagnose.inference.search import paired, screen
 from diagnose.noise.estimate import noise_models
+from tests.cases import for_each
 from tests.diagnose.inference.toy import CANDIDATES, Sensor, ToyEngine, silent, small
 
 LEAK, CAPACITANCE, BRANCHES = CANDIDATES[0], CANDIDATES[1], CANDIDATES[4]
@@ -79,7 +80,7 @@ def test_nuisances_are_held_within_what_the_engine_can_answer():
     assert held == {"gain": -7.0, "modulus.medium1": -0.9}
 
 
-@pytest.mark.parametrize("start", [0.05, 6.0])
+@for_each("start", [0.05, 6.0])
 def test_a_fit_reaches_the_truth_from_far_away(start):
     model, baseline, _ = leaking()
     problem = descent(model, common_metric(model.samples, baseline), (LEAK,), ())
@@ -149,7 +150,7 @@ def test_an_interval_may_end_where_a_law_is_a_simpler_one():
     assert found["third"].low == 0.0
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 def test_intervals_cover_the_truth():
     """Forty fits of another law's size: the same law, with errors of numerics, at 90 %."""
     covered = 0
@@ -161,8 +162,8 @@ def test_intervals_cover_the_truth():
     assert covered >= 31  # 36 expected; fewer than 31 has a chance of 1 % at 90 %
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
+@pytest.mark.evidence
+@for_each(
     ("name", "coordinate", "true"),
     [(("rig-compliance", "rig"), "compliance", 0.08), (("hyperelastic-stiffening", "medium1"), "stiffening", 0.5)],
 )
@@ -179,7 +180,7 @@ def test_intervals_cover_the_truth_where_the_model_errs_over_depth_in_all_runs_a
     assert covered >= 19  # 22.5 expected; without the allowance 16 and 16
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 def test_intervals_cover_the_truth_though_the_surface_gives_way_at_the_first_touch():
     """Softness of 4 um, which looks nearly like a gap, is no finding; beside a compliance it shifts that."""
     compliance, gap = (
@@ -196,6 +197,7 @@ def test_intervals_cover_the_truth_though_the_surface_gives_way_at_the_first_tou
     assert covered >= 17  # 18 expected; 14 without the allowance
 
 
+@pytest.mark.press
 def test_what_else_shows_beside_the_first_of_a_pair_is_tried_too():
     model = seen(small(12, Sensor(leak=1.0, branches2=(0.1, 0.1, 0.0)), runs=4))
     screening = screen(model, fitted_baseline(model), silent)

@@ -42,6 +42,7 @@ def leaking_only_where_trained():
     return replace(leaking(), runs=tuple(sound[n] if n in HELD else run for n, run in enumerate(leaking().runs)))
 
 
+@pytest.mark.press
 def test_a_leak_of_all_runs_is_shown_on_those_that_took_no_part():
     found = found_of_leaking()
     assert found.best.settings[0].candidate.name == ("charge-leakage", "readout")
@@ -53,6 +54,7 @@ def test_a_leak_of_all_runs_is_shown_on_those_that_took_no_part():
     assert set(found.improved) == set(found.baseline) == {run.label for run in leaking().runs}
 
 
+@pytest.mark.press
 def test_runs_that_took_no_part_change_nothing_but_the_score():
     one, other = found_of_leaking(), scored(leaking_only_where_trained())
     assert one.best.parameters == other.best.parameters
@@ -61,6 +63,7 @@ def test_runs_that_took_no_part_change_nothing_but_the_score():
     assert other.held_out.log_score_gain_per_press < 0.0
 
 
+@pytest.mark.press
 def test_training_is_a_diagnosis_of_those_runs_alone():
     alone = some_runs(leaking(), TRAINED)
     expected = diagnose(alone, ToyEngine(alone, candidates=FEW), 1, silent)

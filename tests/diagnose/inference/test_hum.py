@@ -42,6 +42,7 @@ def test_only_loud_lines_leave_the_noise():
     assert HUM not in HumEngine(engine, weak, {}).candidates
 
 
+@pytest.mark.press
 def test_loud_hum_is_named_with_its_amplitude_whatever_its_phase():
     findings = diagnose(*hummed(0.05), 1, silent)
     assert findings.best is not None

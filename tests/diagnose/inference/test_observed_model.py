@@ -14,6 +14,7 @@ from diagnose.fit.system import informative_rows, linearised
 from diagnose.forward import Setting
 from diagnose.noise.estimate import noise_models
 from diagnose.vocabulary.layers.property_error import property_error
+from tests.cases import for_each
 from tests.diagnose.inference.toy import CANDIDATES, NUISANCE, Sensor, ToyEngine, small
 
 
@@ -49,7 +50,7 @@ class Turning(ToyEngine):
         return super().predict(run, settings)
 
 
-@pytest.mark.parametrize(("low", "high", "answers"), [(-1.0, 0.0, True), (0.0, 0.0, False)])
+@for_each(("low", "high", "answers"), [(-1.0, 0.0, True), (0.0, 0.0, False)])
 def test_a_slope_is_taken_on_the_side_that_has_an_answer(low, high, answers):
     smooth = observed()
     recording = smooth.samples.recording

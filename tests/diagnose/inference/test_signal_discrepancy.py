@@ -10,6 +10,7 @@ from diagnose.fit.signal_discrepancy import SignalDiscrepancy, conditions, in_pl
 from diagnose.noise.estimate import noise_models
 from diagnose.signals.reading import averaged
 from diagnose.signals.recording import Recording
+from tests.cases import for_each
 from tests.diagnose.inference.toy import Sensor, small
 
 OFF = 0.03
@@ -33,7 +34,7 @@ def off_by(samples, share):
     return samples.coefficients(signals)
 
 
-@pytest.mark.parametrize("factor", [1, 2])
+@for_each("factor", [1, 2])
 def test_an_error_of_three_per_cent_has_the_size_of_three_per_cent(factor):
     recording = small(3, Sensor(), runs=4, noise=1e-4)
     recording = Recording(tuple(averaged(run, factor) for run in recording.runs))

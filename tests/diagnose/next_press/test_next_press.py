@@ -65,6 +65,7 @@ def test_a_press_that_settles_all_but_twins_says_which_stay_together(recording):
     assert only.separation > SETTLED
 
 
+@pytest.mark.press
 def test_presses_are_made_until_their_separations_together_settle_it(recording):
     """Under a rough model one press does not; squares add."""
     rough = ToyEngine(recording)

@@ -9,6 +9,7 @@ from diagnose.forward import Setting
 from diagnose.signals.recording import Recording, Run
 from geometry.base import InputError
 from solve.model import Readout
+from tests.cases import for_each
 
 RATE = 200.0
 TIME = np.arange(2400) / RATE
@@ -171,7 +172,7 @@ def test_a_stated_resistor_leaves_the_capacitance_free():
     assert not [one for one in engine().free_nuisances if one.mechanism == "film-capacitance"]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("changes", "expected"),
     [
         ({"drive": "displacement_mm"}, "needs drive = 'force_N'"),

@@ -40,7 +40,7 @@ def engine_of(bench, folder):
     return engine_for(load_rig(folder), silent)
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 @pytest.mark.parametrize("name", ["ridge-clamped", "ridge-free", "dot-clamped", "thick-clamped", "thick-free"])
 def test_force_and_charge_of_a_press_agree(name, tmp_path):
     """From a tenth of the depth on; of thick layers from a quarter, as a tenth makes 0.2 % of the charge."""
@@ -54,7 +54,7 @@ def test_force_and_charge_of_a_press_agree(name, tmp_path):
     assert np.all(np.abs(mine / true - 1.0) < allowed)
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 def test_a_medium_of_twice_the_modulus_changes_force_and_charge_alike(tmp_path):
     bench = BENCHES["ridge-free"]
     told = engine_of(bench, tmp_path)
@@ -70,7 +70,7 @@ def test_a_medium_of_twice_the_modulus_changes_force_and_charge_alike(tmp_path):
     assert np.all(np.abs(mine / true - 1.0) < 0.04)  # the diagnosis mesh itself would be 5 % off at the first depth
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 @pytest.mark.parametrize("name", ["ridge-clamped", "ridge-free"])
 def test_a_base_that_has_come_apart_from_its_rims_changes_force_and_charge_alike(name, tmp_path):
     bench = BENCHES[name]
@@ -87,7 +87,7 @@ def test_a_base_that_has_come_apart_from_its_rims_changes_force_and_charge_alike
     assert np.all(np.abs(mine - true) < 0.05 * np.abs(true).max(axis=0))
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 @pytest.mark.parametrize("place_mm", sorted({run.place_mm for run in BENCHES["row-free"].runs}))
 def test_force_and_every_charge_of_several_electrodes_agree_wherever_the_dot_stands(place_mm, tmp_path):
     """Charges within the stated error of the largest of them, as the model's error is one of the film."""

@@ -84,12 +84,13 @@ def named(findings):
     return [setting.candidate.name for setting in findings.best.settings]
 
 
+@pytest.mark.press
 def test_a_pair_is_told_from_the_other_pairs_and_from_leaks(tmp_path):
     found = told("crosstalk-2-3", 15.0, tmp_path, ("crosstalk", "charge-leakage"))
     assert named(found) == [("crosstalk", "channel-2-channel-3")]
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 @pytest.mark.parametrize(
     ("effect", "strength", "name"),
     [

@@ -12,6 +12,7 @@ from diagnose.prove import isolation
 from diagnose.prove.guard import allowed_roots
 from diagnose.prove.trial import digest_of, seal, verified
 from geometry.environment import ONE_THREAD
+from tests.cases import for_each
 
 ROOT = Path(__file__).resolve().parents[3]
 FOREIGN = ("solve", "mesh", "geometry", "export", "softdot", "diagnose.forward", "diagnose.signals.recording")
@@ -44,7 +45,7 @@ def test_the_recording_can_be_read(house):
     assert run_guarded(house, "print(open('folder/press.csv').read())").stdout.strip() == "time_s"
 
 
-@pytest.mark.parametrize(
+@for_each(
     "code",
     [
         "open('proof/truth.json')",
@@ -181,6 +182,7 @@ def test_a_record_with_a_changed_digit_is_told_of_and_not_used(tmp_path, caplog)
     assert "damaged" in caplog.text
 
 
+@pytest.mark.process
 def test_the_generator_shares_no_code_with_what_it_tests():
     text = (
         "import sys, diagnose.prove.world.cases, diagnose.prove.folder;"

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from diagnose.prove.world import march
+from tests.cases import for_each
 
 COURSE = march.Course(*(np.linspace(0.0, scale, 25) for scale in (1.0, 2.0, 3.0)))
 
@@ -21,6 +22,7 @@ def test_what_was_written_is_read(kept):
         np.testing.assert_array_equal(getattr(kept.read(), name), column)
 
 
+@pytest.mark.press
 def test_no_flipped_bit_is_believed_and_none_escapes(kept):
     good = kept.path.read_bytes()
     for bit in range(8 * len(good)):
@@ -30,7 +32,7 @@ def test_no_flipped_bit_is_believed_and_none_escapes(kept):
         assert kept.read() is None
 
 
-@pytest.mark.parametrize("content", [b"", b"{}", b"PK\x05\x06" + bytes(18)])
+@for_each("content", [b"", b"{}", b"PK\x05\x06" + bytes(18)])
 def test_other_content_is_not_believed(kept, content):
     kept.path.write_bytes(content)
     assert kept.read() is None

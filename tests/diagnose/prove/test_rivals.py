@@ -30,6 +30,7 @@ def recorded(**changes):
     return [_noisy(run, CLAMPED, rng) for run in reality.record(real, CLAMPED)]
 
 
+@pytest.mark.press
 def test_without_effect_only_the_stubborn_one_names_something():
     said = rivals.opinions(CLAMPED.name, recorded())
     assert not said["gaussian process"].detected
@@ -37,6 +38,7 @@ def test_without_effect_only_the_stubborn_one_names_something():
     assert said["always leakage"].after == pytest.approx(1.0, abs=0.05)
 
 
+@pytest.mark.press
 def test_a_leak_is_what_the_stubborn_one_is_right_about():
     said = rivals.opinions(CLAMPED.name, recorded(leak_MOhm=1000.0))
     assert said["gaussian process"].detected
@@ -44,6 +46,7 @@ def test_a_leak_is_what_the_stubborn_one_is_right_about():
     assert said["always leakage"].after == pytest.approx(1.0, abs=0.05)
 
 
+@pytest.mark.press
 def test_local_terms_are_taken_in_only_where_there_is_something():
     none = rivals.opinions(CLAMPED.name, recorded())["localised sparse regression"]
     assert (none.detected, none.named) == (False, None)

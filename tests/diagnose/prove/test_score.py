@@ -7,6 +7,7 @@ from diagnose.prove.world.cases import KINDS, NONE, OUTSIDE, PAIR, SINGLE, plan
 from diagnose.prove.world.effects import fits
 from diagnose.prove.world.rigs import BENCHES
 from diagnose.statistics.abstain import wilson_interval
+from tests.cases import for_each
 
 LEAK = {"mechanism": "charge-leakage", "component": "readout"}
 CABLE = {"mechanism": "parasitic-capacitance", "component": "readout"}
@@ -143,7 +144,7 @@ def test_a_tally_counts():
     assert rate([], bool)["rate"] is None
 
 
-@pytest.mark.parametrize(("kind", "sizes"), [(SINGLE, 7), (PAIR, 2), (OUTSIDE, 2)])
+@for_each(("kind", "sizes"), [(SINGLE, 7), (PAIR, 2), (OUTSIDE, 2)])
 def test_every_effect_meets_every_rig_that_can_have_it_at_every_size(kind, sizes):
     rigs = ("ridge-clamped", "ridge-free", "dot-clamped")
     met = {(c.effects, c.bench, c.size) for c in plan(400, 3, rigs, kinds=(kind,))}

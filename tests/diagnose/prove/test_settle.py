@@ -64,7 +64,7 @@ def test_the_longer_recording_begins_with_what_there_was(monkeypatch):
     assert with_asked(CASE, before, {**warm, "then": []}, waves) is None
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 def test_a_load_cell_that_was_asked_for_records_the_force_of_that_run_alone():
     run = asked_run(VOLTAGE_ONLY, experiment(records="force_N"), WAVE)
     (signals,) = record(baseline(VOLTAGE_ONLY), replace(VOLTAGE_ONLY, runs=(run,)))

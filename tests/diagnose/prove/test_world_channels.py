@@ -56,6 +56,7 @@ def test_channels_that_nothing_ties_are_as_alone():
     np.testing.assert_allclose(together[:, 1], leaking.voltage(TIME, charge[:, 1], 80.0, 0.0))
 
 
+@pytest.mark.press
 def test_electrodes_share_the_charge_of_one_electrode_all_over():
     whole = replace(SHORT, electrodes=((-2.0, 0.0), (0.0, 2.0)))
     charges = pressed(whole, 0.5).charges_pC
@@ -64,6 +65,7 @@ def test_electrodes_share_the_charge_of_one_electrode_all_over():
     assert sum(charges) == pytest.approx(pressed(replace(whole, electrodes=((-2.0, 2.0),)), 0.5).charge_pC, rel=0.02)
 
 
+@pytest.mark.press
 def test_a_press_on_the_other_side_is_the_image_of_the_first():
     right, left = (table(replace(SHORT, offset_mm=place), 0.1).course for place in (1.0, -1.0))
     np.testing.assert_allclose(left.charge_pC, right.charge_pC[:, ::-1])

@@ -26,6 +26,7 @@ from diagnose.prove.world.plastic import Flow, flowed
 from diagnose.prove.world.reality import AskedPath, baseline, scaled_memory, with_strength
 from diagnose.prove.world.rigs import FREE
 from diagnose.prove.world.stack import Stack
+from tests.cases import for_each
 
 PAPER = Made(
     (
@@ -50,7 +51,7 @@ def stretched(along, across=None):
     return np.diag([along, across, across])[None]
 
 
-@pytest.mark.parametrize("layer", [Layer("a", 1.0, 3.0), Layer("a", 1.0, 3.0, gent_limit=2.0)])
+@for_each("layer", [Layer("a", 1.0, 3.0), Layer("a", 1.0, 3.0, gent_limit=2.0)])
 def test_a_tangent_is_the_derivative_of_the_stress_and_this_of_the_energy(layer):
     rng = np.random.default_rng(3)
     f, way, h = np.eye(3)[None] + 0.2 * rng.standard_normal((1, 3, 3)), rng.standard_normal((1, 3, 3)), 1e-6
@@ -110,7 +111,7 @@ def test_damage_softens_below_the_largest_strain_and_not_on_the_first_loading():
     assert again / first[1.1] == pytest.approx(0.7, abs=1e-3)  # far below the largest energy all of the loss
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 def test_a_finer_grid_changes_force_and_charge_by_less_than_a_fifth_of_a_percent():
     coarse, fine = pressed(PAPER, 0.2), pressed(replace(PAPER, fine=1.6), 0.2)
     assert coarse.force_N == pytest.approx(fine.force_N, rel=2e-3)
@@ -127,6 +128,7 @@ def test_a_memory_of_no_strength_gives_the_elastic_press_through_time():
     np.testing.assert_allclose(relaxed.force_N, elastic.force_N, atol=1e-6 * elastic.force_N.max())
 
 
+@pytest.mark.press
 def test_a_medium_that_relaxes_answers_no_earlier_than_the_dot_moves(tmp_path, monkeypatch):
     monkeypatch.setenv("SOFTDOT_PROOF_CACHE", str(tmp_path))
     press = Run("one", 0.1, 0.1, 0.4, count=1, lead_s=1.0, pause_s=0.1)
@@ -159,7 +161,7 @@ def test_a_damaged_medium_remembers_the_deeper_press_of_an_earlier_run(tmp_path,
     assert virgin.max() > 1.02 * expected.max()
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 def test_both_codes_press_the_same_slice_alike():
     """On a layered mesh: those of pytetwild differ by a tenth of a percent of the force from run to run."""
     from softdot.config import config_from
@@ -180,7 +182,8 @@ def test_both_codes_press_the_same_slice_alike():
     assert other.charge_pC == pytest.approx(found["film_charge_pC"][-1], rel=2e-3)
 
 
-@pytest.mark.parametrize("name", ["glue-above", "glue-below"])
+@pytest.mark.press
+@for_each("name", ["glue-above", "glue-below"])
 def test_glue_of_no_strength_is_none_and_soft_glue_leaves_the_film_as_it_is(name):
     """A hidden glue once thinned the film, and stiffened it where it was weak: the truth then had another name."""
     coarse = replace(FREE, made=replace(FREE.made, fine=0.5))
@@ -219,6 +222,7 @@ def test_the_tangent_of_a_film_that_yields_is_the_derivative_of_its_stress():
     np.testing.assert_allclose(change, expected, atol=1e-6 * np.abs(expected).max())
 
 
+@pytest.mark.press
 def test_a_film_that_has_yielded_leaves_a_charge_of_opposite_sign():
     made = replace(PAPER, fine=0.4)
     layers = tuple(replace(one, yield_MPa=30.0) if isinstance(one, Film) else one for one in made.layers)

@@ -60,6 +60,7 @@ STATED = {
 }
 
 
+@pytest.mark.press
 @pytest.mark.parametrize(("mechanism", "component"), STATED.values(), ids=STATED)
 def test_what_was_found_and_what_is_stated_give_the_same_signals(believed, tmp_path, mechanism, component):
     """At a value that was pressed, so that nothing is interpolated."""

@@ -12,6 +12,7 @@ from geometry.base import InputError
 from solve.mechanisms import Mechanism
 from solve.model import Readout
 from solve.tables import job as store
+from tests.cases import for_each
 from tests.diagnose.segment.rigs import COARSE, DEPTH_MM, candidate, engine, model, press, run, silent
 
 KINKS = 0.01  # of the peak: so coarse a surface touches node by node, which neither table nor press resolves
@@ -50,6 +51,7 @@ def test_the_baseline_is_that_of_the_3d_model(rig):
         assert peak(told[name] - true[name]) < KINKS * peak(true[name])
 
 
+@pytest.mark.press
 def test_a_second_recording_of_a_rig_needs_no_press_for_another_noise_of_its_drive(monkeypatch):
     asked, recall = [], store.recall
     monkeypatch.setattr(store, "recall", lambda name: asked.append(name) or recall(name))
@@ -77,8 +79,8 @@ CASES = [
 ]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("mechanism", "component", "values", "allowed", "least"), CASES)
+@pytest.mark.evidence
+@for_each(("mechanism", "component", "values", "allowed", "least"), CASES)
 def test_a_mechanism_acts_as_in_the_3d_model(rig, mechanism, component, values, allowed, least):
     found = errors(rig, switched(rig, mechanism, component, values))
     assert found["voltage_V"][1] > least
@@ -86,7 +88,7 @@ def test_a_mechanism_acts_as_in_the_3d_model(rig, mechanism, component, values, 
         assert error < allowed * effect + KINKS
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 def test_far_from_all_presses_a_refinement_brings_the_tables_to_the_3d_model(rig):
     """A foam is pressed at few exponents; where a fit leads, once more. The reference has elements a third as large."""
     fine = segment_engine(model(), COARSE.scaled(0.35), Recording((run(),)), silent)
@@ -106,6 +108,7 @@ def test_far_from_all_presses_a_refinement_brings_the_tables_to_the_3d_model(rig
     assert not rig.refine([foam], silent)
 
 
+@pytest.mark.press
 def test_a_refinement_leaves_to_the_tables_what_acts_on_them(rig):
     """The piezoelectric constant scales every charge, and is in no press of a film of another modulus."""
     values = (0.3, 0.15)
@@ -207,7 +210,7 @@ def test_another_resistor_is_that_of_its_run():
     assert (fast[held] < 0.1 * slow[held]).all()
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 def test_a_force_drives_as_far_as_the_depth_says(rig):
     """Pushed by the force of a depth-driven press, the dot goes as deep as that press."""
     depth = press(run().time_s)
@@ -218,7 +221,7 @@ def test_a_force_drives_as_far_as_the_depth_says(rig):
     np.testing.assert_allclose(path[touching], depth[touching], atol=2 * KINKS * DEPTH_MM)
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 def test_a_softer_bond_lets_a_force_go_deeper_as_in_the_3d_model(rig):
     pushed = engine(run(values=0.6 * rig.predict(0, [])["force_N"], **FORCE))
     setting = switched(pushed, "adhesive-compliance", "bond-medium1-film", (1.5, 1.5))
@@ -227,6 +230,7 @@ def test_a_softer_bond_lets_a_force_go_deeper_as_in_the_3d_model(rig):
     assert error < 0.1 * effect + 2 * KINKS
 
 
+@pytest.mark.press
 def test_a_mechanism_that_is_as_good_as_off_changes_nothing(rig):
     """A fit may lead to values that no press has any weight at, also of what depends on the path."""
     without = rig.predict(0, [])
@@ -239,7 +243,7 @@ def test_a_mechanism_that_is_as_good_as_off_changes_nothing(rig):
             np.testing.assert_allclose(told[name], without[name], rtol=0.0, atol=1e-9 * peak(without[name]))
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 def test_softened_rubber_loses_on_the_way_back_and_the_second_time():
     """Twice to one depth: the second way down follows the first way up, and both are below the first way down."""
     time = run().time_s
@@ -255,7 +259,7 @@ def test_softened_rubber_loses_on_the_way_back_and_the_second_time():
     assert lost == pytest.approx(setting.candidate.derived(setting.values)["loss_ratio"], abs=0.02)
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 def test_force_ratio_is_what_the_3d_model_gains_at_the_deepest_press(rig):
     setting = switched(rig, "hyperelastic-stiffening", "effector", (0.3, 0.2))
     true = rig.solve(0, [setting.candidate.switched_on(setting.values)], silent)
@@ -272,7 +276,7 @@ RELAXES = {
 STRETCHED = {"name": "film-prestretch", "component": "film", "parameters": {"strain_x": 0.002, "strain_y": 0.002}}
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("tables", "reason"),
     [
         ({"mechanisms": [RELAXES, STRETCHED]}, "viscoelasticity or film-prestretch, but not both"),

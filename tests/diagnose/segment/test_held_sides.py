@@ -8,6 +8,7 @@ from geometry.parameters import Dot, Segment
 from mesh.build import MeshOptions, build
 from mesh.quality import measure
 from solve.tables.rig_mesh import crowded
+from tests.cases import for_each
 
 SHAPES = [
     {"shape": "layer"},
@@ -27,7 +28,7 @@ def meshed(boundary, effector, section="solid"):
     return segment, build(segment, resolve_dot(dot, segment), options)
 
 
-@pytest.mark.parametrize("effector", SHAPES)
+@for_each("effector", SHAPES)
 def test_parts_keep_their_volume_and_no_element_is_inverted(effector):
     segment, even = meshed("clamped", effector)
     before, after = measure(even, segment), measure(crowded(even, segment), segment)

@@ -5,6 +5,7 @@ import pytest
 
 from diagnose.engines.segment.interpolation import Differences, effect
 from diagnose.forward import Candidate, Coordinate
+from tests.cases import for_each
 
 X = Coordinate("x", 0.0, 1.0, (0.1,), (0.3, 1.0))
 Y = Coordinate("y", -1.0, 1.0, (0.1,), (-1.0, 0.5, 1.0))
@@ -12,7 +13,7 @@ FREE = Coordinate("free", -1.0, 1.0, (0.1,))
 LAYOUTS = ("sum", "jointly", "fading", "glue")
 
 
-@pytest.mark.parametrize("together", LAYOUTS)
+@for_each("together", LAYOUTS)
 def test_a_press_stands_for_itself_and_nothing_for_off(together):
     second = X if together == "glue" else Y
     known = effect(together, (X, second, FREE))

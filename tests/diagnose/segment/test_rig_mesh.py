@@ -27,6 +27,7 @@ def counted(monkeypatch):
     return sizes
 
 
+@pytest.mark.press
 def test_a_dome_whose_skin_needs_more_nodes_than_allowed_is_meshed_a_few_times_and_its_contact_stays_resolved(counted):
     made, options = rig_mesh.rig_mesh(model(**DOME), MeshOptions(element_size_mm=0.6, contact_element_size_mm=0.2))
     assert len(counted) <= 6

@@ -28,7 +28,7 @@ def rig():
     return engine(over(0.5), over(-0.5), segment=SEGMENT)
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_a_press_on_the_left_is_the_image_of_one_on_the_right(rig):
     right, left = (rig.predict(number, []) for number in (0, 1))
     np.testing.assert_allclose(left["force_N"], right["force_N"], atol=0.01 * right["force_N"].max())
@@ -38,7 +38,7 @@ def test_a_press_on_the_left_is_the_image_of_one_on_the_right(rig):
     assert np.abs(right["voltage_1_V"] - right["voltage_2_V"]).max() > 0.2 * largest
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_a_capacitance_between_channels_brings_them_closer_whichever_is_pressed(rig):
     """By C / (C + 2 C_m) = 0.71 at once, by less while the input, which the pair slows down, loses charge."""
     tied = candidate(rig, "crosstalk", "channel-1-channel-2")
@@ -50,7 +50,7 @@ def test_a_capacitance_between_channels_brings_them_closer_whichever_is_pressed(
         assert 0.71 * before < after < 0.9 * before
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_a_place_at_which_no_run_pressed_is_refused(rig):
     with pytest.raises(ValueError, match="was not prepared"):
         rig.imagine(over(0.2), [])

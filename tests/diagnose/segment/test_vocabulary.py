@@ -14,6 +14,7 @@ from solve.mechanisms import MECHANISMS, with_mechanisms
 from solve.mechanisms.base import BONDS, MEDIA, channels_of
 from solve.model import Readout
 from solve.readout.stages import Saturation
+from tests.cases import for_each
 from tests.diagnose.segment.rigs import LEAKY, model
 
 ELECTRODES = [{"name": name, "center_mm": [x, 0.0], "size_mm": [1.0, 2.5]} for name, x in (("a", -0.6), ("b", 0.6))]
@@ -49,7 +50,7 @@ def test_a_rig_with_everything_admits_the_whole_vocabulary():
     assert ("crosstalk", "channel-1-channel-2") in names(FULL)
 
 
-@pytest.mark.parametrize("candidate", every(FULL))
+@for_each("candidate", every(FULL))
 def test_each_coordinate_alone_is_a_mechanism(candidate):
     """A fit may end where all others are 0."""
     for number, coordinate in enumerate(candidate.coordinates):
@@ -101,7 +102,7 @@ def test_one_channel_hears_no_other():
     assert not any(mechanism == "crosstalk" for mechanism, _ in names(scene()))
 
 
-@pytest.mark.parametrize("candidate", every(FULL))
+@for_each("candidate", every(FULL))
 def test_coordinates_lie_within_their_bounds_and_switch_the_mechanism_on(candidate):
     for coordinate in candidate.coordinates:
         assert coordinate.low <= 0.0 <= coordinate.high
@@ -130,7 +131,7 @@ def test_small_coordinates_are_small_physics():
     assert foam["alpha"][0] == pytest.approx(2.0, abs=1e-5)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("limited", "largest_error"),
     [
         pytest.param(lambda V: np.clip(V, -0.7, 0.7), 1e-3, id="no knee"),
@@ -174,7 +175,7 @@ def test_relaxed_fraction_of_one_branch():
     assert relaxed_fraction([0.4], [1e6]) == pytest.approx(0.0, abs=1e-5)
 
 
-@pytest.mark.parametrize("medium", MEDIA)
+@for_each("medium", MEDIA)
 def test_nuisances_are_the_factors_of_the_rig(medium):
     found = nuisance(FULL, f"modulus.{medium}")
     assert found is not None

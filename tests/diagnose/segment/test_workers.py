@@ -16,7 +16,7 @@ def jobs():
     return [type(base)(base.model, base.tet_mesh, depth, (0.5, 1.0)) for depth in (0.02, 0.03)]
 
 
-@pytest.mark.slow
+@pytest.mark.process
 def test_a_process_answers_as_this_one_does(jobs, monkeypatch, tmp_path):
     monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path))
     here = [job.run()[0] for job in jobs]

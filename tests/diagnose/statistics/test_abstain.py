@@ -2,9 +2,8 @@
 
 from dataclasses import replace
 
-import pytest
-
 from diagnose.statistics.abstain import Evidence, Rates, decide
+from tests.cases import for_each
 
 RATES = Rates(level=0.003, margin=0.5, largest_group=3)
 CLEAR = Evidence(
@@ -23,7 +22,7 @@ def test_noise_is_neither_named_nor_unexplained():
     assert (decision.mismatch, decision.named, decision.unexplained) == (False, False, False)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("change", "word"),
     [
         ({"p_left": 0.002}, "still larger"),

@@ -6,6 +6,7 @@ from scipy.optimize import nnls
 from scipy.stats import chi2, f
 
 from diagnose.statistics.score_test import orthant, survival, weights
+from tests.cases import for_each
 
 
 def test_one_parameter_is_half_a_chi_square():
@@ -13,7 +14,7 @@ def test_one_parameter_is_half_a_chi_square():
     assert survival(2.7055, weights(np.eye(1))) == pytest.approx(0.05, rel=1e-4)
 
 
-@pytest.mark.parametrize("correlation", [-0.9, -0.3, 0.0, 0.5, 0.99])
+@for_each("correlation", [-0.9, -0.3, 0.0, 0.5, 0.99])
 def test_two_parameters_have_the_weights_of_their_angle(correlation):
     """w_2 = arccos(-(correlation of the information)) ... of the estimates: 1/4 + arcsin(-rho) / 2 pi; w_1 = 1/2."""
     both = 0.25 - np.arcsin(correlation) / (2.0 * np.pi)
@@ -34,7 +35,7 @@ def spectrum(branches):
     return -np.expm1(-np.linspace(0.0, 60.0, 200)[:, None] / np.geomspace(0.1, 30.0, branches))
 
 
-@pytest.mark.parametrize("design", [like(0.0), like(0.8), like(3.0), spectrum(4), spectrum(6), spectrum(8)])
+@for_each("design", [like(0.0), like(0.8), like(3.0), spectrum(4), spectrum(6), spectrum(8)])
 def test_weights_against_projection_by_brute_force(design):
     rng, (samples, count) = np.random.default_rng(4), design.shape
     positive = [int((nnls(design, rng.standard_normal(samples))[0] > 0.0).sum()) for _ in range(8000)]

@@ -6,12 +6,13 @@ from scipy.stats import multivariate_normal
 
 from diagnose.statistics.held_out import Sums
 from diagnose.statistics.score_test import Marginal
+from tests.cases import for_each
 
 RNG = np.random.default_rng(41)
 COLUMNS, RESIDUAL = RNG.standard_normal((25, 3)), 2.0 * RNG.standard_normal(25)
 
 
-@pytest.mark.parametrize("sigma", [[0.5, 2.0, 0.0], [0.0, 0.0, 0.0], [3.0, 1e-4, 40.0]])
+@for_each("sigma", [[0.5, 2.0, 0.0], [0.0, 0.0, 0.0], [3.0, 1e-4, 40.0]])
 def test_the_evidence_is_the_dense_normal_density(sigma):
     covariance = np.eye(25) + (COLUMNS * np.square(sigma)) @ COLUMNS.T
     dense = multivariate_normal(np.zeros(25), covariance).logpdf(RESIDUAL)

@@ -5,6 +5,7 @@ import pytest
 from scipy.stats import norm
 
 from diagnose.statistics.score_test import Marginal, holm, score_test
+from tests.cases import for_each
 from tests.diagnose.statistics.rejections import is_fair
 
 RNG = np.random.default_rng(21)
@@ -24,7 +25,7 @@ def results_of(columns, non_negative, effect, seed, degrees=np.inf):
         yield score_test(residual, columns, non_negative, degrees)
 
 
-@pytest.mark.parametrize("non_negative", [(False,) * 3, (True,) * 3, (True, False, True), (True, False, False)])
+@for_each("non_negative", [(False,) * 3, (True,) * 3, (True, False, True), (True, False, False)])
 def test_level_under_the_null(non_negative):
     count = sum(t.p_value <= LEVEL for t in results_of(COLUMNS, np.array(non_negative), 0.0, 1))
     assert is_fair(count, TRIALS, LEVEL)

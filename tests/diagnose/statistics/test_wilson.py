@@ -6,6 +6,7 @@ from scipy.optimize import brentq
 from scipy.stats import binom
 
 from diagnose.statistics.abstain import rate_for_promise, wilson_interval
+from tests.cases import for_each
 
 
 def test_the_ends_solve_the_score_equation():
@@ -33,7 +34,7 @@ def test_the_promised_rate_keeps_the_promise_and_no_more():
     assert rate == pytest.approx(brentq(lambda p: binom.cdf(4, 400, p) - 0.99, 1e-6, 0.5), rel=1e-6)
 
 
-@pytest.mark.parametrize(("successes", "trials"), [(5, 4), (-1, 4), (0, 0)])
+@for_each(("successes", "trials"), [(5, 4), (-1, 4), (0, 0)])
 def test_what_is_no_proportion_is_refused(successes, trials):
     with pytest.raises(ValueError, match="no proportion"):
         wilson_interval(successes, trials)

@@ -18,6 +18,7 @@ from diagnose.verdict.pictures import (
     draw_shares,
     shares,
 )
+from tests.cases import for_each
 from tests.diagnose.verdict.toy import LEAK, RELAXING, fitted, found, toy_recording, toy_run
 
 LEAKS, RELAXES = fitted(LEAK, 0.5), fitted(RELAXING, 0.3, 0.09)
@@ -39,7 +40,7 @@ def share_of(colour, path):
     return float(np.mean(np.abs(pixels - np.array(colour)).max(axis=-1) < 0.15))
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("band", "column"), [((0.0, 0.4), 0), ((0.4, 0.8), 0), ((1.0, 2.0), 1), ((5.0, 10.0), 2), ((320.0, 640.0), 6)]
 )
 def test_a_band_falls_into_the_column_that_holds_its_middle(band, column):

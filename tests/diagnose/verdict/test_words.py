@@ -24,6 +24,7 @@ from diagnose.verdict.words import sentences
 from diagnose.vocabulary.base import vocabulary
 from diagnose.vocabulary.layers.property_error import property_error
 from solve.mechanisms import MECHANISMS
+from tests.cases import for_each
 from tests.diagnose.verdict.toy import LEAK, RELAXING, ToyEngine, fitted, found, toy_recording
 
 LEAKS, RELAXES = fitted(LEAK, 0.5), fitted(RELAXING, 0.3, 0.09)
@@ -162,9 +163,7 @@ def test_what_explanations_have_in_common():
     assert in_common([*leaks, *mixed]) == in_common(mixed[1:]) == ""
 
 
-@pytest.mark.parametrize(
-    ("modulus", "thickness", "gives_way"), [(-0.3, 0.0, True), (0.1, 0.2, True), (0.3, 0.0, False)]
-)
+@for_each(("modulus", "thickness", "gives_way"), [(-0.3, 0.0, True), (0.1, 0.2, True), (0.3, 0.0, False)])
 def test_a_softer_or_thicker_medium_gives_way_as_a_bond_does(modulus, thickness, gives_way):
     medium = Setting(property_error("medium2", ("modulus", "thickness")), (modulus, thickness))
     told = in_common([(off("adhesive-compliance", "bond-base"),), (medium,)])
@@ -197,7 +196,7 @@ def test_how_far_the_best_unnamed_model_would_come_is_said_and_written(recording
     assert verdict(found(recording, (LEAKS,), LEAKS, ((0,),)), (), (), (), ())["fit"]["held_out_best_unnamed"] is None
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("places", "expected"),
     [
         ([place(), place("quick")], "too high in the hold, below 2 Hz, in all runs."),
@@ -216,7 +215,7 @@ def test_where(recording, places, expected):
     assert where_words(recording, findings).endswith(expected)
 
 
-@pytest.mark.parametrize(("factor", "side"), [(1.5, "too high"), (0.5, "too low"), (-1.5, "too high")])
+@for_each(("factor", "side"), [(1.5, "too high"), (0.5, "too low"), (-1.5, "too high")])
 def test_high_and_low_are_meant_along_the_signal(recording, factor, side):
     """A negative voltage that is simulated too negative is too high as well."""
     sign = np.sign(factor)
@@ -243,7 +242,7 @@ def test_crosstalk_between_two_channels_names_both():
     assert mechanism_words("charge-leakage", "channel-12") == "charge leaks through channel 12"
 
 
-@pytest.mark.parametrize(("ratio", "said"), [(2.0, "stiffens at large strain"), (0.5, "gives way, at large strain")])
+@for_each(("ratio", "said"), [(2.0, "stiffens at large strain"), (0.5, "gives way, at large strain")])
 def test_a_law_below_the_stated_one_is_not_called_stiffening(ratio, said):
     law = Candidate(
         "hyperelastic-stiffening",
@@ -255,7 +254,7 @@ def test_a_law_below_the_stated_one_is_not_called_stiffening(ratio, said):
     assert said in setting_words(Setting(law, (ratio - 1.0,)))
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("value", "text"),
     [
         (0.026, "0.026"),

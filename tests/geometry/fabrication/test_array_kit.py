@@ -18,6 +18,7 @@ from geometry.fabrication.parameters import CastingNumbers, Fabrication
 from geometry.fabrication.part import box, volume
 from geometry.flat.sheets import flat_kit
 from geometry.parameters import Dot, Effector, Film, Medium, Segment
+from tests.cases import for_each
 
 OWN = CastingNumbers(shrinkage_percent=2.0, density_g_cm3=1.1)
 """Shrinks ten times as much as silicone, so that a forgotten compensation shows."""
@@ -56,7 +57,7 @@ def kit_of(name):
 
 
 QUICK = ("grid", "domes over grooves")
-SLOW = [pytest.param(name, marks=pytest.mark.slow) for name in ARRAYS if name not in QUICK]
+SLOW = [pytest.param(name, marks=pytest.mark.press) for name in ARRAYS if name not in QUICK]
 
 
 def device_of(name):
@@ -195,7 +196,7 @@ def test_islands_in_a_grid_are_stacked_one_segment_at_a_time():
     assert jig_device(whole, fabrication()) is whole
 
 
-@pytest.mark.parametrize("name", ["cell", "only the film runs through"])
+@for_each("name", ["cell", "only the film runs through"])
 def test_islands_and_spacers_fill_the_array(name):
     """Along each direction: the islands and the strips between them; notches as wide as the strip that they take."""
     device, made = device_of(name)
@@ -252,7 +253,7 @@ REFUSED = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize(("array", "segment", "made", "sentence"), REFUSED.values(), ids=REFUSED)
+@for_each(("array", "segment", "made", "sentence"), REFUSED.values(), ids=REFUSED)
 def test_arrays_that_cannot_be_made_are_refused(array, segment, made, sentence):
     def make():
         device = a_device(array, made=made, **segment)

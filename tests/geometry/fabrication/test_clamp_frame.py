@@ -9,6 +9,7 @@ from geometry.fabrication.parameters import Fabrication
 from geometry.fabrication.part import box, volume
 from geometry.parameters import Effector
 from geometry.solids import layer_solids
+from tests.cases import for_each
 
 GLUE, AIR = 0.05, 0.3
 
@@ -66,7 +67,7 @@ def test_the_dot_reaches_the_top_of_the_segment(make_kit_segment):
             assert volume(part.solid.intersect(above)) < 1e-9
 
 
-@pytest.mark.parametrize(("side", "axis", "end"), [("+x", 0, 1), ("-x", 0, 0), ("+y", 1, 1), ("-y", 1, 0)])
+@for_each(("side", "axis", "end"), [("+x", 0, 1), ("-x", 0, 0), ("+y", 1, 1), ("-y", 1, 0)])
 def test_the_cable_leaves_on_its_side(make_kit_segment, side, axis, end):
     body = parts_of(make_kit_segment(), cable_exit=side)["frame-body"].solid
     low, high = tuple(body.bounding_box().min), tuple(body.bounding_box().max)

@@ -9,6 +9,7 @@ from geometry.fabrication.parameters import Fabrication
 from geometry.fabrication.part import box, volume
 from geometry.parameters import Effector
 from geometry.solids import layer_solids
+from tests.cases import for_each
 
 CYLINDER = Effector(shape="cylinder", diameter_mm=1.6, height_mm=0.7)
 
@@ -17,7 +18,7 @@ def parts_of(segment, **keys):
     return {part.label: part.solid for part in jig_parts(lone_device(segment), Fabrication(**keys))}
 
 
-@pytest.mark.parametrize("side", ["+x", "-x", "+y", "-y"])
+@for_each("side", ["+x", "-x", "+y", "-y"])
 def test_two_sides_of_every_layer_touch_the_stops_and_two_are_open(make_kit_segment, side):
     segment = make_kit_segment(boundary="free", length_mm=3.0)
     jig = parts_of(segment, cable_exit=side)["jig"]
@@ -72,7 +73,7 @@ def test_the_locator_of_a_block_turns_with_the_cable(make_kit_segment):
         assert locator.distance_to(box((-1.0, 1.0), (-0.5, 0.5), (2.6, 3.6))) == pytest.approx(0.05)
 
 
-@pytest.mark.parametrize("pin", [0.6, 1.5, 3.0, 5.0])
+@for_each("pin", [0.6, 1.5, 3.0, 5.0])
 def test_every_hole_of_the_locator_has_a_wall_around_it(make_kit_segment, pin):
     """At least wall_mm, the thickness of outer walls, from each pin's hole to the edges and to the effector's hole."""
     dome = Effector(shape="dome", diameter_mm=2.0, height_mm=0.8)

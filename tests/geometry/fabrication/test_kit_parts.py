@@ -52,7 +52,7 @@ def test_step_volumes_come_back(written):
         assert found[part.label].volume == pytest.approx(part.volume_mm3, rel=1e-6)
 
 
-@pytest.mark.slow
+@pytest.mark.press
 @pytest.mark.skipif(shutil.which("prusa-slicer") is None, reason="PrusaSlicer is not installed")
 def test_prusaslicer_slices_every_part_without_a_manifold_warning(written, tmp_path):
     design, folder = written

@@ -7,6 +7,7 @@ from geometry.fabrication.device import lone_device
 from geometry.fabrication.kit import solid_kit
 from geometry.fabrication.parameters import Fabrication
 from geometry.parameters import Effector, Medium
+from tests.cases import for_each
 
 DOME = Effector(shape="dome", diameter_mm=2.0, height_mm=0.8)
 REFUSED = {
@@ -61,7 +62,7 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize(("changes", "keys", "start", "limit"), REFUSED.values(), ids=REFUSED)
+@for_each(("changes", "keys", "start", "limit"), REFUSED.values(), ids=REFUSED)
 def test_refusals(make_kit_segment, changes, keys, start, limit):
     with pytest.raises(InputError) as refused:
         solid_kit(lone_device(make_kit_segment(**changes)), Fabrication(**{"cavities": (1, 1), **keys}))

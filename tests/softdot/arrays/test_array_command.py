@@ -67,7 +67,7 @@ def test_check_tells_the_cost_of_all_presses(tmp_path, capfd):
     assert told["expected"]["tetrahedra"] > 500
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_a_pair_of_segments_gives_its_folder(tmp_path, capfd, monkeypatch):
     """Matrix, cell, sides, variants; a second run solves only the press that is drawn."""
     monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path / "cache"))

@@ -39,6 +39,7 @@ def summary(tmp_path_factory):
     return told | {"page": (folder / "out" / "kit.html").read_text("utf-8"), "folder": folder / "out"}
 
 
+@pytest.mark.press
 def test_the_kit_of_a_cell_has_its_files(summary):
     names = {path.name for path in (summary["folder"] / "cut").iterdir()}
     assert {"film.dxf", "film.svg", "mask-top.dxf", "mask-bottom.dxf", "spacer-x.dxf", "spacer-y.svg"} <= names
@@ -120,7 +121,7 @@ def test_the_budget_presses_one_segment_held_as_its_grid_holds_it(tmp_path):
     assert (held.segment.boundary, held.segment.held_layers) == ("clamped", ("medium1", "film"))
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_whole_kit_of_a_pair(tmp_path, capsys):
     """With moulds, pictures and the budget of a lone segment, which is the budget of that segment itself."""
     from matplotlib.image import imread

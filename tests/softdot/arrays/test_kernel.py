@@ -15,6 +15,7 @@ from softdot.arrays.kernel_presses import KernelPress, KernelTask, filled, grid_
 from softdot.arrays.matrix import crosstalk
 from softdot.arrays.presses import ArrayPresses
 from softdot.config import load_config
+from tests.cases import for_each
 
 CELL = Path(__file__).parents[3] / "examples" / "array-cell.toml"
 X, Y, DEPTH = np.linspace(-3.0, 3.0, 13), np.linspace(-2.0, 2.0, 9), np.linspace(0.0, 0.4, 5)
@@ -183,7 +184,7 @@ def test_cells_by_chance_stand_where_their_dots_are_said_to_be():
         np.testing.assert_allclose(np.abs(away - shift).max(axis=2).min(axis=1), 0.0, atol=1e-9)
 
 
-@pytest.mark.parametrize(("settings", "images"), [([], 4), (["array.cells=2", "array.cell_pitch_mm=6.0"], 2)])
+@for_each(("settings", "images"), [([], 4), (["array.cells=2", "array.cell_pitch_mm=6.0"], 2)])
 def test_every_cell_is_pressed_once_or_a_mirror_image_of_it(settings, images):
     case = ArrayCase(load_config(CELL, settings))
     middles = case.layout.middles
@@ -220,7 +221,7 @@ def test_what_a_table_over_depth_does_not_hold_is_refused(tmp_path, setting, sen
         ArrayCase(load_config(path, [setting])).refuse_kernel()
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_a_kernel_foretells_presses_that_took_no_part_in_it():
     settings = [
         "array.rows=1", "press.indentation_mm=0.2", "press.load_steps=3", "mesh.element_size_mm=0.6",

@@ -12,6 +12,7 @@ from softdot.arrays.matrix import CrosstalkMatrix, crosstalk
 from softdot.arrays.presses import ArrayPresses, Signals, StoppedPressError, signals
 from softdot.arrays.side_stiffness import representatives, role
 from softdot.config.model import model_of
+from tests.cases import for_each
 from tests.verification.array_cases import array
 
 
@@ -118,7 +119,7 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("name", REFUSED)
+@for_each("name", REFUSED)
 def test_what_an_array_does_not_take_is_refused_by_name(name):
     changes, sentence = REFUSED[name]
     tables = {key: value for key, value in changes.items() if key not in ("press", "mesh")}

@@ -17,6 +17,7 @@ from diagnose.verdict.words import sentences
 from softdot.commands.verdict_page import page_text
 from softdot.console import plain
 from solve.mechanisms import MECHANISMS
+from tests.cases import for_each
 from tests.diagnose.verdict.toy import LEAK, RELAXING, ToyEngine, fitted, found, toy_recording
 
 UNITS = ("MOhm", "pF", "Hz", "V", "s", "K", "pC", "MPa", "mm", "um", "N_per_mm3", "mm_per_N", "g")
@@ -93,7 +94,7 @@ def significant(text):
     return max(len(digits), 1)
 
 
-@pytest.mark.parametrize(("mechanism", "component"), PLACES)
+@for_each(("mechanism", "component"), PLACES)
 def test_a_parameter_has_one_value_in_headline_table_and_file(recording, of_the_toy, mechanism, component):
     for ends in INTERVALS.values():
         printed_alike(recording, of_the_toy, model_of(mechanism, component, ends))
@@ -144,8 +145,8 @@ def test_an_end_that_the_search_set_is_called_so(recording, of_the_toy):
 ERRORS = [(1.0, 0.011, 0.017), (0.84, 0.03, 0.026), (1234.5, 1e-7, 3e-9), (0.5, 0.5, 0.5), (0.02, 0.031, 0.01)]
 
 
-@pytest.mark.parametrize(("before", "after", "noise"), ERRORS)
-@pytest.mark.parametrize("named", [True, False], ids=["named", "unexplained"])
+@for_each(("before", "after", "noise"), ERRORS)
+@for_each("named", [True, False], ids=["named", "unexplained"])
 def test_an_error_has_one_value_and_a_definition(recording, of_the_toy, before, after, noise, named):
     fit = Fit(("slow, press 1",), before, after, noise, 17.0)
     parts = {"held_out": fit} if named else {"best": None, "unexplained": True, "unnamed": fit, "reasons": ("Why.",)}
@@ -182,7 +183,7 @@ def test_the_error_of_the_full_model_is_told_as_its_own(recording, of_the_toy):
     assert "It can therefore differ from the error of the fast model on all presses" in body
 
 
-@pytest.mark.parametrize("p", [0.0, 1e-320, 1e-17, 1e-9, 0.001, 0.4, 1.0])
+@for_each("p", [0.0, 1e-320, 1e-17, 1e-9, 0.001, 0.4, 1.0])
 def test_no_probability_is_nothing(recording, of_the_toy, p):
     models = tuple(replace(one, p_left=p, probability=p) for one in of_the_toy.models)
     detection = replace(of_the_toy.detection, p_value=p, least_p_value=0.001)

@@ -26,6 +26,7 @@ from softdot.paper.analytical import (
 )
 from softdot.paper.analytical.tables import misprinted, recomputed
 from softdot.paper.published import published, table_rows
+from tests.cases import for_each
 
 L = 2.5e-3
 FILM = Lamina(28e-6, 2e9)
@@ -64,7 +65,7 @@ def test_the_two_media_share_the_depth_like_springs_in_series():
     assert sum(shares(1.0, 7.0)) == pytest.approx(1.0)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("s1", "s2", "line", "output"),
     [(1.0, 250.0, "medium1", 1 / 251), (1.0, 2.5, "both", 1.0), (50.0, 1.0, "medium2", 1 / 51)],
 )
@@ -111,7 +112,7 @@ def test_stretch_of_a_strip_that_is_deflected_to_a_triangle():
     assert stretch_of_deflected_strip(u, L) == pytest.approx(0.0288)
 
 
-@pytest.mark.parametrize("ends", ["supported", "clamped"])
+@for_each("ends", ["supported", "clamped"])
 def test_curvature_under_the_force_is_the_moment_over_the_stiffness(ends):
     inertia, modulus = 1e-12, 5e6
     moment = {"supported": 1 / 4, "clamped": 1 / 8}[ends] * L  # of 1 N at the middle

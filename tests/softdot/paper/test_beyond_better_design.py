@@ -5,6 +5,7 @@ import pytest
 from softdot.outcome import outcome
 from softdot.paper.beyond.designs import PAPERS, Design, DesignTrial, design_config, press_of
 from softdot.paper.beyond.search import beats
+from tests.cases import for_each
 
 FOUND = Design(0.41, 1.1, 1.3, 2.9, 0.41, 0.58, 52.0)
 MESH = {"element_size_mm": 0.6, "contact_element_size_mm": 0.3}
@@ -18,8 +19,8 @@ def pressed(design, mesher):
     return DesignTrial(design, *presses)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("mesher", ["layered", "pytetwild"])
+@pytest.mark.evidence
+@for_each("mesher", ["layered", "pytetwild"])
 def test_more_voltage_in_the_worse_boundary_at_no_more_film_stress_and_force(mesher):
     found, papers = pressed(FOUND, mesher), pressed(PAPERS, mesher)
     assert beats(found, papers)

@@ -18,6 +18,7 @@ from softdot.paper.beyond.designs import (
 )
 from softdot.paper.beyond.search import elastic
 from softdot.paper.published import segment_config
+from tests.cases import for_each
 
 COARSE = {"element_size_mm": 0.6, "contact_element_size_mm": 0.3, "mesher": "layered"}
 
@@ -43,12 +44,13 @@ def test_coordinates_span_the_unit_cube():
     assert coordinates([LOW, HIGH]) == pytest.approx(np.array([np.zeros(7), np.ones(7)]))
 
 
-@pytest.mark.parametrize("reading", ["plane-strain", "solid"])
+@for_each("reading", ["plane-strain", "solid"])
 def test_the_paper_s_design_is_the_one_of_the_other_parts(reading):
     theirs = segment_config("free", 0.5, 1.0, reading, load_steps=3, mesh=COARSE)
     assert design_config(PAPERS, "free", reading, COARSE) == theirs
 
 
+@pytest.mark.press
 def test_springs_join_the_free_and_the_clamped_press():
     """Springs that are nearly nothing press like free sides, nearly rigid ones like clamped sides."""
     free, clamped = (design_config(PAPERS, side, "plane-strain", COARSE) for side in ("free", "clamped"))

@@ -20,6 +20,7 @@ from softdot.paper.beyond.designs import (
 )
 from softdot.paper.published import INDENTATION_MM, LENGTH_MM
 from solve.materials.parameters import VACUUM_PERMITTIVITY
+from tests.cases import for_each
 
 GIVE, REST = 0.5, 0.3
 
@@ -101,6 +102,6 @@ def test_a_thicker_free_film_adds_only_what_the_pressure_gives():
     assert thick - thin == pytest.approx(added)
 
 
-@pytest.mark.parametrize("softer", [{"e1_MPa": 1.0}, {"e2_MPa": 0.2}, {"effector_MPa": 0.2}, {"h2_mm": 4.0}])
+@for_each("softer", [{"e1_MPa": 1.0}, {"e2_MPa": 0.2}, {"effector_MPa": 0.2}, {"h2_mm": 4.0}])
 def test_a_softer_free_stack_pushes_back_less(softer):
     assert free_force_N_per_mm(of(**softer)) < free_force_N_per_mm(of())

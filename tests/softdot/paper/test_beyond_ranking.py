@@ -56,6 +56,7 @@ def test_half_way_lies_in_the_middle_of_an_even_rise():
     assert curve.voltage_at_V(middle) == pytest.approx(55.0)
 
 
+@pytest.mark.press
 def test_the_section_shows_every_figure_and_no_empty_number(study, tmp_path):
     section = section_of(study, tmp_path)
     assert len(section.figures) == 5

@@ -11,6 +11,7 @@ from softdot.paper.beyond import search as searching
 from softdot.paper.beyond.designs import PAPERS, DesignPress, DesignTrial, coordinates, sample
 from softdot.paper.beyond.ranking import Surrogate
 from softdot.paper.beyond.search import GOALS, beats, capacitance_pF, limits_of, to_beat
+from tests.cases import for_each
 from tests.softdot.paper import stand_in_beyond as stand_in
 
 
@@ -78,8 +79,8 @@ def found():
         return searching.search(Logged(), HERE, stand_in.CONSTANTS)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("goal", GOALS)
+@pytest.mark.evidence
+@for_each("goal", GOALS)
 def test_the_search_finds_what_many_times_as_many_random_designs_find(found, goal):
     best, crowd = found.best(goal), stand_in.trials(sample(11, 99))
     assert best is found.papers or found.limits.allow(best)
@@ -88,7 +89,7 @@ def test_the_search_finds_what_many_times_as_many_random_designs_find(found, goa
     )
 
 
-@pytest.mark.slow
+@pytest.mark.evidence
 def test_no_design_is_tried_twice(found):
     points = coordinates([each.design for each in found.trials])
     apart = np.linalg.norm(points[:, None] - points[None], axis=2) + 10 * np.eye(len(points))

@@ -5,16 +5,17 @@ import pytest
 from scipy.integrate import cumulative_trapezoid
 
 from softdot.paper.calibration.rig import BENDING_STIFFNESS_N_MM2, dot_depth_mm, tip_stiffness_N_per_mm
+from tests.cases import for_each
 
 LENGTH_MM, FORCE_N, READ_MM = 80.0, 0.7, 0.9
 
 
-@pytest.mark.parametrize("force_N", [0.0, 0.5, 5.0])
+@for_each("force_N", [0.0, 0.5, 5.0])
 def test_pushed_over_the_dot_the_gauge_reads_the_depth_whatever_the_sensor_does(force_N):
     assert dot_depth_mm(READ_MM, lambda _depth: force_N, LENGTH_MM, 0.0) == pytest.approx(READ_MM, rel=1e-9)
 
 
-@pytest.mark.parametrize("offset_mm", [5.0, 2.0, -3.0])
+@for_each("offset_mm", [5.0, 2.0, -3.0])
 def test_the_deflection_is_the_curvature_integrated_twice(offset_mm):
     """With the depth that the sensor's force bends back, the moment at the clamp is what the gauge reads."""
     depth = dot_depth_mm(READ_MM, lambda _depth: FORCE_N, LENGTH_MM, offset_mm)

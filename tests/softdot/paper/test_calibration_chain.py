@@ -6,11 +6,12 @@ import pytest
 from softdot.paper.calibration.factor import LOW_PASS_HZ, SAMPLES, Chain, pressed, recorded_V, swing_V, times_s
 from solve.model import Physics, Readout
 from solve.readout.amplifier import amplify
+from tests.cases import for_each
 
 CHARGE_PC, FILM_PF = 4000.0, 971.0
 
 
-@pytest.mark.parametrize("press_time_s", [0.2, 0.5])
+@for_each("press_time_s", [0.2, 0.5])
 def test_far_below_the_corner_the_voltage_is_resistance_times_current(press_time_s):
     """A raised cosine is fastest half-way, with pi Q / 2 T, once in each direction; R in MΩ times pC/s is µV."""
     charge = CHARGE_PC * pressed(press_time_s)
@@ -28,7 +29,7 @@ def test_the_cable_hardly_counts_where_charge_leaks_fast():
     assert far == pytest.approx(near, rel=1e-3)
 
 
-@pytest.mark.parametrize("resistance_MOhm", [1.0, 100.0])
+@for_each("resistance_MOhm", [1.0, 100.0])
 def test_the_periodic_solution_is_where_integration_in_time_ends(resistance_MOhm):
     charge, presses = CHARGE_PC * pressed(1 / 3) ** 1.7, 10
     readout = Readout(

@@ -6,10 +6,11 @@ from softdot.outcome import outcome
 from softdot.paper.calibration import section_of
 from softdot.paper.calibration.rig import CASES, constant_sponge, foam, rig_config
 from softdot.paper.published import published
+from tests.cases import for_each
 from tests.softdot.paper.stand_in_rig import rig
 
 
-@pytest.mark.parametrize("name", ["I", "II"])
+@for_each("name", ["I", "II"])
 def test_the_rig_is_that_of_table_1(name):
     config = rig_config(CASES[name], "solid", constant_sponge(0.3), 0.8)
     numbers = published()
@@ -29,7 +30,7 @@ def test_a_finer_mesh_is_finer_in_every_size():
     assert finer.mesher == plain.mesher
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_a_slightly_pressed_foam_is_the_constant_sponge():
     """Both laws have 50 kPa at small strain; deep down the foam gives way."""
 
@@ -45,7 +46,7 @@ def test_a_slightly_pressed_foam_is_the_constant_sponge():
     assert force(foam(12.0, 0.1), 0.8) < 0.75 * force(constant_sponge(0.1), 0.8)
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_a_stiff_film_on_soft_foam_is_pressed_to_full_depth():
     """Rounding of the film's own forces exceeds a billionth of the load; the press must not stop there."""
     found = outcome(rig_config(CASES["II"], "plane-strain", foam(12.0, 0.05), 0.8))
@@ -53,6 +54,7 @@ def test_a_stiff_film_on_soft_foam_is_pressed_to_full_depth():
     assert found["indentation_mm"][-1] == pytest.approx(1.57)
 
 
+@pytest.mark.press
 def test_the_section_has_its_figures_tables_and_words(tmp_path):
     section = section_of(rig(), tmp_path, 4)
     assert {figure.path.name for figure in section.figures} == {

@@ -44,6 +44,7 @@ def test_every_part_of_the_page_is_found():
     assert FIND("analytical") is analytical
 
 
+@pytest.mark.press
 def test_the_folder_holds_page_numbers_figures_and_tables(made):
     assert sorted(path.name for path in made.iterdir()) == ["figures", "log.txt", "paper.html", "paper.json", "tables"]
     assert {"segment.png", "fig07-free.png", "fig08-clamped.png", "fig10-selected.png"} <= {
@@ -89,11 +90,13 @@ def test_tables_are_csv_files_with_equally_long_rows(made):
         assert len(lengths) == 1, file
 
 
+@pytest.mark.press
 def test_json_goes_to_standard_output(tmp_path, capfd):
     assert main(["paper", "-o", str(tmp_path / "out"), "--json"]) == 0
     assert json.loads(capfd.readouterr().out)["format"] == "softdot-paper/1"
 
 
+@pytest.mark.press
 def test_a_study_is_replaced_but_a_foreign_folder_is_refused(made, tmp_path, capsys):
     assert main(["paper", "-o", str(made)]) == 0
     (tmp_path / "mine").mkdir()

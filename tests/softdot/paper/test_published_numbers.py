@@ -3,6 +3,7 @@
 import pytest
 
 from softdot.paper.published import inconsistencies, published, table_rows
+from tests.cases import for_each
 
 
 def test_what_the_paper_contradicts_itself_in_is_flagged_beside_the_printed_value():
@@ -19,7 +20,7 @@ def test_every_misprint_belongs_to_a_number():
     assert len(flagged) == 11
 
 
-@pytest.mark.parametrize("sum_", ["C1+F4", "C4+F2"])
+@for_each("sum_", ["C1+F4", "C4+F2"])
 def test_voltages_per_depth_are_the_voltages_over_0_3_mm(sum_):
     numbers = published()
     volts = numbers[f"section4.sum.{sum_}"].value / 1000

@@ -4,6 +4,7 @@ import pytest
 
 from softdot.paper.segments.cases import CASES
 from softdot.paper.segments.trends import SHORT_NAMES, TRENDS, claims
+from tests.cases import for_each
 from tests.softdot.paper.stand_in_study import press, study
 
 SLICE = SHORT_NAMES["plane-strain"]
@@ -16,7 +17,7 @@ def verdict(beginning, **changes):
     return found[0].holds
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("beginning", "broken_by"),
     [
         ("Free sides, hard backing: F1 > F2 > F3", {"F2": press(millivolts=200)}),

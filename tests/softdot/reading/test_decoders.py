@@ -10,6 +10,7 @@ from softdot.reading.decoders.track import tracked
 from softdot.reading.line import DotLine
 from softdot.reading.voltages import Voltages
 from solve.model import Readout
+from tests.cases import for_each
 from tests.softdot.reading.lines import NOMINAL, read, share, simulated
 
 EVERY = np.concatenate([np.random.default_rng(1).permutation(np.arange(1, 64)), [0, 1]])
@@ -17,7 +18,8 @@ EVERY = np.concatenate([np.random.default_rng(1).permutation(np.arange(1, 64)), 
 TEXT = "soft dots, read by touch"
 
 
-@pytest.mark.parametrize(("speed", "offset"), [(5.0, 0.3), (17.0, 0.0), (50.0, -0.4)])
+@pytest.mark.press
+@for_each(("speed", "offset"), [(5.0, 0.3), (17.0, 0.0), (50.0, -0.4)])
 def test_every_cell_is_read_at_any_speed_and_offset(kernel, speed, offset):
     """Nominal dots, no noise; speed and offset are not told."""
     reader, heard = simulated(kernel, EVERY, speed_mm_per_s=speed, offset_mm=offset, **NOMINAL)
@@ -32,7 +34,8 @@ def test_speed_and_yaw_are_found(kernel):
     np.testing.assert_allclose(np.diff(track.passed_s), 6.0 / 12.5, rtol=0.02)
 
 
-@pytest.mark.parametrize(
+@pytest.mark.press
+@for_each(
     "readout",
     [Readout(), Readout(mode="charge", feedback_pF=100.0, feedback_MOhm=1000.0, low_pass_Hz=80.0)],
 )
@@ -47,6 +50,7 @@ def test_the_gain_does_not_matter(kernel):
     assert text_of(read(reader, Voltages(heard.time_s + 100.0, 3.7 * heard.voltage_V))) == TEXT
 
 
+@pytest.mark.press
 def test_less_is_read_the_louder_the_noise(kernel):
     cells = cells_of(TEXT)
     found = []
@@ -72,6 +76,7 @@ def test_a_missing_dot_is_read_as_missing(kernel):
     assert read(reader, heard).tolist() == [63, 31, 63, 27]
 
 
+@pytest.mark.press
 def test_worn_dots_and_hum_are_read_through(kernel):
     """A third of the dots a tenth of a millimetre lower, and a hum ten times the noise."""
     cells = cells_of(TEXT)
@@ -79,12 +84,14 @@ def test_worn_dots_and_hum_are_read_through(kernel):
     assert share(cells, read(reader, heard)) > 0.95
 
 
+@pytest.mark.press
 def test_a_line_with_dots_in_one_column_is_read_as_its_left_one(kernel):
     """Nothing tells the columns apart."""
     reader, heard = simulated(kernel, cells_of("label".replace("e", "k")))
     assert text_of(read(reader, heard)) == "labkl"
 
 
+@pytest.mark.press
 @pytest.mark.parametrize("name", ["threshold", "learned"])
 def test_the_other_decoders_read_a_plain_line(kernel, name, monkeypatch):
     monkeypatch.setattr(learned, "CELLS", 320)
@@ -93,7 +100,8 @@ def test_the_other_decoders_read_a_plain_line(kernel, name, monkeypatch):
     assert share(cells, read(reader, heard, name)) > 0.9
 
 
-@pytest.mark.parametrize("name", ["model", "threshold"])
+@pytest.mark.press
+@for_each("name", ["model", "threshold"])
 def test_every_cell_is_read_by_pressing(kernel, name):
     reader, heard = simulated(kernel, EVERY, mode="press", noise_mV=0.2, offset_mm=0.2)
     np.testing.assert_array_equal(read(reader, heard, name), EVERY)

@@ -21,6 +21,7 @@ from softdot.reading.designs.search import pareto, propose
 from softdot.sweeps.points import failed
 from softdot.sweeps.space import Axis, at, share_of
 from softdot.sweeps.table import read_table
+from tests.cases import for_each
 from tests.softdot.reading.made_kernel import made_kernel
 
 FILE = Path("examples/array-designs.toml")
@@ -37,7 +38,7 @@ def better(one, other):
     return all(a <= b for a, b in zip(one, other, strict=True)) and any(a < b for a, b in zip(one, other, strict=True))
 
 
-@pytest.mark.parametrize("columns", [2, 3])
+@for_each("columns", [2, 3])
 def test_the_front_is_what_no_other_point_is_better_than(columns):
     """With ties, which random integers have many of; two equal points do not beat each other."""
     points = np.random.default_rng(columns).integers(0, 6, (60, columns)).astype(float)
@@ -60,7 +61,7 @@ def test_readings_of_the_front_have_less_of_something():
     assert [row["pareto"] for row in rows] == [True, True, False, True]
 
 
-@pytest.mark.parametrize("true_mm", [0.04, 0.11, 0.19])
+@for_each("true_mm", [0.04, 0.11, 0.19])
 def test_the_least_depth_is_halved(true_mm):
     """A text that is read from a depth on, and not above it."""
     readings = []
@@ -203,6 +204,7 @@ def test_a_kernel_that_fails_is_recorded_and_stops_no_other(tmp_path, monkeypatc
     assert found.best is softest
 
 
+@pytest.mark.press
 def test_a_search_that_was_stopped_goes_on_where_it_was(tmp_path, monkeypatch):
     request, folder = small(tmp_path), tmp_path / FOLDER
     whole = search_with(Workers(), request, tmp_path / "whole", monkeypatch)
@@ -224,6 +226,7 @@ def test_a_worker_that_died_is_an_accident_that_is_tried_again(tmp_path, monkeyp
     assert again.done == ["design 1", "design 3"]
 
 
+@pytest.mark.press
 def test_results_are_one_table_a_picture_and_a_design_that_can_be_pressed(tmp_path, monkeypatch):
     request = small(tmp_path)
     found = search_with(Workers(refuse=("design 2",)), request, tmp_path / FOLDER, monkeypatch)
@@ -323,7 +326,7 @@ contact_element_size_mm = 0.3
 """
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_designs_are_pressed_read_and_kept(tmp_path):
     """From the command line, by a real cluster: two designs on the coarsest mesh, and nothing is pressed twice."""
     text = FILE.read_text("utf-8")

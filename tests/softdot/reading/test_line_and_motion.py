@@ -11,6 +11,7 @@ from softdot.reading.cells import cells_of
 from softdot.reading.conditions import WIDEST_SIGMA, ReadingConditions
 from softdot.reading.line import made_line, nominal_line
 from softdot.reading.motion import ArrayPath, moved, near, reach_mm
+from tests.cases import for_each
 
 MARBURG = standard("marburg-medium")
 
@@ -89,7 +90,7 @@ def test_a_turned_array_sees_the_line_turned(kernel):
     np.testing.assert_allclose(depth, 0.2)
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("given", "said"),
     [
         ({"depth_mm": 0.29}, r"--depth-mm = 0.29: with scatter .* kernel ends at 0.3 mm; give at most 0.2505"),

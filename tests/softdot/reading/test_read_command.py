@@ -19,6 +19,7 @@ def written(kernel_folder, tmp_path_factory):
     return out
 
 
+@pytest.mark.press
 def test_a_folder_says_what_was_read(written):
     told = json.loads((written / "reading.json").read_text("utf-8"))
     assert told["format"] == "softdot-reading/1"
@@ -48,6 +49,7 @@ def recording_of(written, path, channels=6, damage=None):
     return path
 
 
+@pytest.mark.press
 def test_a_recording_is_read_as_the_simulation_was(written, kernel_folder, tmp_path, capfd):
     path = recording_of(written, tmp_path / "heard.csv")
     command = ["read", "--recording", str(path), "--kernel", str(kernel_folder), "--decoders", "model"]
@@ -111,6 +113,7 @@ def test_bad_kernels_are_one_sentence(kernel, tmp_path, capfd):
     assert "kernel.json" in refused(["a", "--kernel", str(tmp_path), "-q"], tmp_path / "out", capfd)
 
 
+@pytest.mark.press
 def test_the_configuration_of_the_kernel_may_bring_its_readout(kernel_folder, tmp_path):
     """Another read-out makes no other design."""
     command = ["read", TEXT, "examples/array-cell.toml", "--set", "readout.input_resistance_MOhm=50"]

@@ -83,6 +83,7 @@ def test_bad_studies_are_one_sentence(kernel, tmp_path, text, said):
         load_study(path, kernel, ReadingConditions())
 
 
+@pytest.mark.press
 def test_a_reading_is_kept_by_all_it_depends_on(kernel_folder, tmp_path):
     conditions = ReadingConditions()
     task = StudyTask(str(kernel_folder), READOUT.model_dump_json(), conditions, "dots", None, "model")
@@ -96,6 +97,7 @@ def test_a_reading_is_kept_by_all_it_depends_on(kernel_folder, tmp_path):
     assert kept(tmp_path, other.key(name)) is None
 
 
+@pytest.mark.press
 def test_several_decoders_read_the_same_voltages(kernel_folder):
     """The first one is what decides; what each of them makes of the voltages is what it makes of them alone."""
     both, alone = (
@@ -123,7 +125,7 @@ def test_what_is_refused_says_why(kernel_folder):
     assert read_task(task)["reason"].startswith("--depth-mm = 0.9")
 
 
-@pytest.mark.slow
+@pytest.mark.press
 def test_a_study_gives_its_folder_and_goes_on(kernel_folder, tmp_path):
     path, out = tmp_path / "conditions.toml", tmp_path / "out"
     path.write_text('text = "soft dots"\nrepeats = 1\n[axes]\nnoise_mV = [1, 40]\n', "utf-8")

@@ -6,6 +6,7 @@ import pytest
 from geometry.base import InputError
 from softdot.printed_braille.request import english_table, liblouis
 from softdot.reading.cells import MOST_CELLS, braille, cells_of, text_of
+from tests.cases import for_each
 
 TEXTS = (
     "soft dots, read by touch",
@@ -17,7 +18,7 @@ TEXTS = (
 )
 
 
-@pytest.mark.parametrize("text", TEXTS)
+@for_each("text", TEXTS)
 def test_what_is_written_is_read_again(text):
     assert text_of(cells_of(text)) == text
 
@@ -44,7 +45,7 @@ def test_cells_are_the_bits_of_unicode():
     assert cells_of("d").tolist() == [0b011001]
 
 
-@pytest.mark.parametrize(
+@for_each(
     ("text", "said"),
     [
         ("caf\u00e9", r"text: 'é' \(U\+00E9, latin small letter e with acute\) at place 4"),

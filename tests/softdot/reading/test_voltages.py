@@ -11,6 +11,7 @@ from softdot.reading.decoders.templates import Posture, templates
 from softdot.reading.kernels import electronics_of
 from softdot.reading.voltages import Reader, Voltages, behind_readout, charge_again_pC
 from solve.model import Readout
+from tests.cases import for_each
 from tests.softdot.reading.lines import NOMINAL, READOUT, simulated
 
 
@@ -59,7 +60,7 @@ def test_what_a_reading_does_not_know_of_the_circuit_is_refused(kernel):
         electronics_of(own, Readout())
 
 
-@pytest.mark.parametrize(
+@for_each(
     "readout",
     [READOUT, Readout(), Readout(input_resistance_MOhm=500.0), Readout(mode="charge", feedback_pF=100.0, polarity=-1)],
 )
