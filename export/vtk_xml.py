@@ -50,7 +50,7 @@ def data_array(name: str, values: NDArray[Any], components: Sequence[str] = (), 
     return told.encode() + b' format="binary">\n' + encoded(values) + b"\n</DataArray>\n"
 
 
-class Grid:
+class VtkGrid:
     """Cells of one type and their points, encoded; points (n, 3) in mm, cells (m, nodes per cell) of a VTK type."""
 
     def __init__(self, points_mm: Floats, cells: Ints, cell_type: int) -> None:

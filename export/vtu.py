@@ -12,7 +12,7 @@ import numpy as np
 from export.dot_surface import placed_dot
 from export.recovery import film_patches
 from export.skin import MM_PER_M, MPA_PER_PA, PC_PER_MM2_PER_C_PER_M2, split_nodes, spread
-from export.vtk_xml import Arrays, Grid
+from export.vtk_xml import Arrays, VtkGrid
 from geometry.arrays import Ints
 from geometry.dot import DotShape
 from geometry.files import whole_folder
@@ -110,7 +110,7 @@ def step_times(result: PressResult) -> list[float]:
 
 def _segment(tet_mesh: TetMesh) -> WriteStep:
     """The whole segment as quadratic tetrahedra."""
-    grid, region = Grid(tet_mesh.points_mm, tet_mesh.tets, QUADRATIC_TETRA), tet_mesh.region.astype(np.int32)
+    grid, region = VtkGrid(tet_mesh.points_mm, tet_mesh.tets, QUADRATIC_TETRA), tet_mesh.region.astype(np.int32)
     names = {f"region_{name}": (np.array([number], np.int32), ()) for number, name in enumerate(tet_mesh.region_names)}
 
     def write(step: Step, path: Path) -> None:
@@ -132,7 +132,7 @@ def _parts(tet_mesh: TetMesh) -> WriteStep:
     """A block for each part, in a file of its own in the folder of their name; fields at nodes jump between parts."""
     split = split_nodes(tet_mesh)
     own = [_compact(split.tets[tet_mesh.region == number]) for number in range(len(tet_mesh.region_names))]
-    grids = [Grid(tet_mesh.points_mm[split.node[nodes]], tets, QUADRATIC_TETRA) for nodes, tets in own]
+    grids = [VtkGrid(tet_mesh.points_mm[split.node[nodes]], tets, QUADRATIC_TETRA) for nodes, tets in own]
 
     def write(step: Step, path: Path) -> None:
         fields, folder = step.fields, path.with_suffix("")
@@ -156,7 +156,7 @@ def _film(tet_mesh: TetMesh) -> WriteStep:
     """The film's tetrahedra alone, in the film's own axes."""
     patches, count = film_patches(tet_mesh), len(tet_mesh.points_mm)
     nodes, tets = _compact(tet_mesh.tets[tet_mesh.region_tets("film")])
-    grid = Grid(tet_mesh.points_mm[nodes], tets, QUADRATIC_TETRA)
+    grid = VtkGrid(tet_mesh.points_mm[nodes], tets, QUADRATIC_TETRA)
 
     def write(step: Step, path: Path) -> None:
         fields = step.fields
@@ -178,7 +178,7 @@ def _film(tet_mesh: TetMesh) -> WriteStep:
 def _contact(tet_mesh: TetMesh) -> WriteStep:
     """The skin that the dot can touch, as quadratic triangles."""
     nodes, triangles = _compact(tet_mesh.facets["contact"])
-    grid = Grid(tet_mesh.points_mm[nodes], triangles, QUADRATIC_TRIANGLE)
+    grid = VtkGrid(tet_mesh.points_mm[nodes], triangles, QUADRATIC_TRIANGLE)
 
     def write(step: Step, path: Path) -> None:
         fields = step.fields

@@ -16,6 +16,8 @@ def for_each(names: str | tuple[str, ...], cases: Iterable[Any], ids: Any = None
     """
     taken = tuple(name.strip() for name in names.split(",")) if isinstance(names, str) else tuple(names)
     table = [ParameterSet.extract_from(case, force_tuple=len(taken) == 1) for case in cases]
+    if any(case.marks for case in table):
+        raise TypeError("cases with marks of their own are selected one by one: use pytest.mark.parametrize")
     told = [None] * len(table) if ids is None or callable(ids) else [*ids]
 
     def decorated(test: Callable[..., None]) -> Callable[..., None]:

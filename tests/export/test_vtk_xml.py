@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 import pyvista
 
-from export.vtk_xml import BLOCK, Grid, encoded
+from export.vtk_xml import BLOCK, VtkGrid, encoded
 
 QUADRATIC_TRIANGLE = 22
 
 
 def grid_of(cells):
     points = np.random.default_rng(0).standard_normal((6 * cells, 3))
-    return Grid(points, np.arange(6 * cells).reshape(-1, 6), QUADRATIC_TRIANGLE), points
+    return VtkGrid(points, np.arange(6 * cells).reshape(-1, 6), QUADRATIC_TRIANGLE), points
 
 
 @pytest.mark.parametrize("cells", [1, BLOCK // 8, BLOCK // 8 + 1])  # one block, just a block, a little more

@@ -127,7 +127,7 @@ ALL += [pytest.param(*case, id=name, marks=pytest.mark.evidence) for name, case 
 
 
 @pytest.mark.press
-@for_each(("planes", "tables"), ALL)
+@pytest.mark.parametrize(("planes", "tables"), ALL)
 def test_part_and_whole_agree(planes, tables):
     case = Case(**{"mesh": COARSE, "press": PRESS, **tables})
     assert case.planes == planes

@@ -13,7 +13,6 @@ import pytest
 
 from softdot.outcome import solved
 from softdot.paper.published import segment_config
-from tests.cases import for_each
 
 MESHERS = [pytest.param("layered"), pytest.param("pytetwild", marks=pytest.mark.evidence)]
 FINE_MM = 0.15, 0.151, 0.152  # half the default, a fourth of the error; every size is another mesh of pytetwild
@@ -36,8 +35,8 @@ def reading(mesher, boundary, h1_mm, e2_MPa):
 
 
 @pytest.mark.press
-@for_each("mesher", MESHERS)
-@for_each(
+@pytest.mark.parametrize("mesher", MESHERS)
+@pytest.mark.parametrize(
     ("boundary", "h1_mm", "e2_MPa", "force_N"),
     [
         ("free", 0.8, SOFT, 0.61),
@@ -52,8 +51,8 @@ def test_forces(mesher, boundary, h1_mm, e2_MPa, force_N):
     assert reading(mesher, boundary, h1_mm, e2_MPa)[0] == pytest.approx(force_N, rel=0.03)
 
 
-@for_each("mesher", MESHERS)
-@for_each(
+@pytest.mark.parametrize("mesher", MESHERS)
+@pytest.mark.parametrize(
     ("cases", "millivolts"),
     [
         ((("clamped", 0.8, SOFT), ("free", 0.8, SOFT)), 433),
@@ -69,7 +68,7 @@ def test_voltages(mesher, cases, millivolts):
 
 
 @pytest.mark.evidence
-@for_each(
+@pytest.mark.parametrize(
     "case",
     [("free", 0.8, SOFT), ("clamped", 0.8, SOFT), ("free", 0.5, MIDDLE), ("clamped", 0.5, MIDDLE)],
 )
