@@ -144,6 +144,7 @@ def test_every_part_can_be_printed(contents):
     refuse_unprintable(contents)
 
 
+@pytest.mark.press
 def test_every_instruction_fits_its_shape(contents):
     refuse_what_the_shape_has_not(contents)
 

@@ -225,6 +225,7 @@ def test_nesting_without_end_is_refused(write_config, tmp_path, capfd):
     assert said == f"configuration '{config}': brackets are nested too deeply"
 
 
+@pytest.mark.process
 @pytest.mark.parametrize("levels", [200, 20_000])
 def test_a_key_of_many_levels_is_refused(write_config, tmp_path, capfd, levels):
     config = write_config(".".join(["x"] * levels) + " = 1", base="")

@@ -76,6 +76,7 @@ def test_dots_of_the_exported_surface_have_the_sizes_of_the_standard(written):
     assert dots[:, 3] == pytest.approx(height, abs=0.01)
 
 
+@pytest.mark.press
 def test_a_reader_above_reads_the_word_at_the_pitches_of_the_standard(written):
     """Every dot lies within 0.01 mm of a place of the grid that the pitches give, and the places spell braille."""
     (_, _, pitch, cell_pitch), folder = written

@@ -128,6 +128,7 @@ def test_the_dot_does_the_work_that_the_array_stores():
     assert follow(setup, setup.targets(False)).error < 0.01
 
 
+@pytest.mark.press
 def test_electrodes_behind_amplifiers_of_their_own_act_back_one_by_one():
     """Islands: the pressed one is the lone segment behind the same amplifier, the other reads nothing."""
     tables = {

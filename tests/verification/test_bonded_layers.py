@@ -1,5 +1,7 @@
 """Layers bonded between rigid plates at other ratios and shapes than those of softdot verify."""
 
+import pytest
+
 from softdot.verify.problems.bonded import disc_formula, disc_modulus, strip_formula, strip_modulus
 from tests.cases import for_each
 from tests.verification.row import agrees
@@ -20,6 +22,7 @@ def test_thin_bonded_strip_by_the_formula_for_rubber(poisson_ratio, reference):
     agrees(f"bonded strip S 8, nu {poisson_ratio}, K >> G", strip_modulus(8.0, 1.0, poisson_ratio), reference, 0.05)
 
 
+@pytest.mark.press
 @for_each("poisson_ratio", RATIOS)
 def test_thin_bonded_disc(poisson_ratio):
     """Diameter 32, height 1: S = R / (2 h) = 8."""

@@ -279,6 +279,7 @@ def test_a_cap_that_slides_drags_with_about_the_coefficient_times_its_pressure()
         assert area @ body.friction[:, 0] == pytest.approx(sign * 0.3 * (area @ body.pressure), rel=0.05)
 
 
+@pytest.mark.press
 @for_each("coefficient", [0.3, 0.8])
 @for_each("kind", ["plate", "cap"])
 def test_newton_needs_few_iterations(kind, coefficient):

@@ -1,6 +1,7 @@
 """Clamped plates and beams of solid elements against the theories of thin bodies, beside those of softdot verify."""
 
 import numpy as np
+import pytest
 
 from softdot.verify.body import solid_body
 from softdot.verify.lattice import grid
@@ -24,6 +25,7 @@ def central_load(ratio: float) -> float:
 CASES = [("pressure", pressure_load, 1.0), ("central force", central_load, 0.05)]
 
 
+@pytest.mark.press
 @for_each(("name", "load", "patch"), CASES, ids=["pressure", "central force"])
 @for_each("ratio", [0.1, 1.0, 2.0])
 def test_clamped_plate_follows_von_karman(name, load, patch, ratio):

@@ -130,6 +130,7 @@ def test_every_candidate_is_off_at_zero_and_answers_within_its_bounds(kind, mate
                 assert one.derived(tuple(at)).keys() | one.parameters(tuple(at)).keys() <= one.units.keys()
 
 
+@pytest.mark.press
 @for_each("material", MATERIALS)
 def test_the_answer_leaves_the_baseline_smoothly(material):
     """Twice a small value does twice as much; laws of another family (linear, foam) start with a jump of their own."""
@@ -148,6 +149,7 @@ def test_the_answer_leaves_the_baseline_smoothly(material):
             np.testing.assert_allclose(twice, 2.0 * once, atol=2e-3 * np.abs(twice).max() + 1e-9)
 
 
+@pytest.mark.press
 @for_each("kind", KINDS)
 def test_driven_by_its_force_a_coupon_answers_with_travel(kind):
     of = engine(kind, drive="force_N")

@@ -145,6 +145,7 @@ def test_a_medium_that_relaxes_answers_no_earlier_than_the_dot_moves(tmp_path, m
     assert force[held][-1] > 0.8 * force[held][0]
 
 
+@pytest.mark.press
 def test_a_damaged_medium_remembers_the_deeper_press_of_an_earlier_run(tmp_path, monkeypatch):
     monkeypatch.setenv("SOFTDOT_PROOF_CACHE", str(tmp_path))
     small = replace(PAPER, fine=0.2)
@@ -237,6 +238,7 @@ def test_a_film_that_has_yielded_leaves_a_charge_of_opposite_sign():
     assert charges["yields"][2] < -0.002 * charges["elastic"][1]
 
 
+@pytest.mark.press
 def test_one_long_step_finds_the_equilibrium_of_many_short_ones():
     made = replace(PAPER, fine=0.4)
     once, often = pressed(made, 0.3, 1), pressed(made, 0.3, 12)
@@ -244,6 +246,7 @@ def test_one_long_step_finds_the_equilibrium_of_many_short_ones():
     assert once.charge_pC == pytest.approx(often.charge_pC, rel=1e-6)
 
 
+@pytest.mark.press
 def test_a_base_that_is_loose_on_one_side_gives_way_half_as_much_as_on_both():
     made = replace(PAPER, fine=0.4)
     bonded, left, both = (

@@ -45,6 +45,7 @@ def errors(of, setting):
             for name, size in sizes.items()}  # fmt: skip
 
 
+@pytest.mark.press
 def test_the_baseline_is_that_of_the_3d_model(rig):
     told, true = rig.predict(0, []), rig.solve(0, [], silent)
     for name in told:
@@ -118,6 +119,7 @@ def test_a_refinement_leaves_to_the_tables_what_acts_on_them(rig):
     np.testing.assert_allclose(scaled, np.exp(0.4) * without, rtol=1e-9)
 
 
+@pytest.mark.press
 def test_a_compliant_rig_in_the_tables_is_one_in_the_3d_model(rig):
     """The same for one case that needs no press of its own: the fast suite too shall see the 3D model."""
     for error, effect in errors(rig, switched(rig, "rig-compliance", "rig", (0.3,))).values():
@@ -125,6 +127,7 @@ def test_a_compliant_rig_in_the_tables_is_one_in_the_3d_model(rig):
         assert error < 0.02 * effect + KINKS
 
 
+@pytest.mark.press
 def test_all_off_is_the_baseline_exactly(rig):
     plain = rig.predict(0, [])
     for chosen in rig.candidates:
@@ -133,6 +136,7 @@ def test_all_off_is_the_baseline_exactly(rig):
             np.testing.assert_array_equal(off[name], plain[name])
 
 
+@pytest.mark.press
 def test_small_settings_add_up(rig):
     """To first order what two do together is the sum of what each does."""
     moduli = [rig.nuisance(f"modulus.{layer}") for layer in ("medium1", "medium2")]
@@ -146,6 +150,7 @@ def test_small_settings_add_up(rig):
         np.testing.assert_allclose(both[name] - plain[name], alone, atol=0.02 * peak(alone))
 
 
+@pytest.mark.press
 def test_a_nuisance_is_the_factor_of_the_candidate(rig):
     """The same presses serve both."""
     nuisance = rig.nuisance("modulus.medium1")
@@ -156,12 +161,14 @@ def test_a_nuisance_is_the_factor_of_the_candidate(rig):
         np.testing.assert_array_equal(told[name], same[name])
 
 
+@pytest.mark.press
 def test_d31_scales_the_voltage_and_leaves_the_force(rig):
     told, plain = rig.predict(0, [Setting(rig.nuisance("d31"), (np.log(1.1),))]), rig.predict(0, [])
     np.testing.assert_allclose(told["voltage_V"], 1.1 * plain["voltage_V"], rtol=1e-9)
     np.testing.assert_array_equal(told["force_N"], plain["force_N"])
 
 
+@pytest.mark.press
 def test_a_gap_is_a_later_touch(rig):
     """Lost motion of 0.02 mm is a press that is less deep by that much."""
     told = rig.predict(0, [Setting(candidate(rig, "contact-gap", "dot"), (0.02,))])
@@ -169,6 +176,7 @@ def test_a_gap_is_a_later_touch(rig):
     np.testing.assert_allclose(told["force_N"], shallower["force_N"], atol=1e-9)
 
 
+@pytest.mark.press
 def test_hum_has_the_amplitude_and_the_phase_that_its_coordinates_say(rig):
     """Sine and cosine from the first touch on, before the amplifier."""
     hum = candidate(rig, "mains-hum", "readout")
@@ -179,6 +187,7 @@ def test_hum_has_the_amplitude_and_the_phase_that_its_coordinates_say(rig):
     assert hum.parameters((0.03, 0.04))["amplitude_V"] == pytest.approx(0.05)
 
 
+@pytest.mark.press
 def test_what_stands_behind_the_film_leaves_the_course_of_the_dot(rig, monkeypatch):
     """Leaks of three sizes beside a softer medium: the dot is followed once."""
     softer = switched(rig, "property-error", "medium1", (-0.1, 0.0))
@@ -193,6 +202,7 @@ def test_what_stands_behind_the_film_leaves_the_course_of_the_dot(rig, monkeypat
     assert peak(told[0]["voltage_V"] - told[2]["voltage_V"]) > 0.01 * peak(told[0]["voltage_V"])
 
 
+@pytest.mark.press
 def test_what_was_not_prepared_is_refused(rig):
     chosen = candidate(rig, "delamination", "bond-base")
     with pytest.raises(ValueError, match="delamination of bond-base was not prepared"):
@@ -203,6 +213,7 @@ def test_what_was_not_prepared_is_refused(rig):
         rig.imagine(run(dot_offset_mm=(0.2, 0.0)), [])
 
 
+@pytest.mark.press
 def test_another_resistor_is_that_of_its_run():
     both = engine(run(), run(label="two", readout=Readout(input_resistance_MOhm=100.0, input_capacitance_pF=100.0)))
     slow, fast = (both.predict(number, [])["voltage_V"] for number in (0, 1))
@@ -276,6 +287,7 @@ RELAXES = {
 STRETCHED = {"name": "film-prestretch", "component": "film", "parameters": {"strain_x": 0.002, "strain_y": 0.002}}
 
 
+@pytest.mark.press
 @for_each(
     ("tables", "reason"),
     [
@@ -288,11 +300,13 @@ def test_a_baseline_that_tables_cannot_describe_is_refused(tables, reason):
         engine(**tables)
 
 
+@pytest.mark.press
 def test_a_run_deeper_than_the_stack_is_refused():
     with pytest.raises(InputError, match="run 'one' goes too deep"):
         engine(run(values=press(run().time_s, 4.0)))
 
 
+@pytest.mark.press
 def test_the_3d_model_refuses_what_the_rig_does_not_have(rig):
     with pytest.raises(ValueError, match="component"):
         rig.solve(0, [Mechanism(name="property-error", component="sides")], silent)
@@ -314,12 +328,14 @@ def touched(rig, monkeypatch, area):
     return rig.predict(0, [Setting(touch, (1.0, touch.coordinates[1].starts[0]))])
 
 
+@pytest.mark.press
 def test_an_area_just_below_none_between_the_presses_of_a_table_is_none(rig, monkeypatch):
     below, none = (touched(rig, monkeypatch, area)["voltage_V"] for area in (-1e-20, 0.0))
     np.testing.assert_array_equal(below, none)
     assert np.abs(below).max() > 0.0
 
 
+@pytest.mark.press
 def test_a_trial_whose_signals_are_beyond_all_numbers_is_rejected(rig, monkeypatch):
     with pytest.raises(ValueError, match="beyond all numbers"):
         touched(rig, monkeypatch, np.nan)

@@ -80,6 +80,7 @@ def designed_volumes(device):
     return found
 
 
+@pytest.mark.press
 def test_castings_have_the_volume_of_the_arrays_layers(kit):
     """What the shrunk voids hold, as many of them as there are pieces, is what the simulated array is made of."""
     device, solids = kit

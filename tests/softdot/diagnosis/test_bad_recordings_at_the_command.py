@@ -116,6 +116,7 @@ def test_no_folder(tmp_path, refusal):
     assert "there is no such folder" in refusal(tmp_path / "rig")
 
 
+@pytest.mark.press
 def test_millivolts_under_the_name_of_volts_are_a_warning(tmp_path, diagnosed):
     volts = 0.1 * samples()["voltage_V"]
     told = []

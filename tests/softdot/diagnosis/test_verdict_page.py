@@ -94,6 +94,7 @@ def significant(text):
     return max(len(digits), 1)
 
 
+@pytest.mark.press
 @for_each(("mechanism", "component"), PLACES)
 def test_a_parameter_has_one_value_in_headline_table_and_file(recording, of_the_toy, mechanism, component):
     for ends in INTERVALS.values():
