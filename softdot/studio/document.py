@@ -65,6 +65,8 @@ class Document:
 
         Keys of its table that no longer act beside it are taken out too.
         """
+        from softdot.config.idle import take_out_idle
+
         document = self._parsed()
         place: Any = document
         try:
@@ -77,7 +79,7 @@ class Document:
                     place.append(tomlkit.table())
                 place = place[part]
             _put(place, key[-1], value)
-            _take_out_idle(place, key)
+            take_out_idle(document, key)
         except (KeyError, IndexError, TypeError, ValueError, AttributeError, TOMLKitError):
             raise InputError(f"{_dotted(key)}: there is no such place in this design") from None
         self.write(tomlkit.dumps(document), joined)
@@ -101,18 +103,6 @@ def _put(place: Any, last: str | int, value: Any) -> None:
         place.append(value)
     else:
         place[last] = value
-
-
-def _take_out_idle(place: Any, key: Key) -> None:
-    """Take out of a table what does not act beside its last change."""
-    from softdot.config import Config
-    from softdot.config.errors import tables_at
-
-    for kind in tables_at(key[:-1], Config):
-        if any(key[-1] in acts.tags for _, acts in kind.acting()):
-            kept = kind.overridden(place, {str(key[-1]): place[key[-1]]} if key[-1] in place else {})
-            for name in [name for name in place if name not in kept]:
-                del place[name]
 
 
 def _table(values: dict[str, Any]) -> Any:

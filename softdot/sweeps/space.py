@@ -17,6 +17,7 @@ from geometry.base import InputError
 from geometry.parameters import Finite, Table
 from softdot.config import Config, config_from
 from softdot.config.errors import sentence, shown
+from softdot.config.idle import stated, take_out_idle
 from softdot.config.toml import completed, naming_the_flag, parsed, read_toml, with_settings, with_value
 
 MOST_POINTS = 20_000
@@ -232,8 +233,9 @@ def load_space(path: Path | str, settings: Sequence[str] = ()) -> Space:
 def space_from(tables: Mapping[str, Any]) -> Space:
     """The points of a space. InputError with one sentence for a bad table [sweep] and for a bad axis.
 
-    An axis is bad when it has a value (of low and high, one of them) with which no point can be built. A point whose
-    combination alone cannot be built stays, with its reason.
+    An axis is bad when it has a value (of low and high, one of them) with which no point can be built, or when its key
+    acts at no point. A point whose combination alone cannot be built stays, with its reason. At a point where a key
+    does not act beside the values of the axes it is left out, of the file or of an axis.
     """
     sweep = _sweep(tables)
     base = {name: table for name, table in tables.items() if name != "sweep"}
@@ -255,19 +257,27 @@ def _sweep(tables: Mapping[str, Any]) -> Sweep:
 
 def _point(base: Mapping[str, Any], sweep: Sweep, row: tuple[Any, ...]) -> Point:
     """The point with these values of the axes. InputError for a key that leads nowhere."""
-    values: dict[str, Any] = {}
-    tables = dict(base)
-    for number, axis in enumerate(sweep.axes):
-        for key in axis.names():
-            values[key] = row[number]
-            try:
-                tables = with_value(tables, key, row[number])
-            except InputError as error:
-                raise InputError(f"sweep.axes[{number}]: {error}") from None
+    values = {key: row[number] for number, axis in enumerate(sweep.axes) for key in axis.names()}
+    tables = _tables(base, sweep, row)
     try:
         return Point(values, config_from(completed(tables)))
     except InputError as error:
         return Point(values, None, str(error))
+
+
+def _tables(base: Mapping[str, Any], sweep: Sweep, row: tuple[Any, ...]) -> dict[str, Any]:
+    """The file's tables with the values of the axes, without what does not act beside them. InputError as _point."""
+    tables = dict(base)
+    for number, axis in enumerate(sweep.axes):
+        for key in axis.names():
+            try:
+                tables = with_value(tables, key, row[number])
+            except InputError as error:
+                raise InputError(f"sweep.axes[{number}]: {error}") from None
+    for axis in sweep.axes:
+        for key in axis.names():
+            take_out_idle(tables, parsed(key))
+    return tables
 
 
 def _refuse_bad_axes(
@@ -277,6 +287,10 @@ def _refuse_bad_axes(
     if not good:
         raise InputError(_of_axis(sweep, points[0].reason or ""))
     for number, axis in enumerate(sweep.axes):
+        if not any(stated(_tables(base, sweep, row), parsed(key)) for key in axis.names() for row in good):
+            raise InputError(
+                f"sweep.axes[{number}]: {axis.names()[0]} acts at no point, beside no value of another axis"
+            )
         for name, value in _extremes(axis):
             if any(row[number] == value for row in good):
                 continue

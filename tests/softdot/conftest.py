@@ -61,9 +61,8 @@ def stages(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
         parts=lambda *_: [],
         write_cad=file_writer("segment.step"),
         mesh=lambda *_: one_tetrahedron(),
-        mesh_quality=lambda case: {"tetrahedra": len(case.mesh.tets)},
+        mesh_quality=lambda case: {"tetrahedra": len(case.mesh.tets), "symmetry_planes": []},
         solve=lambda *_: result_of([0.0, 0.15, 0.3]),
-        amplified=lambda *_: None,
         uncertainty=lambda *_: {},
         write_outputs=written,
     )
@@ -74,7 +73,7 @@ def stages(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
     monkeypatch.setattr(assembly, "build_parts", called("parts"))
     for name in ("checked", "mesh", "mesh_quality"):
         monkeypatch.setattr(Case, name, property(called(name)))
-    for name in ("solve", "amplified", "uncertainty"):
+    for name in ("solve", "uncertainty"):
         monkeypatch.setattr(Case, name, called(name))
     monkeypatch.setattr(second_process, "write_cad", called("write_cad"))
     monkeypatch.setattr(run, "write_outputs", called("write_outputs"))

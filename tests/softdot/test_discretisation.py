@@ -130,5 +130,5 @@ def test_an_accuracy_that_needs_too_many_elements_is_refused_by_its_own_name(mon
 
 
 def test_a_mesh_of_a_file_has_the_accuracy_that_it_has():
-    with pytest.raises(InputError, match=r"accuracy_percent = 1: the mesh of a file has sizes of its own"):
+    with pytest.raises(InputError, match=r"accuracy_percent = 1: acts only without file"):
         config_from({**SLICE, "mesh": {"accuracy_percent": 1.0, "file": "mine.msh"}})

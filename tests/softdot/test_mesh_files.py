@@ -36,11 +36,11 @@ def test_an_own_mesh_that_is_missing_is_refused_before_any_work(tmp_path, capfd)
 
 
 def test_check_counts_the_elements_of_an_own_mesh_and_tells_its_mistakes(tmp_path, write_config, capsys):
-    config = write_config('[mesh]\nmesher = "layered"\nelement_size_mm = 1.0\ncontact_element_size_mm = 1.0\n')
+    config, coarse = write_config(""), ("mesher=layered", "element_size_mm=1.0", "contact_element_size_mm=1.0")
     from mesh.files.formats import write_mesh
     from softdot.case import Case
 
-    tet_mesh = Case.load(config).mesh
+    tet_mesh = Case.load(config, [f"mesh.{setting}" for setting in coarse]).mesh
     (path,) = write_mesh(tet_mesh, ["msh"], tmp_path)
     assert main(["check", str(config), "--json", "--set", f'mesh.file="{path}"']) == 0
     assert json.loads(capsys.readouterr().out)["expected"]["tetrahedra"] == pytest.approx(len(tet_mesh.tets), rel=0.05)

@@ -50,7 +50,7 @@ def test_summary_holds_what_was_solved(tmp_path):
     assert summary["sensitivity"]["least_detectable_indentation_um"] == pytest.approx(0.5)  # 1 mV at 2 V/mm
     assert summary["solver"]["converged"] is True
     assert summary["solver"]["load_steps"] == 2
-    assert summary["mesh"] == {"tetrahedra": 1, "unknowns": 30}
+    assert summary["mesh"] == {"tetrahedra": 1, "symmetry_planes": [], "unknowns": 30}
     assert set(summary["timing_s"]) == {"geometry", "mesh", "solve", "uncertainty", "export"}
     assert summary["config"]["press"]["indentation_mm"] == 0.3
     assert summary["config"]["materials"]["vnr-soft"]["youngs_modulus_MPa"] == 1.0

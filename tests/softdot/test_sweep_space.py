@@ -129,6 +129,25 @@ def test_axes_that_can_never_go_together_are_refused():
         space_from(space_of({"key": "press.force_N", "values": [1.0, 2.0]}))
 
 
+HELD = {"key": "segment.held_layers", "values": [["film"], ["medium1"]]}
+
+
+def test_a_key_is_left_out_where_it_does_not_act_beside_another_axis():
+    points = space_from(space_of({"key": "segment.boundary", "values": ["free", "clamped"]}, HELD)).points
+    stated = ["held_layers" in point.config.model_dump()["segment"] for point in points]
+    assert stated == [False, False, True, True]
+    assert points[0].config == points[1].config
+    tables = space_of({"key": "segment.boundary", "values": ["free", "elastic"]})
+    tables["segment"] |= {"boundary": "elastic", "side_stiffness_N_per_mm3": 75.0}
+    assert [point.config.segment.boundary for point in space_from(tables).points] == ["free", "elastic"]
+
+
+def test_an_axis_that_acts_at_no_point_is_refused():
+    axes = ({"key": "segment.boundary", "values": ["free"]}, HELD)
+    with pytest.raises(InputError, match=r"sweep\.axes\[1\]: segment\.held_layers acts at no point"):
+        space_from(space_of(*axes))
+
+
 def test_the_example_is_a_space():
     space = load_space(ROOT / "examples" / "sweep.toml")
     assert [point.reason for point in space.points] == [None] * 32

@@ -40,7 +40,7 @@ FILES = {
 }
 
 
-@for_each("sent", [list(FILES.items()), zipped(FILES)], ids=["folder", "zip"])
+@pytest.mark.parametrize("sent", [list(FILES.items()), zipped(FILES)], ids=["folder", "zip"])
 def test_tables_and_samples_are_unpacked_and_the_rest_is_left_out(inner, sent):
     assert unpack(sent, inner) == inner / "rig"
     assert everything_below(inner) == ["rig/press.csv", "rig/rig.toml"]

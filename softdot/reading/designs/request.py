@@ -16,7 +16,8 @@ from geometry.parameters import Table
 from softdot.arrays.case import ArrayCase
 from softdot.config import Config, config_from
 from softdot.config.errors import sentence
-from softdot.config.toml import completed, naming_the_flag, read_toml, with_settings, with_value
+from softdot.config.idle import take_out_idle
+from softdot.config.toml import completed, naming_the_flag, parsed, read_toml, with_settings, with_value
 from softdot.sweeps.space import Space, space_from
 
 
@@ -103,10 +104,15 @@ def tried(base: Mapping[str, Any], name: str, values: Mapping[str, Any]) -> Trie
 
 
 def tables_of(base: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:
-    """The tables of a configuration with these values. InputError for a key that leads nowhere."""
+    """The tables of a configuration with these values, without what does not act beside them.
+
+    InputError for a key that leads nowhere.
+    """
     tables = dict(base)
     for key, value in values.items():
         tables = with_value(tables, key, value)
+    for key in values:
+        take_out_idle(tables, parsed(key))
     return tables
 
 

@@ -16,7 +16,7 @@ from tests.softdot.paper.stand_in_study import study
 
 PARTS = {
     "analytical": analytical,
-    "segments": lambda _progress, folder: section_of(study(), folder),
+    "segments": lambda _progress, folder, _executor: section_of(study(), folder),
 }
 NAMES, FIND = whole.PARTS, whole._part
 FOR_CALIBRATION = ("table1.", "section2.p", "section2.h2", "section2.E2")
@@ -106,7 +106,7 @@ def test_a_study_is_replaced_but_a_foreign_folder_is_refused(made, tmp_path, cap
 
 
 def test_a_press_without_result_exits_3_and_writes_nothing(monkeypatch, tmp_path, capsys):
-    def fails(_progress, _folder):
+    def fails(_progress, _folder, _executor):
         raise NotSolvedError("solid, F1: not-converged, contact")
 
     monkeypatch.setitem(PARTS, "segments", fails)
