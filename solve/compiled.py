@@ -13,6 +13,8 @@ import numba as nb
 
 MATH = {"contract", "reassoc", "nsz", "arcp"}  # what keeps infinities and not-a-numbers as they are
 PIECE: Any = {"forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+DIVISION = "numpy"
+"""By zero gives infinity, which Newton's iteration sees: an element that is all but flat has no inverse."""
 THREADS: int = nb.config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
 LEAST = 128  # elements or points that are worth waking a thread
 
@@ -22,7 +24,7 @@ def piece(math: Any = False) -> Callable[[Callable[..., Any]], Any]:
 
     math : numba's fastmath.
     """
-    made: Callable[[Callable[..., Any]], Any] = nb.njit(fastmath=math, **PIECE)
+    made: Callable[[Callable[..., Any]], Any] = nb.njit(fastmath=math, error_model=DIVISION, **PIECE)
     return made
 
 
@@ -33,7 +35,7 @@ def in_threads(math: Any = False) -> Callable[[Callable[..., Any]], Any]:
     """
 
     def decorate(function: Callable[..., Any]) -> Any:
-        kernel = nb.njit(cache=True, nogil=True, fastmath=math)(function)
+        kernel = nb.njit(cache=True, nogil=True, fastmath=math, error_model=DIVISION)(function)
 
         @wraps(function)
         def run(*arguments: Any) -> None:

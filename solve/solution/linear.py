@@ -86,12 +86,13 @@ class LinearSolver:
         """With the last factorisation where that will do, else with the first of the registry that does."""
         reason = ""
         if similar and self._current is not None:
-            before = self._current.back_substitutions
-            self._current.adapt(tangent)
-            solution, error = self._refined(tangent, rhs, self._patience, goal, goal.similar_refinements)
-            self._excess += max(self._current.back_substitutions - before - EASY, 0)
-            if error <= goal.accepted:
-                return solution
+            try:
+                solution, error = self._again(tangent, rhs, goal)
+            except Exception:  # PARDISO finds a zero pivot in a back substitution too
+                self.close()
+            else:
+                if error <= goal.accepted:
+                    return solution
         asked = self._asked()
         for kind in asked:
             try:
@@ -106,6 +107,15 @@ class LinearSolver:
                     return solution
                 reason = f"{goal.measure.__name__.strip('_').replace('_', ' ')} {error:.1e}"
         raise LinearSolveError(f"{', '.join(kind.name for kind in asked)}: {reason}")
+
+    def _again(self, tangent: Tangent, rhs: Floats, goal: "_Goal") -> tuple[Floats, float]:
+        """With the last factorisation."""
+        assert self._current is not None
+        before = self._current.back_substitutions
+        self._current.adapt(tangent)
+        solution, error = self._refined(tangent, rhs, self._patience, goal, goal.similar_refinements)
+        self._excess += max(self._current.back_substitutions - before - EASY, 0)
+        return solution, error
 
     def _asked(self) -> list[type[Factorisation]]:
         """The registry, without those that rest, but for the last one, which always answers."""

@@ -41,6 +41,7 @@ class Truss(System):
     mechanical = np.array([0])
     force_driven = False
     terms = ()
+    contact = SimpleNamespace(facets=np.zeros((0, 6), dtype=int))
 
     def trial(self, x, load, time, previous, damped=False):
         return x[0], load.drive

@@ -172,11 +172,11 @@ def test_want_of_convergence_is_told_with_its_place_and_keeps_what_converged(mon
     stack, calls = segment(), []
     whole = solve.solution.newton.equilibrate
 
-    def fails_after_the_first(system, linear, x, load, time, previous):
+    def fails_after_the_first(system, linear, x, load, time, previous, **options):
         calls.append(load)
         if load.drive * 2.5 > 0.11:
             monkeypatch.setattr(solve.solution.newton, "MAX_ITERATIONS", 1)
-        return whole(system, linear, x, load, time, previous)
+        return whole(system, linear, x, load, time, previous, **options)
 
     monkeypatch.setattr("solve.solution.march.equilibrate", fails_after_the_first)
     result = press_segment(stack, materials(), cap(stack), SHALLOW, coarse_mesh(stack, cap(stack)))

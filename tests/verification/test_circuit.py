@@ -61,7 +61,7 @@ def test_weak_coupling_makes_no_difference():
 
 def test_a_charge_amplifier_holds_the_film_at_ground():
     """V = -Q / C_fb whatever the coupling: its input is a virtual ground."""
-    readout = Readout(mode="charge", feedback_pF=100.0, input_capacitance_pF=500.0)
+    readout = Readout(mode="charge", feedback_pF=100.0)
     (one, two), results = both(readout)
     np.testing.assert_allclose(one, -charge(results[0]) / 1e-10, atol=1e-9 * np.abs(one).max())
     np.testing.assert_allclose(two, one, atol=1e-9 * np.abs(one).max())
