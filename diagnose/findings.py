@@ -152,7 +152,7 @@ class Findings:
     kind : half a sentence that is true of all explanations in the first group, where they are too many to name one.
     ambiguous : nothing but their number speaks against a name, whether or not they are of one kind.
     groups : indices into models that these recordings cannot tell apart, the best model's group first.
-    nuisances : name or "name of run" -> (value, one sigma of the prior) at the baseline.
+    nuisances : name or "name of run" -> (value, one sigma of the prior) beside the named mechanisms, else without any.
     baseline, improved : label -> fitted signals with nuisances; improved is None where nothing is named.
     unnamed, closest : held-out errors and signals of the first model where it is not named.
     screened : (mechanism, component) -> p-value of the score test. shares : component -> share of all excess.

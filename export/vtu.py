@@ -187,6 +187,7 @@ def _contact(tet_mesh: TetMesh) -> WriteStep:
             "displacement_mm": (fields.displacement_m[nodes] * MM_PER_M, ()),
             "gap_mm": (fields.gap_m[at] * MM_PER_M, ()),
             "contact_pressure_MPa": (fields.contact_pressure_Pa[at] * MPA_PER_PA, ()),
+            "contact_traction_MPa": (fields.contact_traction_Pa[at] * MPA_PER_PA, ()),
         }
         grid.write(path, point_data, {})
 

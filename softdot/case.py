@@ -306,16 +306,16 @@ class Pressed:
         return columns
 
     def to_pyvista(self, step: int = LAST) -> "pv.UnstructuredGrid":
-        """The deformed mesh of a step in mm, with displacement, stresses and strains; film arrays are NaN elsewhere.
+        """The undeformed mesh in mm with what the files of a step hold; film arrays are NaN elsewhere.
 
-        Quadratic tetrahedra (VTK type 24). Units stand in the names of the arrays.
+        warp_by_vector("displacement_mm") deforms it. Quadratic tetrahedra (VTK type 24). Units stand in the names of
+        the arrays.
         """
         import pyvista as pv
 
         fields, tet_mesh = self.result.steps[step].fields, self.result.tet_mesh
-        moved = 1e3 * fields.displacement_m
-        grid = pv.UnstructuredGrid({pv.CellType.QUADRATIC_TETRA: tet_mesh.tets}, tet_mesh.points_mm + moved)
-        grid.point_data["displacement_mm"] = moved
+        grid = pv.UnstructuredGrid({pv.CellType.QUADRATIC_TETRA: tet_mesh.tets}, tet_mesh.points_mm)
+        grid.point_data["displacement_mm"] = 1e3 * fields.displacement_m
         grid.cell_data["region"] = tet_mesh.region
         grid.cell_data["cauchy_stress_MPa"] = 1e-6 * fields.cauchy_stress_Pa
         grid.cell_data["von_mises_MPa"] = 1e-6 * fields.von_mises_Pa

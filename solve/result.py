@@ -17,7 +17,7 @@ import numpy as np
 
 from geometry.arrays import Floats, Ints
 from geometry.parameters import Segment
-from mesh.symmetry import Unfolded
+from mesh.symmetry import Unfolded, in_plane
 from mesh.types import Planes, TetMesh
 from solve.fem.kinematics import deformation_gradient, linear, tetrahedron
 from solve.fem.sparsity import History, Trial
@@ -43,7 +43,9 @@ class Fields:
     film_stress_Pa : (k, 6) second Piola-Kirchhoff stress, same order
     charge_density_C_per_m2 : (k,) short-circuit charge per undeformed area
     contact_nodes : (c,) nodes of the facets "contact"; the contact arrays follow it
-    gap_m : (c,) signed distance to the dot; contact_pressure_Pa : (c,) positive in compression
+    gap_m : (c,) signed distance to the dot; contact_pressure_Pa : (c,) of the dot's normal, positive in compression;
+    contact_traction_Pa : (c, 3) of the dot on the surface, friction included. Both per undeformed area; the traction,
+    linear on the four quarters of a facet, integrates to the force of the dot
     """
 
     displacement_m: Floats
@@ -59,6 +61,7 @@ class Fields:
     contact_nodes: Ints
     gap_m: Floats
     contact_pressure_Pa: Floats
+    contact_traction_Pa: Floats
 
 
 @dataclass(frozen=True)
@@ -262,7 +265,18 @@ def fields(system: System, tet_mesh: TetMesh, whole: Unfolded, state: State, bef
         contact_nodes=contact_nodes,
         gap_m=_gap(system, trial, touched),
         contact_pressure_Pa=trial.x[system.unknowns.contact[touched]] * units.stress,
+        contact_traction_Pa=_traction(system, tet_mesh, trial)[touched] * whole.node_sign[contact_nodes] * units.stress,
     )
+
+
+def _traction(system: System, tet_mesh: TetMesh, trial: Trial) -> Floats:
+    """Contact traction (n, 3) at the nodes of the part. On a mirror plane the images cancel across it."""
+    traction = np.zeros((len(tet_mesh.points_mm), 3))
+    nodes = tet_mesh.facets["contact"].ravel()
+    traction[nodes] = system.contact_traction(trial)[system.contact.index.ravel()]
+    for axis in tet_mesh.planes:
+        traction[in_plane(tet_mesh.points_mm, axis), axis] = 0.0
+    return traction
 
 
 def _means(system: System, tet_mesh: TetMesh, trial: Trial, before: State) -> Floats:

@@ -169,6 +169,10 @@ class System:
         """Resultant of the dot on the meshed body (3,)."""
         return np.asarray(sum(term.dot_force(trial) for term in self.terms))
 
+    def contact_traction(self, trial: Trial) -> Floats:
+        """Traction of the dot on the surface, per undeformed area, at the nodes of the contact facets (c, 3)."""
+        return np.asarray(sum(term.contact_traction(trial) for term in self.terms))
+
     @property
     def factorisation_shift(self) -> Floats:
         """Diagonal of the contact rows for the factorisation only: a stiff spring instead of a constraint."""

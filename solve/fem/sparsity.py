@@ -251,6 +251,10 @@ class Term(ABC):
         """Its part (3,) of the dot's force on the meshed body."""
         return np.zeros(3)
 
+    def contact_traction(self, trial: Trial) -> Floats:
+        """Of the dot on the surface, per undeformed area, at the nodes of the contact facets (c, 3); none: zeros (3,)."""
+        return np.zeros(3)
+
     def constraints(self) -> tuple[Ints, Floats]:
         """Lagrange multipliers without a diagonal entry: their unknowns (c,) and nodal areas (c,)."""
         return np.zeros(0, np.int64), np.zeros(0)

@@ -156,6 +156,13 @@ class ContactFacets(Term):
         """Resultant (3,) of the contact pressures."""
         return self.force(trial.displacement, trial.move, trial.x[self.pressure_dofs])
 
+    def contact_traction(self, trial: Trial) -> Floats:
+        """t_i = int phi_i lambda n dA / int phi_i dA, with n away from the dot: sum t_i int phi_i dA is the force."""
+        lam = np.einsum("qi,ki->kq", HATS, trial.x[self.pressure_dofs][self.index])
+        normal = self._at_quadrature(trial.displacement, trial.move)[1]
+        force = np.einsum("kq,qi,kq,kqa->kia", self.area, HATS, lam, normal)
+        return np.column_stack([self._sum(part) for part in np.moveaxis(force, -1, 0)]) / self.nodal_area[:, None]
+
     def closed(self, trial: Trial) -> Bools:
         """Nodes in contact: lambda_i - c g_i > 0, shape (c,) bool."""
         return self._pressed(trial, self._at_quadrature(trial.displacement, trial.move)[0])

@@ -116,6 +116,10 @@ class FrictionalContact(Term):
         pressure, friction = trial.x[self.contact.pressure_dofs], trial.x[self.friction_dofs]
         return self.force(trial.displacement, trial.move, pressure, friction)
 
+    def contact_traction(self, trial: Trial) -> Floats:
+        """Of pressure and friction."""
+        return self.contact.contact_traction(trial) + trial.x[self.friction_dofs]
+
     def elements(self, trial: Trial, history: History) -> Iterator[Block]:
         """Pressure and friction on the facets, then the rows of the nodes."""
         frictionless, open_rows = self.contact.elements(trial, history)

@@ -181,6 +181,7 @@ def _step(tet_mesh: TetMesh, depth: float, ridge: bool) -> Step:
         contact_nodes=contact,
         gap_m=gap * 1e-3,
         contact_pressure_Pa=np.where(gap < 0.01, 1e6 * depth, 0.0),
+        contact_traction_Pa=np.where(gap < 0.01, 1e6 * depth, 0.0)[:, None] * [0.0, 0.0, -1.0],
     )
     return Step(
         time_s=0.0,
