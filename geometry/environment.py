@@ -7,14 +7,17 @@ for a while after each call, and so take the cores from one another and from oth
 costs. OpenBLAS gets one thread: its products are of small or narrow matrices, thousands of them in a diagnosis, and
 waking a second thread takes longer than it saves.
 
-Compiled kernels: numba keeps them beside the source. Of an installed package they would stay behind when pip removes
-it, and the folders that hold them would hide a source checkout that is installed afterwards.
+Compiled kernels: numba keeps them, and compiles one anew when its own file changes, not when a file changes whose
+pieces it calls. They are therefore kept in a folder that is named by these files. It lies in the source, as by numba's
+default, but not in that of an installed package: kernels would stay behind when pip removes it, and the folders that
+hold them would hide a source checkout that is installed afterwards.
 """
 
 import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from hashlib import sha256
 from pathlib import Path
 
 POOLS = {
@@ -23,6 +26,13 @@ POOLS = {
     "OMP_WAIT_POLICY": "PASSIVE",
     "KMP_BLOCKTIME": "0",  # MKL sets it by itself, and not to what OMP_WAIT_POLICY asks for
 }
+PIECES = (
+    "solve/compiled.py",
+    "solve/fem/*.py",
+    "solve/materials/*.py",
+    "solve/readout/filters.py",
+    "diagnose/engines/coupon/*.py",
+)
 SAFE_PATH = "PYTHONSAFEPATH"
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
 
@@ -43,11 +53,24 @@ def follow_free_cores() -> None:
 
 
 def keep_kernels_apart(package: Path) -> None:
-    """Before numba is loaded: kernels of a package in this folder go to the user's cache where pip installed it."""
+    """Before numba is loaded: where the kernels of a program are kept, one of whose packages is this folder.
+
+    What the user has set stays.
+    """
+    if "NUMBA_CACHE_DIR" in os.environ:
+        return
+    kept = package.parent / "solve" / "__pycache__"
     if {"site-packages", "dist-packages"} & set(package.parts):
         from platformdirs import user_cache_path
 
-        os.environ.setdefault("NUMBA_CACHE_DIR", str(user_cache_path("softdot", appauthor=False) / "kernels"))
+        kept = user_cache_path("softdot", appauthor=False)
+    os.environ["NUMBA_CACHE_DIR"] = str(kept / "kernels" / _state_of_pieces(package.parent))
+
+
+def _state_of_pieces(program: Path) -> str:
+    """A name that changes with the files whose pieces are compiled into kernels of other files; some milliseconds."""
+    sources = sorted(file for place in PIECES for file in program.glob(place))
+    return sha256(b"".join(file.read_bytes() for file in sources)).hexdigest()[:12]
 
 
 def own_python(*arguments: str) -> list[str]:

@@ -1,14 +1,16 @@
 """Threads sleep while they wait, no more of them than cores that are free; kernels are kept where they belong."""
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from geometry.environment import keep_kernels_apart
+from geometry.environment import PIECES, keep_kernels_apart
 
+ROOT = Path(__file__).parents[2]
 SAID = """
 import os
 {first}
@@ -88,11 +90,45 @@ def free():
     return own | {"OMP_NUM_THREADS": "2", "OPENBLAS_NUM_THREADS": "2"}
 
 
-@pytest.mark.parametrize(("place", "apart"), [("lib/python3.11/site-packages", True), ("src/softdot", False)])
-def test_kernels_of_an_installed_package_are_kept_where_pip_leaves_nothing_behind(place, apart, monkeypatch):
+@pytest.mark.parametrize("place", ["lib/python3.11/site-packages", "src/softdot"])
+def test_kernels_are_kept_where_pip_leaves_nothing_behind_and_what_the_user_set_stays(place, monkeypatch):
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
     keep_kernels_apart(Path(place) / "geometry")
-    assert ("NUMBA_CACHE_DIR" in os.environ) == apart
+    assert Path(os.environ["NUMBA_CACHE_DIR"]).is_relative_to(place) == ("site-packages" not in place)
     monkeypatch.setenv("NUMBA_CACHE_DIR", "mine")
     keep_kernels_apart(Path(place) / "geometry")
     assert os.environ["NUMBA_CACHE_DIR"] == "mine"
+
+
+@pytest.mark.parametrize("name", ["solve/compiled.py", "solve/fem/stiffness_blocks.py", "solve/materials/isochoric.py"])
+def test_kernels_are_compiled_anew_when_a_piece_of_them_changes(name, tmp_path, monkeypatch):
+    def kept():
+        monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+        keep_kernels_apart(tmp_path / "geometry")
+        return os.environ["NUMBA_CACHE_DIR"]
+
+    piece = tmp_path / name
+    piece.parent.mkdir(parents=True)
+    piece.write_text("half = 0.5", "utf-8")
+    first = kept()
+    assert first == kept()
+    piece.write_text("half = 0.4", "utf-8")
+    assert first != kept()
+
+
+def test_every_piece_that_another_file_calls_is_among_those_that_name_the_folder():
+    """Files from which a file with kernels takes compiled functions."""
+    kernels = "@nb.njit", "@in_threads", "@piece", "@register_jitable"
+    sources = {
+        file: file.read_text("utf-8")
+        for top in ("solve", "diagnose", "softdot")
+        for file in ROOT.glob(f"{top}/**/*.py")
+    }
+    compiled = {file.relative_to(ROOT) for file, text in sources.items() if any(mark in text for mark in kernels)}
+    taken = {
+        Path(*module.split(".")).with_suffix(".py")
+        for file in compiled
+        for module in re.findall(r"^from ([\w.]+) import", (ROOT / file).read_text("utf-8"), re.MULTILINE)
+    }
+    named = {file.relative_to(ROOT) for place in PIECES for file in ROOT.glob(place)}
+    assert taken & compiled <= named
