@@ -118,11 +118,15 @@ class Table(BaseModel):
         idle = {name for name, acts in cls.acting() if name not in stated and not acts.holds(values)}
         return {name: value for name, value in merged.items() if name not in idle}
 
+    def lacks(self, name: str) -> bool:
+        """Whether a key that is needed is missing."""
+        return getattr(self, name) is None
+
     @model_validator(mode="after")
     def _each_key_acts(self) -> Self:
         for name, acts in self.acting():
             value = getattr(self, name)
-            if value is None and acts.needed and acts.holds(self.__dict__):
+            if acts.needed and self.lacks(name) and acts.holds(self.__dict__):
                 raise ValueError(f"{name} is missing: {acts.here(self)} needs it")
             if name in self.model_fields_set and value is not None and not acts.holds(self.__dict__):
                 here = acts.here(self)

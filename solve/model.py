@@ -42,6 +42,10 @@ class Waveform(Table):
         made._samples = np.column_stack([time_s, fraction])
         return made
 
+    def lacks(self, name: str) -> bool:
+        """A file is not missing where its rows were given in its place."""
+        return self._samples is None and super().lacks(name)
+
     @property
     def samples(self) -> Floats | None:
         """Times and fractions (t, 2) of one that was made through them, else None."""

@@ -4,11 +4,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from mesh_samples import built, dot, options, segment_of
+from mesh_samples import built, dot, segment_of
 from own_files import gmsh_22, linear, written
 
 import mesh
 from geometry.base import InputError
+from mesh.build import MeshOptions
 from mesh.files.formats import REGIONS, write_mesh
 from mesh.files.own import contents, own_mesh
 from mesh.quality import measure
@@ -47,7 +48,7 @@ def test_the_order_of_nodes_and_elements_does_not_matter(tmp_path: Path) -> None
 def test_build_takes_the_file_and_not_the_mesher(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     linear(built(BLOCK), tmp_path / "mine.inp")
-    made = mesh.build(segment_of(BLOCK), dot(segment_of(BLOCK)), options("pytetwild", file="mine.inp"))
+    made = mesh.build(segment_of(BLOCK), dot(segment_of(BLOCK)), MeshOptions(file="mine.inp"))
     assert np.array_equal(made.tets, built(BLOCK).tets)
 
 

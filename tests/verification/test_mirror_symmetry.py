@@ -173,7 +173,10 @@ REFUSED = {
     "a slide across": ((), {"press": {**PRESS, "path_xy_mm": [[0.1, 0.1]]}}),
     "a slide along y": ((0,), {"press": {**PRESS, "path_xy_mm": [[0.0, 0.1]]}}),
     "a dot beside both planes": ((), {"dot": {"offset_mm": [0.05, 0.05]}}),
-    "a plate that is tilted about y": ((1,), {"dot": {"shape": "plate", "tilt_deg": [0.0, 2.0]}}),
+    "a plate that is tilted about y": (
+        (1,),
+        {"dot": {"shape": "plate", "tilt_deg": [0.0, 2.0]}, "segment": {"boundary": "free"}},
+    ),
     "the left of two dots": ((1,), {"dot": {"cell": "⠒", "cell_dot": 2}}),
     "a delaminated patch on one side": (
         (1,),
