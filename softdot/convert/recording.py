@@ -32,10 +32,18 @@ def write_recording(out: Path | str, rig: str, files: Mapping[str, Mapping[str, 
             (staging / RIG_FILE).write_text(rig, "utf-8")
             for name, columns in files.items():
                 _write_columns(staging / name, columns)
-            load_rig(staging)
+            _refuse_unreadable(staging, out)
             staging.replace(out)
     except OSError as error:
         raise InputError(f"output '{out}': cannot be written ({error.strerror})") from None
+
+
+def _refuse_unreadable(staging: Path, out: Path) -> None:
+    """InputError for what is no recording; it names the folder that was asked for."""
+    try:
+        load_rig(staging)
+    except InputError as error:
+        raise InputError(str(error).replace(str(staging), str(out))) from None
 
 
 def _refuse_outside(name: str) -> None:

@@ -216,7 +216,7 @@ def test_a_budget_that_fails_leaves_a_kit_without_it(tmp_path, monkeypatch, caps
     (tmp_path / "free.toml").write_text(FREE, "utf-8")
     assert main(["kit", str(tmp_path / "free.toml"), "-o", str(tmp_path / "out")]) == 3
     said = capsys.readouterr()
-    assert said.out == ""
+    assert said.out.endswith(f"\n{tmp_path / 'out' / 'kit.html'}\n")
     assert f"softdot: not converged, tolerance budget: {error}" in said.err
     summary = json.loads((tmp_path / "out" / "kit.json").read_text("utf-8"))
     assert (summary["tolerance_budget"], summary["tolerance_budget_state"]) == (None, "failed")
