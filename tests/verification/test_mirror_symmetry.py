@@ -177,9 +177,6 @@ REFUSED = {
         (1,),
         {"dot": {"shape": "plate", "tilt_deg": [0.0, 2.0]}, "segment": {"boundary": "free"}},
     ),
-        (1,),
-        {"dot": {"shape": "plate", "tilt_deg": [0.0, 2.0]}, "segment": {"boundary": "free"}},
-    ),
     "the left of two dots": ((1,), {"dot": {"cell": "⠒", "cell_dot": 2}}),
     "a delaminated patch on one side": (
         (1,),
