@@ -3,7 +3,6 @@
 import os
 import subprocess
 import sys
-import time
 
 import pytest
 
@@ -41,9 +40,9 @@ def test_help_loads_nothing_heavy(command):
 
 def test_help_takes_less_than_half_a_second():
     def once():
-        start = time.perf_counter()
+        before = sum(os.times()[2:4])  # processor time of children: other programs may be busy
         subprocess.run([sys.executable, "-m", "softdot.cli", "--help"], capture_output=True, check=True)
-        return time.perf_counter() - start
+        return sum(os.times()[2:4]) - before
 
     assert min(once() for _ in range(3)) < 0.5
 
