@@ -13,7 +13,7 @@ import numba as nb
 
 MATH = {"contract", "reassoc", "nsz", "arcp"}  # what keeps infinities and not-a-numbers as they are
 PIECE: Any = {"forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-DIVISION = "numpy"
+DIVISION: Any = "numpy"
 """By zero gives infinity, which Newton's iteration sees: an element that is all but flat has no inverse."""
 THREADS: int = nb.config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
 LEAST = 128  # elements or points that are worth waking a thread

@@ -5,8 +5,8 @@ the amplifier is integrated on a grid of its own. An interval of the grid is hal
 times follow every curve, also those at the inputs of the amplifiers, so that it is finest behind corners where a
 circuit is fast. What comes later changes nothing that came earlier.
 
-How far the read-out may be off: what changes when every other state is left out, by the order that is seen when three of
-four are, and what changes when the grid is halved once more.
+How far the read-out may be off: what changes when every other state is left out, by the order that is seen when three
+of four are, and what changes when the grid is halved once more.
 """
 
 from collections.abc import Sequence
