@@ -138,7 +138,7 @@ def test_a_press_on_its_own_exported_mesh_gives_the_same_numbers(name, tables, e
     """Only the order of nodes and elements differs, and in .inp the fifteenth digit of the coordinates."""
     config = config_from(completed(tables))
     (path,) = write_mesh(Case(config).mesh, [extension], tmp_path)
-    own = config_from(completed({**tables, "mesh": {**tables["mesh"], "file": str(path)}}))
+    own = config_from(completed({**tables, "mesh": {"file": str(path)}}))
     before, after = (solved(one, lambda *_: None) for one in (config, own))
     solved_as = 2 ** len(before["mesh"]["symmetry_planes"])
     assert after["mesh"]["tetrahedra"] == solved_as * before["mesh"]["tetrahedra"]

@@ -162,7 +162,7 @@ def at_elements(result, values):
         return values[tet_mesh.tets]
     if len(values) != len(found.contact_nodes):
         return values
-    everywhere = np.zeros(len(tet_mesh.points_mm))
+    everywhere = np.zeros((len(tet_mesh.points_mm), *values.shape[1:]))
     everywhere[found.contact_nodes] = values
     return everywhere[tet_mesh.facets["contact"]]
 
