@@ -234,7 +234,7 @@ def space_from(tables: Mapping[str, Any]) -> Space:
     """The points of a space. InputError with one sentence for a bad table [sweep] and for a bad axis.
 
     An axis is bad when it has a value (of low and high, one of them) with which no point can be built, or when its key
-    acts at no point. A point whose combination alone cannot be built stays, with its reason. At a point where a key
+    acts beside no value of another axis. A point whose combination alone cannot be built stays, with its reason. At a point where a key
     does not act beside the values of the axes it is left out, of the file or of an axis.
     """
     sweep = _sweep(tables)
@@ -286,11 +286,13 @@ def _refuse_bad_axes(
     good = [row for row, point in zip(rows, points, strict=True) if point.config is not None]
     if not good:
         raise InputError(_of_axis(sweep, points[0].reason or ""))
+    beside = [
+        (*good[0][:n], value, *good[0][n + 1 :]) for n, axis in enumerate(sweep.axes) for _, value in _extremes(axis)
+    ]
     for number, axis in enumerate(sweep.axes):
-        if not any(stated(_tables(base, sweep, row), parsed(key)) for key in axis.names() for row in good):
-            raise InputError(
-                f"sweep.axes[{number}]: {axis.names()[0]} acts at no point, beside no value of another axis"
-            )
+        acting = (stated(_tables(base, sweep, row), parsed(key)) for row in (*good, *beside) for key in axis.names())
+        if not any(acting):  # by chance few random points may have none of the values beside which it acts
+            raise InputError(f"sweep.axes[{number}]: {axis.names()[0]} acts beside no value of another axis")
         for name, value in _extremes(axis):
             if any(row[number] == value for row in good):
                 continue

@@ -144,7 +144,9 @@ def test_a_key_is_left_out_where_it_does_not_act_beside_another_axis():
 
 def test_an_axis_that_acts_at_no_point_is_refused():
     axes = ({"key": "segment.boundary", "values": ["free"]}, HELD)
-    with pytest.raises(InputError, match=r"sweep\.axes\[1\]: segment\.held_layers acts at no point"):
+    with pytest.raises(
+        InputError, match=r"sweep\.axes\[1\]: segment\.held_layers acts beside no value of another axis"
+    ):
         space_from(space_of(*axes))
 
 
