@@ -234,8 +234,8 @@ def space_from(tables: Mapping[str, Any]) -> Space:
     """The points of a space. InputError with one sentence for a bad table [sweep] and for a bad axis.
 
     An axis is bad when it has a value (of low and high, one of them) with which no point can be built, or when its key
-    acts beside no value of another axis. A point whose combination alone cannot be built stays, with its reason. At a point where a key
-    does not act beside the values of the axes it is left out, of the file or of an axis.
+    acts beside no value of another axis. A point whose combination alone cannot be built stays, with its reason. At a
+    point where a key does not act beside the values of the axes it is left out, be it of the file or of an axis.
     """
     sweep = _sweep(tables)
     base = {name: table for name, table in tables.items() if name != "sweep"}

@@ -252,7 +252,7 @@ class Term(ABC):
         return np.zeros(3)
 
     def contact_traction(self, trial: Trial) -> Floats:
-        """Of the dot on the surface, per undeformed area, at the nodes of the contact facets (c, 3); none: zeros (3,)."""
+        """Of the dot on the surface, per undeformed area, at nodes of the contact facets (c, 3); none: zeros (3,)."""
         return np.zeros(3)
 
     def constraints(self) -> tuple[Ints, Floats]:

@@ -1,4 +1,4 @@
-"""What a written result integrates to, by VTK: the traction of the contact to the force, the charge density to the charge."""
+"""What a written result integrates to, by VTK: contact traction to the force, charge density to the charge."""
 
 import numpy as np
 import pytest
