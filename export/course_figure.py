@@ -9,7 +9,7 @@ from solve.readout.course import PressCourse
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-SIZE_IN = (9.0, 5.6)
+SIZE_IN = (8.0, 5.0)
 GREY = "#33658a"
 
 

@@ -49,9 +49,12 @@ MOST_ROWS, STRAIGHT = 200, 1e-4
 
 
 def stretches_s(waveform: Waveform) -> Floats:
-    """Times (n,) between which the drive is smooth: all corners, of a file those that its straight lines need."""
+    """Times (n,) between which the drive is smooth: all corners, of a file those that its straight lines need.
+
+    Samples that a program gives are the states that it wants, those in a hold too.
+    """
     corners = corners_s(waveform)
-    if waveform.shape != "file":
+    if waveform.shape != "file" or waveform.samples is not None:
         return corners
     return corners[thinned(corners, fraction(waveform, corners), STRAIGHT, MOST_ROWS)]
 
