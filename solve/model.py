@@ -34,17 +34,23 @@ class Waveform(Table):
     fall_s: Annotated[Positive, ActsWith(shape=("trapezoid",))] = Field(0.5, description="time of the release")
     file: Annotated[str | None, ActsWith(needed=True, shape=("file",))] = Field(None, description="the CSV file")
     _samples: Floats | None = PrivateAttr(None)
+    _each_solved: bool = PrivateAttr(False)
 
     @classmethod
-    def through(cls, time_s: Floats, fraction: Floats) -> "Waveform":
+    def through(cls, time_s: Floats, fraction: Floats, each_solved: bool = False) -> "Waveform":
         """Straight lines through fractions (t,) at increasing times (t,), as a file would state them."""
         made = cls.model_construct(shape="file")
-        made._samples = np.column_stack([time_s, fraction])
+        made._samples, made._each_solved = np.column_stack([time_s, fraction]), each_solved
         return made
 
     def lacks(self, name: str) -> bool:
         """A file is not missing where its rows were given in its place."""
         return self._samples is None and super().lacks(name)
+
+    @property
+    def each_solved(self) -> bool:
+        """Whether a state is solved at each of the samples, those in a hold too."""
+        return self._each_solved
 
     @property
     def samples(self) -> Floats | None:

@@ -49,12 +49,9 @@ MOST_ROWS, STRAIGHT = 200, 1e-4
 
 
 def stretches_s(waveform: Waveform) -> Floats:
-    """Times (n,) between which the drive is smooth: all corners, of a file those that its straight lines need.
-
-    Samples that a program gives are the states that it wants, those in a hold too.
-    """
+    """Times (n,) between which the drive is smooth: all corners, of a file those that its straight lines need."""
     corners = corners_s(waveform)
-    if waveform.shape != "file" or waveform.samples is not None:
+    if waveform.shape != "file" or waveform.each_solved:
         return corners
     return corners[thinned(corners, fraction(waveform, corners), STRAIGHT, MOST_ROWS)]
 

@@ -115,7 +115,8 @@ def _through_time(task: Task, report: Report) -> Mechanics:
     share = np.maximum(task.values, 0.0) / task.largest
     kept = knots(time, share, TOLERANCE, MOST_POINTS - 3)
     lead_s, lead = _earlier_press(task)
-    waveform = Waveform.through(np.append(lead_s[:-1], lead_s[-1] + time[kept]), np.append(lead[:-1], share[kept]))
+    times_s, shares = np.append(lead_s[:-1], lead_s[-1] + time[kept]), np.append(lead[:-1], share[kept])
+    waveform = Waveform.through(times_s, shares, each_solved=True)
     trace = _press(task, Press(**_largest(task), waveform=waveform, load_steps=1), report).trace
     first = int(np.searchsorted(trace.time_s, lead_s[-1]))
     at, found = trace.time_s[first:] - lead_s[-1], _columns(trace, task)[first:]
