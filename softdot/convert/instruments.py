@@ -140,7 +140,7 @@ def _time_column(table: TextTable, row: int) -> int | None:
 
 def _is_header(cells: Sequence[str], table: TextTable) -> bool:
     """Whether a row holds a time among names, and is more than a row of units, or of start and increment."""
-    told = (known_unit(_bare(cell)) or table.is_number(cell) for cell in cells if cell)
+    told = (known_unit(_bare(cell), "load") or table.is_number(cell) for cell in cells if cell)  # g and kg too
     return any(_is_time(cell) for cell in cells) and not all(told)
 
 
