@@ -70,7 +70,7 @@ def test_a_broken_constant_is_seen(name):
     assert not broken(name)["passed"]
 
 
-@pytest.mark.press
+@pytest.mark.evidence
 @for_each("name", [name for name in PROBLEMS if name not in QUICK])
 def test_every_problem_passes_and_sees_its_break(name):
     assert PROBLEMS[name].outcome()["passed"]

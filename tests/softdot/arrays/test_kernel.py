@@ -221,7 +221,7 @@ def test_what_a_table_over_depth_does_not_hold_is_refused(tmp_path, setting, sen
         ArrayCase(load_config(path, [setting])).refuse_kernel()
 
 
-@pytest.mark.press
+@pytest.mark.evidence
 def test_a_kernel_foretells_presses_that_took_no_part_in_it():
     settings = [
         "array.rows=1", "press.indentation_mm=0.2", "press.load_steps=3", "mesh.element_size_mm=0.6",

@@ -1,9 +1,6 @@
 """softdot diagnose as a laboratory uses it: what is written, what is said, how it exits."""
 
 import json
-import subprocess
-import sys
-import time
 from dataclasses import replace
 
 import numpy as np
