@@ -1,4 +1,4 @@
-"""Run one stage of .ci/run and say what it took: python .ci/stage.py NAME [--most-processor-s S] COMMAND...
+"""Run one stage of .ci/run and say what it took: python .ci/stage.py NAME COMMAND [--most-processor-s S]
 
 The exit status is the command's, and 1 where it took more processor time than allowed: time of the clock is shared with
 whatever else the machine does, processor time is the stage's own.
@@ -15,11 +15,11 @@ def main() -> int:
     """The stage's exit status."""
     parser = argparse.ArgumentParser()
     parser.add_argument("name")
+    parser.add_argument("command", help="one line for a shell")
     parser.add_argument("--most-processor-s", type=float, default=float("inf"))
-    parser.add_argument("command", nargs=argparse.REMAINDER)
     asked = parser.parse_args()
     began = time.monotonic()
-    status = subprocess.run(["bash", "-c", " ".join(asked.command)], check=False).returncode
+    status = subprocess.run(["bash", "-c", asked.command], check=False).returncode
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     processor_s = used.ru_utime + used.ru_stime
     print(f"{asked.name}: {time.monotonic() - began:.0f} s, {processor_s:.0f} s of processor", flush=True)
