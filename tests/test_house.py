@@ -3,6 +3,7 @@
 import ast
 import re
 from collections import Counter
+from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
@@ -22,9 +23,14 @@ MOST_LINES = 500
 HIDDEN_WORLD = ROOT / "diagnose" / "prove" / "world"  # knows nothing of the rest, so it has names of its own
 
 
+@cache
+def parsed(path):
+    return ast.parse(path.read_text("utf-8"))
+
+
 def imported(path):
     """Top packages that a file imports, inside functions too."""
-    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+    for node in ast.walk(parsed(path)):
         if isinstance(node, ast.Import):
             yield from (alias.name.partition(".")[0] for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -42,11 +48,13 @@ def name_of(path):
     return ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
 
 
+MODULES = {name_of(path) for path in FILES}
+
+
 def run_on_import(path):
     """Modules that run when a file is imported: those named outside functions, with the packages that hold them."""
-    modules = {name_of(file) for file in FILES}
     own = name_of(path)
-    waiting = list(ast.parse(path.read_text("utf-8")).body)
+    waiting = list(parsed(path).body)
     for node in waiting:
         if isinstance(node, ast.ImportFrom):
             names = [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
@@ -60,7 +68,7 @@ def run_on_import(path):
         for name in names:
             parts = name.split(".")
             holders = (".".join(parts[:count]) for count in range(1, len(parts) + 1))
-            yield from (holder for holder in holders if holder in modules and not f"{own}.".startswith(f"{holder}."))
+            yield from (holder for holder in holders if holder in MODULES and not f"{own}.".startswith(f"{holder}."))
 
 
 def test_no_module_imports_itself_in_a_circle():
@@ -74,7 +82,7 @@ def test_files_stay_small():
 
 
 def test_no_class_name_occurs_twice():
-    trees = (ast.parse(path.read_text("utf-8")) for path in FILES if not path.is_relative_to(HIDDEN_WORLD))
+    trees = (parsed(path) for path in FILES if not path.is_relative_to(HIDDEN_WORLD))
     names = Counter(node.name for tree in trees for node in ast.walk(tree) if isinstance(node, ast.ClassDef))
     assert [name for name, count in names.items() if count > 1] == []
 
@@ -88,7 +96,7 @@ def test_modules_that_a_text_names_exist():
 def named_in_texts(path):
     """Dotted names below our packages in the docstrings, messages and comments of a file."""
     source = path.read_text("utf-8")
-    strings = [node.value for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Constant)]
+    strings = [node.value for node in ast.walk(parsed(path)) if isinstance(node, ast.Constant)]
     texts = [text for text in strings if isinstance(text, str) and " " in text] + re.findall(r"#.*", source)
     pattern = r"\b(?:geometry|solve|export|diagnose)(?:\.(?!md\b)[a-z_]+)+"
     return {name for text in texts for name in re.findall(pattern, text)}

@@ -49,6 +49,7 @@ def test_dense_products_are_done_by_one_thread_unless_the_user_says_otherwise():
         assert done.stdout.strip() == found
 
 
+@pytest.mark.process
 def test_a_pool_that_waits_takes_no_time():
     """All three pools work, then wait: hardly any of 0.2 s of waiting is spent on a core."""
     code = """

@@ -24,6 +24,7 @@ HEAVY = (
 )
 
 
+@pytest.mark.process
 @for_each("command", [[], ["run"], ["schema"], ["check"], ["new"], ["list"], ["kit"]])
 def test_help_loads_nothing_heavy(command):
     code = (

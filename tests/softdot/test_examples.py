@@ -242,6 +242,7 @@ def test_lost_motion_shifts_the_press_along_its_depth():
     assert late.steps[-1].reaction_force_N == pytest.approx(plain.steps[5].reaction_force_N, rel=1e-6)
 
 
+@pytest.mark.press
 def test_the_rig_bends_by_its_compliance_times_the_force():
     trace = press_of("rig-compliance").trace
     assert 1e3 * (trace.indentation_m - trace.dot_path_m) == pytest.approx(0.005 * trace.reaction_force_N, abs=1e-9)

@@ -166,6 +166,7 @@ def writes_on_and_on(_mesh, _result, _dot, folder, _readout):
             folder.mkdir(parents=True, exist_ok=True)
 
 
+@pytest.mark.process
 def test_a_failure_leaves_nothing_though_the_second_process_still_writes(tmp_path, capfd, stages, monkeypatch):
     def full(_dot, _result, _summary, folder, _pictures):
         while not (folder / "pictures").exists():

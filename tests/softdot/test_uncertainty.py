@@ -85,6 +85,7 @@ RELAXING = {
 SLIDING = {"indentation_mm": 0.05, "load_steps": 1, "path_xy_mm": [[0.4, 0.0]]}
 
 
+@pytest.mark.press
 @for_each(
     ("change", "reason"),
     [({"mechanisms": [RELAXING]}, "depends on its path"), ({"press": SLIDING}, "slides after it is pressed in")],
@@ -107,6 +108,7 @@ def test_an_amplifier_changes_nothing_of_force_and_open_circuit_voltage(stated):
     assert found["uncertainty"]["note"] is None
 
 
+@pytest.mark.press
 @for_each("slide", [[], [[0.4, 0.0]]], ids=["press", "slide"])
 def test_a_force_that_is_given_is_not_in_doubt(slide):
     config = config_from({**SLICE, "press": {"force_N": 0.1, "load_steps": 1, "path_xy_mm": slide}})

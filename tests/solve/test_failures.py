@@ -55,6 +55,7 @@ def stopped(stack: Segment, shape: DotShape, press: Press, medium=SOFT):
     return result, said
 
 
+@pytest.mark.press
 def test_a_slab_crushed_flat_turns_an_element_inside_out_and_keeps_the_steps_before():
     stack = slab()
     softens_in_compression = Linear(youngs_modulus_MPa=1.0, poisson_ratio=0.3)

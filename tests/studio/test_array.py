@@ -66,6 +66,7 @@ def test_an_array_is_drawn_with_all_its_islands():
     assert len(view["points"]) > len(one["points"])
 
 
+@pytest.mark.press
 def test_each_segment_under_a_raised_dot_reads_most():
     """Of two segments one is pressed, then both: mirror images of each other."""
     one = press.press_of_cell(PAIR.replace('"⠃"', '"⠂"\ncell_dot = 2'), lambda _: None)["array"]  # dot 2 alone

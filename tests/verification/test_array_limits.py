@@ -53,6 +53,7 @@ def test_a_rigid_grid_leaves_clamped_segments():
     agrees_with_lone("rigid grid", array(mesh=FINE, shared=["film"], grid_layers=list(HELD)), "clamped")
 
 
+@pytest.mark.press
 def test_a_press_and_its_mirror_image():
     """On a mesh that is its own image, the press of the last segment is the image of that of the first."""
     case = array()

@@ -9,6 +9,7 @@ from tests.verification.row import agrees
 RATIOS = (0.45, 0.49, 0.495, 0.499)
 
 
+@pytest.mark.press
 @for_each("poisson_ratio", RATIOS)
 def test_thin_bonded_strip(poisson_ratio):
     """16 x 1 mm, S = 8."""
@@ -16,6 +17,7 @@ def test_thin_bonded_strip(poisson_ratio):
     agrees(f"bonded strip S 8, nu {poisson_ratio}", ours, strip_formula(8.0, 1.0, poisson_ratio), 0.05)
 
 
+@pytest.mark.press
 @for_each(("poisson_ratio", "reference"), [(0.495, 114.0), (0.499, 272.0), (0.4999, 409.0)])
 def test_thin_bonded_strip_by_the_formula_for_rubber(poisson_ratio, reference):
     """4 G + K (1 - tanh(q) / q), q = sqrt(12 G / K) b / h, for K >> G: below nu = 0.495 it exceeds the confined M."""

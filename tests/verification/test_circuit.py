@@ -89,6 +89,7 @@ def test_heat_comes_with_its_time_constant(plain):
     np.testing.assert_allclose(share, np.expm1(-time / 0.04) / np.expm1(-time[-1] / 0.04), atol=1e-9)
 
 
+@pytest.mark.press
 @for_each("exponent", [1.0, 0.5, 2.0])
 def test_touch_leaves_its_charge_by_a_power_of_the_area(plain, exponent):
     touched = pressed(PRESS, Physics(contact_charge_pC=5.0, contact_charge_exponent=exponent))

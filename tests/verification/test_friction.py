@@ -257,6 +257,7 @@ def test_slip_loses_friction_times_path():
     assert body.dissipated - lost == pytest.approx(0.4 * traction, rel=1e-8)
 
 
+@pytest.mark.press
 @for_each("coefficient", [0.1, 0.2, 0.3])
 def test_a_plate_that_slides_drags_with_the_coefficient_times_its_force(coefficient):
     """And drags back when it turns; once the block keeps still, all its surface slips in one direction."""

@@ -25,6 +25,7 @@ def nominal_stress(stretch: float, driven: tuple[int, ...], held: tuple[int, ...
     return body.reaction(np.flatnonzero(shape.points[:, 0] == 1.0))[0]
 
 
+@pytest.mark.press
 @for_each("stretch", [0.7, 0.8, 1.5, 2.0])
 @for_each(
     ("power", "driven", "held"),

@@ -221,6 +221,7 @@ def test_a_mirrored_configuration_gives_the_mirrored_results(tables, mirrored):
     np.testing.assert_allclose(ours.steps[-1].film_charge_C, theirs.steps[-1].film_charge_C, rtol=1e-9)
 
 
+@pytest.mark.press
 def test_a_press_refuses_nothing_and_unfolds_what_is_too_little():
     """A quarter given to a press that lacks a plane is mirrored first."""
     quarter = Case(mesh=COARSE, press=PRESS).solved_mesh

@@ -70,6 +70,7 @@ OFF = [
 ]
 
 
+@pytest.mark.press
 @for_each(("name", "component", "parameters"), OFF)
 def test_the_off_value_restores_the_baseline(name, component, parameters, baseline):
     np.testing.assert_allclose(numbers(solve(name, component, **parameters)), baseline, rtol=ROUND_OFF)
@@ -106,6 +107,7 @@ FORCE_ON = [
 ]
 
 
+@pytest.mark.press
 @for_each(("name", "component", "parameters", "sign"), FORCE_ON)
 def test_what_stiffens_raises_the_force_and_what_yields_lowers_it(name, component, parameters, sign, baseline):
     assert sign * (numbers(solve(name, component, **parameters))[0] / baseline[0] - 1.0) > 1e-6

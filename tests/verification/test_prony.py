@@ -64,6 +64,7 @@ def test_a_cycle_loses_the_work_of_the_loss_modulus(tmp_path):
     assert work == pytest.approx(expected, rel=0.02)  # 24 chords a cycle are (2 pi / 24)^2 / 6 = 1.1 % short
 
 
+@pytest.mark.press
 @for_each("series", [Prony((), ()), Prony((0.0,), (0.5,))])
 def test_without_relaxing_share_the_segment_is_elastic(series):
     press = waved("ramp", 3, rise_s=0.1)

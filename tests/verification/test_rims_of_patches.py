@@ -1,6 +1,7 @@
 """The rim of a delaminated strip lies where it is said to, whatever the elements of the mesh."""
 
 import numpy as np
+import pytest
 
 from solve.model import Delamination, Physics, Press
 from solve.problem import with_rims_of_patches
@@ -26,6 +27,7 @@ def loss(width_mm: float) -> float:
     return 1.0 - float(loose / bonded)
 
 
+@pytest.mark.press
 def test_a_loose_rim_that_grows_by_less_than_an_element_costs_a_little_more_force():
     """Not in steps of whole elements: with a bonded width that shrinks by tenths of a millimetre, each costs some."""
     more = -np.diff([loss(width) for width in WIDTHS_MM])

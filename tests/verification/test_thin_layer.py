@@ -49,6 +49,7 @@ def test_sphere_on_a_bonded_layer_by_the_small_contact_series(forces):
     agrees("bonded layer, x 0.4, Dimitriadis", forces[0.4], series, 0.1)
 
 
+@pytest.mark.press
 @for_each("x", [0.4, 0.8])
 def test_sphere_on_a_bonded_layer_by_the_fit_for_any_thickness(forces, x):
     """F / Hertz = (1 + 1.15 v + 9.5 v^3 + 4.212 v^6) / (1 + 2.3 v^3), v = x (Long et al., Biophys. J. 101, 2011).

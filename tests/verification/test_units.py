@@ -53,6 +53,7 @@ def press(scale, physics):
     return press_segment(stack, materials(), dot, way, tet_mesh, None, physics)
 
 
+@pytest.mark.press
 @for_each("case", CASES)
 @for_each("scale", [1e3, 1e-3], ids=["metres", "micrometres"])
 def test_the_answer_does_not_depend_on_the_unit_of_length(case, scale, in_millimetres):

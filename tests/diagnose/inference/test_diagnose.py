@@ -61,6 +61,7 @@ def test_no_effect_is_named_in_at_most_four_of_four_hundred():
     assert mismatches <= 6  # at a level of 0.32 % more have a chance of 0.3 %
 
 
+@pytest.mark.press
 def test_leakage_is_found_located_and_shown():
     findings = leaking()
     assert names(findings) == (LEAK,)
@@ -73,6 +74,7 @@ def test_leakage_is_found_located_and_shown():
     assert "charge-leakage (readout)" in findings.reasons[0]
 
 
+@pytest.mark.press
 def test_where_only_a_sum_of_cells_stands_out_the_strongest_cell_is_the_place():
     findings = found(small(7, Sensor(leak=0.004), runs=4))
     assert findings.mismatch
@@ -98,6 +100,7 @@ def missed(recording, signals):
     )
 
 
+@pytest.mark.press
 def test_an_unknown_effect_is_left_unexplained():
     others = tuple(c for c in FEW if c.name != LEAK)
     recording = small(5, Sensor(leak=1.0), runs=4)
@@ -344,6 +347,7 @@ def test_a_limit_that_nobody_stated_is_a_saturation_and_one_that_is_stated_is_no
     assert not found(Recording(tuple(stated))).mismatch
 
 
+@pytest.mark.press
 def test_the_same_seed_gives_the_same_findings():
     recording = small(5, Sensor(leak=1.0), runs=2)
     assert found(recording).models[0] == found(recording).models[0]

@@ -80,6 +80,7 @@ def test_nuisances_are_held_within_what_the_engine_can_answer():
     assert held == {"gain": -7.0, "modulus.medium1": -0.9}
 
 
+@pytest.mark.press
 @for_each("start", [0.05, 6.0])
 def test_a_fit_reaches_the_truth_from_far_away(start):
     model, baseline, _ = leaking()

@@ -70,6 +70,7 @@ def test_training_is_a_diagnosis_of_those_runs_alone():
     assert found_of_leaking().best.parameters == expected.best.parameters
 
 
+@pytest.mark.press
 def test_where_nothing_is_named_nothing_improves():
     found = scored(leaking(), candidates=FEW[1:2])
     assert found.best is None
@@ -78,6 +79,7 @@ def test_where_nothing_is_named_nothing_improves():
     assert found.improved is None
 
 
+@pytest.mark.press
 def test_runs_without_mismatch_have_an_error_as_large_as_noise():
     found = scored(small(6))
     assert not found.mismatch

@@ -78,6 +78,7 @@ def test_what_was_found_and_what_is_stated_give_the_same_signals(believed, tmp_p
         assert any(np.abs(one[name] - without[name]).max() > 0.02 * np.abs(without[name]).max() for name in one)
 
 
+@pytest.mark.press
 def test_what_is_stated_is_no_candidate_too(tmp_path):
     tables = {**TABLES, "mechanisms": [{"name": "friction", "component": "dot", "parameters": {"coefficient": 0.5}}]}
     stated = engine_for(rig(tmp_path, tables), rigs.silent)

@@ -28,6 +28,7 @@ def meshed(boundary, effector, section="solid"):
     return segment, build(segment, resolve_dot(dot, segment), options)
 
 
+@pytest.mark.press
 @for_each("effector", SHAPES)
 def test_parts_keep_their_volume_and_no_element_is_inverted(effector):
     segment, even = meshed("clamped", effector)

@@ -35,6 +35,7 @@ def spectrum(branches):
     return -np.expm1(-np.linspace(0.0, 60.0, 200)[:, None] / np.geomspace(0.1, 30.0, branches))
 
 
+@pytest.mark.press
 @for_each("design", [like(0.0), like(0.8), like(3.0), spectrum(4), spectrum(6), spectrum(8)])
 def test_weights_against_projection_by_brute_force(design):
     rng, (samples, count) = np.random.default_rng(4), design.shape

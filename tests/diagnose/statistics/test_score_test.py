@@ -25,6 +25,7 @@ def results_of(columns, non_negative, effect, seed, degrees=np.inf):
         yield score_test(residual, columns, non_negative, degrees)
 
 
+@pytest.mark.press
 @for_each("non_negative", [(False,) * 3, (True,) * 3, (True, False, True), (True, False, False)])
 def test_level_under_the_null(non_negative):
     count = sum(t.p_value <= LEVEL for t in results_of(COLUMNS, np.array(non_negative), 0.0, 1))

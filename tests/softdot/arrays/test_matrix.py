@@ -73,6 +73,7 @@ def test_roles():
     assert representatives(layouts[5, 1])["inner"] == 2
 
 
+@pytest.mark.press
 def test_a_solved_press_is_kept(monkeypatch, tmp_path):
     """Asked again it is read, and equal; an edited array is solved anew."""
     monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path))
