@@ -72,7 +72,7 @@ def test_json_has_no_nan():
 @for_each("nonsense", [np.nan, np.inf, -np.inf])
 def test_a_number_that_is_none_is_no_converged_result(nonsense):
     model, result = model_with(Readout()), two_electrodes()
-    along = course(result, model.press, model.amplifier, model.physics)
+    along = course(result, model.press, model.readout, model.physics)
     along.together_V[-1] = nonsense
     solver = press_part(model, result, along)["solver"]
     assert not solver["converged"]
