@@ -30,7 +30,7 @@ SMALL = 1e-2
 """Of the largest of its kind: below it a curve is compared with this instead of its own largest value."""
 FIRST_PARTS, HUM_PARTS, MOST_ROUNDS, MOST_TIMES, SAME_TIME = 4, 16, 45, 20_000, 1e-13
 TINY = 1e-300
-SAFETY = 1.6
+SAFETY = 1.5
 """Of what straight lines and a soft touch change: so that the error of 95 % of real presses is within."""
 
 

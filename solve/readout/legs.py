@@ -26,7 +26,7 @@ FASTER = 2.0
 FAST = 0.3
 """Of the fastest rate: below it no change counts, such as near the top of a sampled sine."""
 ROUND_OFF = 1e-9
-BENT = 0.2
+BENT = 0.1
 Coordinate = Callable[[Floats], Floats]
 Interpolation = Callable[[Floats, Floats], Coordinate]
 
@@ -74,14 +74,14 @@ class PressLeg:
 def _mirrored(at: Floats, known: Floats) -> tuple[Floats, Floats]:
     """States (s,) and (s, k), and before them, where they begin without force, the image of the second in the first.
 
-    What grows evenly has an odd image, what grows by BENT more from the second to the third an even one.
+    What grows evenly has an odd image, what grows by BENT more or less from the second to the third an even one.
     """
     if len(at) < 2 or known[0, 1] != 0.0:
         return at, known
     first, even = known[1] - known[0], np.ones(known.shape[1])
     if len(at) > 2:
         more = (known[2] - known[1]) * (at[1] - at[0]) / (at[2] - at[1]) / np.where(first == 0.0, 1.0, first) - 1.0
-        even = np.clip(more / BENT, 0.0, 1.0)
+        even = np.minimum(np.abs(more) / BENT, 1.0)
     image = known[0] + (2.0 * even - 1.0) * first
     return np.append(2.0 * at[0] - at[1], at), np.vstack([image, known])
 
