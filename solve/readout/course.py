@@ -31,7 +31,7 @@ SMALL = 1e-2
 FIRST_PARTS, HUM_PARTS, MOST_ROUNDS, MOST_TIMES, SAME_TIME = 4, 16, 45, 20_000, 1e-13
 TINY = 1e-300
 SAFETY = 1.5
-"""Of what straight lines and a soft touch change: so that the error of 95 % of real presses is within."""
+"""Of what straight lines and a soft touch change: covers 95 % of the slices on which it was chosen."""
 
 
 @dataclass(frozen=True)
