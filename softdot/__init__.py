@@ -17,7 +17,7 @@ import geometry  # noqa: F401 - sets the thread pools before NumPy is loaded
 if TYPE_CHECKING:
     from geometry.base import InputError
     from mesh.types import MeshingError
-    from softdot.case import Case, ConvergenceWarning, Pressed
+    from softdot.case import Case, ConvergenceWarning, Pressed, ResultWarning
     from softdot.commands.run import run_config
     from softdot.config import Config, config_hash, config_schema, load_config
     from softdot.outcome import derivatives
@@ -32,6 +32,7 @@ __all__ = [
     "InputError",
     "MeshingError",
     "Pressed",
+    "ResultWarning",
     "Verdict",
     "__version__",
     "config_hash",
@@ -49,6 +50,7 @@ _HOMES = {
     "InputError": "geometry.base",
     "MeshingError": "mesh.types",
     "Pressed": "softdot.case",
+    "ResultWarning": "softdot.case",
     "Verdict": "softdot.studies",
     "config_hash": "softdot.config",
     "config_schema": "softdot.config",

@@ -41,7 +41,11 @@ if TYPE_CHECKING:
 OnStep = Callable[[Step, int, int], None]
 
 
-class ConvergenceWarning(UserWarning):
+class ResultWarning(UserWarning):
+    """A number of a press is to be doubted; the sentence stands in Pressed.doubts too."""
+
+
+class ConvergenceWarning(ResultWarning):
     """A press ended before the depth or force that was asked for: its last numbers are those of less."""
 
 
@@ -148,12 +152,14 @@ class Case:
     def press(self, on_step: OnStep | None = None) -> "Pressed":
         """The press, as far as it converged: .converged says whether, .failure why not. InputError, MeshingError.
 
-        A press that ended early warns by ConvergenceWarning.
+        A press that ended early warns by ConvergenceWarning, what else is to be doubted by ResultWarning.
         """
         if "_pressed" not in self.__dict__:
-            self.__dict__["_pressed"] = Pressed(self, self.solve(on_step))
-            if not self.__dict__["_pressed"].converged:
-                warn(f"not converged, {self.__dict__['_pressed'].failure}", ConvergenceWarning, stacklevel=2)
+            pressed = self.__dict__["_pressed"] = Pressed(self, self.solve(on_step))
+            if not pressed.converged:
+                warn(f"not converged, {pressed.failure}", ConvergenceWarning, stacklevel=2)
+            for sentence in pressed.doubts:
+                warn(sentence, ResultWarning, stacklevel=2)
         return self.__dict__["_pressed"]  # type: ignore[no-any-return]
 
     def solve(self, on_step: OnStep | None = None, tet_mesh: TetMesh | None = None) -> PressResult:
@@ -170,15 +176,13 @@ class Case:
     @property
     def is_amplified(self) -> bool:
         """Whether something stands between the film and what is read."""
-        from solve.readout.amplifier import amplifier
-
-        return amplifier(self.model.readout, self.model.physics) is not None
+        return self.model.amplifier is not None
 
     def course(self, result: PressResult) -> "PressCourse":
         """The course of a result in time: drive, force, charges, voltages, and what each amplifier gives."""
         from solve.readout.course import course
 
-        return course(result, self.model.press, self.model.readout, self.model.physics)
+        return course(result, self.model.press, self.model.amplifier, self.model.physics)
 
     def uncertainty(self, summary: dict[str, Any]) -> dict[str, Any]:
         """How far the last force and voltage of a summary can be trusted."""
@@ -252,10 +256,17 @@ class Pressed:
     @property
     def warnings(self) -> list[str]:
         """What a user should know, before and after the solution."""
-        from softdot.checks import course_warnings, design_warnings, result_warnings
+        from softdot.checks import design_warnings
+
+        return [*self.case.checked[1], *design_warnings(self.case.model), *self.doubts]
+
+    @cached_property
+    def doubts(self) -> list[str]:
+        """Why numbers of this solution should be doubted, a sentence each."""
+        from softdot.checks import course_warnings, result_warnings
 
         model = self.case.model
-        told = [*self.case.checked[1], *design_warnings(model), *result_warnings(model, self.case.dot, self.result)]
+        told = result_warnings(model, self.case.dot, self.result)
         return [*told, *course_warnings(model, self.result, self.course)]
 
     @cached_property

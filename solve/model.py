@@ -230,10 +230,19 @@ class Model:
     mechanisms: tuple["Mechanism", ...] = ()
 
     @property
+    def amplifier(self) -> Readout | None:
+        """What stands between the film and what is read: the read-out as stated, an ideal one where only mechanisms of
+        the amplifier are, None where nothing is.
+        """
+        if self.readout is None and (self.physics.electronics or self.physics.of_channels):
+            return Readout()
+        return self.readout
+
+    @property
     def follows_time(self) -> bool:
         """Whether the press follows its waveform to the end; else only the loads count, not when they come."""
         film = self.materials["film"]
-        coupled = self.readout is not None and isinstance(film, PiezoelectricFilm) and film.coupling == "two-way"
+        coupled = self.amplifier is not None and isinstance(film, PiezoelectricFilm) and film.coupling == "two-way"
         return self.physics.follows_time or self.press.slides_in_hold or coupled
 
 

@@ -87,7 +87,7 @@ def set_up(
         raise ValueError("the press is not symmetric about a plane at which its mesh ends")
     driven = model.press.force_N is not None
     system = build_system(
-        model.segment, model.materials, dot, tet_mesh, driven, model.physics, model.readout, opened, units
+        model.segment, model.materials, dot, tet_mesh, driven, model.physics, model.amplifier, opened, units
     )
     refuse_unresolved(model.segment, tet_mesh, system.film)
     recorder = Recorder(system, tet_mesh, model.physics, model.segment, model.materials)
@@ -119,7 +119,7 @@ def press_segment(
         press = model.press.model_copy(update={"load_steps": 2 * model.press.load_steps})
         if accuracy_percent is None or not result.converged or press.load_steps > MOST_STEPS:
             break
-        if course(result, model.press, model.readout, model.physics).readout_error_percent <= accuracy_percent:
+        if course(result, model.press, model.amplifier, model.physics).readout_error_percent <= accuracy_percent:
             break
         model = replace(model, press=press)
         result = _pressed(model, tet_mesh, on_step, None, dot or resolve_dot(model.dot, model.segment))

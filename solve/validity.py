@@ -29,8 +29,10 @@ CORNERS_AND_MIDDLES = np.array(
     [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0.5, 0, 0], [0.5, 0.5, 0], [0, 0.5, 0], [0, 0, 0.5], [0.5, 0, 0.5],
      [0, 0.5, 0.5]]
 )  # fmt: skip
-CRUSHED = 0.1
-"""det F of a law that hardly changes its volume; a foam may be crushed to little of it."""
+CRUSHED, SOLID = 0.1, 0.05
+"""det F of a law that hardly changes its volume; and of a foam, which keeps its solid: cushions have 0.05 to 0.2 of it
+(Gibson and Ashby, Cellular Solids, 1997, chapter 1).
+"""
 FIELDS_V_PER_UM = (
     (80.0, "the breakdown strength of PVDF, about 80 V/um: a real film is destroyed before"),
     (50.0, "the coercive field of PVDF, about 50 V/um: the polarisation of a real film turns before"),
@@ -75,7 +77,7 @@ def _collapsed(model: Model, result: PressResult) -> Iterator[str]:
     for layer, material in layers:
         tets = tet_mesh.region_tets(layer)
         soft = not isinstance(material, PiezoelectricFilm) and material.law.compressible
-        limit = 0.0 if soft else CRUSHED
+        limit = SOLID if soft else CRUSHED
         turned, crushed = int(tets[np.argmin(elsewhere[tets])]), int(tets[np.argmin(inside[tets])])
         if elsewhere[turned] <= 0.0:
             yield f"an element of {layer} is turned inside out at a corner{_at(tet_mesh, turned)}: {advice}"

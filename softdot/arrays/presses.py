@@ -165,7 +165,7 @@ def _path(press: ArrayPress) -> Path:
 def signals_of(press: ArrayPress, result: PressResult, solve_s: float) -> Signals:
     """The numbers of a result."""
     model = press.model
-    along = course(result, model.press, model.readout, model.physics)
+    along = course(result, model.press, model.amplifier, model.physics)
     amplified = None if along.channels_V is None else along.channels_V[along.solved]
     steps = result.steps
     return Signals(

@@ -102,7 +102,7 @@ def _fill(
     """Everything but summary.json; returns the summary. Parts and pictures are made beside mesh, press and files."""
     from mesh.files.formats import write_mesh
     from mesh.types import MeshingError
-    from softdot.checks import course_warnings, design_warnings, result_warnings
+    from softdot.checks import design_warnings
     from softdot.summary import heading, mesh_part, press_part, stopped_solver
     from softdot.tolerances.uncertainty import prepare
     from solve.fem.warm_up import compile_cheap
@@ -135,9 +135,8 @@ def _fill(
         ahead = None
     pictures = ask(draw, result.tet_mesh, result, case.dot, folder / "pictures", along)
     summary |= {"mesh": mesh_part(quality, result.unknowns), **press_part(model, result, along)}
-    late = [*result_warnings(model, case.dot, result), *course_warnings(model, result, along)]
-    warn(late)
-    summary["warnings"] += late
+    warn(pressed.doubts)
+    summary["warnings"] += pressed.doubts
     if result.converged:
         progress.stage("uncertainty")
         with clock("uncertainty"):
@@ -191,14 +190,14 @@ def command(chosen: Namespace) -> int:
     with SecondProcess() as ask:  # at once: it loads its libraries while this one does
         with without_collector():
             Thread(target=_try_to_draw, daemon=True).start()
-            from softdot.case import Case, ConvergenceWarning
+            from softdot.case import Case, ResultWarning
             from softdot.config import load_config
             from softdot.console import progress_of
             from softdot.tolerances.uncertainty import uncertainty  # noqa: F401 - loads the solver
 
         config = load_config(chosen.config, chosen.set)
         with catch_warnings(), only_the_summary_on_stdout(), progress_of(chosen) as progress:
-            simplefilter("ignore", ConvergenceWarning)  # it is told below, and by the exit code
+            simplefilter("ignore", ResultWarning)  # told as its other warnings are, and by the exit code
             summary = run_case(Case(config), Path(chosen.output), progress, chosen.mesh_format, ask)
     show(summary, chosen, short_text)
     if summary["solver"]["converged"]:

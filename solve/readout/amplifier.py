@@ -29,15 +29,6 @@ def behind_input(time_s: Floats, voltage_V: Floats, readout: Readout, physics: P
     return np.asarray(readout.polarity * voltage_V)
 
 
-def amplifier(readout: Readout | None, physics: Physics) -> Readout | None:
-    """What stands between the film and what is read: the read-out as stated, an ideal one where only mechanisms of the
-    amplifier are, None where nothing is.
-    """
-    if readout is None and (physics.electronics or physics.of_channels):
-        return Readout()
-    return readout
-
-
 def input_of(readout: Readout, film_capacitance_F: float) -> tuple[float, float]:
     """Capacitance (F) and resistance (Ohm) into which the charge flows; both negative behind a charge amplifier."""
     if readout.mode == "charge":

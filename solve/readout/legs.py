@@ -9,7 +9,7 @@ rate has; else over time.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 
@@ -26,14 +26,17 @@ FASTER = 2.0
 FAST = 0.3
 """Of the fastest rate: below it no change counts, such as near the top of a sampled sine."""
 ROUND_OFF = 1e-9
+BENT = 0.1
 Coordinate = Callable[[Floats], Floats]
+Interpolation = Callable[[Floats, Floats], Coordinate]
 
 
 @dataclass(frozen=True)
 class PressLeg:
     """From begin_s to end_s; along(time) : its coordinate, which grows or falls from end to end.
 
-    at (s,) : the coordinates of its states; known (s, k) : what is known there.
+    at (s,) : the coordinates of its states; known (s, k) : what is known there, its second column the force.
+    through : the curves through them.
     """
 
     begin_s: float
@@ -41,24 +44,26 @@ class PressLeg:
     along: Coordinate
     at: Floats
     known: Floats
+    through: "Interpolation" = field(default_factory=lambda: cubic)
 
-    def rougher(self, first: int) -> "PressLeg":
-        """With every other state, from the first (0) or to the last (1), its ends kept.
+    def straight(self) -> "PressLeg":
+        """With straight lines between its states; between two only, a parabola from the first."""
+        if len(self.at) != 2:
+            return replace(self, through=lines)
+        middle, quarter = 0.5 * (self.at[0] + self.at[1]), 0.75 * self.known[0] + 0.25 * self.known[1]
+        known = np.vstack([self.known[0], quarter, self.known[1]])
+        return replace(self, at=np.array([self.at[0], middle, self.at[1]]), known=known)
 
-        With two only, a parabola from the first in place of the line.
-        """
-        if len(self.at) == 2:
-            middle, quarter = 0.5 * (self.at[0] + self.at[1]), 0.75 * self.known[0] + 0.25 * self.known[1]
-            known = np.vstack([self.known[0], quarter, self.known[1]])
-            return replace(self, at=np.array([self.at[0], middle, self.at[1]]), known=known)
-        last = len(self.at) - 1
-        kept = np.unique([0, *range((last % 2) * first, last, 2), last])
-        return replace(self, at=self.at[kept], known=self.known[kept])
+    def touched_softly(self) -> "PressLeg":
+        """Without slope at an end without force, as far as it bends there: as a round dot touches, and no flat one."""
+        at, known = _mirrored(self.at, self.known)
+        at, known = _mirrored(at[::-1], known[::-1])
+        return replace(self, at=at[::-1], known=known[::-1])
 
     @cached_property
     def curve(self) -> Coordinate:
         """Values (n, k) at coordinates (n,)."""
-        return cubic(self.at, self.known)
+        return self.through(self.at, self.known)
 
     def of(self, time_s: Floats) -> Floats:
         """Values (n, k) at times (n,) of this leg."""
@@ -66,12 +71,38 @@ class PressLeg:
         return self.curve(np.clip(self.along(time_s), low, high))
 
 
-def cubic(at: Floats, known: Floats) -> Coordinate:
-    """The cubic curve through what is known (s, k) at rising or falling (s,): values (n, k) at places (n,)."""
+def _mirrored(at: Floats, known: Floats) -> tuple[Floats, Floats]:
+    """States (s,) and (s, k), and before them, where they begin without force, the image of the second in the first.
+
+    What grows evenly has an odd image, what grows by BENT more or less from the second to the third an even one.
+    """
+    if len(at) < 2 or known[0, 1] != 0.0:
+        return at, known
+    first, even = known[1] - known[0], np.ones(known.shape[1])
+    if len(at) > 2:
+        more = (known[2] - known[1]) * (at[1] - at[0]) / (at[2] - at[1]) / np.where(first == 0.0, 1.0, first) - 1.0
+        even = np.minimum(np.abs(more) / BENT, 1.0)
+    image = known[0] + (2.0 * even - 1.0) * first
+    return np.append(2.0 * at[0] - at[1], at), np.vstack([image, known])
+
+
+def _rising(at: Floats, known: Floats) -> tuple[Floats, Floats]:
+    """States (s,) and (s, k) in rising order, none of them twice."""
     if at[-1] < at[0]:
         at, known = at[::-1], known[::-1]
     fresh = np.append(True, np.diff(at) > ROUND_OFF * max(at[-1] - at[0], ROUND_OFF))
-    at, known = at[fresh], known[fresh]
+    return at[fresh], known[fresh]
+
+
+def lines(at: Floats, known: Floats) -> Coordinate:
+    """Straight lines through what is known (s, k) at rising or falling (s,): values (n, k) at places (n,)."""
+    at, known = _rising(at, known)
+    return lambda where: np.column_stack([np.interp(where, at, column) for column in known.T])
+
+
+def cubic(at: Floats, known: Floats) -> Coordinate:
+    """The cubic curve through what is known (s, k) at rising or falling (s,): values (n, k) at places (n,)."""
+    at, known = _rising(at, known)
     if len(at) == 1:
         return lambda where: np.repeat(known, len(where), axis=0)
     slopes = np.gradient(known, at, axis=0, edge_order=2 if len(at) > 2 else 1)

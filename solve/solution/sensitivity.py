@@ -97,7 +97,7 @@ class Twin:
         model, recorder = self.setup.model, self.setup.recorder
         trace, capacitance = recorder.trace(model.press), float(recorder.capacitance_F.sum())
         open_circuit = trace.film_charge_C.sum(axis=1) / capacitance
-        read = read_together(trace, recorder.capacitance_F, press, model.readout, model.physics, base.time_s)
+        read = read_together(trace, recorder.capacitance_F, press, model.amplifier, model.physics, base.time_s)
         if read is None:
             return Slopes(trace, open_circuit, None)
         return Slopes(trace, open_circuit, read[np.searchsorted(base.time_s, trace.time_s)])
@@ -127,7 +127,7 @@ def press_with_sensitivities(
     failure = _march(base, linear, twins)
     linear.close()
     result = base.recorder.result(failure, linear.name, model.press, follows_time=True)
-    along = course(result, model.press, model.readout, model.physics)
+    along = course(result, model.press, model.amplifier, model.physics)
     slopes = {}
     for name, pair in twins.items():
         low, high = (twin.history(along, model.press) for twin in pair)

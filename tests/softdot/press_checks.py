@@ -55,7 +55,7 @@ def solved(tables) -> Pressed:
 
 def amplified(case, result):
     """Voltages at the steps: of all electrodes together (s,), of each (e, s); None without an amplifier."""
-    along = course(result, case.model.press, case.model.readout, case.model.physics)
+    along = course(result, case.model.press, case.model.amplifier, case.model.physics)
     if along.together_V is None:
         return None
     return along.together_V[along.solved], along.channels_V[along.solved].T

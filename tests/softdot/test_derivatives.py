@@ -50,3 +50,29 @@ def test_voltage_follows_d_and_the_circuit():
 def test_a_key_that_is_no_number_is_refused(key, sentence):
     with pytest.raises(InputError, match=sentence.replace("[", r"\[").replace(".", r"\.")):
         softdot.derivatives(config_from(TABLES), [key])
+
+
+SLICE = {
+    "segment": {
+        "section": "plane-strain",
+        "medium1": {"thickness_mm": 0.5},
+        "film": {"thickness_um": 28.0},
+        "medium2": {"thickness_mm": 2.0},
+    },
+    "dot": {"shape": "ridge"},
+    "press": {"indentation_mm": 0.1, "load_steps": 2},
+    "mesh": {"element_size_mm": 2.0, "contact_element_size_mm": 0.8, "mesher": "layered"},
+    "mechanisms": [{"name": "saturation", "component": "readout", "parameters": {"limit_V": 3.0, "sharpness": 2.0}}],
+}
+
+
+def test_an_amplifier_that_only_saturates_is_differentiated_as_it_is_run():
+    """V is of first degree in (d31, d32, d33, limit) together, so their values times derivatives add up to it."""
+    keys = [*(f"materials.pvdf.d3{i}_pC_per_N" for i in (1, 2, 3)), "mechanisms[0].parameters.limit_V"]
+    config = config_from(SLICE)
+    found = derivatives(config, keys)
+    total = sum(one.value * one.readout_voltage_V for one in found)
+    with pytest.warns(softdot.ResultWarning, match="load_steps = 2 is too few"):
+        ran = softdot.Case(config).press()
+    assert total[-1] == pytest.approx(ran.readout_voltage_V[-1], rel=2e-3)
+    assert abs(found[-1].readout_voltage_V[-1]) > 0.05  # it saturates

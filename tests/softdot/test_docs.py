@@ -77,7 +77,7 @@ def test_every_key_of_the_summary_is_explained():
     config = config_from(completed(tomllib.loads(toml_blocks()[0])))
     history = result_of([0.0, 0.15, 0.3])
     model = model_of(config)
-    along = course(history, model.press, model.readout, model.physics)
+    along = course(history, model.press, model.amplifier, model.physics)
     summary = {**heading(config), **press_part(model, history, along), "mesh": mesh_part({}, 1)}
     flat = [
         f"{key}.{inner}" if isinstance(value, dict) and key != "config" else key

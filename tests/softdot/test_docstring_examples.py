@@ -19,6 +19,7 @@ MODULES = sorted(
 SHOWN_ELSEWHERE = {
     "Config",
     "ConvergenceWarning",
+    "ResultWarning",
     "InputError",
     "MeshingError",
     "__version__",
@@ -27,7 +28,7 @@ SHOWN_ELSEWHERE = {
     "run_config",
     "Verdict",
 }
-"""Exceptions, a warning, and Config, whose docstring is in the schema. What writes folders or takes minutes is shown by
+"""Exceptions, warnings, and Config, whose docstring is in the schema. What writes folders or takes minutes is shown by
 the tutorial and the notebooks, which tests run too."""
 
 

@@ -218,7 +218,7 @@ def test_a_leaking_film_decays_with_its_time_constant():
     """At depth V = V0 exp(-t / (R C)), with C the film's alone."""
     told = model_of(load_config(SHORT / "charge-leakage.toml"))
     result = press_of("charge-leakage")
-    recording = course(result, told.press, told.readout, told.physics)
+    recording = course(result, told.press, told.amplifier, told.physics)
     v = np.interp([0.25, 0.55], recording.time_s, recording.together_V)
     tau = 1e9 * float(result.capacitance_F[0])
     assert v[1] / v[0] == pytest.approx(np.exp(-0.3 / tau), rel=1e-4)
@@ -229,7 +229,7 @@ def test_a_cable_divides_the_voltage_of_the_open_film():
     """Q / (C_f + C) at every depth."""
     told = model_of(load_config(SHORT / "parasitic-capacitance.toml"))
     result = press_of("parasitic-capacitance")
-    recording = course(result, told.press, told.readout, told.physics)
+    recording = course(result, told.press, told.amplifier, told.physics)
     expected = result.steps[-1].film_charge_C[0] / (result.capacitance_F[0] + 100e-12)
     assert recording.together_V[-1] == pytest.approx(expected, rel=1e-6)
 

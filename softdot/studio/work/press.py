@@ -12,7 +12,6 @@ from mesh.types import MeshingError
 from softdot.arrays.case import ArrayCase
 from softdot.arrays.presses import remembered, signals_of
 from softdot.case import Case
-from softdot.checks import course_warnings, result_warnings
 from softdot.console import plain
 from softdot.studio.processes import Tell
 from softdot.studio.work.design import case_of, config_of, pressed_part
@@ -79,8 +78,7 @@ def _pressed(case: Case, progress: "TaskProgress", quality: str) -> dict[str, An
     pressed = case.press(progress.on_step)
     result = pressed.result
     numbers = {"mesh": mesh_part(unknown, result.unknowns), **press_part(case.model, result, pressed.course)}
-    warnings = [*result_warnings(case.model, case.dot, result), *course_warnings(case.model, result, pressed.course)]
-    numbers |= {"warnings": warnings, "remedies": late_remedies(case.config, warnings)}
+    numbers |= {"warnings": pressed.doubts, "remedies": late_remedies(case.config, pressed.doubts)}
     view = viewer_data(result.tet_mesh, result, case.dot) if len(result.steps) > 1 else None
     return {
         "quality": quality,
