@@ -11,7 +11,7 @@ import numpy as np
 from geometry.arrays import Floats
 from geometry.base import InputError
 from geometry.cache import check_folder
-from geometry.checks import check_press_depth, check_pushed_dot, check_segment, press_warnings
+from geometry.checks import along, check_press_depth, check_pushed_dot, check_segment, check_way, press_warnings
 from geometry.dot import DotShape, resolve_dot
 from geometry.parameters import Segment
 from geometry.part_checks import covers_footprint
@@ -139,7 +139,7 @@ def result_warnings(model: Model, dot_shape: DotShape, result: PressResult) -> l
         warnings += _beyond_fit(layer, material, result)
     if model.press.indentation_mm is None:
         deepest_mm = 1e3 * max(step.indentation_m for step in result.steps)
-        warnings += press_warnings(dot_shape, model.segment, deepest_mm)
+        warnings += press_warnings(dot_shape, model.segment, deepest_mm, model.press.path_xy_mm)
     return warnings
 
 
@@ -251,6 +251,7 @@ def check_case(model: Model, options: MeshOptions) -> tuple[DotShape, list[str]]
     if press.waveform is not None:
         duration_s(press.waveform)  # reads the file of shape = "file"
     warnings = check_segment(segment)
+    check_way(model.dot, segment, press.path_xy_mm)
     depth = press.indentation_mm
     if depth is not None:
         check_press_depth(segment, depth)
@@ -259,6 +260,7 @@ def check_case(model: Model, options: MeshOptions) -> tuple[DotShape, list[str]]
     dot_shape = resolve_dot(model.dot, segment)
     refuse_huge_mesh(segment, dot_shape, options, meshed_planes(model, dot_shape, options))
     if depth is not None:
-        warnings += press_warnings(dot_shape, segment, depth)
-        refuse_held_rim(segment, dot_shape, depth)
+        warnings += press_warnings(dot_shape, segment, depth, press.path_xy_mm)
+        for one in along(dot_shape, press.path_xy_mm):
+            refuse_held_rim(segment, one, depth)
     return dot_shape, warnings

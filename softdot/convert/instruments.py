@@ -135,7 +135,9 @@ def _refuse_no_seconds(time_s: Floats, layout: Layout, table: TextTable) -> None
     """InputError where times without a unit, which would be seconds, are none: too late, or of another step."""
     where = f"{table.place(layout.header or 0)}: the time has no unit"
     if np.abs(time_s).max() > LONGEST_S:
-        raise InputError(f"{where}, and {time_s[np.abs(time_s).argmax()]:g} can be no seconds; write it behind the name")
+        raise InputError(
+            f"{where}, and {time_s[np.abs(time_s).argmax()]:g} can be no seconds; write it behind the name"
+        )
     stated = layout.settings.interval_s
     step = float(np.median(np.diff(time_s))) if len(time_s) > 1 else 0.0
     if stated is not None and step > 0.0 and abs(step / stated[1] - 1.0) > OTHER_STEP:
@@ -240,7 +242,7 @@ def _below_header(table: TextTable, row: int, column: int) -> Layout:
 def _united(
     table: TextTable, row: int, places: Sequence[tuple[int, str]], units: Sequence[str], settings: Settings
 ) -> dict[str, tuple[int, Unit]]:
-    """Name -> column and unit of channels (column, cell of the header). InputError for two of one name, and for none."""
+    """Name -> column and unit of channels (column, cell of the header). InputError for two of one name, or none."""
     where, sources = table.place(row), settings.values.get("source", [])
     found = [(place, cell, *split_name(cell, where)) for place, cell in places]
     names = [name or cell for _, cell, name, _ in found]

@@ -1,4 +1,4 @@
-"""What stands above the header of an instrument's file: settings, some of which say units and how far apart samples are."""
+"""Settings above the header of an instrument's file, some of which say units and how far apart samples are."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -9,8 +9,8 @@ from softdot.convert.text_table import NUMBER, TextTable
 from softdot.convert.units import known_unit
 
 INTERVAL = re.compile(
-    r"(?:sampl\w*[ _]*|time[ _]*|[xht][ _]*)?(?:interval|period|incr\w*|resolution)|(?:sampl\w*|data)[ _]*(?:rate|freq\w*)"
-    r"|clock|(?:delta|d)[ _]?[xt]|tinc",
+    r"(?:sampl\w*[ _]*|time[ _]*|[xht][ _]*)?(?:interval|period|incr\w*|resolution)|"
+    r"(?:sampl\w*|data)[ _]*(?:rate|freq\w*)|clock|(?:delta|d)[ _]?[xt]|tinc",
     re.IGNORECASE,
 )
 """Settings that say how far apart samples are, or how many there are in a second."""
@@ -20,7 +20,7 @@ PER_SECOND = {"": 1.0, "k": 1e3, "m": 1e6, "g": 1e9}
 
 @dataclass(frozen=True)
 class Settings:
-    """values : key in small letters -> the cells beside it. units : of each column in a row of units above the names."""
+    """values : key in small letters -> the cells beside it. units : of each column, in a row above the names."""
 
     values: Mapping[str, Sequence[str]]
     units: Sequence[str]
@@ -85,8 +85,8 @@ def _seconds(key: str, number: str, unit: str) -> float | None:
     if rate or ("rate" in key or "freq" in key):
         value *= PER_SECOND[rate[1].lower()] if rate else 1.0
         return 1.0 / value if value > 0.0 and (rate or not unit) else None
-    known = known_unit(unit) if unit else None
-    return value * (known.factor if known else 1.0) if value > 0.0 and (not unit or (known and known.base == "s")) else None
+    known = known_unit(unit or "s")
+    return value * known.factor if known is not None and known.base == "s" and value > 0.0 else None
 
 
 def settings_above(table: TextTable, row: int) -> Settings:

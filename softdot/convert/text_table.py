@@ -147,5 +147,7 @@ def _decimal(rows: Sequence[Sequence[str]], file: Path) -> str:
         raise InputError(f"'{file}': numbers have points ({marks['.']}) and commas ({marks[',']}); which are decimals?")
     mark = next(iter(marks), ".")
     if grouped and mark not in decimals and (mark == "," or grouped & large):
-        raise InputError(f"'{file}': numbers may be of thousands, or have decimals ({marks[mark]}); write 1234 or 1.2340")
+        raise InputError(
+            f"'{file}': numbers may be of thousands, or have decimals ({marks[mark]}); write 1234 or 1.2340"
+        )
     return mark

@@ -95,6 +95,11 @@ def _table(waveform: Waveform) -> Floats:
     """The rows time_s, fraction (n, 2); what starts pressed is reached from rest in the time of a rise before."""
     rows = _rows(waveform)
     if rows[0, 1] == 0.0:
+        if waveform.rise_s != Waveform.model_fields["rise_s"].default:
+            raise InputError(
+                f"press.waveform.rise_s = {waveform.rise_s:g}: acts only where the first row of the file is pressed "
+                "already; here its fraction is 0"
+            )
         return rows
     return np.vstack([[rows[0, 0] - waveform.rise_s, 0.0], rows])
 
