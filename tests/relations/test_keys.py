@@ -213,6 +213,24 @@ def test_a_place_or_a_number_that_changes_nothing_here_is_refused(key, tables):
     assert str(refused.value).startswith(key)
 
 
+@for_each(
+    ("settings", "said"),
+    [
+        (["readout.polarity=true"], "readout.polarity = true: must be 1 or -1"),
+        (
+            ["press.load_steps=2", "press.load_steps=3"],
+            "press.load_steps=3: this key, or one inside it, is given before",
+        ),
+        (["press.load_steps=2", "press={}"], "press={}: this key, or one inside it, is given before"),
+        (["array.cell_pitch_mm=6.0"], "array.cell_pitch_mm = 6: acts only with cells above 1, here cells = 1"),
+    ],
+)
+def test_settings_that_are_overridden_or_mean_nothing_are_refused(settings, said):
+    with pytest.raises(InputError) as refused:
+        _ = Case.load(settings=settings).config
+    assert str(refused.value).endswith(said if "before" not in said else f"{said}; state each once")
+
+
 def test_the_time_of_a_rise_beside_a_file_acts_only_where_it_starts_pressed(tmp_path):
     for first in (0.0, 0.5):
         (tmp_path / f"{first}.csv").write_text(f"time_s,fraction\n0,{first}\n1,1\n", "utf-8")
