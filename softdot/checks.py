@@ -175,12 +175,16 @@ def design_warnings(model: Model) -> list[str]:
 
 def _yield(model: Model, result: PressResult) -> list[str]:
     film = model.materials["film"]
-    stress = 1e-6 * result.film_peak.stress_Pa
+    peak = result.film_peak
+    stress = 1e-6 * max(peak.stress_Pa, peak.compression_Pa)
     if not isinstance(film, PiezoelectricFilm) or film.yield_stress_MPa is None or stress <= film.yield_stress_MPa:
         return []
+    if peak.stress_Pa >= peak.compression_Pa:
+        what, follows = "largest principal stress", "a real film would remain stretched"
+    else:
+        what, follows = "largest compressive stress", "a real film would yield or fold"
     return [
-        f"the film's largest principal stress of {stress:.3g} MPa exceeds its yield stress of "
-        f"{film.yield_stress_MPa:g} MPa: a real film would remain stretched"
+        f"the film's {what} of {stress:.3g} MPa exceeds its yield stress of {film.yield_stress_MPa:g} MPa: {follows}"
     ]
 
 

@@ -324,15 +324,24 @@ def test_what_there_is_not_is_said():
         Case(mechanisms=[{"name": "humidity", "component": "film"}])
 
 
+COARSE = {
+    "segment": {"section": "plane-strain"},
+    "dot": {"shape": "ridge"},
+    "press": {"load_steps": 1},
+    "mesh": {"mesher": "layered", "element_size_mm": 0.8, "contact_element_size_mm": 0.3},
+}
+
+
+@for_each(("strain", "said"), [(0.15, "largest principal stress"), (-0.15, "largest compressive stress")])
+def test_a_film_beyond_its_yield_stress_is_told_whichever_the_sign(strain, said):
+    taut = {"name": "film-prestretch", "component": "film", "parameters": {"strain_x": strain}}
+    told = Case(**COARSE, mechanisms=[taut]).press().warnings
+    assert [one for one in told if said in one and "exceeds its yield stress" in one]
+
+
 def test_the_order_of_mechanisms_does_not_matter():
     """Of those that do not act on one another, on a coarse slice."""
-    coarse = {
-        "segment": {"section": "plane-strain"},
-        "dot": {"shape": "ridge"},
-        "press": {"load_steps": 1},
-        "mesh": {"mesher": "layered", "element_size_mm": 0.8, "contact_element_size_mm": 0.3},
-        "readout": {"input_resistance_MOhm": 10.0},
-    }
+    coarse = {**COARSE, "readout": {"input_resistance_MOhm": 10.0}}
     every = [
         {"name": "film-prestretch", "component": "film", "parameters": {"strain_x": 0.01, "strain_y": 0.0}},
         {"name": "property-error", "component": "medium2", "parameters": {"modulus_factor": 1.2}},
