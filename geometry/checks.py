@@ -32,15 +32,13 @@ def check_press_depth(segment: Segment, indentation_mm: float) -> None:
         )
 
 
-def check_way(dot: Dot, segment: Segment, path_xy_mm: Sequence[tuple[float, float]]) -> None:
-    """InputError for a place of the dot, or a slide, that changes nothing: in y over a slice, and of a level plate."""
+def check_way(dot: Dot, segment: Segment, path_xy_mm: Sequence[tuple[float, float]]) -> list[str]:
+    """InputError for a slide in y over a slice, where that changes nothing; a warning for the place of a plate."""
     for number, point in enumerate(path_xy_mm):
         refuse_out_of_plane(segment, f"press.path_xy_mm[{number}][1]", point[1])
     if dot.shape == "plate" and any(dot.offset_mm):
-        raise InputError(
-            f"dot.offset_mm = {list(dot.offset_mm)}: a plate has no middle, and lies on the segment wherever it is; "
-            "leave it out"
-        )
+        return [f"dot.offset_mm = {list(dot.offset_mm)}: changes nothing, as a plate has no middle"]
+    return []
 
 
 def check_pushed_dot(dot: Dot, segment: Segment, path_xy_mm: tuple[tuple[float, float], ...] = ()) -> None:

@@ -254,8 +254,7 @@ def check_case(model: Model, options: MeshOptions) -> tuple[DotShape, list[str]]
     segment, press = model.segment, model.press
     if press.waveform is not None:
         duration_s(press.waveform)  # reads the file of shape = "file"
-    warnings = check_segment(segment)
-    check_way(model.dot, segment, press.path_xy_mm)
+    warnings = [*check_segment(segment), *check_way(model.dot, segment, press.path_xy_mm)]
     depth = press.indentation_mm
     if depth is not None:
         check_press_depth(segment, depth)

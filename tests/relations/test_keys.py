@@ -193,7 +193,6 @@ COMPLIANT = {"name": "rig-compliance", "component": "rig", "parameters": {"compl
 GLUE = {"normal_stiffness_N_per_mm3": 9.0, "shear_stiffness_N_per_mm3": 9.0, "poisson_ratio": 0.3}
 IDLE = {
     "dot.offset_mm[1]": {**SLICE, "dot": {"shape": "ridge", "offset_mm": [0.0, 0.1]}},
-    "dot.offset_mm": {"dot": {"shape": "plate", "offset_mm": [0.1, 0.0]}},
     "press.path_xy_mm[1][1]": {**SLICE, "press": {"path_xy_mm": [[0.1, 0.0], [0.1, 0.1]]}},
     "segment.film.electrodes[0].center_mm[1]": {
         **SLICE, "segment": {"section": "plane-strain", "film": {"electrodes": [ELECTRODE]}}
@@ -241,6 +240,11 @@ def test_the_time_of_a_rise_beside_a_file_acts_only_where_it_starts_pressed(tmp_
         else:
             with pytest.raises(InputError, match=r"press\.waveform\.rise_s = 0\.3: acts only where the first row"):
                 _ = case.checked
+
+
+def test_the_place_of_a_plate_is_told_to_change_nothing():
+    told = Case(segment={"boundary": "free"}, dot={"shape": "plate", "offset_mm": [0.1, 0.0]}).checked[1]
+    assert "dot.offset_mm = [0.1, 0.0]: changes nothing, as a plate has no middle" in told
 
 
 def test_a_slide_is_looked_at_on_its_whole_way():
