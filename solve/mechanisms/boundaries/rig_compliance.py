@@ -18,8 +18,6 @@ class RigCompliance(Parameters):
 
 def switch_on(model: Model, component: str, values: RigCompliance) -> Model:
     """The model with this physics at a component."""
-    if values.compliance_mm_per_N > 0.0 and model.press.force_N is not None:
-        raise ValueError("name = 'rig-compliance': a force drives (press.force_N); it needs press.indentation_mm")
     return with_physics(model, rig_compliance_mm_per_N=values.compliance_mm_per_N)
 
 
