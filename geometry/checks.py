@@ -1,5 +1,7 @@
 """Impossible geometry is refused by name before any solid is built."""
 
+from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 from math import sqrt
 
@@ -9,7 +11,7 @@ from geometry.assembly import case_outside
 from geometry.base import InputError
 from geometry.dot import DotShape
 from geometry.parameters import Dot, Segment
-from geometry.part_checks import check_effector, check_electrodes, covers_footprint
+from geometry.part_checks import check_effector, check_electrodes, covers_footprint, refuse_out_of_plane
 from geometry.stack import Dome, bodies, layers
 
 
@@ -28,6 +30,15 @@ def check_press_depth(segment: Segment, indentation_mm: float) -> None:
         raise InputError(
             f"press.indentation_mm = {indentation_mm:g}: must be less than the height of the stack, {stack:g} mm"
         )
+
+
+def check_way(dot: Dot, segment: Segment, path_xy_mm: Sequence[tuple[float, float]]) -> list[str]:
+    """InputError for a slide in y over a slice, where that changes nothing; a warning for the place of a plate."""
+    for number, point in enumerate(path_xy_mm):
+        refuse_out_of_plane(segment, f"press.path_xy_mm[{number}][1]", point[1])
+    if dot.shape == "plate" and any(dot.offset_mm):
+        return [f"dot.offset_mm = {list(dot.offset_mm)}: changes nothing, as a plate has no middle"]
+    return []
 
 
 def check_pushed_dot(dot: Dot, segment: Segment, path_xy_mm: tuple[tuple[float, float], ...] = ()) -> None:
@@ -51,8 +62,22 @@ def check_pushed_dot(dot: Dot, segment: Segment, path_xy_mm: tuple[tuple[float, 
             )
 
 
-def press_warnings(dot_shape: DotShape, segment: Segment, indentation_mm: float) -> list[str]:
-    """What to know about a press that is possible; indentation_mm : final depth in mm."""
+PLACES = 20
+"""Of the dot on each leg of a slide."""
+
+
+def along(dot_shape: DotShape, path_xy_mm: Sequence[tuple[float, float]]) -> list[DotShape]:
+    """The dot where it is pressed and at places on its way through the waypoints of a slide."""
+    ways = np.vstack([np.zeros((1, 2)), *np.reshape(path_xy_mm, (-1, 1, 2))])
+    legs = np.linspace(0.0, len(ways) - 1.0, PLACES * (len(ways) - 1) + 1)
+    places = np.column_stack([np.interp(legs, np.arange(len(ways)), way) for way in ways.T] + [0.0 * legs])
+    return [replace(dot_shape, origin_mm=dot_shape.origin_mm + place) for place in places]
+
+
+def press_warnings(
+    dot_shape: DotShape, segment: Segment, indentation_mm: float, path_xy_mm: Sequence[tuple[float, float]] = ()
+) -> list[str]:
+    """What to know about a press that is possible; indentation_mm : final depth in mm. path_xy_mm : of a slide."""
     warnings = []
     if dot_shape.kind != "plate" and indentation_mm > dot_shape.height_mm:
         warnings.append(
@@ -62,7 +87,7 @@ def press_warnings(dot_shape: DotShape, segment: Segment, indentation_mm: float)
     return [
         *warnings,
         *_far_dot(dot_shape, segment, indentation_mm),
-        *_over_edge(dot_shape, segment, indentation_mm),
+        *_over_edge(along(dot_shape, path_xy_mm), segment, indentation_mm),
         *_hit_case(dot_shape, segment, indentation_mm),
     ]
 
@@ -78,20 +103,25 @@ def _far_dot(dot_shape: DotShape, segment: Segment, indentation_mm: float) -> li
     ]
 
 
-def _over_edge(dot_shape: DotShape, segment: Segment, indentation_mm: float) -> list[str]:
-    """Sides are no contact surface: a dot that presses over an edge passes through them.
+def _beyond_edge_mm(dot_shape: DotShape, segment: Segment, indentation_mm: float) -> float:
+    """How far a dot at one place touches beyond an edge, 0 where it does not or may not touch at all.
 
     A ball touches a flat body to a radius of sqrt(R d) at a depth d (Hertz).
     """
     top, radius = bodies(segment)[-1], dot_shape.radius_mm
-    if dot_shape.kind == "plate" or isinstance(top, Dome):
-        return []
     ball = dot_shape.origin_mm + dot_shape.rotation @ [0.0, 0.0, radius]
-    if top.distance(ball) - radius > indentation_mm:  # it may not touch, which is told
-        return []
+    if top.distance(ball) - radius > indentation_mm:
+        return 0.0
     reach = sqrt(radius * indentation_mm)
     across = np.eye(3)[: 1 if dot_shape.kind == "ridge" or segment.section == "plane-strain" else 2]
-    beyond = max(abs(float(axis @ ball)) + reach - top.reach(axis) for axis in across)
+    return max(0.0, *(abs(float(axis @ ball)) + reach - top.reach(axis) for axis in across))
+
+
+def _over_edge(places: Sequence[DotShape], segment: Segment, indentation_mm: float) -> list[str]:
+    """Sides are no contact surface: a dot that presses over an edge, or slides there, passes through them."""
+    if places[0].kind == "plate" or isinstance(bodies(segment)[-1], Dome):
+        return []
+    beyond = max(_beyond_edge_mm(one, segment, indentation_mm) for one in places)
     if beyond <= 0.0:
         return []
     part = "segment" if covers_footprint(segment) else "effector"

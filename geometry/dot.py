@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from geometry.base import InputError
 from geometry.braille import DotSize, cell_tips, dot_size, refuse_cell_of
 from geometry.parameters import Dot, Segment
+from geometry.part_checks import refuse_out_of_plane
 from geometry.stack import bodies, layers
 
 Floats = NDArray[np.float64]
@@ -179,7 +180,6 @@ def _refuse_out_of_plane(dot: Dot, segment: Segment) -> None:
         raise InputError(f"dot.shape = 'cap': {plane}; use dot.shape = 'ridge' or 'plate'")
     if dot.cell is not None:
         raise InputError(f"dot.cell = '{dot.cell}': {plane}; leave the cell out")
-    if dot.offset_mm[1] != 0.0:
-        raise InputError(f"dot.offset_mm[1] = {dot.offset_mm[1]:g}: {plane}; must be 0")
+    refuse_out_of_plane(segment, "dot.offset_mm[1]", dot.offset_mm[1])
     if dot.tilt_deg[0] != 0.0:
         raise InputError(f"dot.tilt_deg[0] = {dot.tilt_deg[0]:g}: {plane}; the tilt about x must be 0")

@@ -14,6 +14,12 @@ USED_SIZES: dict[str, tuple[str, ...]] = {
 ROUNDING_MM = 1e-9
 
 
+def refuse_out_of_plane(segment: Segment, key: str, y: float) -> None:
+    """Raise InputError for a place, of that key, beside the middle of what is the same for all y."""
+    if segment.section == "plane-strain" and y != 0.0:
+        raise InputError(f"{key} = {y:g}: segment.section = 'plane-strain' has nothing that varies over y; must be 0")
+
+
 def check_effector(segment: Segment) -> None:
     """Raise InputError for an effector with missing, unused or too large sizes; nothing without effector."""
     effector = segment.effector
@@ -83,6 +89,7 @@ def check_electrodes(segment: Segment) -> None:
     """Raise InputError for electrodes that leave the film, overlap each other or share a name."""
     electrodes = segment.film.electrodes
     for number, electrode in enumerate(electrodes):
+        refuse_out_of_plane(segment, f"segment.film.electrodes[{number}].center_mm[1]", electrode.center_mm[1])
         _check_on_film(number, electrode, segment)
     for first, second in combinations(electrodes, 2):
         if first.name == second.name:
@@ -117,6 +124,7 @@ def check_patch(segment: Segment, bond: str, center_mm: tuple[float, float], dia
     bond : its name as in the mechanism delamination; only below the effector is the interface smaller than the
     footprint. A round foot counts as its square.
     """
+    refuse_out_of_plane(segment, f"mechanisms: the delamination of '{bond}' with center_mm[1]", center_mm[1])
     half = _half_sizes(segment, bond)
     axes = "x" if segment.section == "plane-strain" else "xy"
     for axis, middle, limit in zip(axes, center_mm, half, strict=False):

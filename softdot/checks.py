@@ -11,7 +11,7 @@ import numpy as np
 from geometry.arrays import Floats
 from geometry.base import InputError
 from geometry.cache import check_folder
-from geometry.checks import check_press_depth, check_pushed_dot, check_segment, press_warnings
+from geometry.checks import along, check_press_depth, check_pushed_dot, check_segment, check_way, press_warnings
 from geometry.dot import DotShape, resolve_dot
 from geometry.parameters import Segment
 from geometry.part_checks import covers_footprint
@@ -139,7 +139,7 @@ def result_warnings(model: Model, dot_shape: DotShape, result: PressResult) -> l
         warnings += _beyond_fit(layer, material, result)
     if model.press.indentation_mm is None:
         deepest_mm = 1e3 * max(step.indentation_m for step in result.steps)
-        warnings += press_warnings(dot_shape, model.segment, deepest_mm)
+        warnings += press_warnings(dot_shape, model.segment, deepest_mm, model.press.path_xy_mm)
     return warnings
 
 
@@ -175,12 +175,16 @@ def design_warnings(model: Model) -> list[str]:
 
 def _yield(model: Model, result: PressResult) -> list[str]:
     film = model.materials["film"]
-    stress = 1e-6 * result.film_peak.stress_Pa
+    peak = result.film_peak
+    stress = 1e-6 * max(peak.stress_Pa, peak.compression_Pa)
     if not isinstance(film, PiezoelectricFilm) or film.yield_stress_MPa is None or stress <= film.yield_stress_MPa:
         return []
+    if peak.stress_Pa >= peak.compression_Pa:
+        what, follows = "largest principal stress", "a real film would remain stretched"
+    else:
+        what, follows = "largest compressive stress", "a real film would yield or fold"
     return [
-        f"the film's largest principal stress of {stress:.3g} MPa exceeds its yield stress of "
-        f"{film.yield_stress_MPa:g} MPa: a real film would remain stretched"
+        f"the film's {what} of {stress:.3g} MPa exceeds its yield stress of {film.yield_stress_MPa:g} MPa: {follows}"
     ]
 
 
@@ -250,7 +254,7 @@ def check_case(model: Model, options: MeshOptions) -> tuple[DotShape, list[str]]
     segment, press = model.segment, model.press
     if press.waveform is not None:
         duration_s(press.waveform)  # reads the file of shape = "file"
-    warnings = check_segment(segment)
+    warnings = [*check_segment(segment), *check_way(model.dot, segment, press.path_xy_mm)]
     depth = press.indentation_mm
     if depth is not None:
         check_press_depth(segment, depth)
@@ -259,6 +263,7 @@ def check_case(model: Model, options: MeshOptions) -> tuple[DotShape, list[str]]
     dot_shape = resolve_dot(model.dot, segment)
     refuse_huge_mesh(segment, dot_shape, options, meshed_planes(model, dot_shape, options))
     if depth is not None:
-        warnings += press_warnings(dot_shape, segment, depth)
-        refuse_held_rim(segment, dot_shape, depth)
+        warnings += press_warnings(dot_shape, segment, depth, press.path_xy_mm)
+        for one in along(dot_shape, press.path_xy_mm):
+            refuse_held_rim(segment, one, depth)
     return dot_shape, warnings

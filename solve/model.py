@@ -5,10 +5,10 @@ Physics beyond the baseline, as the solver needs it. Every default is off and re
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Annotated, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import Field, PrivateAttr, model_validator
+from pydantic import Field, PrivateAttr, field_validator, model_validator
 
 from geometry.arrays import Floats
 from geometry.parameters import STATED, ActsWith, Dot, Finite, NonNegative, Positive, Segment, Table
@@ -120,6 +120,14 @@ class Readout(Table):
     limit_V: Positive | None = Field(None, description="the amplifier saturates at plus and minus this voltage")
     polarity: Literal[1, -1] = Field(1, description="sign of the voltage, as wired")
     noise_V: Positive = Field(1e-3, description="noise (one sigma) for the least detectable indentation")
+
+    @field_validator("polarity", mode="before")
+    @classmethod
+    def _number(cls, value: Any) -> Any:
+        """True is equal to 1 in Python."""
+        if isinstance(value, bool):
+            raise ValueError("must be 1 or -1")
+        return value
 
 
 @dataclass(frozen=True)

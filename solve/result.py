@@ -123,7 +123,8 @@ class Trace:
 class FilmPeak:
     """The largest film quantities of a press, each a mean through the thickness; principal values.
 
-    strain, stress_Pa, charge_density_C_per_m2 (least and largest) : at least rim_distance_m away from held sides.
+    strain, stress_Pa, charge_density_C_per_m2 (least and largest) : at least rim_distance_m away from held sides; so is
+        compression_Pa, the largest in any direction, 0 where there is none.
     rim_strain, rim_stress_Pa : anywhere, held sides included, where they depend on the mesh.
     """
 
@@ -133,6 +134,7 @@ class FilmPeak:
     rim_distance_m: float
     rim_strain: float
     rim_stress_Pa: float
+    compression_Pa: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -212,6 +214,7 @@ def film_peak(steps: Sequence[Step], tet_mesh: TetMesh, segment: Segment) -> Fil
     inside = distance_mm >= wanted_mm
     strain = np.max([_largest_principal(step.fields.film_strain) for step in steps], axis=0)
     stress = np.max([_largest_principal(step.fields.film_stress_Pa) for step in steps], axis=0)
+    pressed = [_largest_principal(-step.fields.film_stress_Pa[inside]).max() for step in steps]
     density = np.array([step.fields.charge_density_C_per_m2[inside] for step in steps])
     return FilmPeak(
         strain=float(strain[inside].max()),
@@ -220,6 +223,7 @@ def film_peak(steps: Sequence[Step], tet_mesh: TetMesh, segment: Segment) -> Fil
         rim_distance_m=1e-3 * wanted_mm,
         rim_strain=float(strain.max()),
         rim_stress_Pa=float(stress.max()),
+        compression_Pa=max(0.0, float(np.max(pressed))),
     )
 
 

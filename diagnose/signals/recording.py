@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from pathlib import PurePath
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field, field_validator
@@ -39,7 +39,9 @@ class RunTable(Table):
     over: tuple[int, int] | None = Field(
         None, description="row and column, from 1, of the segment of [array] that the dot stands over"
     )
-    temperature_C: Finite | None = Field(None, description="room temperature during this run")
+    temperature_C: Annotated[float, Field(ge=-273.15, allow_inf_nan=False)] | None = Field(
+        None, description="room temperature during this run"
+    )
     virgin: bool | None = Field(
         None,
         description="whether the specimen was never strained before; none: a coupon is new in each run, anything else "

@@ -1,8 +1,8 @@
 """The parameters of an array of segments, as the configuration writes them."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from geometry.parameters import LayerName, NonNegative, Positive, Table
 
@@ -35,3 +35,9 @@ class Array(Table):
     electrode_margin_mm: NonNegative = Field(
         0.0, description="bare film between the edge of a segment and that of its electrode"
     )
+
+    @model_validator(mode="after")
+    def _cells_apart(self) -> Self:
+        if self.cells == 1 and self.cell_pitch_mm is not None:
+            raise ValueError(f"cell_pitch_mm = {self.cell_pitch_mm:g}: acts only with cells above 1, here cells = 1")
+        return self

@@ -51,10 +51,13 @@ def _segment(config: "Config") -> "tuple[list[str], Cost]":
     """Warnings and cost of a run. InputError."""
     from softdot.case import Case
     from softdot.checks import design_warnings, expected_cost
+    from softdot.config import idle_materials
 
     case = Case(config)
     dot_shape, warnings = case.checked
-    return [*warnings, *design_warnings(case.model)], expected_cost(config, dot_shape, case.planes)
+    return [*warnings, *design_warnings(case.model), *idle_materials(config)], expected_cost(
+        config, dot_shape, case.planes
+    )
 
 
 def _array(config: "Config") -> "tuple[list[str], Cost]":

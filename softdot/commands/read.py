@@ -100,6 +100,7 @@ def command(chosen: Namespace) -> int:
     from geometry.base import InputError
     from softdot.config import load_config
     from softdot.console import progress_of
+    from softdot.reading.conditions import refuse_idle
 
     if chosen.design is not None:
         return _design(chosen)
@@ -109,6 +110,7 @@ def command(chosen: Namespace) -> int:
     if chosen.study or chosen.conditions is not None:
         return _study(chosen, config)
     recording = None if chosen.recording is None else Path(chosen.recording)
+    refuse_idle(conditions_of(chosen), _stated(chosen), recording is not None)
     with only_the_summary_on_stdout(), progress_of(chosen) as progress:
         summary = run_read(
             chosen.text, Path(chosen.kernel), Path(chosen.output), conditions_of(chosen), config, chosen.table,
@@ -198,12 +200,19 @@ def _called(name: str) -> str:
 
 def conditions_of(chosen: Namespace) -> ReadingConditions:
     """The conditions of the command line; what it does not say has its default. InputError."""
+    from softdot.reading.conditions import ReadingConditions
+
+    return ReadingConditions(**_stated(chosen))
+
+
+def _stated(chosen: Namespace) -> dict[str, Any]:
+    """The conditions that the command line states."""
     from dataclasses import fields
 
     from softdot.reading.conditions import ReadingConditions
 
     given = {one.name: getattr(chosen, one.name, None) for one in fields(ReadingConditions)}
-    return ReadingConditions(**{name: value for name, value in given.items() if value is not None})
+    return {name: value for name, value in given.items() if value is not None}
 
 
 def short_text(summary: dict[str, Any], output: str) -> str:

@@ -135,6 +135,12 @@ def resolved(config: Config) -> Config:
     return config.model_copy(update={"materials": {**found, **config.materials}, "press": press})
 
 
+def idle_materials(config: Config) -> list[str]:
+    """A warning for each material of the user's own that no layer is of: its name may be mistyped."""
+    used = {layer.material for layer in layers(config.segment)}
+    return [f"materials.{name}: no layer is of this material" for name in config.materials if name not in used]
+
+
 def config_hash(config: Config) -> str:
     """SHA-256 of the canonical text of the resolved configuration, in hexadecimal.
 

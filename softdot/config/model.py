@@ -9,6 +9,7 @@ from softdot.config import Config
 from softdot.config.errors import sentence
 from solve.mechanisms import MECHANISMS, Mechanism, with_mechanisms
 from solve.mechanisms.base import channels_of
+from solve.mechanisms.boundaries.rig_compliance import RIG_COMPLIANCE
 from solve.model import Model, Physics, declared_bonds
 
 STIFFEST_BOND_N_PER_MM3 = 1e6  # as in segment.bonds
@@ -31,6 +32,10 @@ def model_of(config: Config) -> Model:
         except ValueError as error:
             raise InputError(f"{key}.{error}") from None
         _refuse_beyond_bounds(key, model)
+        if mechanism.name == RIG_COMPLIANCE.name and not mechanism.is_off and config.press.force_N is not None:
+            raise InputError(
+                f"{key}.name = '{mechanism.name}': a force drives (press.force_N); it needs press.indentation_mm"
+            )
     _refuse_patches_outside(model)
     for number, mechanism in enumerate(config.mechanisms):
         key = f"mechanisms[{number}].component = '{mechanism.component}'"

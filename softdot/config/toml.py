@@ -188,11 +188,16 @@ def with_settings(tables: Mapping[str, Any], settings: Sequence[str]) -> dict[st
     InputError naming the flag.
     """
     changed = dict(tables)
+    given: list[tuple[str | int, ...]] = []
     for setting in settings:
         key, equals, text = setting.partition("=")
         if not equals:
             raise InputError(f"--set {setting}: must be key=value, such as press.indentation_mm=0.2")
         try:
+            way = parsed(key.strip())
+            if any(way == earlier[: len(way)] for earlier in given):
+                raise ValueError("this key, or one inside it, is given before; state each once")
+            given.append(way)
             changed = with_value(changed, key.strip(), _value(text.strip()))
         except (InputError, ValueError) as error:
             raise InputError(f"--set {setting}: {error}") from None

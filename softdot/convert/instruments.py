@@ -18,13 +18,14 @@ import numpy as np
 
 from geometry.arrays import Floats
 from geometry.base import InputError
-from softdot.convert.text_table import TextTable, read_text_table
+from softdot.convert.settings import Settings, bare, settings_above
+from softdot.convert.text_table import NO_NUMBER, TextTable, read_text_table
 from softdot.convert.units import Unit, known_unit, split_name, unit_of, usual_unit
 
 HEADER_ROWS = 200
 TIME = re.compile(
     r"#?(?:(?:elapsed|test|running|total|run|rel(?:ative)?|abs(?:olute)?)[ _]*)?"
-    r"(?:time|zeit|temps|tiempo|t|s|x|x[- ]?axis|seconds?|secs?|timestamp|time[ _]?stamp)"
+    r"(?:\w*time|\w*zeit|temps|tiempo|elapsed|t|s|x|x[- ]?axis|seconds?|secs?|timestamp|time[ _]?stamp)"
     r"(?:[ _]*(?:elapsed|axis|base))?",
     re.IGNORECASE,
 )
@@ -34,6 +35,9 @@ DIGITAL = re.compile(r"D\d+(?:-D\d+)?", re.IGNORECASE)
 """Logic channels, whose cells are words of bits."""
 NAMELESS = {"value", "volt", "volts", "ampl", "amplitude"}
 """Names of a channel that says its own in the settings, as source."""
+LONGEST_S = 1e10
+"""Three centuries: what is later counts no seconds."""
+OTHER_STEP = 0.1  # relative, of the times and of what the settings say
 
 
 @dataclass(frozen=True)
@@ -53,14 +57,26 @@ class InstrumentLog:
 
 
 @dataclass(frozen=True)
+class TimeColumn:
+    """Its place, factor and offset to seconds. told : whether the file says its unit, else seconds are assumed."""
+
+    column: int
+    factor: float
+    offset: float
+    told: bool
+
+
+@dataclass(frozen=True)
 class Layout:
-    """first : row of the first sample. time : column of the time, factor and offset to seconds. channels : name ->
+    """header : row of the names, None where settings say them. first : row of the first sample. channels : name ->
     column and unit.
     """
 
+    header: int | None
     first: int
-    time: tuple[int, float, float]
+    time: TimeColumn
     channels: Mapping[str, tuple[int, Unit]]
+    settings: Settings
 
 
 def read_oscilloscope(file: Path | str) -> dict[str, Floats]:
@@ -83,11 +99,14 @@ def log_of(table: TextTable) -> InstrumentLog:
     layout = _layout(table)
     rows = [row for row in range(layout.first, len(table.rows)) if any(table.rows[row])]
     _refuse_wide(table, rows, layout)
-    column, factor, offset = layout.time
-    time = offset + factor * table.column(rows, column)
+    _refuse_nameless(table, rows, layout)
+    column = layout.time.column
+    time = layout.time.offset + layout.time.factor * table.column(rows, column)
     if (late := rising(time)) is not None:
         where = f"{table.place(rows[late])}, column {column + 1}"
         raise InputError(f"{where} = '{table.cell(rows[late], column)[:40]}': every sample needs its time, which rises")
+    if not layout.time.told:
+        _refuse_no_seconds(time, layout, table)
     channels = {
         name: LogChannel(unit.factor * table.column(rows, place), unit.base)
         for name, (place, unit) in layout.channels.items()
@@ -112,6 +131,35 @@ def _refuse_wide(table: TextTable, rows: Sequence[int], layout: Layout) -> None:
             )
 
 
+def _refuse_no_seconds(time_s: Floats, layout: Layout, table: TextTable) -> None:
+    """InputError where times without a unit, which would be seconds, are none: too late, or of another step."""
+    where = f"{table.place(layout.header or 0)}: the time has no unit"
+    if np.abs(time_s).max() > LONGEST_S:
+        raise InputError(
+            f"{where}, and {time_s[np.abs(time_s).argmax()]:g} can be no seconds; write it behind the name"
+        )
+    stated = layout.settings.interval_s
+    step = float(np.median(np.diff(time_s))) if len(time_s) > 1 else 0.0
+    if stated is not None and step > 0.0 and abs(step / stated[1] - 1.0) > OTHER_STEP:
+        raise InputError(
+            f"{where}: its samples are {step:g} apart, and '{stated[0]}' above is {stated[1]:g} s; write the unit "
+            "behind the name"
+        )
+
+
+def _refuse_nameless(table: TextTable, rows: Sequence[int], layout: Layout) -> None:
+    """InputError for samples behind the time in a column that the header leaves empty."""
+    header = table.rows[layout.header] if layout.header is not None else ()
+    empty = [column for column, cell in enumerate(header) if not cell and column > layout.time.column]
+    for row in rows:
+        for column in empty:
+            if table.cell(row, column):
+                raise InputError(
+                    f"{table.place(row)}, column {column + 1} = '{table.cell(row, column)[:40]}': the header has no "
+                    "name for it"
+                )
+
+
 def _layout(table: TextTable) -> Layout:
     """Where time and channels stand."""
     if _is_beside_settings(table):
@@ -129,33 +177,48 @@ def _layout(table: TextTable) -> Layout:
 def _time_column(table: TextTable, row: int) -> int | None:
     """Where the time stands in a row that is a header: names alone, with numbers below them; None in any other."""
     cells = table.rows[row]
-    if sum(bool(cell) for cell in cells) < 2 or any(table.is_number(cell) for cell in cells[:1]):
+    if sum(bool(cell) for cell in cells) < 2 or table.is_number(cells[0]) or "unit" in cells[0].lower():
         return None
     for column, cell in enumerate(cells):
         first = _first_sample(table, row, column) if _is_time(cell) else None
-        if first is not None and not any(_is_header(table.rows[below], table) for below in range(row + 1, first)):
+        if first is not None and not any(
+            _is_header(table.rows[below], column, table) for below in range(row + 1, first)
+        ):
             return column
     return None
 
 
-def _is_header(cells: Sequence[str], table: TextTable) -> bool:
-    """Whether a row holds a time among names, and is more than a row of units, or of start and increment."""
-    told = (known_unit(_bare(cell), "load") or table.is_number(cell) for cell in cells if cell)  # g and kg too
-    return any(_is_time(cell) for cell in cells) and not all(told)
+def _is_header(cells: Sequence[str], column: int, table: TextTable) -> bool:
+    """Whether a row below a time holds a time among names, and is more than units, or start and increment."""
+    under = known_unit(bare(cells[column])) if column < len(cells) else None
+    told = (known_unit(bare(cell), "load") or table.is_number(cell) for cell in cells if cell)  # g and kg too
+    return any(_is_time(cell) for cell in cells) and not all(told) and (under is None or under.base != "s")
 
 
 def _is_time(cell: str) -> bool:
-    """Whether a name, without its unit, is that of a time."""
+    """Whether a name, without its unit, is that of a time; a letter alone only where the unit is none of another."""
     bare = re.sub(r"\s*[(\[{].*", "", cell.strip())
     parts = [bare, bare.rpartition("_")[0], bare.rpartition(",")[0], bare.rpartition("/")[0], bare.rpartition(" ")[0]]
-    return any(TIME.fullmatch(part.strip()) for part in parts if part.strip())
+    found = {part.strip() for part in parts if part.strip() and TIME.fullmatch(part.strip())}
+    if not found or max(map(len, found)) > 1:
+        return bool(found)
+    try:
+        unit = split_name(cell, "")[1]
+    except InputError:
+        return False
+    return unit is None or unit.base == "s"
 
 
 def _first_sample(table: TextTable, row: int, column: int) -> int | None:
-    """The row of the first number below a header, with a row of units and empty ones between them at most."""
+    """The row of the first number below a header, with a row of units and empty ones between them at most.
+
+    A row that begins with a word before that number is a setting.
+    """
     between = 0
     for below in range(row + 1, min(row + 6, len(table.rows))):
-        if table.is_number(table.cell(below, column).replace("\u2212", "-")):
+        is_setting = column > 0 and table.cell(below, 0)[:1].isalpha()
+        text = table.cell(below, column).replace("\u2212", "-")
+        if not is_setting and (table.is_number(text) or NO_NUMBER.fullmatch(text)):
             return below
         between += any(table.rows[below])
         if between > 1:
@@ -167,28 +230,37 @@ def _below_header(table: TextTable, row: int, column: int) -> Layout:
     """Names in a row, units there, in the row below or in settings above."""
     first = _first_sample(table, row, column)
     assert first is not None
-    settings = _settings(table, row)
+    settings = settings_above(table, row)
     units = next((table.rows[n] for n in range(row + 1, first) if any(table.rows[n])), [])
     header = table.rows[row]
     steps = {cell.lower(): n for n, cell in enumerate(header) if cell.lower() in ("start", "increment")}
     _refuse_segments(settings, table)
-    names = _channels(table, row, column, set(steps.values()))
-    sources, told = settings.get("source", []), settings.get("vertical units", [])
+    channels = _united(table, row, _channels(table, row, column, set(steps.values())), units, settings)
+    return Layout(row, first, _time(table, row, column, units, steps, settings), channels, settings)
+
+
+def _united(
+    table: TextTable, row: int, places: Sequence[tuple[int, str]], units: Sequence[str], settings: Settings
+) -> dict[str, tuple[int, Unit]]:
+    """Name -> column and unit of channels (column, cell of the header). InputError for two of one name, or none."""
+    where, sources = table.place(row), settings.values.get("source", [])
+    found = [(place, cell, *split_name(cell, where)) for place, cell in places]
+    names = [name or cell for _, cell, name, _ in found]
+    if len(sources) == len(names):
+        names = [source if name.lower() in NAMELESS else name for name, source in zip(names, sources, strict=True)]
+    names = [f"CH{name}" if name.isdecimal() else name for name in names]
     channels: dict[str, tuple[int, Unit]] = {}
-    for n, (place, cell) in enumerate(names):
-        name, unit = split_name(cell, table.place(row))
-        name, unit = name or cell, unit or known_unit(cell)
-        below = units[place] if place < len(units) else ""
-        above = told[n].rpartition(":")[2] if n < len(told) else ""
-        if name.lower() in NAMELESS and len(sources) == len(names):
-            name = sources[n]
-        name = f"CH{name}" if name.isdecimal() else name
+    for n, ((place, cell, _, unit), name) in enumerate(zip(found, names, strict=True)):
         if name in channels:
-            raise InputError(f"{table.place(row)}: two columns are called '{name[:40]}'; give each its own name")
-        channels[name] = (place, _agreed(unit, below, above, name, table.place(row)))
+            raise InputError(f"{where}: two columns are called '{name[:40]}'; give each its own name")
+        beside = [row[place] if place < len(row) else "" for row in (units, settings.units)]
+        beside.append(settings.unit_of_channel(n, names, where))
+        channels[name] = (place, _agreed(unit or known_unit(cell), beside, name, where))
+        if channels[name][1].base == "s":
+            raise InputError(f"{where}: column '{name[:40]}' is a second time; leave it out")
     if not channels:
-        raise InputError(f"{table.place(row)}: has no column beside the time")
-    return Layout(first, _time(table, row, column, units, steps, settings), channels)
+        raise InputError(f"{where}: has no column beside the time")
+    return channels
 
 
 def _channels(table: TextTable, row: int, column: int, without: set[int]) -> list[tuple[int, str]]:
@@ -207,40 +279,35 @@ def _channels(table: TextTable, row: int, column: int, without: set[int]) -> lis
     return found
 
 
-def _agreed(unit: Unit | None, below: str, above: str, name: str, where: str) -> Unit:
-    """The unit of a channel by its header, the row below it or the settings above. InputError where they differ."""
+def _agreed(unit: Unit | None, beside: Sequence[str], name: str, where: str) -> Unit:
+    """The unit of a channel by its header, the rows beside it or the settings above. InputError where they differ."""
     told = [unit] if unit is not None else []
-    told += [unit_of(_bare(text), name, where) for text in (below, above) if _bare(text)]
+    told += [unit_of(bare(text), name, where) for text in beside if bare(text)]
     if any(one != told[0] for one in told):
         raise InputError(f"{where}: column '{name[:40]}' has two units, in its header and beside it")
     return told[0] if told else usual_unit(name, where)
 
 
-def _bare(cell: str) -> str:
-    """(mV) -> mV."""
-    return cell.strip().strip("()[]{}").strip()
-
-
 def _time(
-    table: TextTable, row: int, column: int, units: Sequence[str], steps: Mapping[str, int],
-    settings: Mapping[str, Sequence[str]],
-) -> tuple[int, float, float]:  # fmt: skip
-    """Column, factor and offset of the time; sequence numbers count from a start in steps."""
+    table: TextTable, row: int, column: int, units: Sequence[str], steps: Mapping[str, int], settings: Settings
+) -> TimeColumn:
+    """Sequence numbers count from a start in steps; seconds where no unit is told. InputError."""
     where = table.place(row)
-    below = _bare(units[column]) if column < len(units) else ""
+    beside = [bare(cells[column]) if column < len(cells) else "" for cells in (units, settings.units)]
     name, unit = split_name(table.rows[row][column], where)
-    if below.lower() in ("sequence", "sample", "samples") and steps:
-        return column, *_start_and_step(table, row, steps)
+    if beside[0].lower() in ("sequence", "sample", "samples") and steps:
+        return TimeColumn(column, *_start_and_step(table, row, steps), told=True)
     named = known_unit(name) if unit is None else None  # second as a name
-    above = next(iter(settings.get("horizontal units", [])), "")
     if named is not None and named.base == "s":
         unit = named
-    elif unit is None and not below and not above and not steps:
-        unit = Unit("s", 1.0)
-    agreed = _agreed(unit, below, above, name, where)
+    beside.append(settings.time_unit)
+    told = unit is not None or any(beside) or bool(steps)
+    if not told and any(units):
+        raise InputError(f"{where}: column '{name[:40]}' has no unit, and others have one in the row below")
+    agreed = _agreed(unit if told else Unit("s", 1.0), beside, name, where)
     if agreed.base != "s":
         raise InputError(f"{where}: column '{name[:40]}' is a time and must be in a unit of time")
-    return column, agreed.factor, 0.0
+    return TimeColumn(column, agreed.factor, 0.0, told)
 
 
 def _start_and_step(table: TextTable, row: int, steps: Mapping[str, int]) -> tuple[float, float]:
@@ -255,18 +322,10 @@ def _start_and_step(table: TextTable, row: int, steps: Mapping[str, int]) -> tup
     return values["increment"], values["start"]
 
 
-def _settings(table: TextTable, row: int) -> dict[str, list[str]]:
-    """Key in small letters -> the values beside it, of the rows above a header."""
-    rows = (table.rows[n] for n in range(row))
-    return {
-        cells[0].lstrip("#").strip().lower(): [cell for cell in cells[1:] if cell] for cells in rows if any(cells[1:])
-    }
-
-
-def _refuse_segments(settings: Mapping[str, Sequence[str]], table: TextTable) -> None:
+def _refuse_segments(settings: Settings, table: TextTable) -> None:
     """InputError for several recordings in one file, as LeCroy writes a sequence."""
     for key in ("segments", "fastframe count"):
-        value = next(iter(settings.get(key, [])), "1")
+        value = settings.number(key)
         if table.is_number(value) and float(value.replace(",", ".")) > 1.0:
             raise InputError(
                 f"'{table.file}': holds {value} segments one after the other; save each in a file of its own"
@@ -294,4 +353,4 @@ def _beside_settings(table: TextTable) -> Layout:
     if time.base != "s":
         raise InputError(f"{where}: the horizontal unit must be one of time")
     unit = unit_of(first.get("vertical units", "") or "V", name, where)
-    return Layout(0, (3, time.factor, 0.0), {name: (4, unit)})
+    return Layout(None, 0, TimeColumn(3, time.factor, 0.0, True), {name: (4, unit)}, Settings({}, []))

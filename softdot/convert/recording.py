@@ -60,8 +60,9 @@ def _refuse_uneven(name: str, columns: Mapping[str, Floats]) -> None:
 
 
 def _write_columns(file: Path, columns: Mapping[str, Floats]) -> None:
-    """A header and one row per sample, with nine digits: more than any converter has."""
-    np.savetxt(file, np.column_stack(list(columns.values())), "%.9g", ",", header=",".join(columns), comments="")
+    """A header and one row per sample, with nine digits: more than any converter has; of a time since 1970 more."""
+    digits = ["%.15g" if name == "time_s" else "%.9g" for name in columns]
+    np.savetxt(file, np.column_stack(list(columns.values())), digits, ",", header=",".join(columns), comments="")
 
 
 def run_text(

@@ -5,6 +5,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from io import StringIO
+from math import isfinite
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +20,10 @@ MARKS = {b"\xef\xbb\xbf": "utf-8-sig", b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-
 NUMBER = re.compile(r"[+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eEdD][+-]?\d+)?", re.ASCII)
 NO_NUMBER = re.compile(r"[+-]?(?:nan|inf|infinity|\u221e)", re.IGNORECASE)
 """A sample that is missing, or beyond the range of its channel as PicoScope writes it."""
+NOT_A_NUMBER, OVERFLOW = 9.91e37, 9.9e37
+"""How instruments write the same in numbers (SCPI-1999, volume 1, 7.2.1.4 and 7.2.1.5)."""
+GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(?:[.,]\d{3})+", re.ASCII)
+"""What may be thousands: 1,234."""
 LOOKED_AT = 200  # rows
 
 
@@ -50,7 +55,10 @@ class TextTable:
             return float("nan")
         if not self.is_number(text):
             raise InputError(f"{self.place(row)}, column {column + 1} = '{text[:40]}': must be a number")
-        return float(text.upper().replace("D", "E").replace(",", "."))
+        value = float(text.upper().replace("D", "E").replace(",", "."))
+        if not isfinite(value):
+            raise InputError(f"{self.place(row)}, column {column + 1} = '{text[:40]}': is too large for a number")
+        return float("nan") if abs(value) in (NOT_A_NUMBER, OVERFLOW) else value
 
     def column(self, rows: Sequence[int], column: int) -> Floats:
         """The numbers of one column, (t,)."""
@@ -117,16 +125,29 @@ def _separator(text: str) -> str:
 
 
 def _decimal(rows: Sequence[Sequence[str]], file: Path) -> str:
-    """Comma or point, whichever the samples have. InputError where they have both."""
+    """Comma or point, whichever the samples have. InputError where they have both, or it may be one of thousands."""
     marks: dict[str, str] = {}
+    decimals: set[str] = set()
+    grouped: set[int] = set()  # columns of 1,234
+    large: set[int] = set()  # columns of 998
     for number, row in enumerate(rows):
-        numbers = [cell for cell in row if NUMBER.fullmatch(cell)]
+        numbers = [(column, cell) for column, cell in enumerate(row) if NUMBER.fullmatch(cell)]
         if len(numbers) < 2:  # a setting, such as a version
             continue
-        for mark in ".,":
-            found = next((cell for cell in numbers if mark in cell), None)
-            if found is not None:
-                marks.setdefault(mark, f"row {number + 1}: '{found[:40]}'")
+        for column, cell in numbers:
+            mark = "." if "." in cell else "," if "," in cell else ""
+            if not mark:
+                large |= {column} if len(cell.lstrip("+-")) > 2 else set()
+                continue
+            marks.setdefault(mark, f"row {number + 1}: '{cell[:40]}'")
+            if mark not in decimals:
+                is_grouped = GROUPED.fullmatch(cell)
+                (grouped.add(column) if is_grouped else decimals.add(mark))
     if len(marks) == 2:
         raise InputError(f"'{file}': numbers have points ({marks['.']}) and commas ({marks[',']}); which are decimals?")
-    return next(iter(marks), ".")
+    mark = next(iter(marks), ".")
+    if grouped and mark not in decimals and (mark == "," or grouped & large):
+        raise InputError(
+            f"'{file}': numbers may be of thousands, or have decimals ({marks[mark]}); write 1234 or 1.2340"
+        )
+    return mark

@@ -48,7 +48,7 @@ WORDS = {
     **{name: EXACT[short] for name, short in {
         "sec": "s", "msec": "ms", "usec": "us", "nsec": "ns", "minute": "min", "hour": "h", "micron": "um",
         "inch": "in", "gram-force": "gf", "pound-force": "lbf", "kilogram-force": "kgf", "min": "min",
-        "kgf": "kgf", "lbf": "lbf", "ozf": "ozf", "degc": "degC"}.items()},
+        "gf": "gf", "kgf": "kgf", "lbf": "lbf", "ozf": "ozf", "degc": "degC"}.items()},
 }  # fmt: skip
 """In capitals or small letters, in the singular or the plural."""
 WEIGHTS = {"g": "gf", "kg": "kgf", "mg": "mgf", "lb": "lbf", "lbs": "lbf", "oz": "ozf"}
@@ -57,10 +57,19 @@ LOAD = re.compile(r"load|force|cell|weight|scale|kraft|last", re.IGNORECASE)
 TEMPERATURE = re.compile(r"temp|t_?room", re.IGNORECASE)
 CURRENT = re.compile(r"(?:[nu\u00b5\u03bcmk]?A|amps?|amperes?|milliamps?)", re.IGNORECASE)
 NAMED_CURRENT = re.compile(r"\b(?:current|strom|amperage)\b", re.IGNORECASE)
-QUANTITY = re.compile(
-    r"time|zeit|load|force|weight|volt|pos|displ|travel|stroke|extension|height|depth|ch(?:annel)?\b|temp",
-    re.IGNORECASE,
-)
+QUANTITIES = {
+    base: re.compile(rf"(?:{words})", re.IGNORECASE)
+    for base, words in {
+        "s": r"time|zeit|temps|elapsed|(?<![a-z])t(?![a-z])",
+        "N": r"load|force|weight|kraft|last(?![a-z])",
+        "V": r"volt|spannung|(?<![a-z])ch(?:an|annel)?[ _-]*(?:\d|[a-h]?(?![a-z]))|(?<![a-z])[uv](?![a-z])",
+        "mm": r"(?<![a-z])pos|displ|travel|stroke|extension|height|depth|distance|weg(?![a-z])",
+        "C": r"temp(?!s)",
+    }.items()
+}
+"""What the name of a column says of it."""
+ALSO_WORDS = {"s", "S", "h", "m", "in", "min", "C", "v"}
+"""Units that may be an end of a name as well: V_in is no inch, Force_min no minute."""
 SHOWN = "ns, us, ms, s, min, h, nV, uV, mV, V, kV, mN, N, kN, gf, kgf, lbf, um, mm, cm, m, in, °C"
 
 
@@ -94,20 +103,33 @@ def split_name(cell: str, where: str) -> tuple[str, Unit | None]:
     bracket = re.fullmatch(r"(.*?)\s*[(\[{]\s*([^()\[\]{}]*?)\s*[)\]}]\s*(.*)", text)
     if bracket:
         name = " ".join(f"{bracket[1]} {bracket[3]}".split())
-        return name, unit_of(bracket[2], name or text, where)
-    for mark, strict in ((",", True), ("/", False), ("_", False)):
+        unit = unit_of(bracket[2], name or text, where)
+        others = [*re.findall(r"[(\[{]([^()\[\]{}]*)", name), bracket[3]]
+        if any(known_unit(other, name) not in (None, unit) for other in others):
+            raise InputError(f"{where}: column '{text[:40]}' has two units")
+        return name, unit
+    head, _, tail = (part.strip() for part in text.rpartition(","))
+    if head and tail:
+        return head, unit_of(tail, head, where)
+    for mark in "/_ ":
         head, _, tail = (part.strip() for part in text.rpartition(mark))
-        if head and tail and (strict or known_unit(tail, head) or _is_current(head, tail)):
+        if head and tail and (_is_meant(head, tail, mark) or (mark != " " and _is_current(head, tail))):
             return head, unit_of(tail, head, where)
-    head, _, tail = text.rpartition(" ")
-    if QUANTITY.search(head) and known_unit(tail, head):
-        return head.strip(), known_unit(tail, head)
     glued = re.fullmatch(r"(CH\d)([nu\u00b5\u03bcmk]?V)", text)  # of Rigol's newer instruments
     if glued:
         return glued[1], known_unit(glued[2])
     if NAMED_CURRENT.search(text):
         raise InputError(f"{where}: column '{text[:40]}' is a current: no channel of a recording; leave it out")
     return text, None
+
+
+def _is_meant(head: str, tail: str, mark: str) -> bool:
+    """Whether the end of a name is its unit: one of what the name says, and where that is nothing no word."""
+    unit = known_unit(tail, head)
+    said = {base for base, words in QUANTITIES.items() if words.search(head)}
+    if unit is None or mark == "/":
+        return unit is not None
+    return unit.base in said if said else mark == "_" and tail not in ALSO_WORDS
 
 
 def _is_current(head: str, tail: str) -> bool:

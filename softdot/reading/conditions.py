@@ -1,5 +1,6 @@
 """How a line is read: everything that is chosen, with units in the names, its bounds and its defaults."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
 from math import isfinite
 from typing import Any, Literal, get_args
@@ -110,6 +111,26 @@ class ReadingConditions:
     def as_dict(self) -> dict[str, Any]:
         """All of them."""
         return {one.name: getattr(self, one.name) for one in fields(self)}
+
+
+TIMES = ("press_s", "hold_s")
+OF_A_RECORDING = ("standard", "mode", *TIMES, "speed_mm_per_s")
+"""What its decoders are told; the speed only of presses, where it says when the next one begins."""
+
+
+def refuse_idle(conditions: ReadingConditions, stated: Iterable[str], is_recorded: bool) -> None:
+    """InputError for a stated condition that changes nothing beside the others, or beside a recording."""
+    slides = conditions.mode == "slide"
+    idle = {
+        **(dict.fromkeys(TIMES, "with --mode press") if slides else {}),
+        **({"tremor_Hz": "with --tremor-um above 0"} if conditions.tremor_um == 0.0 else {}),
+        **({"wear_mm": "with --worn above 0"} if conditions.worn == 0.0 else {}),
+    }
+    for name in stated:
+        if is_recorded and (name not in OF_A_RECORDING or (slides and name == "speed_mm_per_s")):
+            idle[name] = "on voltages that are simulated, and here --recording has its own"
+        if name in idle:
+            raise InputError(f"{option(name)} = {getattr(conditions, name)}: acts only {idle[name]}; leave it out")
 
 
 def option(name: str) -> str:

@@ -95,6 +95,11 @@ def _table(waveform: Waveform) -> Floats:
     """The rows time_s, fraction (n, 2); what starts pressed is reached from rest in the time of a rise before."""
     rows = _rows(waveform)
     if rows[0, 1] == 0.0:
+        if waveform.rise_s != Waveform.model_fields["rise_s"].default:
+            raise InputError(
+                f"press.waveform.rise_s = {waveform.rise_s:g}: acts only where the first row of the file is pressed "
+                "already; here its fraction is 0"
+            )
         return rows
     return np.vstack([[rows[0, 0] - waveform.rise_s, 0.0], rows])
 
@@ -121,10 +126,15 @@ def _read(file: Path, _modified_ns: int, _size: int) -> Floats:
     where = _told(file)
     text = read_text(file, where)
     try:
-        rows = list(csv.DictReader(text.splitlines()))
-        table = np.array([(float(row["time_s"]), float(row["fraction"])) for row in rows]).reshape(-1, 2)
+        header, *rows = (row for row in csv.reader(text.splitlines()) if row)
+        place = {name.strip(): number for number, name in enumerate(header)}
+        if place.keys() != {"time_s", "fraction"} or any(len(row) != len(header) or len(row) != 2 for row in rows):
+            raise KeyError("time_s")
+        order = place["time_s"], place["fraction"]
+        cells = [row[column].replace("_", "?") for row in rows for column in order]  # Python takes 1_0 for ten
+        table = np.array([float(cell) for cell in cells]).reshape(-1, 2)
     except (KeyError, TypeError, ValueError, csv.Error):
-        raise InputError(f"{where}: needs the columns time_s and fraction with a number in each row") from None
+        raise InputError(f"{where}: needs the columns time_s and fraction alone, with a number in each row") from None
     bad = np.flatnonzero(~(np.abs(table) <= LARGEST_S).all(axis=1))  # NaN passes no comparison
     if len(bad):
         time, share = table[bad[0]]

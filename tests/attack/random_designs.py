@@ -21,6 +21,8 @@ from tests.softdot.random_configurations import felt_behind
 SEED = 20261123
 LAYERS = ("effector", "medium1", "film", "medium2")
 NAMES = tuple(MECHANISMS)
+BY_DEPTH = {"guide-friction", "rig-compliance"}
+"""Mechanisms that need a drive by depth."""
 TOLD_ONLY = ("source", "confidence", "fabrication")
 SOLID, ROUND = 9, 40
 """Every 9th design is a solid, every 40th has a round effector (pytetwild); the rest are plane-strain slices."""
@@ -66,7 +68,7 @@ def design(number: int) -> dict:
         "materials": materials,
         "dot": dot,
         "press": _press(
-            draw, segment, softest, dot["gap_mm"] + 0.1 * ("contact-gap" in names), "guide-friction" in names
+            draw, segment, softest, dot["gap_mm"] + 0.1 * ("contact-gap" in names), not BY_DEPTH.isdisjoint(names)
         ),
         "mesh": _mesh(draw, solid, round_one),
         "mechanisms": _mechanisms(draw, names, segment, dot, materials),
@@ -150,7 +152,7 @@ def _array(draw, segment):
         "rows": rows,
         "cells": cells,
         "pitch_mm": size + draw.between(0.1, 0.5),
-        "cell_pitch_mm": size + 0.6,
+        **({"cell_pitch_mm": size + 0.6} if cells > 1 else {}),
         "shared": ["film", "medium2"],
         "electrode_margin_mm": draw.between(0.0, 0.2),
     }

@@ -1,8 +1,11 @@
 """A drive of the wrong sign, zero or size is told in one sentence, before noise is asked for."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
+from diagnose.forward import other_units
 from geometry.base import InputError
 from softdot.config.rig import load_rig
 from tests.diagnose.rigs import COUPON, HEAD, RUN, SEGMENT, samples, write_rig
@@ -67,3 +70,13 @@ def test_repeats_may_have_one_label(tmp_path):
     rig = HEAD + SEGMENT + (RUN + "label = 'slow'\n") * 2 + RUN + "label = 'slow (2)'\n"
     runs = load_rig(write_rig(tmp_path / "rig", rig)).recording.runs
     assert [run.label for run in runs] == ["slow", "slow (3)", "slow (2)"]
+
+
+@pytest.mark.parametrize(("factor", "meant"), [(1e3, "millinewtons"), (1e-3, "kilonewtons"), (3.0, None), (0.1, None)])
+def test_a_force_of_another_unit_is_told(factor, meant):
+    force = np.linspace(0.0, 0.5, 20)
+    run = SimpleNamespace(
+        file="a.csv", answers=("force_N",), usable=lambda _: slice(None), channels={"force_N": factor * force}
+    )
+    said = other_units(SimpleNamespace(runs=[run]), SimpleNamespace(predict=lambda *_: {"force_N": force}))
+    assert [sentence.rpartition("are these ")[2] for sentence in said] == ([f"{meant}?"] if meant else [])

@@ -1,6 +1,7 @@
 """A key stands only where it acts: stated elsewhere it is refused by name, once, in program and schema alike."""
 
 import copy
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from softdot.config.errors import tables_at
 from softdot.config.mistakes import mistakes
 from softdot.config.not_modelled import NOT_MODELLED, not_modelled
 from softdot.config.toml import completed
+from solve.mechanisms import MECHANISMS, Mechanism, with_mechanisms
 from solve.model import Readout, Waveform
 from tests.cases import for_each
 
@@ -140,6 +142,120 @@ def test_what_lies_parallel_to_a_virtual_ground_is_refused(name, component, para
         _ = Case(**tables, readout=CHARGE).model
 
 
+def other(value):
+    """Another value of a parameter."""
+    if isinstance(value, tuple):
+        return [other(one) for one in value]
+    return value + 1 if isinstance(value, int) else 0.87 * (value or 0.0) + 0.07
+
+
+def without_names(model):
+    return replace(model, mechanisms=())
+
+
+@for_each("name", MECHANISMS)
+def test_each_parameter_of_a_mechanism_changes_the_model_or_is_refused(name):
+    kind = MECHANISMS[name]
+    base = Case(segment={"film": {"electrodes": TWO}}, readout={}).model
+    for component in kind.components[:8]:
+        for key in kind.parameters.model_fields:
+            try:
+                first = Mechanism(name=name, component=component, parameters=kind.example)
+                changed = {**kind.example, key: other(getattr(first.values(), key))}
+                second = Mechanism(name=name, component=component, parameters=changed)
+                one, two = (without_names(with_mechanisms(base, [each])) for each in (first, second))
+            except ValueError:
+                continue
+            assert one != two, (component, key)
+
+
+@for_each("name", [name for name, kind in MECHANISMS.items() if kind.off is not None and "inf" not in str(kind.off)])
+def test_what_is_off_changes_nothing_whatever_else_is_stated(name):
+    kind = MECHANISMS[name]
+    base = Case(segment={"film": {"electrodes": TWO}}, readout={}).model
+    for key in kind.parameters.model_fields:
+        values = kind.off if key in kind.off else {**kind.off, key: 0.5}
+        tried = {**{one: value for one, value in values.items() if value is not None}, key: values[key]}
+        for changed in (tried, {**tried, key: 0.5}, {**tried, key: [0.5]}):
+            try:
+                one = Mechanism(name=name, component=kind.components[0], parameters=changed)
+                on = without_names(with_mechanisms(base, [one]))
+            except ValueError:
+                continue
+            known = "hyperelastic" in name or replace(on, physics=base.physics) == base
+            assert not one.is_off or known, changed
+
+
+SLICE = {"segment": {"section": "plane-strain"}, "dot": {"shape": "ridge"}}
+ELECTRODE = {"name": "a", "center_mm": [0.0, 0.1], "size_mm": [1.0, 1.0]}
+PATCH = {"name": "delamination", "component": "bond-base", "parameters": {"diameter_mm": 0.4, "center_mm": [0.0, 0.1]}}
+COMPLIANT = {"name": "rig-compliance", "component": "rig", "parameters": {"compliance_mm_per_N": 0.1}}
+GLUE = {"normal_stiffness_N_per_mm3": 9.0, "shear_stiffness_N_per_mm3": 9.0, "poisson_ratio": 0.3}
+IDLE = {
+    "dot.offset_mm[1]": {**SLICE, "dot": {"shape": "ridge", "offset_mm": [0.0, 0.1]}},
+    "press.path_xy_mm[1][1]": {**SLICE, "press": {"path_xy_mm": [[0.1, 0.0], [0.1, 0.1]]}},
+    "segment.film.electrodes[0].center_mm[1]": {
+        **SLICE, "segment": {"section": "plane-strain", "film": {"electrodes": [ELECTRODE]}}
+    },
+    "mechanisms: the delamination of 'bond-base' with center_mm[1]": {**SLICE, "mechanisms": [PATCH]},
+    "mechanisms[0].name": {"press": {"force_N": 0.1}, "mechanisms": [COMPLIANT]},
+    "mechanisms[0].parameters.poisson_ratio": {
+        "mechanisms": [{"name": "adhesive-compliance", "component": "bond-base", "parameters": GLUE}]
+    },
+}  # fmt: skip
+
+
+@for_each(("key", "tables"), IDLE.items(), ids=lambda value: str(value)[:60])
+def test_a_place_or_a_number_that_changes_nothing_here_is_refused(key, tables):
+    with pytest.raises(InputError) as refused:
+        _ = Case(**tables).checked
+    assert str(refused.value).startswith(key)
+
+
+@for_each(
+    ("settings", "said"),
+    [
+        (["readout.polarity=true"], "readout.polarity = true: must be 1 or -1"),
+        (
+            ["press.load_steps=2", "press.load_steps=3"],
+            "press.load_steps=3: this key, or one inside it, is given before",
+        ),
+        (["press.load_steps=2", "press={}"], "press={}: this key, or one inside it, is given before"),
+        (["array.cell_pitch_mm=6.0"], "array.cell_pitch_mm = 6: acts only with cells above 1, here cells = 1"),
+    ],
+)
+def test_settings_that_are_overridden_or_mean_nothing_are_refused(settings, said):
+    with pytest.raises(InputError) as refused:
+        _ = Case.load(settings=settings).config
+    assert str(refused.value).endswith(said if "before" not in said else f"{said}; state each once")
+
+
+def test_the_time_of_a_rise_beside_a_file_acts_only_where_it_starts_pressed(tmp_path):
+    for first in (0.0, 0.5):
+        (tmp_path / f"{first}.csv").write_text(f"time_s,fraction\n0,{first}\n1,1\n", "utf-8")
+        waveform = {"shape": "file", "file": str(tmp_path / f"{first}.csv"), "rise_s": 0.3}
+        case = Case(press={"waveform": waveform})
+        if first:
+            assert case.checked
+        else:
+            with pytest.raises(InputError, match=r"press\.waveform\.rise_s = 0\.3: acts only where the first row"):
+                _ = case.checked
+
+
+def test_the_place_of_a_plate_is_told_to_change_nothing():
+    told = Case(segment={"boundary": "free"}, dot={"shape": "plate", "offset_mm": [0.1, 0.0]}).checked[1]
+    assert "dot.offset_mm = [0.1, 0.0]: changes nothing, as a plate has no middle" in told
+
+
+def test_a_slide_is_looked_at_on_its_whole_way():
+    """Over the edge of a free segment it is told, onto a held rim refused; back at its end or not."""
+    way = {"path_xy_mm": [[1.2, 0.0], [0.0, 0.0]], "indentation_mm": 0.1}
+    free = Case(segment={"boundary": "free"}, press=way)
+    assert any("beyond the edge of the segment" in one for one in free.checked[1])
+    with pytest.raises(InputError, match="meets the held rim"):
+        _ = Case(press=way).checked
+
+
 def test_the_schema_refuses_the_same_keys():
     jsonschema = pytest.importorskip("jsonschema")
     validator = jsonschema.Draft202012Validator(SCHEMA)
@@ -212,15 +328,24 @@ def test_what_there_is_not_is_said():
         Case(mechanisms=[{"name": "humidity", "component": "film"}])
 
 
+COARSE = {
+    "segment": {"section": "plane-strain"},
+    "dot": {"shape": "ridge"},
+    "press": {"load_steps": 1},
+    "mesh": {"mesher": "layered", "element_size_mm": 0.8, "contact_element_size_mm": 0.3},
+}
+
+
+@for_each(("strain", "said"), [(0.15, "largest principal stress"), (-0.15, "largest compressive stress")])
+def test_a_film_beyond_its_yield_stress_is_told_whichever_the_sign(strain, said):
+    taut = {"name": "film-prestretch", "component": "film", "parameters": {"strain_x": strain}}
+    told = Case(**COARSE, mechanisms=[taut]).press().warnings
+    assert [one for one in told if said in one and "exceeds its yield stress" in one]
+
+
 def test_the_order_of_mechanisms_does_not_matter():
     """Of those that do not act on one another, on a coarse slice."""
-    coarse = {
-        "segment": {"section": "plane-strain"},
-        "dot": {"shape": "ridge"},
-        "press": {"load_steps": 1},
-        "mesh": {"mesher": "layered", "element_size_mm": 0.8, "contact_element_size_mm": 0.3},
-        "readout": {"input_resistance_MOhm": 10.0},
-    }
+    coarse = {**COARSE, "readout": {"input_resistance_MOhm": 10.0}}
     every = [
         {"name": "film-prestretch", "component": "film", "parameters": {"strain_x": 0.01, "strain_y": 0.0}},
         {"name": "property-error", "component": "medium2", "parameters": {"modulus_factor": 1.2}},

@@ -135,6 +135,36 @@ def test_units_beside_samples_change_no_column(time, unit, tmp_path):
     assert found["CH2"] == pytest.approx(VALUES["CH2"], rel=1e-9)
 
 
+@pytest.mark.parametrize(
+    "head",
+    [
+        "Time Unit,ms\nVertical Units,mV\nTime,CH1",
+        "# HUnit: ms\n# VUnit: mV\nTime,CH1",
+        "Units,ms,mV\nTime,CH1",
+        "(ms),(mV)\nTime,CH1",
+        "Horizontal Units,ms\nSample Interval,0.001\nVertical Units,CH2:V,CH1:mV\nTIME,CH1",
+        "t / ms,U / mV",
+        "Zeit;Spannung\nms;mV",
+        "Messzeit_ms,Voltage_mV",
+        "Elapsed ms,CH1 mV",
+        "Index,Time (ms),CH1 (mV)",
+    ],
+)  # fmt: skip
+def test_units_wherever_they_stand(head, tmp_path):
+    sign = ";" if ";" in head else ","
+    rows = "".join(sign.join(["7"] * head.startswith("Index") + [f"{n}", f"{n}.5"]) + "\n" for n in range(3))
+    (tmp_path / "log.csv").write_text(f"{head}\n{rows}", "utf-8")
+    found = read_oscilloscope(tmp_path / "log.csv")
+    assert found.pop("time_s") == pytest.approx([0.0, 1e-3, 2e-3])
+    (values,) = found.values()
+    assert values == pytest.approx([0.5e-3, 1.5e-3, 2.5e-3])
+
+
+def test_what_an_instrument_writes_beyond_its_range_is_missing(tmp_path):
+    (tmp_path / "log.csv").write_text("Time(s),CH1(V)\n0,9.9E+37\n1,9.91E+37\n2,-9.9e37\n3,∞\n4,1\n", "utf-8")
+    assert np.isnan(read_oscilloscope(tmp_path / "log.csv")["CH1"]).tolist() == [True, True, True, True, False]
+
+
 @given(start=st.floats(-1.0, 1.0), step=st.floats(1e-6, 1.0), skipped=st.integers(0, 3))
 @ON_DISK
 def test_sequence_numbers_count_from_the_start(start, step, skipped, tmp_path):
@@ -163,6 +193,22 @@ def test_sequence_numbers_count_from_the_start(start, step, skipped, tmp_path):
         ("Time(s),CH1(V)\n0,1\n0,2\n", "row 3, column 1 = '0': every sample needs its time, which rises"),
         ("X,CH1,Start,Increment\nSequence,Volt\n0,1\n", "row 2: start and increment of the time are missing"),
         ("Segments,2\nTime,Ampl\n0,1\n", "holds 2 segments one after the other"),
+        ("Time(s),CH1 [V] (mV)\n0,1\n", "column 'CH1 [V] (mV)' has two units"),
+        ("Time (s) ms,CH1(V)\n0,1\n", "column 'Time (s) ms' has two units"),
+        ("Time(s),V_in\n0,1\n", "column 'V_in' has no unit"),
+        ("Time(s),Force_min\n0,1\n", "column 'Force_min' has no unit"),
+        ("Time(s),Duration (ms)\n0,1\n", "column 'Duration' is a second time"),
+        ('Time(s),CH1(mV)\n0,"1,234"\n1,"2,345"\n', "may be of thousands, or have decimals (row 2: '1,234')"),
+        ("Time(s);Load (g)\n0;998\n1;1.001\n", "may be of thousands, or have decimals (row 3: '1.001')"),
+        ("Time(s),CH1(V)\n0,1e400\n", "row 2, column 2 = '1e400': is too large for a number"),
+        ("Time(s),CH1(V)\nnan,1\n1,2\n", "row 2, column 1 = 'nan': every sample needs its time"),
+        ("Time(s),CH1(V),\n0,1,7\n", "row 2, column 3 = '7': the header has no name for it"),
+        ("Time,CH1\n(),(mV)\n0,1\n", "column 'Time' has no unit, and others have one in the row below"),
+        ("Time,CH1\ns,foo\n0,1\n", "column 'CH1' is in 'foo', which is not a known unit"),
+        ("timestamp,CH1\n1700000000000,1\n1700000000001,2\n", "1.7e+12 can be no seconds"),
+        ("XINCREMENT,1e-3\nX,CH1\n0,1\n1,2\n", "its samples are 1 apart, and 'xincrement' above is 0.001 s"),
+        ("# Sampling rate: 2 kHz\nTime,CH1\n0,1\n1,2\n", "and 'sampling rate' above is 0.0005 s"),
+        ("Vertical Units,V,mV\nTime,A,B,C\n0,1,2,3\n", "tell 2 units, V, mV, and not which of them is that of 'A'"),
     ],
 )
 def test_what_is_not_understood_is_refused_by_name(text, said, tmp_path):
@@ -173,14 +219,20 @@ def test_what_is_not_understood_is_refused_by_name(text, said, tmp_path):
     assert "\n" not in str(caught.value)
 
 
-VALID = "Time(ms),CH1(V),Load cell (g)\n0,1,2\n1,2,3\n2,3,5\n"
+VALID = (
+    "Time(ms),CH1(V),Load cell (g)\n0,1,2\n1,2,3\n2,3,5\n",
+    "Sample Interval,1e-3,s\nVertical Units,CH1:mV\nSource,CH1\nTime Unit,ms\nSecond,Value\n0,1\n1e-3,2\n",
+    "# Rate: 1 kHz\nms;mV\nZeit;Kanal 1\n0,5;1,25\n1,5;-2,5\n",
+    "X,CH1,Start,Increment\nSequence,Volt,-1,0.5\n0,1\n1,9.9E+37\n",
+    "Record Length,3,,0,1\nHorizontal Units,s,,1,2\nVertical Units,V,,2,3\n",
+)
 
 
 @ON_DISK
 @given(data=st.data())
 def test_nothing_but_an_input_error_leaves_the_reader_of_text(data, tmp_path):
     kind = data.draw(st.sampled_from(["bytes", "text", "mutated"]))
-    content = VALID.encode()
+    content = data.draw(st.sampled_from(VALID)).encode()
     if kind == "bytes":
         content = data.draw(st.binary(max_size=200))
     elif kind == "text":

@@ -28,7 +28,7 @@ def valid_configurations(draw, shapes=FLAT):
     press = draw(presses(segment, softest_MPa))
     mesher = "pytetwild" if shapes == ROUND else "layered"
     left_out = {"inertia"} if shapes == ROUND else set()
-    left_out |= {"guide-friction"} if "force_N" in press else set()
+    left_out |= {"guide-friction", "rig-compliance"} if "force_N" in press else set()
     foams = {name for name in layers if materials[f"own-{name}"].get("model") == "hyperfoam"}
     chosen = [one for one in draw(mechanisms(segment, dot, foams)) if one["name"] not in left_out]
     tables = {

@@ -28,6 +28,12 @@ def waveform(tmp_path, text, encoding="utf-8"):
         "time_s,fraction\n0,0\n1," + "x" * 200_000 + "\n",
         "time_s,fraction\n0,0\n1\n",
         "time_s,fraction\n",
+        "",
+        "time_s,fraction,fraction\n0,0,0\n1,1,1\n",
+        "time_s,fraction\n0,0\n0,5,1\n",
+        "time_s,fraction\n0,0\n1_0,1\n",
+        "time_s;fraction\n0;0\n1;1\n",
+        "time_ms,fraction\n0,0\n1,1\n",
     ],
 )
 def test_what_is_no_finite_number_is_refused(tmp_path, bad):

@@ -8,7 +8,7 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from geometry.parameters import BondStiffness, Positive
+from geometry.parameters import STATED, ActsWith, BondStiffness, Positive
 from solve.mechanisms.base import (
     BONDS,
     MechanismType,
@@ -28,7 +28,9 @@ class AdhesiveCompliance(Parameters):
     shear_stiffness_N_per_mm3: BondStiffness | None = Field(None, description="traction per slip")
     thickness_um: Positive | None = Field(None, description="thickness of the glue, instead of the stiffnesses")
     youngs_modulus_MPa: Positive | None = Field(None, description="modulus of the glue")
-    poisson_ratio: Annotated[float, Field(ge=0, lt=0.5)] = Field(0.45, description="Poisson's ratio of the glue")
+    poisson_ratio: Annotated[float, Field(ge=0, lt=0.5), ActsWith(thickness_um=STATED)] = Field(
+        0.45, description="Poisson's ratio of the glue"
+    )
 
     @model_validator(mode="after")
     def _one_way(self) -> Self:

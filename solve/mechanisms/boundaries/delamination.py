@@ -44,7 +44,7 @@ DELAMINATION = register(
         components=BONDS,
         parameters=DelaminationPatch,
         switch_on=switch_on,
-        off={"diameter_mm": 0.0},
+        off={"diameter_mm": 0.0, "bonded_diameter_mm": None},
         example={"center_mm": [0.7, 0.0], "diameter_mm": 1.0},
         typical={
             "center_mm": "default [0, 0]",

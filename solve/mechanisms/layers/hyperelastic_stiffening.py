@@ -66,7 +66,7 @@ HYPERELASTIC_STIFFENING = register(
         components=MEDIA,
         parameters=HyperelasticStiffening,
         switch_on=switch_on,
-        off={"c20_MPa": 0.0},
+        off={**dict.fromkeys(HyperelasticStiffening.model_fields), "c20_MPa": 0.0},
         example={"c20_MPa": 0.1, "c30_MPa": 0.05},
         typical={
             "c10_MPa": "library of silicones: 0.0036 (Ecoflex 00-10) to 0.163 (RTV615)",

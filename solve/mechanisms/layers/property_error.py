@@ -34,8 +34,18 @@ class PropertyError(Parameters):
     height_factor: Positive = Field(1.0, description="dot: factor on its height")
 
 
+ACTS = {"dot": ("radius_factor", "height_factor"), "film": ("modulus_factor", "thickness_factor", "d31_factor")}
+"""Component -> its factors; the others have a modulus and a thickness."""
+
+
 def switch_on(model: Model, component: str, values: PropertyError) -> Model:
-    """The model with this physics at a component."""
+    """The model with this physics at a component. ValueError for a factor on what the component does not have."""
+    acts = ACTS.get(component, ("modulus_factor", "thickness_factor"))
+    flat = component == "dot" and model.dot.shape == "plate"
+    for name, value in values:
+        if value != 1.0 and (flat or name not in acts):
+            instead = "a plate has neither radius nor height" if flat else f"it takes {' and '.join(acts)}"
+            raise ValueError(f"parameters.{name} = {value:g}: acts not on '{component}'; {instead}")
     if component == "dot":
         return with_dot(model, **_scaled_dot(model, values.radius_factor, values.height_factor))
     material = layer_material(model, component)
@@ -82,7 +92,7 @@ PROPERTY_ERROR = register(
         components=(*MEDIA, "film", "dot"),
         parameters=PropertyError,
         switch_on=switch_on,
-        off={"modulus_factor": 1.0},
+        off=dict.fromkeys(PropertyError.model_fields, 1.0),
         example={"modulus_factor": 1.3},
         typical={
             "modulus_factor": (

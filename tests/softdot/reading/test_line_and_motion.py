@@ -8,7 +8,7 @@ import pytest
 from geometry.base import InputError
 from geometry.braille import standard
 from softdot.reading.cells import cells_of
-from softdot.reading.conditions import WIDEST_SIGMA, ReadingConditions
+from softdot.reading.conditions import WIDEST_SIGMA, ReadingConditions, refuse_idle
 from softdot.reading.line import made_line, nominal_line
 from softdot.reading.motion import ArrayPath, moved, near, reach_mm
 from tests.cases import for_each
@@ -105,6 +105,24 @@ def test_a_turned_array_sees_the_line_turned(kernel):
 def test_conditions_that_cannot_be_are_one_sentence(kernel, given, said):
     with pytest.raises(InputError, match=said):
         ReadingConditions(**given).resolved(kernel)
+
+
+@for_each(
+    ("given", "is_recorded", "said"),
+    [
+        ({"press_s": 0.2}, False, "--press-s = 0.2: acts only with --mode press"),
+        ({"hold_s": 0.1}, True, "--hold-s = 0.1: acts only with --mode press"),
+        ({"wear_mm": 0.1}, False, "--wear-mm = 0.1: acts only with --worn above 0"),
+        ({"tremor_um": 0.0, "tremor_Hz": 3.0}, False, "--tremor-Hz = 3.0: acts only with --tremor-um above 0"),
+        ({"noise_mV": 3.0}, True, "--noise-mV = 3.0: acts only on voltages that are simulated"),
+        ({"speed_mm_per_s": 3.0}, True, "--speed-mm-per-s = 3.0: acts only on voltages that are simulated"),
+    ],
+)
+def test_conditions_that_change_nothing_are_refused(given, is_recorded, said):
+    with pytest.raises(InputError, match=said):
+        refuse_idle(ReadingConditions(**given), given, is_recorded)
+    refuse_idle(ReadingConditions(mode="press", press_s=0.1), {"mode", "press_s", "speed_mm_per_s"}, is_recorded=True)
+    refuse_idle(ReadingConditions(worn=0.1), {"worn", "wear_mm"}, is_recorded=False)
 
 
 def test_a_force_that_no_depth_gives_is_refused(kernel):

@@ -1,0 +1,108 @@
+"""Settings above the header of an instrument's file, some of which say units and how far apart samples are."""
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from geometry.base import InputError
+from softdot.convert.text_table import NUMBER, TextTable
+from softdot.convert.units import known_unit
+
+INTERVAL = re.compile(
+    r"(?:sampl\w*[ _]*|time[ _]*|[xht][ _]*)?(?:interval|period|incr\w*|resolution)|"
+    r"(?:sampl\w*|data)[ _]*(?:rate|freq\w*)|clock|(?:delta|d)[ _]?[xt]|tinc",
+    re.IGNORECASE,
+)
+"""Settings that say how far apart samples are, or how many there are in a second."""
+RATE = re.compile(r"([kMG]?)(?:Hz|Sa/s|S/s|samples/s)", re.IGNORECASE)
+PER_SECOND = {"": 1.0, "k": 1e3, "m": 1e6, "g": 1e9}
+
+
+@dataclass(frozen=True)
+class Settings:
+    """values : key in small letters -> the cells beside it. units : of each column, in a row above the names."""
+
+    values: Mapping[str, Sequence[str]]
+    units: Sequence[str]
+
+    def number(self, key: str) -> str:
+        """The first value of a key, 1 where there is none."""
+        return next(iter(self.values.get(key, [])), "1")
+
+    @property
+    def time_unit(self) -> str:
+        """Of the time, empty where none is told."""
+        return next((text for key, text in self._told() if _is_of_time(key, text)), "")
+
+    def unit_of_channel(self, number: int, names: Sequence[str], where: str) -> str:
+        """Of the channel with this number, by its name or place; empty where none is told. InputError."""
+        told = [text for key, text in self._told() if not _is_of_time(key, text)]
+        each = {text.rpartition(":")[2].strip() for text in told}
+        if len(each) < 2:
+            return next(iter(each), "")
+        by_name = {one.rpartition(":")[0].strip().lower(): one.rpartition(":")[2].strip() for one in told if ":" in one}
+        if names[number].lower() in by_name:
+            return by_name[names[number].lower()]
+        if by_name or len(told) != len(names):
+            raise InputError(
+                f"{where}: the settings above tell {len(told)} units, {', '.join(told)}, and not which of them is that "
+                f"of '{names[number][:40]}'; write it behind the name"
+            )
+        return told[number]
+
+    def _told(self) -> list[tuple[str, str]]:
+        """Key and text of every unit that a setting states."""
+        return [
+            (key, text)
+            for key, texts in self.values.items()
+            if "unit" in key or "einheit" in key
+            for text in texts
+            if key in ("horizontal units", "vertical units") or known_unit(text.rpartition(":")[2])
+        ]
+
+    @property
+    def interval_s(self) -> tuple[str, float] | None:
+        """The key that says how far apart samples are, and seconds; None where none does."""
+        for key, texts in self.values.items():
+            if INTERVAL.fullmatch(key):
+                text = " ".join(texts[:2]).rpartition(":")[2].strip()
+                found = re.match(rf"({NUMBER.pattern})\s*(\S*)", text, re.ASCII)
+                seconds = _seconds(key, found[1], found[2]) if found else None
+                if seconds is not None:
+                    return key, seconds
+        return None
+
+
+def _is_of_time(key: str, text: str) -> bool:
+    unit = known_unit(text.rpartition(":")[2])
+    return key == "horizontal units" or (unit is not None and unit.base == "s")
+
+
+def _seconds(key: str, number: str, unit: str) -> float | None:
+    """Between two samples."""
+    value = float(number.upper().replace("D", "E").replace(",", "."))
+    rate = RATE.fullmatch(unit)
+    if rate or ("rate" in key or "freq" in key):
+        value *= PER_SECOND[rate[1].lower()] if rate else 1.0
+        return 1.0 / value if value > 0.0 and (rate or not unit) else None
+    known = known_unit(unit or "s")
+    return value * known.factor if known is not None and known.base == "s" and value > 0.0 else None
+
+
+def settings_above(table: TextTable, row: int) -> Settings:
+    """Of the rows above a header."""
+    values: dict[str, list[str]] = {}
+    for cells in table.rows[:row]:
+        if not any(cells[1:]) and cells:
+            cells = [part.strip() for part in re.split(r"[:=]", cells[0], maxsplit=1)]
+        if cells and any(cells[1:]):
+            values[cells[0].lstrip("#%/ ").rstrip(": ").lower()] = [cell for cell in cells[1:] if cell]
+    above = table.rows[row - 1] if row else []
+    stated = [cell for cell in above if cell]
+    is_units = len(stated) > 1 and all(known_unit(bare(cell), "load") for cell in stated)
+    return Settings(values, above if is_units else [])
+
+
+def bare(cell: str) -> str:
+    """(mV) -> mV."""
+    return cell.strip().strip("()[]{}").strip()
