@@ -5,6 +5,7 @@ They part from this one, which has loaded the libraries, so that a mutant does n
 
 import json
 import os
+import resource
 import signal
 import sys
 import time
@@ -21,6 +22,8 @@ PYTEST = ("-q", "-n", "0", "-p", "no:cacheprovider")
 LIBRARIES = ("hypothesis", "meshio", "numba", "pandas", "pydantic", "scipy.interpolate", "scipy.signal", "scipy.linalg")
 MOST_S = 25.0
 """Of the tests that are chosen for a line, as long as they take."""
+SHARED = 10.0
+"""Times the processor time that is allowed, on the clock: other programs may run."""
 
 
 class Watch:
@@ -73,6 +76,7 @@ def apart(work: Callable[..., Any], arguments: Sequence[Any], tree: Path, longes
     if (child := os.fork()) == 0:
         try:
             os.setsid()
+            resource.setrlimit(resource.RLIMIT_CPU, (int(longest_s), int(longest_s) + 1))
             os.chdir(tree)
             sys.path[0] = str(tree)
             silence = os.open(os.devnull, os.O_WRONLY)
@@ -81,7 +85,7 @@ def apart(work: Callable[..., Any], arguments: Sequence[Any], tree: Path, longes
             kept.write_text(json.dumps(work(*arguments)), "utf-8")
         finally:
             os._exit(0)
-    end, done = time.monotonic() + longest_s, 0
+    end, done = time.monotonic() + SHARED * longest_s, 0
     while not done and time.monotonic() < end:
         time.sleep(0.02)
         done, _, used = os.wait4(child, os.WNOHANG)
