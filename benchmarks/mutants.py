@@ -16,6 +16,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from hashlib import sha256
 from importlib import import_module
+from importlib.util import cache_from_source
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -78,32 +79,29 @@ def maps_of(package: str, tree: Path) -> list[dict[str, Any]]:
 def outcome(mutant: Mutant, tests: Sequence[str], tree: Path) -> dict[str, Any]:
     """Killed by a test, late, or survived."""
     place, (killer, spent) = tree / mutant.file, ("", 0.0)
-    place.write_bytes(mutant.applied(ROOT))
+    whole, written = place.read_bytes(), place.stat()
+    place.write_bytes(mutant.applied(tree))
     try:
         if tests:
             killer, spent = apart(met, (tests,), tree, SLOWEST_MUTANT_S)
     finally:
-        shutil.copy2(ROOT / mutant.file, place)
+        place.write_bytes(whole)
+        os.utime(place, ns=(written.st_atime_ns, written.st_mtime_ns))
+        Path(cache_from_source(str(place))).unlink(missing_ok=True)  # the next one may be of its second and size
     killer = "no end" if killer is None else killer
-    return {
-        **asdict(mutant),
-        "name": mutant.name,
-        "killed_by": killer,
-        "tests": len(tests),
-        "processor_s": round(spent, 2),
-    }
+    return {**asdict(mutant), "name": mutant.name, "killed_by": killer, "tests": len(tests), "processor_s": spent}
 
 
-def drawn(count: int, seed: int, survivors: Path | None) -> list[Mutant]:
+def drawn(tree: Path, count: int, seed: int, survivors: Path | None) -> list[Mutant]:
     """A sample of all mutants, or those that survived another time and are still there."""
-    known = {one.name: one for file in sources() for one in mutants_of(ROOT, file)}
+    known = {one.name: one for file in sources() for one in mutants_of(tree, file)}
     if survivors is not None:
         told = [json.loads(line) for line in survivors.read_text("utf-8").splitlines()]
         return [known[one["name"]] for one in told if not one["killed_by"] and one["name"] in known]
     names = sorted(known)
     random.Random(seed).shuffle(names)
     found = (known[name] for name in names)
-    return list(islice((one for one in found if one.differs(ROOT)), count))
+    return list(islice((one for one in found if one.differs(tree)), count))
 
 
 def main() -> None:
@@ -122,7 +120,7 @@ def main() -> None:
     os.environ |= {"NUMBA_CACHE_DIR": str(asked.work / "kernels"), "SOFTDOT_CACHE": str(asked.work / "cache")}
     of, maps = sources(), {package: maps_of(package, tree) for package in PACKAGES}
     done = [json.loads(line) for line in asked.out.read_text("utf-8").splitlines()] if asked.out.exists() else []
-    for mutant in drawn(asked.count, asked.seed, asked.survivors):
+    for mutant in drawn(tree, asked.count, asked.seed, asked.survivors):
         if mutant.name not in {one["name"] for one in done}:
             done.append(outcome(mutant, chosen(mutant.file, *mutant.lines, maps[of[mutant.file]]), tree))
             with asked.out.open("a", encoding="utf-8") as stream:

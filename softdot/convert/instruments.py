@@ -145,10 +145,17 @@ def _is_header(cells: Sequence[str], table: TextTable) -> bool:
 
 
 def _is_time(cell: str) -> bool:
-    """Whether a name, without its unit, is that of a time."""
-    bare = re.sub(r"\s*[(\[{].*", "", cell.strip())
-    parts = [bare, bare.rpartition("_")[0], bare.rpartition(",")[0], bare.rpartition("/")[0], bare.rpartition(" ")[0]]
-    return any(TIME.fullmatch(part.strip()) for part in parts if part.strip())
+    """Whether a name, without its unit, is that of a time; a letter such as x (mm) or T_room only by its unit."""
+    bare, _, inside = re.sub(r"\s*[(\[{]\s*", "(", cell.strip(), count=1).partition("(")
+    unit = known_unit(_bare(inside))
+    if TIME.fullmatch(bare.strip()):
+        return len(bare.strip()) > 1 or unit is None or unit.base == "s"
+    for mark in "_,/ ":
+        head, _, tail = (part.strip() for part in bare.rpartition(mark))
+        behind = known_unit(tail)
+        if TIME.fullmatch(head) and (len(head) > 1 or (behind is not None and behind.base == "s")):
+            return True
+    return False
 
 
 def _first_sample(table: TextTable, row: int, column: int) -> int | None:

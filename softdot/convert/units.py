@@ -58,7 +58,8 @@ TEMPERATURE = re.compile(r"temp|t_?room", re.IGNORECASE)
 CURRENT = re.compile(r"(?:[nu\u00b5\u03bcmk]?A|amps?|amperes?|milliamps?)", re.IGNORECASE)
 NAMED_CURRENT = re.compile(r"\b(?:current|strom|amperage)\b", re.IGNORECASE)
 QUANTITY = re.compile(
-    r"time|zeit|load|force|weight|volt|pos|displ|travel|stroke|extension|height|depth|ch(?:annel)?\b|temp",
+    r"time|zeit|load|force|weight|volt|pos|displ|travel|stroke|extension|height|depth|ch(?:annel)?\b|temp|"
+    r"^[fstxyz]$",
     re.IGNORECASE,
 )
 SHOWN = "ns, us, ms, s, min, h, nV, uV, mV, V, kV, mN, N, kN, gf, kgf, lbf, um, mm, cm, m, in, °C"

@@ -44,6 +44,18 @@ def test_a_good_drive_and_a_preload_are_read(tmp_path):
     assert all("noise" not in sentence for sentence in warnings)
 
 
+def test_a_dot_that_sticks_as_it_is_let_go_is_no_wrong_sign(tmp_path):
+    """It pulls with as much force as it was pressed; and a force that was lost while the dot moved says nothing."""
+    columns = pressed()
+    depth, time = columns["displacement_mm"], columns["time_s"]
+    sticks = columns["force_N"] - 0.16 * np.exp(-(((time - 1.95) / 0.05) ** 2))
+    assert load_rig(write_rig(tmp_path / "sticks", press={**columns, "force_N": sticks})).recording.runs
+    lost = np.where(depth > -0.1, np.nan, 0.25)
+    lost[-1] = 0.3
+    lost_where_it_moves = {**columns, "displacement_mm": np.where(depth > -0.2, depth, -0.2), "force_N": lost}
+    assert load_rig(write_rig(tmp_path / "lost", press=lost_where_it_moves)).recording.runs
+
+
 def test_drift_and_a_rest_inside_are_told(tmp_path):
     (said,) = load_rig(write_rig(tmp_path / "rig", press=pressed(drift_N=0.1))).recording.warnings
     assert "column force_N: drifts from" in said

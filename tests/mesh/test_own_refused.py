@@ -100,6 +100,19 @@ def test_parts_of_a_slice_with_nodes_of_their_own_are_refused(tmp_path: Path) ->
         own_mesh(doubled(built(SLICE), tmp_path / "mine.inp"), segment_of(SLICE))
 
 
+def test_a_crack_below_the_skin_is_refused(tmp_path: Path) -> None:
+    """Elements on one side of a plane have nodes of their own, from the top of medium 1 down."""
+    of = built(SLICE)
+    right = of.points_mm[of.tets[:, :4]].mean(axis=1)[:, 0] > 0.3
+    torn = (of.region == of.region_names.index("medium1")) & right
+    own = np.where(torn[:, None], of.tets + len(of.points_mm), of.tets)
+    outside = np.isin(of.tets, of.tets[~torn & ~np.isin(of.region, of.region[torn])])  # joined to film and effector
+    tets = np.where(outside, of.tets, own)
+    file = written(np.vstack([of.points_mm] * 2), tets, of.region, of.region_names, tmp_path / "mine.inp")
+    with pytest.raises(InputError, match=r"faces inside the segment, such as one of medium1|mid-side nodes are not"):
+        own_mesh(file, segment_of(SLICE))
+
+
 def test_a_part_that_the_segment_does_not_have_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="has effector, which the segment has not; its parts must be medium2, film, "):
         own_mesh(linear(built(BLOCK), tmp_path / "mine.inp"), segment("none"))
