@@ -50,10 +50,12 @@ def test_a_dot_that_sticks_as_it_is_let_go_is_no_wrong_sign(tmp_path):
     depth, time = columns["displacement_mm"], columns["time_s"]
     sticks = columns["force_N"] - 0.16 * np.exp(-(((time - 1.95) / 0.05) ** 2))
     assert load_rig(write_rig(tmp_path / "sticks", press={**columns, "force_N": sticks})).recording.runs
-    lost = np.where(depth > -0.1, np.nan, 0.25)
-    lost[-1] = 0.3
-    lost_where_it_moves = {**columns, "displacement_mm": np.where(depth > -0.2, depth, -0.2), "force_N": lost}
-    assert load_rig(write_rig(tmp_path / "lost", press=lost_where_it_moves)).recording.runs
+    held = {name: values[130:] for name, values in columns.items()}  # begins under load
+    assert load_rig(write_rig(tmp_path / "held", press=held)).recording.runs
+    lost = np.where(depth > -0.199, np.nan, np.where(time > 3.0, 0.1, 0.0))
+    still = np.where(depth > -0.199, depth, -0.25)
+    at_rest = {**columns, "displacement_mm": still, "force_N": lost}
+    assert load_rig(write_rig(tmp_path / "lost", press=at_rest)).recording.runs
 
 
 def test_drift_and_a_rest_inside_are_told(tmp_path):

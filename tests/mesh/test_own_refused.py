@@ -100,16 +100,15 @@ def test_parts_of_a_slice_with_nodes_of_their_own_are_refused(tmp_path: Path) ->
         own_mesh(doubled(built(SLICE), tmp_path / "mine.inp"), segment_of(SLICE))
 
 
-def test_a_crack_below_the_skin_is_refused(tmp_path: Path) -> None:
-    """Elements on one side of a plane have nodes of their own, from the top of medium 1 down."""
-    of = built(SLICE)
-    right = of.points_mm[of.tets[:, :4]].mean(axis=1)[:, 0] > 0.3
-    torn = (of.region == of.region_names.index("medium1")) & right
-    own = np.where(torn[:, None], of.tets + len(of.points_mm), of.tets)
-    outside = np.isin(of.tets, of.tets[~torn & ~np.isin(of.region, of.region[torn])])  # joined to film and effector
-    tets = np.where(outside, of.tets, own)
-    file = written(np.vstack([of.points_mm] * 2), tets, of.region, of.region_names, tmp_path / "mine.inp")
-    with pytest.raises(InputError, match=r"faces inside the segment, such as one of medium1|mid-side nodes are not"):
+def test_a_crack_that_reaches_the_skin_is_refused(tmp_path: Path) -> None:
+    """Elements on one side of a plane have nodes of their own on the top of medium 1, beside the effector."""
+    of, stack = built(SLICE), outline(segment_of(SLICE), slice_mm=built(SLICE).thickness_mm)
+    tets, points = of.tets[:, :4], of.points_mm
+    apart = (np.abs(points[:, 2] - stack.medium1_top) < 1e-9) & (points[:, 0] > stack.effector_half_x + 1e-9)
+    beyond = points[tets].mean(axis=1)[:, 0] > np.median(points[apart, 0])
+    own = np.where(apart[tets] & beyond[:, None], tets + len(points), tets)
+    file = written(np.vstack([points] * 2), own, of.region, of.region_names, tmp_path / "mine.inp")
+    with pytest.raises(InputError, match="faces inside the segment, such as one of medium1"):
         own_mesh(file, segment_of(SLICE))
 
 

@@ -47,16 +47,6 @@ def test_phases_of_a_travel_do_not_depend_on_its_zero(drive, shift):
 
 
 @SEVERAL
-@given(drives(), st.integers(1, 200))
-def test_phases_follow_the_clock(drive, later):
-    """More rest before a press moves all that comes behind it by as much."""
-    lead = drive[later::-1]
-    one, other = (segmented(np.arange(len(d)) / 512.0, d) for d in (drive, np.append(lead, drive)))
-    for before, after in zip(one.presses, other.presses, strict=True):
-        np.testing.assert_allclose(np.subtract(after.bounds[1:], before.bounds[1:]), later + 1, atol=10)
-
-
-@SEVERAL
 @given(st.integers(-40, 40), FACTORS, FACTORS, FACTORS, st.sampled_from([1.0, -1.0]))
 def test_a_lag_turns_with_its_signals_and_scales_with_the_step(shift, gain, other_gain, step, sign):
     rng, time = np.random.default_rng(4), np.arange(600.0)
