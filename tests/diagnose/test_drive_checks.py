@@ -59,6 +59,8 @@ def test_a_dot_that_sticks_as_it_is_let_go_is_no_wrong_sign(tmp_path):
 
 
 def test_drift_and_a_rest_inside_are_told(tmp_path):
+    tared = {name: values + (0.05 if name == "force_N" else 0.0) for name, values in pressed().items()}
+    assert load_rig(write_rig(tmp_path / "tared", press=tared)).recording.warnings == ()
     (said,) = load_rig(write_rig(tmp_path / "rig", press=pressed(drift_N=0.1))).recording.warnings
     assert "column force_N: drifts from" in said
     voltage_alone = {name: values for name, values in pressed(factor=-1.0).items() if name != "force_N"}
