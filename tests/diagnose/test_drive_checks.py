@@ -47,7 +47,23 @@ def test_a_good_drive_and_a_preload_are_read(tmp_path):
     assert all("noise" not in sentence for sentence in warnings)
 
 
+def test_a_dot_that_sticks_as_it_is_let_go_is_no_wrong_sign(tmp_path):
+    """It pulls with as much force as it was pressed; and a force that was lost while the dot moved says nothing."""
+    columns = pressed()
+    depth, time = columns["displacement_mm"], columns["time_s"]
+    sticks = columns["force_N"] - 0.16 * np.exp(-(((time - 1.95) / 0.05) ** 2))
+    assert load_rig(write_rig(tmp_path / "sticks", press={**columns, "force_N": sticks})).recording.runs
+    held = {name: values[130:] for name, values in columns.items()}  # begins under load
+    assert load_rig(write_rig(tmp_path / "held", press=held)).recording.runs
+    lost = np.where(depth > -0.199, np.nan, np.where(time > 3.0, 0.1, 0.0))
+    still = np.where(depth > -0.199, depth, -0.25)
+    at_rest = {**columns, "displacement_mm": still, "force_N": lost}
+    assert load_rig(write_rig(tmp_path / "lost", press=at_rest)).recording.runs
+
+
 def test_drift_and_a_rest_inside_are_told(tmp_path):
+    tared = {name: values + (0.05 if name == "force_N" else 0.0) for name, values in pressed().items()}
+    assert load_rig(write_rig(tmp_path / "tared", press=tared)).recording.warnings == ()
     (said,) = load_rig(write_rig(tmp_path / "rig", press=pressed(drift_N=0.1))).recording.warnings
     assert "column force_N: drifts from" in said
     voltage_alone = {name: values for name, values in pressed(factor=-1.0).items() if name != "force_N"}

@@ -63,6 +63,13 @@ def test_a_force_that_rests_above_zero_and_relaxes_in_the_hold():
     assert seconds(press)[1:5] == pytest.approx([1.0, 1.2, 1.7, 1.9], abs=0.06)
 
 
+def test_hum_at_rest_is_no_touch():
+    """Slow against the samples, so that their second differences hardly show it."""
+    drive = 3.0 * np.clip(trapezoid(TIME, 1.0), 0.0, None) - 0.05 * np.sin(2.0 * np.pi * 4.0 * TIME)
+    (press,) = segmented(TIME, drive, from_touch=False).presses
+    assert seconds(press)[1:5] == pytest.approx([1.0, 1.2, 1.7, 1.9], abs=0.06)
+
+
 def test_a_spike_is_no_press():
     drive = trapezoid(TIME, 0.3)
     drive[3000:3004] = 0.1

@@ -41,6 +41,13 @@ def test_a_long_one_keeps_its_signals_and_says_what_was_done():
     assert "125 Hz" in warning
 
 
+def test_a_long_one_of_a_slow_clock_stays_as_it_is():
+    whole = pressed()
+    recording = Recording((replace(whole, time_s=10.0 * whole.time_s),) * 3)
+    assert sum(len(run.time_s) for run in recording.runs) > ENOUGH
+    assert thinned(recording) is recording
+
+
 def test_no_run_gets_slower_than_the_least_rate():
     recording = thinned(Recording((pressed(60.0),) * 6))
     assert max(one.step_s for one in recording.runs) <= 1.0 / LEAST_Hz + 1e-9

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from geometry.base import InputError
 from mesh.files.own import read_file
+from tests.cases import for_each
 
 POINTS = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1), (-1, 0, 0)], dtype=float)
 TETS = np.array([(0, 1, 2, 3), (1, 4, 2, 3), (0, 2, 5, 3)])
@@ -94,6 +95,40 @@ def test_instances_stand_where_they_are_moved_and_turned(tmp_path: Path) -> None
     assert np.allclose(moved, [(1, 2, 3), (2, 2, 3), (1, 3, 3), (1, 2, 4)])
     assert np.allclose(turned, [(0, 0, 0), (0, 1, 0), (-1, 0, 0), (0, 0, 1)])
     assert read.regions["film"].tolist() == [True, True]
+
+
+@for_each(
+    "name", ["NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM", "Submodel", "IMPORT", "PARAMETER",
+             "SYMMETRIC  MODEL GENERATION"],
+)  # fmt: skip
+def test_what_makes_nodes_or_elements_in_another_way_is_refused(name: str, tmp_path: Path) -> None:
+    (tmp_path / "a.inp").write_text(f"{ONE}*{name}\n1, 4\n", "utf-8")
+    with pytest.raises(InputError, match=r": line 8 of 'a.inp': \*[A-Z ]+: is not read; write all nodes"):
+        read_file(str(tmp_path / "a.inp"))
+
+
+FLAT = {2: "T3D2 T2D2 B31 B31H", 3: "T3D3 T2D3 B32 B32H S3 S3R S3RS CPS3 CPE3 M3D3 R3D3 SFM3D3",
+        6: "CPS6 CPE6 M3D6 SFM3D6 STRI65"}  # fmt: skip
+"""Nodes of elements without a volume (Abaqus 2016, Analysis User's Guide, volume IV)."""
+
+
+@for_each(("nodes", "kind"), [(nodes, kind) for nodes, kinds in FLAT.items() for kind in kinds.split()])
+def test_elements_without_a_volume_are_passed_over_or_name_a_surface(nodes: int, kind: str, tmp_path: Path) -> None:
+    corners = ", ".join(str(number) for number in [1, 2, 3, 4, 1, 2][:nodes])
+    rest = f"*ELEMENT, TYPE={kind}, ELSET=contact\n7, {corners}\n"
+    (tmp_path / "a.inp").write_text(ONE + rest, "utf-8")
+    read = read_file(str(tmp_path / "a.inp"))
+    assert len(read.tets) == 1
+    assert [surface.tolist() for surface in read.surfaces.values()] == ([[[0, 1, 2]]] if kind[0] not in "TB" else [])
+
+
+def test_rows_of_other_files_with_remarks(tmp_path: Path) -> None:
+    nodes = "** of nodes\n1, 0, 0, 0\n\n2, 1\n3, 0, 1\n** the last\n4, 0, 0, 1.D0\n"
+    (tmp_path / "nodes.txt").write_text(nodes, "utf-8")
+    body = "*ELEMENT, TYPE=C3D4, ELSET=film\n** of one\n1, 1, 2, 3, 4\n"
+    (tmp_path / "a.inp").write_text(f'*NODE, INPUT="nodes.txt"\n{body}', "utf-8")
+    read = read_file(str(tmp_path / "a.inp"))
+    assert read.points_mm.tolist() == [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
 
 
 @pytest.mark.parametrize(

@@ -100,6 +100,18 @@ def test_parts_of_a_slice_with_nodes_of_their_own_are_refused(tmp_path: Path) ->
         own_mesh(doubled(built(SLICE), tmp_path / "mine.inp"), segment_of(SLICE))
 
 
+def test_a_crack_that_reaches_the_skin_is_refused(tmp_path: Path) -> None:
+    """Elements on one side of a plane have nodes of their own on the top of medium 1, beside the effector."""
+    of, stack = built(SLICE), outline(segment_of(SLICE), slice_mm=built(SLICE).thickness_mm)
+    tets, points = of.tets[:, :4], of.points_mm
+    apart = (np.abs(points[:, 2] - stack.medium1_top) < 1e-9) & (points[:, 0] > stack.effector_half_x + 1e-9)
+    beyond = points[tets].mean(axis=1)[:, 0] > np.median(points[apart, 0])
+    own = np.where(apart[tets] & beyond[:, None], tets + len(points), tets)
+    file = written(np.vstack([points] * 2), own, of.region, of.region_names, tmp_path / "mine.inp")
+    with pytest.raises(InputError, match="faces inside the segment, such as one of medium1"):
+        own_mesh(file, segment_of(SLICE))
+
+
 def test_a_part_that_the_segment_does_not_have_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="has effector, which the segment has not; its parts must be medium2, film, "):
         own_mesh(linear(built(BLOCK), tmp_path / "mine.inp"), segment("none"))

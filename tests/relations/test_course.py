@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from solve.materials.inelastic import Prony
 from solve.model import Physics, Press, Readout, Waveform
+from solve.readout.amplifier import curved_integral, leaky_integral
 from solve.readout.course import course
 from solve.solution.schedule import duration_s, fraction, schedule
 from tests.cases import for_each
@@ -108,6 +109,19 @@ def test_rows_of_a_file_are_corners_of_its_course(shares, circuit, decade):
     expected = FULL_C * gain * ramps(along.time_s, list(zip(times, shares, strict=True)), tau)
     np.testing.assert_allclose(along.together_V, expected, rtol=0, atol=1e-3 * np.abs(expected).max() + 1e-15)
     assert set(times) <= set(along.time_s)
+
+
+@for_each("share", [0.0, 1e-6, 9e-4, 1.1e-3, 0.1, 3.0])
+def test_an_input_integrates_a_parabola_exactly(share):
+    """V' + V / tau = 2 t from rest; share : step over tau, 0 for no resistance. Straight lines likewise."""
+    time = np.linspace(0.0, 4.0, 5)
+    tau = 1.0 / share if share else np.inf
+    exact = {1: time, 2: time**2}
+    if share > 1e-5:  # below it, the closed form is all round-off
+        exact[1] = -tau * np.expm1(-time / tau)
+        exact[2] = 2.0 * tau * (time - exact[1])
+    for power, integral in ((2, curved_integral), (1, curved_integral), (1, leaky_integral)):
+        np.testing.assert_allclose(integral(time, time**power, 1.0, tau), exact[power], rtol=1e-5, atol=1e-12)
 
 
 def bent(exponent):

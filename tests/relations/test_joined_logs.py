@@ -60,6 +60,15 @@ def test_clocks_rates_and_units_change_no_column(clock, bench, tmp_path, capsys)
     assert channels["force_N"] == pytest.approx(np.clip(depth_mm(time), 0.0, None), abs=1e-3)
 
 
+def test_a_channel_that_only_tells_the_clock_is_in_no_column(bench, tmp_path, capsys):
+    """The force of the stage is that of the oscilloscope once more."""
+    assert main(["convert", *bench, "--align"]) == 0
+    assert "force_N is 'Load cell' of 'scope.csv'" in capsys.readouterr().out
+    time, channels = columns_of(tmp_path / "out")
+    assert sorted(channels) == ["displacement_mm", "force_N", "voltage_V"]
+    assert channels["displacement_mm"] == pytest.approx(depth_mm(time), abs=2e-3)
+
+
 def test_what_a_coarse_drive_costs_is_told(bench, tmp_path, capsys):
     """Within a factor of three of the true error of the rate, where the drive moves."""
     rough = np.arange(0.0, 2.5, 0.05)

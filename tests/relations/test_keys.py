@@ -14,6 +14,7 @@ from softdot.config import Config, config_from, config_schema
 from softdot.config.errors import tables_at
 from softdot.config.mistakes import mistakes
 from softdot.config.not_modelled import NOT_MODELLED, not_modelled
+from softdot.config.rig import Bench
 from softdot.config.toml import completed
 from solve.mechanisms import MECHANISMS, Mechanism, with_mechanisms
 from solve.model import Readout, Waveform
@@ -268,6 +269,30 @@ def test_the_schema_refuses_the_same_keys():
             place = place.setdefault(part, {})
         place.update(table)
         assert holds or not validator.is_valid(stated), (way, name, table)
+
+
+def test_the_schema_is_of_the_kind_that_it_says_and_allows_its_defaults():
+    jsonschema = pytest.importorskip("jsonschema")
+    assert jsonschema.validators.validator_for(SCHEMA, default=None) is jsonschema.Draft202012Validator
+    jsonschema.Draft202012Validator.check_schema(SCHEMA)
+    for kind in SCHEMA, *SCHEMA["$defs"].values():
+        for name, key in kind.get("properties", {}).items():
+            if "default" in key:
+                validator = jsonschema.Draft202012Validator({**key, "$defs": SCHEMA["$defs"]})
+                assert validator.is_valid(key["default"]), name
+
+
+def test_a_bench_is_a_configuration_without_a_segment():
+    for name, field in Bench.model_fields.items():
+        assert field.default == Config.model_fields[name].default
+        assert field.annotation == Config.model_fields[name].annotation
+
+
+def test_hints_are_for_tables_that_there_are():
+    for one in NOT_MODELLED:
+        way = one.under.split(".") if one.under else []
+        tables = [(Config,), *(tables_at(way[: n + 1], Config) for n in range(len(way)))]
+        assert all(part in kind.model_fields for part, (kind, *_) in zip(way, tables, strict=False)), one.under
 
 
 TYPED = {

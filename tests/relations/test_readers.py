@@ -3,6 +3,7 @@
 Factors of units are those of the SI brochure and of the pound and the standard weight; none is taken from the readers.
 """
 
+import re
 import sys
 
 import numpy as np
@@ -11,27 +12,41 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from geometry.base import InputError
-from softdot.convert import apart, read_log, read_mat, read_oscilloscope
+from softdot.config.rig import load_rig
+from softdot.convert import apart, files, read_log, read_mat, read_oscilloscope, run_text, write_recording
+from tests.cases import for_each
+from tests.diagnose.rigs import HEAD, SEGMENT, samples
 
 ON_DISK = settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
 COUNT = 6
 TIME_S = 3600.0 * np.array([0.0, 1.0, 2.0, 3.0, 5.0, 8.0])
+GRAVITY, POUND = 9.80665, 0.45359237
 TIMES = {
-    "ns": 1e9,
-    "us": 1e6,
-    "µs": 1e6,
-    "μs": 1e6,
-    "ms": 1e3,
-    "msec": 1e3,
-    "s": 1.0,
-    "sec": 1.0,
-    "min": 1 / 60,
-    "h": 1 / 3600,
+    **dict.fromkeys(["s", "sec", "sec.", "S", "seconds"], 1.0),
+    **dict.fromkeys(["ms", "msec", "milliseconds"], 1e3),
+    **dict.fromkeys(["us", "µs", "μs", "microseconds"], 1e6),
+    **dict.fromkeys(["ns", "nanosecond"], 1e9),
+    **dict.fromkeys(["min", "minutes"], 1 / 60),
+    **dict.fromkeys(["h", "hr", "Hours"], 1 / 3600),
 }
-VOLTS = {"nV": 1e9, "uV": 1e6, "µV": 1e6, "μV": 1e6, "mV": 1e3, "V": 1.0, "kV": 1e-3}
-FORCES = {"mN": 1e3, "N": 1.0, "kN": 1e-3, "gf": 1e3 / 9.80665, "g": 1e3 / 9.80665, "kgf": 1 / 9.80665,
-          "lbf": 1 / (0.45359237 * 9.80665)}  # fmt: skip
-LENGTHS = {"mm": 1.0, "um": 1e3, "µm": 1e3, "in": 1 / 25.4}
+VOLTS = {
+    **dict.fromkeys(["nV", "nanovolts"], 1e9),
+    **dict.fromkeys(["uV", "µV", "μV", "microvolt"], 1e6),
+    **dict.fromkeys(["mV", "Millivolts"], 1e3),
+    **dict.fromkeys(["V", "Volt", "volts"], 1.0),
+    **dict.fromkeys(["kV", "kilovolts"], 1e-3),
+}
+FORCES = {
+    **dict.fromkeys(["mN", "millinewtons"], 1e3), **dict.fromkeys(["N", "newton"], 1.0), "kN": 1e-3,
+    **dict.fromkeys(["mgf", "mg"], 1e6 / GRAVITY), **dict.fromkeys(["gf", "g", "gram-force"], 1e3 / GRAVITY),
+    **dict.fromkeys(["kgf", "kg", "kp", "kilogram-force"], 1 / GRAVITY),
+    **dict.fromkeys(["ozf", "oz"], 16 / (POUND * GRAVITY)),
+    **dict.fromkeys(["lbf", "lb", "lbs", "pound-force"], 1 / (POUND * GRAVITY)),
+}  # fmt: skip
+LENGTHS = {
+    **dict.fromkeys(["mm", "millimeters"], 1.0), **dict.fromkeys(["um", "µm", "microns", "micrometre"], 1e3),
+    "nm": 1e6, "cm": 0.1, **dict.fromkeys(["m", "metres"], 1e-3), **dict.fromkeys(["in", "inch", "inches"], 1 / 25.4),
+}  # fmt: skip
 QUANTITIES = {"CH2": VOLTS, "Load cell": FORCES, "Position": LENGTHS, "CH1": VOLTS, "Kraft": FORCES}
 VALUES = {name: np.round(np.sin(np.arange(COUNT) + 2.0 * n), 6) for n, name in enumerate(QUANTITIES)}
 BESIDE = {
@@ -64,7 +79,7 @@ def tables(draw):
     if draw(st.booleans()):
         rows.insert(0, ["Model", "X1"])
     text = "\n".join(separator.join(row) for row in rows) + draw(st.sampled_from(["", "\n", "\n\n"]))
-    encodings = ["utf-8", "utf-8-sig", "utf-16", "utf-16-le"]
+    encodings = ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be"]
     encodings += ["latin-1"] if "μ" not in text else []
     return text.replace("\n", draw(st.sampled_from(["\n", "\r\n"]))), draw(st.sampled_from(encodings)), names
 
@@ -79,6 +94,36 @@ def test_units_signs_and_encodings_change_no_column(table, tmp_path):
     assert found["time_s"] == pytest.approx(TIME_S, rel=1e-9)
     for name in names:
         assert found[name] == pytest.approx(VALUES[name], rel=1e-9)
+
+
+@for_each("quantity", ["Time", *QUANTITIES])
+def test_every_unit_has_its_factor(quantity, tmp_path):
+    for unit, factor in (TIMES if quantity == "Time" else QUANTITIES[quantity]).items():
+        values = factor * np.array([1.0, 2.0, 4.0])
+        rows = "".join(f"{value:.12e},{n}\n" for n, value in enumerate(values, 1))
+        head = f"Time ({unit}),CH2 (V)" if quantity == "Time" else f"{quantity} ({unit}),Time (s)"
+        (tmp_path / "log.csv").write_text(f"{head}\n{rows}", "utf-8")
+        log = read_log(tmp_path / "log.csv")
+        found = log.time_s if quantity == "Time" else log.channels[quantity].values
+        assert found == pytest.approx([1.0, 2.0, 4.0], rel=1e-9), unit
+        assert quantity == "Time" or log.channels[quantity].unit == {"P": "mm", "C": "V"}.get(quantity[0], "N")
+
+
+def test_a_letter_is_a_time_only_by_its_unit(tmp_path):
+    """And an inch by its sign."""
+    head = 'Time (s);Temp (C);T_room (°C);x (mm);Position (")'
+    (tmp_path / "log.csv").write_text(f"{head}\n0;21;22;3;1\n1;21;22;4;2\n", "utf-8")
+    channels = read_log(tmp_path / "log.csv").channels
+    assert {name: (one.unit, one.values[1]) for name, one in channels.items()} == {
+        "Temp": ("C", 21.0), "T_room": ("C", 22.0), "x": ("mm", 4.0), "Position": ("mm", 50.8)
+    }  # fmt: skip
+
+
+@for_each("time", ["t (ms)", "x [ms]", "T, ms", "t_ms", "s/ms", "Elapsed time ms", "t msec"])
+def test_times_by_a_letter(time, tmp_path):
+    (tmp_path / "log.csv").write_text(f"{time};y (mV);x_mm\n0;1;5\n2;3;6\n", "utf-8")
+    found = read_oscilloscope(tmp_path / "log.csv")
+    assert {name: values[1] for name, values in found.items()} == {"time_s": 2e-3, "y": 3e-3, "x": 6.0}
 
 
 def keysight(time, unit, rows):
@@ -104,11 +149,15 @@ def siglent(time, unit, rows):
     return settings_ + "Time,Value,Value\n" + rows
 
 
+def lecroy(time, unit, rows):
+    return f"# Source,CH1,CH2\n# Vertical Units,{unit},{unit}\n# Horizontal Units,{time}\nTime,Ampl,Ampl\n" + rows
+
+
 def picoscope(time, unit, rows):
     return f"Time,CH1,CH2\n({time}),({unit}),({unit})\n\n" + rows
 
 
-MADE_BY = (keysight, rigol, rigol_with_steps, tektronix, siglent, picoscope)
+MADE_BY = (keysight, rigol, rigol_with_steps, tektronix, siglent, lecroy, picoscope)
 
 
 @ON_DISK
@@ -254,6 +303,44 @@ def test_nothing_but_an_input_error_leaves_readers_of_binary_files(name, tmp_pat
     (tmp_path / name).write_bytes(bytes(range(256)) * 3)
     with pytest.raises(InputError, match=rf"'.*{name}'"):
         read_mat(tmp_path / name, {"time_s": "t"}) if name == "a.mat" else read_log(tmp_path / name)
+
+
+def test_every_ending_that_is_offered_has_a_reader(tmp_path, monkeypatch):
+    """All binary files go to a process of their own."""
+    asked = []
+    monkeypatch.setattr(files, "read_apart", lambda kind, file: asked.append((kind, file.suffix)) or {})
+    with pytest.raises(InputError, match="must end with one of") as caught:
+        read_log(tmp_path / "a.doc")
+    endings = re.findall(r"\.\w+", str(caught.value).partition("must end with one of")[2].partition(";")[0])
+    assert {".csv", ".txt", ".xlsx", ".tdms", ".lvm", ".wfm", ".isf", ".trc", ".bin", ".wvf"} <= set(endings)
+    for ending in endings:
+        (tmp_path / f"a{ending}").write_text("", "utf-8")
+        with pytest.raises((InputError, KeyError)) as caught:
+            read_log(tmp_path / f"a{ending}")
+        assert "must end with one of" not in str(caught.value)
+    assert {kind for kind, _ in asked} < set(apart.READERS)
+
+
+def test_numbers_without_time_or_with_one_beside_the_samples(tmp_path):
+    """A column of counts before the time is none of the channels; a cell that is empty or overflows is not measured."""
+    text = "Index,Time(s),CH1(V),D0-D7\n1,0,1,00\n2,1,,01\n3,2,-∞,11\n4,3,\u22122e-1,00\n"
+    (tmp_path / "log.csv").write_text(text, "utf-8")
+    found = read_oscilloscope(tmp_path / "log.csv")
+    assert list(found) == ["time_s", "CH1"]
+    np.testing.assert_array_equal(found["CH1"], [1.0, np.nan, np.nan, -0.2])
+
+
+def test_the_table_of_a_run_is_read_as_it_was_told(tmp_path):
+    """With a name of a file and a label that TOML has to quote."""
+    told = {"gain": 0.05, "modulus.medium1": 0.1}
+    text = run_text("a.csv", 'the "first"', "force_N", temperature_C=21.5, nuisance=told, noise={"voltage_V": 0.002})
+    columns = samples()
+    columns["force_N"] = np.clip(columns["displacement_mm"], 0.0, None)
+    write_recording(tmp_path / "out", HEAD + SEGMENT + text, {"a.csv": columns})
+    (run,) = load_rig(tmp_path / "out").recording.runs
+    assert (run.label, run.drive, run.temperature_C) == ('the "first"', "force_N", 21.5)
+    assert (run.nuisance, run.noise) == (told, {"voltage_V": 0.002})
+    assert run_text("a.csv", "b", "force_N").count("[") == 2
 
 
 def test_a_reader_that_takes_its_interpreter_with_it_is_told(tmp_path, monkeypatch):

@@ -43,7 +43,10 @@ def test_a_release_ends_at_exactly_nothing():
 
 @for_each("shape", ["ramp", "half-sine", "raised-cosine", "trapezoid"])
 def test_every_waveform_starts_at_rest_and_passes_through_its_peak(shape):
-    targets = schedule(Press(waveform=Waveform(shape=shape)), 2.0, 1.0, follows_time=True)
+    press = Press(waveform=Waveform(shape=shape))
+    targets = schedule(press, 2.0, 1.0, follows_time=True)
+    for target in *targets, *schedule(press, 2.0, 1.0, follows_time=False):
+        assert target.load.lateral == (0.0, 0.0)
     assert targets[0].load.drive == 0.0
     assert drives(targets).max() == pytest.approx(2.0)
     assert (np.diff(times(targets)) > 0.0).all()
