@@ -28,6 +28,8 @@ POOLS = {
 }
 PIECES = (
     "solve/compiled.py",
+    "solve/decay.py",
+    "solve/tensors.py",
     "solve/fem/*.py",
     "solve/materials/*.py",
     "solve/readout/filters.py",

@@ -36,7 +36,7 @@ class SecondProcess(Beside):
 
 def compile_kernels() -> None:
     """The dear ones, unless they are kept; the first process compiles the others while it waits."""
-    from solve.fem.kernels import compiled
+    from solve.fem.warm_up import compiled
 
     if not compiled():
         from solve.fem.warm_up import compile_dear

@@ -20,8 +20,10 @@ from mesh.interfaces import inner_nodes, interface_facets, split_interface
 from mesh.outline import outline
 from mesh.seams import with_columns_at
 from mesh.types import TetMesh
-from solve.fem.sparsity import Numbers, Term, Unknowns, build_pattern, number
-from solve.materials.film import FilmLaw, FilmPlasticity, YieldLaw, film_law
+from solve.fem.numbering import Numbers, Unknowns, number
+from solve.fem.pattern import build_pattern
+from solve.materials.film import FilmLaw, film_law
+from solve.materials.film_yield import FilmPlasticity, YieldLaw
 from solve.materials.inelastic import Inelastic
 from solve.materials.laws import MediumLaw
 from solve.materials.parameters import Material, PiezoelectricFilm
@@ -29,6 +31,7 @@ from solve.model import BondLine, Delamination, Physics, Readout
 from solve.readout.channels import mutual_F
 from solve.symmetry import electrode_rectangles, images, orbits
 from solve.system import System, Units
+from solve.terms.base import Term
 from solve.terms.contact import RigidDot, contact_facets
 from solve.terms.film import FilmRegion, film_region
 from solve.terms.friction import FrictionalContact

@@ -14,9 +14,9 @@ from geometry.parameters import Segment
 from mesh.build import MeshOptions
 from mesh.types import Planes
 from solve.materials.film import FilmLaw, film_law
-from solve.materials.isochoric import strain_rotation
 from solve.materials.parameters import PiezoelectricFilm
 from solve.model import Delamination, Model
+from solve.tensors import strain_rotation
 
 SAME_MM, SAME = 1e-9, 1e-9
 """How far an image may be off: in mm; of the largest constant, for angles whose cosine is rounded."""

@@ -10,8 +10,11 @@ from functools import cached_property
 import numpy as np
 
 from geometry.arrays import Bools, Floats, Ints
-from solve.fem.kernels import scatter
-from solve.fem.sparsity import History, Pattern, Tangent, Term, Trial, Unknowns, scatter_unsymmetric
+from solve.fem.assembly import scatter, scatter_unsymmetric
+from solve.fem.numbering import Unknowns
+from solve.fem.pattern import Pattern
+from solve.fem.tangent import Tangent
+from solve.terms.base import History, Term, Trial
 from solve.terms.contact import ContactFacets
 from solve.terms.film import FilmRegion
 from solve.terms.rig import RigTerm

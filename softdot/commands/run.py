@@ -155,7 +155,7 @@ def _tell(config: Config) -> None:
     """What a user should know before it begins: what was not stated, and that the first run takes longer."""
     from softdot.checks import COMPILE_S
     from softdot.config.toml import told
-    from solve.fem.kernels import compiled
+    from solve.fem.warm_up import compiled
 
     if config.from_default:
         LOG.info("%s", told(config.from_default, config.model_dump(mode="json")))

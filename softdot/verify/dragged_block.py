@@ -10,8 +10,9 @@ from scipy.sparse.linalg import splu
 from geometry.arrays import Floats, Ints
 from geometry.dot import DotShape
 from softdot.verify.lattice import Grid
-from solve.fem.sparsity import Term, Trial, Unknowns
+from solve.fem.numbering import Unknowns
 from solve.materials.laws import MediumLaw
+from solve.terms.base import Term, Trial
 from solve.terms.contact import ContactFacets, RigidDot, contact_facets
 from solve.terms.friction import FrictionalContact
 from solve.terms.solid import solid_region

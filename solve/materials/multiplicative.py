@@ -20,8 +20,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from solve.compiled import in_threads, piece
-from solve.materials.inelastic import Memory, Prony, StressResponse, mean_decay
-from solve.materials.isochoric import I_OF, J_OF, NUMBER_OF, inverse
+from solve.decay import mean_decay
+from solve.materials.inelastic import Memory, StressResponse
+from solve.materials.prony import Prony
+from solve.tensors import I_OF, J_OF, NUMBER_OF, inverse
 
 
 @dataclass(frozen=True)

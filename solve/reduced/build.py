@@ -18,8 +18,8 @@ from geometry.arrays import Floats
 from geometry.dot import DotShape
 from geometry.parameters import Dot, Segment
 from mesh.types import TetMesh
-from solve.materials.inelastic import Prony
 from solve.materials.parameters import Material, PiezoelectricFilm
+from solve.materials.prony import Prony
 from solve.model import Model, Physics, Press, Waveform
 from solve.press import discretise, press_segment
 from solve.reduced import model as model_files

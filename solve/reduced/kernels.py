@@ -15,7 +15,8 @@ import numba as nb
 import numpy as np
 
 from geometry.arrays import Floats, Ints
-from solve.materials.inelastic import branch_stress, mean_decay
+from solve.decay import mean_decay
+from solve.materials.prony import branch_stress
 
 STEPS = 60  # of the search for a depth
 CLOSE = 1e-12  # of the full depth

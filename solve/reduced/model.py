@@ -20,7 +20,7 @@ import numpy as np
 from geometry.arrays import Floats, Ints
 from geometry.cache import data_hash, folder, read_arrays, source_hash, write_arrays
 from mesh.types import mesh_hash
-from solve.materials.inelastic import Prony
+from solve.materials.prony import Prony
 from solve.model import Physics, Readout
 from solve.readout.amplifier import amplify, input_of, other_charge_C, stages
 from solve.reduced.fit import CELLS, ResponseTable

@@ -15,9 +15,9 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from geometry.arrays import Floats
-from solve.fem.sparsity import Term
 from solve.solution.linear import LinearSolver
 from solve.system import State, System
+from solve.terms.base import Term
 
 NEW_DIRECTION = 1e-3  # of the largest load: what is left of a smaller one is dropped
 WORTH_A_MODE = 0.02  # of the first mode's size

@@ -14,8 +14,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 from geometry.arrays import Floats
-from solve.fem.sparsity import History, Term
-from solve.materials.inelastic import Memory, Prony, StressResponse
+from solve.materials.inelastic import Memory, StressResponse
+from solve.materials.prony import Prony
 from solve.press import Setup
 from solve.reduced.modes import StressMetric
 from solve.solution.linear import LinearSolver
@@ -24,6 +24,7 @@ from solve.solution.near import Course, reach
 from solve.solution.newton import NoEquilibriumError, equilibrate
 from solve.solution.schedule import Target
 from solve.system import Load, State
+from solve.terms.base import History, Term
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,6 @@ from dataclasses import replace
 import numpy as np
 
 from geometry.arrays import Floats
-from solve.fem.sparsity import Trial
 from solve.solution.linear import LinearSolveError, LinearSolver
 from solve.solution.newton import (
     CRUSHED,
@@ -32,6 +31,7 @@ from solve.solution.newton import (
 )
 from solve.solution.schedule import Target, load_between
 from solve.system import Evaluation, Load, State, System
+from solve.terms.base import Trial
 from solve.terms.solid import InvertedElementError
 
 MAX_STEPS = 150

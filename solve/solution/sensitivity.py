@@ -25,7 +25,7 @@ from geometry.arrays import Floats
 from geometry.dot import resolve_dot
 from mesh.interfaces import morphed
 from mesh.types import TetMesh
-from solve.fem.sparsity import Tangent
+from solve.fem.tangent import Tangent
 from solve.model import Model, Press
 from solve.press import Setup, discretise, set_up
 from solve.readout.course import PressCourse, course, read_together

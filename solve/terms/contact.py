@@ -20,8 +20,10 @@ import numpy as np
 
 from geometry.arrays import Bools, Floats, Ints
 from geometry.dot import DotShape
-from solve.fem.kinematics import linear, quadratic, triangle
-from solve.fem.sparsity import Block, History, Term, Trial, Unknowns
+from solve.fem.numbering import Unknowns
+from solve.fem.quadrature import triangle
+from solve.fem.shape_functions import linear, quadratic
+from solve.terms.base import Block, History, Term, Trial
 
 
 @dataclass(frozen=True)

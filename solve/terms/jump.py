@@ -29,8 +29,8 @@ import numpy as np
 
 from geometry.arrays import Bools, Floats, Ints
 from solve.compiled import in_threads
-from solve.fem.kinematics import quadratic
-from solve.fem.sparsity import Block, History, Term, Trial
+from solve.fem.shape_functions import quadratic
+from solve.terms.base import Block, History, Term, Trial
 from solve.terms.contact import ACTIVE_SET_STIFFNESS, HATS, POINTS, WEIGHTS
 
 

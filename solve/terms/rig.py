@@ -32,8 +32,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from geometry.arrays import Floats, Ints
-from solve.fem.sparsity import Block, History, Term, Trial
-from solve.materials.inelastic import mean_decay
+from solve.decay import mean_decay
+from solve.terms.base import Block, History, Term, Trial
 
 FADE = 0.5  # spectral radius at infinite frequency
 ALPHA = (FADE - 1.0) / (FADE + 1.0)

@@ -17,9 +17,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from geometry.arrays import Floats, Ints
-from solve.fem.kinematics import triangle
-from solve.fem.sparsity import Block, History, Term, Trial
+from solve.fem.quadrature import triangle
 from solve.materials.inelastic import Inelastic, StressResponse, at_rest, respond, time_error
+from solve.terms.base import Block, History, Term, Trial
 from solve.terms.contact import SHAPES, facet_area
 from solve.terms.jump import Jump, MatchedFacets, matched_facets
 

@@ -14,7 +14,8 @@ from mesh.array.sizing import expected_elements
 from mesh.build import MeshOptions
 from mesh.symmetry import unfolded
 from mesh.types import face_neighbours, signed_volumes
-from solve.fem.kinematics import physical_gradients, quadratic, tetrahedron
+from solve.fem.quadrature import tetrahedron
+from solve.fem.shape_functions import physical_gradients, quadratic
 from tests.cases import for_each
 from tests.geometry.test_array import ALL, segment
 

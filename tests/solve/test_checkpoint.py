@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import solve.solution.checkpoint
-from solve.materials.inelastic import Prony
+from solve.materials.prony import Prony
 from solve.model import Physics, Press, Waveform
 from solve.solution.checkpoint import Checkpoint, read_archive, write_archive
 from tests.pressing import press_segment

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from geometry.dot import DotShape
-from solve.fem.sparsity import Trial, Unknowns
+from solve.fem.numbering import Unknowns
+from solve.terms.base import Trial
 from solve.terms.contact import RigidDot, contact_facets
 from solve.terms.friction import FrictionalContact
 from tests.cases import for_each

@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solve.materials.inelastic import Prony
+from solve.materials.prony import Prony
 from solve.model import Physics, Readout
 from solve.reduced import model as store
 from solve.reduced.fit import CELLS, ResponseTable

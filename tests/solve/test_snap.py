@@ -13,7 +13,7 @@ import pytest
 import scipy.sparse as sp
 
 import solve.solution.march as marching
-from solve.fem.sparsity import Tangent
+from solve.fem.tangent import Tangent
 from solve.recorder import doubtful_results
 from solve.solution.linear import LinearSolver
 from solve.solution.march import snapped

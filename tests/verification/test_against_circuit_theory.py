@@ -12,9 +12,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solve.fem.sparsity import Trial
 from solve.materials.film import film_law
 from solve.materials.parameters import VACUUM_PERMITTIVITY, PiezoelectricFilm
+from solve.terms.base import Trial
 from solve.terms.film import film_region
 from solve.terms.rig import Circuit
 from tests.solve.box import box

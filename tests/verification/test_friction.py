@@ -10,9 +10,12 @@ from scipy.optimize import brentq
 from scipy.sparse.linalg import splu
 
 from geometry.dot import DotShape
-from solve.fem.kinematics import deformation_gradient, linear, tetrahedron
-from solve.fem.sparsity import Trial, Unknowns
+from solve.fem.kinematics import deformation_gradient
+from solve.fem.numbering import Unknowns
+from solve.fem.quadrature import tetrahedron
+from solve.fem.shape_functions import linear
 from solve.materials.laws import InvariantLaw, bulk_modulus
+from solve.terms.base import Trial
 from solve.terms.contact import ContactFacets, RigidDot, contact_facets
 from solve.terms.friction import FrictionalContact
 from solve.terms.solid import InvertedElementError, solid_region

@@ -16,7 +16,7 @@ import pytest
 from geometry.dot import DotShape
 from geometry.stack import layers
 from mesh.build import MeshOptions, build
-from solve.fem.kinematics import tetrahedron
+from solve.fem.quadrature import tetrahedron
 from solve.model import Press
 from tests.pressing import press_segment
 from tests.solve.segments import materials, segment

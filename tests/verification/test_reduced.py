@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from mesh.build import MeshOptions
-from solve.materials.inelastic import Prony
+from solve.materials.prony import Prony
 from solve.model import BondLine, Physics, Press, Readout, Waveform
 from solve.readout.amplifier import amplify
 from solve.reduced.build import BETWEEN, build_reduced, refined, relative_error
