@@ -20,7 +20,7 @@ from solve.materials.laws import InvariantLaw, KnowlesLaw, LinearLaw, OgdenLaw
 from solve.materials.prony import Prony
 from solve.readout import amplifier, filters
 from solve.terms.friction import FrictionalContact
-from solve.terms.jump import UnilateralInterface
+from solve.terms.unilateral_interface import UnilateralInterface
 
 TOO_MUCH = 1.1
 

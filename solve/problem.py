@@ -32,13 +32,16 @@ from solve.readout.channels import mutual_F
 from solve.symmetry import electrode_rectangles, images, orbits
 from solve.system import System, Units
 from solve.terms.base import Term
-from solve.terms.contact import RigidDot, contact_facets
+from solve.terms.bond import bond
+from solve.terms.circuit import Circuit, Tied
+from solve.terms.contact import contact_facets
+from solve.terms.elastic_sides import side_springs
 from solve.terms.film import FilmRegion, film_region
 from solve.terms.friction import FrictionalContact
-from solve.terms.jump import opening_nodes, unilateral_interface
-from solve.terms.rig import Circuit, RigTerm, Tied
+from solve.terms.rig import RigTerm
+from solve.terms.rigid_dot import RigidDot
 from solve.terms.solid import SolidRegion, solid_region
-from solve.terms.springs import bond, side_springs
+from solve.terms.unilateral_interface import opening_nodes, unilateral_interface
 
 ROUND_OFF_MM = 1e-9
 

@@ -11,7 +11,7 @@ import numpy as np
 from geometry.arrays import Floats, Ints
 from geometry.dot import DotShape
 from geometry.parameters import Segment
-from mesh.build import MeshOptions
+from mesh.options import MeshOptions
 from mesh.types import Planes
 from solve.materials.film import FilmLaw, film_law
 from solve.materials.parameters import PiezoelectricFilm

@@ -7,7 +7,7 @@ elastic baseline, without mechanisms and slides: what the mesh resolves, the con
 
 from geometry.base import InputError
 from geometry.cache import source_hash
-from mesh.build import MeshOptions
+from mesh.options import MeshOptions
 from mesh.types import MeshingError
 from softdot.case import Case
 from softdot.checks import refuse_huge_mesh

@@ -13,7 +13,7 @@ from geometry.arrays import Floats
 from geometry.base import InputError
 from geometry.cache import data_hash, recall, remember, source_hash
 from geometry.executor import Executor, each_done
-from mesh.interfaces import morphed
+from mesh.morphing import morphed
 from mesh.types import TetMesh
 from softdot.case import Case
 from softdot.config import Config, config_hash, input_hash

@@ -20,7 +20,8 @@ from solve.fem.tangent import Tangent
 from solve.materials.laws import MediumLaw
 from solve.solution.linear import LinearSolver
 from solve.terms.base import Term, Trial
-from solve.terms.contact import ContactFacets, RigidDot, contact_facets
+from solve.terms.contact import ContactFacets, contact_facets
+from solve.terms.rigid_dot import RigidDot
 from solve.terms.solid import solid_region
 
 FREE = np.nan

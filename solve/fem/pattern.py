@@ -1,4 +1,4 @@
-"""The fixed pattern of the tangent: the upper triangle in compressed rows, and the slot of each pair of unknowns in it."""
+"""The fixed pattern of the tangent: the upper triangle in compressed rows, and where each pair of unknowns is in it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -23,7 +23,7 @@ import numpy as np
 
 from geometry.arrays import Floats
 from geometry.dot import resolve_dot
-from mesh.interfaces import morphed
+from mesh.morphing import morphed
 from mesh.types import TetMesh
 from solve.fem.tangent import Tangent
 from solve.model import Model, Press

@@ -11,8 +11,9 @@ import numpy as np
 from geometry.arrays import Floats
 from geometry.dot import DotShape, resolve_dot
 from geometry.parameters import Segment
-from mesh.build import MeshOptions, build
-from mesh.interfaces import morphed
+from mesh.build import build
+from mesh.morphing import morphed
+from mesh.options import MeshOptions
 from mesh.outline import outline
 from mesh.symmetry import unfolded
 from mesh.types import TET_EDGES, MeshingError, TetMesh

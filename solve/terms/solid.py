@@ -1,6 +1,7 @@
 """The media: quadratic displacement, linear pressure, any hyperelastic law with or without memory.
 
-A compressible foam has no pressure unknown: its law gives the whole stress.
+A compressible foam has no pressure unknown, as its law gives the whole stress; and where a trial state turns an element
+inside out, it is refused.
 """
 
 from collections.abc import Iterator

@@ -11,7 +11,7 @@ from geometry.dot import resolve_dot
 from geometry.parameters import Dot, Effector
 from mesh.array.mesh import array_mesh
 from mesh.array.sizing import expected_elements
-from mesh.build import MeshOptions
+from mesh.options import MeshOptions
 from mesh.symmetry import unfolded
 from mesh.types import face_neighbours, signed_volumes
 from solve.fem.quadrature import tetrahedron

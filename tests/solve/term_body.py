@@ -9,7 +9,7 @@ import numpy as np
 from scipy.sparse.linalg import spsolve
 
 from geometry.arrays import Bools, Floats, Ints
-from mesh.layered import twins
+from mesh.slice import twins
 from mesh.types import TetMesh
 from softdot.verify.lattice import grid
 from solve.fem.assembly import scatter

@@ -7,7 +7,7 @@ import numpy as np
 from geometry.dot import DotShape
 from geometry.parameters import Dot, Segment
 from geometry.stack import layers
-from mesh.build import MeshOptions
+from mesh.options import MeshOptions
 from mesh.types import TetMesh
 from solve.materials.parameters import Hyperfoam, PiezoelectricFilm
 from solve.model import Model, Physics, Press, Readout, Waveform

@@ -16,8 +16,9 @@ from solve.fem.quadrature import tetrahedron
 from solve.fem.shape_functions import linear
 from solve.materials.laws import InvariantLaw, bulk_modulus
 from solve.terms.base import Trial
-from solve.terms.contact import ContactFacets, RigidDot, contact_facets
+from solve.terms.contact import ContactFacets, contact_facets
 from solve.terms.friction import FrictionalContact
+from solve.terms.rigid_dot import RigidDot
 from solve.terms.solid import InvertedElementError, solid_region
 from tests.cases import for_each
 from tests.slip_work import slip_work

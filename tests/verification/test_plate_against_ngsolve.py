@@ -15,7 +15,8 @@ import pytest
 
 from geometry.dot import DotShape
 from geometry.stack import layers
-from mesh.build import MeshOptions, build
+from mesh.build import build
+from mesh.options import MeshOptions
 from solve.fem.quadrature import tetrahedron
 from solve.model import Press
 from tests.pressing import press_segment

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mesh.build import MeshOptions
+from mesh.options import MeshOptions
 from solve.materials.prony import Prony
 from solve.model import BondLine, Physics, Press, Readout, Waveform
 from solve.readout.amplifier import amplify

@@ -5,10 +5,8 @@ Energy per undeformed area, with the jump d and its opening d . n along the defo
 the elastic interface to which a thin soft layer tends (Klarbring, Int. J. Eng. Sci. 29, 1991; Geymonat, Krasucki
 and Lenci, Math. Mech. Solids 4, 1999). It is blind to a rigid motion of both faces.
 
-A viscous bond puts the Prony series of solve.materials.inelastic on d and on d . n. The memory of d keeps fixed axes:
+A viscous bond puts the Prony series of solve.materials.prony on d and on d . n. The memory of d keeps fixed axes:
 it is objective as long as the bond turns little within its relaxation times, as it does in a clamped stack.
-
-Elastic sides: the case as springs, normal and tangential, per undeformed area of the held faces.
 """
 
 from collections.abc import Iterator
@@ -20,7 +18,6 @@ from geometry.arrays import Floats, Ints
 from solve.fem.quadrature import triangle
 from solve.materials.inelastic import Inelastic, StressResponse, at_rest, respond, time_error
 from solve.terms.base import Block, History, Term, Trial
-from solve.terms.contact import SHAPES, facet_area
 from solve.terms.jump import Jump, MatchedFacets, matched_facets
 
 
@@ -103,29 +100,3 @@ def layer_stiffness(thickness_um: float, youngs_modulus_MPa: float, poisson_rati
     shear = youngs_modulus_MPa / (2.0 * (1.0 + poisson_ratio))
     confined = 2.0 * shear * (1.0 - poisson_ratio) / (1.0 - 2.0 * poisson_ratio)
     return confined / (1e-3 * thickness_um), shear / (1e-3 * thickness_um)
-
-
-@dataclass(frozen=True)
-class SideSprings(Term):
-    """Traction -k u on facets. dofs : (k, 18); matrices : (k, 18, 18) constant."""
-
-    facets: Ints
-    dofs: Ints
-    matrices: Floats
-
-    @property
-    def groups(self) -> tuple[Ints, ...]:
-        """Unknowns of the facets."""
-        return (self.dofs,)
-
-    def elements(self, trial: Trial, history: History) -> Iterator[Block]:
-        """The constant matrices and their residuals (k, 18)."""
-        local = trial.displacement[self.facets].reshape(-1, 18)
-        yield Block(0, slice(0, len(local)), self.matrices, np.einsum("kij,kj->ki", self.matrices, local))
-
-
-def side_springs(points: Floats, facets: Ints, displacement_dofs: Ints, stiffness: float) -> SideSprings:
-    """Springs of a stiffness (traction per displacement, the solver's units) on facets (k, 6)."""
-    mass = stiffness * np.einsum("kq,qn,qm->knm", facet_area(points, facets), SHAPES, SHAPES)
-    matrices = np.einsum("knm,ij->knimj", mass, np.eye(3)).reshape(-1, 18, 18)
-    return SideSprings(facets, displacement_dofs[facets].reshape(-1, 18), matrices)
