@@ -54,7 +54,7 @@ def key(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes = 
 
     effector = segment.effector
     content = {
-        "meshers": [source_hash("mesh.tetwild"), source_hash("mesh.layered"), version("pytetwild")],
+        "meshers": [*(source_hash(f"mesh.{one}") for one in ("tetwild", "layered", "slice")), version("pytetwild")],
         "segment": [segment.length_mm, segment.width_mm, segment.section, segment.film.thickness_um],
         "layers": [segment.medium1.thickness_mm, segment.medium2.thickness_mm],
         "effector": effector and effector.model_dump(exclude={"material"}),

@@ -63,7 +63,7 @@ def electrode_rectangles(segment: Segment) -> Floats:
     """Electrodes as (e, 4) x0, x1, y0, y1 in mm; without any, one over everything.
 
     In a plane-strain slice nothing varies over y: the electrodes then reach over the whole slice, and their
-    share of the width is applied with the width (see solve.problem.whole_charge).
+    share of the width is applied with the width (see solve.whole_segment.whole_charge).
     """
     if not segment.film.electrodes:
         return np.array([[-np.inf, np.inf, -np.inf, np.inf]])

@@ -47,8 +47,8 @@ from softdot.machine import named_when_missing
 from softdot.output import Product, staged_folder
 from softdot.tolerances.budget import UNFINISHED, BudgetOutcome, budget_of, failed
 from solve.materials.parameters import PiezoelectricFilm
+from solve.solution.full_load import StoppedShortError
 from solve.solution.linear import LinearSolveError
-from solve.solution.sensitivity import StoppedShortError
 
 ROWS = 5
 

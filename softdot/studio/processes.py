@@ -200,9 +200,9 @@ def _outcome(task: str, arguments: Sequence[Any], tell: Tell) -> tuple[str, Any]
     from mesh.types import MeshingError
     from softdot.arrays.presses import StoppedPressError
     from softdot.machine import without_room
+    from solve.solution.errors import NoEquilibriumError
+    from solve.solution.full_load import StoppedShortError
     from solve.solution.linear import LinearSolveError
-    from solve.solution.newton import NoEquilibriumError
-    from solve.solution.sensitivity import StoppedShortError
 
     try:
         function = named(task)

@@ -23,7 +23,7 @@ from softdot.outcome import press_with_derivatives, variations_of
 from softdot.summary import history
 from softdot.tolerances.tolerances import with_factors
 from solve.result import PressResult
-from solve.solution.sensitivity import FullLoad, StoppedShortError
+from solve.solution.full_load import FullLoad, StoppedShortError
 
 LOAD_STEPS = 3
 """Enough for the march; what is asked for is the deepest step alone."""

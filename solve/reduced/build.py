@@ -27,8 +27,8 @@ from solve.reduced.fit import FINER, fit
 from solve.reduced.model import Accuracy, ReducedModel, structure
 from solve.reduced.sampling import Frozen, Sample, SampledPress, Sampler
 from solve.result import Trace
-from solve.solution.near import combined
-from solve.solution.newton import NoEquilibriumError
+from solve.solution.errors import NoEquilibriumError
+from solve.solution.similar_press import combined
 
 BETWEEN = 20  # samples of the reduced model to each time step of the 3D model
 

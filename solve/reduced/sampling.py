@@ -18,11 +18,12 @@ from solve.materials.inelastic import Memory, StressResponse
 from solve.materials.prony import Prony
 from solve.press import Setup
 from solve.reduced.modes import StressMetric
+from solve.solution.errors import NoEquilibriumError
 from solve.solution.linear import LinearSolver
 from solve.solution.march import rest_state
-from solve.solution.near import Course, reach
-from solve.solution.newton import NoEquilibriumError, equilibrate
+from solve.solution.newton import equilibrate
 from solve.solution.schedule import Target
+from solve.solution.similar_press import Course, reach
 from solve.system import Load, State
 from solve.terms.base import History, Term
 

@@ -23,11 +23,11 @@ from solve.model import Model, Press
 from solve.press import Setup, discretise
 from solve.reduced.build import ReductionTask, keep_reduced, reduced
 from solve.reduced.model import ReducedModel
+from solve.solution.errors import NoEquilibriumError
 from solve.solution.linear import LinearSolver
 from solve.solution.march import rest_state
-from solve.solution.near import Equilibria, reach
-from solve.solution.newton import NoEquilibriumError
 from solve.solution.schedule import Target
+from solve.solution.similar_press import Equilibria, reach
 from solve.system import Load, State
 
 RETURN = 0.95, 0.85, 0.75, 0.6, 0.4, 0.15, 0.03

@@ -8,7 +8,7 @@ from geometry.arrays import Floats
 from geometry.base import Report
 from geometry.executor import HERE, Executor, each_done
 from solve.reduced.model import ReducedModel
-from solve.solution.newton import NoEquilibriumError
+from solve.solution.errors import NoEquilibriumError
 from solve.tables import job as job_files
 from solve.tables.job import RETURN, Job, Reduction
 

@@ -5,16 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import solve.solution.near
+import solve.solution.similar_press
 from geometry.parameters import Dot
 from mesh.types import TetMesh
 from solve.model import BondLine, Model, Physics, Press
+from solve.open_interfaces import open_interfaces
 from solve.press import Setup, set_up
-from solve.problem import open_interfaces
 from solve.solution.linear import LinearSolver
 from solve.solution.march import rest_state
-from solve.solution.near import Course, Equilibria, Found, combined, reach
 from solve.solution.schedule import Target
+from solve.solution.similar_press import Course, Equilibria, Found, combined, reach
 from solve.system import Load
 from tests.solve.segments import cap, coarse_mesh, materials, ridge, segment
 
@@ -60,7 +60,7 @@ def plain() -> Equilibria:
 def test_the_way_to_an_equilibrium_does_not_matter(plain, other, monkeypatch):
     """From beside it at once, without a march, the same displacements and pressures."""
     marched = equilibria(press(**other))
-    monkeypatch.setattr(solve.solution.near, "march", lambda *_: pytest.fail("it marched"))
+    monkeypatch.setattr(solve.solution.similar_press, "march", lambda *_: pytest.fail("it marched"))
     near = equilibria(press(near=plain, **other))
     for name in ("displacement_m", "pressure_Pa", "contact_Pa"):
         wanted = getattr(marched, name)

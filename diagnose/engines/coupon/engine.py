@@ -31,7 +31,7 @@ from solve.materials.parameters import Material, PiezoelectricFilm, find_materia
 from solve.mechanisms import Mechanism
 from solve.model import Model
 from solve.reduced.model import felt
-from solve.solution.newton import NoEquilibriumError
+from solve.solution.errors import NoEquilibriumError
 
 ACCURACY = 1e-3  # of a drive that is taken as straight between its samples
 FACTORS = {f"modulus.{SPECIMEN}": "modulus_factor", f"thickness.{SPECIMEN}": "thickness_factor"}

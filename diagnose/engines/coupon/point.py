@@ -25,7 +25,7 @@ from solve.materials.laws import MediumLaw
 from solve.materials.mullins import Softening
 from solve.materials.multiplicative import MultiplicativeMaxwell
 from solve.materials.prony import Prony
-from solve.solution.newton import NoEquilibriumError
+from solve.solution.errors import NoEquilibriumError
 
 
 def earlier_peaks(energy: Floats, before: float = 0.0) -> Floats:

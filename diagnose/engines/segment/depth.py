@@ -11,7 +11,7 @@ from diagnose.vocabulary.base import Scene
 from diagnose.vocabulary.layers.property_error import nuisance as wrong_number
 from solve.model import Model, Press
 from solve.press import press_segment
-from solve.solution.newton import NoEquilibriumError
+from solve.solution.errors import NoEquilibriumError
 from solve.tables import job as job_files
 from solve.tables.job import Job
 from solve.tables.rig_mesh import Mesh

@@ -28,7 +28,7 @@ from geometry.executor import HERE, Executor
 from solve.mechanisms.layers.viscoelasticity import VISCOELASTICITY
 from solve.model import Model
 from solve.reduced.fit import CELLS, ResponseTable
-from solve.solution.newton import NoEquilibriumError
+from solve.solution.errors import NoEquilibriumError
 from solve.tables.job import Job, Reduction
 from solve.tables.rig_mesh import MeshSettings, finer_mesh, rig_mesh
 from solve.tables.smooth import PRESSED, TRUSTED, Depths, accuracy, change, replaced, smooth

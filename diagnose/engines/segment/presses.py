@@ -11,10 +11,10 @@ from diagnose.forward import Candidate
 from geometry.arrays import Floats
 from geometry.base import Report
 from geometry.executor import Executor
+from solve.delaminations import with_rims_of_patches
 from solve.mechanisms import with_mechanisms
 from solve.model import Model, Physics
-from solve.problem import with_rims_of_patches
-from solve.solution.newton import NoEquilibriumError
+from solve.solution.errors import NoEquilibriumError
 from solve.tables import job as job_files
 from solve.tables.job import Job
 from solve.tables.rig_mesh import Mesh, MeshSettings, finer_mesh, mesh_of

@@ -13,7 +13,7 @@ from solve.materials.laws import InvariantLaw, LinearLaw, OgdenLaw
 from solve.materials.mullins import Softening
 from solve.materials.multiplicative import MultiplicativeMaxwell
 from solve.materials.prony import Prony
-from solve.solution.newton import NoEquilibriumError
+from solve.solution.errors import NoEquilibriumError
 from tests.cases import for_each
 
 C10, C20, C30, STIFF = 0.4, 0.05, 0.01, 1e7

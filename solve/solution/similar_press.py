@@ -1,6 +1,7 @@
 """A press from the equilibria of a similar one: Newton's method starts beside each of them, without the steps between.
 
-Moduli, glue or remembered stress change an equilibrium less than the way down to it does.
+Moduli, glue or remembered stress change an equilibrium less than the way down to it does, so that a similar press is a
+good start.
 """
 
 from collections.abc import Sequence
@@ -12,9 +13,11 @@ import numpy as np
 from geometry.arrays import Floats, Ints
 from mesh.symmetry import MIRRORED
 from mesh.types import UPSIDE_DOWN, Planes, TetMesh
+from solve.solution.crushing import crushes
+from solve.solution.errors import NoEquilibriumError
 from solve.solution.linear import LinearSolver
-from solve.solution.march import crushes, march
-from solve.solution.newton import NoEquilibriumError, equilibrate
+from solve.solution.march import march
+from solve.solution.newton import equilibrate
 from solve.solution.schedule import Target
 from solve.system import State, System
 
