@@ -32,6 +32,7 @@ PIECES = (
     "solve/tensors.py",
     "solve/fem/*.py",
     "solve/materials/*.py",
+    "solve/reduced/table_reading.py",
     "solve/readout/filters.py",
     "diagnose/engines/coupon/*.py",
 )

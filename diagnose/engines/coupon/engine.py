@@ -30,7 +30,7 @@ from geometry.base import InputError, Report
 from solve.materials.parameters import Material, PiezoelectricFilm, find_material
 from solve.mechanisms import Mechanism
 from solve.model import Model
-from solve.reduced.model import felt
+from solve.reduced.recording import felt
 from solve.solution.errors import NoEquilibriumError
 
 ACCURACY = 1e-3  # of a drive that is taken as straight between its samples

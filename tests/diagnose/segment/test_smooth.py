@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from solve.tables.smooth import PRESSED, smooth
+from solve.tables.smoothing import PRESSED, smooth
 
 BETWEEN = np.linspace(0.1, 1.0, 50)
 

@@ -1,28 +1,16 @@
-"""Presses of the 3D model that fill the tables: down, and from several depths up again.
-
-The baseline's table with what its layers remember, kept on disk by the reduced model itself.
-
-Tables kept on disk beside the meshes, under a hash of all that they depend on.
-"""
+"""Presses of the 3D model that fill the tables: down, and from several depths up again."""
 
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from itertools import pairwise
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from geometry.arrays import Floats
-from geometry.cache import data_hash, folder, read_arrays, source_hash, write_arrays
 from geometry.dot import resolve_dot
-from mesh.types import TetMesh, mesh_hash
+from mesh.types import TetMesh
 from solve.model import Model, Press
 from solve.press import Setup, discretise
-from solve.reduced.build import ReductionTask, keep_reduced, reduced
-from solve.reduced.model import ReducedModel
 from solve.solution.errors import NoEquilibriumError
 from solve.solution.linear import LinearSolver
 from solve.solution.march import rest_state
@@ -35,13 +23,13 @@ RETURN = 0.95, 0.85, 0.75, 0.6, 0.4, 0.15, 0.03
 
 
 @dataclass(frozen=True)
-class Job:
+class DepthPress:
     """One press of a model on a mesh to depth_mm, seen at shares (n,) of it, growing from above 0 to 1.
 
     back : numbers of the shares from which the dot also returns; seen on the way at RETURN of that depth.
     parts : steps to each share: slip takes several, and what guides it. guides : whether its equilibria are kept for
     others.
-    guided_by : name in solve.tables.job of such a press, to start from; "" for none.
+    guided_by : name in solve.tables.kept of such a press, to start from; "" for none.
     """
 
     model: Model
@@ -68,13 +56,13 @@ class Job:
         return outputs, Equilibria.of(setup.system, setup.tet_mesh, found) if self.guides else None
 
 
-def _set_up(job: Job) -> Setup:
+def _set_up(job: DepthPress) -> Setup:
     model = replace(job.model, press=Press(indentation_mm=job.depth_mm))
     return discretise(model, job.tet_mesh, resolve_dot(model.dot, model.segment))
 
 
 def _walk(
-    job: Job, setup: Setup, linear: LinearSolver, near: Equilibria | None
+    job: DepthPress, setup: Setup, linear: LinearSolver, near: Equilibria | None
 ) -> tuple[Floats, list[tuple[float, Floats]]]:
     start = Target(0.0, Load((0.0, 0.0), 0.0), True)
     rest = rest_state(setup.system, linear, start)
@@ -107,79 +95,3 @@ def _outputs(setup: Setup, past: Sequence[State]) -> Floats:
     setup.recorder.record(past[-1], past[-2] if len(past) > 1 else past[-1])
     record = setup.recorder.records.pop()
     return np.array([record.contact_force_N[2], record.contact_area_m2, *record.film_charge_C])
-
-
-DEPTH_NODES = 8
-
-
-@dataclass(frozen=True)
-class Reduction:
-    """A model at its first touch and with elastic physics only, on a mesh to depth_mm, with layers that relax.
-
-    largest_share : sum of the relative moduli up to which each of them may relax.
-    """
-
-    model: Model
-    tet_mesh: TetMesh
-    depth_mm: float
-    relaxing: tuple[str, ...]
-    largest_share: float
-
-    def made(self) -> ReducedModel:
-        """Pressed, or recalled. NoEquilibriumError."""
-        return reduced(self._task, check=False)
-
-    def keep(self, made: ReducedModel) -> None:
-        """Have it recalled here where it was made elsewhere."""
-        keep_reduced(self._task, False, made)
-
-    @property
-    def _task(self) -> ReductionTask:
-        model = self.model
-        return ReductionTask(
-            model.segment, model.materials, resolve_dot(model.dot, model.segment), self.tet_mesh, self.depth_mm,
-            dict.fromkeys(self.relaxing, self.largest_share), model.physics, DEPTH_NODES,
-        )  # fmt: skip
-
-
-def key(job: Job) -> str:
-    """Hash of model, mesh, depth, places, and the source of all that presses."""
-    asked = repr((job.depth_mm, job.shares, job.back, job.parts))
-    return data_hash([source_hash(Job.__module__), _told(job.model), mesh_hash(job.tet_mesh), asked])
-
-
-def _told(model: Model) -> dict[str, Any]:
-    """What of the model a press depends on."""
-    return {
-        "segment": model.segment.model_dump(mode="json"),
-        "dot": model.dot.model_dump(mode="json", exclude={"gap_mm"}),
-        "materials": {name: material.model_dump(mode="json") for name, material in model.materials.items()},
-        "physics": repr(model.physics),
-    }
-
-
-def recall(name: str) -> Floats | None:
-    """The table kept under a name, None where there is none or its file is damaged."""
-    return read_arrays(_path(name), lambda data: np.asarray(data["table"], dtype=np.float64))
-
-
-def keep(name: str, table: Floats) -> None:
-    """Write the file whole; a cache that cannot be written is no cache."""
-    with suppress(OSError):
-        write_arrays(_path(name), {"table": table})
-
-
-@lru_cache(maxsize=2)
-def equilibria(name: str) -> Equilibria | None:
-    """Those kept under the name of a press, None where there are none."""
-    return read_arrays(_path(name, "equilibria"), lambda data: Equilibria(**{key: data[key] for key in data}))
-
-
-def keep_equilibria(name: str, found: Equilibria) -> None:
-    """As keep."""
-    with suppress(OSError):
-        write_arrays(_path(name, "equilibria"), vars(found))
-
-
-def _path(name: str, what: str = "table") -> Path:
-    return folder() / f"press-{what}-{name}.npz"

@@ -1,14 +1,12 @@
 """The reduced model through time: the internal variables of every layer, the rig, and the dot's depth.
 
-With the amplitudes s of a layer's elastic stress, the Prony update of solve.materials.inelastic acts on the amplitudes,
+With the amplitudes s of a layer's elastic stress, the Prony update of solve.materials.prony acts on the amplitudes,
     q_i <- exp(-a_i) q_i + g_i gain_i (s - s_old),      alpha = sum (g_i s - q_i),      a_i = dt / tau_i,
 and everything else is a function of the depth u and of alpha. As s depends on alpha the step is implicit; its fixed
 point contracts by about sum g_i (1 - gain_i). The rig's balance is that of solve.terms.rig,
     m a'' + F(a, alpha) = (u - a) / c,   or = the force that drives,
 by central differences (velocity Verlet, Phys. Rev. 159, 1967) in sub-steps that resolve every oscillation, with alpha
 extrapolated to the middle of the sample: both second order. Of a mass that rings faster than that the answer is static.
-
-Reading the table of a reduced model: outputs as a function of depth and of the memory's amplitudes.
 """
 
 import numba as nb
@@ -17,84 +15,7 @@ import numpy as np
 from geometry.arrays import Floats, Ints
 from solve.decay import mean_decay
 from solve.materials.prony import branch_stress
-
-STEPS = 60  # of the search for a depth
-CLOSE = 1e-12  # of the full depth
-
-
-@nb.njit(cache=True, error_model="numpy")
-def set_features(alpha: Floats, pairs: Ints, features: Floats) -> None:
-    """(1, alpha, products of pairs of alpha)."""
-    count = len(alpha)
-    features[0] = 1.0
-    for r in range(count):
-        features[1 + r] = alpha[r]
-    for p in range(len(pairs)):
-        features[1 + count + p] = alpha[pairs[p, 0]] * alpha[pairs[p, 1]]
-
-
-@nb.njit(cache=True, error_model="numpy")
-def first_touch(touch: Floats, features: Floats) -> float:
-    """Depth at which the dot touches."""
-    depth = 0.0
-    for f in range(len(features)):
-        depth += touch[f] * features[f]
-    return depth
-
-
-@nb.njit(cache=True, error_model="numpy")
-def read(table: Floats, features: Floats, touch: float, full: float, depth: float, outputs: Floats) -> None:
-    """All outputs at a depth; below touch those of the free segment."""
-    cells = len(table) - 1
-    at = max(0.0, (depth - touch) / (full - touch)) * cells
-    cell = min(int(at), cells - 1)
-    x = at - cell
-    above, below = table[cell], table[cell + 1]
-    for o in range(len(outputs)):
-        outputs[o] = (1.0 - x) * above[0, o] + x * below[0, o]
-    for f in range(1, len(features)):
-        here, there = (1.0 - x) * features[f], x * features[f]
-        for o in range(len(outputs)):
-            outputs[o] += here * above[f, o] + there * below[f, o]
-
-
-@nb.njit(cache=True, error_model="numpy")
-def force_and_slope(table: Floats, features: Floats, touch: float, full: float, depth: float) -> tuple[float, float]:
-    """Contact force and its slope over depth; at touch that to the right."""
-    cells = len(table) - 1
-    at = max(0.0, (depth - touch) / (full - touch)) * cells
-    cell = min(int(at), cells - 1)
-    here, there = 0.0, 0.0
-    for f in range(len(features)):
-        here += table[cell, f, 0] * features[f]
-        there += table[cell + 1, f, 0] * features[f]
-    return here + (at - cell) * (there - here), (there - here) * cells / (full - touch)
-
-
-@nb.njit(cache=True, error_model="numpy")
-def balance(
-    table: Floats, features: Floats, touch: float, full: float, spring: float, push: float, guess: float
-) -> float:
-    """Depth where spring depth + F(depth) = push: Newton's method inside a shrinking bracket."""
-    if push <= spring * touch:
-        return push / spring if spring > 0.0 else touch
-    low, high = touch, 2.0 * full - touch  # the last cell goes on, so that the caller sees what is too deep
-    depth = min(max(guess, low), high)
-    for _ in range(STEPS):
-        force, slope = force_and_slope(table, features, touch, full, depth)
-        excess = force + spring * depth - push
-        if excess > 0.0:
-            high = depth
-        else:
-            low = depth
-        step = -excess / max(slope + spring, 1e-300)
-        if abs(step) <= CLOSE * full or high - low <= CLOSE * full:
-            break
-        depth += step
-        if not low < depth < high:
-            depth = 0.5 * (low + high)
-    return depth
-
+from solve.reduced.table_reading import balance, first_touch, force_and_slope, read, set_features
 
 BY_DEPTH, BY_FORCE = 0, 1
 FINE, TOO_DEEP = 0, 1
