@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.timing import Table, file_argument
-from geometry.dot import resolve_dot
+from geometry.dot_at_rest import resolve_dot
 from geometry.parameters import Dot, Effector, Film, Medium, Segment
 from mesh.build import build
 from mesh.options import MeshOptions

@@ -12,7 +12,8 @@ from geometry.arrays import Floats
 from geometry.base import InputError
 from geometry.cache import check_folder
 from geometry.checks import along, check_press_depth, check_pushed_dot, check_segment, check_way, press_warnings
-from geometry.dot import DotShape, resolve_dot
+from geometry.dot import DotShape
+from geometry.dot_at_rest import resolve_dot
 from geometry.parameters import Segment
 from geometry.part_checks import covers_footprint
 from geometry.stack import layers

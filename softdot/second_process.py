@@ -9,8 +9,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from geometry.base import load_alone, without_collector
 from geometry.beside import Beside
+from geometry.library_loading import load_alone, without_collector
 
 if TYPE_CHECKING:
     from geometry.dot import DotShape

@@ -7,7 +7,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
-from geometry.dot import DotShape, resolve_dot
+from geometry.dot import DotShape
+from geometry.dot_at_rest import resolve_dot
 from mesh.symmetry import unfolded
 from mesh.types import Planes, TetMesh
 from solve.delaminations import with_rims_of_patches

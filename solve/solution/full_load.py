@@ -9,7 +9,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from geometry.arrays import Floats
-from geometry.dot import resolve_dot
+from geometry.dot_at_rest import resolve_dot
 from mesh.morphing import morphed
 from mesh.types import TetMesh
 from solve.model import Model

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from geometry.arrays import Floats
-from geometry.dot import resolve_dot
+from geometry.dot_at_rest import resolve_dot
 from mesh.types import TetMesh
 from solve.model import Model, Press
 from solve.press import Setup, discretise

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from geometry.dot import resolve_dot
+from geometry.dot_at_rest import resolve_dot
 from mesh.types import TetMesh
 from solve.model import Model
 from solve.reduced.build import keep_reduced, reduced

@@ -5,7 +5,8 @@ from typing import TypeAlias
 
 import numpy as np
 
-from geometry.dot import DotShape, resolve_dot
+from geometry.dot import DotShape
+from geometry.dot_at_rest import resolve_dot
 from mesh.build import build
 from mesh.crowding import crowded
 from mesh.morphing import morphed

@@ -5,7 +5,7 @@ import pytest
 
 from geometry.base import InputError
 from geometry.braille import dot_size
-from geometry.dot import resolve_dot
+from geometry.dot_at_rest import resolve_dot
 from geometry.parameters import Dot
 from tests.cases import for_each
 

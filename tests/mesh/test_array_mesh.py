@@ -7,7 +7,7 @@ import pytest
 
 from geometry.array.layout import array_layout
 from geometry.array.parameters import Array, Groove
-from geometry.dot import resolve_dot
+from geometry.dot_at_rest import resolve_dot
 from geometry.parameters import Dot, Effector
 from mesh.array.mesh import array_mesh
 from mesh.array.sizing import expected_elements

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import solve.solution.march
-from geometry.dot import resolve_dot
+from geometry.dot_at_rest import resolve_dot
 from geometry.parameters import Dot
 from mesh.build import build
 from mesh.options import MeshOptions

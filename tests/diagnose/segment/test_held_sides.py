@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from geometry.dot import resolve_dot
+from geometry.dot_at_rest import resolve_dot
 from geometry.parameters import Dot, Segment
 from mesh.build import build
 from mesh.crowding import crowded
