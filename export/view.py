@@ -210,6 +210,6 @@ def colour_bar(figure: Any, low: float, high: float, label: str, extend: str = "
 
 
 COLOUR_MAP = "viridis"
+"""Even to the eye, readable in grey and by the colour-blind."""
 DIVERGING = "RdBu_r"
 """For signed quantities, white at zero."""
-"""Even to the eye, readable in grey and by the colour-blind."""

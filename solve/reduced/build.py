@@ -19,8 +19,8 @@ from mesh.types import TetMesh
 from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.model import Model, Physics, Press
 from solve.press import discretise
-from solve.reduced import kept
 from solve.reduced.accuracy import measured
+from solve.reduced.cache import key, remembered
 from solve.reduced.fit import FINER, fit
 from solve.reduced.frozen_memory import Frozen
 from solve.reduced.model import ReducedModel, structure
@@ -65,12 +65,12 @@ def build_reduced(
 def reduced(asked: ReductionTask, check: bool = True) -> ReducedModel:
     """As build_reduced, kept on disk."""
     _refuse(asked)
-    return kept.remembered(kept.key(asked, check), lambda: _build(asked, check))
+    return remembered(key(asked, check), lambda: _build(asked, check))
 
 
 def keep_reduced(asked: ReductionTask, check: bool, made: ReducedModel) -> None:
     """Keep on disk what was made elsewhere."""
-    kept.remembered(kept.key(asked, check), lambda: made)
+    remembered(key(asked, check), lambda: made)
 
 
 def _refuse(case: ReductionTask) -> None:

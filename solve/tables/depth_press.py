@@ -29,7 +29,7 @@ class DepthPress:
     back : numbers of the shares from which the dot also returns; seen on the way at RETURN of that depth.
     parts : steps to each share: slip takes several, and what guides it. guides : whether its equilibria are kept for
     others.
-    guided_by : name in solve.tables.kept of such a press, to start from; "" for none.
+    guided_by : name in solve.tables.cache of such a press, to start from; "" for none.
     """
 
     model: Model

@@ -9,7 +9,7 @@ from geometry.base import Report
 from geometry.executor import HERE, Executor, each_done
 from solve.reduced.model import ReducedModel
 from solve.solution.errors import NoEquilibriumError
-from solve.tables import kept
+from solve.tables import cache
 from solve.tables.depth_press import RETURN, DepthPress
 from solve.tables.reduction import Reduction
 
@@ -24,9 +24,9 @@ def answer(job: DepthPress | Reduction) -> Floats | ReducedModel | str:
 
 def _outputs_of(job: DepthPress) -> Floats:
     """Outputs; equilibria are left where other presses find them."""
-    outputs, found = job.run(kept.equilibria(job.guided_by) if job.guided_by else None)
+    outputs, found = job.run(cache.equilibria(job.guided_by) if job.guided_by else None)
     if found is not None:
-        kept.keep_equilibria(kept.key(job), found)
+        cache.keep_equilibria(cache.key(job), found)
     return outputs
 
 
@@ -42,8 +42,8 @@ def run_all(
 
     first : what takes longest, and can be recalled afterwards. NoEquilibriumError for one of these.
     """
-    names = [kept.key(job) for job in jobs]
-    found = {name: table for name in names if (table := kept.recall(name)) is not None}
+    names = [cache.key(job) for job in jobs]
+    found = {name: table for name in names if (table := cache.recall(name)) is not None}
     left = sorted(
         ((name, job) for name, job in zip(names, jobs, strict=True) if name not in found),
         key=lambda one: -_effort(one[1]),  # the longest last would keep one core only
@@ -58,7 +58,7 @@ def run_all(
         job, outputs = missing[name], future.result()
         if isinstance(job, DepthPress):
             found[name] = np.zeros(0) if isinstance(outputs, str) else outputs
-            kept.keep(name, found[name])
+            cache.keep(name, found[name])
         elif isinstance(outputs, str):
             raise NoEquilibriumError(outputs, np.zeros(0), None)
         else:

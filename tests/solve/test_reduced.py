@@ -12,7 +12,7 @@ import pytest
 
 from solve.materials.prony import Prony
 from solve.model import Physics, Readout
-from solve.reduced import kept
+from solve.reduced import cache
 from solve.reduced.fit import CELLS, ResponseTable
 from solve.reduced.model import ReducedModel, structure
 from solve.reduced.response import Accuracy
@@ -190,10 +190,10 @@ def test_the_voltage_bound_of_a_leaky_input_follows_from_that_of_the_charge():
 
 def test_a_kept_model_is_the_model_and_a_damaged_file_is_none(tmp_path):
     path = tmp_path / "kept.npz"
-    kept.write(path, solid())
-    found = kept.read(path)
+    cache.write(path, solid())
+    found = cache.read(path)
     before, after = (m.respond(TIME, 0.4 * TIME, SOLID) for m in (solid(), found))
     np.testing.assert_array_equal(before.force_N, after.force_N)
     assert before.error_bound == after.error_bound
     path.write_bytes(path.read_bytes()[:200])
-    assert kept.read(path) is None
+    assert cache.read(path) is None

@@ -15,7 +15,7 @@ from solve.delaminations import with_rims_of_patches
 from solve.mechanisms import with_mechanisms
 from solve.model import Model, Physics
 from solve.solution.errors import NoEquilibriumError
-from solve.tables import kept
+from solve.tables import cache
 from solve.tables.depth_press import DepthPress
 from solve.tables.rig_mesh import Mesh, MeshSettings, finer_mesh, mesh_of
 from solve.tables.workers import run_all
@@ -49,8 +49,8 @@ class Presses:
 
     @cached_property
     def _guides(self) -> list[str]:
-        """Names of the bases in solve.tables.kept."""
-        return [kept.key(job) for job in self.bases]
+        """Names of the bases in solve.tables.cache."""
+        return [cache.key(job) for job in self.bases]
 
     @cached_property
     def middle_mesh(self) -> Sizes:
