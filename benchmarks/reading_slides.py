@@ -18,7 +18,7 @@ import numpy as np
 
 from benchmarks.reading_in_full import line_mm
 from geometry.arrays import Floats
-from geometry.braille import DEFAULT_STANDARD
+from geometry.dot_size import DEFAULT_STANDARD
 from mesh.array.mesh import array_mesh
 from softdot.arrays.case import ArrayCase, ArrayPress
 from softdot.config import Config, load_config

@@ -6,8 +6,9 @@ from math import cos, hypot, radians, sin
 import numpy as np
 
 from geometry.base import InputError
-from geometry.braille import DotSize, cell_tips, dot_size, refuse_cell_of
 from geometry.dot import DotShape, Floats
+from geometry.dot_cell import cell_tips, refuse_cell_of
+from geometry.dot_size import DotSize, dot_size
 from geometry.parameters import Dot, Segment
 from geometry.part_checks import refuse_out_of_plane
 from geometry.stack import bodies, layers

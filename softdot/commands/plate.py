@@ -16,7 +16,7 @@ from export.printability.surface import surface_of
 from export.rendering import ensure_rendering
 from export.view import INK, DrawnBody, View, frame, page, render, save
 from geometry.base import InputError
-from geometry.braille import QUANTITIES, QuantityName
+from geometry.braille_standards import QUANTITIES, QuantityName
 from softdot.console import (
     GOOD,
     Logged,

@@ -5,9 +5,9 @@ from math import pi
 import pytest
 
 from geometry.base import InputError
-from geometry.braille import standard_names
+from geometry.braille_standards import standard_names
 from geometry.plates import braille_sizes, height_series, indenter_tip, text_plate
-from geometry.plates.plate import lay_out
+from geometry.plates.text_plate import lay_out
 from tests.cases import for_each
 
 BRAILLE = "⠃⠗⠁⠊⠇⠇⠑"
