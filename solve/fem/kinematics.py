@@ -1,6 +1,7 @@
-"""Compiled kinematics at quadrature points: F = 1 + du/dX, C = F^t F, J = det F.
+"""Compiled kinematics at quadrature points: F = 1 + du/dX, C = F^t F, J = det F, and the Green-Lagrange strain.
 
-(Holzapfel, Nonlinear Solid Mechanics, 2000, eqs. 2.39, 2.64, 2.51.)
+Holzapfel, Nonlinear Solid Mechanics, 2000, eqs. 2.39, 2.64, 2.51 and 2.69; F is of the undeformed position, and what
+belongs to elements comes as (elements, points, ...).
 """
 
 import numpy as np

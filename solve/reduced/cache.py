@@ -5,18 +5,16 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from geometry.cache import data_hash, folder, read_arrays, source_hash, write_arrays
 from mesh.types import mesh_hash
 from solve.reduced.fit import ResponseTable
-from solve.reduced.response import Accuracy
-
-if TYPE_CHECKING:
-    from solve.reduced.task import ReductionTask
 from solve.reduced.model import ReducedModel, structure
+from solve.reduced.response import Accuracy
+from solve.reduced.task import ReductionTask
 
 
 def key(case: ReductionTask, check: bool) -> str:
