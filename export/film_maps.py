@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from export.cutaway import is_slice
 from export.nodal_values import largest_principal
 from export.recovery import film_patches
 from export.skin import MM_PER_M, PC_PER_MM2_PER_C_PER_M2
@@ -22,7 +23,6 @@ from solve.result import FilmPeak, Step
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-from export.cutaway import is_slice
 
 
 @dataclass(frozen=True)

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Literal, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import Field
 
 from geometry.parameters import ABSENT, ActsWith, Positive, Table
-
-if TYPE_CHECKING:
-    pass
-
 
 MESHED = ActsWith(file=ABSENT)
 TETWILD = ActsWith(mesher=("pytetwild",))

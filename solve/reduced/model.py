@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,10 +13,6 @@ from solve.reduced.fit import CELLS, ResponseTable
 from solve.reduced.recording import branches, given, second_differences, sensed
 from solve.reduced.response import Accuracy, ErrorBound, Raw, ReducedResponse
 from solve.reduced.time_stepping import BY_DEPTH, TOO_DEEP, follow
-
-if TYPE_CHECKING:
-    pass
-
 
 MARGIN = 2.0  # of the bound over the largest error that was measured
 

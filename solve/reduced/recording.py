@@ -1,7 +1,6 @@
 """A recording as the reduced model's kernel takes it, and what the force sensor reads in the end."""
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -9,9 +8,6 @@ from geometry.arrays import Floats, Ints
 from solve.materials.prony import Prony
 from solve.model import Physics
 from solve.reduced.time_stepping import BY_DEPTH, BY_FORCE
-
-if TYPE_CHECKING:
-    pass
 
 
 def given(time_s: Floats, depth_mm: Floats | None, force_N: Floats | None, gap_mm: float) -> tuple[Floats, Floats, int]:

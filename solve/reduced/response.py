@@ -1,12 +1,8 @@
 """What a reduced model gives back, and how far it may be off."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from geometry.arrays import Floats
-
-if TYPE_CHECKING:
-    pass
 
 
 @dataclass(frozen=True)
