@@ -15,12 +15,12 @@ import numpy as np
 import solve.terms.solid
 from softdot.verify.catalogue import PROBLEMS, chosen_problems
 from solve.materials.film import film_law
-from solve.materials.inelastic import Prony
+from solve.materials.hyperfoam import HyperfoamLaw
 from solve.materials.laws import InvariantLaw, KnowlesLaw, LinearLaw, OgdenLaw
-from solve.materials.principal_stretches import HyperfoamLaw
+from solve.materials.prony import Prony
 from solve.readout import amplifier, filters
 from solve.terms.friction import FrictionalContact
-from solve.terms.jump import UnilateralInterface
+from solve.terms.unilateral_interface import UnilateralInterface
 
 TOO_MUCH = 1.1
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solve.fem.kinematics import TET_EDGES
+from solve.fem.shape_functions import TET_EDGES
 
 YOUNG, POISSON = 1.0, 0.495
 SHEAR = YOUNG / (2.0 * (1.0 + POISSON))

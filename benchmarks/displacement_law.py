@@ -6,7 +6,8 @@ import numba as nb
 import numpy as np
 
 from benchmarks.cube import SHEAR
-from solve.materials.isochoric import I_OF, J_OF, inverse, isochoric_stress
+from solve.materials.invariants import isochoric_stress
+from solve.tensors import I_OF, J_OF, inverse
 
 SOFT_BULK = 2.0 * SHEAR * 1.3 / (3.0 * (1.0 - 0.6))  # nu 0.3, where displacements alone do not lock
 

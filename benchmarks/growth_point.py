@@ -17,7 +17,7 @@ from pypardiso import PyPardisoSolver
 from benchmarks.cube import cube
 from benchmarks.step_ours import assembler
 from benchmarks.timing import REPEATS, Phases
-from solve.fem.sparsity import Tangent
+from solve.fem.tangent import Tangent
 from solve.solution.factorisation import Pardiso, SinglePardiso
 from solve.solution.linear import LinearSolver
 from solve.solution.newton import TOLERANCE

@@ -6,7 +6,7 @@ import numpy as np
 
 import mesh
 from geometry.arrays import Ints
-from geometry.dot import resolve_dot
+from geometry.dot_at_rest import resolve_dot
 from mesh.types import TET_FACES, TetMesh, boundary_faces
 from softdot.config import Config, load_config
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import ngsolve as ng
 import numpy as np
 
-from solve.fem.kinematics import tetrahedron
+from solve.fem.quadrature import tetrahedron
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "verification"))
 from ngsolve_press import TOLERANCE, DotPress

@@ -18,7 +18,8 @@ from pathlib import Path
 import numpy as np
 
 from geometry.arrays import Floats
-from geometry.braille import dot_offset_mm, raised_dots, standard
+from geometry.braille_cells import dot_offset_mm, raised_dots
+from geometry.braille_standards import standard
 from geometry.environment import usable_cores
 from geometry.executor import LocalProcesses, each_done
 from mesh.array.mesh import array_mesh

@@ -18,7 +18,7 @@ import numpy as np
 
 from benchmarks.reading_in_full import line_mm
 from geometry.arrays import Floats
-from geometry.braille import DEFAULT_STANDARD
+from geometry.dot_size import DEFAULT_STANDARD
 from mesh.array.mesh import array_mesh
 from softdot.arrays.case import ArrayCase, ArrayPress
 from softdot.config import Config, load_config
@@ -31,8 +31,9 @@ from solve.solution.linear import LinearSolver
 from solve.solution.march import march, rest_state
 from solve.solution.schedule import Target
 from solve.system import Load
-from solve.terms.contact import ContactFacets, RigidDot
+from solve.terms.contact import ContactFacets
 from solve.terms.friction import FrictionalContact
+from solve.terms.rigid_dot import RigidDot
 
 SIZES = {"element_size_mm": 1.5, "film_element_size_mm": 0.9, "contact_element_size_mm": 0.45}
 RIM_MM, CLEAR_MM = 0.7, 0.05

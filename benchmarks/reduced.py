@@ -12,11 +12,12 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.timing import Table, file_argument
-from geometry.dot import resolve_dot
+from geometry.dot_at_rest import resolve_dot
 from geometry.parameters import Dot, Effector, Film, Medium, Segment
-from mesh.build import MeshOptions, build
-from solve.materials.inelastic import Prony
+from mesh.build import build
+from mesh.options import MeshOptions
 from solve.materials.parameters import NeoHookean, PiezoelectricFilm
+from solve.materials.prony import Prony
 from solve.model import Physics, Readout
 from solve.readout.stages import Hum
 from solve.reduced.build import build_reduced

@@ -14,8 +14,8 @@ import scipy.sparse as sp
 from benchmarks.cube import BULK, SHEAR, cube, state
 from benchmarks.displacement_law import SOFT_BULK
 from benchmarks.timing import REPEATS, Phases
-from solve.fem.kinematics import tetrahedron
-from solve.fem.sparsity import Tangent
+from solve.fem.quadrature import tetrahedron
+from solve.fem.tangent import Tangent
 from solve.solution.factorisation import Pardiso
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from benchmarks.cube import BULK, SHEAR, Cube, cube
 from benchmarks.timing import REPEATS, Phases
-from solve.fem.kinematics import tetrahedron
+from solve.fem.quadrature import tetrahedron
 
 
 def to_ngsolve(case: Cube) -> ng.Mesh:

@@ -12,10 +12,13 @@ import numpy as np
 from benchmarks.cube import BULK, SHEAR, Cube, cube, state
 from benchmarks.displacement_law import DisplacementLaw
 from benchmarks.timing import REPEATS, Phases
-from solve.fem.kernels import scatter
-from solve.fem.sparsity import Tangent, Trial, along_x, build_pattern
+from solve.fem.assembly import scatter
+from solve.fem.numbering import along_x
+from solve.fem.pattern import build_pattern
+from solve.fem.tangent import Tangent
 from solve.materials.laws import InvariantLaw
 from solve.solution.factorisation import Pardiso
+from solve.terms.base import Trial
 from solve.terms.solid import solid_region
 
 
@@ -27,7 +30,7 @@ def law_of(name: str) -> InvariantLaw:
 
 
 def numbering(case: Cube, name: str) -> np.ndarray:
-    """Our number of each of the case's unknowns, as solve.fem.sparsity numbers those of a segment."""
+    """Our number of each of the case's unknowns, as solve.fem.pattern numbers those of a segment."""
     nodes = np.nonzero(case.displacement_dofs >= 0)[0]
     if name == "mixed":
         nodes = np.append(nodes, case.corners)

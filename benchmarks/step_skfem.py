@@ -14,8 +14,8 @@ from skfem.helpers import ddot, det, grad, identity, inv, transpose
 
 from benchmarks.cube import BULK, SHEAR, cube
 from benchmarks.timing import REPEATS, Phases
-from solve.fem.kinematics import tetrahedron
-from solve.fem.sparsity import Tangent
+from solve.fem.quadrature import tetrahedron
+from solve.fem.tangent import Tangent
 from solve.solution.factorisation import Pardiso
 
 

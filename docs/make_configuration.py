@@ -14,7 +14,7 @@ from typing import Any
 DOCS = Path(__file__).resolve().parent
 sys.path.insert(0, str(DOCS.parent))  # the rooms of this repository, whatever is installed
 
-from geometry.braille import QUANTITIES, Quantity, standard, standard_names  # noqa: E402
+from geometry.braille_standards import QUANTITIES, Quantity, standard, standard_names  # noqa: E402
 from geometry.fabrication.parameters import (  # noqa: E402
     Fabrication,
     castable_materials,

@@ -1,7 +1,4 @@
-"""Pictures of the segment cut open along the dot, at rest and pressed.
-
-Maps of the film: where it is stretched and where the charge comes from.
-"""
+"""Pictures of the segment cut open along the dot, at rest and pressed."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -11,12 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from export.dot_surface import placed_dot, triangle_surface
-from export.recovery import film_patches
 from export.skin import (
     MM_PER_M,
-    PC_PER_MM2_PER_C_PER_M2,
     Skin,
-    largest_principal,
     nearby_plane,
     nodal_steps,
     outer_skin,
@@ -24,11 +18,7 @@ from export.skin import (
 )
 from export.view import (
     COLOUR_MAP,
-    DIVERGING,
-    DPI,
-    HEIGHT_IN,
     INK,
-    WIDTH_IN,
     DrawnBody,
     View,
     colour_bar,
@@ -39,14 +29,14 @@ from export.view import (
     ruler,
     save,
 )
-from geometry.arrays import Floats, Ints
+from geometry.arrays import Floats
 from geometry.dot import DotShape
 from geometry.solids import PART_COLOURS
 from mesh.types import TetMesh
-from solve.result import FilmPeak, Step
+from solve.result import Step
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    pass
 
 OPEN, FRONT = View(28.0, 18.0), View(0.0, 0.0)
 NAMES = {"medium1": "medium 1", "medium2": "medium 2"}
@@ -214,135 +204,3 @@ def _outline(part: Any, view: View) -> DrawnBody:
 def _smooth(surface: Any) -> Any:
     """Normals that make round faces look round and keep sharp edges."""
     return surface.compute_normals(split_vertices=True, feature_angle=30, cell_normals=False)
-
-
-@dataclass(frozen=True)
-class FilmMap:
-    """Film values, means through the thickness, at the nodes of its upper face.
-
-    x_mm, y_mm, deflection_mm : (n,) deformed place and movement against z; undeformed_x_mm : (n,)
-    triangles : (t, 3); strain_percent, charge_pC_per_mm2 : (n,)
-    """
-
-    x_mm: Floats
-    y_mm: Floats
-    undeformed_x_mm: Floats
-    deflection_mm: Floats
-    triangles: Ints
-    strain_percent: Floats
-    charge_pC_per_mm2: Floats
-
-
-@dataclass(frozen=True)
-class Scale:
-    """What a colour or a height means: label with unit, ends, name of the colour map."""
-
-    label: str
-    low: float
-    high: float
-    colours: str
-
-    @property
-    def top(self) -> float:
-        """The upper end; one where all is zero, at rest."""
-        return self.high or 1.0
-
-    def beyond(self, values: Floats) -> str:
-        """Which ends of a colour bar have values beyond them, in matplotlib's words."""
-        under, over = bool(values.min() < self.low), bool(values.max() > self.top)
-        return {(True, True): "both", (True, False): "min", (False, True): "max"}.get((under, over), "neither")
-
-
-def film_map(tet_mesh: TetMesh, step: Step) -> FilmMap:
-    """The film's values at the nodes of its upper face, as every picture and file has them."""
-    facets = tet_mesh.facets["film-top"]
-    nodes, local = np.unique(facets, return_inverse=True)
-    local = local.reshape(facets.shape)
-    place = tet_mesh.points_mm[nodes] + step.fields.displacement_m[nodes] * MM_PER_M
-    corners = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
-    patches, count = film_patches(tet_mesh), len(tet_mesh.points_mm)
-    return FilmMap(
-        place[:, 0],
-        place[:, 1],
-        tet_mesh.points_mm[nodes, 0],
-        -step.fields.displacement_m[nodes, 2] * MM_PER_M,
-        local[:, corners].reshape(-1, 3),
-        100 * largest_principal(patches.at_nodes(step.fields.film_strain, count)[nodes]),
-        PC_PER_MM2_PER_C_PER_M2 * patches.at_nodes(step.fields.charge_density_C_per_m2, count)[nodes],
-    )
-
-
-def film_figure(tet_mesh: TetMesh, step: Step, peak: FilmPeak) -> "Figure":
-    """Strain and charge of the film: two maps from above, or for a plane-strain slice two lines along x.
-
-    In the range of the stated largest values; those beyond it, at a held rim, have the colour of its end.
-    """
-    from matplotlib.figure import Figure
-    from matplotlib.layout_engine import ConstrainedLayoutEngine
-
-    shown = film_map(tet_mesh, step)
-    figure = Figure(
-        figsize=(WIDTH_IN, HEIGHT_IN * 0.85),
-        dpi=DPI,
-        facecolor="white",
-        layout=ConstrainedLayoutEngine(w_pad=0.12, h_pad=0.12),
-    )
-    title = f"Film at {step.indentation_m * MM_PER_M:.3g} mm"
-    figure.suptitle(title, x=0.04, ha="left", fontsize=15, fontweight="bold", color=INK)
-    left, right = figure.subplots(1, 2)
-    draw = _line if is_slice(tet_mesh) else _map
-    strain = Scale("largest principal strain (%)", 0.0, 100 * peak.strain, COLOUR_MAP)
-    draw(figure, left, shown, shown.strain_percent, strain)
-    low, high = (PC_PER_MM2_PER_C_PER_M2 * density for density in peak.charge_density_C_per_m2)
-    most = max(abs(low), abs(high))
-    draw(figure, right, shown, shown.charge_pC_per_mm2, Scale("charge density (pC/mm²)", -most, most, DIVERGING))
-    return figure
-
-
-def _map(figure: Any, axes: Any, shown: FilmMap, values: Floats, scale: Scale) -> None:
-    """Colours on the deformed film, with lines of equal deflection."""
-    drawn = axes.tripcolor(
-        shown.x_mm,
-        shown.y_mm,
-        shown.triangles,
-        values,
-        shading="gouraud",
-        cmap=scale.colours,
-        vmin=scale.low,
-        vmax=scale.top,
-        rasterized=True,
-    )
-    bar = figure.colorbar(drawn, ax=axes, location="bottom", shrink=0.9, pad=0.03, extend=scale.beyond(values))
-    bar.set_label(scale.label, fontsize=12, color=INK)
-    if scale.low < 0.0:
-        bar.ax.axvline(0.0, color=INK, lw=1.2)
-    bar.ax.tick_params(labelsize=11)
-    bar.ax.locator_params(nbins=5)
-    if np.ptp(shown.deflection_mm) > 1e-6:
-        lines = axes.tricontour(
-            shown.x_mm,
-            shown.y_mm,
-            shown.triangles,
-            shown.deflection_mm,
-            levels=4,
-            colors=INK if scale.low < 0.0 else "white",
-            linewidths=0.7,
-        )
-        axes.clabel(lines, fmt="%.3g mm", fontsize=8)
-    axes.set_aspect("equal")
-    axes.set_xlabel("x (mm)", fontsize=12)
-    axes.set_ylabel("y (mm)", fontsize=12)
-    axes.tick_params(labelsize=11)
-
-
-def _line(_figure: Any, axes: Any, shown: FilmMap, values: Floats, scale: Scale) -> None:
-    """A slice has nothing across: the value along x."""
-    x, group = np.unique(np.round(shown.undeformed_x_mm, 6), return_inverse=True)
-    mean = np.bincount(group, values) / np.bincount(group)
-    axes.plot(x, mean, color="#b5263b", lw=1.6)
-    axes.axhline(0, color=INK, lw=0.6)
-    axes.set_xlabel("x (mm)", fontsize=12)
-    axes.set_ylabel(scale.label, fontsize=12)
-    axes.set_ylim(1.05 * scale.low, 1.05 * scale.top)
-    axes.grid(alpha=0.3)
-    axes.tick_params(labelsize=11)

@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 
 from export.course_figure import course_figure
-from export.cutaway import draw_parts, draw_von_mises, film_figure, open_scene
+from export.cutaway import draw_parts, draw_von_mises, open_scene
+from export.film_maps import film_figure
 from export.skin import MM_PER_M
 from export.view import DPI, HEIGHT_IN, INK, WIDTH_IN, save
 from geometry.arrays import Floats

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from export.skin import TETRA_EDGES
+from export.subdivision import TETRA_EDGES
 from geometry.arrays import Bools, Floats, Ints
 from mesh.types import TetMesh
 from solve.result import film_columns

@@ -1,21 +1,13 @@
-"""A straight (orthographic) view of the segment: VTK draws the bodies, matplotlib all that is written around them.
+"""A straight (orthographic) view of the segment: VTK draws the bodies, matplotlib all that is written around them."""
 
-Make VTK draw without a display, or say plainly why it cannot.
-"""
-
-import os
-import subprocess
-import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
-from threading import Lock
 from typing import Any
 
 import numpy as np
 
+from export.rendering import ensure_rendering
 from geometry.arrays import Floats
-from geometry.base import InputError
-from geometry.environment import own_path, own_python
 
 WIDTH_IN, HEIGHT_IN, DPI = 8.0, 6.0, 200
 PICTURE_SIZE = (int(WIDTH_IN * DPI), int(HEIGHT_IN * DPI))
@@ -218,79 +210,6 @@ def colour_bar(figure: Any, low: float, high: float, label: str, extend: str = "
 
 
 COLOUR_MAP = "viridis"
+"""Even to the eye, readable in grey and by the colour-blind."""
 DIVERGING = "RdBu_r"
 """For signed quantities, white at zero."""
-"""Even to the eye, readable in grey and by the colour-blind."""
-
-
-_SWITCH = "VTK_DEFAULT_OPENGL_WINDOW"
-_PROBE = """
-from vtkmodules.vtkRenderingCore import vtkRenderer
-from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLRenderWindow
-from vtkmodules.vtkRenderingCore import vtkRenderWindow
-window = vtkRenderWindow()
-window.SetOffScreenRendering(True)
-window.AddRenderer(vtkRenderer())
-window.Render()
-print("drawn", window.ReportCapabilities()[:1])
-"""
-ADVICE = (
-    "Pictures cannot be drawn because no OpenGL library for drawing without a display was found: "
-    "install libegl1 and libgl1-mesa-dri (apt-get install libegl1 libgl1 libgl1-mesa-dri) or libosmesa6."
-)
-
-
-TRIAL_S = 60.0, 240.0
-"""How long a trial picture may take, and how long where none was drawn in that time."""
-_FOUND: list[str] = []
-_TRIAL = Lock()
-
-
-def ensure_rendering(known: str | None = None) -> str:
-    """Choose VTK's window for this machine, and return its name; to be called before the first picture.
-
-    known : what another process was told here. Without it a short process of its own tries, once: VTK ends the whole
-    process by a segmentation fault when neither EGL nor OSMesa can be loaded. Several threads may ask at once.
-    Raises InputError, with the libraries to install, when nothing works.
-    """
-    with _TRIAL:
-        if not _FOUND:
-            _FOUND.append(_working_window() if known is None else known)
-    if _FOUND[0]:
-        os.environ[_SWITCH] = _FOUND[0]
-    return _FOUND[0]
-
-
-def _working_window() -> str:
-    """Name of VTK's window class; empty for VTK's own choice. A window that only was slow is tried once more."""
-    slow = _candidates()
-    for seconds in TRIAL_S:
-        waiting, slow = slow, []
-        for window in waiting:
-            try:
-                if _draws(window, seconds):
-                    return window
-            except subprocess.TimeoutExpired:
-                slow.append(window)
-    if slow:
-        raise InputError(
-            f"Pictures cannot be drawn: a trial picture took longer than {TRIAL_S[-1]:g} s; this machine or its "
-            "graphics is too slow or too busy, try again when it has less to do"
-        )
-    raise InputError(ADVICE)
-
-
-def _draws(window: str, seconds: float) -> bool:
-    """Whether a process that draws with this window comes to its end. TimeoutExpired."""
-    environment = {**os.environ, **own_path(), **({_SWITCH: window} if window else {})}
-    run = subprocess.run(own_python("-c", _PROBE), env=environment, capture_output=True, timeout=seconds, check=False)
-    return run.returncode == 0 and b"drawn" in run.stdout
-
-
-def _candidates() -> list[str]:
-    """Without a display naming EGL spares VTK's warning about the missing X server."""
-    if os.environ.get(_SWITCH):
-        return [os.environ[_SWITCH]]
-    if sys.platform != "linux" or os.environ.get("DISPLAY"):
-        return [""] if sys.platform != "linux" else ["", "vtkEGLRenderWindow", "vtkOSOpenGLRenderWindow"]
-    return ["vtkEGLRenderWindow", "vtkOSOpenGLRenderWindow"]

@@ -10,8 +10,9 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from export.dot_surface import placed_dot
+from export.nodal_values import split_nodes, spread
 from export.recovery import film_patches
-from export.skin import MM_PER_M, MPA_PER_PA, PC_PER_MM2_PER_C_PER_M2, split_nodes, spread
+from export.skin import MM_PER_M, MPA_PER_PA, PC_PER_MM2_PER_C_PER_M2
 from export.vtk_xml import Arrays, VtkGrid
 from geometry.arrays import Ints
 from geometry.dot import DotShape

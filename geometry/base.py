@@ -1,17 +1,8 @@
-"""What every package shares: the one exception for bad input, and what a mistyped name was probably meant to be.
-
-Large libraries, of which a few modules are loaded without the rest.
-"""
+"""What every package shares: the one exception for bad input, and what a mistyped name was probably meant to be."""
 
 import difflib
-import gc
 import re
-import sys
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
-from importlib import import_module
-from importlib.util import find_spec, module_from_spec
-from typing import Any
+from collections.abc import Callable, Iterable
 
 
 class InputError(ValueError):
@@ -44,43 +35,3 @@ def _likeness(word: str, name: str) -> float:
 
 Report = Callable[[str, int, int], None]
 """Told of long work: what, done, of how many."""
-
-
-def load_alone(package: str, *modules: str) -> None:
-    """Load some modules of a package without the rest, which may take longer by far; their names are the package's.
-
-    What else is asked of the package loads all of it, so that nobody misses anything. Nothing is done where the package
-    is loaded already.
-    """
-    if package in sys.modules:
-        return
-    spec = find_spec(package)
-    if spec is None or spec.loader is None:
-        raise ModuleNotFoundError(f"No module named '{package}'", name=package)
-    alone, loader = module_from_spec(spec), spec.loader
-    sys.modules[package] = alone
-    for name in modules:
-        module = import_module(f"{package}.{name}")
-        vars(alone).update({known: value for known, value in vars(module).items() if not known.startswith("_")})
-
-    def rest(name: str) -> Any:
-        if name.startswith("__") and name not in ("__all__", "__version__"):  # Python looks for these by itself
-            raise AttributeError(f"module '{package}' has no attribute '{name}'")
-        vars(alone).pop("__getattr__")
-        loader.exec_module(alone)
-        return getattr(alone, name)
-
-    vars(alone)["__getattr__"] = rest
-
-
-@contextmanager
-def without_collector() -> Iterator[None]:
-    """For a block that loads libraries: they leave no garbage, and to look for it takes a quarter of their time."""
-    was_on = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_on:
-            gc.freeze()  # what is loaded stays, so it is never looked through
-            gc.enable()

@@ -28,8 +28,11 @@ POOLS = {
 }
 PIECES = (
     "solve/compiled.py",
+    "solve/decay.py",
+    "solve/tensors.py",
     "solve/fem/*.py",
     "solve/materials/*.py",
+    "solve/reduced/table_reading.py",
     "solve/readout/filters.py",
     "diagnose/engines/coupon/*.py",
 )

@@ -5,10 +5,11 @@ from numpy.typing import NDArray
 
 from geometry.arrays import Floats, Ints
 from geometry.parameters import Segment
-from mesh.build import MeshOptions
-from mesh.layered import twins
+from mesh.jacobian import smallest_determinant_ratio
+from mesh.options import MeshOptions
 from mesh.outline import RoundSkin, StackOutline, curved_surface, outline
-from mesh.quality import refuse_inverted, smallest_determinant_ratio
+from mesh.quality import refuse_inverted
+from mesh.slice import twins
 from mesh.types import TET_FACES, LinearMesh, Planes, TetMesh, boundary_faces, face_neighbours, unique_edges
 
 FLATTEST = 0.1  # a curved element keeps at least this share of its mean Jacobian everywhere

@@ -9,7 +9,7 @@ import numpy as np
 
 from geometry.arrays import Floats, Ints
 from geometry.dot import DotShape
-from mesh.build import MeshOptions
+from mesh.options import MeshOptions
 from mesh.outline import StackOutline
 
 GROWTH = 0.4  # mm of edge length per mm of distance: neighbouring edges differ by about a factor 1.4

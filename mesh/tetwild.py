@@ -10,8 +10,8 @@ from geometry.arrays import Floats, Ints
 from geometry.dot import DotShape
 from geometry.parameters import Segment
 from geometry.stack import layers
-from mesh.build import MeshOptions
-from mesh.interfaces import with_film
+from mesh.film_layers import with_film
+from mesh.options import MeshOptions
 from mesh.outline import StackOutline, curved_surface, outline
 from mesh.sizing import background, sizing
 from mesh.tetwild_process import tetrahedralize

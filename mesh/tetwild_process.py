@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 
 from geometry.arrays import Floats, Ints
-from geometry.base import load_alone
 from geometry.environment import own_path, own_python
 from geometry.files import end_with_parent, scratch_folder
+from geometry.library_loading import load_alone
 from mesh.types import MeshingError
 
 

@@ -361,7 +361,7 @@ class Pressed:
 
     def plot_film(self) -> "Figure":
         """Strain and charge density of the film at the deepest step, as in film.png of `softdot run`."""
-        from export.cutaway import film_figure
+        from export.film_maps import film_figure
         from export.pictures import deepest
 
         return _shown(film_figure(self.result.tet_mesh, deepest(self.result), self.result.film_peak))

@@ -12,11 +12,13 @@ from geometry.arrays import Floats
 from geometry.base import InputError
 from geometry.cache import check_folder
 from geometry.checks import along, check_press_depth, check_pushed_dot, check_segment, check_way, press_warnings
-from geometry.dot import DotShape, resolve_dot
+from geometry.dot import DotShape
+from geometry.dot_at_rest import resolve_dot
 from geometry.parameters import Segment
 from geometry.part_checks import covers_footprint
 from geometry.stack import layers
-from mesh.build import MeshOptions, build
+from mesh.build import build
+from mesh.options import MeshOptions
 from mesh.outline import outline
 from mesh.sizing import sizing
 from mesh.types import Planes
@@ -28,7 +30,7 @@ from solve.readout.course import PressCourse
 from solve.result import PressResult
 from solve.solution.schedule import duration_s
 from solve.symmetry import meshed_planes
-from solve.terms.contact import RigidDot
+from solve.terms.rigid_dot import RigidDot
 from solve.validity import doubts
 
 TOO_MANY = 1_000_000

@@ -9,8 +9,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from geometry.base import load_alone, without_collector
 from geometry.beside import Beside
+from geometry.library_loading import load_alone, without_collector
 
 if TYPE_CHECKING:
     from geometry.dot import DotShape
@@ -36,7 +36,7 @@ class SecondProcess(Beside):
 
 def compile_kernels() -> None:
     """The dear ones, unless they are kept; the first process compiles the others while it waits."""
-    from solve.fem.kernels import compiled
+    from solve.fem.warm_up import compiled
 
     if not compiled():
         from solve.fem.warm_up import compile_dear

@@ -12,8 +12,9 @@ from pydantic import Field, PrivateAttr, field_validator, model_validator
 
 from geometry.arrays import Floats
 from geometry.parameters import STATED, ActsWith, Dot, Finite, NonNegative, Positive, Segment, Table
-from solve.materials.inelastic import Prony, Softening
+from solve.materials.mullins import Softening
 from solve.materials.parameters import Material, PiezoelectricFilm
+from solve.materials.prony import Prony
 from solve.readout.stages import Stage
 from solve.terms.guide import GuideFriction
 

@@ -7,28 +7,27 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
-from geometry.dot import DotShape, resolve_dot
+from geometry.dot import DotShape
+from geometry.dot_at_rest import resolve_dot
 from mesh.symmetry import unfolded
 from mesh.types import Planes, TetMesh
+from solve.delaminations import with_rims_of_patches
 from solve.model import Model
-from solve.problem import (
-    OpenInterface,
-    build_system,
-    meshed_share,
-    open_interfaces,
-    refuse_unresolved,
-    with_rims_of_patches,
-)
+from solve.open_interfaces import OpenInterface, open_interfaces
+from solve.problem import build_system, refuse_unresolved
 from solve.readout.course import course
 from solve.recorder import Recorder
 from solve.result import PressResult, Step
+from solve.solution.advice import explained
 from solve.solution.checkpoint import Checkpoint
+from solve.solution.errors import NoEquilibriumError
 from solve.solution.linear import LinearSolver
 from solve.solution.march import march, rest_state
-from solve.solution.newton import NoEquilibriumError, explained
 from solve.solution.schedule import Target, schedule
 from solve.symmetry import planes_of
-from solve.system import System, Units
+from solve.system import System
+from solve.units import Units
+from solve.whole_segment import meshed_share
 
 
 @dataclass(frozen=True)

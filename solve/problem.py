@@ -1,149 +1,40 @@
-"""From parameters and a mesh to the discrete problem in solver units.
-
-What a plane-strain slice, a half or a quarter stands for.
-
-Which interfaces of the mesh open: those with a compliant bond, and delaminated patches of the others.
-
-Where a bond is delaminated: the facets of an interface within a disc, or within a strip of a slice.
-"""
+"""From parameters and a mesh to the discrete problem in solver units."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Bools, Floats, Ints
+from geometry.arrays import Floats
 from geometry.base import InputError
 from geometry.dot import DotShape
 from geometry.parameters import Segment
-from mesh.interfaces import inner_nodes, interface_facets, split_interface
-from mesh.outline import outline
-from mesh.seams import with_columns_at
 from mesh.types import TetMesh
-from solve.fem.sparsity import Numbers, Term, Unknowns, build_pattern, number
-from solve.materials.film import FilmLaw, FilmPlasticity, YieldLaw, film_law
+from solve.fem.numbering import Numbers, Unknowns, number
+from solve.fem.pattern import build_pattern
+from solve.materials.film import FilmLaw, film_law
+from solve.materials.film_yield import FilmPlasticity, YieldLaw
 from solve.materials.inelastic import Inelastic
 from solve.materials.laws import MediumLaw
 from solve.materials.parameters import Material, PiezoelectricFilm
-from solve.model import BondLine, Delamination, Physics, Readout
+from solve.model import Physics, Readout
+from solve.open_interfaces import OpenInterface
 from solve.readout.channels import mutual_F
-from solve.symmetry import electrode_rectangles, images, orbits
-from solve.system import System, Units
-from solve.terms.contact import RigidDot, contact_facets
+from solve.symmetry import electrode_rectangles, orbits
+from solve.system import System
+from solve.terms.base import Term
+from solve.terms.bond import bond
+from solve.terms.circuit import Circuit, Tied
+from solve.terms.contact import contact_facets
+from solve.terms.elastic_sides import side_springs
 from solve.terms.film import FilmRegion, film_region
 from solve.terms.friction import FrictionalContact
-from solve.terms.jump import opening_nodes, unilateral_interface
-from solve.terms.rig import Circuit, RigTerm, Tied
+from solve.terms.rig import RigTerm
+from solve.terms.rigid_dot import RigidDot
 from solve.terms.solid import SolidRegion, solid_region
-from solve.terms.springs import bond, side_springs
-
-ROUND_OFF_MM = 1e-9
-
-
-def delaminated_facets(tet_mesh: TetMesh, patch: Delamination, plane_strain: bool) -> Bools:
-    """Facets (k,) of interface_facets whose middle lies in the disc (plane strain: |x - x_c| <= diameter / 2) or its
-    image where the mesh ends at a mirror plane; of a patch outside the disc all others.
-
-    A diameter of 0 selects none. InputError when the disc reaches outside the interface, or is so small, or so large
-    where the rim is loose, that the mesh has no node which could open.
-    """
-    name, diameter_mm = patch.bond, patch.diameter_mm
-    facets = interface_facets(tet_mesh, name)
-    if diameter_mm == 0.0:
-        return np.full(len(facets), patch.outside)
-    what = "bonded_diameter_mm" if patch.outside else "diameter_mm"
-    given = f"mechanisms.delamination at {name}: center_mm = {list(patch.center_mm)}, {what} = {diameter_mm:g}"
-    corners = tet_mesh.points_mm[facets[:, :3], :2]
-    axes = slice(0, 1) if plane_strain else slice(0, 2)
-    center, mirrored = np.array(patch.center_mm), list(tet_mesh.planes)
-    center[mirrored] = np.abs(center[mirrored])  # of what reaches over the plane the image covers as much and more
-    high, low = corners.max(axis=(0, 1)), corners.min(axis=(0, 1))
-    low[mirrored] = -high[mirrored]
-    if not patch.outside:
-        _refuse_outside(low[axes], high[axes], center[axes], diameter_mm, given)
-    # the two triangles of a slice's rectangle share their middle in x, not their centroid
-    middle = (corners.min(axis=1) + corners.max(axis=1)) / 2 if plane_strain else corners.mean(axis=1)
-    inside = np.linalg.norm((middle - center)[:, axes], axis=1) <= diameter_mm / 2 + ROUND_OFF_MM
-    loose: Bools = inside != patch.outside
-    if not len(inner_nodes(tet_mesh, facets, ~loose)):
-        raise InputError(f"{given}: what is loose must span several facets, too large there (mesh.element_size_mm)")
-    return loose
-
-
-def _refuse_outside(low: Floats, high: Floats, center: Floats, diameter: float, given: str) -> None:
-    """InputError when the disc leaves the box around the interface, from low (d,) to high (d,)."""
-    reach = diameter / 2 - ROUND_OFF_MM
-    if diameter < 0.0 or (center - reach < low).any() or (center + reach > high).any():
-        box = ", ".join(f"{axis} from {a:g} to {b:g} mm" for axis, a, b in zip("xy", low, high, strict=False))
-        raise InputError(f"{given}: the patch must lie within the interface, {box}, and its diameter be 0 or more")
-
-
-BONDS = (  # from the base up: the part below an interface keeps its nodes, so that earlier facets stay right
-    "bond-base",
-    "bond-film-medium2",
-    "bond-medium1-film",
-    "bond-effector-medium1",
-)
-
-
-@dataclass(frozen=True)
-class OpenInterface:
-    """Matched facets (k, 6) below and above an interface, and which of them are delaminated (k,)."""
-
-    name: str
-    lower: Ints
-    upper: Ints
-    delaminated: Bools
-
-
-def open_interfaces(
-    tet_mesh: TetMesh, bonds: Mapping[str, BondLine], delaminations: tuple[Delamination, ...], plane_strain: bool
-) -> tuple[TetMesh, tuple[OpenInterface, ...]]:
-    """The mesh with its nodes doubled there. InputError for a patch outside its interface or a missing layer."""
-    opened = []
-    for name in BONDS:
-        patches = [patch for patch in delaminations if patch.bond == name]
-        if name not in bonds and not patches:
-            continue
-        bare = np.zeros(len(interface_facets(tet_mesh, name)), bool)
-        for patch in patches:
-            bare |= delaminated_facets(tet_mesh, patch, plane_strain)
-        joined = np.zeros_like(bare) if name in bonds else ~bare
-        tet_mesh, lower, upper = split_interface(tet_mesh, name, joined)
-        opened.append(OpenInterface(name, lower, upper, bare))
-    return tet_mesh, tuple(opened)
-
-
-def with_rims_of_patches(tet_mesh: TetMesh, segment: Segment, delaminations: tuple[Delamination, ...]) -> TetMesh:
-    """The mesh, of a slice with corners where its delaminated patches begin and end; of a solid as it was.
-
-    Facets are loose or bonded as a whole. Where the patch ended at the nearest of them, what it does would go up in
-    steps of whole elements as it grows. InputError for a missing layer.
-    """
-    if segment.section == "solid":
-        return tet_mesh
-    foot = outline(segment).effector_half_x
-    kept = [-foot, foot]
-    for patch in delaminations:
-        rims = [patch.center_mm[0] + side * patch.diameter_mm / 2 for side in (-1, 1)]
-        tet_mesh = with_columns_at(tet_mesh, interface_facets(tet_mesh, patch.bond), rims, kept)
-        kept += rims
-    return tet_mesh
-
-
-def meshed_share(segment: Segment, tet_mesh: TetMesh) -> float:
-    """What is meshed, as a share of the whole segment: a slice, and what mirror planes leave."""
-    share = 0.5 ** len(tet_mesh.planes)
-    return share if segment.section == "solid" else share * tet_mesh.thickness_mm / segment.width_mm
-
-
-def whole_charge(segment: Segment, tet_mesh: TetMesh) -> Floats:
-    """Matrix (e, e) from what each electrode collects where it is meshed to what each collects in the whole segment."""
-    total = images(electrode_rectangles(segment), tet_mesh.planes)
-    if segment.section == "solid":
-        return total
-    widths = np.array([e.size_mm[1] for e in segment.film.electrodes] or [segment.width_mm])
-    return np.asarray(np.minimum(widths, segment.width_mm)[:, None] / tet_mesh.thickness_mm * total)
+from solve.terms.unilateral_interface import opening_nodes, unilateral_interface
+from solve.units import Units, solver_units
+from solve.whole_segment import meshed_share, whole_charge
 
 
 def refuse_unresolved(segment: Segment, tet_mesh: TetMesh, film: FilmRegion) -> None:
@@ -200,13 +91,13 @@ def build_system(
 ) -> System:
     """Discretise a press. materials : region name -> material, one for each region of the mesh.
 
-    tet_mesh and opened as solve.problem.open_interfaces gives them; units : to share them with another system.
+    tet_mesh and opened as solve.open_interfaces.open_interfaces gives them; units : to share them with another system.
     """
     physics = physics or Physics()
     laws = {name: materials[name].law.scaled(1e6) for name in tet_mesh.region_names if name != "film"}
     numbers = Numbers()
     unknowns = _number(segment, materials, laws, tet_mesh, physics, readout, force_driven, numbers)
-    units = units or _units(segment, laws, materials)
+    units = units or solver_units(segment, laws, materials)
     points = tet_mesh.points_mm * (1e-3 / units.length)
     make = Builder(segment, materials, physics, readout, tet_mesh, opened, points, unknowns, units)
     terms: list[Term] = [_solid(make, name, law) for name, law in laws.items()]
@@ -247,13 +138,6 @@ def _number(
         parallel=readout is not None and not physics.separate_channels,
         approach=force_driven or physics.rig_compliance_mm_per_N > 0.0,
     )
-
-
-def _units(segment: Segment, laws: Mapping[str, MediumLaw], materials: Mapping[str, Material]) -> Units:
-    length, film = 1e-3 * segment.length_mm, materials["film"]
-    constants = (film.d31_pC_per_N, film.d33_pC_per_N) if isinstance(film, PiezoelectricFilm) else (0.0, 0.0)
-    coupling = 1e-12 * max(abs(constants[0]), abs(constants[1]), 1e-3)
-    return Units(length, max(law.shear_modulus for law in laws.values()), length / coupling)
 
 
 def _solid(make: Builder, name: str, law: MediumLaw) -> SolidRegion:

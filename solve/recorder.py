@@ -1,12 +1,10 @@
 """What is recorded of every converged state: loads and charges; and fields at the reported steps.
 
-Why a press that converged should still be doubted: contact that overlaps, a snap, time that is cut too coarsely.
-
-What the force sensor reads beside the contact: the mass that moves on a prescribed path, F_contact + m a'', and the
+The force sensor reads more than the contact: the mass that moves on a prescribed path, F_contact + m a'', and the
 friction of a guide.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -16,74 +14,14 @@ from geometry.arrays import Floats
 from geometry.parameters import Segment
 from mesh.symmetry import unfolded
 from mesh.types import TetMesh
+from solve.convergence_warnings import doubtful_results
 from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.model import Physics, Press, Waveform
-from solve.problem import meshed_share, whole_charge
 from solve.readout.amplifier import other_charge_C
 from solve.result import PressResult, Record, Step, Trace, fields, film_peak
-from solve.solution.march import SMALLEST_IN_TIME, TIME_TOLERANCE
 from solve.solution.schedule import first_reached_s, fraction
 from solve.system import State, System
-
-PENETRATION_LIMIT = 0.05  # of the depth; contact holds in weighted means, so a coarse surface can overlap at points
-
-
-def doubtful_results(steps: Sequence[Step], records: Sequence[Record]) -> tuple[str, ...]:
-    """Warnings, one sentence each."""
-    deepest = max(steps, key=lambda step: step.indentation_m)
-    return (*_untouched(records), *_penetration(deepest), *_snaps(records), *_unresolved(records))
-
-
-def _untouched(records: Sequence[Record]) -> tuple[str, ...]:
-    """A warning where the dot never reached the segment."""
-    if len(records) < 2 or any(record.contact_area_m2 > 0.0 for record in records):
-        return ()
-    return (
-        "the dot never touched the segment, so that force and charge of the press are zero: press deeper "
-        "(press.indentation_mm), or see dot.gap_mm, dot.offset_mm and the effector",
-    )
-
-
-def _penetration(step: Step) -> tuple[str, ...]:
-    """A warning where the dot overlaps the surface by more than a share of the depth."""
-    overlap = -float(step.fields.gap_m.min())
-    if overlap <= PENETRATION_LIMIT * max(step.indentation_m, 0.0) or overlap <= 1e-9:
-        return ()
-    return (
-        f"the dot overlaps the surface by up to {1e3 * overlap:.2g} mm at single points: "
-        "a smaller mesh.contact_element_size_mm is needed",
-    )
-
-
-def _snaps(records: Sequence[Record]) -> tuple[str, ...]:
-    """A warning where the segment lost one equilibrium and found another."""
-    depths_mm = [f"{1e3 * record.indentation_m:.3f}" for record in records if record.snapped]
-    if not depths_mm:
-        return ()
-    return (
-        f"at {', '.join(depths_mm)} mm something snapped: Newton found no equilibrium near the one before. The free "
-        "side of a soft layer may crease, and elements of a poor shape may give way: the picture of the deformed "
-        "segment or another mesh will tell",
-    )
-
-
-def _unresolved(records: Sequence[Record]) -> tuple[str, ...]:
-    """A warning where an error of the time integration is above its tolerance, too, beside the largest path.
-
-    Each error is relative to the state it occurred in: where the dot had hardly moved it means little.
-    """
-    path = np.abs([record.dot_path_m for record in records])
-    path = np.maximum(path, np.append(0.0, path[:-1]))
-    errors = np.array([record.time_error for record in records]) * path / max(float(path.max()), 1e-300)
-    worst = int(np.argmax(errors))
-    if errors[worst] <= TIME_TOLERANCE:
-        return ()
-    return (
-        f"at {records[worst].time_s:.4g} s the error of the time integration in one sub-step is {errors[worst]:.2g} of "
-        f"the largest path or stress (tolerance {TIME_TOLERANCE:g}): motion that is too fast for 1/"
-        f"{1 / SMALLEST_IN_TIME:.0f} of a load step, such as the rebound of a light dot, is damped; more load steps "
-        "(press.load_steps) are needed to see it",
-    )
+from solve.whole_segment import meshed_share, whole_charge
 
 
 def prescribed_acceleration(press: Press, trace: Trace) -> Floats:

@@ -19,10 +19,12 @@ from geometry.arrays import Floats, Ints
 from geometry.parameters import Segment
 from mesh.symmetry import Unfolded, in_plane
 from mesh.types import Planes, TetMesh
-from solve.fem.kinematics import deformation_gradient, linear, tetrahedron
-from solve.fem.sparsity import History, Trial
-from solve.materials.isochoric import from_voigt, to_voigt
+from solve.fem.kinematics import deformation_gradient
+from solve.fem.quadrature import tetrahedron
+from solve.fem.shape_functions import linear
 from solve.system import State, System
+from solve.tensors import from_voigt, to_voigt
+from solve.terms.base import History, Trial
 from solve.terms.film import FilmRegion
 from solve.terms.solid import SolidRegion
 

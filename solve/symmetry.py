@@ -11,12 +11,12 @@ import numpy as np
 from geometry.arrays import Floats, Ints
 from geometry.dot import DotShape
 from geometry.parameters import Segment
-from mesh.build import MeshOptions
+from mesh.options import MeshOptions
 from mesh.types import Planes
 from solve.materials.film import FilmLaw, film_law
-from solve.materials.isochoric import strain_rotation
 from solve.materials.parameters import PiezoelectricFilm
 from solve.model import Delamination, Model
+from solve.tensors import strain_rotation
 
 SAME_MM, SAME = 1e-9, 1e-9
 """How far an image may be off: in mm; of the largest constant, for angles whose cosine is rounded."""
@@ -63,7 +63,7 @@ def electrode_rectangles(segment: Segment) -> Floats:
     """Electrodes as (e, 4) x0, x1, y0, y1 in mm; without any, one over everything.
 
     In a plane-strain slice nothing varies over y: the electrodes then reach over the whole slice, and their
-    share of the width is applied with the width (see solve.problem.whole_charge).
+    share of the width is applied with the width (see solve.whole_segment.whole_charge).
     """
     if not segment.film.electrodes:
         return np.array([[-np.inf, np.inf, -np.inf, np.inf]])

@@ -10,38 +10,18 @@ from functools import cached_property
 import numpy as np
 
 from geometry.arrays import Bools, Floats, Ints
-from solve.fem.kernels import scatter
-from solve.fem.sparsity import History, Pattern, Tangent, Term, Trial, Unknowns, scatter_unsymmetric
+from solve.fem.assembly import scatter, scatter_unsymmetric
+from solve.fem.numbering import Unknowns
+from solve.fem.pattern import Pattern
+from solve.fem.tangent import Tangent
+from solve.terms.base import History, Term, Trial
 from solve.terms.contact import ContactFacets
 from solve.terms.film import FilmRegion
 from solve.terms.rig import RigTerm
 from solve.terms.solid import SolidRegion
+from solve.units import Units
 
 CONTACT_SPRING = 1e4  # only steers the preconditioner of the linear solver
-
-
-@dataclass(frozen=True)
-class Units:
-    """One solver unit of length in m, of stress in Pa and of voltage in V."""
-
-    length: float
-    stress: float
-    voltage: float
-
-    @property
-    def force(self) -> float:
-        """N."""
-        return self.stress * self.length**2
-
-    @property
-    def charge(self) -> float:
-        """C."""
-        return self.force * self.length / self.voltage
-
-    @property
-    def mass(self) -> float:
-        """kg, so that force = mass x length / s^2."""
-        return self.force / self.length
 
 
 @dataclass(frozen=True)
@@ -57,8 +37,8 @@ class State:
     """A converged state: time in s, load, unknowns, memory of each term, largest norm of contact forces so far.
 
     time_error : of the step to it, where it exceeds the tolerance (see System.time_error), else zero.
-    snapped : Newton found no equilibrium near the one before it (see solve.solution.march).
-    work, most_work : what the dot has put into the segment, now and at most so far (see solve.solution.march).
+    snapped : Newton found no equilibrium near the one before it (see solve.solution.continuation).
+    work, most_work : what the dot has put into the segment, now and at most so far (see solve.solution.work).
     """
 
     time: float

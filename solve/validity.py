@@ -18,12 +18,13 @@ import numpy as np
 
 from geometry.arrays import Bools, Floats
 from mesh.types import TetMesh
-from solve.fem.kinematics import quadratic, tetrahedron
-from solve.materials.isochoric import from_voigt
+from solve.fem.quadrature import tetrahedron
+from solve.fem.shape_functions import quadratic
 from solve.materials.laws import MediumLaw
 from solve.materials.parameters import PiezoelectricFilm
 from solve.model import Model
 from solve.result import PressResult
+from solve.tensors import from_voigt
 
 CORNERS_AND_MIDDLES = np.array(
     [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0.5, 0, 0], [0.5, 0.5, 0], [0, 0.5, 0], [0, 0, 0.5], [0.5, 0, 0.5],

@@ -13,7 +13,7 @@ from scipy.interpolate import UnivariateSpline
 
 from diagnose.signals.phases import sigma_of_differences
 from geometry.arrays import Floats
-from solve.reduced.model import second_differences
+from solve.reduced.recording import second_differences
 
 DEGREE = 5  # its second derivative is smooth
 NEGLIGIBLE = 0.01  # of the root mean square of second differences, what noise makes of them

@@ -18,7 +18,7 @@ from geometry.arrays import Bools, Floats
 from geometry.base import nearest
 from geometry.parameters import Finite, Positive, Table
 from solve.model import Readout
-from solve.reduced.model import second_differences
+from solve.reduced.recording import second_differences
 
 FORMAT = "softdot-recording/1"
 PARTS = ("effector", "medium1", "film", "medium2", "specimen")

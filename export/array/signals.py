@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from export.view import DPI, INK, save
-from geometry.braille import COLUMN_AND_ROW
+from geometry.braille_cells import COLUMN_AND_ROW
 
 CELLS_SHOWN = 16
 RIGHT, WRONG = "#1f77b4", "#c0392b"

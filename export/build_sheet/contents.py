@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 
 from export.printability import Printability
-from geometry.fabrication.clamp_frame import FrameLayout, frame_layout
 from geometry.fabrication.device import Device
+from geometry.fabrication.frame_layout import FrameLayout, frame_layout
 from geometry.fabrication.kit import SolidKit, jig_device, stacked_tops
 from geometry.fabrication.parameters import Fabrication
 from geometry.fabrication.part import FabricationPart
+from geometry.flat.flat_kit import FlatKit
 from geometry.flat.pattern import FlatPattern
-from geometry.flat.sheets import FlatKit
 from geometry.flat.spacers import spaced_layers
 from geometry.parameters import Segment
 from geometry.stack import Box, Disc, Dome, Layer, bodies, layers

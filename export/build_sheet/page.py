@@ -8,7 +8,7 @@ from typing import Any
 
 from export.build_sheet.contents import RESIN_G_CM3, Contents, bill, components, gauging, in_words, spoken
 from export.build_sheet.steps import steps
-from export.cut_files import STYLES
+from export.cut_files.style import STYLES
 from export.page import page_environment
 from export.report import number
 from geometry.files import write_whole_text

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from export.build_sheet.contents import Contents, spoken
-from export.cut_files import draw_cut_file
+from export.cut_files.dxf import draw_cut_file
 from export.printability import draw_findings
-from export.printability.measure import surface_of
+from export.printability.surface import surface_of
 from export.view import DPI, INK, DrawnBody, View, frame, name_parts, page, render
 from geometry.fabrication.device import Device
 from geometry.flat.pattern import Outline

@@ -1,6 +1,7 @@
 """Can this part be printed? Measured against the limits of a printer, with the place and advice in words."""
 
-from export.printability.check import check_part, draw_findings
+from export.printability.check import check_part
+from export.printability.drawing import draw_findings
 from export.printability.findings import CriticalSize, Finding, Printability
 from geometry.fabrication.part import PrinterProfile, printer_names, printer_profile
 

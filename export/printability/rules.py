@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from export.printability.findings import CriticalSize, Finding, Point, Severity
-from export.printability.measure import Chords, Floats, Measured, connected_labels
+from export.printability.measure import Measured
+from export.printability.surface import Chords, Floats, connected_labels
 from geometry.fabrication.part import PrinterProfile
 
 ON_THE_BED_MM = 0.02

@@ -1,7 +1,7 @@
 """Where the segments of an array lie, and where each layer has material. Lengths in mm.
 
 The origin is the middle of the array's base. Columns follow x and rows follow y, as the dots of a Braille cell do
-(geometry.braille): segment r1c1 is under dot 1 of the first cell, r2c1 under dot 2, r1c2 under dot 4.
+(geometry.braille_standards): segment r1c1 is under dot 1 of the first cell, r2c1 under dot 2, r1c2 under dot 4.
 """
 
 from dataclasses import dataclass
@@ -13,7 +13,8 @@ import numpy as np
 from geometry.array.parameters import Array, Groove
 from geometry.arrays import Bools, Floats
 from geometry.base import InputError
-from geometry.braille import QuantityName, dot_standard
+from geometry.braille_standards import QuantityName
+from geometry.dot_size import dot_standard
 from geometry.parameters import Dot, Effector, Electrode, LayerName, Segment
 from geometry.stack import layers
 

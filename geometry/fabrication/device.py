@@ -1,7 +1,4 @@
-"""What a kit makes, one segment or an array of them under shared layers, and how it is seen from its cable.
-
-Lengths in millimetres.
-"""
+"""What a kit makes, one segment or an array of them under shared layers, and how it is seen from its cable. In mm."""
 
 from dataclasses import dataclass
 from functools import cached_property

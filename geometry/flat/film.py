@@ -1,7 +1,4 @@
-"""The layout of the film seen from its cable: how far it reaches beyond the footprint, its tab and its head.
-
-Lengths in millimetres.
-"""
+"""The layout of the film seen from its cable: how far it reaches beyond the footprint, its tab and its head. In mm."""
 
 from dataclasses import dataclass
 from functools import cached_property

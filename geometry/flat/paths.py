@@ -1,6 +1,7 @@
 """Ribbons of metal: a centre line with a width as cross-sections, and the order in which ribbons turn side by side.
 
-Lengths in millimetres; u points to the cable, v across.
+Lengths are in millimetres; u points to the cable, v across it. Several ribbons that turn side by side keep their
+order.
 """
 
 from collections.abc import Iterator, Sequence

@@ -7,7 +7,9 @@ import numpy as np
 from geometry.array.layout import ArrayLayout
 from geometry.arrays import Bools, Floats
 from mesh.array.sizing import HYPOTENUSE, ArraySizing
-from mesh.layered import Triangulation, beside_planes, crossed, joined, refine, round_patch
+from mesh.bisection import Triangulation, refine
+from mesh.footprint import crossed, joined, round_patch
+from mesh.layered import beside_planes
 
 IN_PATCH_MM = 1e-6
 

@@ -16,8 +16,9 @@ from geometry.dot import DotShape
 from geometry.stack import layers
 from mesh.array.footprint import footprint, from_middle, on_circles
 from mesh.array.sizing import array_sizing
-from mesh.build import MeshOptions
-from mesh.layered import Triangulation, levels
+from mesh.bisection import Triangulation
+from mesh.layered import levels
+from mesh.options import MeshOptions
 from mesh.outline import RoundSurface, curved_surface, outline
 from mesh.quadratic import between_parts, quadratic
 from mesh.quality import refuse_inverted

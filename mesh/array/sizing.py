@@ -7,7 +7,7 @@ import numpy as np
 from geometry.array.layout import ArrayLayout, Rectangle
 from geometry.arrays import Floats
 from geometry.dot import DotShape
-from mesh.build import MeshOptions
+from mesh.options import MeshOptions
 from mesh.outline import outline
 from mesh.sizing import GROWTH, RIM, RIM_GROWTH, Sizing, sizing
 from mesh.types import Planes

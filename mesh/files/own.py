@@ -17,10 +17,10 @@ from geometry.parameters import Segment
 from geometry.stack import layers
 from mesh.files.abaqus import AbaqusMesh, is_tet, is_triangle, read_abaqus
 from mesh.files.formats import REGIONS, SURFACES
-from mesh.layered import twins
+from mesh.jacobian import jacobians, volumes
 from mesh.outline import StackOutline, curved_surface, outline
 from mesh.quadratic import TOLERANCE_MM, named_facets, quadratic
-from mesh.quality import jacobians, volumes
+from mesh.slice import twins
 from mesh.types import TET_FACES, LinearMesh, MeshingError, TetMesh, face_neighbours, signed_volumes, unique_edges
 
 FLAT_PARTS, ROUND = 1e-4, 0.05

@@ -13,9 +13,11 @@ from geometry.array.checks import check_array
 from geometry.array.layout import ArrayLayout, SegmentPlace, array_layout
 from geometry.arrays import Floats
 from geometry.base import InputError
-from geometry.braille import COLUMN_AND_ROW, dot_offset_mm, dot_standard, raised_dots
+from geometry.braille_cells import COLUMN_AND_ROW, dot_offset_mm, raised_dots
 from geometry.checks import check_press_depth, check_pushed_dot, check_segment, press_warnings
-from geometry.dot import DotShape, resolve_dot
+from geometry.dot import DotShape
+from geometry.dot_at_rest import resolve_dot
+from geometry.dot_size import dot_standard
 from geometry.parameters import Dot, Segment
 from mesh.array.mesh import array_mesh
 from mesh.array.sizing import expected_elements

@@ -56,7 +56,7 @@ def run_array(
     InputError before any work for what cannot be built or written. Where a press does not converge, StoppedPressError
     or MeshingError: nothing is written, and presses that were solved are kept in the cache.
     """
-    from export.view import ensure_rendering
+    from export.rendering import ensure_rendering
     from geometry.cache import check_folder
     from softdot.arrays.case import ArrayCase
     from softdot.arrays.study import study
@@ -165,7 +165,8 @@ def _draw(found: ArrayStudy, folder: Path) -> list[tuple[str, str, str]]:
     import numpy as np
 
     from export.array.maps import draw_growth, draw_maps, draw_matrix
-    from export.cutaway import draw_parts, film_figure, open_scene
+    from export.cutaway import draw_parts, open_scene
+    from export.film_maps import film_figure
     from export.pictures import deepest
     from export.view import save
     from softdot.arrays.side_stiffness import representatives

@@ -38,7 +38,7 @@ from softdot.console import (
 from softdot.executors import executor_for
 from softdot.output import Product, staged_folder
 from solve.mechanisms import MECHANISMS
-from solve.solution.newton import NoEquilibriumError
+from solve.solution.errors import NoEquilibriumError
 
 DIAGNOSIS = Product(
     FORMAT,
@@ -202,7 +202,7 @@ def command(chosen: Namespace) -> int:
     """Diagnose chosen.recording into chosen.output; 0, or 3 when a press did not converge. InputError."""
     from mesh.types import MeshingError
     from softdot.console import progress_of
-    from solve.solution.newton import NoEquilibriumError
+    from solve.solution.errors import NoEquilibriumError
 
     if chosen.seed is not None and chosen.seed < 0:
         raise InputError(f"--seed = {chosen.seed}: must be at least 0")

@@ -11,16 +11,16 @@ from export.build_sheet.page import capacitance_pF, checks, traces, write_page
 from export.build_sheet.pictures import draw_all
 from export.build_sheet.steps import steps
 from export.cad import write_3mf, write_step, write_stl
-from export.cut_files import write_cut_files
+from export.cut_files.folder import write_cut_files
 from export.printability import check_part, printer_profile
-from export.view import ensure_rendering
+from export.rendering import ensure_rendering
 from geometry.base import InputError
 from geometry.executor import Executor
 from geometry.fabrication.device import Device, array_device, lone_device
 from geometry.fabrication.kit import solid_kit
 from geometry.fabrication.part import ROUNDING_MM, FabricationPart
+from geometry.flat.flat_kit import FlatKit, flat_kit
 from geometry.flat.pattern import FlatPattern, compensated
-from geometry.flat.sheets import FlatKit, flat_kit
 from mesh.types import MeshingError
 from softdot.arrays.case import ArrayCase
 from softdot.case import Case
@@ -47,8 +47,8 @@ from softdot.machine import named_when_missing
 from softdot.output import Product, staged_folder
 from softdot.tolerances.budget import UNFINISHED, BudgetOutcome, budget_of, failed
 from solve.materials.parameters import PiezoelectricFilm
+from solve.solution.full_load import StoppedShortError
 from solve.solution.linear import LinearSolveError
-from solve.solution.sensitivity import StoppedShortError
 
 ROWS = 5
 

@@ -45,7 +45,7 @@ def _materials() -> list[dict[str, Any]]:
 
 
 def _standards() -> list[dict[str, Any]]:
-    from geometry.braille import QUANTITIES, standard, standard_names
+    from geometry.braille_standards import QUANTITIES, standard, standard_names
 
     found = [standard(name) for name in standard_names()]
     return [

@@ -12,10 +12,11 @@ import numpy as np
 from export.cad import write_3mf, write_step, write_stl
 from export.printability import CriticalSize, Printability, draw_findings, printer_names, printer_profile
 from export.printability.check import check_on_printers
-from export.printability.measure import surface_of
-from export.view import INK, DrawnBody, View, ensure_rendering, frame, page, render, save
+from export.printability.surface import surface_of
+from export.rendering import ensure_rendering
+from export.view import INK, DrawnBody, View, frame, page, render, save
 from geometry.base import InputError
-from geometry.braille import QUANTITIES, QuantityName
+from geometry.braille_standards import QUANTITIES, QuantityName
 from softdot.console import (
     GOOD,
     Logged,

@@ -12,7 +12,8 @@ from threading import Thread
 from typing import TYPE_CHECKING, Any
 from warnings import catch_warnings, simplefilter
 
-from geometry.base import InputError, without_collector
+from geometry.base import InputError
+from geometry.library_loading import without_collector
 from softdot.console import (
     GOOD,
     NOT_CONVERGED,
@@ -78,7 +79,7 @@ def run_case(
     written. Where a computation does not converge nothing is raised: solver.converged is False, solver.failure says why
     and what converged is written.
     """
-    from export.view import ensure_rendering
+    from export.rendering import ensure_rendering
     from mesh.files.formats import check_formats
     from softdot.summary import heading
 
@@ -155,7 +156,7 @@ def _tell(config: Config) -> None:
     """What a user should know before it begins: what was not stated, and that the first run takes longer."""
     from softdot.checks import COMPILE_S
     from softdot.config.toml import told
-    from solve.fem.kernels import compiled
+    from solve.fem.warm_up import compiled
 
     if config.from_default:
         LOG.info("%s", told(config.from_default, config.model_dump(mode="json")))
@@ -209,7 +210,7 @@ def command(chosen: Namespace) -> int:
 
 def _try_to_draw() -> None:
     """Half a second, in which another process tries; run_case tells what comes of it."""
-    from export.view import ensure_rendering
+    from export.rendering import ensure_rendering
 
     with suppress(InputError):
         ensure_rendering()

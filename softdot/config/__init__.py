@@ -13,7 +13,7 @@ from geometry.base import InputError
 from geometry.fabrication.parameters import Fabrication
 from geometry.parameters import Dot, Segment, Table
 from geometry.stack import layers
-from mesh.build import MeshOptions
+from mesh.options import MeshOptions
 from softdot.config.errors import refuse_absurd_numbers, sentence, without_round_off
 from softdot.config.toml import completed, default_design, from_default, naming_the_flag, read_toml, with_settings
 from solve.materials.parameters import AnyMaterial, Material, PiezoelectricFilm, find_material, library_tables

@@ -13,20 +13,12 @@ from importlib.util import find_spec
 from typing import Any, Literal, get_args
 
 from geometry.base import InputError
-from geometry.braille import QuantityName
-from geometry.plates.plate import (
-    HEIGHTS_MM,
-    MARGIN_MM,
-    THICKNESS_MM,
-    THREADS,
-    BrailleSizes,
-    Plate,
-    braille_sizes,
-    height_series,
-    indenter_tip,
-    require_length,
-    text_plate,
-)
+from geometry.braille_standards import QuantityName
+from geometry.plates.braille_sizes import BrailleSizes, braille_sizes, require_length
+from geometry.plates.height_series import HEIGHTS_MM, height_series
+from geometry.plates.indenter import THREADS, indenter_tip
+from geometry.plates.plate import THICKNESS_MM, Plate
+from geometry.plates.text_plate import MARGIN_MM, text_plate
 
 # a number with its points and commas; letters; Braille; anything else, one by one
 TOKEN = re.compile(r"(?:(?<![A-Za-z])\.)?[0-9][0-9.,]*|[A-Za-z]+|[\u2800-\u28ff]+|.", re.DOTALL)

@@ -12,7 +12,7 @@ import numpy as np
 
 from geometry.arrays import Ints
 from geometry.base import InputError
-from geometry.braille import FIRST
+from geometry.braille_cells import FIRST
 from softdot.printed_braille.request import (
     DISPLAY,
     INSTALL,

@@ -6,7 +6,7 @@ from math import isfinite
 from typing import Any, Literal, get_args
 
 from geometry.base import InputError
-from geometry.braille import BrailleStandard, standard
+from geometry.braille_standards import BrailleStandard, standard
 from softdot.arrays.kernel import ArrayKernel
 
 Mode = Literal["slide", "press"]

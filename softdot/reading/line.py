@@ -9,7 +9,8 @@ import numpy as np
 from scipy.stats import truncnorm
 
 from geometry.arrays import Bools, Floats, Ints
-from geometry.braille import BrailleStandard, dot_offset_mm
+from geometry.braille_cells import dot_offset_mm
+from geometry.braille_standards import BrailleStandard
 from softdot.reading.cells import DOTS
 from softdot.reading.conditions import WIDEST_SIGMA, ReadingConditions
 

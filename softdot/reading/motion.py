@@ -10,7 +10,7 @@ import numpy as np
 
 from geometry.arrays import Bools, Floats, Ints
 from geometry.base import InputError
-from geometry.braille import BrailleStandard
+from geometry.braille_standards import BrailleStandard
 from softdot.arrays.kernel import ArrayKernel
 from softdot.reading.conditions import WIDEST_TREMOR, ReadingConditions
 from softdot.reading.line import DotLine, cell_pitch_mm

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from geometry.arrays import Floats
-from geometry.braille import BrailleStandard
+from geometry.braille_standards import BrailleStandard
 from softdot.arrays.kernel import ArrayKernel
 from softdot.reading.conditions import ReadingConditions
 from softdot.reading.line import DotLine

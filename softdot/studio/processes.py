@@ -20,9 +20,10 @@ from inspect import signature
 from multiprocessing.connection import Connection
 from typing import Any
 
-from geometry.base import InputError, without_collector
+from geometry.base import InputError
 from geometry.environment import without_working_folder
 from geometry.files import end_with_parent
+from geometry.library_loading import without_collector
 
 LOG = logging.getLogger(__name__)
 WORK = "softdot.studio.work"
@@ -200,9 +201,9 @@ def _outcome(task: str, arguments: Sequence[Any], tell: Tell) -> tuple[str, Any]
     from mesh.types import MeshingError
     from softdot.arrays.presses import StoppedPressError
     from softdot.machine import without_room
+    from solve.solution.errors import NoEquilibriumError
+    from solve.solution.full_load import StoppedShortError
     from solve.solution.linear import LinearSolveError
-    from solve.solution.newton import NoEquilibriumError
-    from solve.solution.sensitivity import StoppedShortError
 
     try:
         function = named(task)

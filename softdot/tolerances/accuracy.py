@@ -7,15 +7,15 @@ elastic baseline, without mechanisms and slides: what the mesh resolves, the con
 
 from geometry.base import InputError
 from geometry.cache import source_hash
-from mesh.build import MeshOptions
+from mesh.options import MeshOptions
 from mesh.types import MeshingError
 from softdot.case import Case
 from softdot.checks import refuse_huge_mesh
 from softdot.config import Config
 from softdot.tolerances.discretisation import RATIOS, answer_at, discretisation_error, follows_path, full_load
 from softdot.tolerances.responses import remembered
+from solve.solution.full_load import StoppedShortError
 from solve.solution.linear import LinearSolveError
-from solve.solution.sensitivity import StoppedShortError
 
 ORDER = 1.5
 """Power of the size by which the error is expected to fall: between 1, where a stress is singular, and 2."""

@@ -10,8 +10,8 @@ from mesh.types import MeshingError
 from softdot.config import Config
 from softdot.tolerances.responses import Question, Response, answered, coarser
 from softdot.tolerances.tolerances import Tolerance, shifts, tolerances
+from solve.solution.full_load import StoppedShortError
 from solve.solution.linear import LinearSolveError
-from solve.solution.sensitivity import StoppedShortError
 
 MESH_FACTOR, CHECK_FACTOR = 2.0, 3.0
 """Elements of the budget and of its check, against those of the configuration."""

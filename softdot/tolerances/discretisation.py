@@ -19,7 +19,7 @@ from softdot.config import Config
 from softdot.config.model import model_of
 from softdot.outcome import outcome
 from softdot.tolerances.responses import FullLoadResponse, KitPress, on_larger_elements
-from solve.solution.sensitivity import StoppedShortError
+from solve.solution.full_load import StoppedShortError
 
 RATIOS = 2.0, 3.0
 """Sizes of the larger elements over that of the others."""

@@ -13,7 +13,7 @@ from geometry.arrays import Floats
 from geometry.base import InputError
 from geometry.cache import data_hash, recall, remember, source_hash
 from geometry.executor import Executor, each_done
-from mesh.interfaces import morphed
+from mesh.morphing import morphed
 from mesh.types import TetMesh
 from softdot.case import Case
 from softdot.config import Config, config_hash, input_hash
@@ -23,7 +23,7 @@ from softdot.outcome import press_with_derivatives, variations_of
 from softdot.summary import history
 from softdot.tolerances.tolerances import with_factors
 from solve.result import PressResult
-from solve.solution.sensitivity import FullLoad, StoppedShortError
+from solve.solution.full_load import FullLoad, StoppedShortError
 
 LOAD_STEPS = 3
 """Enough for the march; what is asked for is the deepest step alone."""

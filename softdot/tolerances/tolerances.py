@@ -7,7 +7,7 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
-from geometry.braille import dot_size, dot_standard, from_base
+from geometry.dot_size import dot_size, dot_standard, from_base
 from geometry.fabrication.parameters import cast_components, sheet_components
 from geometry.parameters import Dot, Segment
 from geometry.stack import Layer, layers

@@ -28,8 +28,8 @@ from softdot.tolerances.discretisation import (
 )
 from softdot.tolerances.responses import Response
 from softdot.tolerances.tolerances import Tolerance, material_tolerances
+from solve.solution.full_load import StoppedShortError
 from solve.solution.linear import LinearSolveError
-from solve.solution.sensitivity import StoppedShortError
 
 UNSOLVED = InputError, LinearSolveError, MeshingError, StoppedShortError
 LOST = {

@@ -13,11 +13,15 @@ from scipy.sparse import csr_matrix
 
 from geometry.arrays import Bools, Floats, Ints
 from softdot.verify.loads import FollowerPressure
-from solve.fem.kernels import scatter
-from solve.fem.sparsity import Pattern, Tangent, Term, Trial, Unknowns, build_pattern
+from solve.fem.assembly import scatter
+from solve.fem.numbering import Unknowns
+from solve.fem.pattern import Pattern, build_pattern
+from solve.fem.tangent import Tangent
 from solve.materials.laws import MediumLaw
 from solve.solution.linear import LinearSolver
-from solve.terms.contact import ContactFacets, RigidDot, contact_facets
+from solve.terms.base import Term, Trial
+from solve.terms.contact import ContactFacets, contact_facets
+from solve.terms.rigid_dot import RigidDot
 from solve.terms.solid import solid_region
 
 FREE = np.nan

@@ -10,10 +10,12 @@ from scipy.sparse.linalg import splu
 from geometry.arrays import Floats, Ints
 from geometry.dot import DotShape
 from softdot.verify.lattice import Grid
-from solve.fem.sparsity import Term, Trial, Unknowns
+from solve.fem.numbering import Unknowns
 from solve.materials.laws import MediumLaw
-from solve.terms.contact import ContactFacets, RigidDot, contact_facets
+from solve.terms.base import Term, Trial
+from solve.terms.contact import ContactFacets, contact_facets
 from solve.terms.friction import FrictionalContact
+from solve.terms.rigid_dot import RigidDot
 from solve.terms.solid import solid_region
 
 MAX_ITERATIONS, TOLERANCE = 30, 1e-10  # of the contact forces

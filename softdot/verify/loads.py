@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from geometry.arrays import Floats, Ints
-from solve.fem.sparsity import Block, History, Term, Trial
+from solve.terms.base import Block, History, Term, Trial
 from solve.terms.contact import SHAPES, SLOPES, WEIGHTS
 
 

@@ -1,1 +1,1 @@
-"""Finite-element building blocks: quadrature, kinematics, compiled element kernels, numbering, sparsity."""
+"""Finite-element building blocks: quadrature, kinematics, compiled element kernels, numbering, pattern, tangent."""

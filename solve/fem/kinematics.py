@@ -1,15 +1,14 @@
-"""Reference simplices, their quadrature and shape functions, and compiled kinematics at quadrature points.
+"""Compiled kinematics at quadrature points: F = 1 + du/dX, C = F^t F, J = det F, and the Green-Lagrange strain.
 
-F = 1 + du/dX, C = F^t F, J = det F (Holzapfel, Nonlinear Solid Mechanics, 2000, eqs. 2.39, 2.64, 2.51).
+Holzapfel, Nonlinear Solid Mechanics, 2000, eqs. 2.39, 2.64, 2.51 and 2.69; F is of the undeformed position, and what
+belongs to elements comes as (elements, points, ...).
 """
-
-from itertools import permutations
 
 import numpy as np
 
 from geometry.arrays import Floats
 from solve.compiled import in_threads
-from solve.materials.isochoric import I_OF, J_OF
+from solve.tensors import I_OF, J_OF
 
 
 def deformation_gradient(gradient: Floats, displacement: Floats) -> Floats:
@@ -96,77 +95,3 @@ def _smallest_jacobian(start, stop, f, smallest):  # type: ignore[no-untyped-def
             if not det >= low:  # takes not-a-number too, and keeps it
                 low = det
         smallest[e] = low
-
-
-def _orbit(*barycentric: float) -> Floats:
-    """All distinct permutations of a barycentric point, shape (k, len)."""
-    return np.array(sorted(set(permutations(barycentric))))
-
-
-def tetrahedron(degree: int = 3) -> tuple[Floats, Floats]:
-    """Rule for the tetrahedron: points (q, 3) and weights (q,) that sum to 1/6.
-
-    degree 3: 8 points; degree 5: 14 points. Curved quadratic elements need at least 3.
-    Sources: Witherden and Vincent, Comput. Math. Appl. 69 (2015); Walkington, CMU report (2000).
-    """
-    if degree <= 3:
-        a, b = 0.32816330251638171, 0.10804724989842859
-        orbits = [_orbit(a, a, a, 1 - 3 * a), _orbit(b, b, b, 1 - 3 * b)]
-        weights = [0.13621784253708741, 0.11378215746291261]
-    else:
-        a, b, c = 0.31088591926330061, 0.092735250310891226, 0.045503704125649649
-        orbits = [_orbit(a, a, a, 1 - 3 * a), _orbit(b, b, b, 1 - 3 * b), _orbit(c, c, 0.5 - c, 0.5 - c)]
-        weights = [0.11268792571801585, 0.073493043116361950, 0.042546020777081466]
-    points = np.concatenate(orbits)[:, 1:]
-    weight = np.concatenate([np.full(len(o), w) for o, w in zip(orbits, weights, strict=True)])
-    return np.ascontiguousarray(points), weight / weight.sum() / 6.0
-
-
-def triangle() -> tuple[Floats, Floats]:
-    """Rule of degree 4 for the triangle: points (6, 2) and weights (6,) that sum to 1/2.
-
-    Source: Dunavant, Int. J. Numer. Meth. Eng. 21 (1985).
-    """
-    a, b = 0.44594849091596489, 0.09157621350977074
-    orbits = [_orbit(a, a, 1 - 2 * a), _orbit(b, b, 1 - 2 * b)]
-    weight = np.repeat([0.22338158967801147, 0.10995174365532187], 3)
-    return np.ascontiguousarray(np.concatenate(orbits)[:, 1:]), weight / weight.sum() / 2.0
-
-
-TET_EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
-TRIANGLE_EDGES = ((0, 1), (1, 2), (2, 0))
-
-
-def barycentric(points: Floats) -> tuple[Floats, Floats]:
-    """Barycentric coordinates (q, d+1) of reference points (q, d), and their constant gradients (d+1, d)."""
-    dim = points.shape[1]
-    coordinates = np.column_stack([1.0 - points.sum(axis=1), points])
-    gradients = np.vstack([-np.ones((1, dim)), np.eye(dim)])
-    return coordinates, gradients
-
-
-def linear(points: Floats) -> Floats:
-    """P1 values at reference points (q, d), shape (q, d+1)."""
-    return barycentric(points)[0]
-
-
-def quadratic(points: Floats) -> tuple[Floats, Floats]:
-    """P2 values (q, n) and reference gradients (q, n, d) at points (q, d); n = 6 or 10."""
-    lam, dlam = barycentric(points)
-    edges = TET_EDGES if points.shape[1] == 3 else TRIANGLE_EDGES
-    corner = lam * (2.0 * lam - 1.0)
-    d_corner = (4.0 * lam - 1.0)[:, :, None] * dlam
-    middle = np.stack([4.0 * lam[:, a] * lam[:, b] for a, b in edges], axis=1)
-    d_middle = np.stack([4.0 * (lam[:, a, None] * dlam[b] + lam[:, b, None] * dlam[a]) for a, b in edges], axis=1)
-    return np.concatenate([corner, middle], axis=1), np.concatenate([d_corner, d_middle], axis=1)
-
-
-def physical_gradients(corners: Floats, reference_gradients: Floats, weight: Floats) -> tuple[Floats, Floats]:
-    """Gradients with respect to the undeformed position and integration weights.
-
-    corners : (m, n, 3) nodes of each element; reference_gradients : (q, n, 3); weight : (q,).
-    Returns (m, q, n, 3) and (m, q). The determinant is not checked here: the mesher refuses inverted elements.
-    """
-    jacobian = np.einsum("qna,mni->mqia", reference_gradients, corners, optimize=True)
-    gradient = np.matmul(reference_gradients[None], np.linalg.inv(jacobian))
-    return np.ascontiguousarray(gradient), np.linalg.det(jacobian) * weight

@@ -8,7 +8,7 @@ column 10 k + b, so that rows are long and contiguous; K is symmetric, so only t
 """
 
 from solve.compiled import MATH, piece
-from solve.materials.isochoric import I_OF, J_OF, NUMBER_OF
+from solve.tensors import I_OF, J_OF, NUMBER_OF
 
 COLUMNS = 32  # 30 filled up to whole registers of eight
 

@@ -1,11 +1,15 @@
 """Compile what every press of rubber and film calls, on one element of one point, so that two processes share it."""
 
+from pathlib import Path
+
 import numpy as np
 
-from solve.fem.kernels import film_solid, mixed_solid, scatter
+from solve.fem.assembly import scatter
+from solve.fem.film_solid import film_solid
 from solve.fem.kinematics import cauchy_green, deformation_gradient, green_lagrange, smallest_jacobian
-from solve.fem.sparsity import build_pattern
-from solve.materials.isochoric import isochoric_stress
+from solve.fem.mixed_solid import mixed_solid
+from solve.fem.pattern import build_pattern
+from solve.materials.invariants import isochoric_stress
 
 ONE = np.ones((1, 1))
 GRADIENT, STILL, F = np.zeros((1, 1, 10, 3)), np.zeros((1, 10, 3)), np.eye(3)[None, None]
@@ -18,7 +22,7 @@ def compile_dear() -> None:
     ke, re = np.zeros((1, 31, 31)), np.zeros((1, 31))
     film_solid(GRADIENT, ONE, F, STRESS, TANGENT, ONE, np.zeros(6), 1.0, 1.0, ke, re)
     ke, re = np.zeros((1, 34, 34)), np.zeros((1, 34))
-    # the last one: solve.fem.kernels.compiled asks for it
+    # the last one: solve.fem.warm_up.compiled asks for it
     mixed_solid(GRADIENT, ONE, PRESSURE, F, PRESSURE, 1.0, STRESS, TANGENT, ke, re)
 
 
@@ -31,3 +35,8 @@ def compile_cheap() -> None:
     pattern = build_pattern([DOFS], 34)
     data, residual = np.zeros(len(pattern.indices)), np.zeros(34)
     scatter(np.zeros((1, 34, 34)), np.zeros((1, 34)), DOFS, pattern.slots[0], data, residual)
+
+
+def compiled() -> bool:
+    """Whether the kernels are kept on this machine, as numba keeps them; else the first press compiles them."""
+    return any(Path(mixed_solid.kernel.stats.cache_path or "").glob("*.mixed_solid-*.nbc"))

@@ -11,8 +11,9 @@ from typing import Protocol
 import numpy as np
 
 from geometry.arrays import Floats
-from solve.materials.isochoric import Power, isochoric_energy, isochoric_stress, to_voigt
+from solve.materials.invariants import Power, isochoric_energy, isochoric_stress
 from solve.materials.principal_stretches import log_stretches, principal_stress
+from solve.tensors import to_voigt
 
 
 class MediumLaw(Protocol):

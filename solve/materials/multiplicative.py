@@ -8,7 +8,7 @@ Struct. 35, 1998). With s from before the step and C^ linear over it the equatio
 back to det C_i = 1, is an explicit update of second order (that of Shutov, Landgraf and Ihlemann, Comput. Methods Appl.
 Mech. Eng. 265, 2013, with exponentials for the factors of backward Euler; b = s dt / tau_i, g = (1 - exp(-b)) / b):
     A = exp(-b) C_i + (g - exp(-b)) / s C^_old + (1 - g) / s C^,      C_i <- A / det(A)^(1/3)
-At small strain, s = 1, it is that of solve.materials.inelastic. With G = C_i^-1 after the step
+At small strain, s = 1, it is that of solve.materials.prony. With G = C_i^-1 after the step
     S_i = mu_i J^(-2/3) (G - (C : G) / 3 C^-1)
 which is the gradient of a function of C, as G is that of 3 det(A)^(1/3) with respect to A: the tangent is symmetric.
 Real rubber lies between this and a Prony series of the second Piola-Kirchhoff stress, so that a share f of each branch
@@ -20,8 +20,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from solve.compiled import in_threads, piece
-from solve.materials.inelastic import Memory, Prony, StressResponse, mean_decay
-from solve.materials.isochoric import I_OF, J_OF, NUMBER_OF, inverse
+from solve.decay import mean_decay
+from solve.materials.inelastic import Memory, StressResponse
+from solve.materials.prony import Prony
+from solve.tensors import I_OF, J_OF, NUMBER_OF, inverse
 
 
 @dataclass(frozen=True)

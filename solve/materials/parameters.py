@@ -13,7 +13,7 @@ from geometry.arrays import Floats
 from geometry.base import InputError, nearest
 from geometry.parameters import Finite, Positive, Table, require_one_of_each
 from solve.materials import laws
-from solve.materials.principal_stretches import HyperfoamLaw
+from solve.materials.hyperfoam import HyperfoamLaw
 
 VACUUM_PERMITTIVITY = 8.8541878128e-12  # F/m, CODATA 2018
 

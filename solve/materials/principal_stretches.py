@@ -11,22 +11,13 @@ Solid Mechanics, 2000, eq. 6.180). Both laws have W_a = g_a - t with g_a = sum k
                        W_ab = d_ab h_a + sum k alpha beta J^(-alpha beta)
 The divided difference of c^p is c_a^(p - 1) expm1(p z) / expm1(z), z = ln(c_b / c_a), which loses no digits at any
 gap: equal stretches need no tolerance, only the limit p at z = 0 itself.
-
-Compressible foam (Ogden and Hill): the stress follows from the stretches alone, without a pressure.
-
-    W = sum 2 mu / alpha^2 [l1^alpha + l2^alpha + l3^alpha - 3 + (J^(-alpha beta) - 1) / beta]
-with beta = nu / (1 - 2 nu) (Storakers, J. Mech. Phys. Solids 34, 1986, p. 125). nu = 0 is the limit -alpha ln J of
-the last term.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
-from scipy.special import exprel
 
 from geometry.arrays import Floats
 from solve.compiled import in_threads, piece
-from solve.materials.isochoric import I_OF, J_OF
+from solve.tensors import I_OF, J_OF
 
 PAIR_A, PAIR_B = np.array([0, 1, 0]), np.array([1, 2, 2])
 MAX_SWEEPS = 12  # Jacobi's method converges at least quadratically: four or five do
@@ -163,47 +154,3 @@ def principal_stress(
     stress, tangent = np.empty((len(cauchy_green), 6)), np.empty((len(cauchy_green), 6, 6))
     _stress_and_tangent(cauchy_green, k, alpha, alpha if beta is None else beta, beta is None, stress, tangent)
     return stress, tangent
-
-
-@dataclass(frozen=True)
-class HyperfoamLaw:
-    """One value a term: mu in the unit of stress, alpha not zero, beta above -1/3 (nu above -1)."""
-
-    mu: tuple[float, ...]
-    alpha: tuple[float, ...]
-    beta: tuple[float, ...]
-
-    @property
-    def shear_modulus(self) -> float:
-        """Small-strain shear modulus, the sum of mu."""
-        return sum(self.mu)
-
-    @property
-    def bulk_modulus(self) -> float:
-        """Small-strain bulk modulus, the sum of 2 mu (beta + 1/3)."""
-        return sum(2.0 * m * (b + 1.0 / 3.0) for m, b in zip(self.mu, self.beta, strict=True))
-
-    @property
-    def compressible(self) -> bool:
-        """True: the law gives the whole stress, there is no pressure unknown."""
-        return True
-
-    def scaled(self, factor: float) -> "HyperfoamLaw":
-        """The law with its moduli times a factor, for another unit of stress."""
-        return HyperfoamLaw(tuple(factor * m for m in self.mu), self.alpha, self.beta)
-
-    def stress(self, cauchy_green: Floats) -> tuple[Floats, Floats]:
-        """The whole S (n, 6) and tangent (n, 6, 6) at C (n, 3, 3)."""
-        alpha = np.array(self.alpha)
-        return principal_stress(cauchy_green, 2.0 * np.array(self.mu) / alpha, alpha, np.array(self.beta))
-
-    def energy(self, cauchy_green: Floats) -> Floats:
-        """The whole W (n,) at C (n, 3, 3)."""
-        log = log_stretches(cauchy_green)
-        dilation = log.sum(axis=1)
-        energy = np.zeros(len(log))
-        for m, a, b in zip(self.mu, self.alpha, self.beta, strict=True):
-            # (exp(z) - 1) / beta with z = -alpha beta ln J, for beta = 0 too
-            volumetric = -a * dilation * exprel(-a * b * dilation)
-            energy += 2.0 * m / a**2 * (np.expm1(a * log).sum(axis=1) + volumetric)
-        return energy

@@ -10,7 +10,7 @@ import numba as nb
 import numpy as np
 
 from geometry.arrays import Floats
-from solve.materials.inelastic import mean_decay
+from solve.decay import mean_decay
 from solve.model import Physics, Pyroelectric, Readout
 from solve.readout.filters import Filter
 from solve.readout.stages import Saturation, Stage

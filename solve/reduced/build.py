@@ -4,12 +4,10 @@ One elastic press in FINER times as many steps; for each layer that may relax, p
 full depth, as it begins and as it ends, with half of that, and with the memory of a hold midway; for each pair of
 layers a press with the memories of both: 1 + 4 k + k (k - 1) / 2 presses for k layers.
 Prony series, rig and circuit come in only when the model is asked, so that they can be changed freely.
-
-The reduced model against presses of the 3D model that had no part in its making.
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -18,95 +16,21 @@ from geometry.arrays import Floats
 from geometry.dot import DotShape
 from geometry.parameters import Dot, Segment
 from mesh.types import TetMesh
-from solve.materials.inelastic import Prony
 from solve.materials.parameters import Material, PiezoelectricFilm
-from solve.model import Model, Physics, Press, Waveform
-from solve.press import discretise, press_segment
-from solve.reduced import model as model_files
+from solve.model import Model, Physics, Press
+from solve.press import discretise
+from solve.reduced.accuracy import measured
+from solve.reduced.cache import key, remembered
 from solve.reduced.fit import FINER, fit
-from solve.reduced.model import Accuracy, ReducedModel, structure
-from solve.reduced.sampling import Frozen, Sample, SampledPress, Sampler
-from solve.result import Trace
-from solve.solution.near import combined
-from solve.solution.newton import NoEquilibriumError
-
-BETWEEN = 20  # samples of the reduced model to each time step of the 3D model
-
-
-def measured(
-    model: ReducedModel,
-    segment: Segment,
-    materials: Mapping[str, Material],
-    dot: DotShape,
-    tet_mesh: TetMesh,
-    physics: Physics,
-) -> Accuracy:
-    """Largest errors over the presses kept out. NoEquilibriumError where one of these has no answer."""
-    found = []
-    for waveform, depth, share in _held_out(bool(model.relaxing)):
-        viscosity = {layer: Prony((share * most,), (waveform.rise_s,)) for layer, most in model.relaxing.items()}
-        tested = Physics(
-            bonds=physics.bonds, delaminations=physics.delaminations, prestretch=physics.prestretch,
-            viscosity=viscosity,
-        )  # fmt: skip
-        press = Press(indentation_mm=depth * model.depth_mm, load_steps=8, waveform=waveform)
-        result = press_segment(Model(segment, materials, Dot(), press, None, tested), tet_mesh, dot=dot)
-        if result.failure is not None:
-            raise NoEquilibriumError(f"a press to check the reduced model: {result.failure}", np.zeros(0), None)
-        found.append(compare(model, result.trace, tested))
-    return Accuracy(*(max(getattr(a, f.name) for a in found) for f in fields(Accuracy)))
-
-
-def _held_out(relaxes: bool) -> list[tuple[Waveform, float, float]]:
-    """Waveform, share of the depth, share of the largest relaxation; all relaxation times are that of the rise."""
-    if not relaxes:
-        return [(Waveform(shape="ramp", rise_s=0.1), 0.97, 0.0)]
-    hold = Waveform(shape="trapezoid", rise_s=0.1, hold_s=0.3, fall_s=0.1)
-    return [(hold, 1.0, 1.0), (Waveform(shape="half-sine", rise_s=0.1), 0.8, 0.6)]
-
-
-def compare(model: ReducedModel, trace: Trace, physics: Physics) -> Accuracy:
-    """Errors at the times of a 3D press, whose own depth is given to the reduced model."""
-    time = refined(trace.time_s)
-    depth = 1e3 * np.interp(time, trace.time_s, trace.indentation_m)
-    answer = model.respond(time, depth, physics)
-    force, charge = answer.force_N[::BETWEEN], answer.electrode_charge_C[::BETWEEN].sum(axis=1)
-    wanted = trace.film_charge_C.sum(axis=1)
-    rate, wanted_rate = np.diff(charge) / np.diff(trace.time_s), np.diff(wanted) / np.diff(trace.time_s)
-    return Accuracy(
-        relative_error(force, trace.reaction_force_N),
-        relative_error(charge, wanted),
-        relative_error(rate, wanted_rate),
-    )
-
-
-def refined(time: Floats) -> Floats:
-    """Times with BETWEEN even parts in every interval, the given ones at every BETWEEN-th place."""
-    places = np.arange((len(time) - 1) * BETWEEN + 1) / BETWEEN
-    return np.asarray(np.interp(places, np.arange(len(time)), time))
-
-
-def relative_error(found: Floats, wanted: Floats) -> float:
-    """Largest difference over the largest wanted value."""
-    return float(np.abs(found - wanted).max() / max(np.abs(wanted).max(), 1e-300))
-
+from solve.reduced.frozen_memory import Frozen
+from solve.reduced.model import ReducedModel, structure
+from solve.reduced.response import Accuracy
+from solve.reduced.sampling import Sample, SampledPress, Sampler
+from solve.reduced.task import ReductionTask
+from solve.solution.similar_press import combined
 
 DEPTH_NODES = 16
 UNKNOWN = Accuracy(np.inf, np.inf, np.inf)
-
-
-@dataclass(frozen=True)
-class ReductionTask:
-    """What is reduced: a segment on its mesh, the dot, the deepest press, what may relax, and the other physics."""
-
-    segment: Segment
-    materials: Mapping[str, Material]
-    dot: DotShape
-    tet_mesh: TetMesh
-    depth_mm: float
-    relaxing: Mapping[str, float]
-    physics: Physics
-    depth_nodes: int
 
 
 def build_reduced(
@@ -141,12 +65,12 @@ def build_reduced(
 def reduced(asked: ReductionTask, check: bool = True) -> ReducedModel:
     """As build_reduced, kept on disk."""
     _refuse(asked)
-    return model_files.remembered(model_files.key(asked, check), lambda: _build(asked, check))
+    return remembered(key(asked, check), lambda: _build(asked, check))
 
 
 def keep_reduced(asked: ReductionTask, check: bool, made: ReducedModel) -> None:
     """Keep on disk what was made elsewhere."""
-    model_files.remembered(model_files.key(asked, check), lambda: made)
+    remembered(key(asked, check), lambda: made)
 
 
 def _refuse(case: ReductionTask) -> None:
@@ -186,12 +110,12 @@ def _build(case: ReductionTask, check: bool) -> ReducedModel:
 
 
 def _sampler(case: ReductionTask, layers: tuple[str, ...]) -> Sampler:
-    kept = Physics(
+    physics = Physics(
         bonds=case.physics.bonds, delaminations=case.physics.delaminations, prestretch=case.physics.prestretch,
         viscosity={layer: Frozen(layer=layer) for layer in layers},
     )  # fmt: skip
     press = Press(indentation_mm=case.depth_mm)
-    model = Model(case.segment, case.materials, Dot(), press, None, kept)
+    model = Model(case.segment, case.materials, Dot(), press, None, physics)
     return Sampler(discretise(model, case.tet_mesh, case.dot), layers, case.depth_nodes)
 
 

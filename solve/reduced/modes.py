@@ -6,18 +6,13 @@ fields are compared in the compliance of the deepest elastic state,
 and what is in equilibrium with itself, f = 0, counts as nothing. Loads enter an orthonormal basis one by one (Gram
 and Schmidt); the proper orthogonal decomposition of their coordinates then turns it so that the first modes carry
 the most (Sirovich, Quart. Appl. Math. 45, 1987).
-
-What a field of remembered stress does to the pressed segment: its load, and the answer to it.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 import numpy as np
 
 from geometry.arrays import Floats
-from solve.fem.sparsity import Term
-from solve.solution.linear import LinearSolver
-from solve.system import State, System
 
 NEW_DIRECTION = 1e-3  # of the largest load: what is left of a smaller one is dropped
 WORTH_A_MODE = 0.02  # of the first mode's size
@@ -55,42 +50,3 @@ def leading_modes(snapshots: Floats, count: int) -> tuple[Floats, float]:
     missing = snapshots - snapshots @ modes[:kept].T @ modes[:kept]
     largest = max(float(np.linalg.norm(snapshots, axis=1).max()), 1e-300)
     return modes[:kept].T, float(np.linalg.norm(missing, axis=1).max()) / largest
-
-
-ACCURATE = 1e-8
-
-
-class StressMetric:
-    """Measures fields at one state, by the compliance of the segment in it (see solve.reduced.modes)."""
-
-    def __init__(self, system: System, state: State, terms: Mapping[str, Term]) -> None:
-        self.system, self.terms = system, terms
-        self.trial = system.trial(state.x, state.load, state.time, state)
-        self.linear = LinearSolver(system.factorisation_shift)
-        self.tangent = system.evaluate(self.trial, state.histories).tangent
-        self.bases = {name: Basis(self._answer) for name in terms}
-        self._factorised = False
-
-    def close(self) -> None:
-        """Give the solver's memory back."""
-        self.linear.close()
-
-    def coordinates(self, layer: str, field: Floats) -> Floats:
-        """Coordinates (b,) of a field in the layer's basis."""
-        return self.bases[layer].coordinates(self._load(self.terms[layer], field))
-
-    def _load(self, term: Term, field: Floats) -> Floats:
-        """f (count,) = residual without the memory less residual with it."""
-        load = np.zeros(self.system.count + 1)  # the last entry takes what belongs to prescribed unknowns
-        for memory, sign in ((np.zeros_like(field), 1.0), (field, -1.0)):
-            for block in term.elements(self.trial, ((field, memory),)):
-                dofs = term.groups[block.group][block.part]
-                np.add.at(load, dofs, sign * block.residuals)
-        return load[:-1]
-
-    def _answer(self, load: Floats) -> Floats:
-        if not load.any():
-            return load
-        answer = self.linear.solve(self.tangent, load, ACCURATE, similar=self._factorised)
-        self._factorised = True
-        return answer

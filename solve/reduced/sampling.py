@@ -1,11 +1,4 @@
-"""Presses of the 3D model with memories that do not fade: the samples of which the reduced model is made.
-
-A memory that does not fade: the state of a viscoelastic layer at one moment, held while the dot moves.
-
-The Prony series of solve.materials.inelastic, S = (1 - sum g_i) S0 + sum Q_i, is the elastic stress less an overstress,
-    S = S0 - M,      M = sum (g_i S0 - Q_i),
-and M is all that a layer remembers. Pressing with M held fixed shows what the segment does at that memory.
-"""
+"""Presses of the 3D model with memories that do not fade: the samples of which the reduced model is made."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -14,41 +7,17 @@ import numpy as np
 from scipy.optimize import brentq
 
 from geometry.arrays import Floats
-from solve.fem.sparsity import History, Term
-from solve.materials.inelastic import Memory, Prony, StressResponse
 from solve.press import Setup
-from solve.reduced.modes import StressMetric
+from solve.reduced.frozen_memory import Frozen
+from solve.reduced.stress_metric import StressMetric
+from solve.solution.errors import NoEquilibriumError
 from solve.solution.linear import LinearSolver
 from solve.solution.march import rest_state
-from solve.solution.near import Course, reach
-from solve.solution.newton import NoEquilibriumError, equilibrate
+from solve.solution.newton import equilibrate
 from solve.solution.schedule import Target
+from solve.solution.similar_press import Course, reach
 from solve.system import Load, State
-
-
-@dataclass(frozen=True)
-class Frozen(Prony):
-    """S = S0 - M; the memory carries the elastic stress S0 of the last state and M, (n, 6) each (a bond: (n, 4)).
-
-    layer : whose it is.
-    """
-
-    relative_moduli: tuple[float, ...] = ()
-    relaxation_times: tuple[float, ...] = ()
-    layer: str = ""
-
-    def start(self, points: int, components: int = 6) -> Memory:
-        """Nothing remembered."""
-        return np.zeros((points, components)), np.zeros((points, components))
-
-    def update(self, elastic: StressResponse, memory: Memory, time_step: float) -> tuple[StressResponse, Memory]:
-        """Response with the memory M, which stays."""
-        return StressResponse(elastic.stress - memory[1], elastic.tangent), (elastic.stress, memory[1])
-
-    def time_error(self, memory: Memory, new: Memory, time_step: float, after_kink: bool) -> float:
-        """No time passes."""
-        return 0.0
-
+from solve.terms.base import History, Term
 
 CROWDING = 1.5  # exponent of the depth nodes: closer together near touch, where the force bends most
 

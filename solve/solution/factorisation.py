@@ -15,7 +15,7 @@ import numpy as np
 from scipy.sparse.linalg import splu
 
 from geometry.arrays import Floats
-from solve.fem.sparsity import Tangent
+from solve.fem.tangent import Tangent
 
 
 class Factorisation(Protocol):

@@ -23,7 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from geometry.arrays import Floats
-from solve.fem.sparsity import Tangent
+from solve.fem.tangent import Tangent
 from solve.solution.factorisation import Factorisation, Pardiso, PivotingPardiso, SinglePardiso, SuperLU
 from solve.solution.krylov import flexible_gmres
 from solve.solution.preconditioner import Preconditioner

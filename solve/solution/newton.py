@@ -1,19 +1,16 @@
-"""Semismooth Newton iteration at fixed load.
-
-Where a press stopped and what a user can do about it.
-"""
+"""Semismooth Newton iteration at fixed load."""
 
 import logging
 from dataclasses import replace
 
 import numpy as np
 
-from geometry.arrays import Bools, Floats, Ints
-from solve.fem.kinematics import deformation_gradient, smallest_jacobian
+from geometry.arrays import Bools, Floats
+from solve.solution.errors import LostContactError, NoEquilibriumError
+from solve.solution.held_rim import OVERLAP, rim_met
 from solve.solution.linear import LinearSolveError, LinearSolver
 from solve.system import Evaluation, Load, State, System
-from solve.terms.film import FilmRegion
-from solve.terms.solid import InvertedElementError, SolidRegion
+from solve.terms.solid import InvertedElementError
 
 LOG = logging.getLogger(__name__)
 TOLERANCE = 1e-10  # of the load: differences of presses, such as a diagnosis takes, are to tell 1e-6 of a parameter
@@ -31,18 +28,6 @@ LITTLE = 0.1  # what a linear solution gains at least
 FORCING = 0.03  # residual of a linear solution over the square of that of Newton's iteration, which falls with it
 LAST = 0.3  # of TOLERANCE: what the last linear solution is to leave
 LOOSEST = 1e-2  # residual of a linear solution, far from the end, relative to the residual and to the load
-
-
-class NoEquilibriumError(RuntimeError):
-    """Newton did not converge; says why, and at which node the forces are least in balance."""
-
-    def __init__(self, reason: str, x: Floats, worst: int | None) -> None:
-        super().__init__(reason)
-        self.x, self.worst = x, worst
-
-
-class LostContactError(NoEquilibriumError):
-    """A force pushes the dot, and nothing pushes back."""
 
 
 def equilibrate(
@@ -177,108 +162,3 @@ def _advance(
             failure = error
             step = 0.5 * step
     raise failure
-
-
-FINER = (
-    "try more load steps (press.load_steps), a finer mesh (mesh.contact_element_size_mm), or a smaller depth or force"
-)
-HELD = (
-    "something can move freely, or the dot presses on a part that the case holds: change "
-    "segment.held_layers, stiffen the bonds, or move the dot"
-)
-RIM = (
-    "move the dot (dot.offset_mm, dot.tilt_deg), enlarge the segment, hold fewer layers (segment.held_layers) or press "
-    "less deep"
-)
-NEAR_RIM = 0.01  # of the segment's length: a force stops a dot just short of the rim
-OVERLAP = -1e-6  # of the segment's length: contact does not act on nodes that are held, so none may be overlapped
-CRUSHED = 0.3  # det F: below it the element is to blame, whatever ended the iteration
-TIE = 1e-6  # of det F: round-off must not choose between two elements
-OVER = "keep the dot over the segment (dot.offset_mm, press.path_xy_mm), or prescribe the depth (press.indentation_mm)"
-
-
-def explained(system: System, failure: NoEquilibriumError, last: State, load: Load) -> str:
-    """The reason, the part and the place (undeformed, mm), and advice.
-
-    last : the last converged state; load : the one for which there is no equilibrium.
-
-    Of an inversion the part and the place are those of the element that was nearest to it there: which one a diverging
-    iteration inverts first is round-off.
-    """
-    rim = rim_met(system, last, load)
-    if rim is not None:
-        part = _part(system, rim)
-        at = _at(system, system.points[[rim]])
-        return f"the dot meets the rim of {part} that the case holds{at}, and neither can deform; {RIM}"
-    cause, (volume, crushed) = failure.__cause__, _nearest_to_inversion(system, last)
-    if crushed is not None and volume < CRUSHED:
-        to = f"{100.0 * volume:.0f} % of its volume"
-        said = f"an element of {crushed.region} is crushed to {to} and turned inside out"
-        return f"{said}{_at(system, system.points[crushed.nodes])}; {_advice(system, failure)}"
-    if isinstance(cause, InvertedElementError):
-        inverted = crushed or cause
-        return f"{inverted}{_at(system, system.points[inverted.nodes])}; {_advice(system, failure)}"
-    return f"{failure}{_place(system, failure)}; {_advice(system, failure)}"
-
-
-def rim_met(system: System, last: State, load: Load, gap_left: float | None = None) -> int | None:
-    """The node of the held rim that the dot would overlap most under a load after a state; None where it is clear.
-
-    gap_left : from which gap on it counts as met; none: 0, and a little more where a force stops short of it.
-    """
-    if gap_left is None:
-        gap_left = NEAR_RIM if system.force_driven else 0.0
-    nodes = np.unique(system.contact.facets)
-    held = nodes[(system.unknowns.displacement[nodes] < 0).all(axis=1)]
-    if len(held) == 0:
-        return None
-    gap = system.contact.dot.distance(system.points[held], system.move(last.x, load))[0]
-    deepest = int(np.argmin(gap))
-    return int(held[deepest]) if gap[deepest] < gap_left else None
-
-
-def smallest_volumes(region: SolidRegion | FilmRegion, displacement: Floats) -> Floats:
-    """Smallest det F of each element (m,) of a region at displacements (n, 3)."""
-    return smallest_jacobian(deformation_gradient(region.gradient, displacement[region.tets]))
-
-
-def _nearest_to_inversion(system: System, state: State) -> tuple[float, InvertedElementError | None]:
-    """The smallest det F and its element, of equal ones the first; None in a state that squeezes none."""
-    displacement = system.displacement(state.x)
-    least: list[tuple[float, str, Ints]] = []
-    for name, region in ({solid.name: solid for solid in system.solids} | {"film": system.film}).items():
-        smallest = smallest_volumes(region, displacement)
-        first = int(np.argmax(smallest <= (1.0 + TIE) * smallest.min()))
-        least.append((float(smallest[first]), name, region.tets[first]))
-    bound = (1.0 + TIE) * min(volume for volume, _, _ in least)
-    volume, name, nodes = next(one for one in least if one[0] <= bound)
-    return volume, InvertedElementError(name, nodes) if volume < 1.0 - TIE else None
-
-
-def _advice(system: System, failure: NoEquilibriumError) -> str:
-    if isinstance(failure, LostContactError):
-        return OVER
-    advice = HELD if isinstance(failure.__cause__, LinearSolveError) else FINER
-    return f"{advice}; under a force, {OVER}" if system.force_driven else advice
-
-
-def _place(system: System, failure: NoEquilibriumError) -> str:
-    """In which part and where; empty where nothing is known."""
-    if isinstance(failure, LostContactError):
-        contact = system.contact
-        return f" over {_part(system, int(contact.facets[0, 0]))}{_at(system, system.points[contact.facets.ravel()])}"
-    if failure.worst is None:
-        return ""
-    return f", worst in {_part(system, failure.worst)}{_at(system, system.points[[failure.worst]])}"
-
-
-def _part(system: System, node: int) -> str:
-    """A part that the node belongs to."""
-    regions = {solid.name: solid.tets for solid in system.solids} | {"film": system.film.tets}
-    return next(name for name, tets in regions.items() if (tets == node).any())
-
-
-def _at(system: System, points: Floats) -> str:
-    """The mean of points (n, 3)."""
-    x, y, z = 1e3 * system.units.length * np.mean(points, axis=0)
-    return f" at x = {x:.2f}, y = {y:.2f}, z = {z:.2f} mm"

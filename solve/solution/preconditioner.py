@@ -20,7 +20,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from geometry.arrays import Bools, Floats, Ints
-from solve.fem.sparsity import Tangent
+from solve.fem.tangent import Tangent
 from solve.solution.factorisation import Factorisation
 
 NOTHING = 1e-12  # relative singular value of a constraint that holds nothing

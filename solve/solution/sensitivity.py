@@ -7,36 +7,24 @@ p + e and p - e whose states stay within first order of their equilibria; one fa
 The difference quotient of the residual makes this the semi-analytical method (Tsay and Arora, Comput. Methods Appl.
 Mech. Eng. 81, 1990, for path dependence; van Keulen, Haftka and Kim, ibid. 194, 2005): no law states derivatives of
 its own.
-
-A press at its full load where the path there does not matter: its answer, derivatives of it, and similar presses.
-
-Without memory an equilibrium depends on the load alone. All derivatives then follow from the tangent at full load,
-one linear solution each (see solve.solution.sensitivity), and a press that differs a little is a few Newton steps away.
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
-from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 
 from geometry.arrays import Floats
-from geometry.dot import resolve_dot
-from mesh.interfaces import morphed
+from geometry.dot_at_rest import resolve_dot
+from mesh.morphing import morphed
 from mesh.types import TetMesh
-from solve.fem.sparsity import Tangent
+from solve.fem.tangent import Tangent
 from solve.model import Model, Press
 from solve.press import Setup, discretise, set_up
 from solve.readout.course import PressCourse, course, read_together
-from solve.recorder import Recorder
 from solve.result import PressResult, Trace
 from solve.solution.linear import LinearSolver
 from solve.solution.march import march, rest_state
-from solve.solution.near import Equilibria, reach
-from solve.solution.newton import NoEquilibriumError
-from solve.solution.schedule import Target
-from solve.symmetry import planes_of
 from solve.system import Load, State
 
 
@@ -203,106 +191,3 @@ def _difference(low: Slopes, high: Slopes, span: float) -> Slopes:
         amplified = (high.readout_voltage_V - low.readout_voltage_V) / span
     open_circuit = (high.open_circuit_voltage_V - low.open_circuit_voltage_V) / span
     return Slopes(Trace(**{**trace, "time_s": low.trace.time_s}), open_circuit, amplified)
-
-
-class StoppedShortError(RuntimeError):
-    """A press did not reach its full load."""
-
-
-class FullResponse(NamedTuple):
-    """Force in N and open-circuit voltage in V of all electrodes in parallel, or their derivatives."""
-
-    force: float
-    voltage: float
-
-
-class FullLoad:
-    """A press under its full load, before any slide; answer : what it gives, electrode_voltages_V : (e,) of each alone.
-
-    ValueError for a model whose path matters, InputError as press_segment, StoppedShortError.
-    """
-
-    def __init__(self, model: Model, tet_mesh: TetMesh) -> None:
-        if model.follows_time:
-            raise ValueError("the path of this press matters")
-        self._tet_mesh = tet_mesh
-        self._base = discretise(model, tet_mesh, resolve_dot(model.dot, model.segment))
-        self._linear = LinearSolver(self._base.system.factorisation_shift)
-        self._rest = _rest(self._base, self._linear)
-        past = [self._rest]
-        for before, target in pairwise(_targets(self._base)):
-            _refuse(march(self._base.system, self._linear, past, target, before.kink, self._base.recorder.record))
-        self._state = past[-1]
-        self.answer = _answer(self._base)
-        charge = self._base.recorder.trace(model.press).film_charge_C[-1]
-        self.electrode_voltages_V: Floats = charge / self._base.recorder.capacitance_F
-
-    def derivatives(self, variations: Mapping[str, Variation]) -> dict[str, FullResponse]:
-        """Of the answer by each parameter. ValueError for one that changes the mesh or the number of unknowns."""
-        base, system, found = self._base, self._base.system, {}
-        trial = system.trial(self._state.x, self._state.load, self._state.time, self._rest)
-        tangent = system.evaluate(trial, self._rest.histories).tangent
-        for number, (name, variation) in enumerate(variations.items()):
-            pair = twins_of(name, variation, base)
-            for twin in pair:
-                twin.start(self._rest)
-            tow(pair, self._linear, tangent, self._state, similar=number > 0)
-            below, above = (_answer(twin.setup) for twin in pair)
-            found[name] = FullResponse(*((high - low) / variation.span for low, high in zip(below, above, strict=True)))
-        return found
-
-    def beside(self, model: Model) -> FullResponse:
-        """What a similar model gives on the same mesh, moved to its sizes; from rest where that is too far.
-
-        ValueError, StoppedShortError.
-        """
-        if model.follows_time:
-            raise ValueError("the path of this press matters")
-        dot, base = resolve_dot(model.dot, model.segment), self._base
-        if set(base.tet_mesh.planes) <= set(planes_of(model, dot)):
-            moved = morphed(base.tet_mesh, base.model.segment, model.segment)
-            setup = set_up(model, dot, moved, base.opened, base.system.units)
-            guess = self._state.x if setup.system.count == base.system.count else None
-        else:
-            setup = discretise(model, morphed(self._tet_mesh, base.model.segment, model.segment), dot)
-            found = Equilibria.of(base.system, base.tet_mesh, [(1.0, self._state.x)])
-            course = found.unfolded(setup.unfolded).course(setup.system, setup.tet_mesh)
-            guess = None if course is None else course.unknowns[0]
-        linear = LinearSolver(setup.system.factorisation_shift)
-        past, last = [_rest(setup, linear)], _targets(setup)[-1]
-        rest = past[0]
-        _refuse(reach(setup.system, linear, past, last, True, guess))
-        linear.close()
-        setup.recorder.record(past[-1], rest)
-        return _answer(setup)
-
-    def close(self) -> None:
-        """Give the memory of the factorisation back."""
-        self._linear.close()
-
-
-def _targets(setup: Setup) -> list[Target]:
-    """From rest to the full load."""
-    return setup.targets(follows_time=False)[: setup.model.press.load_steps + 1]
-
-
-def _rest(setup: Setup, linear: LinearSolver) -> State:
-    try:
-        rest = rest_state(setup.system, linear, _targets(setup)[0])
-    except NoEquilibriumError as error:
-        raise StoppedShortError(f"the prestretched film at rest has no equilibrium: {error}") from error
-    setup.recorder.start(rest)
-    return rest
-
-
-def _refuse(failure: str | None) -> None:
-    if failure is not None:
-        raise StoppedShortError(failure)
-
-
-def _answer(setup: Setup) -> FullResponse:
-    """Of the last recorded state."""
-    recorder: Recorder = setup.recorder
-    trace = recorder.trace(setup.model.press)
-    charge = float(trace.film_charge_C[-1].sum())
-    return FullResponse(float(trace.reaction_force_N[-1]), charge / float(recorder.capacitance_F.sum()))

@@ -1,57 +1,25 @@
-"""The mesh of a diagnosis: the user's own, or as much coarser as hundreds of presses ask for.
-
-Nodes crowded towards held sides, where the stress of the film is singular and much of its charge arises.
-"""
+"""The mesh of a diagnosis: the user's own, or as much coarser as hundreds of presses ask for."""
 
 from dataclasses import replace
 from typing import TypeAlias
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.dot import DotShape, resolve_dot
-from geometry.parameters import Segment
-from mesh.build import MeshOptions, build
-from mesh.interfaces import morphed
+from geometry.dot import DotShape
+from geometry.dot_at_rest import resolve_dot
+from mesh.build import build
+from mesh.crowding import crowded
+from mesh.morphing import morphed
+from mesh.options import MeshOptions
 from mesh.outline import outline
 from mesh.symmetry import unfolded
-from mesh.types import TET_EDGES, MeshingError, TetMesh
+from mesh.types import MeshingError, TetMesh
 from solve.model import Model
 from solve.symmetry import meshed_planes
 
 Mesh: TypeAlias = TetMesh
 MeshSettings: TypeAlias = MeshOptions
 """What a diagnosis holds and hands on without looking into it."""
-FROM, LEFT = 0.6, 0.05
-"""Share of half the footprint up to which nodes stay; least share that must be left beyond the foot of an effector."""
-POWER = 3.0
-"""Distances from the side become this power of themselves: evenly spaced nodes resolve a singularity again."""
-
-
-def crowded(tet_mesh: TetMesh, segment: Segment) -> TetMesh:
-    """The mesh of an extruded solid with its nodes moved towards x and y sides, of a slice towards x sides.
-
-    It stays as it was where no side is held. A block, cylinder or dome keeps its foot, and nothing moves where it
-    leaves no room.
-    """
-    if segment.boundary == "free":
-        return tet_mesh
-    stack, shift = outline(segment), np.zeros_like(tet_mesh.points_mm)
-    ends = (stack.half_x, stack.effector_half_x), (stack.half_y, stack.effector_half_y)
-    for axis, (side, foot) in enumerate(ends[:1] if segment.section == "plane-strain" else ends):
-        first = FROM if stack.shape in ("none", "layer") else max(FROM, foot / side)
-        place = tet_mesh.points_mm[:, axis]
-        if first < 1.0 - LEFT:
-            shift[:, axis] = side * _towards_one(place / side, first) - place
-    corners, middles = tet_mesh.tets[:, :4], tet_mesh.tets[:, 4:]
-    shift[middles] = shift[corners[:, TET_EDGES]].mean(axis=2)  # edges stay straight, or as curved as they were
-    return replace(tet_mesh, points_mm=tet_mesh.points_mm + shift)
-
-
-def _towards_one(place: Floats, first: float) -> Floats:
-    """Places (n,) from -1 to 1; between first and 1 nearer to 1, and alike on the other side."""
-    left = np.clip((1.0 - np.abs(place)) / (1.0 - first), 0.0, 1.0)
-    return np.asarray(np.where(left < 1.0, np.sign(place) * (1.0 - (1.0 - first) * left**POWER), place))
 
 
 LARGEST = 3000  # nodes: some 8,000 unknowns, and 2 s a press on one core

@@ -8,12 +8,13 @@ from geometry.arrays import Floats
 from geometry.base import Report
 from geometry.executor import HERE, Executor, each_done
 from solve.reduced.model import ReducedModel
-from solve.solution.newton import NoEquilibriumError
-from solve.tables import job as job_files
-from solve.tables.job import RETURN, Job, Reduction
+from solve.solution.errors import NoEquilibriumError
+from solve.tables import cache
+from solve.tables.depth_press import RETURN, DepthPress
+from solve.tables.reduction import Reduction
 
 
-def answer(job: Job | Reduction) -> Floats | ReducedModel | str:
+def answer(job: DepthPress | Reduction) -> Floats | ReducedModel | str:
     """Outputs, a reduced model, or why there is none."""
     try:
         return job.made() if isinstance(job, Reduction) else _outputs_of(job)
@@ -21,11 +22,11 @@ def answer(job: Job | Reduction) -> Floats | ReducedModel | str:
         return str(error)
 
 
-def _outputs_of(job: Job) -> Floats:
+def _outputs_of(job: DepthPress) -> Floats:
     """Outputs; equilibria are left where other presses find them."""
-    outputs, found = job.run(job_files.equilibria(job.guided_by) if job.guided_by else None)
+    outputs, found = job.run(cache.equilibria(job.guided_by) if job.guided_by else None)
     if found is not None:
-        job_files.keep_equilibria(job_files.key(job), found)
+        cache.keep_equilibria(cache.key(job), found)
     return outputs
 
 
@@ -35,19 +36,19 @@ WHAT = "pressing the 3D model"
 
 
 def run_all(
-    jobs: Sequence[Job], report: Report, first: Sequence[Reduction] = (), executor: Executor = HERE
+    jobs: Sequence[DepthPress], report: Report, first: Sequence[Reduction] = (), executor: Executor = HERE
 ) -> list[Floats]:
     """Outputs of all jobs in order, each kept as soon as it is there; empty (0,) for a press without equilibrium.
 
     first : what takes longest, and can be recalled afterwards. NoEquilibriumError for one of these.
     """
-    names = [job_files.key(job) for job in jobs]
-    found = {name: table for name in names if (table := job_files.recall(name)) is not None}
+    names = [cache.key(job) for job in jobs]
+    found = {name: table for name in names if (table := cache.recall(name)) is not None}
     left = sorted(
         ((name, job) for name, job in zip(names, jobs, strict=True) if name not in found),
         key=lambda one: -_effort(one[1]),  # the longest last would keep one core only
     )
-    missing: dict[str, Job | Reduction] = {f"reduction {n}": job for n, job in enumerate(first)}
+    missing: dict[str, DepthPress | Reduction] = {f"reduction {n}": job for n, job in enumerate(first)}
     missing |= dict(left)
     if missing:
         report(WHAT, 0, len(missing))
@@ -55,9 +56,9 @@ def run_all(
     calls = {name: (job,) for name, job in missing.items()}
     for number, (name, future) in enumerate(each_done(places, answer, calls), start=1):
         job, outputs = missing[name], future.result()
-        if isinstance(job, Job):
+        if isinstance(job, DepthPress):
             found[name] = np.zeros(0) if isinstance(outputs, str) else outputs
-            job_files.keep(name, found[name])
+            cache.keep(name, found[name])
         elif isinstance(outputs, str):
             raise NoEquilibriumError(outputs, np.zeros(0), None)
         else:
@@ -66,12 +67,12 @@ def run_all(
     return [found[name] for name in names]
 
 
-def _effort(job: Job) -> float:
+def _effort(job: DepthPress) -> float:
     """What a press takes, roughly: steps down and back, of which slip takes as many more, by nodes."""
     return len(job.tet_mesh.points_mm) * job.parts * (len(job.shares) + len(job.back) * len(RETURN))
 
 
-def _worth(jobs: Mapping[str, Job | Reduction]) -> bool:
+def _worth(jobs: Mapping[str, DepthPress | Reduction]) -> bool:
     """Whether these presses take longer than two processes to start."""
     large = sum(isinstance(job, Reduction) or len(job.tet_mesh.points_mm) > LARGE for job in jobs.values())
     return max(large, len(jobs) // WORTH_A_PROCESS) > 1

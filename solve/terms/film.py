@@ -6,11 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from geometry.arrays import Floats, Ints
-from solve.fem.kernels import film_solid
-from solve.fem.kinematics import deformation_gradient, green_lagrange, physical_gradients, quadratic, tetrahedron
-from solve.fem.sparsity import Block, History, Term, Trial
+from solve.fem.film_solid import film_solid
+from solve.fem.kinematics import deformation_gradient, green_lagrange
+from solve.fem.quadrature import tetrahedron
+from solve.fem.shape_functions import physical_gradients, quadratic
 from solve.materials.film import FilmLaw
 from solve.materials.inelastic import Inelastic, StressResponse, at_rest, respond, time_error
+from solve.terms.base import Block, History, Term, Trial
 from solve.terms.electrodes import Coverage, coverage
 from solve.terms.solid import refuse_inversion
 

@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from geometry.arrays import Bools, Floats, Ints
-from solve.fem.sparsity import Block, History, Term, Trial
+from solve.terms.base import Block, History, Term, Trial
 from solve.terms.contact import ACTIVE_SET_STIFFNESS, HATS, SHAPES, ContactFacets
 
 SLIP_LIMIT = 1.9  # below 2, see _shift; it, too, only steers the iteration

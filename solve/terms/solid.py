@@ -1,6 +1,7 @@
 """The media: quadratic displacement, linear pressure, any hyperelastic law with or without memory.
 
-A compressible foam has no pressure unknown: its law gives the whole stress.
+A compressible foam has no pressure unknown, as its law gives the whole stress; and where a trial state turns an element
+inside out, it is refused.
 """
 
 from collections.abc import Iterator
@@ -9,19 +10,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from geometry.arrays import Floats, Ints
-from solve.fem.kernels import compressible_solid, mixed_solid
-from solve.fem.kinematics import (
-    cauchy_green,
-    deformation_gradient,
-    linear,
-    physical_gradients,
-    quadratic,
-    smallest_jacobian,
-    tetrahedron,
-)
-from solve.fem.sparsity import Block, History, Term, Trial
+from solve.fem.compressible_solid import compressible_solid
+from solve.fem.kinematics import cauchy_green, deformation_gradient, smallest_jacobian
+from solve.fem.mixed_solid import mixed_solid
+from solve.fem.quadrature import tetrahedron
+from solve.fem.shape_functions import linear, physical_gradients, quadratic
 from solve.materials.inelastic import Inelastic, Memory, StressResponse, at_rest, respond, time_error
 from solve.materials.laws import MediumLaw
+from solve.terms.base import Block, History, Term, Trial
 
 CHUNK = 4096  # elements assembled at a time: bounds the memory of the element matrices
 

@@ -10,7 +10,7 @@ from pydantic import BaseModel
 
 from geometry.fabrication.parameters import Fabrication
 from geometry.parameters import Segment
-from mesh.build import MeshOptions
+from mesh.options import MeshOptions
 from solve.mechanisms import MECHANISMS
 from solve.model import Waveform
 from tests.attack.drawing import Draw

@@ -11,7 +11,7 @@ from mesh.build import remembered
 from mesh.types import LinearMesh
 from softdot.config import config_from
 from softdot.sweeps import points
-from solve.solution.checkpoint import read_archive, write_archive
+from solve.solution.archive import read_archive, write_archive
 
 DAMAGED = 1000
 LAYERS = {"medium1": {"thickness_mm": 0.5}, "film": {"thickness_um": 28}, "medium2": {"thickness_mm": 2}}

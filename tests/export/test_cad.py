@@ -12,7 +12,7 @@ from build123d import import_step
 
 from export.cad import write_cad
 from geometry.assembly import build_parts
-from geometry.dot import resolve_dot
+from geometry.dot_at_rest import resolve_dot
 from geometry.parameters import Dot, Effector, Film, Medium, Segment
 from geometry.solids import PART_COLOURS, volume_mm3
 

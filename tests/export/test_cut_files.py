@@ -7,10 +7,12 @@ import numpy as np
 import pytest
 from svgpathtools import parse_path
 
-from export.cut_files import STYLES, draw_cut_file, write_cut_files
+from export.cut_files.dxf import draw_cut_file
+from export.cut_files.folder import write_cut_files
+from export.cut_files.style import STYLES
 from geometry.fabrication.device import lone_device
 from geometry.fabrication.parameters import Fabrication
-from geometry.flat.sheets import flat_kit
+from geometry.flat.flat_kit import flat_kit
 from geometry.parameters import Film, Medium, Segment
 from tests.cases import for_each
 

@@ -10,9 +10,11 @@ from matplotlib.colors import to_rgb
 from PIL import Image
 from pressed_box import box_dot, box_mesh, made_up_press
 
-from export.cutaway import draw_von_mises, film_map, open_scene
+from export.cutaway import draw_von_mises, open_scene
+from export.film_maps import film_map
 from export.pictures import FILES, write_pictures
-from export.view import ADVICE, PICTURE_SIZE, View
+from export.rendering import ADVICE
+from export.view import PICTURE_SIZE, View
 from geometry.dot import DotShape
 from geometry.solids import PART_COLOURS
 from mesh.types import TetMesh
@@ -112,7 +114,7 @@ def test_missing_opengl_is_one_sentence_not_a_crash() -> None:
     """A window class that this machine cannot open stands for a missing library."""
     code = (
         "import subprocess; from types import SimpleNamespace\n"
-        "from export import view as headless\n"
+        "from export import rendering as headless\n"
         "headless.subprocess.run = lambda *a, **k: SimpleNamespace(returncode=-11, stdout=b'')\n"
         "headless.ensure_rendering()"
     )

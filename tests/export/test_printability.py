@@ -11,8 +11,10 @@ from build123d import Box, Cylinder, Pos, Rot, Sphere
 from matplotlib.image import imread
 
 from export.printability import CriticalSize, check_part, draw_findings, printer_names, printer_profile
-from export.printability.check import RING_IN, VIEWS, buried_mm, check_on_printers, clearest_view
-from export.printability.measure import measure, surface_of
+from export.printability.check import check_on_printers
+from export.printability.drawing import RING_IN, VIEWS, buried_mm, clearest_view
+from export.printability.measure import measure
+from export.printability.surface import surface_of
 from export.view import frame, page
 from geometry.base import InputError
 from geometry.fabrication.part import LimitName

@@ -4,20 +4,9 @@ import numpy as np
 import pytest
 from pressed_box import HEIGHT_MM, LENGTH_MM
 
-from export.skin import (
-    NodalSteps,
-    Skin,
-    film_top,
-    largest_principal,
-    nearby_plane,
-    nodal_steps,
-    outer_skin,
-    section,
-    split_nodes,
-    spread,
-    tetra_pattern,
-    triangle_pattern,
-)
+from export.nodal_values import largest_principal, split_nodes, spread
+from export.skin import NodalSteps, Skin, film_top, nearby_plane, nodal_steps, outer_skin, section
+from export.subdivision import tetra_pattern, triangle_pattern
 from mesh.types import TetMesh
 from solve.result import PressResult
 from tests.cases import for_each

@@ -14,8 +14,8 @@ from geometry.fabrication.device import array_device
 from geometry.fabrication.parameters import Fabrication
 from geometry.flat.electrodes import stray_area_mm2
 from geometry.flat.escape import Lattice
+from geometry.flat.flat_kit import flat_kit
 from geometry.flat.pattern import shared_area_mm2
-from geometry.flat.sheets import flat_kit
 from geometry.parameters import Dot, Effector, Film, Medium, Segment
 from tests.cases import for_each
 

@@ -3,7 +3,7 @@
 import pytest
 
 from geometry.base import InputError
-from geometry.braille import dot_offset_mm, raised_dots
+from geometry.braille_cells import dot_offset_mm, raised_dots
 from tests.cases import for_each
 
 

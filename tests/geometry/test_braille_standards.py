@@ -3,7 +3,7 @@
 import pytest
 
 from geometry.base import InputError
-from geometry.braille import QUANTITIES, standard, standard_names
+from geometry.braille_standards import QUANTITIES, standard, standard_names
 from tests.cases import for_each
 
 NONE = (None, None, None)

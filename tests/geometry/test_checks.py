@@ -5,7 +5,7 @@ import pytest
 
 from geometry.base import InputError
 from geometry.checks import check_press_depth, check_segment, press_warnings
-from geometry.dot import resolve_dot
+from geometry.dot_at_rest import resolve_dot
 from geometry.parameters import Bond, Dot, Effector, Electrode, Film
 from tests.cases import for_each
 

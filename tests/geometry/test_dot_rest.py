@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from geometry.base import InputError
-from geometry.dot import resolve_dot
+from geometry.dot_at_rest import resolve_dot
 from geometry.parameters import Dot, Effector
 from geometry.stack import Box, Disc, Dome
 from tests.cases import for_each

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from geometry.base import InputError
-from geometry.braille import dot_size
-from geometry.dot import resolve_dot
+from geometry.dot_at_rest import resolve_dot
+from geometry.dot_size import dot_size
 from geometry.parameters import Dot
 from tests.cases import for_each
 

@@ -8,8 +8,8 @@ from geometry.base import InputError
 from geometry.fabrication.device import lone_device
 from geometry.fabrication.parameters import Fabrication
 from geometry.flat.electrodes import stray_area_mm2
+from geometry.flat.flat_kit import flat_kit
 from geometry.flat.pattern import Label, gap_mm, shared_area_mm2
-from geometry.flat.sheets import flat_kit
 from geometry.parameters import Electrode, Film
 from tests.cases import for_each
 

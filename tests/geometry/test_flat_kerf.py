@@ -6,6 +6,7 @@ import pytest
 
 from geometry.fabrication.device import lone_device
 from geometry.fabrication.parameters import Fabrication
+from geometry.flat.flat_kit import flat_kit
 from geometry.flat.pattern import (
     Circle,
     Dimension,
@@ -18,7 +19,6 @@ from geometry.flat.pattern import (
     shared_area_mm2,
     turned,
 )
-from geometry.flat.sheets import flat_kit
 from geometry.parameters import Effector
 
 SQUARE = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))

@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from geometry.base import load_alone, without_collector
+from geometry.library_loading import load_alone, without_collector
 from softdot.second_process import PARTS
 
 CODE = """

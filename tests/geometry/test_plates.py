@@ -5,9 +5,11 @@ from math import pi
 import pytest
 
 from geometry.base import InputError
-from geometry.braille import standard_names
-from geometry.plates import braille_sizes, height_series, indenter_tip, text_plate
-from geometry.plates.plate import lay_out
+from geometry.braille_standards import standard_names
+from geometry.plates.braille_sizes import braille_sizes
+from geometry.plates.height_series import height_series
+from geometry.plates.indenter import indenter_tip
+from geometry.plates.text_plate import lay_out, text_plate
 from tests.cases import for_each
 
 BRAILLE = "⠃⠗⠁⠊⠇⠇⠑"

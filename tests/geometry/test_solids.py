@@ -7,7 +7,7 @@ import pytest
 from build123d import GeomType, Vector
 
 from geometry.assembly import CLEARANCE_MM, FLOOR_MM, PLATE_THICKNESS_MM, WALL_MM, build_parts, dot_solid, layer_solids
-from geometry.dot import resolve_dot
+from geometry.dot_at_rest import resolve_dot
 from geometry.parameters import Dot, Effector
 from geometry.solids import PART_COLOURS
 from tests.cases import for_each

@@ -7,7 +7,7 @@ import numpy as np
 import mesh
 from geometry.dot import DotShape
 from geometry.parameters import Effector, Film, Medium, Segment
-from mesh.build import MeshOptions
+from mesh.options import MeshOptions
 from mesh.types import TetMesh
 
 EFFECTORS = {

@@ -7,14 +7,15 @@ import pytest
 
 from geometry.array.layout import array_layout
 from geometry.array.parameters import Array, Groove
-from geometry.dot import resolve_dot
+from geometry.dot_at_rest import resolve_dot
 from geometry.parameters import Dot, Effector
 from mesh.array.mesh import array_mesh
 from mesh.array.sizing import expected_elements
-from mesh.build import MeshOptions
+from mesh.options import MeshOptions
 from mesh.symmetry import unfolded
 from mesh.types import face_neighbours, signed_volumes
-from solve.fem.kinematics import physical_gradients, quadratic, tetrahedron
+from solve.fem.quadrature import tetrahedron
+from solve.fem.shape_functions import physical_gradients, quadratic
 from tests.cases import for_each
 from tests.geometry.test_array import ALL, segment
 

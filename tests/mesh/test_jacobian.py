@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from mesh.quality import dihedral_angles, refuse_inverted, scaled_jacobians, smallest_determinant_ratio, volumes
+from mesh.jacobian import scaled_jacobians, smallest_determinant_ratio, volumes
+from mesh.quality import dihedral_angles, refuse_inverted
 from mesh.types import MeshingError, TetMesh
 
 EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))

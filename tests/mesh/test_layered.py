@@ -6,7 +6,8 @@ from mesh_samples import corner_faces, dot, options, segment
 
 import mesh
 from geometry.base import InputError
-from mesh.layered import refine, start_triangulation
+from mesh.bisection import refine
+from mesh.footprint import start_triangulation
 from mesh.outline import outline
 from mesh.sizing import graded, graded_through
 from mesh.types import split_prisms

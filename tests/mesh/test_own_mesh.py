@@ -9,9 +9,9 @@ from own_files import gmsh_22, linear, written
 
 import mesh
 from geometry.base import InputError
-from mesh.build import MeshOptions
 from mesh.files.formats import REGIONS, write_mesh
 from mesh.files.own import contents, own_mesh
+from mesh.options import MeshOptions
 from mesh.quality import measure
 
 BLOCK, SLICE = "block solid layered", "block plane-strain layered"

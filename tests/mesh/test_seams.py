@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mesh.interfaces import interface_facets
-from mesh.quality import volumes
+from mesh.jacobian import volumes
 from mesh.seams import with_columns_at
 from mesh.types import TET_EDGES, signed_volumes
 from tests.solve.term_body import layers

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from solve.materials.inelastic import Prony
+from solve.materials.prony import Prony
 from solve.model import Physics, Press, Readout, Waveform
 from solve.readout.amplifier import curved_integral, leaky_integral
 from solve.readout.course import course

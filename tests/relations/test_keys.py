@@ -8,7 +8,7 @@ import pytest
 
 from geometry.base import InputError, nearest
 from geometry.parameters import Dot, Effector, Segment
-from mesh.build import MeshOptions
+from mesh.options import MeshOptions
 from softdot import Case
 from softdot.config import Config, config_from, config_schema
 from softdot.config.errors import tables_at

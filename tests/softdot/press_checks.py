@@ -14,11 +14,13 @@ from softdot.arrays.case import ArrayCase
 from softdot.case import Case
 from softdot.config import config_from
 from solve import press as press_module
-from solve.fem.kinematics import deformation_gradient, linear, quadratic, tetrahedron
-from solve.materials.isochoric import from_voigt
+from solve.fem.kinematics import deformation_gradient
+from solve.fem.quadrature import tetrahedron
+from solve.fem.shape_functions import linear, quadratic
 from solve.readout.course import course
+from solve.tensors import from_voigt
 from solve.terms.contact import HATS, SHAPES, facet_area
-from solve.terms.jump import UnilateralInterface
+from solve.terms.unilateral_interface import UnilateralInterface
 
 SMALL = 1e-6  # of the largest force so far; Newton stops at 1e-9
 SMALLEST_FORCE = 1e-3  # solver units; of less than this round-off leaves too much to judge

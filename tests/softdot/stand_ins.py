@@ -4,7 +4,7 @@ import numpy as np
 
 from geometry.dot import DotShape
 from mesh.types import TetMesh
-from solve.fem.kinematics import TET_EDGES
+from solve.fem.shape_functions import TET_EDGES
 from solve.result import Fields, FilmPeak, PressResult, Step, Trace
 
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mesh.build import MeshOptions
+from mesh.options import MeshOptions
 from softdot.case import Case
 from softdot.commands.run import run_config
 from softdot.config import Config, config_hash, load_config

@@ -14,8 +14,8 @@ from softdot.commands import kit as make
 from softdot.tolerances.budget import Budget, Effect
 from softdot.tolerances.responses import Response
 from softdot.tolerances.tolerances import Tolerance
+from solve.solution.full_load import StoppedShortError
 from solve.solution.linear import LinearSolveError
-from solve.solution.sensitivity import StoppedShortError
 from tests.cases import for_each
 from tests.softdot.conftest import MINIMAL
 

@@ -25,7 +25,7 @@ def test_more_than_the_limit_is_refused_by_name(monkeypatch):
 @for_each("factor", [100, 1000])
 def test_a_segment_of_metres_is_meshed_or_refused_but_never_fills_the_memory(factor):
     """All lengths times a factor, element sizes too: as many points as the segment of millimetres."""
-    from geometry.dot import resolve_dot
+    from geometry.dot_at_rest import resolve_dot
     from mesh.outline import outline
     from mesh.sizing import background, sizing
     from softdot.config import config_from

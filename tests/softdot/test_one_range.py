@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from export.cutaway import film_figure
-from export.skin import largest_principal
+from export.film_maps import film_figure
+from export.nodal_values import largest_principal
 from export.viewer_data import viewer_data
 from export.vtu import write_results
 from geometry.parameters import Film, Medium, Segment

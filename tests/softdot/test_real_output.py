@@ -12,8 +12,8 @@ import trimesh
 from PIL import Image
 
 from geometry.assembly import build_parts
-from geometry.dot import resolve_dot
-from mesh.build import MeshOptions
+from geometry.dot_at_rest import resolve_dot
+from mesh.options import MeshOptions
 from softdot.commands.run import run_config
 from softdot.config import Config, load_config
 from solve.model import Press

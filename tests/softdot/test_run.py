@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from export import view
+from export import rendering
 from mesh.types import MeshingError
 from softdot.cli import main
 from softdot.commands import run
@@ -173,7 +173,7 @@ def test_a_failure_leaves_nothing_though_the_second_process_still_writes(tmp_pat
             time.sleep(0.01)
         raise OSError(errno.EFBIG, "File too large")
 
-    monkeypatch.setattr(view, "ensure_rendering", does_nothing)
+    monkeypatch.setattr(rendering, "ensure_rendering", does_nothing)
     monkeypatch.setattr(run, "SecondProcess", SecondProcess)
     monkeypatch.setattr(run, "make_cad", does_nothing)
     monkeypatch.setattr(run, "draw", writes_on_and_on)

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from geometry import cache
-from mesh.build import MeshOptions
 from mesh.build import key as mesh_key
+from mesh.options import MeshOptions
 from softdot.case import Case, press_key
 from softdot.outcome import outcome_key
 from tests.cases import for_each

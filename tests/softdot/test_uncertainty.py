@@ -7,7 +7,7 @@ from softdot.config import config_from
 from softdot.summary import press_part
 from softdot.tolerances.responses import KitPress
 from softdot.tolerances.uncertainty import uncertainty
-from solve.solution.sensitivity import StoppedShortError
+from solve.solution.full_load import StoppedShortError
 from tests.cases import for_each
 
 SLICE = {

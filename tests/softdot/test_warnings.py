@@ -6,7 +6,7 @@ from contextlib import nullcontext
 import pytest
 
 from geometry.base import InputError
-from geometry.dot import resolve_dot
+from geometry.dot_at_rest import resolve_dot
 from softdot.checks import design_warnings, refuse_held_rim, result_warnings
 from softdot.config import config_from, load_config
 from softdot.config.model import model_of

@@ -8,9 +8,9 @@ from scipy.sparse.linalg import spsolve
 
 from geometry.arrays import Floats, Ints
 from softdot.verify.lattice import KUHN
-from solve.fem.kernels import scatter
-from solve.fem.kinematics import TET_EDGES
-from solve.fem.sparsity import build_pattern
+from solve.fem.assembly import scatter
+from solve.fem.pattern import build_pattern
+from solve.fem.shape_functions import TET_EDGES
 from solve.materials.laws import MediumLaw
 from solve.terms.solid import SolidRegion, solid_region
 from tests.solve.trial import trial

@@ -5,7 +5,8 @@ import numpy as np
 from geometry.dot import DotShape
 from geometry.parameters import Effector, Film, Medium, Segment
 from geometry.stack import layers
-from mesh.build import MeshOptions, build
+from mesh.build import build
+from mesh.options import MeshOptions
 from solve.materials.parameters import NeoHookean, PiezoelectricFilm
 
 COARSE = MeshOptions(element_size_mm=1.4, contact_element_size_mm=0.7, mesher="layered")

@@ -9,12 +9,13 @@ import numpy as np
 from scipy.sparse.linalg import spsolve
 
 from geometry.arrays import Bools, Floats, Ints
-from mesh.layered import twins
+from mesh.slice import twins
 from mesh.types import TetMesh
 from softdot.verify.lattice import grid
-from solve.fem.kernels import scatter
-from solve.fem.sparsity import Term, Trial, build_pattern
+from solve.fem.assembly import scatter
+from solve.fem.pattern import build_pattern
 from solve.materials.laws import MediumLaw
+from solve.terms.base import Term, Trial
 from solve.terms.solid import solid_region
 
 MAX_ITERATIONS = 60  # an interface that peels opens about one node an iteration

@@ -6,10 +6,10 @@ from scipy.spatial.transform import Rotation
 
 from mesh.interfaces import split_interface
 from mesh.types import TetMesh
-from solve.materials.inelastic import Prony
 from solve.materials.laws import InvariantLaw
+from solve.materials.prony import Prony
+from solve.terms.bond import bond, layer_stiffness
 from solve.terms.contact import SHAPES, facet_area
-from solve.terms.springs import bond, layer_stiffness
 from tests.cases import for_each
 from tests.solve.term_body import TermBody, layers, tangent_error
 

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 import solve.solution.checkpoint
-from solve.materials.inelastic import Prony
+from solve.materials.prony import Prony
 from solve.model import Physics, Press, Waveform
-from solve.solution.checkpoint import Checkpoint, read_archive, write_archive
+from solve.solution.archive import read_archive, write_archive
+from solve.solution.checkpoint import Checkpoint
 from tests.pressing import press_segment
 from tests.solve.segments import cap, coarse_mesh, materials, segment
 

@@ -6,7 +6,7 @@ import pytest
 from solve.model import Physics, Readout
 from solve.readout.amplifier import leaky_integral
 from solve.readout.channels import input_voltages
-from solve.terms.rig import Circuit, Tied
+from solve.terms.circuit import Circuit, Tied
 from tests.cases import for_each
 from tests.solve.trial import trial
 

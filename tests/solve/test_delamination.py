@@ -5,10 +5,10 @@ import pytest
 
 from geometry.base import InputError
 from mesh.interfaces import interface_facets, split_interface
+from solve.delaminations import delaminated_facets
 from solve.materials.laws import InvariantLaw
 from solve.model import Delamination
-from solve.problem import delaminated_facets
-from solve.terms.jump import opening_nodes, unilateral_interface
+from solve.terms.unilateral_interface import opening_nodes, unilateral_interface
 from tests.cases import for_each
 from tests.solve.term_body import TermBody, layers, tangent_error
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from geometry.dot import DotShape
-from solve.terms.contact import RigidDot
+from solve.terms.rigid_dot import RigidDot
 from tests.cases import for_each
 
 AT_REST = np.zeros(3)

@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from solve.fem.kinematics import physical_gradients, quadratic, tetrahedron
+from solve.fem.quadrature import tetrahedron
+from solve.fem.shape_functions import physical_gradients, quadratic
 from solve.terms.electrodes import coverage
 from tests.solve.box import box
 

@@ -10,7 +10,8 @@ from geometry.checks import check_pushed_dot
 from geometry.dot import DotShape
 from geometry.parameters import Dot, Electrode, Film, Medium, Segment
 from geometry.stack import layers
-from mesh.build import MeshOptions, build
+from mesh.build import build
+from mesh.options import MeshOptions
 from solve.materials.parameters import Linear, NeoHookean, PiezoelectricFilm
 from solve.model import Press
 from solve.solution import march as marching

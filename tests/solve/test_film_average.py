@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from geometry.parameters import Film, Medium, Segment
-from mesh.build import MeshOptions
+from mesh.options import MeshOptions
 from mesh.types import TetMesh
 from solve.model import Press
 from solve.result import RIM_THICKNESSES, film_columns, film_peak

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from solve.materials.film import YieldLaw, film_law, von_mises
+from solve.materials.film import film_law
+from solve.materials.film_yield import YieldLaw, von_mises
 from solve.materials.parameters import PiezoelectricFilm
 from tests.cases import for_each
 

@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 
 from geometry.dot import DotShape
-from solve.fem.sparsity import Trial, Unknowns
-from solve.terms.contact import RigidDot, contact_facets
+from solve.fem.numbering import Unknowns
+from solve.terms.base import Trial
+from solve.terms.contact import contact_facets
 from solve.terms.friction import FrictionalContact
+from solve.terms.rigid_dot import RigidDot
 from tests.cases import for_each
 from tests.slip_work import slip_work
 

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from solve.fem.kernels import compressible_solid
-from solve.fem.kinematics import physical_gradients, quadratic, tetrahedron
-from solve.materials.isochoric import from_voigt
-from solve.materials.principal_stretches import HyperfoamLaw
+from solve.fem.compressible_solid import compressible_solid
+from solve.fem.quadrature import tetrahedron
+from solve.fem.shape_functions import physical_gradients, quadratic
+from solve.materials.hyperfoam import HyperfoamLaw
+from solve.tensors import from_voigt
 from tests.cases import for_each
 from tests.solve.box import box
 

@@ -2,7 +2,7 @@
 
 from types import SimpleNamespace
 
-from solve.fem import kernels
+from solve.fem import warm_up as kernels
 
 
 def test_kernels_are_looked_for_where_numba_keeps_them(monkeypatch, tmp_path):

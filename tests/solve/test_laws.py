@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from solve.materials.isochoric import from_voigt, to_voigt
+from solve.materials.hyperfoam import HyperfoamLaw
 from solve.materials.laws import InvariantLaw, KnowlesLaw, LinearLaw, OgdenLaw, bulk_modulus
 from solve.materials.parameters import Hyperfoam, Linear, MooneyRivlin, NeoHookean, Ogden, PiezoelectricFilm, Yeoh
-from solve.materials.principal_stretches import HyperfoamLaw
+from solve.tensors import from_voigt, to_voigt
 from tests.cases import for_each
 
 LAWS = {

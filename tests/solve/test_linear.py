@@ -7,7 +7,7 @@ import pytest
 import scipy.sparse as sp
 
 import solve.solution.linear
-from solve.fem.sparsity import Tangent
+from solve.fem.tangent import Tangent
 from solve.solution.factorisation import Pardiso, PivotingPardiso, SinglePardiso, SuperLU
 from solve.solution.linear import LinearSolveError, LinearSolver
 from tests.cases import for_each

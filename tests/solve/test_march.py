@@ -8,9 +8,10 @@ import pytest
 
 from solve.model import Physics
 from solve.press import set_up
+from solve.solution import crushing
+from solve.solution.errors import NoEquilibriumError
 from solve.solution.linear import LinearSolver
 from solve.solution.march import _ahead, march, rest_state
-from solve.solution.newton import NoEquilibriumError
 from solve.solution.schedule import Target
 from solve.system import Load, State
 from tests.solve.segments import ridge
@@ -94,7 +95,7 @@ def test_a_long_step_to_an_equilibrium_with_a_folded_element_is_cut(walk, elasti
     failure, times, past = walk()
     assert failure is None
     assert max(after - before for before, after in times) <= 0.3
-    assert module._least_volume(system, past[-1]) > 0.5
+    assert crushing._least_volume(system, past[-1]) > 0.5
     assert module.crushes(system, past[-1], replace(past[-1], x=past[-1].x + fold))
 
 

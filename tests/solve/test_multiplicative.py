@@ -3,10 +3,11 @@
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from solve.materials.inelastic import Prony, StressResponse
-from solve.materials.isochoric import from_voigt, to_voigt
+from solve.materials.inelastic import StressResponse
 from solve.materials.laws import InvariantLaw
 from solve.materials.multiplicative import MultiplicativeMaxwell
+from solve.materials.prony import Prony
+from solve.tensors import from_voigt, to_voigt
 from tests.cases import for_each
 
 LAW = InvariantLaw(0.4, 0.1, 0.05, 0.01, 20.0)

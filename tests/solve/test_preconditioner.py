@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from solve.fem.sparsity import Tangent
+from solve.fem.tangent import Tangent
 from solve.solution.factorisation import Pardiso, SuperLU
 from solve.solution.preconditioner import Preconditioner
 from tests.cases import for_each

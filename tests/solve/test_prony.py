@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from solve.materials.inelastic import Prony, StressResponse
+from solve.materials.inelastic import StressResponse
+from solve.materials.prony import Prony
 from tests.cases import for_each
 
 G, TAU = (0.3, 0.2), (0.05, 0.7)

@@ -5,7 +5,7 @@ from math import factorial
 import numpy as np
 import pytest
 
-from solve.fem.kinematics import tetrahedron, triangle
+from solve.fem.quadrature import tetrahedron, triangle
 from solve.terms.contact import HATS, POINTS, WEIGHTS
 from tests.cases import for_each
 

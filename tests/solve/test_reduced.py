@@ -10,11 +10,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solve.materials.inelastic import Prony
+from solve.materials.prony import Prony
 from solve.model import Physics, Readout
-from solve.reduced import model as store
+from solve.reduced import cache
 from solve.reduced.fit import CELLS, ResponseTable
-from solve.reduced.model import Accuracy, ReducedModel
+from solve.reduced.model import ReducedModel, structure
+from solve.reduced.response import Accuracy
 from solve.terms.guide import GuideFriction
 from tests.cases import for_each
 
@@ -31,7 +32,7 @@ def solid(share=0.6) -> ReducedModel:
     table[:, 1] = np.column_stack([STIFFNESS * (rise - 1.0), 0.0 * w, 1e-9 * rise, rise])
     fit = ResponseTable(table, np.array([0.0, 1.0, 0.0]), np.array([0, 1]), np.array([[0, 0]]), 0.0)
     film, accuracy = np.array([[1e-9, 1e-4]]), Accuracy(0.01, 0.02, 0.03)
-    return ReducedModel(fit, FULL, {"medium2": share}, film, 30.0, store.structure(Physics()), accuracy)
+    return ReducedModel(fit, FULL, {"medium2": share}, film, 30.0, structure(Physics()), accuracy)
 
 
 def test_a_ramp_relaxes_while_it_rises():
@@ -189,10 +190,10 @@ def test_the_voltage_bound_of_a_leaky_input_follows_from_that_of_the_charge():
 
 def test_a_kept_model_is_the_model_and_a_damaged_file_is_none(tmp_path):
     path = tmp_path / "kept.npz"
-    store.write(path, solid())
-    found = store.read(path)
+    cache.write(path, solid())
+    found = cache.read(path)
     before, after = (m.respond(TIME, 0.4 * TIME, SOLID) for m in (solid(), found))
     np.testing.assert_array_equal(before.force_N, after.force_N)
     assert before.error_bound == after.error_bound
     path.write_bytes(path.read_bytes()[:200])
-    assert store.read(path) is None
+    assert cache.read(path) is None

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 import solve.solution.march
-from geometry.dot import resolve_dot
+from geometry.dot_at_rest import resolve_dot
 from geometry.parameters import Dot
-from mesh.build import MeshOptions, build
+from mesh.build import build
+from mesh.options import MeshOptions
 from solve.mechanisms import Mechanism, with_mechanisms
 from solve.model import Model, Press, Waveform
 from solve.solution.sensitivity import Variation, press_with_sensitivities
@@ -108,7 +109,7 @@ def test_sensitivity_is_the_difference_of_two_presses(case, monkeypatch):
 
 def whole_press(changed, base, tet_mesh):
     """The trace of a press of its own at the same times, on the moved mesh."""
-    from mesh.interfaces import morphed
+    from mesh.morphing import morphed
 
     moved = morphed(tet_mesh, base.segment, changed.segment)
     return press_with_sensitivities(changed, {}, moved)[0].trace

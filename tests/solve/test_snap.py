@@ -13,11 +13,11 @@ import pytest
 import scipy.sparse as sp
 
 import solve.solution.march as marching
-from solve.fem.sparsity import Tangent
-from solve.recorder import doubtful_results
+from solve.convergence_warnings import doubtful_results
+from solve.fem.tangent import Tangent
+from solve.solution.continuation import snapped
+from solve.solution.errors import NoEquilibriumError
 from solve.solution.linear import LinearSolver
-from solve.solution.march import snapped
-from solve.solution.newton import NoEquilibriumError
 from solve.solution.schedule import Target
 from solve.system import Evaluation, Load, State, System
 from solve.terms.solid import InvertedElementError

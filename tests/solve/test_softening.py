@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.special import erf
 
-from solve.materials.inelastic import Softening, StressResponse
+from solve.materials.inelastic import StressResponse
+from solve.materials.mullins import Softening
 from tests.cases import for_each
 
 STIFFNESS = 3.0

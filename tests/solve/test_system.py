@@ -5,7 +5,7 @@ import pytest
 
 import solve.solution.newton
 from geometry.parameters import Dot, Film
-from mesh.build import MeshOptions
+from mesh.options import MeshOptions
 from solve.model import Model, Physics, Press
 from solve.press import set_up
 from solve.problem import build_system

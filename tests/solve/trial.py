@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from solve.fem.sparsity import Trial
+from solve.terms.base import Trial
 
 
 def trial(displacement, x=(), time_step=1.0, **others) -> Trial:

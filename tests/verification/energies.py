@@ -12,9 +12,11 @@ import numpy as np
 from scipy.special import erf
 
 from geometry.arrays import Floats
-from solve.fem.kinematics import linear, tetrahedron
-from solve.materials.film import FilmPlasticity
-from solve.materials.inelastic import Prony, Softening
+from solve.fem.quadrature import tetrahedron
+from solve.fem.shape_functions import linear
+from solve.materials.film_yield import FilmPlasticity
+from solve.materials.mullins import Softening
+from solve.materials.prony import Prony
 from solve.press import Setup
 from solve.solution.linear import LinearSolver
 from solve.solution.march import march, rest_state

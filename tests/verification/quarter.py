@@ -11,8 +11,8 @@ import numpy as np
 from geometry.arrays import Floats, Ints
 from geometry.dot import DotShape
 from geometry.parameters import Segment
-from mesh.build import MeshOptions
 from mesh.layered import layered
+from mesh.options import MeshOptions
 from mesh.quadratic import finished
 from mesh.types import TET_FACES, LinearMesh, TetMesh, boundary_faces, oriented, signed_volumes, without_unused
 

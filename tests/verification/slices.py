@@ -7,12 +7,12 @@ import numpy as np
 from geometry.dot import DotShape
 from geometry.parameters import Dot, Segment
 from geometry.stack import layers
-from mesh.build import MeshOptions
+from mesh.options import MeshOptions
 from mesh.types import TetMesh
 from solve.materials.parameters import Hyperfoam, PiezoelectricFilm
 from solve.model import Model, Physics, Press, Readout, Waveform
+from solve.open_interfaces import open_interfaces
 from solve.press import Setup, set_up
-from solve.problem import open_interfaces
 from solve.result import PressResult
 from tests.pressing import press_segment
 from tests.solve.segments import coarse_mesh, materials, ridge, segment

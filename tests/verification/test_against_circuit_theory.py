@@ -12,11 +12,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solve.fem.sparsity import Trial
 from solve.materials.film import film_law
 from solve.materials.parameters import VACUUM_PERMITTIVITY, PiezoelectricFilm
+from solve.terms.base import Trial
+from solve.terms.circuit import Circuit
 from solve.terms.film import film_region
-from solve.terms.rig import Circuit
 from tests.solve.box import box
 
 YOUNG, EPSILON = 2e9, 12.0 * VACUUM_PERMITTIVITY

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from mesh.build import MeshOptions
+from mesh.options import MeshOptions
 from solve.model import Press
 from tests.pressing import press_segment
 from tests.solve.segments import cap, materials, segment

@@ -9,7 +9,7 @@ import pytest
 from scipy.sparse.linalg import spsolve
 
 from softdot.verify.body import solid_body
-from solve.fem.sparsity import build_pattern
+from solve.fem.pattern import build_pattern
 from solve.materials.film import FilmLaw
 from solve.materials.laws import LinearLaw, bulk_modulus
 from solve.terms.film import film_region

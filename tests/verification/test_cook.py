@@ -5,7 +5,8 @@ import pytest
 import scipy.linalg
 
 from softdot.verify.problems.cook import TRACTION, corner_rise, panel, rubber, slice_of
-from solve.fem.sparsity import Tangent, build_pattern
+from solve.fem.pattern import build_pattern
+from solve.fem.tangent import Tangent
 from solve.materials.laws import LinearLaw, bulk_modulus
 from tests.cases import for_each
 from tests.verification.row import agrees

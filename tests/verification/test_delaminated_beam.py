@@ -8,7 +8,7 @@ import pytest
 
 from mesh.interfaces import interface_facets, split_interface
 from solve.materials.laws import InvariantLaw
-from solve.terms.jump import opening_nodes, unilateral_interface
+from solve.terms.unilateral_interface import opening_nodes, unilateral_interface
 from tests.solve.term_body import TermBody, layers
 
 E, NU = 1.0, 0.3

@@ -4,7 +4,8 @@ import functools
 
 import pytest
 
-from mesh.build import MeshOptions, build
+from mesh.build import build
+from mesh.options import MeshOptions
 from solve.model import Press
 from tests.cases import for_each
 from tests.pressing import press_segment

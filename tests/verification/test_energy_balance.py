@@ -5,8 +5,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from solve.materials.inelastic import Prony, Softening
+from solve.materials.mullins import Softening
 from solve.materials.parameters import Linear
+from solve.materials.prony import Prony
 from solve.model import Physics, Yield
 from solve.solution.schedule import Target
 from solve.system import Load

@@ -10,11 +10,15 @@ from scipy.optimize import brentq
 from scipy.sparse.linalg import splu
 
 from geometry.dot import DotShape
-from solve.fem.kinematics import deformation_gradient, linear, tetrahedron
-from solve.fem.sparsity import Trial, Unknowns
+from solve.fem.kinematics import deformation_gradient
+from solve.fem.numbering import Unknowns
+from solve.fem.quadrature import tetrahedron
+from solve.fem.shape_functions import linear
 from solve.materials.laws import InvariantLaw, bulk_modulus
-from solve.terms.contact import ContactFacets, RigidDot, contact_facets
+from solve.terms.base import Trial
+from solve.terms.contact import ContactFacets, contact_facets
 from solve.terms.friction import FrictionalContact
+from solve.terms.rigid_dot import RigidDot
 from solve.terms.solid import InvertedElementError, solid_region
 from tests.cases import for_each
 from tests.slip_work import slip_work

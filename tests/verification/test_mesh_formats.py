@@ -11,9 +11,9 @@ from scipy.spatial import cKDTree
 from skfem import Basis, ElementTetP2, FacetBasis, Functional, Mesh
 
 from geometry.parameters import Effector, Film
-from mesh.build import MeshOptions
 from mesh.files.formats import write_mesh
-from mesh.quality import volumes
+from mesh.jacobian import volumes
+from mesh.options import MeshOptions
 from softdot.case import Case
 from softdot.config import config_from
 from softdot.config.toml import completed

@@ -2,10 +2,11 @@
 
 import numpy as np
 
-from solve.fem.kernels import mixed_solid
-from solve.fem.kinematics import linear, physical_gradients, quadratic, tetrahedron
-from solve.materials.isochoric import from_voigt
+from solve.fem.mixed_solid import mixed_solid
+from solve.fem.quadrature import tetrahedron
+from solve.fem.shape_functions import linear, physical_gradients, quadratic
 from solve.materials.laws import InvariantLaw, LinearLaw
+from solve.tensors import from_voigt
 from tests.cases import for_each
 from tests.solve.box import box, mixed_body
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from geometry.dot import resolve_dot
+from geometry.dot_at_rest import resolve_dot
 from geometry.parameters import Dot
 from solve.mechanisms import Mechanism, with_mechanisms
 from solve.model import Model, Press, Readout

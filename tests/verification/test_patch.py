@@ -16,8 +16,8 @@ from solve.materials.parameters import (
     PiezoelectricFilm,
     Yeoh,
 )
-from solve.terms.contact import RigidDot
 from solve.terms.film import film_region
+from solve.terms.rigid_dot import RigidDot
 from tests.cases import for_each
 
 MEDIA = {

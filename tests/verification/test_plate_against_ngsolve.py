@@ -15,8 +15,9 @@ import pytest
 
 from geometry.dot import DotShape
 from geometry.stack import layers
-from mesh.build import MeshOptions, build
-from solve.fem.kinematics import tetrahedron
+from mesh.build import build
+from mesh.options import MeshOptions
+from solve.fem.quadrature import tetrahedron
 from solve.model import Press
 from tests.pressing import press_segment
 from tests.solve.segments import materials, segment

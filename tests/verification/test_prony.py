@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from solve.materials.inelastic import Prony
+from solve.materials.prony import Prony
 from solve.model import Physics
 from tests.cases import for_each
 from tests.verification.slices import charge, force, pressed, waved

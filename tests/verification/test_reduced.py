@@ -8,11 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mesh.build import MeshOptions
-from solve.materials.inelastic import Prony
+from mesh.options import MeshOptions
+from solve.materials.prony import Prony
 from solve.model import BondLine, Physics, Press, Readout, Waveform
 from solve.readout.amplifier import amplify
-from solve.reduced.build import BETWEEN, build_reduced, refined, relative_error
+from solve.reduced.accuracy import BETWEEN, refined, relative_error
+from solve.reduced.build import build_reduced
 from tests.cases import for_each
 from tests.pressing import press_segment
 from tests.solve.segments import cap, coarse_mesh, materials, segment

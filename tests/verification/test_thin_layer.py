@@ -7,7 +7,7 @@ from geometry.dot import DotShape
 from softdot.verify.body import solid_body
 from softdot.verify.lattice import disc, graded
 from solve.materials.laws import InvariantLaw
-from solve.terms.contact import RigidDot
+from solve.terms.rigid_dot import RigidDot
 from tests.cases import for_each
 from tests.verification.row import agrees
 

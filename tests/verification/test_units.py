@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from geometry.parameters import Film, Medium
-from solve.materials.inelastic import Prony
+from solve.materials.prony import Prony
 from solve.model import Physics, Press, Waveform
 from tests.cases import for_each
 from tests.pressing import press_segment

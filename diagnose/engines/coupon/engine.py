@@ -30,8 +30,8 @@ from geometry.base import InputError, Report
 from solve.materials.parameters import Material, PiezoelectricFilm, find_material
 from solve.mechanisms import Mechanism
 from solve.model import Model
-from solve.reduced.model import felt
-from solve.solution.newton import NoEquilibriumError
+from solve.reduced.recording import felt
+from solve.solution.errors import NoEquilibriumError
 
 ACCURACY = 1e-3  # of a drive that is taken as straight between its samples
 FACTORS = {f"modulus.{SPECIMEN}": "modulus_factor", f"thickness.{SPECIMEN}": "thickness_factor"}

@@ -10,8 +10,8 @@ import numpy as np
 
 from diagnose.engines.coupon.relaxation import Relaxation, solved
 from geometry.arrays import Floats
-from solve.materials.inelastic import branch_stress
 from solve.materials.multiplicative import MultiplicativeMaxwell, flow_weights
+from solve.materials.prony import branch_stress
 
 OF_SIX = [0, 1, 2, 3]
 

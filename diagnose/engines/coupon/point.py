@@ -20,10 +20,12 @@ from diagnose.engines.coupon.kinematics import Kinematics, Reading, SimpleShear
 from diagnose.engines.coupon.relaxation import NO_SERIES, Relaxation
 from diagnose.signals.recording import Drive
 from geometry.arrays import Floats
-from solve.materials.inelastic import Prony, Softening, StressResponse
+from solve.materials.inelastic import StressResponse
 from solve.materials.laws import MediumLaw
+from solve.materials.mullins import Softening
 from solve.materials.multiplicative import MultiplicativeMaxwell
-from solve.solution.newton import NoEquilibriumError
+from solve.materials.prony import Prony
+from solve.solution.errors import NoEquilibriumError
 
 
 def earlier_peaks(energy: Floats, before: float = 0.0) -> Floats:

@@ -10,7 +10,7 @@ import numba as nb
 import numpy as np
 
 from geometry.arrays import Floats
-from solve.materials.inelastic import Prony, branch_stress
+from solve.materials.prony import Prony, branch_stress
 
 NO_SERIES = Prony((), ())
 

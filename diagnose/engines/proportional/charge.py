@@ -19,9 +19,10 @@ from diagnose.engines.coupon.point import MaterialPoint
 from diagnose.engines.coupon.relaxation import NO_SERIES, Relaxation
 from diagnose.vocabulary.base import film_capacitance_pF
 from geometry.arrays import Floats
-from solve.materials.inelastic import Prony, Softening
 from solve.materials.laws import MediumLaw
+from solve.materials.mullins import Softening
 from solve.materials.parameters import PiezoelectricFilm
+from solve.materials.prony import Prony
 from solve.model import Model, Readout
 from solve.readout.amplifier import amplify, warming_K
 

@@ -22,7 +22,7 @@ from geometry.arrays import Floats
 from geometry.base import InputError, Report
 from solve.mechanisms import Mechanism
 from solve.model import Model, Readout
-from solve.solution.newton import NoEquilibriumError
+from solve.solution.errors import NoEquilibriumError
 
 SENSITIVITY, CAPACITANCE = "sensitivity", "film-capacitance"
 MOST_CAPACITANCE = 1e4  # of the assumed film

@@ -15,8 +15,8 @@ from solve.model import Model, Physics, Readout
 from solve.readout.amplifier import amplify, other_charge_C
 from solve.readout.channels import amplify_channels
 from solve.reduced.fit import ResponseTable
-from solve.reduced.kernels import BY_DEPTH, BY_FORCE, TOO_DEEP, follow
-from solve.reduced.model import branches, sensed
+from solve.reduced.recording import branches, sensed
+from solve.reduced.time_stepping import BY_DEPTH, BY_FORCE, TOO_DEEP, follow
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,9 @@ from diagnose.vocabulary.base import Scene
 from diagnose.vocabulary.layers.property_error import nuisance as wrong_number
 from solve.model import Model, Press
 from solve.press import press_segment
-from solve.solution.newton import NoEquilibriumError
-from solve.tables import job as job_files
-from solve.tables.job import Job
+from solve.solution.errors import NoEquilibriumError
+from solve.tables import cache
+from solve.tables.depth_press import DepthPress
 from solve.tables.rig_mesh import Mesh
 
 LADDER_STEP = 1.05  # noise of the drive is far less than a step, and a table 5 % too deep costs nothing
@@ -37,11 +37,11 @@ def rounded_up(value: float) -> float:
 def reached(model: Model, tet_mesh: Mesh, force_N: float) -> float:
     """Depth in mm under a force. NoEquilibriumError."""
     pushed = replace(model, press=Press(force_N=force_N, load_steps=4), readout=None, physics=structural(model.physics))
-    name = job_files.key(Job(pushed, tet_mesh, force_N, ()))
-    found = job_files.recall(name)
+    name = cache.key(DepthPress(pushed, tet_mesh, force_N, ()))
+    found = cache.recall(name)
     if found is None:
         found = np.array([_press(pushed, tet_mesh)])
-        job_files.keep(name, found)
+        cache.keep(name, found)
     return float(found[0])
 
 

@@ -43,7 +43,7 @@ from solve.model import Model, Readout
 from solve.readout.stages import Hum
 from solve.reduced.fit import ResponseTable
 from solve.tables.rig_mesh import MeshSettings, mesh_of
-from solve.tables.smooth import changed
+from solve.tables.table_changes import changed
 
 
 def refuse(model: Model, recording: Recording) -> None:

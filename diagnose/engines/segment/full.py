@@ -19,7 +19,7 @@ from geometry.base import Report
 from solve.model import Model, Press, Waveform
 from solve.press import press_segment
 from solve.result import PressResult, Trace
-from solve.solution.newton import NoEquilibriumError
+from solve.solution.errors import NoEquilibriumError
 from solve.solution.thinning import thinned
 from solve.tables.rig_mesh import Mesh
 

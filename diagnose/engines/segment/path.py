@@ -18,7 +18,7 @@ from scipy.interpolate import PchipInterpolator
 from diagnose.engines.segment.answer import Mechanics
 from geometry.arrays import Floats
 from solve.reduced.fit import CELLS, ResponseTable
-from solve.tables.job import RETURN
+from solve.tables.depth_press import RETURN
 
 BACK = 2, 4
 """Which of the shares of the depth are turned at."""

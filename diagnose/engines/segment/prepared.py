@@ -28,10 +28,13 @@ from geometry.executor import HERE, Executor
 from solve.mechanisms.layers.viscoelasticity import VISCOELASTICITY
 from solve.model import Model
 from solve.reduced.fit import CELLS, ResponseTable
-from solve.solution.newton import NoEquilibriumError
-from solve.tables.job import Job, Reduction
+from solve.solution.errors import NoEquilibriumError
+from solve.tables.depth_press import DepthPress
+from solve.tables.reduction import Reduction
 from solve.tables.rig_mesh import MeshSettings, finer_mesh, rig_mesh
-from solve.tables.smooth import PRESSED, TRUSTED, Depths, accuracy, change, replaced, smooth
+from solve.tables.smoothing import PRESSED, smooth
+from solve.tables.table_accuracy import accuracy
+from solve.tables.table_changes import TRUSTED, Depths, change, replaced
 from solve.tables.workers import run_all
 
 MARGIN = 1.02  # of the depth of the table over the deepest press
@@ -76,7 +79,7 @@ class Prepared:
         fine_mm, middle_mm = (options.element_size_mm for _, options in meshes)
         self.accuracy = accuracy(middle, fine, fine_mm / middle_mm)
 
-    def _reduced(self, jobs: Sequence[Job], report: Report) -> tuple[Reduction, list[Floats]]:
+    def _reduced(self, jobs: Sequence[DepthPress], report: Report) -> tuple[Reduction, list[Floats]]:
         """The reduction, with as many layers as have an equilibrium with all they may remember, and outputs of jobs.
 
         NoEquilibriumError where the baseline has none, or a layer that relaxes by rig.toml.
@@ -145,13 +148,13 @@ class Prepared:
         per_force = max(float(np.abs(charges).max()) / float(force), 1e-300)
         return max(float(np.abs(change[:, 0]).max()), float(np.abs(change[:, 2:]).max()) / per_force)
 
-    def _pressed(self, wanted: Mapping[Name, tuple[Job, int]], report: Report) -> dict[Name, Floats]:
+    def _pressed(self, wanted: Mapping[Name, tuple[DepthPress, int]], report: Report) -> dict[Name, Floats]:
         """Changes by jobs, each with the number of its mesh; those without equilibrium are left out."""
         return {
             name: self._change(*three) for name, three in self.presses.compared(wanted, report, self._executor).items()
         }
 
-    def _change(self, job: Job, base: Floats, found: Floats) -> Floats:
+    def _change(self, job: DepthPress, base: Floats, found: Floats) -> Floats:
         """Against the baseline on the same mesh; charges scaled to those of the finest mesh."""
         values = path.changes(found, base, SHARES, self.raw) if job.back else change(base, found)
         force, _, *charges = self._smooth[-1]
@@ -177,7 +180,7 @@ class Prepared:
             what = f"{candidate.mechanism} ({candidate.component})"
             self.shortfalls[name] = f"No equilibrium with {what} at {_values(candidate, point)}: {instead}."
 
-    def _jobs(self, candidate: Candidate) -> Iterator[tuple[Name, tuple[Job, int]]]:
+    def _jobs(self, candidate: Candidate) -> Iterator[tuple[Name, tuple[DepthPress, int]]]:
         """Presses by name."""
         for point in effect_of(candidate).points:
             yield press_name(candidate, point), self.presses.with_candidate(candidate, point)

@@ -11,12 +11,12 @@ from diagnose.forward import Candidate
 from geometry.arrays import Floats
 from geometry.base import Report
 from geometry.executor import Executor
+from solve.delaminations import with_rims_of_patches
 from solve.mechanisms import with_mechanisms
 from solve.model import Model, Physics
-from solve.problem import with_rims_of_patches
-from solve.solution.newton import NoEquilibriumError
-from solve.tables import job as job_files
-from solve.tables.job import Job
+from solve.solution.errors import NoEquilibriumError
+from solve.tables import cache
+from solve.tables.depth_press import DepthPress
 from solve.tables.rig_mesh import Mesh, MeshSettings, finer_mesh, mesh_of
 from solve.tables.workers import run_all
 
@@ -42,15 +42,15 @@ class Presses:
     depth_mm: float
 
     @cached_property
-    def bases(self) -> tuple[Job, Job]:
+    def bases(self) -> tuple[DepthPress, DepthPress]:
         """The baseline on the diagnosis mesh and on the middle one: what changes are compared with and start from."""
         coarse, middle = self.job(self.model), self.job(self.model, self.middle_mesh)
         return replace(coarse, guides=True, parts=SLIPS), replace(middle, guides=True)
 
     @cached_property
     def _guides(self) -> list[str]:
-        """Names of the bases in solve.tables.job."""
-        return [job_files.key(job) for job in self.bases]
+        """Names of the bases in solve.tables.cache."""
+        return [cache.key(job) for job in self.bases]
 
     @cached_property
     def middle_mesh(self) -> Sizes:
@@ -62,14 +62,14 @@ class Presses:
         """Whether a press on the middle mesh takes hardly longer, as that of a slice."""
         return len(self.middle_mesh[0].points_mm) <= CHEAP_NODES
 
-    def job(self, model: Model, mesh: Sizes | None = None) -> Job:
+    def job(self, model: Model, mesh: Sizes | None = None) -> DepthPress:
         """The press of a changed model on a mesh, moved with its layers, at once: nothing relaxes."""
         on = model.physics
         own = replace(structural(on), friction=on.friction, softening=on.softening, film_yield=on.film_yield)
         tet_mesh = mesh_of(model, self.model, *(mesh or (self.tet_mesh, self.options)), MOST_NODES)
-        return Job(replace(ungapped(model), physics=own, readout=None), tet_mesh, self.depth_mm, SHARES)
+        return DepthPress(replace(ungapped(model), physics=own, readout=None), tet_mesh, self.depth_mm, SHARES)
 
-    def with_candidate(self, candidate: Candidate, point: Sequence[float]) -> tuple[Job, int]:
+    def with_candidate(self, candidate: Candidate, point: Sequence[float]) -> tuple[DepthPress, int]:
         """A press, and the number of its mesh: 0 for the diagnosis mesh, 1 for the middle one."""
         back = BACK if candidate.traits.shows_on_return else ()
         finer = candidate.traits.on_middle_mesh or (self.all_finer and not back)
@@ -79,8 +79,8 @@ class Presses:
         return replace(job, back=back, parts=parts), int(finer)
 
     def compared(
-        self, wanted: Mapping[Name, tuple[Job, int]], report: Report, executor: Executor
-    ) -> dict[Name, tuple[Job, Floats, Floats]]:
+        self, wanted: Mapping[Name, tuple[DepthPress, int]], report: Report, executor: Executor
+    ) -> dict[Name, tuple[DepthPress, Floats, Floats]]:
         """By name the job, outputs (n, 2 + e) of the baseline on the same mesh, and its own; none without equilibrium.
 
         wanted : jobs, each with the number of its mesh. NoEquilibriumError where the baseline has none.
@@ -99,12 +99,12 @@ class Presses:
         }
         return {name: three for name, three in found.items() if len(three[1]) and len(three[2])}
 
-    def _guided(self, job: Job, base: int) -> Job:
+    def _guided(self, job: DepthPress, base: int) -> DepthPress:
         """Starting from the baseline's equilibria, except where a moved dot touches other nodes."""
         moved = job.model.dot != self.bases[base].model.dot
         return job if moved else replace(job, guided_by=self._guides[base])
 
-    def _without_patch(self, job: Job) -> Job | None:
+    def _without_patch(self, job: DepthPress) -> DepthPress | None:
         """The baseline on the mesh that a patch changes, so that only the patch is in the difference; None for none."""
         patches, known = job.model.physics.delaminations, self.model.physics.delaminations
         if patches == known or job.model.segment.section == "solid":

@@ -7,7 +7,7 @@ from typing import Any
 from diagnose.engines.coupon.laws import SPECIMEN, PartOfLayer
 from diagnose.forward import Candidate, Coordinate, Setting
 from diagnose.vocabulary.base import GIVES_WAY, STIFFNESS, CouponScene, Scene, Vocabulary, register
-from geometry.dot import resolve_dot
+from geometry.dot_at_rest import resolve_dot
 from geometry.stack import layers
 from solve.mechanisms.layers.property_error import PROPERTY_ERROR
 

@@ -13,7 +13,7 @@ from diagnose.engines.coupon.point import youngs_modulus_MPa
 from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
 from diagnose.vocabulary.base import REMEMBERS, CouponScene, Scene, Vocabulary, register
-from solve.materials.inelastic import Softening
+from solve.materials.mullins import Softening
 from solve.materials.parameters import PiezoelectricFilm
 from solve.mechanisms.base import MEDIA
 from solve.mechanisms.layers.stress_softening import STRESS_SOFTENING

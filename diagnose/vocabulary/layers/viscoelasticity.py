@@ -10,7 +10,7 @@ from diagnose.engines.coupon.laws import LAYER, MOST_OF_COUPON, SPECIMEN, PartOf
 from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
 from diagnose.vocabulary.base import REMEMBERS, CouponScene, Scene, Vocabulary, register
-from solve.materials.inelastic import Prony
+from solve.materials.prony import Prony
 from solve.mechanisms.layers.viscoelasticity import VISCOELASTICITY
 from solve.model import Model
 

@@ -8,7 +8,8 @@ from softdot.verify.body import ElasticBody, solid_body
 from softdot.verify.lattice import Grid, disc, graded
 from softdot.verify.problem import Problem
 from solve.materials.laws import InvariantLaw, bulk_modulus
-from solve.terms.contact import HATS, SHAPES, RigidDot
+from solve.terms.contact import HATS, SHAPES
+from solve.terms.rigid_dot import RigidDot
 
 RADIUS, DEPTH = 40.0, 0.025
 """Of the sphere and its approach: the radius of contact is 1, and depth over radius 0.0006, where Hertz is a limit."""

@@ -10,7 +10,7 @@ from softdot.verify.body import ElasticBody, solid_body
 from softdot.verify.lattice import grid
 from softdot.verify.problem import Problem
 from solve.materials.laws import InvariantLaw
-from solve.terms.jump import UnilateralInterface, opening_nodes, unilateral_interface
+from solve.terms.unilateral_interface import UnilateralInterface, opening_nodes, unilateral_interface
 
 YOUNG, POISSON = 1.0, 0.3
 SHEAR = YOUNG / (2.0 * (1.0 + POISSON))

@@ -7,7 +7,8 @@ from softdot.verify.body import ElasticBody, solid_body
 from softdot.verify.lattice import Grid, grid
 from softdot.verify.loads import traction_force
 from softdot.verify.problem import Problem
-from solve.fem.kinematics import deformation_gradient, physical_gradients, quadratic
+from solve.fem.kinematics import deformation_gradient
+from solve.fem.shape_functions import physical_gradients, quadratic
 from solve.materials.laws import LinearLaw, bulk_modulus
 
 YOUNG_MPA, POISSON = 210e3, 0.3

@@ -18,7 +18,7 @@ from solve.mechanisms.base import (
     with_physics,
 )
 from solve.model import BondLine, Model
-from solve.terms.springs import layer_stiffness
+from solve.terms.bond import layer_stiffness
 
 
 class AdhesiveCompliance(Parameters):

@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic import Field
 
-from geometry.dot import resolve_dot
+from geometry.dot_at_rest import resolve_dot
 from geometry.parameters import Positive
 from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.mechanisms.base import (

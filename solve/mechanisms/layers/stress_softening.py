@@ -8,7 +8,7 @@ from typing import Annotated
 from pydantic import Field
 
 from geometry.parameters import NonNegative, Positive
-from solve.materials.inelastic import Softening
+from solve.materials.mullins import Softening
 from solve.mechanisms.base import MEDIA, MechanismType, Parameters, Traits, register, with_physics
 from solve.model import Model
 

@@ -8,8 +8,8 @@ from typing import Self
 from pydantic import Field, model_validator
 
 from geometry.parameters import Positive, require_one_of_each
-from solve.materials.inelastic import Prony
 from solve.materials.multiplicative import MultiplicativeMaxwell
+from solve.materials.prony import Prony
 from solve.mechanisms.base import BONDS, MEDIA, MechanismType, Moduli, Parameters, Traits, register, with_physics
 from solve.model import Model
 

@@ -6,9 +6,11 @@ import pytest
 from diagnose.engines.coupon.kinematics import SimpleShear, Uniaxial
 from diagnose.engines.coupon.point import MaterialPoint, earlier_peaks, softened
 from diagnose.engines.coupon.relaxation import Relaxation
-from solve.materials.inelastic import Prony, Softening, StressResponse
+from solve.materials.inelastic import StressResponse
 from solve.materials.laws import InvariantLaw
+from solve.materials.mullins import Softening
 from solve.materials.multiplicative import MultiplicativeMaxwell
+from solve.materials.prony import Prony
 from solve.terms.solid import solid_region
 from tests.cases import for_each
 from tests.solve.box import box

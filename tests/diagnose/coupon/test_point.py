@@ -8,11 +8,12 @@ from scipy.special import erf
 from diagnose.engines.coupon.kinematics import SimpleShear, Uniaxial
 from diagnose.engines.coupon.point import MaterialPoint
 from diagnose.engines.coupon.relaxation import NO_SERIES
-from solve.materials.inelastic import Prony, Softening
+from solve.materials.hyperfoam import HyperfoamLaw
 from solve.materials.laws import InvariantLaw, LinearLaw, OgdenLaw
+from solve.materials.mullins import Softening
 from solve.materials.multiplicative import MultiplicativeMaxwell
-from solve.materials.principal_stretches import HyperfoamLaw
-from solve.solution.newton import NoEquilibriumError
+from solve.materials.prony import Prony
+from solve.solution.errors import NoEquilibriumError
 from tests.cases import for_each
 
 C10, C20, C30, STIFF = 0.4, 0.05, 0.01, 1e7

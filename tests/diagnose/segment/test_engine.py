@@ -11,7 +11,7 @@ from diagnose.signals.recording import Recording
 from geometry.base import InputError
 from solve.mechanisms import Mechanism
 from solve.model import Readout
-from solve.tables import job as store
+from solve.tables import cache as store
 from tests.cases import for_each
 from tests.diagnose.segment.rigs import COARSE, DEPTH_MM, candidate, engine, model, press, run, silent
 

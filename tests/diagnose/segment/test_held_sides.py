@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
-from geometry.dot import resolve_dot
+from geometry.dot_at_rest import resolve_dot
 from geometry.parameters import Dot, Segment
-from mesh.build import MeshOptions, build
+from mesh.build import build
+from mesh.crowding import crowded
+from mesh.options import MeshOptions
 from mesh.quality import measure
-from solve.tables.rig_mesh import crowded
 from tests.cases import for_each
 
 SHAPES = [

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mesh.build import MeshOptions
+from mesh.options import MeshOptions
 from solve.tables import rig_mesh
 from tests.diagnose.segment.rigs import model
 

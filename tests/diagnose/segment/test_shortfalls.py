@@ -8,7 +8,7 @@ from diagnose.engines.segment import prepared
 from diagnose.engines.segment.interpolation import effect_of
 from diagnose.engines.segment.prepared import Prepared, press_name
 from diagnose.forward import Candidate, Coordinate
-from solve.solution.newton import NoEquilibriumError
+from solve.solution.errors import NoEquilibriumError
 from tests.diagnose.segment.rigs import model
 
 GLUE = Candidate(

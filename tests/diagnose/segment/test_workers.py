@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from geometry.executor import LocalProcesses
-from solve.tables import job as store
+from solve.tables import cache as store
 from solve.tables import workers
 from tests.diagnose.segment.rigs import engine, silent
 

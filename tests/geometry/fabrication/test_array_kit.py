@@ -10,13 +10,13 @@ from geometry.array.layout import array_layout
 from geometry.array.parameters import Array, Groove
 from geometry.array.parts import array_parts
 from geometry.base import InputError
-from geometry.dot import resolve_dot
+from geometry.dot_at_rest import resolve_dot
 from geometry.fabrication.clamp_frame import frame_parts
 from geometry.fabrication.device import Device, array_device, lone_device
 from geometry.fabrication.kit import jig_device, jig_parts, solid_kit, stacked_tops
 from geometry.fabrication.parameters import CastingNumbers, Fabrication
 from geometry.fabrication.part import box, volume
-from geometry.flat.sheets import flat_kit
+from geometry.flat.flat_kit import flat_kit
 from geometry.parameters import Dot, Effector, Film, Medium, Segment
 from tests.cases import for_each
 

@@ -18,7 +18,7 @@ from softdot.commands import verdict_page as page
 from softdot.commands.diagnose import short_text
 from softdot.config import load_config
 from softdot.config.rig import load_rig
-from solve.solution.newton import NoEquilibriumError
+from solve.solution.errors import NoEquilibriumError
 from tests.diagnose.verdict.test_verdict import QUIET, SHAPE, require
 from tests.diagnose.verdict.toy import LEAK, RELAXING, ToyEngine, fitted, found, toy_recording, toy_run
 from tests.softdot.diagnosis.toy_rig import write_toy

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from geometry.base import InputError
-from geometry.braille import standard
+from geometry.braille_standards import standard
 from softdot.reading.cells import cells_of
 from softdot.reading.conditions import WIDEST_SIGMA, ReadingConditions, refuse_idle
 from softdot.reading.line import made_line, nominal_line

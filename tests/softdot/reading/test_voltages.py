@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from geometry.base import InputError
-from geometry.braille import standard
+from geometry.braille_standards import standard
 from softdot.reading.decoders.templates import Posture, templates
 from softdot.reading.kernels import electronics_of
 from softdot.reading.voltages import Reader, Voltages, behind_readout, charge_again_pC

@@ -1,0 +1,29 @@
+"""The folder with the cut files of all patterns of a kit."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from export.cut_files.dxf import write_dxf
+from export.cut_files.style import STYLES as STYLES
+from export.cut_files.style import size_text as size_text
+from export.cut_files.svg import TEXT_MM as TEXT_MM
+from export.cut_files.svg import write_svg
+from geometry.files import whole_folder
+from geometry.files import write_whole_text as write_whole_text
+from geometry.flat.pattern import Circle as Circle
+from geometry.flat.pattern import Dimension as Dimension
+from geometry.flat.pattern import FlatPattern, compensated
+from geometry.flat.pattern import Label as Label
+from geometry.flat.pattern import LayerName as LayerName
+from geometry.flat.pattern import Outline as Outline
+from geometry.flat.pattern import Point as Point
+from geometry.flat.pattern import Stroke as Stroke
+
+
+def write_cut_files(patterns: Sequence[FlatPattern], folder: Path) -> None:
+    """Write <name>.dxf and <name>.svg of every pattern, kerf compensated; the folder appears whole or not at all."""
+    with whole_folder(folder) as scratch:
+        for pattern in patterns:
+            cut = compensated(pattern)
+            write_dxf(cut, scratch / f"{pattern.name}.dxf")
+            write_svg(cut, scratch / f"{pattern.name}.svg")

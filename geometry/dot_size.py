@@ -1,0 +1,76 @@
+"""The sizes of the dot of a segment: those of a Braille standard, or given ones."""
+
+from dataclasses import dataclass
+
+from geometry.base import InputError
+from geometry.braille_standards import BrailleStandard, standard
+from geometry.parameters import Dot
+
+DEFAULT_STANDARD = "marburg-medium"
+SIZES = ("base_diameter_mm", "height_mm", "radius_mm")
+
+
+@dataclass(frozen=True)
+class DotSize:
+    """In mm: radius of the sphere or cylinder, height over the plate, height of the cylindrical foot."""
+
+    radius_mm: float
+    height_mm: float
+    foot_mm: float
+
+
+def dot_standard(dot: Dot) -> BrailleStandard | None:
+    """The standard a dot follows: the named one, the default when no size is given, else None. InputError."""
+    given = [name for name in SIZES if getattr(dot, name) is not None]
+    if dot.standard is None:
+        return None if given else standard(DEFAULT_STANDARD)
+    if given:
+        raise InputError(
+            f"dot.{given[0]} = {getattr(dot, given[0]):g}: dot.standard = '{dot.standard}' fixes the sizes "
+            "already; give either the standard or explicit sizes"
+        )
+    return standard(dot.standard)
+
+
+def dot_size(dot: Dot) -> DotSize:
+    """The sizes of a cap or ridge. InputError for sizes that miss, contradict each other or are not fixed."""
+    chosen = dot_standard(dot)
+    if chosen is not None:
+        return from_base(chosen.nominal_mm("base_diameter_mm"), chosen.nominal_mm("height_mm"))
+    if dot.radius_mm is not None:
+        return _from_radius(dot.radius_mm, dot)
+    if dot.base_diameter_mm is None:
+        raise InputError(
+            f"dot.height_mm = {dot.height_mm:g}: a height alone is not a dot; add dot.base_diameter_mm or dot.radius_mm"
+        )
+    if dot.height_mm is None:
+        raise InputError(
+            f"dot.base_diameter_mm = {dot.base_diameter_mm:g}: a base alone is not a dot; add dot.height_mm"
+        )
+    return from_base(dot.base_diameter_mm, dot.height_mm)
+
+
+def from_base(base_diameter_mm: float, height_mm: float) -> DotSize:
+    """Sizes of a dot from its base and height in mm.
+
+    A spherical cap has R = (d^2 / 4 + h^2) / 2h. Higher than d / 2 it would pass the hemisphere and undercut
+    its base: such a dot is a hemisphere of radius d / 2 on a cylindrical foot of height h - d / 2.
+
+    >>> from_base(1.5, 0.5).radius_mm
+    0.8125
+    """
+    half = base_diameter_mm / 2
+    if height_mm > half:
+        return DotSize(half, height_mm, height_mm - half)
+    return DotSize((half**2 + height_mm**2) / (2 * height_mm), height_mm, 0.0)
+
+
+def _from_radius(radius_mm: float, dot: Dot) -> DotSize:
+    """Sizes from the radius of the sphere or cylinder; without a height it stands out by its radius."""
+    if dot.base_diameter_mm is not None:
+        raise InputError(
+            f"dot.radius_mm = {radius_mm:g}: dot.base_diameter_mm = {dot.base_diameter_mm:g} is given too; "
+            "give either of them"
+        )
+    height = radius_mm if dot.height_mm is None else dot.height_mm
+    return DotSize(radius_mm, height, max(0.0, height - radius_mm))

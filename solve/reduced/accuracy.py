@@ -1,0 +1,79 @@
+"""The reduced model against presses of the 3D model that had no part in its making."""
+
+from collections.abc import Mapping
+from dataclasses import fields
+
+import numpy as np
+
+from geometry.arrays import Floats
+from geometry.dot import DotShape
+from geometry.parameters import Dot, Segment
+from mesh.types import TetMesh
+from solve.materials.parameters import Material
+from solve.materials.prony import Prony
+from solve.model import Model, Physics, Press, Waveform
+from solve.press import press_segment
+from solve.reduced.model import ReducedModel
+from solve.reduced.response import Accuracy
+from solve.result import Trace
+from solve.solution.errors import NoEquilibriumError
+
+BETWEEN = 20  # samples of the reduced model to each time step of the 3D model
+
+
+def measured(
+    model: ReducedModel,
+    segment: Segment,
+    materials: Mapping[str, Material],
+    dot: DotShape,
+    tet_mesh: TetMesh,
+    physics: Physics,
+) -> Accuracy:
+    """Largest errors over the presses kept out. NoEquilibriumError where one of these has no answer."""
+    found = []
+    for waveform, depth, share in _held_out(bool(model.relaxing)):
+        viscosity = {layer: Prony((share * most,), (waveform.rise_s,)) for layer, most in model.relaxing.items()}
+        tested = Physics(
+            bonds=physics.bonds, delaminations=physics.delaminations, prestretch=physics.prestretch,
+            viscosity=viscosity,
+        )  # fmt: skip
+        press = Press(indentation_mm=depth * model.depth_mm, load_steps=8, waveform=waveform)
+        result = press_segment(Model(segment, materials, Dot(), press, None, tested), tet_mesh, dot=dot)
+        if result.failure is not None:
+            raise NoEquilibriumError(f"a press to check the reduced model: {result.failure}", np.zeros(0), None)
+        found.append(compare(model, result.trace, tested))
+    return Accuracy(*(max(getattr(a, f.name) for a in found) for f in fields(Accuracy)))
+
+
+def _held_out(relaxes: bool) -> list[tuple[Waveform, float, float]]:
+    """Waveform, share of the depth, share of the largest relaxation; all relaxation times are that of the rise."""
+    if not relaxes:
+        return [(Waveform(shape="ramp", rise_s=0.1), 0.97, 0.0)]
+    hold = Waveform(shape="trapezoid", rise_s=0.1, hold_s=0.3, fall_s=0.1)
+    return [(hold, 1.0, 1.0), (Waveform(shape="half-sine", rise_s=0.1), 0.8, 0.6)]
+
+
+def compare(model: ReducedModel, trace: Trace, physics: Physics) -> Accuracy:
+    """Errors at the times of a 3D press, whose own depth is given to the reduced model."""
+    time = refined(trace.time_s)
+    depth = 1e3 * np.interp(time, trace.time_s, trace.indentation_m)
+    answer = model.respond(time, depth, physics)
+    force, charge = answer.force_N[::BETWEEN], answer.electrode_charge_C[::BETWEEN].sum(axis=1)
+    wanted = trace.film_charge_C.sum(axis=1)
+    rate, wanted_rate = np.diff(charge) / np.diff(trace.time_s), np.diff(wanted) / np.diff(trace.time_s)
+    return Accuracy(
+        relative_error(force, trace.reaction_force_N),
+        relative_error(charge, wanted),
+        relative_error(rate, wanted_rate),
+    )
+
+
+def refined(time: Floats) -> Floats:
+    """Times with BETWEEN even parts in every interval, the given ones at every BETWEEN-th place."""
+    places = np.arange((len(time) - 1) * BETWEEN + 1) / BETWEEN
+    return np.asarray(np.interp(places, np.arange(len(time)), time))
+
+
+def relative_error(found: Floats, wanted: Floats) -> float:
+    """Largest difference over the largest wanted value."""
+    return float(np.abs(found - wanted).max() / max(np.abs(wanted).max(), 1e-300))

@@ -1,0 +1,67 @@
+"""A recording as the reduced model's kernel takes it, and what the force sensor reads in the end."""
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+from geometry.arrays import Floats, Ints
+from solve.materials.prony import Prony
+from solve.model import Physics
+from solve.reduced.time_stepping import BY_DEPTH, BY_FORCE
+
+
+def given(time_s: Floats, depth_mm: Floats | None, force_N: Floats | None, gap_mm: float) -> tuple[Floats, Floats, int]:
+    """Time (t,) in s, drive (t,) in mm from touch or in N, and its kind. ValueError for what is no recording."""
+    if (depth_mm is None) == (force_N is None):
+        raise ValueError("give either depth_mm or force_N")
+    given = depth_mm if depth_mm is not None else force_N
+    time, drive = np.ascontiguousarray(time_s, dtype=np.float64), np.array(given, dtype=np.float64)
+    if time.ndim != 1 or drive.shape != time.shape or len(time) < 2:
+        raise ValueError("time_s and the drive need the same length, at least 2")
+    if not (np.isfinite(time).all() and np.isfinite(drive).all() and (np.diff(time) > 0.0).all()):
+        raise ValueError("time_s must increase, and both it and the drive be finite")
+    return time, drive - (gap_mm if depth_mm is not None else 0.0), BY_DEPTH if depth_mm is not None else BY_FORCE
+
+
+def branches(viscosity: Mapping[str, Prony], layers: tuple[str, ...]) -> tuple[Floats, Floats, Ints]:
+    """Relative moduli, times (s) and layer numbers (b,) of all Prony branches."""
+    rows = [
+        (g, tau, layers.index(name))
+        for name, series in viscosity.items()
+        for g, tau in zip(series.relative_moduli, series.relaxation_times, strict=True)
+        if g > 0.0
+    ]
+    table = np.array(rows).reshape(-1, 3)
+    return table[:, 0].copy(), table[:, 1].copy(), table[:, 2].astype(np.int64)
+
+
+Accelerated = Callable[[], Floats]
+"""Acceleration (t,) of a path in mm/s2, calculated where a mass feels it."""
+
+
+def sensed(
+    drive: Floats, kind: int, path: Floats, contact: Floats, physics: Physics, accelerated: Accelerated
+) -> Floats:
+    """What the force sensor reads (t,): the force that drives, that of the rig's spring, or F_contact + m a''.
+
+    A guide adds its friction to either of the latter. accelerated : the drive.
+    """
+    if kind == BY_FORCE:
+        return drive.copy()
+    if physics.rig_compliance_mm_per_N > 0.0:
+        return np.asarray((drive - path) / physics.rig_compliance_mm_per_N + physics.guide.felt_N(drive))
+    return felt(drive, contact, physics, accelerated)
+
+
+def felt(depth: Floats, force: Floats, physics: Physics, accelerated: Accelerated) -> Floats:
+    """Force (t,) with those of a mass and a guide which move along a path (t,) in mm: F + m a'' + f."""
+    total = force + physics.guide.felt_N(depth)
+    return total + 1e-6 * physics.moving_mass_g * accelerated() if physics.moving_mass_g > 0.0 else total
+
+
+def second_differences(time: Floats, path: Floats) -> Floats:
+    """Second derivative (t,) of a path (t,), at rest before and after."""
+    step = np.diff(time)
+    rate = np.concatenate([[0.0], np.diff(path) / step, [0.0]])
+    width = np.concatenate([step[:1], 0.5 * (step[1:] + step[:-1]), step[-1:]])
+    return np.asarray(np.diff(rate) / width)

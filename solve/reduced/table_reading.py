@@ -1,0 +1,82 @@
+"""Reading the table of a reduced model: outputs as a function of depth and of the memory's amplitudes."""
+
+import numba as nb
+
+from geometry.arrays import Floats, Ints
+
+STEPS = 60  # of the search for a depth
+CLOSE = 1e-12  # of the full depth
+
+
+@nb.njit(cache=True, error_model="numpy")
+def set_features(alpha: Floats, pairs: Ints, features: Floats) -> None:
+    """(1, alpha, products of pairs of alpha)."""
+    count = len(alpha)
+    features[0] = 1.0
+    for r in range(count):
+        features[1 + r] = alpha[r]
+    for p in range(len(pairs)):
+        features[1 + count + p] = alpha[pairs[p, 0]] * alpha[pairs[p, 1]]
+
+
+@nb.njit(cache=True, error_model="numpy")
+def first_touch(touch: Floats, features: Floats) -> float:
+    """Depth at which the dot touches."""
+    depth = 0.0
+    for f in range(len(features)):
+        depth += touch[f] * features[f]
+    return depth
+
+
+@nb.njit(cache=True, error_model="numpy")
+def read(table: Floats, features: Floats, touch: float, full: float, depth: float, outputs: Floats) -> None:
+    """All outputs at a depth; below touch those of the free segment."""
+    cells = len(table) - 1
+    at = max(0.0, (depth - touch) / (full - touch)) * cells
+    cell = min(int(at), cells - 1)
+    x = at - cell
+    above, below = table[cell], table[cell + 1]
+    for o in range(len(outputs)):
+        outputs[o] = (1.0 - x) * above[0, o] + x * below[0, o]
+    for f in range(1, len(features)):
+        here, there = (1.0 - x) * features[f], x * features[f]
+        for o in range(len(outputs)):
+            outputs[o] += here * above[f, o] + there * below[f, o]
+
+
+@nb.njit(cache=True, error_model="numpy")
+def force_and_slope(table: Floats, features: Floats, touch: float, full: float, depth: float) -> tuple[float, float]:
+    """Contact force and its slope over depth; at touch that to the right."""
+    cells = len(table) - 1
+    at = max(0.0, (depth - touch) / (full - touch)) * cells
+    cell = min(int(at), cells - 1)
+    here, there = 0.0, 0.0
+    for f in range(len(features)):
+        here += table[cell, f, 0] * features[f]
+        there += table[cell + 1, f, 0] * features[f]
+    return here + (at - cell) * (there - here), (there - here) * cells / (full - touch)
+
+
+@nb.njit(cache=True, error_model="numpy")
+def balance(
+    table: Floats, features: Floats, touch: float, full: float, spring: float, push: float, guess: float
+) -> float:
+    """Depth where spring depth + F(depth) = push: Newton's method inside a shrinking bracket."""
+    if push <= spring * touch:
+        return push / spring if spring > 0.0 else touch
+    low, high = touch, 2.0 * full - touch  # the last cell goes on, so that the caller sees what is too deep
+    depth = min(max(guess, low), high)
+    for _ in range(STEPS):
+        force, slope = force_and_slope(table, features, touch, full, depth)
+        excess = force + spring * depth - push
+        if excess > 0.0:
+            high = depth
+        else:
+            low = depth
+        step = -excess / max(slope + spring, 1e-300)
+        if abs(step) <= CLOSE * full or high - low <= CLOSE * full:
+            break
+        depth += step
+        if not low < depth < high:
+            depth = 0.5 * (low + high)
+    return depth
