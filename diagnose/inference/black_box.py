@@ -18,13 +18,16 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from diagnose.findings import Fit
+from diagnose.fit.baseline import plausible
+from diagnose.fit.linearised_system import LinearisedSystem, linearised
+from diagnose.fit.marginal_likelihood import Quadratic
 from diagnose.fit.observed_model import ObservedModel
-from diagnose.fit.refit import Fitted, fitted, plausible
+from diagnose.fit.refit import Fitted, fitted
 from diagnose.fit.samples import SampleBlock, Samples
-from diagnose.fit.system import LinearisedSystem, Quadratic, linearised
 from diagnose.forward import Setting
 from diagnose.inference.search import Screening
-from diagnose.statistics.held_out import Forecast, Sums, forecast
+from diagnose.statistics.held_out import Forecast, forecast
+from diagnose.statistics.linear_gaussian import Sums
 from geometry.arrays import Bools, Floats, Ints
 
 STRENGTHS = np.logspace(-2.0, 6.0, 17)  # of the response, in sigma of the noise over all samples: where s is sought

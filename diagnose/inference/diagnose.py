@@ -8,13 +8,15 @@ import numpy as np
 
 from diagnose.figures import figure, percent
 from diagnose.findings import Detection, Findings, Fit, FittedModel, Remainder
+from diagnose.fit.baseline import fitted_baseline
 from diagnose.fit.drive_error import drive_error
 from diagnose.fit.intervals import intervals, points
-from diagnose.fit.observed_model import Nuisance, ObservedModel
-from diagnose.fit.refit import Fitted, fitted_baseline
+from diagnose.fit.linearised_system import LinearisedSystem
+from diagnose.fit.nuisances import Nuisance
+from diagnose.fit.observed_model import ObservedModel
+from diagnose.fit.refit import Fitted
 from diagnose.fit.samples import Samples
 from diagnose.fit.signal_discrepancy import by_phase
-from diagnose.fit.system import LinearisedSystem
 from diagnose.forward import Engine, Setting, Signals
 from diagnose.inference import hum
 from diagnose.inference.black_box import trained_and_held, unimproved
@@ -29,7 +31,8 @@ from diagnose.inference.tolerant_judge import distinguished, residual_beside
 from diagnose.noise.estimate import noise_models
 from diagnose.signals.phases import PHASES
 from diagnose.signals.recording import Recording
-from diagnose.statistics.abstain import RATES, Decision
+from diagnose.statistics.abstain import Decision
+from diagnose.statistics.error_rates import RATES
 from diagnose.verdict.names import in_common
 from geometry.arrays import Floats
 from geometry.base import Report

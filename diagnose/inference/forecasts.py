@@ -13,11 +13,13 @@ from operator import add
 import numpy as np
 
 from diagnose.fit.descent import coordinates
+from diagnose.fit.linearised_system import LinearisedSystem
+from diagnose.fit.marginal_likelihood import Quadratic
 from diagnose.fit.refit import Fitted
 from diagnose.fit.samples import Samples
-from diagnose.fit.system import LinearisedSystem, Quadratic
-from diagnose.statistics.abstain import ALIKE, RATES
-from diagnose.statistics.held_out import Gain, Sums, gain_over_noise, leave_press_out
+from diagnose.statistics.error_rates import ALIKE, RATES
+from diagnose.statistics.held_out import Gain, gain_over_noise, leave_press_out
+from diagnose.statistics.linear_gaussian import Sums
 from diagnose.statistics.separation import ambiguity_groups, least_separation
 from geometry.arrays import Floats, Ints
 

@@ -22,8 +22,8 @@ from diagnose.fit.samples import Samples
 from diagnose.inference.residual_test import Checked
 from diagnose.inference.search import Screening
 from diagnose.signals.phases import PHASES
-from diagnose.statistics.abstain import RATES
-from diagnose.statistics.score_test import Marginal
+from diagnose.statistics.error_rates import RATES
+from diagnose.statistics.nuisance_projection import Marginal
 from geometry.arrays import Bools, Floats
 
 MOST = 10  # components: 1 024 small fits

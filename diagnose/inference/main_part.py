@@ -14,16 +14,16 @@ import numpy as np
 from diagnose.findings import Fit
 from diagnose.fit.descent import settings
 from diagnose.fit.discrepancy import FORM_ERROR
+from diagnose.fit.linearised_system import linearised
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.signal_discrepancy import VISIBLE, SignalDiscrepancy, by_phase, conditions, in_plain_units
-from diagnose.fit.system import linearised
 from diagnose.inference.choice import Judged, implausible, ordinary, score_of
 from diagnose.inference.forecasts import Forecasted
 from diagnose.inference.search import Screening, first_fits, pairs, screen, singles
 from diagnose.inference.tolerant_judge import TolerantJudge, held_together, left_by
 from diagnose.signals.phases import PHASES
-from diagnose.statistics.abstain import RATES
-from diagnose.statistics.held_out import held_out_probabilities
+from diagnose.statistics.error_rates import RATES
+from diagnose.statistics.model_criteria import held_out_probabilities
 from geometry.arrays import Floats
 from geometry.base import Report
 

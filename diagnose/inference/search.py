@@ -10,15 +10,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from diagnose.fit.baseline import believed
 from diagnose.fit.descent import LEAST_GAIN, descent, lowest
+from diagnose.fit.informative_rows import informative_rows
+from diagnose.fit.linearised_system import LinearisedSystem
 from diagnose.fit.observed_model import STEP, ObservedModel
-from diagnose.fit.refit import Fitted, believed, common_metric, fitted
+from diagnose.fit.refit import Fitted, common_metric, fitted
 from diagnose.fit.samples import noise_degrees
-from diagnose.fit.system import LinearisedSystem, informative_rows
 from diagnose.forward import Candidate, Coordinate, Setting
 from diagnose.inference.forecasts import excess
-from diagnose.statistics.abstain import FINALISTS, PAIRS, RATES
-from diagnose.statistics.score_test import Marginal, holm, score_test
+from diagnose.statistics.error_rates import FINALISTS, PAIRS, RATES
+from diagnose.statistics.nuisance_projection import Marginal
+from diagnose.statistics.score_test import holm, score_test
 from geometry.arrays import Bools, Floats
 from geometry.base import Report
 

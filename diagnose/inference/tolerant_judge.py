@@ -12,16 +12,19 @@ import numpy as np
 from scipy.stats import norm
 
 from diagnose.figures import percent
+from diagnose.fit.baseline import capped, within_priors
+from diagnose.fit.linearised_system import linearised, relative
+from diagnose.fit.marginal_likelihood import Quadratic
 from diagnose.fit.observed_model import ObservedModel
-from diagnose.fit.refit import Fitted, capped, fitted, within_priors
+from diagnose.fit.refit import Fitted, fitted
 from diagnose.fit.samples import Samples
 from diagnose.fit.signal_discrepancy import VISIBLE, SignalDiscrepancy, conditions, in_plain_units
-from diagnose.fit.system import Quadratic, linearised, relative
 from diagnose.forward import Candidate, Setting
 from diagnose.inference.choice import Choice, Judged, score_of
 from diagnose.inference.forecasts import Forecasted, forecasted, gained, separation
 from diagnose.inference.search import Screening
-from diagnose.statistics.abstain import RATES, too_many
+from diagnose.statistics.abstain import too_many
+from diagnose.statistics.error_rates import RATES
 from diagnose.statistics.held_out import Gain, leave_press_out
 from geometry.arrays import Floats, Ints
 

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from diagnose.prove.world.cases import AMBIGUOUS, LEFT_OUT, NONE, OUTSIDE, PAIR, SINGLE
-from diagnose.statistics.abstain import wilson_interval
+from diagnose.statistics.proportions import wilson_interval
 
 Name = tuple[str, str]
 LARGEST_GROUP = 3

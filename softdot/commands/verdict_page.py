@@ -10,7 +10,8 @@ from typing import Any, cast
 import tomlkit
 from tomlkit.items import InlineTable, Table
 
-from diagnose.engines.coupon.engine import CouponEngine, improved_material
+from diagnose.engines.coupon.engine import CouponEngine
+from diagnose.engines.coupon.improved_material import improved_material
 from diagnose.figures import figure, p_alone, percent, probability
 from diagnose.findings import Findings, FittedModel, Grade
 from diagnose.forward import Engine, Setting

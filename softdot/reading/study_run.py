@@ -169,7 +169,7 @@ def _summary(study: ReadingStudy, readings: Readings, kernel: ArrayKernel) -> di
 
 def _counted(found: list[dict[str, Any]]) -> dict[str, Any]:
     """Characters that were right of all repeats together, with Wilson's 95 % interval."""
-    from diagnose.statistics.abstain import wilson_interval
+    from diagnose.statistics.proportions import wilson_interval
 
     right, of = sum(one["right"] for one in found), sum(one["of"] for one in found)
     low, high = wilson_interval(right, of)

@@ -14,9 +14,10 @@ from functools import lru_cache
 import numpy as np
 
 from diagnose.engines.coupon.kinematics import SimpleShear
-from diagnose.engines.coupon.laws import LARGEST_STRAIN, LAYER, MEDIUM
 from diagnose.engines.coupon.point import MaterialPoint
 from diagnose.engines.coupon.relaxation import NO_SERIES, Relaxation
+from diagnose.engines.coupon.tested_layer import LAYER
+from diagnose.engines.proportional.medium import LARGEST_STRAIN, MEDIUM
 from diagnose.vocabulary.base import film_capacitance_pF
 from geometry.arrays import Floats
 from solve.materials.inelastic import Prony, Softening

@@ -12,8 +12,9 @@ from typing import Self
 
 import numpy as np
 
-from diagnose.engines.coupon.laws import MEDIUM, one_layer, switched, with_factors_last
+from diagnose.engines.coupon.tested_layer import one_layer, switched, with_factors_last
 from diagnose.engines.proportional.charge import Loading, film_charge, other_charge, voltage
+from diagnose.engines.proportional.medium import MEDIUM
 from diagnose.forward import Candidate, Coordinate, Setting, Signals, SolvedOutright
 from diagnose.signals.phases import Segmentation, rest_of, segmented
 from diagnose.signals.recording import Recording, Run

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from math import exp, log
 from typing import Any
 
-from diagnose.engines.coupon.laws import SPECIMEN, PartOfLayer
+from diagnose.engines.coupon.tested_layer import SPECIMEN, PartOfLayer
 from diagnose.forward import Candidate, Coordinate
 from diagnose.vocabulary.base import STIFFNESS, CouponScene, Scene, Vocabulary, register
 from solve.materials.parameters import Hyperfoam, Material

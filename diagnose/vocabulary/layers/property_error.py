@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Sequence
 from math import exp, log
 from typing import Any
 
-from diagnose.engines.coupon.laws import SPECIMEN, PartOfLayer
+from diagnose.engines.coupon.tested_layer import SPECIMEN, PartOfLayer
 from diagnose.forward import Candidate, Coordinate, Setting
 from diagnose.vocabulary.base import GIVES_WAY, STIFFNESS, CouponScene, Scene, Vocabulary, register
 from geometry.dot import resolve_dot

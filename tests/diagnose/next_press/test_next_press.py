@@ -12,7 +12,7 @@ from diagnose.next_press.parting import PressJudge
 from diagnose.next_press.proposals import Shape, base_setup, recorded_shape, repeats, variations
 from diagnose.signals.phases import segmented
 from diagnose.signals.recording import Recording
-from diagnose.statistics.score_test import Marginal
+from diagnose.statistics.nuisance_projection import Marginal
 from tests.diagnose.verdict.toy import LEAK, RELAXING, ToyEngine, fitted, found, toy_recording, toy_run
 
 LEAKS, RELAXES = fitted(LEAK, 0.5), fitted(RELAXING, 0.3, 0.5)

@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnose.engines.segment.answer import FilmPlate, Mechanics, drive_of, shown
+from diagnose.engines.segment.drive import drive_of
+from diagnose.engines.segment.response import FilmPlate, Mechanics, shown
 from diagnose.inference.diagnose import diagnose
 from diagnose.prove.folder import files
 from diagnose.prove.world import cases, reality, rigs

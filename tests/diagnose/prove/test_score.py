@@ -6,7 +6,7 @@ from diagnose.prove.score import rate, scored, tally
 from diagnose.prove.world.cases import KINDS, NONE, OUTSIDE, PAIR, SINGLE, plan
 from diagnose.prove.world.effects import fits
 from diagnose.prove.world.rigs import BENCHES
-from diagnose.statistics.abstain import wilson_interval
+from diagnose.statistics.proportions import wilson_interval
 from tests.cases import for_each
 
 LEAK = {"mechanism": "charge-leakage", "component": "readout"}

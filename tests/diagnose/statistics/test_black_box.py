@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from diagnose.inference.black_box import black_box_forecast, doubling_edges, lagged_means, ridge_by_evidence
-from diagnose.statistics.held_out import Sums
+from diagnose.statistics.linear_gaussian import Sums
 from tests.diagnose.statistics.forecasts import linear_forecast, sure_gain
 
 RNG = np.random.default_rng(101)

@@ -10,7 +10,8 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
-from diagnose.engines.segment.answer import Drive, Mechanics, mechanics
+from diagnose.engines.segment.drive import Drive
+from diagnose.engines.segment.response import Mechanics, mechanics
 from geometry.arrays import Floats
 from solve.model import Model
 from solve.reduced.fit import ResponseTable

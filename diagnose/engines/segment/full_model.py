@@ -1,49 +1,24 @@
-"""A run by the 3D model itself: its drive as a waveform, its answer at the run's own times.
-
-The fewest times at which the 3D model must be solved to follow a drive.
-"""
+"""A run by the 3D model itself: its drive as a waveform, its answer at the run's own times."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from diagnose.engines.segment.answer import Drive, FilmPlate, Mechanics, shown
+from diagnose.engines.segment.drive import Drive
 from diagnose.engines.segment.presses import ungapped
+from diagnose.engines.segment.response import FilmPlate, Mechanics, shown
+from diagnose.engines.segment.solved_times import knots
 from diagnose.forward import Signals
 from diagnose.signals.recording import Run
-from geometry.arrays import Floats, Ints
+from geometry.arrays import Floats
 from geometry.base import Report
 from solve.model import Model, Press, Waveform
 from solve.press import press_segment
 from solve.result import PressResult, Trace
 from solve.solution.newton import NoEquilibriumError
-from solve.solution.thinning import thinned
 from solve.tables.rig_mesh import Mesh
-
-SLOPE = 0.06, 0.2, 0.4, 0.6, 0.8, 0.94  # of a slope: closest where softened rubber leaves its first curve
-STEEP = 0.2  # of the largest drive: a lesser rise needs no point between
-HOLD = 0.03, 0.1, 0.3  # of a stretch without much change: what relaxes does so at first
-
-
-def knots(time: Floats, share: Floats, tolerance: float, most: int) -> Ints:
-    """Samples (k,) to solve at, for a drive in shares (t,) of its largest: corners, and between them by SLOPE or HOLD.
-
-    What is clear of the segment has no points of its own.
-    """
-    kept = np.flatnonzero(thinned(time, share, tolerance, most // 2))
-    more: list[int] = []
-    for first, last in pairwise(kept):
-        rise = abs(share[last] - share[first])
-        if max(share[first], share[last]) <= tolerance:
-            continue
-        places = SLOPE if rise > STEEP else HOLD
-        more += [int(np.searchsorted(time, time[first] + p * (time[last] - time[first]))) for p in places]
-    found = np.unique([*kept, *more])
-    return found if len(found) <= most else kept
-
 
 LOAD_STEPS = 8  # of a press in which time does not count
 TOLERANCE = 0.002  # of the largest drive, by which the thinned drive may differ

@@ -1,68 +1,17 @@
-"""The recording linearised about nuisances and mechanisms: a residual, its variance, a design matrix.
-
-The log-likelihood of whitened residuals once nuisances are integrated out, as inner products.
-
-With columns T and prior deviations P the covariance is S = 1 + T P^2 T'. S^-1 = 1 - T A^-1 T', A = T'T + P^-2
-(Rasmussen and Williams 2006, appendix A.3), so that only the small A is factorised.
-
-The informative mask says where sensitivities have energy. Fits leave the other coefficients alone, which hold noise and
-nothing to fit.
-"""
+"""The recording linearised about nuisances and mechanisms: a residual, its variance, a design matrix."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
 
 from diagnose.fit import discrepancy
-from diagnose.fit.discrepancy import drive_noise
+from diagnose.fit.drive_noise import drive_noise
+from diagnose.fit.marginal_likelihood import Quadratic
 from diagnose.fit.observed_model import ObservedModel
-from diagnose.fit.samples import Samples
 from diagnose.forward import Setting
 from geometry.arrays import Bools, Floats
-
-TINY = np.finfo(float).tiny ** 0.25
-RIDGE = 1e-12  # relative to the square of a column's length: parallel columns without a prior
-
-
-class Quadratic:
-    """a' S^-1 b for vectors in the whitened space."""
-
-    def __init__(self, columns: Floats, sigma: Floats) -> None:
-        """columns : (n, k) whitened. sigma : (k,) prior deviations, inf for none."""
-        length = np.where(sigma > 0.0, np.linalg.norm(columns, axis=0), 0.0)
-        self._scale = np.where(length > 0.0, length, 1.0)
-        self.columns = columns / self._scale
-        self.columns[:, length == 0.0] = 0.0
-        prior = np.where(length > 0.0, 1.0 / np.maximum(sigma * self._scale, TINY) ** 2 + RIDGE, 1.0)
-        gram = self.columns.T @ self.columns + np.diag(prior)
-        self._factor = cho_factor(gram, lower=True)
-        known = np.isfinite(sigma) & (length > 0.0)
-        self.log_scale = float(np.log(np.diag(self._factor[0])).sum() + np.log((sigma * self._scale)[known]).sum())
-
-    def product(self, a: Floats, b: Floats) -> Floats:
-        """(p, q) inner products of columns (n, p) and (n, q)."""
-        return np.asarray(a.T @ b - (self.columns.T @ a).T @ cho_solve(self._factor, self.columns.T @ b))
-
-    def square(self, a: Floats) -> float:
-        """a' S^-1 a of one vector (n,)."""
-        along = self.columns.T @ a
-        return float(a @ a - along @ cho_solve(self._factor, along))
-
-    def mean(self, residual: Floats) -> Floats:
-        """Posterior mean (k,) of the nuisances given a residual (n,)."""
-        return np.asarray(cho_solve(self._factor, self.columns.T @ residual) / self._scale)
-
-    def variances(self) -> Floats:
-        """Posterior variances (k,) of the nuisances."""
-        inverse = cho_solve(self._factor, np.eye(len(self._scale)))
-        return np.asarray(np.diag(inverse) / self._scale**2)
-
-    def cleared(self, a: Floats) -> Floats:
-        """S^-1 a, (n,) or (n, q)."""
-        return np.asarray(a - self.columns @ cho_solve(self._factor, self.columns.T @ a))
 
 
 @dataclass(frozen=True)
@@ -187,32 +136,3 @@ def linearised(
         form_error,
         np.ones(len(samples), dtype=bool) if informative is None else informative,
     )
-
-
-SEEN = 0.3  # standard deviations: what no sensitivity, as large as all the residual, can make is not looked at
-
-
-def informative_rows(samples: Samples, system: LinearisedSystem, sensitivities: Sequence[Floats]) -> Bools:
-    """Coefficients (n,) in which a column of the (n, k), scaled to the length of the residual, shows at all.
-
-    A nuisance parameter is scaled to its prior where that is less. Only the length of the residual counts, not its
-    shape, so
-    that no test is biased.
-    """
-    weight = system.weight
-    length = float(np.linalg.norm(system.residual * weight))
-    largest = np.zeros(len(samples))
-    for columns, sigma in [
-        (system.nuisance_design, system.sigma),
-        *((c, np.full(c.shape[1], np.inf)) for c in sensitivities),
-    ]:
-        shown = np.abs(columns) * weight[:, None]
-        size = np.linalg.norm(shown, axis=0)
-        scale = np.minimum(sigma, np.divide(length, size, out=np.zeros(len(size)), where=size > 0.0))
-        largest = np.maximum(largest, (shown * scale).max(axis=1, initial=0.0))
-    kept = largest > SEEN
-    for label in np.unique(samples.fold):  # every press keeps something to be judged by
-        own = samples.fold == label
-        if not kept[own].any():
-            kept |= own
-    return kept

@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from diagnose.engines.segment.answer import Mechanics
+from diagnose.engines.segment.response import Mechanics
 from geometry.arrays import Floats
 from solve.reduced.fit import CELLS, ResponseTable
 from solve.tables.job import RETURN

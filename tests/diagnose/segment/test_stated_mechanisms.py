@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import tomlkit
 
-from diagnose.engines.segment import recent
-from diagnose.engines.segment.answer import mechanics
+from diagnose.engines.segment import kept_answers as recent
+from diagnose.engines.segment.response import mechanics
 from diagnose.forward import Setting
 from diagnose.inference.diagnose import diagnose
 from diagnose.signals.recording import Recording

@@ -1,55 +1,19 @@
-"""From a table and a drive to what the instruments of a run show.
-
-The drive of a run as the model takes it, and where its first touch is.
-"""
+"""From a table and a drive to what the instruments of a run show."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnose.signals.phases import Segmentation
+from diagnose.engines.segment.drive import Drive
 from diagnose.signals.recording import Run
-from geometry.arrays import Bools, Floats
+from geometry.arrays import Floats
 from solve.model import Model, Physics, Readout
 from solve.readout.amplifier import amplify, other_charge_C
 from solve.readout.channels import amplify_channels
 from solve.reduced.fit import ResponseTable
-from solve.reduced.kernels import BY_DEPTH, BY_FORCE, TOO_DEEP, follow
+from solve.reduced.kernels import TOO_DEEP, follow
 from solve.reduced.model import branches, sensed
-
-
-@dataclass(frozen=True)
-class Drive:
-    """time_s (t,) from the first touch; values (t,) mm from the touch or N, of a kind; touching (t,)."""
-
-    time_s: Floats
-    values: Floats
-    kind: int
-    touching: Bools
-
-    @property
-    def by_depth(self) -> bool:
-        """Whether a displacement drives."""
-        return self.kind == BY_DEPTH
-
-
-def drive_of(run: Run, phases: Segmentation) -> Drive:
-    """A force cannot pull."""
-    first = phases.presses[0].touch if phases.presses else 0
-    by_depth = run.drive == "displacement_mm"
-    values = run.drive_values if by_depth else np.maximum(run.drive_values, 0.0)
-    touching = np.zeros(len(values), dtype=np.bool_)
-    for press in phases.presses:
-        touching[press.touch : press.clear] = True
-    time = run.time_s - run.time_s[first]
-    return Drive(np.ascontiguousarray(time), np.ascontiguousarray(values), BY_DEPTH if by_depth else BY_FORCE, touching)
-
-
-def pressed_once(largest: float, drive: str) -> Drive:
-    """From nothing to the largest value (mm or N) of a drive."""
-    kind = BY_DEPTH if drive == "displacement_mm" else BY_FORCE
-    return Drive(np.array([0.0, 1.0]), np.array([0.0, largest]), kind, np.array([False, True]))
 
 
 @dataclass(frozen=True)
