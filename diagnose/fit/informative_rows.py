@@ -1,6 +1,6 @@
 """The coefficients of a recording in which sensitivities have energy.
 
-Fits leave the other coefficients alone, which hold noise and nothing to fit.
+Fits leave the others alone, which hold noise and nothing to fit; there a mechanism could only be fitted to chance.
 """
 
 from collections.abc import Sequence

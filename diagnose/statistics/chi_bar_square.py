@@ -88,6 +88,7 @@ def _chance_of_face(information: Floats, face: list[int]) -> float:
 
 
 def f_tail(statistic: float, degrees: int, noise_degrees: float) -> float:
+    """P(F or chi-square >= statistic), the latter where the variance of the noise is known."""
     if np.isinf(noise_degrees):
         return float(chi2.sf(statistic, degrees))
     return float(f_distribution.sf(statistic / degrees, degrees, noise_degrees))

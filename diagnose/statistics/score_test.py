@@ -1,8 +1,8 @@
 """Screening: does one candidate's sensitivity show in the residual, after all that may float has floated? No refit.
 
 Rao's efficient score test (Proc. Camb. Phil. Soc. 44 (1948) 50; Bera and Bilias, J. Stat. Plan. Inference 97 (2001) 9):
-nuisances are taken out of residual and sensitivities beforehand (nuisance_projection.py). With white noise of unit variance the
-statistic is the gain in the sum of squares of the linearised fit, over the cone of allowed signs.
+nuisances are taken out of residual and sensitivities beforehand (nuisance_projection.py). With white noise of unit
+variance the statistic is the gain in the sum of squares of the linearised fit, over the cone of allowed signs.
 """
 
 from dataclasses import dataclass

@@ -11,13 +11,7 @@ from geometry.executor import Executor
 from geometry.files import release
 from softdot.arrays.kernel import ArrayKernel
 from softdot.config import Config
-from softdot.console import (
-    Logged,
-    Progress,
-    installed_version,
-    plain,
-    write_json,
-)
+from softdot.console import Logged, Progress, installed_version, plain, write_json
 from softdot.output import Product, check_output
 from softdot.reading.conditions import ReadingConditions
 from softdot.reading.decoders import named_decoders

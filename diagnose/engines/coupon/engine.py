@@ -20,8 +20,9 @@ from diagnose.engines.coupon.tested_layer import (
 )
 from diagnose.forward import Candidate, Setting, Signals, SolvedOutright
 from diagnose.signals.recording import Drive, Recording, Run, Specimen
-from diagnose.vocabulary.base import CouponScene, candidates_of_coupon
+from diagnose.vocabulary.base import candidates_of_coupon
 from diagnose.vocabulary.layers.property_error import relative_error
+from diagnose.vocabulary.scene import CouponScene
 from geometry.arrays import Floats
 from geometry.base import InputError, Report
 from solve.materials.parameters import Material, PiezoelectricFilm, find_material

@@ -5,10 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from diagnose.engines.coupon.engine import CouponEngine
-from diagnose.engines.coupon.tested_layer import (
-    LAYER,
-    switched,
-)
+from diagnose.engines.coupon.tested_layer import LAYER, switched
 from diagnose.forward import Setting
 
 

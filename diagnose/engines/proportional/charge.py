@@ -18,7 +18,7 @@ from diagnose.engines.coupon.point import MaterialPoint
 from diagnose.engines.coupon.relaxation import NO_SERIES, Relaxation
 from diagnose.engines.coupon.tested_layer import LAYER
 from diagnose.engines.proportional.medium import LARGEST_STRAIN, MEDIUM
-from diagnose.vocabulary.base import film_capacitance_pF
+from diagnose.vocabulary.scene import film_capacitance_pF
 from geometry.arrays import Floats
 from solve.materials.inelastic import Prony, Softening
 from solve.materials.laws import MediumLaw

@@ -18,7 +18,9 @@ from diagnose.engines.proportional.medium import MEDIUM
 from diagnose.forward import Candidate, Coordinate, Setting, Signals, SolvedOutright
 from diagnose.signals.phases import Segmentation, rest_of, segmented
 from diagnose.signals.recording import Recording, Run
-from diagnose.vocabulary.base import Scene, candidates_of_unknown_geometry, film_capacitance_pF, growing
+from diagnose.vocabulary.base import candidates_of_unknown_geometry
+from diagnose.vocabulary.scales import growing
+from diagnose.vocabulary.scene import Scene, film_capacitance_pF
 from geometry.arrays import Floats
 from geometry.base import InputError, Report
 from solve.mechanisms import Mechanism

@@ -22,7 +22,8 @@ from diagnose.engines.segment.response import FilmPlate, Mechanics, mechanics, s
 from diagnose.engines.segment.stated_mechanisms import always_on, readout_behind, stated_apart, without_stated
 from diagnose.forward import Candidate, Setting, Signals
 from diagnose.signals.recording import Recording, Run
-from diagnose.vocabulary.base import Scene, candidates_of_segment
+from diagnose.vocabulary.base import candidates_of_segment
+from diagnose.vocabulary.scene import Scene
 from geometry.arrays import Floats
 from geometry.base import Report
 from geometry.executor import HERE, Executor

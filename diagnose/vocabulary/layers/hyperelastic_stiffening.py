@@ -13,7 +13,8 @@ from diagnose.engines.coupon.tested_layer import LAYER, SPECIMEN, PartOfLayer, o
 from diagnose.engines.proportional.medium import LARGEST_STRAIN, MEDIUM
 from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
-from diagnose.vocabulary.base import STIFFNESS, CouponScene, Scene, Vocabulary, register
+from diagnose.vocabulary.base import STIFFNESS, Vocabulary, register
+from diagnose.vocabulary.scene import CouponScene, Scene
 from solve.materials.parameters import Hyperfoam, Material, MooneyRivlin, NeoHookean, Ogden, Yeoh
 from solve.mechanisms import Mechanism, with_mechanisms
 from solve.mechanisms.base import MEDIA

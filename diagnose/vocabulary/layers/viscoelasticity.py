@@ -10,7 +10,8 @@ from diagnose.engines.coupon.relaxation_spectrum import MOST_OF_COUPON, relaxati
 from diagnose.engines.coupon.tested_layer import LAYER, SPECIMEN, PartOfLayer
 from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
-from diagnose.vocabulary.base import REMEMBERS, CouponScene, Scene, Vocabulary, register
+from diagnose.vocabulary.base import REMEMBERS, Vocabulary, register
+from diagnose.vocabulary.scene import CouponScene, Scene
 from solve.materials.inelastic import Prony
 from solve.mechanisms.layers.viscoelasticity import VISCOELASTICITY
 from solve.model import Model

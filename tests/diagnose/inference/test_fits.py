@@ -16,10 +16,11 @@ from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.refit import common_metric, fitted, largest_form_error
 from diagnose.fit.samples import Samples
 from diagnose.forward import Candidate, Coordinate
-from diagnose.inference.black_box import relaxed
 from diagnose.inference.choice import Judge, partners
-from diagnose.inference.forecasts import excess, share_left
-from diagnose.inference.search import paired, screen
+from diagnose.inference.excess import excess, share_left
+from diagnose.inference.screening import screen
+from diagnose.inference.search import paired
+from diagnose.inference.true_refit import relaxed
 from diagnose.noise.estimate import noise_models
 from tests.cases import for_each
 from tests.diagnose.inference.toy import CANDIDATES, Sensor, ToyEngine, silent, small

@@ -15,7 +15,8 @@ from diagnose.prove.folder import files
 from diagnose.prove.world import cases, reality, rigs
 from diagnose.prove.world.effects import applied
 from diagnose.prove.world.march import Course, Table
-from diagnose.vocabulary.base import Scene, candidates_of_segment
+from diagnose.vocabulary.base import candidates_of_segment
+from diagnose.vocabulary.scene import Scene
 from softdot.config.model import model_of
 from softdot.config.rig import load_rig
 from solve.mechanisms import with_mechanisms
