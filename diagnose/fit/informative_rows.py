@@ -1,7 +1,4 @@
-"""The coefficients of a recording in which sensitivities have energy.
-
-Fits leave the others alone, which hold noise and nothing to fit; there a mechanism could only be fitted to chance.
-"""
+"""The coefficients of a recording in which sensitivities have energy: fits leave the others, which hold noise, alone."""
 
 from collections.abc import Sequence
 

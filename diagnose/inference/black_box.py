@@ -1,7 +1,4 @@
-"""The flexible rival without mechanics: any linear memory of the drive, judged in the same metric as the named model.
-
-A named mechanism that cannot beat it is not named.
-"""
+"""The flexible rival without mechanics, any linear memory of the drive: a name that cannot beat it is not given."""
 
 import numpy as np
 
