@@ -1,4 +1,4 @@
-"""The coefficients of a recording in which sensitivities have energy: fits leave the others, which hold noise, alone."""
+"""The coefficients of a recording in which sensitivities have energy: fits leave the others alone, which hold noise."""
 
 from collections.abc import Sequence
 
