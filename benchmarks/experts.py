@@ -20,7 +20,7 @@ from scipy.optimize import least_squares, minimize_scalar, nnls
 from scipy.signal import lfilter
 
 from benchmarks.timing import Table, file_argument
-from diagnose.inference.black_box import split
+from diagnose.inference.true_refit import split
 from diagnose.signals.reading import thinned
 from diagnose.signals.recording import Recording, Run
 from geometry.arrays import Bools, Floats

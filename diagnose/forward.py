@@ -1,16 +1,10 @@
-"""What a diagnosis asks of a forward model, whatever solves it: the segment in 3D, a coupon, a proportional sensor;
-and engines that pass on what another one answers, for some of the runs.
-"""
+"""What a diagnosis asks of a forward model, whatever solves it: the segment in 3D, a coupon, a proportional sensor."""
 
 from collections.abc import Callable, Mapping, Sequence
-from copy import copy
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any, Protocol, Self
 
-import numpy as np
-
-from diagnose.figures import figure
-from diagnose.signals.recording import Recording, Run
+from diagnose.signals.recording import Run
 from geometry.arrays import Floats
 from geometry.base import Report
 from solve.mechanisms import Mechanism, Traits, traits_of
@@ -167,109 +161,3 @@ class SolvedOutright:
     def refine(self, settings: Sequence[Setting], report: Report) -> Sequence[Setting]:
         """Nothing: predictions are as right everywhere."""
         return ()
-
-
-class PassingOn:
-    """Implements diagnose.forward.Engine by another engine."""
-
-    def __init__(self, engine: Engine) -> None:
-        self._engine = engine
-        self.name, self.accuracy = engine.name, engine.accuracy
-        self.candidates, self.free_nuisances = engine.candidates, engine.free_nuisances
-
-    @property
-    def shortfalls(self) -> tuple[str, ...]:
-        """Of the engine."""
-        return self._engine.shortfalls
-
-    def nuisance(self, name: str) -> Candidate | None:
-        """As the engine."""
-        return self._engine.nuisance(name)
-
-    def with_candidates(self, candidates: tuple[Candidate, ...]) -> Self:
-        """As the engine, with fewer candidates."""
-        fewer = copy(self)
-        fewer.candidates = candidates
-        return fewer
-
-    def prepare(self, candidates: Sequence[Candidate], report: Report) -> None:
-        """As the engine."""
-        self._engine.prepare(candidates, report)
-
-    def refine(self, settings: Sequence[Setting], report: Report) -> Sequence[Setting]:
-        """As the engine."""
-        return self._engine.refine(settings, report)
-
-    def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
-        """As the engine."""
-        return self._engine.predict(run, settings)
-
-    def imagine(self, run: Run, settings: Sequence[Setting]) -> Signals:
-        """As the engine."""
-        return self._engine.imagine(run, settings)
-
-    def solve(self, run: int, mechanisms: Sequence[Mechanism], report: Report) -> Signals:
-        """As the engine."""
-        return self._engine.solve(run, mechanisms, report)
-
-
-def some_runs(recording: Recording, numbers: Sequence[int]) -> Recording:
-    """The recording of these runs alone."""
-    return replace(recording, runs=tuple(recording.runs[number] for number in numbers))
-
-
-def all_but(recording: Recording, numbers: Sequence[int]) -> list[int]:
-    """Numbers of all other runs."""
-    return [number for number in range(len(recording.runs)) if number not in numbers]
-
-
-class SomeRuns(PassingOn):
-    """The engine of a recording for some_runs of it: a run has the number that it has among them."""
-
-    def __init__(self, engine: Engine, numbers: Sequence[int]) -> None:
-        super().__init__(engine)
-        self._numbers = tuple(numbers)
-
-    def predict(self, run: int, settings: Sequence[Setting]) -> Signals:
-        """As the engine."""
-        return super().predict(self._numbers[run], settings)
-
-    def solve(self, run: int, mechanisms: Sequence[Mechanism], report: Report) -> Signals:
-        """As the engine."""
-        return super().solve(self._numbers[run], mechanisms, report)
-
-
-THOUSAND = 1000.0
-MEANT = {"V": "millivolts", "N": "millinewtons", "mm": "micrometres"}
-KILO = {"N": "kilonewtons"}
-"""A voltage may be a thousandth of what is expected, behind a leak; a force can not."""
-
-
-def other_units(recording: Recording, engine: Engine) -> list[str]:
-    """One sentence for each channel of a run whose size fits the model better after division by a thousand, or a force
-    after multiplication with it.
-
-    Both are compared by their largest absolute values; on a logarithmic scale a thousandth is nearer to the model where
-    the ratio is above the root of a thousand. Physics that a model lacks takes signal away or adds a part of it.
-    """
-    said = []
-    for number, run in enumerate(recording.runs):
-        simulated = engine.predict(number, ())
-        for channel in run.answers:
-            used = run.usable(channel)
-            recorded = float(np.abs(run.channels[channel][used]).max(initial=0.0))
-            expected = float(np.abs(simulated[channel][used]).max(initial=0.0))
-            meant = KILO if recorded < expected else MEANT
-            apart = max(recorded, expected) > np.sqrt(THOUSAND) * min(recorded, expected)
-            unit = channel.rpartition("_")[2]
-            if min(recorded, expected) > 0.0 and apart and unit in meant:
-                said.append(_sentence(run.file, channel, recorded, expected, meant[unit]))
-    return said
-
-
-def _sentence(file: str, channel: str, recorded: float, expected: float, meant: str) -> str:
-    unit = channel.rpartition("_")[2]
-    return (
-        f"recording '{file}', column {channel}: reaches {figure(recorded)} {unit}, {figure(recorded / expected)} times "
-        f"the {figure(expected)} {unit} that the model of this rig gives; are these {meant}?"
-    )

@@ -179,7 +179,7 @@ def _add_prove(commands: Any) -> None:
         help="count how often a diagnosis is right, with hidden effects from another code",
         description="Hide effects in recordings of another code, seal the truth, diagnose, reveal and count. "
         "A proof that was stopped resumes where it was.",
-        epilog="docs/prove.md explains the cases and the table. " + EXIT_STATUS,
+        epilog="docs/studies/prove.md explains the cases and the table. " + EXIT_STATUS,
     )
     prove.add_argument("--cases", type=int, required=True, metavar="N", help="how many recordings")
     prove.add_argument("--seed", type=int, default=0, metavar="S", help="of the cases")

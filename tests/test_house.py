@@ -20,7 +20,7 @@ MAY_IMPORT = {
 }
 FILES = [path for top in MAY_IMPORT for path in sorted((ROOT / top).rglob("*.py"))]
 MOST_LINES = 500
-HIDDEN_WORLD = ROOT / "diagnose" / "prove" / "world"  # knows nothing of the rest, so it has names of its own
+HIDDEN_WORLD = ROOT / "softdot" / "studies" / "proof" / "world"  # knows nothing of the rest, so it has names of its own
 
 
 @cache

@@ -3,11 +3,6 @@
 A signal with relative error sigma is taken as signal times (1 + sigma m(t)), with m a random function over each press.
 Its smooth part is a few cosines over the press, common to the presses of a run (columns with prior sigma). What no
 column can follow adds to the variance of the coefficients where the signal itself is, and of those next to them.
-
-The noise of the measured drive shows in what a model predicts from it: it adds to the variance, band by band.
-
-In a piece of a press the answer changes by s times the change of the drive. White noise of the drive then has the
-density 2 dt (s sigma)^2, and each whitened coefficient the ratio of that to the density of the channel's own noise.
 """
 
 from collections.abc import Sequence
@@ -16,7 +11,6 @@ import numpy as np
 
 from diagnose.fit.samples import Samples
 from diagnose.forward import Signals
-from diagnose.signals.phases import rest_of
 from geometry.arrays import Floats
 
 FORM_ERROR = 0.05
@@ -104,27 +98,3 @@ def _waves(samples: Samples, run: int) -> Floats:
         length = max(press.end - press.touch, 1)
         place[press.touch : press.end] = (np.arange(press.end - press.touch) + 0.5) / length
     return np.cos(np.pi * place[:, None] * np.arange(COSINES))
-
-
-def drive_noise(samples: Samples, signals: Sequence[Signals]) -> Floats:
-    """Variance (n,) that is added to each coefficient; 0 where the drive is a command without noise."""
-    sigma = [rest_of(run.drive_values)[1] for run in samples.recording.runs]
-    added = np.zeros(len(samples))
-    for block in samples.blocks:
-        run = samples.recording.runs[block.run]
-        if sigma[block.run] == 0.0:
-            continue
-        drive, answer = run.drive_values[block.observed], signals[block.run][block.channel][block.observed]
-        first = block.rows.start
-        for piece in samples.pieces_of(block):
-            own = slice(piece.samples.start - first, piece.samples.stop - first)
-            slope = _slope(drive[own], answer[own])
-            density = samples.noise_density[piece.samples]
-            added[piece.samples] = 2.0 * piece.step_s * (slope * sigma[block.run]) ** 2 / density
-    return added
-
-
-def _slope(drive: Floats, answer: Floats) -> float:
-    """Root mean square change of the answer over that of the drive."""
-    moved = float(np.sum(np.diff(drive) ** 2))
-    return float(np.sqrt(np.sum(np.diff(answer) ** 2) / moved)) if moved > 0.0 else 0.0

@@ -16,9 +16,9 @@ from scipy.stats import chi2
 from diagnose.findings import Interval
 from diagnose.fit import discrepancy
 from diagnose.fit.descent import bounds, descent, scales, settings
+from diagnose.fit.linearised_system import relative
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.refit import Fitted
-from diagnose.fit.system import relative
 from diagnose.forward import Candidate, Setting
 from geometry.arrays import Bools, Floats
 

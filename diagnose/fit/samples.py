@@ -14,15 +14,8 @@ import numpy as np
 from diagnose.forward import Signals
 from diagnose.noise.model import NoiseModel, Whitening
 from diagnose.signals.recording import Recording, Run
-from diagnose.statistics.cells import (
-    CosineTransform,
-    FilterBank,
-    Hypotheses,
-    TimeSegment,
-    octave_edges,
-    segments,
-    with_pools,
-)
+from diagnose.statistics.cells import CosineTransform, FilterBank, TimeSegment, octave_edges, segments
+from diagnose.statistics.hypotheses import Hypotheses, with_pools
 from geometry.arrays import Bools, Floats, Ints
 
 POOLS: tuple[frozenset[str], ...] = tuple(

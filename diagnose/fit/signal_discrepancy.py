@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from diagnose.fit.samples import Samples, noise_degrees
-from diagnose.noise.estimate import repeated
+from diagnose.noise.repeats import repeated
 from geometry.arrays import Floats, Ints
 
 TINY = np.finfo(float).tiny ** 0.5

@@ -6,16 +6,22 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from diagnose.figures import figure
+from diagnose.fit.baseline import within_priors
 from diagnose.fit.descent import coordinates
 from diagnose.fit.observed_model import ObservedModel
-from diagnose.fit.refit import Fitted, within_priors
+from diagnose.fit.refit import Fitted
 from diagnose.forward import Candidate
+from diagnose.inference.ambiguity import alike, grouped, separations
 from diagnose.inference.black_box import box_scores, memory, worth_of_form
-from diagnose.inference.forecasts import Forecasted, alike, forecasted, gained, grouped, separations, share_left
+from diagnose.inference.excess import share_left
+from diagnose.inference.forecasts import Forecasted, forecasted, gained
 from diagnose.inference.residual_test import DRAWS, checked, nuisance_pull
-from diagnose.inference.search import Screening, first_fits, paired, pairs, singles
-from diagnose.statistics.abstain import ALIKE, FIRSTS, LEFT, RATES, Decision, Evidence, decide
-from diagnose.statistics.held_out import Gain, bic, gain_over_noise, held_out_probabilities
+from diagnose.inference.screening import Screening
+from diagnose.inference.search import first_fits, paired, pairs, singles
+from diagnose.statistics.abstain import Decision, Evidence, decide
+from diagnose.statistics.error_rates import ALIKE, FIRSTS, LEFT, RATES
+from diagnose.statistics.held_out import Gain, gain_over_noise
+from diagnose.statistics.model_criteria import bic, held_out_probabilities
 from geometry.arrays import Bools, Floats
 from geometry.base import Report
 

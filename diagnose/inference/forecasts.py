@@ -1,24 +1,19 @@
-"""How well each model predicts presses that it was not fitted to.
+"""How well each model predicts presses that it was not fitted to."""
 
-Which fitted models these recordings cannot tell apart.
-
-How much of the excess a model leaves.
-"""
-
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import reduce
 from operator import add
 
 import numpy as np
 
 from diagnose.fit.descent import coordinates
+from diagnose.fit.linearised_system import LinearisedSystem
+from diagnose.fit.marginal_likelihood import Quadratic
 from diagnose.fit.refit import Fitted
 from diagnose.fit.samples import Samples
-from diagnose.fit.system import LinearisedSystem, Quadratic
-from diagnose.statistics.abstain import ALIKE, RATES
-from diagnose.statistics.held_out import Gain, Sums, gain_over_noise, leave_press_out
-from diagnose.statistics.separation import ambiguity_groups, least_separation
+from diagnose.statistics.error_rates import RATES
+from diagnose.statistics.held_out import Gain, gain_over_noise, leave_press_out
+from diagnose.statistics.linear_gaussian import Sums
 from geometry.arrays import Floats, Ints
 
 FLAT = 1e4  # sigma of the noise: a prior for what has none, where nothing else limits it
@@ -98,57 +93,3 @@ def _left_out(
         mean = half @ np.linalg.solve(root, others.moment / length)
         predicted[rows] = (samples.recorded - residual)[rows] + mean / system.weight[rows]
     return Forecasted(scores, predicted, system, tuple(spread), fold)
-
-
-def separations(samples: Samples, fits: Sequence[Fitted]) -> Floats:
-    """Sigma (m, m) between fitted predictions, each in the metric of the one that is taken as true.
-
-    The rival may still move along its tangents, and nuisances float; the smaller of both directions.
-    """
-    one_way = np.array([[_distance(samples, true, rival) for rival in fits] for true in fits]).reshape(len(fits), -1)
-    return np.asarray(np.minimum(one_way, one_way.T))
-
-
-def grouped(separation: Floats) -> tuple[tuple[int, ...], ...]:
-    """Groups of models closer than the least separation, that of the first model first."""
-    groups = ambiguity_groups(separation, least_separation(ALIKE), RATES.largest_group).groups
-    return tuple(sorted(groups, key=lambda group: min(group)))
-
-
-def alike(separation: Floats) -> int:
-    """How many models cannot be told from the first, itself included."""
-    return int((separation[0] < least_separation(ALIKE)).sum())
-
-
-def _distance(samples: Samples, true: Fitted, rival: Fitted) -> float:
-    if true is rival:
-        return 0.0
-    system = true.system
-    apart = system.weighted(_modelled(samples, true) - _modelled(samples, rival))
-    slopes = system.weighted(rival.slopes)
-    gram = system.quadratic.product(slopes, slopes)
-    along = system.quadratic.product(slopes, apart[:, None])[:, 0]
-    return float(np.sqrt(max(system.quadratic.square(apart) - float(along @ np.linalg.pinv(gram) @ along), 0.0)))
-
-
-def _modelled(samples: Samples, fit: Fitted) -> Floats:
-    """What a fit predicts with its nuisances, (n,), but for discrepancies."""
-    system = fit.system
-    nuisances = system.nuisances(system.residual)
-    moved = np.zeros(len(samples))
-    moved[system.informative] = system.nuisance_design[:, : len(nuisances)] @ nuisances
-    return np.asarray(samples.recorded - system.residual + moved)
-
-
-def excess(system: LinearisedSystem) -> float:
-    """Sum of squares above what noise and the engine's own errors make, nuisances integrated out; at least 0."""
-    return max(system.quadratic.square(system.weighted(system.residual)) - float(system.informative.sum()), 0.0)
-
-
-def share_left(fit: Fitted, before: float) -> float:
-    """Share of an excess that a fitted model leaves, its model discrepancy not integrated out."""
-    system = replace(fit.system, form_error=0.0)
-    columns = np.column_stack([system.nuisance_design, fit.slopes[system.informative]])
-    sigma = np.concatenate([system.sigma, np.full(fit.slopes.shape[1], np.inf)])
-    square = Quadratic(system.weighted(columns), sigma).square(system.weighted(system.residual))
-    return max(square - float(system.informative.sum()), 0.0) / before if before > 0.0 else 0.0

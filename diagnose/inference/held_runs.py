@@ -5,17 +5,19 @@ from dataclasses import replace
 
 import numpy as np
 
+from diagnose.engines.some_runs import SomeRuns, all_but, some_runs
 from diagnose.findings import Findings, FittedModel
+from diagnose.fit.baseline import believed, fitted_baseline
+from diagnose.fit.linearised_system import linearised
 from diagnose.fit.observed_model import ObservedModel
-from diagnose.fit.refit import believed, fitted_baseline
 from diagnose.fit.samples import Samples
-from diagnose.fit.system import linearised
-from diagnose.forward import Engine, Setting, SomeRuns, all_but, some_runs
-from diagnose.inference.black_box import errors, relaxed, unimproved
-from diagnose.inference.diagnose import diagnose, labelled
+from diagnose.forward import Engine, Setting
+from diagnose.inference.diagnose import diagnose
+from diagnose.inference.findings_of_fits import labelled
+from diagnose.inference.true_refit import errors, relaxed, unimproved
 from diagnose.noise.estimate import noise_models
 from diagnose.signals.recording import Recording
-from diagnose.statistics.held_out import Sums
+from diagnose.statistics.linear_gaussian import Sums
 from geometry.arrays import Bools, Floats
 from geometry.base import Report
 

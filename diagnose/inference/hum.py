@@ -10,8 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from diagnose.forward import Candidate, Coordinate, Engine, PassingOn, Setting, Signals
-from diagnose.noise.model import Line, NoiseModel, basis
+from diagnose.engines.passing_on import PassingOn
+from diagnose.forward import Candidate, Coordinate, Engine, Setting, Signals
+from diagnose.noise.mains_lines import Line, basis
+from diagnose.noise.model import NoiseModel
 from diagnose.signals.recording import Recording, Run
 from geometry.arrays import Floats
 from geometry.base import Report

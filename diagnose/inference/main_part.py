@@ -14,16 +14,17 @@ import numpy as np
 from diagnose.findings import Fit
 from diagnose.fit.descent import settings
 from diagnose.fit.discrepancy import FORM_ERROR
+from diagnose.fit.linearised_system import linearised
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.signal_discrepancy import VISIBLE, SignalDiscrepancy, by_phase, conditions, in_plain_units
-from diagnose.fit.system import linearised
 from diagnose.inference.choice import Judged, implausible, ordinary, score_of
 from diagnose.inference.forecasts import Forecasted
-from diagnose.inference.search import Screening, first_fits, pairs, screen, singles
+from diagnose.inference.screening import Screening, screen
+from diagnose.inference.search import first_fits, pairs, singles
 from diagnose.inference.tolerant_judge import TolerantJudge, held_together, left_by
 from diagnose.signals.phases import PHASES
-from diagnose.statistics.abstain import RATES
-from diagnose.statistics.held_out import held_out_probabilities
+from diagnose.statistics.error_rates import RATES
+from diagnose.statistics.model_criteria import held_out_probabilities
 from geometry.arrays import Floats
 from geometry.base import Report
 
@@ -143,3 +144,8 @@ def _told(judge: TolerantJudge, models: Sequence[Judged]) -> MainPart:
         left,
         best.left <= 1.0 - (CONFIRMED if flaws else MOST) and judge.spread(best.forecast),
     )
+
+
+def flaws_alone(held_out: Fit) -> bool:
+    """Whether what is left of held-out presses above noise is no more than an ordinary rig and the details of a law."""
+    return held_out.excess_after <= FLAWS**2

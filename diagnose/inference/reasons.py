@@ -6,9 +6,9 @@ import numpy as np
 
 from diagnose.figures import figure, p_equals, part, percent
 from diagnose.findings import Fit
+from diagnose.fit.linearised_system import LinearisedSystem
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.refit import Fitted
-from diagnose.fit.system import LinearisedSystem
 from diagnose.forward import Candidate
 from diagnose.inference.choice import Choice, Judged, criteria
 from diagnose.verdict.names import listed

@@ -5,10 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import norm
 
+from diagnose.fit.linearised_system import LinearisedSystem
+from diagnose.fit.marginal_likelihood import Quadratic
 from diagnose.fit.samples import Samples
-from diagnose.fit.system import LinearisedSystem, Quadratic
-from diagnose.statistics.cells import null_energies, step_down
-from diagnose.statistics.score_test import Marginal
+from diagnose.statistics.family_wise import null_energies, step_down
+from diagnose.statistics.nuisance_projection import Marginal
 from geometry.arrays import Floats
 
 DRAWS = 1999

@@ -1,180 +1,23 @@
-"""From the baseline to a short list of fitted models: screening, single mechanisms, pairs where one is not enough.
-
-Which candidates show in the residual at all: the score test of each, corrected for their number.
-
-How every candidate would change the recording, near its off value and at a finite size.
-"""
+"""From screened candidates to a short list of fitted models: single mechanisms, and pairs where one is not enough."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnose.fit.descent import LEAST_GAIN, descent, lowest
-from diagnose.fit.observed_model import STEP, ObservedModel
-from diagnose.fit.refit import Fitted, believed, common_metric, fitted
-from diagnose.fit.samples import noise_degrees
-from diagnose.fit.system import LinearisedSystem, informative_rows
-from diagnose.forward import Candidate, Coordinate, Setting
-from diagnose.inference.forecasts import excess
-from diagnose.statistics.abstain import FINALISTS, PAIRS, RATES
-from diagnose.statistics.score_test import Marginal, holm, score_test
-from geometry.arrays import Bools, Floats
+from diagnose.fit.descent import descent, lowest
+from diagnose.fit.linearised_system import LinearisedSystem
+from diagnose.fit.observed_model import ObservedModel
+from diagnose.fit.refit import Fitted, common_metric, fitted
+from diagnose.forward import Candidate
+from diagnose.inference.screening import Screening, least_degrees, screened
+from diagnose.inference.sensitivities import sensitivity
+from diagnose.statistics.error_rates import FINALISTS, PAIRS, RATES
+from geometry.arrays import Floats
 from geometry.base import Report
-
-FLAT = 0.05  # of the secant: a slope below it is none
-
-
-@dataclass(frozen=True)
-class Sensitivity:
-    """columns : (n, q) change per unit of each coordinate, a secant where there is no slope at 0.
-
-    non_negative : (q,) whether 0 is the lower end. sign : (q,) -1 where 0 is the upper end; columns have it already.
-    finite : (n, s) change at starts, and coordinates (s, q) there.
-    """
-
-    candidate: Candidate
-    columns: Floats
-    non_negative: Bools
-    sign: Floats
-    finite: Floats
-    places: Floats
-
-
-def sensitivity(
-    model: ObservedModel, values: Floats, candidate: Candidate, others: Sequence[Setting] = ()
-) -> Sensitivity:
-    """Of one candidate beside others that are on, at nuisances (p,)."""
-    without = model.vector(values, others)
-    count = len(candidate.coordinates)
-
-    def change(number: int, value: float) -> Floats | None:
-        """(n,); None where the model has no answer."""
-        at = np.zeros(count)
-        at[number] = value
-        try:
-            return np.asarray(model.vector(values, [*others, Setting(candidate, tuple(at.tolist()))]) - without)
-        except ValueError:
-            return None
-
-    columns, finite, places = [], [], []
-    for number, coordinate in enumerate(candidate.coordinates):
-        made = {start: change(number, start) for start in coordinate.starts}
-        found = {start: column for start, column in made.items() if column is not None}
-        finite += list(found.values())
-        places += [np.eye(count)[number] * start for start in found]
-        step = STEP * min(coordinate.starts, key=abs)
-        first = change(number, step)
-        slope = first / step if first is not None else np.zeros(len(without))
-        secants = [column / start for start, column in found.items()]
-        largest = max(secants, key=lambda secant: float(np.linalg.norm(secant)), default=slope)
-        flat = np.linalg.norm(slope) < FLAT * np.linalg.norm(largest)
-        columns.append(largest if flat else slope)
-    sign = np.array([-1.0 if c.high <= 0.0 else 1.0 for c in candidate.coordinates])
-    return Sensitivity(
-        candidate,
-        np.column_stack(columns) * sign,
-        np.array([one_sided(c) for c in candidate.coordinates]),
-        sign,
-        np.column_stack(finite) if finite else np.zeros((len(without), 0)),
-        np.array(places).reshape(-1, count),
-    )
-
-
-def one_sided(coordinate: Coordinate) -> bool:
-    """Whether 0 is an end of its range."""
-    return coordinate.low >= 0.0 or coordinate.high <= 0.0
-
-
-@dataclass(frozen=True)
-class Screened:
-    """p_values : (m,) corrected for the number of candidates. explained : (m,) share of the squares of the residual.
-
-    estimates : first guesses (q,) of each candidate's coordinates, best first.
-    """
-
-    p_values: Floats
-    explained: Floats
-    estimates: tuple[tuple[Floats, ...], ...]
-
-
-def screened(system: LinearisedSystem, sensitivities: Sequence[Sensitivity], noise_degrees: float) -> Screened:
-    """By the score test along the tangent, and along each finite change, whichever shows more (Bonferroni)."""
-    marginal = Marginal(system.weighted(system.nuisance_design), system.sigma)
-    white = marginal(system.weighted(system.residual))
-    p_values, explained, estimates = [], [], []
-    for one in sensitivities:
-        slopes = marginal(system.weighted(one.columns))
-        changes = marginal(system.weighted(one.finite))
-        tangent = score_test(white, slopes, one.non_negative, noise_degrees)
-        always: Bools = np.array([True])
-        finite = [score_test(white, change[:, None], always, noise_degrees) for change in changes.T]
-        best = [tangent, *finite]
-        p_values.append(min(1.0, len(best) * min(test.p_value for test in best)))
-        explained.append(max(test.statistic for test in best) / float(white @ white))
-        order = np.argsort([-test.statistic for test in finite], kind="stable")
-        scaled = [one.places[n] * min(1.0, float(finite[n].estimate[0])) for n in order]
-        guesses = [tangent.estimate * one.sign, *scaled]
-        estimates.append(tuple(_clipped(one, guess) for guess in guesses if np.any(guess)))
-    return Screened(holm(np.array(p_values)), np.array(explained), tuple(estimates))
-
-
-def _clipped(one: Sensitivity, guess: Floats) -> Floats:
-    low = np.array([c.low for c in one.candidate.coordinates])
-    high = np.array([c.high for c in one.candidate.coordinates])
-    return np.asarray(np.clip(guess, low + 0.02 * (low < 0) * (high - low), high - 0.02 * (high > 0) * (high - low)))
-
 
 STARTS = 3  # of each candidate's first fit
 REFINEMENTS = 3  # most full solves of each mechanism of a fit
-ROUGH = 1e-3  # of the excess: what a last step of a first fit may gain, which only has to tell who is worth a second
-
-
-@dataclass(frozen=True)
-class Screening:
-    """baseline : fitted, with its informative rows. start : about what the priors find plausible.
-
-    each, tests : candidates.
-
-    excess : of the baseline.
-    """
-
-    candidates: tuple[Candidate, ...]
-    baseline: LinearisedSystem
-    start: LinearisedSystem
-    each: tuple[Sensitivity, ...]
-    tests: Screened
-    excess: float
-
-    @property
-    def rough(self) -> float:
-        """Gain of a step that is the last of a first fit."""
-        return max(LEAST_GAIN, ROUGH * self.excess)
-
-    @property
-    def survivors(self) -> list[int]:
-        """Numbers of the candidates that show, those that explain most first."""
-        order = np.argsort(-self.tests.explained, kind="stable")
-        return [int(n) for n in order if self.tests.p_values[n] <= RATES.level]
-
-
-def screen(model: ObservedModel, baseline: LinearisedSystem, report: Report) -> Screening:
-    """Every candidate of the engine."""
-    candidates = model.engine.candidates
-    start = believed(model, baseline)
-    each = []
-    for number, candidate in enumerate(candidates):
-        report("screening", number, len(candidates))
-        each.append(sensitivity(model, start.values, candidate))
-    informative = informative_rows(model.samples, baseline, [*(s.columns for s in each), *(s.finite for s in each)])
-    baseline, start = baseline.reached(informative), start.reached(informative)
-    tests = screened(start, each, least_degrees(model))
-    return Screening(candidates, baseline, start, tuple(each), tests, excess(baseline))
-
-
-def least_degrees(model: ObservedModel) -> float:
-    """Degrees of freedom of the noise that is known worst."""
-    return min(noise_degrees(law) for law in model.samples.noise.values())
 
 
 @dataclass(frozen=True)

@@ -14,10 +14,11 @@ from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.refit import Fitted, fitted
 from diagnose.fit.samples import Samples
 from diagnose.forward import Setting
-from diagnose.inference.black_box import trained_and_held
 from diagnose.inference.main_part import FLAWS
-from diagnose.inference.search import Screening, pairs
+from diagnose.inference.screening import Screening
+from diagnose.inference.search import pairs
 from diagnose.inference.tolerant_judge import TolerantJudge, judge_of_name, left_by
+from diagnose.inference.true_refit import trained_and_held
 from geometry.arrays import Floats
 from geometry.base import Report
 

@@ -1,8 +1,7 @@
 """Explanations judged as a reader does who knows that no law is exact: on held-out conditions, by their errors.
 
-A discrepancy is part of the likelihood (fit/signal_discrepancy.py); runs that repeat each other are one condition.
-
-Which explanations are as good as a name, once a discrepancy as large as what the name itself leaves is allowed.
+Their discrepancy is part of the likelihood (fit/signal_discrepancy.py), and runs that repeat each other are one
+condition.
 """
 
 from collections.abc import Sequence
@@ -11,17 +10,18 @@ from dataclasses import replace
 import numpy as np
 from scipy.stats import norm
 
-from diagnose.figures import percent
+from diagnose.fit.baseline import capped, within_priors
+from diagnose.fit.linearised_system import linearised, relative
+from diagnose.fit.marginal_likelihood import Quadratic
 from diagnose.fit.observed_model import ObservedModel
-from diagnose.fit.refit import Fitted, capped, fitted, within_priors
+from diagnose.fit.refit import Fitted, fitted
 from diagnose.fit.samples import Samples
-from diagnose.fit.signal_discrepancy import VISIBLE, SignalDiscrepancy, conditions, in_plain_units
-from diagnose.fit.system import Quadratic, linearised, relative
+from diagnose.fit.signal_discrepancy import SignalDiscrepancy, conditions, in_plain_units
 from diagnose.forward import Candidate, Setting
-from diagnose.inference.choice import Choice, Judged, score_of
+from diagnose.inference.choice import Judged, score_of
 from diagnose.inference.forecasts import Forecasted, forecasted, gained, separation
-from diagnose.inference.search import Screening
-from diagnose.statistics.abstain import RATES, too_many
+from diagnose.inference.screening import Screening
+from diagnose.statistics.error_rates import RATES
 from diagnose.statistics.held_out import Gain, leave_press_out
 from geometry.arrays import Floats, Ints
 
@@ -147,27 +147,6 @@ def residual_beside(judge: TolerantJudge, on: Sequence[Setting]) -> Floats:
     return residual
 
 
-def distinguished(model: ObservedModel, found: Screening, choice: Choice) -> Choice:
-    """A choice whose name has all that is as good in its group; there is no name where these are too many.
-
-    Nor is there one of a pair where one of the two alone leaves no more than flaws of an ordinary rig.
-    """
-    if not choice.decision.named:
-        return choice
-    judge = judge_of_name(model, found, choice.models[0].fit.settings)
-    again = [judge.judged(judge.refitted(one.fit)) for one in choice.models]
-    good = {n for n, one in enumerate(again) if not judge.excluded(one.forecast, again[0].forecast)}
-    group = tuple(sorted({*choice.groups[0], 0, *good}))
-    ambiguous = len(group) > RATES.largest_group
-    against = [too_many(len(group), RATES)] if ambiguous else _needless(judge, again)
-    rest = (tuple(n for n in other if n not in group) for other in choice.groups[1:])
-    decision = choice.decision
-    if against:
-        reasons = (*decision.reasons, *against)
-        decision = replace(decision, named=False, unexplained=True, reasons=reasons, ambiguous=ambiguous)
-    return replace(choice, groups=(group, *filter(None, rest)), decision=decision)
-
-
 def judge_of_name(model: ObservedModel, found: Screening, name: Sequence[Setting]) -> TolerantJudge:
     """Its discrepancy is what the named mechanisms leave."""
     plain = model.seen_as(in_plain_units(model.samples))
@@ -175,17 +154,3 @@ def judge_of_name(model: ObservedModel, found: Screening, name: Sequence[Setting
     fold = held_together(plain.samples, [one.candidate for one in name])
     judge = TolerantJudge(plain, found, tolerance, np.zeros(len(plain.samples.channels)), fold)
     return TolerantJudge(plain, found, tolerance, left_by(judge, name), fold)
-
-
-def _needless(judge: TolerantJudge, models: Sequence[Judged]) -> list[str]:
-    """The reason against a pair, which is the first of the models, where one of the two is enough."""
-    pair = models[0].fit.candidates
-    for one in models[1:]:
-        (first, *more), left = one.fit.candidates, judge.largest(one.forecast)
-        second = [other for other in pair if other != first]
-        if not more and len(second) < len(pair) and second and left <= VISIBLE:
-            return [
-                f"{first.mechanism} ({first.component}) alone leaves {percent(left)} of the signal, which may be flaws "
-                f"of an ordinary rig: {second[0].mechanism} ({second[0].component}) is not named for that."
-            ]
-    return []

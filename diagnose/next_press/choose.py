@@ -9,9 +9,11 @@ import numpy as np
 from diagnose.findings import Findings, FittedModel
 from diagnose.forward import Engine
 from diagnose.next_press.parting import PressJudge
-from diagnose.next_press.proposals import PressSetup, Proposal, base_setup, repeats, variations
+from diagnose.next_press.proposals import PressSetup, Proposal, base_setup, repeats
+from diagnose.next_press.variations import variations
 from diagnose.signals.recording import Recording, Run
-from diagnose.statistics.separation import Group, best_press, least_separation, linked
+from diagnose.statistics.best_press import best_press, linked
+from diagnose.statistics.separation import Group, least_separation
 from geometry.arrays import Floats
 
 MOST_RIVALS, MOST_PRESSES = 6, 3

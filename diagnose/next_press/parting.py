@@ -13,15 +13,16 @@ import numpy as np
 
 from diagnose.findings import FittedModel
 from diagnose.fit.discrepancy import FORM_ERROR
+from diagnose.fit.linearised_system import LinearisedSystem, linearised
+from diagnose.fit.marginal_likelihood import Quadratic
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.samples import Samples
-from diagnose.fit.system import LinearisedSystem, Quadratic, linearised
 from diagnose.forward import Candidate, Engine, Setting, Signals
 from diagnose.next_press.proposals import Proposal
 from diagnose.noise.estimate import noise_models
 from diagnose.noise.model import NoiseModel, white_noise
 from diagnose.signals.recording import Recording
-from diagnose.statistics.separation import remaining_spread
+from diagnose.statistics.best_press import remaining_spread
 from geometry.arrays import Floats
 
 

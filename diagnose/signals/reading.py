@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnose.noise.model import quantisation_step
+from diagnose.noise.quantisation import quantisation_step
 from diagnose.signals.columns import (
     LARGEST_STRAIN,
     read_columns,

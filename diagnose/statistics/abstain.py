@@ -1,28 +1,9 @@
-"""The last word: name a mechanism, or say why not. One pure function of the evidence and of stated error rates.
-
-How often something may happen: Wilson's interval of a proportion, and the rate that keeps a promise on a count.
-
-The stated error rates and limits of a diagnosis. None of them was fitted to a recording.
-"""
+"""The last word: name a mechanism, or say why not. One pure function of the evidence and of stated error rates."""
 
 from dataclasses import dataclass
-from math import sqrt
-
-from scipy.stats import beta, norm
 
 from diagnose.figures import figure, p_equals
-
-
-@dataclass(frozen=True)
-class Rates:
-    """level : chance per case of each kind of false alarm (wilson.rate_for_promise gives it from a promise).
-
-    margin : nats per press by which the black box must win. largest_group : models that may stay indistinguishable.
-    """
-
-    level: float
-    margin: float
-    largest_group: int
+from diagnose.statistics.error_rates import Rates
 
 
 @dataclass(frozen=True)
@@ -103,41 +84,3 @@ def too_many(group: int, rates: Rates) -> str:
     return (
         f"{group} explanations cannot be told apart; at most {rates.largest_group} may remain for a name to be given."
     )
-
-
-def wilson_interval(successes: int, trials: int, level: float = 0.95) -> tuple[float, float]:
-    """Two-sided score interval of a proportion (Wilson, J. Am. Stat. Assoc. 22 (1927) 209).
-
-    ValueError unless 0 <= successes <= trials and trials is at least 1.
-    """
-    if not 0 <= successes <= trials or trials < 1:
-        raise ValueError(f"{successes} of {trials} is no proportion")
-    z, share = float(norm.isf(0.5 * (1.0 - level))), successes / trials
-    middle = share + z**2 / (2.0 * trials)
-    half = z * sqrt(share * (1.0 - share) / trials + z**2 / (4.0 * trials**2))
-    return max(0.0, (middle - half) / (1.0 + z**2 / trials)), min(1.0, (middle + half) / (1.0 + z**2 / trials))
-
-
-def rate_for_promise(allowed: int, cases: int, confidence: float = 0.99) -> float:
-    """The largest rate per case at which at most `allowed` of `cases` events occur with this confidence.
-
-    It solves P(Binomial(cases, rate) <= allowed) = confidence, by the beta distribution (Clopper and Pearson,
-    Biometrika 26 (1934) 404).
-    """
-    return float(beta.ppf(1.0 - confidence, allowed + 1, cases - allowed))
-
-
-RATES = Rates(rate_for_promise(4, 400), margin=0.0, largest_group=3)
-"""At most 4 false names in 400 cases without effect, with 99 % confidence; margin: see black_box.py."""
-LEFT = 0.05
-"""Share of the excess, or of the strain of what floats, that a named model may leave although chance does not."""
-LARGEST_FORM_SHARE = 0.1
-"""Share of the excess that the model-form error may account for; an effect that nuisances cancel has none."""
-ALIKE = 0.05
-"""Chance of choosing the wrong one of two models above which they are called ambiguous."""
-FINALISTS = 6
-"""Single mechanisms that are fitted with all that floats, after a first fit of all survivors."""
-FIRSTS = 3
-"""Single mechanisms beside which a second one is sought."""
-PAIRS = 4
-"""Pairs that are fitted beside each."""

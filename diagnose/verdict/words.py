@@ -10,9 +10,10 @@ from diagnose.findings import Findings, Fit, FittedModel
 from diagnose.fit.signal_discrepancy import VISIBLE
 from diagnose.next_press.choose import NextPress, surviving
 from diagnose.signals.recording import Recording
-from diagnose.verdict.content import IN_WORDS, next_experiment, where_words, without_press
+from diagnose.verdict.content import next_experiment, without_press
 from diagnose.verdict.names import interval_words, listed, model_words, short_name
 from diagnose.verdict.resimulation import Resimulated
+from diagnose.verdict.where_it_fails import IN_WORDS, where_words
 
 HALF = 0.5  # of what is left: the phase that has more of it is named
 

@@ -9,10 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from diagnose.engines.some_runs import all_but, some_runs
 from diagnose.findings import Findings
-from diagnose.forward import Engine, all_but, other_units, some_runs
+from diagnose.forward import Engine
 from diagnose.next_press.choose import MOST_PRESSES, NextPress, next_presses
 from diagnose.noise.estimate import noise_models
+from diagnose.other_units import other_units
 from diagnose.signals.columns import refuse_slow_sampling
 from diagnose.signals.reading import thinned
 from diagnose.signals.recording import Recording

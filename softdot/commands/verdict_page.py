@@ -10,11 +10,16 @@ from typing import Any, cast
 import tomlkit
 from tomlkit.items import InlineTable, Table
 
-from diagnose.engines.coupon.engine import CouponEngine, improved_material
+from diagnose.engines.coupon.engine import CouponEngine
+from diagnose.engines.coupon.improved_material import improved_material
 from diagnose.figures import figure, p_alone, percent, probability
 from diagnose.findings import Findings, FittedModel, Grade
 from diagnose.forward import Engine, Setting
-from diagnose.next_press.proposals import Shape, base_setup
+from diagnose.next_press.press_shape import Shape
+from diagnose.next_press.proposals import base_setup
+from diagnose.pictures.evidence import draw_gains, draw_shares
+from diagnose.pictures.overview import draw_overview
+from diagnose.pictures.run import draw_run
 from diagnose.signals.recording import Recording
 from diagnose.verdict.names import (
     component_words,
@@ -26,7 +31,6 @@ from diagnose.verdict.names import (
     setting_words,
     unit_words,
 )
-from diagnose.verdict.pictures import draw_gains, draw_overview, draw_run, draw_shares
 from diagnose.verdict.resimulation import Resimulated, switched_on
 from diagnose.verdict.words import Sentence, detected, separation_words
 from export.page import page_environment

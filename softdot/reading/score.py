@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Hashable, Sequence
 from typing import Any
 
-from diagnose.statistics.abstain import wilson_interval
+from diagnose.statistics.proportions import wilson_interval
 from geometry.arrays import Ints
 from softdot.reading.cells import DOTS, braille, text_of
 

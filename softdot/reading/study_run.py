@@ -11,13 +11,7 @@ from geometry.executor import Executor
 from geometry.files import release
 from softdot.arrays.kernel import ArrayKernel
 from softdot.config import Config
-from softdot.console import (
-    Logged,
-    Progress,
-    installed_version,
-    plain,
-    write_json,
-)
+from softdot.console import Logged, Progress, installed_version, plain, write_json
 from softdot.output import Product, check_output
 from softdot.reading.conditions import ReadingConditions
 from softdot.reading.decoders import named_decoders
@@ -169,7 +163,7 @@ def _summary(study: ReadingStudy, readings: Readings, kernel: ArrayKernel) -> di
 
 def _counted(found: list[dict[str, Any]]) -> dict[str, Any]:
     """Characters that were right of all repeats together, with Wilson's 95 % interval."""
-    from diagnose.statistics.abstain import wilson_interval
+    from diagnose.statistics.proportions import wilson_interval
 
     right, of = sum(one["right"] for one in found), sum(one["of"] for one in found)
     low, high = wilson_interval(right, of)

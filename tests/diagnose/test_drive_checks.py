@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from diagnose.forward import other_units
+from diagnose.other_units import other_units
 from geometry.base import InputError
 from softdot.config.rig import load_rig
 from tests.diagnose.rigs import COUPON, HEAD, RUN, SEGMENT, samples, write_rig

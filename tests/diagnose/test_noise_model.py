@@ -6,7 +6,9 @@ from scipy.linalg import toeplitz
 from scipy.stats import chi2, multivariate_normal
 
 from diagnose.noise.autoregression import Autoregression
-from diagnose.noise.model import Line, NoiseModel, basis, find_lines, quantisation_step
+from diagnose.noise.mains_lines import Line, basis, find_lines
+from diagnose.noise.model import NoiseModel
+from diagnose.noise.quantisation import quantisation_step
 from tests.cases import for_each
 
 AR = Autoregression(np.array([1.2, -0.5, 0.1]), 0.04)

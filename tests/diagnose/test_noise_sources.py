@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from diagnose.noise.estimate import noise_models, resting
+from diagnose.noise.estimate import noise_models
+from diagnose.noise.rest import resting
 from diagnose.signals.phases import segmented
 from geometry.base import InputError
 from softdot.config.rig import load_rig

@@ -165,7 +165,7 @@ def test_a_name_stands_in_no_product_module_but_its_own_two_and_the_hidden_world
     for name, places in found.items():
         own = name.replace("-", "_") + ".py"
         users = (
-            "diagnose/prove/",
+            "softdot/studies/proof/",
             "softdot/verify/problems/",
         )  # the second world, and designs that use it as a user does
         strange = [place for place in places if not place.endswith(own) and not place.startswith(users)]

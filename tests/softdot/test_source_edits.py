@@ -57,7 +57,7 @@ def kept(copied: Path, monkeypatch: pytest.MonkeyPatch):
         ("solve/materials/library.toml", {"press", "outcome"}),
         ("softdot/checks.py", {"outcome"}),
         ("softdot/tolerances/uncertainty.py", {"outcome"}),
-        ("diagnose/prove/trial.py", set()),
+        ("softdot/studies/proof/trial.py", set()),
     ],
 )
 def test_an_edited_source_makes_anew_what_depends_on_it(edited, made_anew, copied, kept):

@@ -1,16 +1,15 @@
-"""The forward model of a coupon test.
-
-What a coupon test teaches about a material, as a configuration has it.
-"""
+"""The forward model of a coupon test."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
 
 from diagnose.engines.coupon.kinematics import kinematics_of
-from diagnose.engines.coupon.laws import (
+from diagnose.engines.coupon.point import MaterialPoint, youngs_modulus_MPa
+from diagnose.engines.coupon.relaxation import NO_SERIES
+from diagnose.engines.coupon.tested_layer import (
     LAYER,
     SPECIMEN,
     PartOfLayer,
@@ -19,12 +18,11 @@ from diagnose.engines.coupon.laws import (
     switched,
     with_factors_last,
 )
-from diagnose.engines.coupon.point import MaterialPoint, youngs_modulus_MPa
-from diagnose.engines.coupon.relaxation import NO_SERIES
 from diagnose.forward import Candidate, Setting, Signals, SolvedOutright
 from diagnose.signals.recording import Drive, Recording, Run, Specimen
-from diagnose.vocabulary.base import CouponScene, candidates_of_coupon
+from diagnose.vocabulary.base import candidates_of_coupon
 from diagnose.vocabulary.layers.property_error import relative_error
+from diagnose.vocabulary.scene import CouponScene
 from geometry.arrays import Floats
 from geometry.base import InputError, Report
 from solve.materials.parameters import Material, PiezoelectricFilm, find_material
@@ -170,29 +168,3 @@ def _refuse_unfit(recording: Recording, specimen: Specimen) -> None:
                 f"recording '{run.file}', column displacement_mm: reaches {deepest:.3g} mm, but the specimen is "
                 f"{specimen.thickness_mm:g} mm thick"
             )
-
-
-@dataclass(frozen=True)
-class ImprovedMaterial:
-    """name : as in rig.toml. table : [materials.NAME], its law with the fitted constants.
-
-    mechanisms : [[mechanisms]] of the layer that is made of it, for relaxation and softening are no constants of a law.
-    """
-
-    name: str
-    table: dict[str, Any]
-    mechanisms: tuple[dict[str, Any], ...]
-
-
-def improved_material(engine: CouponEngine, settings: Sequence[Setting], component: str = LAYER) -> ImprovedMaterial:
-    """The material with fitted settings, nuisances of its modulus among them; component : the layer made of it."""
-    of_material = [s for s in settings if s.candidate.component not in ("drive", "rig")]
-    mechanisms = switched(of_material)
-    law = engine.model([one for one in mechanisms if not one.traits.memory]).materials[LAYER]
-    table = law.model_dump(mode="json", exclude_none=True, exclude={"source", "confidence", "max_fitted_strain"})
-    kept = tuple(
-        {"name": one.name, "component": component, "parameters": dict(one.parameters)}
-        for one in mechanisms
-        if one.traits.memory
-    )
-    return ImprovedMaterial(engine.specimen.material, table, kept)

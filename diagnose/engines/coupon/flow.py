@@ -1,6 +1,7 @@
 """A whole history of a coupon whose branches flow: the formulas of solve.materials.multiplicative, scanned over time.
 
-Every deformation of a coupon has the components 11, 22, 33 and 12 alone: tensors are these four numbers here.
+Every deformation of a coupon has the components 11, 22, 33 and 12 alone, so that all tensors here are these four
+numbers in this order.
 """
 
 from dataclasses import dataclass, replace

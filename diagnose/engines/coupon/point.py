@@ -5,7 +5,6 @@ Every sample has the residuals
 with the tester's compliance c. The stress remembers earlier samples only, so that the linearised system is solved by
 forward substitution in time; Newton's iteration converges quadratically whatever relaxes. The largest energies of a
 softening law are those of the round before, first of the coupon that does not soften: on first loading it is the same.
-
 What relaxes is in relaxation.py and flow.py; softening is a running maximum.
 """
 

@@ -1,6 +1,7 @@
 """Relaxation of a whole history of the stress at one material point, by scans over time.
 
-The formulas are those of solve.materials.inelastic; tests hold both ways together.
+The formulas are those of solve.materials.inelastic, scanned over a history instead of stepped: tests hold both ways
+together.
 """
 
 from dataclasses import dataclass

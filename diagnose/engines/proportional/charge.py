@@ -14,10 +14,11 @@ from functools import lru_cache
 import numpy as np
 
 from diagnose.engines.coupon.kinematics import SimpleShear
-from diagnose.engines.coupon.laws import LARGEST_STRAIN, LAYER, MEDIUM
 from diagnose.engines.coupon.point import MaterialPoint
 from diagnose.engines.coupon.relaxation import NO_SERIES, Relaxation
-from diagnose.vocabulary.base import film_capacitance_pF
+from diagnose.engines.coupon.tested_layer import LAYER
+from diagnose.engines.proportional.medium import LARGEST_STRAIN, MEDIUM
+from diagnose.vocabulary.scene import film_capacitance_pF
 from geometry.arrays import Floats
 from solve.materials.laws import MediumLaw
 from solve.materials.mullins import Softening

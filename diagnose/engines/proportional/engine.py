@@ -12,12 +12,15 @@ from typing import Self
 
 import numpy as np
 
-from diagnose.engines.coupon.laws import MEDIUM, one_layer, switched, with_factors_last
+from diagnose.engines.coupon.tested_layer import one_layer, switched, with_factors_last
 from diagnose.engines.proportional.charge import Loading, film_charge, other_charge, voltage
+from diagnose.engines.proportional.medium import MEDIUM
 from diagnose.forward import Candidate, Coordinate, Setting, Signals, SolvedOutright
 from diagnose.signals.phases import Segmentation, rest_of, segmented
 from diagnose.signals.recording import Recording, Run
-from diagnose.vocabulary.base import Scene, candidates_of_unknown_geometry, film_capacitance_pF, growing
+from diagnose.vocabulary.base import candidates_of_unknown_geometry
+from diagnose.vocabulary.scales import growing
+from diagnose.vocabulary.scene import Scene, film_capacitance_pF
 from geometry.arrays import Floats
 from geometry.base import InputError, Report
 from solve.mechanisms import Mechanism

@@ -7,8 +7,8 @@ import numpy as np
 from diagnose.engines.segment.presses import structural, ungapped
 from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
-from diagnose.vocabulary.base import Scene
 from diagnose.vocabulary.layers.property_error import nuisance as wrong_number
+from diagnose.vocabulary.scene import Scene
 from solve.model import Model, Press
 from solve.press import press_segment
 from solve.solution.errors import NoEquilibriumError

@@ -1,11 +1,6 @@
-"""The forward model of a rig with a known segment.
+"""The forward model of a rig with a known segment."""
 
-What a diagnosis with the 3D model cannot take as its baseline.
-
-Quantities that are comparable between laws, read from the tables.
-"""
-
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from copy import copy
 from dataclasses import replace
 from functools import cached_property
@@ -13,29 +8,24 @@ from typing import Self
 
 import numpy as np
 
-from diagnose.engines.segment import full
-from diagnose.engines.segment.answer import (
-    Drive,
-    FilmPlate,
-    Mechanics,
-    drive_of,
-    mechanics,
-    pressed_once,
-    shown,
-)
-from diagnose.engines.segment.declared import always_on, readout_behind, stated_apart, without_stated
+from diagnose.engines.segment import full_model as full
 from diagnose.engines.segment.depth import ZERO, nuisance
-from diagnose.engines.segment.path import PathHistory, with_history
+from diagnose.engines.segment.derived_quantities import with_derived
+from diagnose.engines.segment.dot_positions import Stands
+from diagnose.engines.segment.drive import Drive, drive_of, pressed_once
+from diagnose.engines.segment.kept_answers import Courses, Recent
+from diagnose.engines.segment.path_history import PathHistory, with_history
 from diagnose.engines.segment.prepared import Prepared
 from diagnose.engines.segment.presses import Place, moved
-from diagnose.engines.segment.recent import Courses, Recent
-from diagnose.engines.segment.stands import Stands
+from diagnose.engines.segment.refusals import refuse
+from diagnose.engines.segment.response import FilmPlate, Mechanics, mechanics, shown
+from diagnose.engines.segment.stated_mechanisms import always_on, readout_behind, stated_apart, without_stated
 from diagnose.forward import Candidate, Setting, Signals
 from diagnose.signals.recording import Recording, Run
-from diagnose.vocabulary.base import Scene, candidates_of_segment
+from diagnose.vocabulary.base import candidates_of_segment
+from diagnose.vocabulary.scene import Scene
 from geometry.arrays import Floats
-from geometry.base import InputError, Report
-from geometry.checks import check_press_depth
+from geometry.base import Report
 from geometry.executor import HERE, Executor
 from solve.materials.parameters import PiezoelectricFilm
 from solve.mechanisms import Mechanism, with_mechanisms
@@ -44,63 +34,6 @@ from solve.readout.stages import Hum
 from solve.reduced.fit import ResponseTable
 from solve.tables.rig_mesh import MeshSettings, mesh_of
 from solve.tables.table_changes import changed
-
-
-def refuse(model: Model, recording: Recording) -> None:
-    """InputError with one sentence."""
-    film, physics = model.materials["film"], model.physics
-    if isinstance(film, PiezoelectricFilm) and film.coupling == "two-way":
-        raise InputError("coupling = 'two-way': a diagnosis needs a film whose voltage does not act back")
-    if not all(series.linear for series in physics.viscosity.values()):
-        raise InputError("mechanisms: a diagnosis of a segment takes viscoelasticity with flowing_share = 0 alone")
-    if physics.viscosity and physics.prestretch != (0.0, 0.0):
-        raise InputError("mechanisms: a diagnosis accepts declared viscoelasticity or film-prestretch, but not both")
-    for run in recording.runs:
-        if run.drive == "displacement_mm":
-            try:
-                check_press_depth(model.segment, float(run.drive_values.max()))
-            except InputError as error:
-                raise InputError(f"run '{run.label}' goes too deep (are these micrometres?): {error}") from None
-
-
-COMPARED = 0.5
-"""Of the deepest press, where the second cycle is set against the first: near the deepest both are the same."""
-Derived = Callable[[Sequence[float]], dict[str, float]]
-
-
-def with_derived(candidate: Candidate, prepared: Prepared) -> Candidate:
-    """A candidate that tells force_ratio, with over without it at the deepest press, or the loss_ratio of the force.
-
-    They are told once the candidate is prepared.
-    """
-    if candidate.compared:
-        return replace(candidate, derived=COMPARISONS[candidate.compared](candidate, prepared))
-    return candidate
-
-
-def _force_ratio(candidate: Candidate, prepared: Prepared) -> Derived:
-    def derived(values: Sequence[float]) -> dict[str, float]:
-        change = prepared.change((0.0, 0.0), [Setting(candidate, tuple(values))])
-        return {"force_ratio": 1.0 if change is None else float(np.exp(change[-1, 0]))}
-
-    return derived
-
-
-def _loss_ratio(candidate: Candidate, prepared: Prepared) -> Derived:
-    """1 - second / first cycle force at equal depth."""
-
-    def derived(values: Sequence[float]) -> dict[str, float]:
-        if not any(values):
-            return {"loss_ratio": 0.0}
-        (history,) = prepared.histories([Setting(candidate, tuple(values))])
-        again = history.along(np.array([1.0, COMPARED]))[0][1, 0]
-        return {"loss_ratio": -float(again)}
-
-    return derived
-
-
-COMPARISONS = {"force_ratio": _force_ratio, "loss_ratio": _loss_ratio}
-
 
 ROUNDS = 40
 SETTLED = 1e-6  # of the largest force

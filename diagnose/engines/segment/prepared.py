@@ -5,20 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnose.engines.segment import path
-from diagnose.engines.segment.answer import FilmPlate
+from diagnose.engines.segment import path_history as path
 from diagnose.engines.segment.depth import deepest, offset_reach_mm, rounded_up
 from diagnose.engines.segment.interpolation import Differences, effect_of
-from diagnose.engines.segment.presses import (
-    CHEAP_NODES,
-    MOST_NODES,
-    SHARES,
-    Name,
-    Place,
-    Presses,
-    all_there,
-    moved,
-)
+from diagnose.engines.segment.presses import CHEAP_NODES, MOST_NODES, SHARES, Name, Place, Presses, all_there, moved
+from diagnose.engines.segment.response import FilmPlate
 from diagnose.forward import Candidate, Setting
 from diagnose.signals.recording import Recording
 from diagnose.vocabulary.layers.viscoelasticity import LARGEST_SHARE, relaxable

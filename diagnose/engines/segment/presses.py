@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from diagnose.engines.segment.path import BACK
+from diagnose.engines.segment.path_history import BACK
 from diagnose.forward import Candidate
 from geometry.arrays import Floats
 from geometry.base import Report

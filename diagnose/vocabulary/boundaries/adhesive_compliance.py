@@ -5,7 +5,8 @@ from math import asinh, inf, sinh
 from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
-from diagnose.vocabulary.base import GIVES_WAY, Scene, Vocabulary, register
+from diagnose.vocabulary.base import GIVES_WAY, Vocabulary, register
+from diagnose.vocabulary.scene import Scene
 from solve.mechanisms.boundaries.adhesive_compliance import ADHESIVE_COMPLIANCE
 from solve.model import BondLine
 

@@ -4,7 +4,8 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
-from diagnose.vocabulary.base import GIVES_WAY, Scene, Vocabulary, register
+from diagnose.vocabulary.base import GIVES_WAY, Vocabulary, register
+from diagnose.vocabulary.scene import Scene
 from solve.mechanisms.boundaries.contact_gap import CONTACT_GAP
 
 FIRST_TOUCH_MM = 2e-3  # by which a moulded surface gives way before it bears (rule of thumb)

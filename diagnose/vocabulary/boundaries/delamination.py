@@ -5,7 +5,8 @@ from math import hypot, sqrt
 from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
-from diagnose.vocabulary.base import GIVES_WAY, Scene, Vocabulary, register
+from diagnose.vocabulary.base import GIVES_WAY, Vocabulary, register
+from diagnose.vocabulary.scene import Scene
 from solve.mechanisms.boundaries.delamination import DELAMINATION
 
 LARGEST_PATCH = 0.9  # of the width

@@ -3,7 +3,8 @@
 from collections.abc import Iterator
 
 from diagnose.forward import Candidate, Coordinate
-from diagnose.vocabulary.base import Scene, Vocabulary, register
+from diagnose.vocabulary.base import Vocabulary, register
+from diagnose.vocabulary.scene import Scene
 from solve.mechanisms.boundaries.dimension_reduction import DIMENSION_REDUCTION
 
 

@@ -4,7 +4,8 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
-from diagnose.vocabulary.base import Scene, Vocabulary, register
+from diagnose.vocabulary.base import Vocabulary, register
+from diagnose.vocabulary.scene import Scene
 from solve.mechanisms.boundaries.dot_offset import DOT_OFFSET
 
 ASIDE = 0.16  # of the segment's size: 0.4 mm of 2.5, by hand 0.1 to 0.3

@@ -5,7 +5,9 @@ from math import asinh, exp, log, sinh
 from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
-from diagnose.vocabulary.base import GIVES_WAY, Scene, Vocabulary, register, shrinking
+from diagnose.vocabulary.base import GIVES_WAY, Vocabulary, register
+from diagnose.vocabulary.scales import shrinking
+from diagnose.vocabulary.scene import Scene
 from solve.mechanisms.boundaries.elastic_sides import ELASTIC_SIDES
 
 STIFF_SIDE_N_PER_MM3 = 3000.0  # the ends of a film of PVDF, a few mm long, begin to move

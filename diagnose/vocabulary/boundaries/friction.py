@@ -5,7 +5,9 @@ from math import sinh
 from typing import Any
 
 from diagnose.forward import Candidate
-from diagnose.vocabulary.base import Scene, Vocabulary, growing, register
+from diagnose.vocabulary.base import Vocabulary, register
+from diagnose.vocabulary.scales import growing
+from diagnose.vocabulary.scene import Scene
 from solve.mechanisms.boundaries.friction import FRICTION
 
 SLIPPERY, ROUGHEST = 0.1, 1.5  # dry rubber on plastic has 0.3 to 1

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from diagnose.forward import Candidate, Coordinate
-from diagnose.vocabulary.base import REMEMBERS, CouponScene, Scene, Vocabulary, register
+from diagnose.vocabulary.base import REMEMBERS, Vocabulary, register
+from diagnose.vocabulary.scene import CouponScene, Scene
 from solve.mechanisms.boundaries.guide_friction import GUIDE_FRICTION
 
 TRAVELS = tuple(10.0 ** (0.5 * n - 3.0) for n in range(6))  # of the largest travel, where a slider slips

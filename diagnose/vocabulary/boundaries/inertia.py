@@ -5,7 +5,9 @@ from math import sinh
 from typing import Any
 
 from diagnose.forward import Candidate
-from diagnose.vocabulary.base import CouponScene, Scene, Vocabulary, growing, register
+from diagnose.vocabulary.base import Vocabulary, register
+from diagnose.vocabulary.scales import growing
+from diagnose.vocabulary.scene import CouponScene, Scene
 from solve.mechanisms.boundaries.inertia import INERTIA
 
 MASS_G, GRIP_G = 5.0, 50.0  # of a small dot, and of a clip

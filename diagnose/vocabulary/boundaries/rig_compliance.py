@@ -5,7 +5,9 @@ from math import sinh
 from typing import Any
 
 from diagnose.forward import Candidate
-from diagnose.vocabulary.base import GIVES_WAY, CouponScene, Scene, Vocabulary, growing, register
+from diagnose.vocabulary.base import GIVES_WAY, Vocabulary, register
+from diagnose.vocabulary.scales import growing
+from diagnose.vocabulary.scene import CouponScene, Scene
 from solve.mechanisms.boundaries.rig_compliance import RIG_COMPLIANCE
 
 MOST_OF_TRAVEL = 0.25  # a tester that takes more than a quarter of the travel is seen to bend

@@ -7,7 +7,9 @@ from typing import Any
 
 from diagnose.forward import Candidate
 from diagnose.signals.recording import Recording
-from diagnose.vocabulary.base import LOSES_CHARGE, Scene, Vocabulary, growing, register, shrinking
+from diagnose.vocabulary.base import LOSES_CHARGE, Vocabulary, register
+from diagnose.vocabulary.scales import growing, shrinking
+from diagnose.vocabulary.scene import Scene
 from solve.mechanisms.circuit.charge_leakage import CHARGE_LEAKAGE
 
 

@@ -6,7 +6,8 @@ from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
-from diagnose.vocabulary.base import OTHER_CHARGE, Scene, Vocabulary, register
+from diagnose.vocabulary.base import OTHER_CHARGE, Vocabulary, register
+from diagnose.vocabulary.scene import Scene
 from solve.mechanisms.circuit.contact_electrification import CONTACT_ELECTRIFICATION
 
 TOUCH_CHARGE = 10.0  # of the largest charge that was recorded

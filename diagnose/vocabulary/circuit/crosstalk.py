@@ -9,7 +9,9 @@ from math import sinh
 from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
-from diagnose.vocabulary.base import Scene, Vocabulary, growing, register
+from diagnose.vocabulary.base import Vocabulary, register
+from diagnose.vocabulary.scales import growing
+from diagnose.vocabulary.scene import Scene
 from solve.mechanisms.circuit.crosstalk import CROSSTALK
 
 SEEN = 0.01  # of a channel's own capacitance

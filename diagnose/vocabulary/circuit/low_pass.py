@@ -6,7 +6,9 @@ from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
-from diagnose.vocabulary.base import Scene, Vocabulary, growing, register, shrinking
+from diagnose.vocabulary.base import Vocabulary, register
+from diagnose.vocabulary.scales import growing, shrinking
+from diagnose.vocabulary.scene import Scene
 from solve.mechanisms.circuit.low_pass import LOW_PASS
 from solve.readout.filters import corner_over_natural
 

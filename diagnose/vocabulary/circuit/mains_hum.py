@@ -6,7 +6,8 @@ from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
-from diagnose.vocabulary.base import Scene, Vocabulary, register
+from diagnose.vocabulary.base import Vocabulary, register
+from diagnose.vocabulary.scene import Scene
 from solve.mechanisms.circuit.mains_hum import MAINS_HUM
 
 HUM = 10.0  # of the largest voltage

@@ -6,7 +6,8 @@ from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
-from diagnose.vocabulary.base import OTHER_CHARGE, Scene, Vocabulary, register
+from diagnose.vocabulary.base import OTHER_CHARGE, Vocabulary, register
+from diagnose.vocabulary.scene import Scene
 from solve.mechanisms.circuit.pyroelectric_drift import PYROELECTRIC_DRIFT
 
 UNDONE_BY = ("with the dot as warm as the film", {"dot_temperature": "of the film"})

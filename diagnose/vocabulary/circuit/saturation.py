@@ -6,7 +6,9 @@ from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
-from diagnose.vocabulary.base import Scene, Vocabulary, register, shrinking
+from diagnose.vocabulary.base import Vocabulary, register
+from diagnose.vocabulary.scales import shrinking
+from diagnose.vocabulary.scene import Scene
 from solve.mechanisms.circuit.saturation import SATURATION
 
 CLIPPED = 20.0  # an amplifier that stops at less than this part of what was recorded gives no signal

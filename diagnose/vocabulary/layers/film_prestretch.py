@@ -4,7 +4,8 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from diagnose.forward import Candidate, Coordinate
-from diagnose.vocabulary.base import Scene, Vocabulary, register
+from diagnose.vocabulary.base import Vocabulary, register
+from diagnose.vocabulary.scene import Scene
 from solve.mechanisms.layers.film_prestretch import FILM_PRESTRETCH
 
 STRETCH = 0.015  # the yield strain is 2 to 3 %

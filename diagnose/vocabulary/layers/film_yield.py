@@ -5,7 +5,9 @@ from math import sinh
 from typing import Any
 
 from diagnose.forward import Candidate
-from diagnose.vocabulary.base import REMEMBERS, Scene, Vocabulary, growing, register, shrinking
+from diagnose.vocabulary.base import REMEMBERS, Vocabulary, register
+from diagnose.vocabulary.scales import growing, shrinking
+from diagnose.vocabulary.scene import Scene
 from solve.materials.parameters import PiezoelectricFilm
 from solve.mechanisms.layers.film_yield import FILM_YIELD
 

@@ -4,9 +4,10 @@ from collections.abc import Iterator, Sequence
 from math import exp, log
 from typing import Any
 
-from diagnose.engines.coupon.laws import SPECIMEN, PartOfLayer
+from diagnose.engines.coupon.tested_layer import SPECIMEN, PartOfLayer
 from diagnose.forward import Candidate, Coordinate
-from diagnose.vocabulary.base import STIFFNESS, CouponScene, Scene, Vocabulary, register
+from diagnose.vocabulary.base import STIFFNESS, Vocabulary, register
+from diagnose.vocabulary.scene import CouponScene, Scene
 from solve.materials.parameters import Hyperfoam, Material
 from solve.mechanisms.base import MEDIA
 from solve.mechanisms.layers.foam_densification import FOAM_DENSIFICATION

@@ -7,11 +7,14 @@ from typing import Any
 import numpy as np
 
 from diagnose.engines.coupon.kinematics import SimpleShear
-from diagnose.engines.coupon.laws import LARGEST_STRAIN, LAYER, MEDIUM, SPECIMEN, PartOfLayer, Stiffening, one_layer
 from diagnose.engines.coupon.point import MaterialPoint
+from diagnose.engines.coupon.stiffening import Stiffening
+from diagnose.engines.coupon.tested_layer import LAYER, SPECIMEN, PartOfLayer, one_layer
+from diagnose.engines.proportional.medium import LARGEST_STRAIN, MEDIUM
 from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
-from diagnose.vocabulary.base import STIFFNESS, CouponScene, Scene, Vocabulary, register
+from diagnose.vocabulary.base import STIFFNESS, Vocabulary, register
+from diagnose.vocabulary.scene import CouponScene, Scene
 from solve.materials.parameters import Hyperfoam, Material, MooneyRivlin, NeoHookean, Ogden, Yeoh
 from solve.mechanisms import Mechanism, with_mechanisms
 from solve.mechanisms.base import MEDIA

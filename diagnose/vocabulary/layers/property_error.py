@@ -4,9 +4,10 @@ from collections.abc import Callable, Iterator, Sequence
 from math import exp, log
 from typing import Any
 
-from diagnose.engines.coupon.laws import SPECIMEN, PartOfLayer
+from diagnose.engines.coupon.tested_layer import SPECIMEN, PartOfLayer
 from diagnose.forward import Candidate, Coordinate, Setting
-from diagnose.vocabulary.base import GIVES_WAY, STIFFNESS, CouponScene, Scene, Vocabulary, register
+from diagnose.vocabulary.base import GIVES_WAY, STIFFNESS, Vocabulary, register
+from diagnose.vocabulary.scene import CouponScene, Scene
 from geometry.dot_at_rest import resolve_dot
 from geometry.stack import layers
 from solve.mechanisms.layers.property_error import PROPERTY_ERROR

@@ -8,11 +8,12 @@ A solid, whose presses down and up take minutes each, is pressed with m = 0 alon
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from diagnose.engines.coupon.laws import LAYER, SPECIMEN, PartOfLayer
 from diagnose.engines.coupon.point import youngs_modulus_MPa
+from diagnose.engines.coupon.tested_layer import LAYER, SPECIMEN, PartOfLayer
 from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
-from diagnose.vocabulary.base import REMEMBERS, CouponScene, Scene, Vocabulary, register
+from diagnose.vocabulary.base import REMEMBERS, Vocabulary, register
+from diagnose.vocabulary.scene import CouponScene, Scene
 from solve.materials.mullins import Softening
 from solve.materials.parameters import PiezoelectricFilm
 from solve.mechanisms.base import MEDIA

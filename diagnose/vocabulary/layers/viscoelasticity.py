@@ -6,10 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from diagnose.engines.coupon.laws import LAYER, MOST_OF_COUPON, SPECIMEN, PartOfLayer, relaxation_times
+from diagnose.engines.coupon.relaxation_spectrum import MOST_OF_COUPON, relaxation_times
+from diagnose.engines.coupon.tested_layer import LAYER, SPECIMEN, PartOfLayer
 from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
-from diagnose.vocabulary.base import REMEMBERS, CouponScene, Scene, Vocabulary, register
+from diagnose.vocabulary.base import REMEMBERS, Vocabulary, register
+from diagnose.vocabulary.scene import CouponScene, Scene
 from solve.materials.prony import Prony
 from solve.mechanisms.layers.viscoelasticity import VISCOELASTICITY
 from solve.model import Model

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from diagnose.statistics.abstain import wilson_interval
+from diagnose.statistics.proportions import wilson_interval
 from geometry.arrays import Floats
 from geometry.base import InputError
 from mesh.types import MeshingError

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares, nnls
 
-from diagnose.engines.coupon.engine import coupon_engine, improved_material
-from diagnose.engines.coupon.laws import relaxation_times
+from diagnose.engines.coupon.engine import coupon_engine
+from diagnose.engines.coupon.improved_material import improved_material
+from diagnose.engines.coupon.relaxation_spectrum import relaxation_times
 from diagnose.forward import Setting
 from diagnose.signals.recording import Recording
 from diagnose.vocabulary.layers.viscoelasticity import LINEAR

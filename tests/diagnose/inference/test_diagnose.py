@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from diagnose.findings import Fit, Grade
-from diagnose.inference.diagnose import agreeing, diagnose, worth_both
+from diagnose.inference.diagnose import diagnose
+from diagnose.inference.name_checks import agreeing, worth_both
 from diagnose.signals.recording import Recording
 from diagnose.statistics.abstain import Decision
 from diagnose.vocabulary.base import vocabulary

@@ -7,18 +7,20 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
+from diagnose.fit.baseline import PLAUSIBLE, believed, fitted_baseline
 from diagnose.fit.descent import descended, descent
 from diagnose.fit.discrepancy import FORM_ERROR
 from diagnose.fit.intervals import intervals
+from diagnose.fit.linearised_system import linearised
 from diagnose.fit.observed_model import ObservedModel
-from diagnose.fit.refit import PLAUSIBLE, believed, common_metric, fitted, fitted_baseline, largest_form_error
+from diagnose.fit.refit import common_metric, fitted, largest_form_error
 from diagnose.fit.samples import Samples
-from diagnose.fit.system import linearised
 from diagnose.forward import Candidate, Coordinate
-from diagnose.inference.black_box import relaxed
 from diagnose.inference.choice import Judge, partners
-from diagnose.inference.forecasts import excess, share_left
-from diagnose.inference.search import paired, screen
+from diagnose.inference.excess import excess, share_left
+from diagnose.inference.screening import screen
+from diagnose.inference.search import paired
+from diagnose.inference.true_refit import relaxed
 from diagnose.noise.estimate import noise_models
 from tests.cases import for_each
 from tests.diagnose.inference.toy import CANDIDATES, Sensor, ToyEngine, silent, small

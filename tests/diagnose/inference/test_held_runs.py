@@ -6,12 +6,12 @@ from functools import cache
 import numpy as np
 import pytest
 
+from diagnose.engines.some_runs import some_runs
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.samples import Samples
-from diagnose.forward import some_runs
-from diagnose.inference.black_box import relaxed
 from diagnose.inference.diagnose import diagnose
 from diagnose.inference.held_runs import diagnose_and_score
+from diagnose.inference.true_refit import relaxed
 from diagnose.noise.estimate import noise_models
 from tests.diagnose.inference.toy import CANDIDATES, NUISANCE, Sensor, ToyEngine, silent, small
 

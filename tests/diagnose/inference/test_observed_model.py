@@ -6,11 +6,14 @@ from functools import cache
 import numpy as np
 import pytest
 
-from diagnose.fit.discrepancy import allowance, columns, drive_noise, of_the_film
-from diagnose.fit.observed_model import Nuisance, ObservedModel
-from diagnose.fit.refit import fitted_baseline
+from diagnose.fit.baseline import fitted_baseline
+from diagnose.fit.discrepancy import allowance, columns, of_the_film
+from diagnose.fit.drive_noise import drive_noise
+from diagnose.fit.informative_rows import informative_rows
+from diagnose.fit.linearised_system import linearised
+from diagnose.fit.nuisances import Nuisance
+from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.samples import Samples
-from diagnose.fit.system import informative_rows, linearised
 from diagnose.forward import Setting
 from diagnose.noise.estimate import noise_models
 from diagnose.vocabulary.layers.property_error import property_error

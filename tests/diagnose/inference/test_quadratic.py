@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from diagnose.fit.system import Quadratic
+from diagnose.fit.marginal_likelihood import Quadratic
 
 RNG = np.random.default_rng(1)
 COLUMNS, SIGMA = RNG.standard_normal((30, 3)), np.array([0.5, 3.0, 1e4])

@@ -9,10 +9,12 @@ from scipy.linalg import block_diag
 from diagnose.forward import Candidate, Coordinate, Setting
 from diagnose.next_press.choose import SETTLED, next_presses, surviving
 from diagnose.next_press.parting import PressJudge
-from diagnose.next_press.proposals import Shape, base_setup, recorded_shape, repeats, variations
+from diagnose.next_press.press_shape import Shape, recorded_shape
+from diagnose.next_press.proposals import base_setup, repeats
+from diagnose.next_press.variations import variations
 from diagnose.signals.phases import segmented
 from diagnose.signals.recording import Recording
-from diagnose.statistics.score_test import Marginal
+from diagnose.statistics.nuisance_projection import Marginal
 from tests.diagnose.verdict.toy import LEAK, RELAXING, ToyEngine, fitted, found, toy_recording, toy_run
 
 LEAKS, RELAXES = fitted(LEAK, 0.5), fitted(RELAXING, 0.3, 0.5)

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from diagnose.engines.segment import answer
+from diagnose.engines.segment import response as answer
 from diagnose.engines.segment.engine import segment_engine
-from diagnose.engines.segment.recent import Courses
+from diagnose.engines.segment.kept_answers import Courses
 from diagnose.forward import Setting
 from diagnose.signals.recording import Recording
 from geometry.base import InputError

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
-from diagnose.vocabulary.base import Scene
 from diagnose.vocabulary.base import candidates_of_segment as candidates
 from diagnose.vocabulary.layers.property_error import nuisance
 from diagnose.vocabulary.layers.viscoelasticity import relaxed_fraction
+from diagnose.vocabulary.scene import Scene
 from solve.mechanisms import MECHANISMS, with_mechanisms
 from solve.mechanisms.base import BONDS, MEDIA, channels_of
 from solve.model import Readout

@@ -2,7 +2,8 @@
 
 from dataclasses import replace
 
-from diagnose.statistics.abstain import Evidence, Rates, decide
+from diagnose.statistics.abstain import Evidence, decide
+from diagnose.statistics.error_rates import Rates
 from tests.cases import for_each
 
 RATES = Rates(level=0.003, margin=0.5, largest_group=3)

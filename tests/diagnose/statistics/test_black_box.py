@@ -3,8 +3,13 @@
 import numpy as np
 import pytest
 
-from diagnose.inference.black_box import black_box_forecast, doubling_edges, lagged_means, ridge_by_evidence
-from diagnose.statistics.held_out import Sums
+from diagnose.statistics.impulse_response import (
+    doubling_edges,
+    impulse_response_forecast,
+    lagged_means,
+    ridge_by_evidence,
+)
+from diagnose.statistics.linear_gaussian import Sums
 from tests.diagnose.statistics.forecasts import linear_forecast, sure_gain
 
 RNG = np.random.default_rng(101)
@@ -29,7 +34,7 @@ OUTSIDE = np.concatenate([np.roll(d, 25) * (np.arange(LENGTH) >= 25) for d in DR
 def scores(truth):
     residual = RNG.standard_normal(len(PRESS)) + truth + 0.2
     named = linear_forecast(residual, np.column_stack([OFFSET, NAMED]), np.array([0.5, 10.0]), PRESS).log_scores
-    return named, black_box_forecast(residual, OFFSET, PRIOR, MEMORY, PRESS).log_scores
+    return named, impulse_response_forecast(residual, OFFSET, PRIOR, MEMORY, PRESS).log_scores
 
 
 def test_lags_double_and_reach_the_longest():
@@ -55,7 +60,7 @@ def test_the_evidence_finds_the_prior_that_drew_the_response():
 def test_in_noise_the_response_shrinks_to_nothing():
     residual = RNG.standard_normal(len(PRESS))
     without = linear_forecast(residual, OFFSET, PRIOR, PRESS).log_scores
-    box = black_box_forecast(residual, OFFSET, PRIOR, MEMORY, PRESS).log_scores
+    box = impulse_response_forecast(residual, OFFSET, PRIOR, MEMORY, PRESS).log_scores
     assert -0.5 < (box - without).mean() < 0.5
 
 

@@ -5,7 +5,8 @@ import pytest
 from scipy.fft import dct
 from scipy.stats import chi2, kstest
 
-from diagnose.statistics.cells import FilterBank, octave_edges, pooled, segments
+from diagnose.statistics.cells import FilterBank, octave_edges, segments
+from diagnose.statistics.hypotheses import pooled
 
 STEP_S = 0.01
 RUN = np.repeat([0, 1], [300, 340])

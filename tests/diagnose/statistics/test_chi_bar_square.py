@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import nnls
 from scipy.stats import chi2, f
 
-from diagnose.statistics.score_test import orthant, survival, weights
+from diagnose.statistics.chi_bar_square import orthant, survival, weights
 from tests.cases import for_each
 
 

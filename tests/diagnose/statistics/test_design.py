@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from diagnose.statistics.separation import best_press, linked, remaining_spread
+from diagnose.statistics.best_press import best_press, linked, remaining_spread
 
 RNG = np.random.default_rng(111)
 TANGENT, DIFFERENCE = RNG.standard_normal((40, 2)), RNG.standard_normal(40)

@@ -5,16 +5,10 @@ import pytest
 from scipy.sparse import eye_array
 from scipy.stats import chi2, kstest
 
-from diagnose.statistics.cells import (
-    FilterBank,
-    Hypotheses,
-    null_energies,
-    octave_edges,
-    segments,
-    step_down,
-    with_pools,
-)
-from diagnose.statistics.score_test import Marginal
+from diagnose.statistics.cells import FilterBank, octave_edges, segments
+from diagnose.statistics.family_wise import null_energies, step_down
+from diagnose.statistics.hypotheses import Hypotheses, with_pools
+from diagnose.statistics.nuisance_projection import Marginal
 from tests.diagnose.statistics.rejections import is_fair
 
 COUNT, LEVEL, TRIALS = 400, 0.05, 400

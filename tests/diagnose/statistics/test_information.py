@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from diagnose.statistics.held_out import Sums, bic, held_out_probabilities
+from diagnose.statistics.linear_gaussian import Sums
+from diagnose.statistics.model_criteria import bic, held_out_probabilities
 
 
 def test_the_formula():

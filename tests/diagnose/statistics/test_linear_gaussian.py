@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
-from diagnose.statistics.held_out import Sums
-from diagnose.statistics.score_test import Marginal
+from diagnose.statistics.linear_gaussian import Sums
+from diagnose.statistics.nuisance_projection import Marginal
 from tests.cases import for_each
 
 RNG = np.random.default_rng(41)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
-from diagnose.statistics.score_test import Marginal, orthonormal, posterior
+from diagnose.statistics.nuisance_projection import Marginal, orthonormal, posterior
 
 RNG = np.random.default_rng(11)
 TANGENT, SIGMA = RNG.standard_normal((30, 4)) * [1.0, 5.0, 0.1, 2.0], np.array([0.3, 2.0, 1.0, 0.05])

@@ -4,19 +4,16 @@ from functools import cache
 
 import numpy as np
 
-from diagnose.inference.black_box import black_box_forecast, doubling_edges, lagged_means
-from diagnose.statistics.abstain import Evidence, Rates, decide, rate_for_promise
-from diagnose.statistics.cells import (
-    FilterBank,
-    Hypotheses,
-    null_energies,
-    octave_edges,
-    segments,
-    step_down,
-    with_pools,
-)
+from diagnose.statistics.abstain import Evidence, decide
+from diagnose.statistics.cells import FilterBank, octave_edges, segments
+from diagnose.statistics.error_rates import Rates
+from diagnose.statistics.family_wise import null_energies, step_down
 from diagnose.statistics.held_out import gain_over_noise
-from diagnose.statistics.score_test import Marginal, holm, score_test
+from diagnose.statistics.hypotheses import Hypotheses, with_pools
+from diagnose.statistics.impulse_response import doubling_edges, impulse_response_forecast, lagged_means
+from diagnose.statistics.nuisance_projection import Marginal
+from diagnose.statistics.proportions import rate_for_promise
+from diagnose.statistics.score_test import holm, score_test
 from tests.diagnose.statistics.forecasts import linear_forecast, separation_by_press
 
 PRESSES, LENGTH, CANDIDATES = 8, 60, 20
@@ -80,7 +77,7 @@ def diagnosed(residual):
     forecasts = {int(c): linear_forecast(residual, *columns_of(c), PRESS) for c in survivors}
     best = max(forecasts, key=lambda c: forecasts[c].log_scores.sum())
     baseline = linear_forecast(residual, *columns_of(None), PRESS)
-    box = black_box_forecast(residual, NUISANCES, PRIOR, MEMORY, PRESS)
+    box = impulse_response_forecast(residual, NUISANCES, PRIOR, MEMORY, PRESS)
     gain, box_gain = gained(forecasts[best], baseline), gained(box, forecasts[best])
     left = p_of_residual(residual, best)
     return decide(Evidence(p_mismatch, left, 1.0, gain.lower, box_gain.lower, (), 1), RATES), best

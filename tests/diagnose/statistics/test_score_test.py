@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
-from diagnose.statistics.score_test import Marginal, holm, score_test
+from diagnose.statistics.nuisance_projection import Marginal
+from diagnose.statistics.score_test import holm, score_test
 from tests.cases import for_each
 from tests.diagnose.statistics.rejections import is_fair
 

@@ -5,13 +5,8 @@ import pytest
 from scipy.linalg import subspace_angles
 from scipy.stats import norm
 
-from diagnose.statistics.score_test import Marginal
-from diagnose.statistics.separation import (
-    ambiguity_groups,
-    distance_to_rival,
-    least_separation,
-    separations,
-)
+from diagnose.statistics.nuisance_projection import Marginal
+from diagnose.statistics.separation import ambiguity_groups, distance_to_rival, least_separation, separations
 from tests.diagnose.statistics.rejections import is_fair
 
 E = np.eye(8)

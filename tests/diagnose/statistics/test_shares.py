@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from diagnose.inference.localisation import component_shares, shares_of_excess
+from diagnose.inference.localisation import shares_of_excess
+from diagnose.statistics.component_shares import component_shares
 
 RNG = np.random.default_rng(31)
 BASIS, _ = np.linalg.qr(RNG.standard_normal((50, 6)))

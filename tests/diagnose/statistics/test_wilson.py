@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import brentq
 from scipy.stats import binom
 
-from diagnose.statistics.abstain import rate_for_promise, wilson_interval
+from diagnose.statistics.proportions import rate_for_promise, wilson_interval
 from tests.cases import for_each
 
 

@@ -8,16 +8,9 @@ from matplotlib.image import imread
 
 from diagnose.findings import Fit, LocatedExcess
 from diagnose.forward import Setting
-from diagnose.verdict.pictures import (
-    EDGES_HZ,
-    band_of,
-    channels_to_draw,
-    draw_gains,
-    draw_overview,
-    draw_run,
-    draw_shares,
-    shares,
-)
+from diagnose.pictures.evidence import draw_gains, draw_shares
+from diagnose.pictures.overview import EDGES_HZ, band_of, draw_overview, shares
+from diagnose.pictures.run import channels_to_draw, draw_run
 from tests.cases import for_each
 from tests.diagnose.verdict.toy import LEAK, RELAXING, fitted, found, toy_recording, toy_run
 

@@ -10,7 +10,7 @@ from diagnose.figures import figure
 from diagnose.findings import Fit, Interval, LocatedExcess, Remainder
 from diagnose.forward import Candidate, Coordinate, Setting
 from diagnose.next_press.choose import next_presses
-from diagnose.verdict.content import verdict, where_words
+from diagnose.verdict.content import verdict
 from diagnose.verdict.names import (
     WHERE,
     component_words,
@@ -20,6 +20,7 @@ from diagnose.verdict.names import (
     mechanism_words,
     setting_words,
 )
+from diagnose.verdict.where_it_fails import where_words
 from diagnose.verdict.words import sentences
 from diagnose.vocabulary.base import vocabulary
 from diagnose.vocabulary.layers.property_error import property_error

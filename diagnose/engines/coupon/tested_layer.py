@@ -1,0 +1,48 @@
+"""A segment whose medium 1 is the part that was tested: what switches mechanisms on in a press does so here.
+
+Only medium 1, the read-out and the physics of such a model are looked at; film, medium 2 and dot stand idle, and so do
+they for a sensor of unknown geometry.
+"""
+
+from collections.abc import Sequence
+
+from diagnose.forward import Candidate, Coordinate, Setting
+from geometry.parameters import Dot, Film, Medium, Segment
+from solve.materials.parameters import Material, library
+from solve.mechanisms import Mechanism, with_mechanisms
+from solve.model import Model, Readout
+
+LAYER = "medium1"
+SPECIMEN = "specimen"
+
+
+class PartOfLayer(Candidate):
+    """A candidate whose component in the verdict is none of a segment: its mechanism acts on medium 1."""
+
+    def switched_on(self, values: Sequence[float]) -> Mechanism:
+        """The mechanism on medium 1. ValueError for values beyond its bounds."""
+        return Mechanism(name=self.mechanism, component=LAYER, parameters=self.parameters(values))
+
+
+def one_layer(material: Material, thickness_mm: float, readout: Readout | None = None) -> Model:
+    """The model with this material in medium 1."""
+    idle = Medium(thickness_mm=1.0)
+    segment = Segment(medium1=Medium(thickness_mm=thickness_mm), film=Film(thickness_um=28.0), medium2=idle)
+    materials = {LAYER: material, "film": library()["pvdf"], "medium2": library()["vnr"]}
+    return Model(segment, materials, Dot(), readout=readout)
+
+
+def switched(settings: Sequence[Setting]) -> list[Mechanism]:
+    """The mechanisms of the settings that are not off."""
+    return [setting.candidate.switched_on(setting.values) for setting in settings if any(setting.values)]
+
+
+def with_factors_last(model: Model, mechanisms: Sequence[Mechanism]) -> Model:
+    """The model with the mechanisms; a wrong modulus scales whatever law stands there in the end."""
+    return with_mechanisms(model, sorted(mechanisms, key=lambda mechanism: mechanism.traits.wrong_number))
+
+
+def drive_error(name: str) -> Candidate:
+    """A nuisance of the drive, which is no mechanism: added to it, or its relative error."""
+    coordinate = Coordinate(name, -1e6 if name != "force_gain" else -0.9, 1e6, (0.01, -0.01))
+    return Candidate(name, "drive", (coordinate,), lambda values: {name: values[0]})

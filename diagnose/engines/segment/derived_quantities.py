@@ -1,0 +1,47 @@
+"""Quantities that are comparable between laws, read from the tables."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from diagnose.engines.segment.prepared import Prepared
+from diagnose.forward import Candidate, Setting
+
+COMPARED = 0.5
+"""Of the deepest press, where the second cycle is set against the first: near the deepest both are the same."""
+Derived = Callable[[Sequence[float]], dict[str, float]]
+
+
+def with_derived(candidate: Candidate, prepared: Prepared) -> Candidate:
+    """A candidate that tells force_ratio, with over without it at the deepest press, or the loss_ratio of the force.
+
+    They are told once the candidate is prepared.
+    """
+    if candidate.compared:
+        return replace(candidate, derived=COMPARISONS[candidate.compared](candidate, prepared))
+    return candidate
+
+
+def _force_ratio(candidate: Candidate, prepared: Prepared) -> Derived:
+    def derived(values: Sequence[float]) -> dict[str, float]:
+        change = prepared.change((0.0, 0.0), [Setting(candidate, tuple(values))])
+        return {"force_ratio": 1.0 if change is None else float(np.exp(change[-1, 0]))}
+
+    return derived
+
+
+def _loss_ratio(candidate: Candidate, prepared: Prepared) -> Derived:
+    """1 - second / first cycle force at equal depth."""
+
+    def derived(values: Sequence[float]) -> dict[str, float]:
+        if not any(values):
+            return {"loss_ratio": 0.0}
+        (history,) = prepared.histories([Setting(candidate, tuple(values))])
+        again = history.along(np.array([1.0, COMPARED]))[0][1, 0]
+        return {"loss_ratio": -float(again)}
+
+    return derived
+
+
+COMPARISONS = {"force_ratio": _force_ratio, "loss_ratio": _loss_ratio}

@@ -1,0 +1,104 @@
+"""From a table and a drive to what the instruments of a run show."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from diagnose.engines.segment.drive import Drive
+from diagnose.signals.recording import Run
+from geometry.arrays import Floats
+from solve.model import Model, Physics, Readout
+from solve.readout.amplifier import amplify, other_charge_C
+from solve.readout.channels import amplify_channels
+from solve.reduced.fit import ResponseTable
+from solve.reduced.recording import branches, sensed
+from solve.reduced.time_stepping import TOO_DEEP, follow
+
+
+@dataclass(frozen=True)
+class FilmPlate:
+    """Per electrode the capacitance in F and the area in m2, (e, 2); pyroelectric constant in uC / m2 K."""
+
+    electrodes: Floats
+    pyroelectric_uC_per_m2_K: float
+
+    def thinner(self, factor: float) -> "FilmPlate":
+        """A film whose capacitance is larger by a factor."""
+        return replace(self, electrodes=self.electrodes * [factor, 1.0])
+
+    def other_charge_C(self, time_s: Floats, area_m2: Floats, physics: Physics) -> Floats:
+        """Charge (t, e) of heat and of the touch; time (t,) from the first touch, contact area (t,)."""
+        return other_charge_C(time_s, area_m2, self.electrodes[:, 1], self.pyroelectric_uC_per_m2_K, physics)
+
+
+@dataclass(frozen=True)
+class Mechanics:
+    """Over time (t,): the dot's path in mm, the contact force in N, its area in m2; charges (t, e) in C."""
+
+    path_mm: Floats
+    force_N: Floats
+    area_m2: Floats
+    charge_C: Floats
+
+
+def mechanics(
+    fit: ResponseTable, depth_mm: float, layers: tuple[str, ...], drive: Drive, values: Floats, on: Model
+) -> Mechanics:
+    """The dot and the segment under a drive of these values (t,). ValueError where it goes deeper than the table."""
+    physics, modes = on.physics, int(fit.start[-1])
+    observed = fit.table.shape[2] - modes
+    path, outputs = np.empty(len(values)), np.empty((len(values), observed))
+    moduli, times, layer = branches(physics.viscosity, layers)
+    mass = 1e-6 * physics.moving_mass_g  # N s2 / mm
+    status = follow(
+        drive.time_s, values, drive.kind, physics.rig_compliance_mm_per_N, mass, fit.table, fit.touch, depth_mm,
+        fit.pairs, fit.start, moduli, times, layer, observed, path, outputs,
+    )  # fmt: skip
+    if status == TOO_DEEP:
+        raise ValueError(f"the dot goes deeper than {depth_mm:.4g} mm, the most that was prepared")
+    # between its presses a table may tell an area just below none, of which there is no power
+    return Mechanics(path, outputs[:, 0], np.maximum(outputs[:, 1], 0.0), outputs[:, 2:])
+
+
+def shown(
+    run: Run, names: Sequence[str], drive: Drive, values: Floats, found: Mechanics, film: FilmPlate, on: Model,
+    ahead_s: float = 0.0,
+) -> dict[str, Floats]:  # fmt: skip
+    """Channels of the run (t,) by name. Where nothing pushes, nobody can tell where a dot hangs: as recorded.
+
+    ahead_s : by which the mains are ahead of the first touch.
+    """
+    signals: dict[str, Floats] = {}
+    voltages = sorted((name for name in names if name.startswith("voltage")), key=_electrode)
+    if voltages:
+        signals |= amplified(voltages, drive.time_s, found, film, on, ahead_s)
+    if "force_N" in names:
+        told = (values, drive.kind, found.path_mm, found.force_N, on.physics)
+        signals["force_N"] = sensed(*told, lambda: run.acceleration_mm_per_s2)
+    if "displacement_mm" in names:
+        path = found.path_mm + on.dot.gap_mm
+        signals["displacement_mm"] = np.where(drive.touching, path, run.channels.get("displacement_mm", path))
+    return {name: signals[name] for name in names}
+
+
+def _electrode(name: str) -> int:
+    """voltage_3_V -> 3."""
+    return int("0" + "".join(filter(str.isdigit, name)))
+
+
+def amplified(
+    names: Sequence[str], time_s: Floats, found: Mechanics, film: FilmPlate, on: Model, ahead_s: float
+) -> dict[str, Floats]:
+    """Voltage channels (t,): one of all electrodes together, or one of each with what leaks in from the others.
+
+    names : in the order of the electrodes.
+    """
+    charge = found.charge_C + film.other_charge_C(time_s, found.area_m2, on.physics)
+    time_s = time_s + ahead_s  # the amplifier itself knows differences of time only
+    readout = on.readout or Readout()
+    if len(names) == 1:
+        told = (time_s, charge.sum(axis=1), float(film.electrodes[:, 0].sum()), readout, on.physics)
+        return {names[0]: amplify(*told)}
+    voltages = amplify_channels(time_s, charge, film.electrodes[:, 0], readout, on.physics)
+    return dict(zip(names, voltages, strict=True))

@@ -1,0 +1,29 @@
+"""The fewest times at which the 3D model must be solved to follow a drive."""
+
+from itertools import pairwise
+
+import numpy as np
+
+from geometry.arrays import Floats, Ints
+from solve.solution.thinning import thinned
+
+SLOPE = 0.06, 0.2, 0.4, 0.6, 0.8, 0.94  # of a slope: closest where softened rubber leaves its first curve
+STEEP = 0.2  # of the largest drive: a lesser rise needs no point between
+HOLD = 0.03, 0.1, 0.3  # of a stretch without much change: what relaxes does so at first
+
+
+def knots(time: Floats, share: Floats, tolerance: float, most: int) -> Ints:
+    """Samples (k,) to solve at, for a drive in shares (t,) of its largest: corners, and between them by SLOPE or HOLD.
+
+    What is clear of the segment has no points of its own.
+    """
+    kept = np.flatnonzero(thinned(time, share, tolerance, most // 2))
+    more: list[int] = []
+    for first, last in pairwise(kept):
+        rise = abs(share[last] - share[first])
+        if max(share[first], share[last]) <= tolerance:
+            continue
+        places = SLOPE if rise > STEEP else HOLD
+        more += [int(np.searchsorted(time, time[first] + p * (time[last] - time[first]))) for p in places]
+    found = np.unique([*kept, *more])
+    return found if len(found) <= most else kept

@@ -1,0 +1,125 @@
+"""True refits: the named model fitted to some presses and shown on others that it has not seen."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from diagnose.findings import Fit
+from diagnose.fit.baseline import plausible
+from diagnose.fit.linearised_system import LinearisedSystem, linearised
+from diagnose.fit.marginal_likelihood import Quadratic
+from diagnose.fit.observed_model import ObservedModel
+from diagnose.fit.refit import Fitted, fitted
+from diagnose.forward import Setting
+from diagnose.inference.screening import Screening
+from geometry.arrays import Bools, Floats
+
+ROUNDS = 2
+
+
+def split(presses: int) -> tuple[list[int], list[int]]:
+    """Numbers of presses to train on and to hold out: every second one."""
+    return list(range(0, presses, 2)), list(range(1, presses, 2))
+
+
+def trained_and_held(
+    model: ObservedModel,
+    found: Screening,
+    fit: Fitted | None,
+    gains: Floats,
+    halves: tuple[list[int], list[int]] | None = None,
+) -> tuple[Fit, Fit | None]:
+    """Errors on training presses and on held-out ones; None where there is one press only.
+
+    halves : numbers of both, every second one unless told otherwise. gains : (presses,) held-out log-score gains.
+    Mechanisms and shared nuisances come from training presses alone. What floats in a run that has no training press is
+    fitted to it with both models alike, under its prior.
+    """
+    samples = model.samples
+    training, held = halves or split(len(samples.presses))
+    informative = found.baseline.informative
+    seen = informative & np.isin(samples.press, training)
+    settings: tuple[Setting, ...] = ()
+    after = before = relaxed(model, found.start.values, (), seen, np.zeros(len(model.nuisances), dtype=bool))
+    if fit is not None:
+        own = fitted(model, fit.system.reached(seen), fit.candidates, fit.values, found.excess)
+        settings = own.settings
+        after = own.nuisances(model)
+    runs = {samples.presses[n][0] for n in training}
+    frozen = np.array([nuisance.run is None or nuisance.run in runs for nuisance in model.nuisances], dtype=bool)
+    unseen = informative & np.isin(samples.press, held)
+    if held and not frozen.all():
+        before = relaxed(model, before, (), unseen, frozen)
+        after = relaxed(model, after, settings, unseen, frozen) if fit is not None else before
+    train = errors(model, training, before, after, settings, gains)
+    return train, errors(model, held, before, after, settings, gains) if held else None
+
+
+def unimproved(fit: Fit) -> Fit:
+    """The fit where nothing is named: after is as before."""
+    return replace(fit, nrmse_after=fit.nrmse_before, log_score_gain_per_press=0.0)
+
+
+def relaxed(model: ObservedModel, values: Floats, settings: Sequence[Setting], rows: Bools, frozen: Bools) -> Floats:
+    """Nuisances fitted to some rows within what is plausible, but for those that are frozen."""
+    for _ in range(ROUNDS if len(values) else 0):
+        system = linearised(model, values, settings, informative=rows)
+        values = model.answered(values, _bounded(system, values, frozen), settings)
+    return values
+
+
+def _bounded(system: LinearisedSystem, values: Floats, frozen: Bools) -> Floats:
+    """Least squares (p,) within what is plausible: what would go farther is held there and the rest fitted again."""
+    values, held = values.copy(), frozen.copy()
+    columns, sigma = system.nuisance_design[:, : len(values)], system.sigma[: len(values)]
+    while not held.all():
+        free = np.flatnonzero(~held)
+        residual = system.residual[system.informative] - columns[:, held] @ values[held]
+        found = Quadratic(system.weighted(columns[:, free]), sigma[free]).mean(system.weighted(residual))
+        values[free] = plausible(found, sigma[free])
+        held[free] = values[free] != found
+        if not held[free].any():
+            break
+    return values
+
+
+def errors(
+    model: ObservedModel,
+    presses: Sequence[int],
+    before: Floats,
+    after: Floats,
+    settings: Sequence[Setting],
+    gains: Floats,
+) -> Fit:
+    """Of some presses (numbers); gains : (presses,) log-scores over the baseline."""
+    samples = model.samples
+    names = tuple(f"{model.runs[run].label}, press {press + 1}" for run, press in (samples.presses[n] for n in presses))
+    own = [n for n in presses if n < len(gains)]
+    gain = float(np.mean(gains[own])) if settings and own else 0.0
+    old, floor = _relative(model, presses, model.signals(before))
+    new, _ = _relative(model, presses, model.signals(after, settings))
+    return Fit(names, old, new, floor, gain)
+
+
+def _relative(
+    model: ObservedModel, presses: Sequence[int], signals: Sequence[dict[str, Floats]]
+) -> tuple[float, float]:
+    """Root mean square error over the recording's, each channel counting alike; and that of noise alone."""
+    samples, errors, floors = model.samples, [], []
+    for channel in samples.channels:
+        missed = seen = noise = 0.0
+        for block in samples.blocks:
+            if block.channel != channel:
+                continue
+            run, found = model.runs[block.run], samples.recording.phases[block.run]
+            own = [press for n in presses for number, press in [samples.presses[n]] if number == block.run]
+            rows = block.observed & np.isin(found.press, own)
+            recorded = run.channels[channel][rows]
+            missed += float(((recorded - signals[block.run][channel][rows]) ** 2).sum())
+            seen += float((recorded**2).sum())
+            noise += len(recorded) * block.whitening.noise.rms**2
+        if seen > 0.0:
+            errors.append(missed / seen)
+            floors.append(noise / seen)
+    return float(np.sqrt(np.mean(errors))), float(np.sqrt(np.mean(floors)))

@@ -1,0 +1,94 @@
+"""The chi-bar-square distribution: of the score statistic over a cone of allowed signs.
+
+Kudo, Biometrika 50 (1963) 403; Shapiro, Int. Stat. Rev. 56 (1988) 49; Silvapulle and Sen, Constrained Statistical
+Inference, 2005, section 3.4. The weight of j degrees of freedom is the chance that just j parameters come out positive:
+w_j = sum over faces a, |a| = j, of P(N(0, I_aa^-1) > 0) P(N(0, I_bb - I_ba I_aa^-1 I_ab) > 0), b the others.
+"""
+
+from itertools import combinations
+from math import comb
+
+import numpy as np
+from scipy.stats import chi2, multivariate_normal
+from scipy.stats import f as f_distribution
+
+from geometry.arrays import Floats
+
+MOST = 8  # non-negative parameters: 256 faces
+CLOSED = 3  # dimensions of the orthants that have a closed form
+ORTHANT_ERROR = 1e-3  # of the others, relative: no level is better known
+ROUGH, LEAST = 1e-3, 1e-5  # absolute, of a first estimate and of what is next to nothing
+
+
+def weights(information: Floats) -> Floats:
+    """Weights (q + 1,) of 0 to q degrees of freedom for an information matrix (q, q) of non-negative parameters.
+
+    ValueError for more than MOST parameters.
+    """
+    count = len(information)
+    if count > MOST:
+        raise ValueError(f"{count} non-negative parameters in one candidate; at most {MOST}")
+    found = np.zeros(count + 1)
+    left_out = _from_the_others(count)
+    for positive in set(range(count + 1)) - set(left_out):
+        for face in combinations(range(count), positive):
+            found[positive] += _chance_of_face(information, list(face))
+    for positive in left_out:
+        found[positive] = max(0.5 - found[positive % 2 :: 2].sum(), 0.0)
+    return np.asarray(found / found.sum())  # the sum is one but for the numerical orthants
+
+
+def _from_the_others(count: int) -> list[int]:
+    """One even and one odd number of degrees, those with the most faces of numerical orthants; none without any.
+
+    Even weights make one half together, and so do odd ones (Silvapulle and Sen, proposition 3.6.1).
+    """
+    numerical = {j: comb(count, j) for j in range(count + 1) if max(j, count - j) > CLOSED}
+    of_each = [[j for j in numerical if j % 2 == odd] for odd in (0, 1)]
+    return [max(some, key=numerical.__getitem__) for some in of_each if some]
+
+
+def survival(statistic: float, weight: Floats, unbounded: int = 0, noise_degrees: float = np.inf) -> float:
+    """P(chi-bar-square >= statistic). unbounded : parameters of either sign, which always add a degree of freedom.
+
+    noise_degrees : of the estimated noise variance, inf when it is known; each term is then d F(d, noise_degrees).
+    """
+    if statistic <= 0.0:
+        return 1.0
+    terms = ((w, j + unbounded) for j, w in enumerate(weight))
+    return float(sum(w * f_tail(statistic, degrees, noise_degrees) for w, degrees in terms if degrees > 0))
+
+
+def orthant(covariance: Floats) -> float:
+    """P(all components of N(0, covariance) are positive); closed forms up to three (Sheppard 1898, David 1953)."""
+    count = len(covariance)
+    if count == 0:
+        return 1.0
+    deviation = np.sqrt(np.diag(covariance))
+    correlation = np.clip(covariance / np.outer(deviation, deviation), -1.0, 1.0)
+    if count <= CLOSED:
+        above = correlation[np.triu_indices(count, 1)]
+        return float(0.5**count + 0.5 ** (count - 1) * np.arcsin(above).sum() / np.pi)
+    rough = _numerical(correlation, ROUGH)
+    return _numerical(correlation, max(ORTHANT_ERROR * rough, LEAST))
+
+
+def _numerical(correlation: Floats, error: float) -> float:
+    """The same by quasi-random points, of this absolute error."""
+    seed = np.random.default_rng(0)
+    law = multivariate_normal(cov=correlation, allow_singular=True, seed=seed, abseps=error, releps=0.0)
+    return float(law.cdf(np.zeros(len(correlation))))
+
+
+def _chance_of_face(information: Floats, face: list[int]) -> float:
+    others = [n for n in range(len(information)) if n not in face]
+    inner = np.asarray(np.linalg.inv(information[np.ix_(face, face)]), dtype=np.float64)
+    across = information[np.ix_(others, face)]
+    return orthant(inner) * orthant(information[np.ix_(others, others)] - across @ inner @ across.T)
+
+
+def f_tail(statistic: float, degrees: int, noise_degrees: float) -> float:
+    """P(F or chi-square >= statistic), the latter where the variance of the noise is known."""
+    if np.isinf(noise_degrees):
+        return float(chi2.sf(statistic, degrees))
+    return float(f_distribution.sf(statistic / degrees, degrees, noise_degrees))

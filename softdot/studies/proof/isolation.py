@@ -1,0 +1,82 @@
+"""A diagnosis isolated in a process and a folder of its own, which is handed nothing but one recording."""
+
+import json
+import os
+import subprocess
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from geometry.environment import ONE_THREAD, own_python
+from geometry.files import scratch_folder
+
+KEPT = ("PATH", "LANG", "LC_ALL", "LD_LIBRARY_PATH")
+LINES = 3
+PROGRAM = "softdot.cli"  # by name: what diagnoses stands above this package
+
+
+@dataclass(frozen=True)
+class Heard:
+    """What came out. verdict : None without one; reason : why; next_presses : file -> text of waveforms."""
+
+    verdict: Mapping[str, Any] | None
+    reason: str
+    seconds: float
+    next_presses: Mapping[str, str] = field(default_factory=dict)
+
+
+def diagnosed(files: Mapping[str, str], cache: Path, limit_s: float, options: tuple[str, ...] = ()) -> Heard:
+    """Diagnose a recording, name -> text of its files, within a limit of time."""
+    with scratch_folder() as scratch:
+        folder = scratch.resolve()
+        recording = folder / "recording"
+        recording.mkdir()
+        (folder / "tmp").mkdir()
+        for file, text in files.items():
+            (recording / file).write_text(text, "utf-8")
+        guard = own_python("-m", "softdot.studies.proof.guard", str(os.getpid()), str(folder), str(cache), PROGRAM)
+        begun = time.perf_counter()
+        try:
+            ended = subprocess.run(
+                [*guard, "diagnose", "recording", "-o", "verdict", "--json", *options],
+                cwd=folder,
+                env=environment(folder, cache),
+                capture_output=True,
+                encoding="utf-8",
+                timeout=limit_s,
+                check=False,
+            )
+        except subprocess.TimeoutExpired:
+            return Heard(None, f"no verdict within {limit_s:g} s", time.perf_counter() - begun)
+        return _heard(ended, folder, time.perf_counter() - begun)
+
+
+def _heard(ended: "subprocess.CompletedProcess[str]", folder: Path, seconds: float) -> Heard:
+    verdict = folder / "verdict" / "verdict.json"
+    if not verdict.exists():
+        last = " | ".join(ended.stderr.strip().splitlines()[-LINES:])
+        return Heard(None, f"exit {ended.returncode}: {last}", seconds)
+    waves = {wave.name: wave.read_text("utf-8") for wave in verdict.parent.glob("next-press*.csv")}
+    return Heard(json.loads(verdict.read_text("utf-8")), "", seconds, waves)
+
+
+def environment(folder: Path, cache: Path) -> dict[str, str]:
+    """No variable of the generator gets in: no seed, no folder of recordings, no cache of its presses.
+
+    Kernels that are not kept beside the source are compiled once for the cache of the diagnoses.
+    """
+    program = Path(__file__).resolve().parents[3]
+    kept = {name: os.environ[name] for name in KEPT if name in os.environ}
+    apart = {"NUMBA_CACHE_DIR": str(cache / "kernels")} if "NUMBA_CACHE_DIR" in os.environ else {}
+    return {
+        **kept,
+        **apart,
+        **ONE_THREAD,
+        "HOME": str(folder),
+        "TMPDIR": str(folder / "tmp"),
+        "PYTHONPATH": str(program),
+        "SOFTDOT_CACHE": str(cache),
+        "MPLCONFIGDIR": str(folder / "tmp"),
+    }
