@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from softdot.commands.run import run_config
     from softdot.config import Config, config_hash, config_schema, load_config
     from softdot.outcome import derivatives
-    from softdot.studies import Verdict, diagnose, sweep
+    from softdot.scripting import Verdict, diagnose, sweep
 
     __version__: str
 
@@ -51,14 +51,14 @@ _HOMES = {
     "MeshingError": "mesh.types",
     "Pressed": "softdot.case",
     "ResultWarning": "softdot.case",
-    "Verdict": "softdot.studies",
+    "Verdict": "softdot.scripting",
     "config_hash": "softdot.config",
     "config_schema": "softdot.config",
     "derivatives": "softdot.outcome",
-    "diagnose": "softdot.studies",
+    "diagnose": "softdot.scripting",
     "load_config": "softdot.config",
     "run_config": "softdot.commands.run",
-    "sweep": "softdot.studies",
+    "sweep": "softdot.scripting",
 }
 _BESIDE = Path(__file__).resolve().parents[1]
 _PACKAGES = ("geometry", "mesh", "solve", "export", "diagnose")

@@ -27,14 +27,14 @@ from softdot.console import (
 )
 from softdot.executors import executor_for
 from softdot.output import Product, staged_folder
-from softdot.paper.published import Published, inconsistencies, published
-from softdot.paper.section import Answer, Block, Cell, Figure, Heading, PaperTable, Section
+from softdot.studies.paper.published import Published, inconsistencies, published
+from softdot.studies.paper.section import Answer, Block, Cell, Figure, Heading, PaperTable, Section
 
 
 def command(chosen: Namespace) -> int:
     """Make the whole study in chosen.output; 0, or 3 when a press gave no result. InputError."""
     from softdot.console import progress_of
-    from softdot.paper.section import NotSolvedError
+    from softdot.studies.paper.section import NotSolvedError
 
     try:
         with only_the_summary_on_stdout(), progress_of(chosen) as progress:
@@ -173,7 +173,7 @@ def _block(block: Block) -> dict[str, Any]:
 
 PAPER = Product("softdot-paper/1", "paper.json", frozenset({"paper.json", "paper.html", "figures", "tables"}))
 PARTS = ("analytical", "calibration", "segments", "beyond")
-"""Packages of softdot.paper, in the order of the page; each has a function section."""
+"""Packages of softdot.studies.paper, in the order of the page; each has a function section."""
 
 
 def run_paper(out: Path, progress: Progress | None = None, scheduler: str | None = None) -> dict[str, Any]:
@@ -217,7 +217,7 @@ def all_tables(sections: Sequence[Section]) -> list[PaperTable]:
 
 
 def _part(name: str) -> Callable[[Progress, Path, Executor], Section]:
-    found: Callable[[Progress, Path, Executor], Section] = import_module(f"softdot.paper.{name}").section
+    found: Callable[[Progress, Path, Executor], Section] = import_module(f"softdot.studies.paper.{name}").section
     return found
 
 

@@ -25,7 +25,14 @@ from tests.cases import for_each
 from tests.softdot.stand_ins import result_of
 
 ROOT = Path(__file__).parents[2]
-DOCUMENTS = sorted([*(ROOT / "docs").glob("*.md"), *ROOT.glob("*.md"), ROOT / "examples" / "README.md"])
+DOCUMENTS = sorted(
+    [
+        *(ROOT / "docs").glob("*.md"),
+        *(ROOT / "docs" / "studies").glob("*.md"),
+        *ROOT.glob("*.md"),
+        ROOT / "examples" / "README.md",
+    ]
+)
 SOURCES = ("geometry", "mesh", "solve", "export", "diagnose", "softdot", "docs", "tests", "examples", "benchmarks")
 HOMES = (
     geometry.parameters, geometry.array.parameters, geometry.fabrication.parameters, import_module("mesh.build"),

@@ -1,0 +1,1 @@
+"""Studies: evidence about the tool and its field, apart from the product."""

@@ -1,0 +1,226 @@
+"""The presses behind p: the assumed rig and one change at a time, in cross-section and in three dimensions.
+
+Force and voltage of a press against depth.
+
+How one input changes a press.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.interpolate import CubicSpline, PchipInterpolator
+
+from geometry.arrays import Floats
+from geometry.executor import Executor
+from softdot.config import Config
+from softdot.console import Progress
+from softdot.studies.paper.calibration.rig import (
+    CASES,
+    INPUTS,
+    TABLE_SPONGE_MPA,
+    RigCase,
+    Section,
+    Values,
+    assumed,
+    constant_sponge,
+    foam,
+    rig_config,
+)
+from softdot.studies.paper.section import NotSolvedError
+from solve.mechanisms.boundaries.adhesive_compliance import ADHESIVE_COMPLIANCE
+
+
+@dataclass(frozen=True)
+class PressCurve:
+    """Load steps (s,) from rest: depth, force and open-circuit voltage; capacitance of the film."""
+
+    depth_mm: Floats
+    force_N: Floats
+    voltage_V: Floats
+    capacitance_pF: float
+
+    def force_at(self, depth_mm: float | Floats) -> Floats:
+        """Force in N at depths of any shape."""
+        return _extended(self._force, self.depth_mm[-1], np.asarray(depth_mm))
+
+    def voltage_at(self, depth_mm: float | Floats) -> Floats:
+        """Open-circuit voltage in V at depths of any shape."""
+        return _extended(self._voltage, self.depth_mm[-1], np.asarray(depth_mm))
+
+    def scaled(self, force: float, voltage: float) -> "PressCurve":
+        """The curve with force and voltage scaled."""
+        return replace(self, force_N=force * self.force_N, voltage_V=voltage * self.voltage_V)
+
+    @cached_property
+    def _force(self) -> CubicSpline:
+        return CubicSpline(self.depth_mm, self.force_N)
+
+    @cached_property
+    def _voltage(self) -> CubicSpline:
+        return CubicSpline(self.depth_mm, self.voltage_V)
+
+
+def _extended(curve: CubicSpline, last_mm: float, asked: Floats) -> Floats:
+    """A cubic spline, since leakage asks for smooth slopes, and beyond the last step the tangent there."""
+    beyond = np.maximum(asked - last_mm, 0.0)
+    return np.asarray(curve(np.minimum(asked, last_mm)) + beyond * curve(last_mm, 1))
+
+
+@dataclass(frozen=True)
+class RigResponse:
+    """values (k,) of an input, ascending; ratios (k, 2) of force and voltage at full depth against the assumed one."""
+
+    values: Floats
+    ratios: Floats
+
+    def at(self, value: float) -> Floats:
+        """Ratios of force and voltage (2,) at a value, its logarithm interpolated; beyond the ends those of the end."""
+        return np.asarray(np.exp(self._curve(np.clip(value, self.values[0], self.values[-1]))))
+
+    @cached_property
+    def _curve(self) -> PchipInterpolator:
+        return PchipInterpolator(self.values, np.log(self.ratios))
+
+
+SIMULATED, ROUND, FOAM = "cross-section", "round dot", "round dot on foam"
+MODELS = (SIMULATED, ROUND, FOAM)
+"""From what the paper simulated to what it built."""
+VARIED = {
+    SIMULATED: {"dot_radius_mm": (1.2,), "poisson_ratio": (0.0, 0.45, 0.495)},
+    ROUND: {"dot_radius_mm": (1.2,), "poisson_ratio": (0.0, 0.495)},
+    FOAM: {"dot_radius_mm": (1.2,), "foam_exponent": (8.0, 20.0), "foam_poisson_ratio": (0.3,)},
+}
+"""Model -> input -> values at which it is pressed too, beside the assumed one."""
+GLUE = tuple(
+    {
+        "name": ADHESIVE_COMPLIANCE.name,
+        "component": bond,
+        "parameters": {"thickness_um": 30.0, "youngs_modulus_MPa": 0.3},
+    }
+    for bond in ("bond-medium1-film", "bond-film-medium2")
+)
+"""Spray glue on both faces of the film."""
+
+
+class Name(NamedTuple):
+    """Which press: case of Table 1, model, what is changed and to what."""
+
+    case: str
+    model: str
+    change: str = "nothing"
+    value: float = 0.0
+
+
+@dataclass(frozen=True)
+class Solved:
+    """All presses of one case."""
+
+    case: RigCase
+    curves: Mapping[str, PressCurve]
+    """Model -> press with the assumed inputs."""
+    responses: Mapping[str, Mapping[str, RigResponse]]
+    """Model -> input -> how it changes force and voltage."""
+    finer: Mapping[str, PressCurve]
+    """SIMULATED and ROUND on finer meshes."""
+    glued: PressCurve
+    """SIMULATED with glue on both faces of the film."""
+    soft: PressCurve
+    """SIMULATED with the sponge of Table 1, ten times softer than that of the text."""
+    unknowns: Mapping[str, int]
+    stopped_mm: Mapping[str, float]
+    """Presses that ended before full depth: name -> the last depth that converged."""
+
+    def curve(self, model: str, values: Values) -> PressCurve:
+        """The press of a model at given inputs: each changes the assumed one by a factor of its own."""
+        factors = np.array([response.at(values[name]) for name, response in self.responses[model].items()])
+        force, voltage = factors.prod(axis=0)
+        return self.curves[model].scaled(force, voltage)
+
+
+def solve_rig(progress: Progress, executor: Executor) -> dict[str, Solved]:
+    """Case -> its presses, as far as they are not remembered. NotSolvedError."""
+    from softdot.sweeps.points import solve_points
+
+    configs = dict(_configs())
+    records = dict(zip(configs, solve_points(list(configs.values()), progress, executor=executor), strict=True))
+    return {name: _solved(case, records) for name, case in CASES.items()}
+
+
+def _configs() -> Iterator[tuple[Name, Config]]:
+    """Every press, the long ones first, so that no core waits at the end."""
+    for model in (ROUND, FOAM, SIMULATED):
+        for name, case in CASES.items():
+            if model != FOAM:
+                yield Name(name, model, "finer"), _config(case, model, assumed(), finer=True)
+            yield Name(name, model), _config(case, model, assumed())
+            for entry, changed in VARIED[model].items():
+                for value in changed:
+                    yield Name(name, model, entry, value), _config(case, model, assumed(**{entry: value}))
+    for name, case in CASES.items():
+        values = assumed()
+        yield Name(name, SIMULATED, "glue"), _config(case, SIMULATED, values, mechanisms=GLUE)
+        sponge, radius = constant_sponge(values["poisson_ratio"], TABLE_SPONGE_MPA), values["dot_radius_mm"]
+        yield Name(name, SIMULATED, "soft"), rig_config(case, "plane-strain", sponge, radius)
+
+
+def _config(case: RigCase, model: str, values: Values, **changes: Any) -> Config:
+    section: Section = "plane-strain" if model == SIMULATED else "solid"
+    constant = constant_sponge(values["poisson_ratio"])
+    sponge = foam(values["foam_exponent"], values["foam_poisson_ratio"]) if model == FOAM else constant
+    return rig_config(case, section, sponge, values["dot_radius_mm"], **changes)
+
+
+def _solved(case: RigCase, records: Mapping[Name, Mapping[str, Any]]) -> Solved:
+    own = {name: record for name, record in records.items() if name.case == case.name}
+    curves = {name: _curve(name, record) for name, record in own.items()}
+
+    def of(model: str, change: str = "nothing") -> PressCurve:
+        return curves[Name(case.name, model, change)]
+
+    return Solved(
+        case,
+        {model: of(model) for model in MODELS},
+        {model: _responses(case, model, curves) for model in MODELS},
+        {model: of(model, "finer") for model in (SIMULATED, ROUND)},
+        of(SIMULATED, "glue"),
+        of(SIMULATED, "soft"),
+        {model: own[Name(case.name, model)]["mesh"]["unknowns"] for model in MODELS},
+        {_text(name): float(curves[name].depth_mm[-1]) for name in own if own[name]["status"] != "solved"},
+    )
+
+
+def _responses(case: RigCase, model: str, curves: Mapping[Name, PressCurve]) -> dict[str, RigResponse]:
+    found = {}
+    for entry, values in VARIED[model].items():
+        at = {INPUTS[entry].assumed: curves[Name(case.name, model)]}
+        at |= {value: curves[Name(case.name, model, entry, value)] for value in values}
+        found[entry] = _response(case.depth_mm, at, INPUTS[entry].assumed)
+    return found
+
+
+def _response(depth_mm: float, at: Mapping[float, PressCurve], reference: float) -> RigResponse:
+    """From the presses at the values of one input, to those at the reference value."""
+    order = sorted(at)
+    reached = np.array([[at[value].force_at(depth_mm), at[value].voltage_at(depth_mm)] for value in order])
+    return RigResponse(np.array(order), reached / reached[order.index(reference)])
+
+
+def _curve(name: Name, record: Mapping[str, Any]) -> PressCurve:
+    """The press of a record; one that stopped early may do, if it got half-way. NotSolvedError."""
+    depth = record.get("indentation_mm") or [0.0]
+    if record["status"] != "solved" and depth[-1] < 0.5 * CASES[name.case].depth_mm:
+        raise NotSolvedError(f"calibration rig, {_text(name)}: {record['status']}, {record['reason']}")
+    return PressCurve(
+        np.array(depth),
+        np.array(record["reaction_force_N"]),
+        np.array(record["open_circuit_voltage_V"]),
+        record["film"]["capacitance_pF"],
+    )
+
+
+def _text(name: Name) -> str:
+    change = "" if name.change == "nothing" else f", {name.change} {name.value:g}"
+    return f"case {name.case}, {name.model}{change}"
