@@ -4,31 +4,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from softdot.studies.paper.beyond.designs import (
-    PAPERS,
-    Design,
-    DesignPress,
-    DesignTrial,
-    clamped_deflection,
-    clamped_voltage_V,
-    columns,
-    free_force_N_per_mm,
-    papers_variables,
-    sample,
-)
-from softdot.studies.paper.beyond.designs import free_voltage_V as free_V
-from softdot.studies.paper.beyond.ranking import FOUR, SEVEN, Halves, Ranking, Surrogate, fit
-from softdot.studies.paper.beyond.search import (
-    GOALS,
-    MODELS,
-    PAIRS,
-    STIFFNESS_N_PER_MM3,
-    Beyond,
-    Curve,
-    Search,
-    capacitance_pF,
-    limits_of,
-)
+from softdot.studies.paper.beyond.comparison import MODELS
+from softdot.studies.paper.beyond.designs import PAPERS, Design, papers_variables, sample
+from softdot.studies.paper.beyond.elastic_sides import PAIRS, STIFFNESS_N_PER_MM3, Curve
+from softdot.studies.paper.beyond.predictors import clamped_deflection, clamped_voltage_V, columns, free_force_N_per_mm
+from softdot.studies.paper.beyond.predictors import free_voltage_V as free_V
+from softdot.studies.paper.beyond.ranking import FOUR, SEVEN, Halves, Ranking, fit
+from softdot.studies.paper.beyond.search import GOALS, Search, capacitance_pF, limits_of
+from softdot.studies.paper.beyond.study import Beyond
+from softdot.studies.paper.beyond.surrogate import Surrogate
+from softdot.studies.paper.beyond.trials import DesignPress, DesignTrial
 
 CONSTANTS = {"tension_share": 0.25, "give": 0.4, "rest": 0.35}
 

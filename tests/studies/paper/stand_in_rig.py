@@ -2,8 +2,11 @@
 
 import numpy as np
 
-from softdot.studies.paper.calibration.rig import CASES, INPUTS
-from softdot.studies.paper.calibration.solved import FOAM, ROUND, SIMULATED, VARIED, PressCurve, RigResponse, Solved
+from softdot.studies.paper.calibration.inputs import INPUTS
+from softdot.studies.paper.calibration.press_curve import PressCurve
+from softdot.studies.paper.calibration.response import RigResponse
+from softdot.studies.paper.calibration.rig import CASES
+from softdot.studies.paper.calibration.solved import FOAM, ROUND, SIMULATED, VARIED, Solved
 
 FILM_PF = 1000.0
 

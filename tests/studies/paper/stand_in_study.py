@@ -1,6 +1,7 @@
 """Presses that nobody solved, with round numbers, for tests of words, tables and pages."""
 
-from softdot.studies.paper.segments.cases import CASES, CHECKED, VARIANTS, VARIED, PaperCase, SolvedPress, Study
+from softdot.studies.paper.segments.cases import CASES, PaperCase
+from softdot.studies.paper.segments.presses import CHECKED, VARIANTS, VARIED, SolvedPress, Study
 
 
 def press(force_N: float = 1.0, millivolts: float = 100.0, exponent: float = 2.0) -> SolvedPress:

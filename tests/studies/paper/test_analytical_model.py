@@ -4,25 +4,29 @@ import math
 
 import pytest
 
-from softdot.studies.paper.analytical import (
-    Lamina,
+from softdot.studies.paper.analytical.beam import (
     beam_deflection_m,
     bending_softness,
+    second_moment_m4,
+    shear_deflection_m,
+)
+from softdot.studies.paper.analytical.composite import (
+    Lamina,
     bending_stiffness_Nm,
+    middle_curvature_per_m,
+    neutral_axis_m,
+    plane_strain_modulus_Pa,
+    stretch_of_deflected_strip,
+)
+from softdot.studies.paper.analytical.softness import (
     deflections_m,
     index_of_modulus,
     index_of_thickness,
-    middle_curvature_per_m,
-    neutral_axis_m,
     output_m,
-    plane_strain_modulus_Pa,
     regime,
-    second_moment_m4,
     shares,
-    shear_deflection_m,
     softness,
     softness_of_jiang,
-    stretch_of_deflected_strip,
 )
 from softdot.studies.paper.analytical.tables import misprinted, recomputed
 from softdot.studies.paper.published import published, table_rows

@@ -3,8 +3,9 @@
 import pytest
 
 from softdot.outcome import outcome
-from softdot.studies.paper.beyond.designs import PAPERS, Design, DesignTrial, design_config, press_of
-from softdot.studies.paper.beyond.search import beats
+from softdot.studies.paper.beyond.comparison import beats
+from softdot.studies.paper.beyond.designs import PAPERS, Design, design_config
+from softdot.studies.paper.beyond.trials import DesignTrial, press_of
 from tests.cases import for_each
 
 FOUND = Design(0.41, 1.1, 1.3, 2.9, 0.41, 0.58, 52.0)

@@ -16,8 +16,8 @@ from softdot.studies.paper.beyond.designs import (
     papers_variables,
     sample,
 )
-from softdot.studies.paper.beyond.search import elastic
-from softdot.studies.paper.published import segment_config
+from softdot.studies.paper.beyond.elastic_sides import elastic
+from softdot.studies.paper.segment import segment_config
 from tests.cases import for_each
 
 COARSE = {"element_size_mm": 0.6, "contact_element_size_mm": 0.3, "mesher": "layered"}

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from softdot.studies.paper.beyond.designs import (
+from softdot.studies.paper.beyond.designs import PAPERS
+from softdot.studies.paper.beyond.predictors import (
     CONTACT_MM,
-    PAPERS,
     clamped_deflection,
     clamped_voltage_V,
     columns,
@@ -18,7 +18,7 @@ from softdot.studies.paper.beyond.designs import (
     shape_factor,
     spread_softness,
 )
-from softdot.studies.paper.published import INDENTATION_MM, LENGTH_MM
+from softdot.studies.paper.segment import INDENTATION_MM, LENGTH_MM
 from solve.materials.parameters import VACUUM_PERMITTIVITY
 from tests.cases import for_each
 

@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
-from softdot.studies.paper.beyond import section_of
+from softdot.studies.paper.beyond.claims import claims
+from softdot.studies.paper.beyond.comparison import MESHERS, beats
+from softdot.studies.paper.beyond.elastic_sides import STIFFNESS_N_PER_MM3
 from softdot.studies.paper.beyond.ranking import (
     CORRECTED,
     FOUR,
@@ -14,8 +16,7 @@ from softdot.studies.paper.beyond.ranking import (
     scatter,
     spearman,
 )
-from softdot.studies.paper.beyond.search import MESHERS, STIFFNESS_N_PER_MM3, beats
-from softdot.studies.paper.beyond.tables import claims
+from softdot.studies.paper.beyond.section import section_of
 from softdot.studies.paper.section import PaperTable
 from tests.studies.paper import stand_in_beyond as stand_in
 

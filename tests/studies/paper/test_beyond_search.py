@@ -8,9 +8,11 @@ import pytest
 from geometry.executor import HERE
 from softdot.console import Logged
 from softdot.studies.paper.beyond import search as searching
-from softdot.studies.paper.beyond.designs import PAPERS, DesignPress, DesignTrial, coordinates, sample
-from softdot.studies.paper.beyond.ranking import Surrogate
-from softdot.studies.paper.beyond.search import GOALS, beats, capacitance_pF, limits_of, to_beat
+from softdot.studies.paper.beyond.comparison import beats
+from softdot.studies.paper.beyond.designs import PAPERS, coordinates, sample
+from softdot.studies.paper.beyond.search import GOALS, capacitance_pF, limits_of, to_beat
+from softdot.studies.paper.beyond.surrogate import Surrogate
+from softdot.studies.paper.beyond.trials import DesignPress, DesignTrial
 from tests.cases import for_each
 from tests.studies.paper import stand_in_beyond as stand_in
 

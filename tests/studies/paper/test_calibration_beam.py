@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import cumulative_trapezoid
 
-from softdot.studies.paper.calibration.rig import BENDING_STIFFNESS_N_MM2, dot_depth_mm, tip_stiffness_N_per_mm
+from softdot.studies.paper.calibration.beam import BENDING_STIFFNESS_N_MM2, dot_depth_mm, tip_stiffness_N_per_mm
 from tests.cases import for_each
 
 LENGTH_MM, FORCE_N, READ_MM = 80.0, 0.7, 0.9

@@ -3,20 +3,12 @@
 import numpy as np
 import pytest
 
-from softdot.studies.paper.calibration import figures as contours
-from softdot.studies.paper.calibration.factor import (
-    BEAM,
-    DIMENSION,
-    FILTER,
-    LEAKAGE,
-    SPONGE,
-    factor,
-    factors,
-    quantiles,
-    ranges,
-)
-from softdot.studies.paper.calibration.rig import INPUTS, assumed
-from softdot.studies.paper.calibration.tables import answers, claims, lost_more
+from softdot.studies.paper.calibration import contours
+from softdot.studies.paper.calibration.answers import answers
+from softdot.studies.paper.calibration.claims import claims, lost_more
+from softdot.studies.paper.calibration.factor import BEAM, DIMENSION, FILTER, LEAKAGE, SPONGE, factor, factors
+from softdot.studies.paper.calibration.inputs import INPUTS, assumed
+from softdot.studies.paper.calibration.ranges import quantiles, ranges
 from softdot.studies.paper.published import published
 from tests.studies.paper.stand_in_rig import rig, solved
 

@@ -3,8 +3,8 @@
 import pytest
 
 from softdot.outcome import outcome
-from softdot.studies.paper.calibration import section_of
 from softdot.studies.paper.calibration.rig import CASES, constant_sponge, foam, rig_config
+from softdot.studies.paper.calibration.section import section_of
 from softdot.studies.paper.published import published
 from tests.cases import for_each
 from tests.studies.paper.stand_in_rig import rig

@@ -5,9 +5,9 @@ import pytest
 from geometry.base import InputError
 from geometry.executor import HERE
 from softdot.console import Logged
-from softdot.studies.paper.published import segment_config
-from softdot.studies.paper.section import NotSolvedError, solve_named
-from softdot.studies.paper.segments.cases import press_of
+from softdot.studies.paper.presses import NotSolvedError, solve_named
+from softdot.studies.paper.segment import segment_config
+from softdot.studies.paper.segments.presses import press_of
 
 SOLVED = {"status": "solved", "reason": None}
 

@@ -8,10 +8,10 @@ import pytest
 
 from softdot.cli import main
 from softdot.commands import paper as whole
-from softdot.studies.paper.analytical import section as analytical
+from softdot.studies.paper.analytical.section import section as analytical
+from softdot.studies.paper.presses import NotSolvedError
 from softdot.studies.paper.published import published
-from softdot.studies.paper.section import NotSolvedError
-from softdot.studies.paper.segments import section_of
+from softdot.studies.paper.segments.section import section_of
 from tests.studies.paper.stand_in_study import study
 
 PARTS = {

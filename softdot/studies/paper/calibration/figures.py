@@ -1,110 +1,22 @@
-"""Pictures of p: its pieces, the two unknowns that decide, and the signal.
+"""Pictures of p: its pieces, the two unknowns that decide, and the signal."""
 
-Which input resistance and press time give the printed p.
-"""
-
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq
 
-from geometry.arrays import Floats
-from softdot.studies.paper.calibration.factor import (
-    PIECES,
-    Ranges,
-    chain,
-    charge_pC,
-    dot_depth,
-    factor,
-    pressed,
-    quantiles,
-    recorded_V,
-    swing_V,
-    times_s,
-)
-from softdot.studies.paper.calibration.rig import INPUTS, Values, assumed
-from softdot.studies.paper.calibration.solved import FOAM, SIMULATED, PressCurve, Solved
-from softdot.studies.paper.published import published
-from softdot.studies.paper.section import CLAMPED, FREE, PAPER, SOFT, label, new_figure, save
-
-RESISTANCES_MOHM = (0.1, 30.0)
-"""What is searched and drawn."""
-TIMES_S = tuple(float(t) for t in np.linspace(0.1, 0.5, 17))
-
-
-@dataclass(frozen=True)
-class Rest:
-    """What R and T do not change: ideal voltage, press of the real sensor, depth of its dot in mm."""
-
-    ideal_V: float
-    curve: PressCurve
-    depth_mm: float
-
-    def p(self, resistance_MOhm: float, press_time_s: float) -> float:
-        """p with the assumed inputs but these two."""
-        charge = charge_pC(self.curve, self.depth_mm, press_time_s)
-        values = assumed(resistance_MOhm=resistance_MOhm)
-        return self.ideal_V / swing_V(charge, self.curve.capacitance_pF, chain(values))
-
-
-def rest(solved: Solved) -> Rest:
-    """Everything but R and T as assumed."""
-    values = assumed()
-    real, read_mm = solved.curve(FOAM, values), solved.case.depth_mm
-    ideal = float(solved.curve(SIMULATED, values).voltage_at(read_mm))
-    return Rest(ideal, real, dot_depth(real, read_mm, values))
-
-
-def resistance_for(solved: Solved, p: float, press_time_s: float) -> float | None:
-    """Input resistance in MΩ that gives p at a press time; None where none between RESISTANCES_MOHM does."""
-
-    found = rest(solved)
-
-    def excess(logarithm: float) -> float:
-        return float(np.log(found.p(float(np.exp(logarithm)), press_time_s) / p))
-
-    low, high = np.log(RESISTANCES_MOHM)
-    if excess(low) * excess(high) > 0.0:
-        return None
-    return float(np.exp(brentq(excess, low, high, xtol=1e-4)))
-
-
-def time_for(solved: Solved, p: float, resistance_MOhm: float) -> float | None:
-    """Press time in s that gives p at an input resistance; None where none between TIMES_S does."""
-
-    found = rest(solved)
-
-    def excess(time_s: float) -> float:
-        return found.p(resistance_MOhm, time_s) - p
-
-    if excess(TIMES_S[0]) * excess(TIMES_S[-1]) > 0.0:
-        return None
-    return float(brentq(excess, TIMES_S[0], TIMES_S[-1], xtol=1e-4))
-
-
-def curve(solved: Solved, p: float, times_s: Sequence[float] = TIMES_S) -> list[tuple[float, float]]:
-    """Pairs of press time in s and resistance in MΩ that give p."""
-    found = [(time, resistance_for(solved, p, time)) for time in times_s]
-    return [(time, resistance) for time, resistance in found if resistance is not None]
-
-
-def grid(solved: Solved, resistances_MOhm: Floats, times_s: Floats) -> Floats:
-    """p (t, r) over press times (t,) and resistances (r,)."""
-    found = rest(solved)
-    return np.array([[found.p(float(r), float(t)) for r in resistances_MOhm] for t in times_s])
-
+from softdot.studies.paper.calibration.contours import RESISTANCES_MOHM, TIMES_S, grid, printed
+from softdot.studies.paper.calibration.factor import PIECES, charge_pC, dot_depth, factor
+from softdot.studies.paper.calibration.inputs import INPUTS, Values, assumed
+from softdot.studies.paper.calibration.ranges import Ranges, quantiles
+from softdot.studies.paper.calibration.readout import chain, pressed, recorded_V, times_s
+from softdot.studies.paper.calibration.solved import FOAM, Rig, Solved
+from softdot.studies.paper.drawing import CLAMPED, FREE, PAPER, SOFT, label, new_figure, save
 
 COLOURS = {"I": FREE, "II": CLAMPED}
 PIECE_COLOURS = dict(zip(PIECES, ("#33658a", "#9dbf9e", "#e7cfa3", "#b5263b", "#8a949e"), strict=True))
 LEVELS = (10, 30, 100, 1000)
-
-
-def printed(case: str) -> float:
-    """p of Table 1."""
-    return published()[f"table1.{case}.p"].value
 
 
 def title(solved: Solved) -> str:
@@ -112,7 +24,7 @@ def title(solved: Solved) -> str:
     return f"case {solved.case.name}: {solved.case.title} on sponge"
 
 
-def draw_pieces(rig: Mapping[str, Solved], spread: Ranges, folder: Path) -> Path:
+def draw_pieces(rig: Rig, spread: Ranges, folder: Path) -> Path:
     """A waterfall on a logarithmic axis: each piece starts where the one before it ended."""
     figure, panels = new_figure(2, height_in=4.2)
     for panel, (name, solved) in zip(panels, rig.items(), strict=True):
@@ -148,7 +60,7 @@ def _number(panel: Any, place: float, height: float, text: str) -> None:
     panel.annotate(text, (place, height), (0, 3), textcoords="offset points", ha="center", fontsize=9)
 
 
-def draw_map(rig: Mapping[str, Solved], folder: Path) -> Path:
+def draw_map(rig: Rig, folder: Path) -> Path:
     """p over input resistance and press time, and where it is what the paper prints."""
     figure, panels = new_figure(2, height_in=4.0)
     resistances, times = np.geomspace(*RESISTANCES_MOHM, 24), np.array(TIMES_S)
@@ -168,7 +80,7 @@ def draw_map(rig: Mapping[str, Solved], folder: Path) -> Path:
     return save(figure, folder, "calibration-map")
 
 
-def draw_signal(rig: Mapping[str, Solved], folder: Path) -> Path:
+def draw_signal(rig: Rig, folder: Path) -> Path:
     """Film and gauge over one press, as in the paper's Fig. 2."""
     figure, panels = new_figure(2)
     values = assumed()
@@ -190,7 +102,7 @@ def _press(solved: Solved, values: Values) -> tuple[Any, Any]:
     return charge_pC(real, reached, values["press_time_s"]), reached * pressed(values["press_time_s"])
 
 
-def draw_outputs(rig: Mapping[str, Solved], folder: Path) -> Path:
+def draw_outputs(rig: Rig, folder: Path) -> Path:
     """Normalised output as in the paper's Figs. 3 and 4."""
     figure, panels = new_figure(2)
     found = {name: factor(solved, assumed()).outputs_V_per_mm for name, solved in rig.items()}

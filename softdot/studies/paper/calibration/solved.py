@@ -1,89 +1,28 @@
-"""The presses behind p: the assumed rig and one change at a time, in cross-section and in three dimensions.
-
-Force and voltage of a press against depth.
-
-How one input changes a press.
-"""
+"""The presses behind p: the assumed rig and one change at a time, in cross-section and in three dimensions."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.interpolate import CubicSpline, PchipInterpolator
 
-from geometry.arrays import Floats
 from geometry.executor import Executor
 from softdot.config import Config
 from softdot.console import Progress
+from softdot.studies.paper.calibration.inputs import INPUTS, Values, assumed
+from softdot.studies.paper.calibration.press_curve import PressCurve
+from softdot.studies.paper.calibration.response import RigResponse
 from softdot.studies.paper.calibration.rig import (
     CASES,
-    INPUTS,
     TABLE_SPONGE_MPA,
     RigCase,
     Section,
-    Values,
-    assumed,
     constant_sponge,
     foam,
     rig_config,
 )
-from softdot.studies.paper.section import NotSolvedError
+from softdot.studies.paper.presses import NotSolvedError
 from solve.mechanisms.boundaries.adhesive_compliance import ADHESIVE_COMPLIANCE
-
-
-@dataclass(frozen=True)
-class PressCurve:
-    """Load steps (s,) from rest: depth, force and open-circuit voltage; capacitance of the film."""
-
-    depth_mm: Floats
-    force_N: Floats
-    voltage_V: Floats
-    capacitance_pF: float
-
-    def force_at(self, depth_mm: float | Floats) -> Floats:
-        """Force in N at depths of any shape."""
-        return _extended(self._force, self.depth_mm[-1], np.asarray(depth_mm))
-
-    def voltage_at(self, depth_mm: float | Floats) -> Floats:
-        """Open-circuit voltage in V at depths of any shape."""
-        return _extended(self._voltage, self.depth_mm[-1], np.asarray(depth_mm))
-
-    def scaled(self, force: float, voltage: float) -> "PressCurve":
-        """The curve with force and voltage scaled."""
-        return replace(self, force_N=force * self.force_N, voltage_V=voltage * self.voltage_V)
-
-    @cached_property
-    def _force(self) -> CubicSpline:
-        return CubicSpline(self.depth_mm, self.force_N)
-
-    @cached_property
-    def _voltage(self) -> CubicSpline:
-        return CubicSpline(self.depth_mm, self.voltage_V)
-
-
-def _extended(curve: CubicSpline, last_mm: float, asked: Floats) -> Floats:
-    """A cubic spline, since leakage asks for smooth slopes, and beyond the last step the tangent there."""
-    beyond = np.maximum(asked - last_mm, 0.0)
-    return np.asarray(curve(np.minimum(asked, last_mm)) + beyond * curve(last_mm, 1))
-
-
-@dataclass(frozen=True)
-class RigResponse:
-    """values (k,) of an input, ascending; ratios (k, 2) of force and voltage at full depth against the assumed one."""
-
-    values: Floats
-    ratios: Floats
-
-    def at(self, value: float) -> Floats:
-        """Ratios of force and voltage (2,) at a value, its logarithm interpolated; beyond the ends those of the end."""
-        return np.asarray(np.exp(self._curve(np.clip(value, self.values[0], self.values[-1]))))
-
-    @cached_property
-    def _curve(self) -> PchipInterpolator:
-        return PchipInterpolator(self.values, np.log(self.ratios))
-
 
 SIMULATED, ROUND, FOAM = "cross-section", "round dot", "round dot on foam"
 MODELS = (SIMULATED, ROUND, FOAM)
@@ -138,6 +77,10 @@ class Solved:
         factors = np.array([response.at(values[name]) for name, response in self.responses[model].items()])
         force, voltage = factors.prod(axis=0)
         return self.curves[model].scaled(force, voltage)
+
+
+Rig = Mapping[str, Solved]
+"""Case of Table 1 -> its presses."""
 
 
 def solve_rig(progress: Progress, executor: Executor) -> dict[str, Solved]:

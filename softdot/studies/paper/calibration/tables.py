@@ -1,29 +1,15 @@
-"""Tables of the calibration rig.
-
-Our values of the numbers of section 2, and its claims put to the test.
-"""
+"""Tables of the calibration rig."""
 
 from collections.abc import Mapping
 
-import numpy as np
+from softdot.studies.paper.calibration import contours
+from softdot.studies.paper.calibration.contours import printed
+from softdot.studies.paper.calibration.factor import PIECES, Factor, factors
+from softdot.studies.paper.calibration.inputs import INPUTS, assumed
+from softdot.studies.paper.calibration.ranges import Ranges, quantiles
+from softdot.studies.paper.calibration.solved import MODELS, ROUND, SIMULATED, Rig, Solved
+from softdot.studies.paper.section import Cell, PaperTable
 
-from softdot.studies.paper.calibration import figures as contours
-from softdot.studies.paper.calibration.factor import (
-    PIECES,
-    Factor,
-    Ranges,
-    chain,
-    charge_pC,
-    factors,
-    quantiles,
-    swing_V,
-)
-from softdot.studies.paper.calibration.figures import printed
-from softdot.studies.paper.calibration.rig import CASES, FILM_MM, INPUTS, SPONGE_MM, SPONGE_MPA, assumed
-from softdot.studies.paper.calibration.solved import FOAM, MODELS, ROUND, SIMULATED, Solved
-from softdot.studies.paper.section import Answer, Cell, Claim, PaperTable
-
-Rig = Mapping[str, Solved]
 TIMES_S = (0.1, 0.2, 0.3, 0.4, 0.5)
 WORDS = dict(
     zip(
@@ -157,72 +143,3 @@ def mesh_error(solved: Solved) -> float:
     depth = solved.case.depth_mm
     simulated = float(solved.finer[SIMULATED].voltage_at(depth) / solved.curves[SIMULATED].voltage_at(depth))
     return simulated / float(solved.finer[ROUND].voltage_at(depth) / solved.curves[ROUND].voltage_at(depth)) - 1.0
-
-
-PREDICTED = "predicted with assumed inputs, not fitted; see its range"
-SEGMENT_AREAS_MM2 = {"2.5 × 16 mm": 40.0, "2.5 × 2.5 mm": 6.25}
-
-
-def answers(found: Mapping[str, Factor]) -> dict[str, Answer]:
-    """Inputs that we took over, and p."""
-    ours: dict[str, Answer] = {
-        "section2.h2_mm": Answer(SPONGE_MM),
-        "section2.E2_kPa": Answer(1e3 * SPONGE_MPA, "taken from the text"),
-        "section2.p-mean": Answer(float(np.mean([one.p for one in found.values()])), PREDICTED),
-    }
-    for name, case in CASES.items():
-        ours |= {
-            f"table1.{name}.h1_mm": Answer(case.thickness_mm),
-            f"table1.{name}.E1_MPa": Answer(case.material["youngs_modulus_MPa"]),
-            f"table1.{name}.E2_kPa": Answer(1e3 * SPONGE_MPA, "the 50 kPa of the text are taken"),
-            f"table1.{name}.u2_mm": Answer(case.depth_mm),
-            f"table1.{name}.p": Answer(found[name].p, PREDICTED),
-        }
-    return ours
-
-
-def claims(rig: Mapping[str, Solved], spread: Ranges) -> list[Claim]:
-    """What section 2 concludes."""
-    found = factors(rig, assumed())
-    return [_order(found), _transfer(rig), _trend(spread)]
-
-
-def _order(found: Mapping[str, Factor]) -> Claim:
-    simulated, recorded = ([one.outputs_V_per_mm[end] for one in found.values()] for end in (0, -1))
-    return Claim(
-        "A harder and thinner medium 1 gives more: case I above case II, simulated and recorded",
-        simulated[0] > simulated[1] and recorded[0] > recorded[1],
-        f"simulated {simulated[0]:.3g} against {simulated[1]:.3g} V/mm, recorded {1e3 * recorded[0]:.3g} against "
-        f"{1e3 * recorded[1]:.3g} mV/mm",
-    )
-
-
-def _transfer(rig: Mapping[str, Solved]) -> Claim:
-    losses = {size: lost_more(rig["I"], area) for size, area in SEGMENT_AREAS_MM2.items()}
-    parts = [f"a film of {size} loses {times:.1f} times more" for size, times in losses.items()]
-    return Claim(
-        "p of the 16 × 16 mm sensor serves for the segment of 2.5 mm too",
-        False,
-        f"with the same input and speed {' and '.join(parts)} to leakage, as p is proportional to the area",
-    )
-
-
-def lost_more(solved: Solved, area_mm2: float) -> float:
-    """Leakage of a film of another area, pressed alike, over that of the rig's film; cable left out."""
-    values = assumed(capacitance_pF=0.0)
-    curve = solved.curve(FOAM, values)
-    charge = charge_pC(curve, solved.case.depth_mm, values["press_time_s"])
-    share = area_mm2 / FILM_MM**2
-    whole = swing_V(charge, curve.capacitance_pF, chain(values))
-    return whole / swing_V(share * charge, share * curve.capacitance_pF, chain(values))
-
-
-def _trend(spread: Ranges) -> Claim:
-    ratio = spread.ratio()
-    share = float((ratio > 1.0).mean())
-    return Claim(
-        "p of case II is above p of case I",
-        True if share > 0.95 else False if share < 0.05 else None,
-        f"in {100 * share:.0f} % of {len(ratio)} samples of the unknown inputs; median ratio {np.median(ratio):.2f}, "
-        "printed 1.34",
-    )

@@ -3,11 +3,13 @@
 from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 
-from softdot.studies.paper.analytical.formulas import output_m
+from softdot.studies.paper.analytical.softness import output_m
 from softdot.studies.paper.analytical.tables import recomputed
-from softdot.studies.paper.published import Reading, published
+from softdot.studies.paper.published import published
 from softdot.studies.paper.section import Claim
-from softdot.studies.paper.segments.cases import ADDED_PAIRS, PAIRS, SolvedPress, Study, title
+from softdot.studies.paper.segment import Reading
+from softdot.studies.paper.segments.cases import ADDED_PAIRS, PAIRS, title
+from softdot.studies.paper.segments.presses import SolvedPress, Study
 
 Presses = Mapping[str, SolvedPress]
 Verdict = tuple[bool | None, str]
