@@ -8,29 +8,21 @@ from pathlib import Path
 from typing import Any
 
 from geometry.executor import Executor
-from softdot.console import (
-    GOOD,
-    NOT_CONVERGED,
-    Logged,
-    Progress,
-    complain,
-    installed_version,
-    only_the_summary_on_stdout,
-    plain,
-    show,
-    write_json,
-)
+from softdot.console import GOOD, NOT_CONVERGED, complain, only_the_summary_on_stdout, show
 from softdot.executors import executor_for
+from softdot.json_files import plain, write_json
 from softdot.output import Product, staged_folder
+from softdot.progress import Logged, Progress
 from softdot.studies.paper.comparison import claims_table, comparisons, inconsistencies_table, numbers_table
 from softdot.studies.paper.page import write_report
 from softdot.studies.paper.published import inconsistencies
 from softdot.studies.paper.section import PaperTable, Section
+from softdot.version import installed_version
 
 
 def command(chosen: Namespace) -> int:
     """Make the whole study in chosen.output; 0, or 3 when a press gave no result. InputError."""
-    from softdot.console import progress_of
+    from softdot.progress import progress_of
     from softdot.studies.paper.presses import NotSolvedError
 
     try:

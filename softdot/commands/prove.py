@@ -17,20 +17,10 @@ from diagnose.prove.world.rigs import BENCHES, OFFERED
 from geometry.base import InputError
 from geometry.cache import check_folder, data_hash, source_hash
 from softdot import proof as proof_files
-from softdot.console import (
-    GOOD,
-    INTERRUPTED,
-    LOG_FILE,
-    NOT_CONVERGED,
-    Logged,
-    Progress,
-    complain,
-    log_file,
-    only_the_summary_on_stdout,
-    plain,
-    show,
-    write_json,
-)
+from softdot.console import GOOD, INTERRUPTED, NOT_CONVERGED, complain, only_the_summary_on_stdout, show
+from softdot.json_files import plain, write_json
+from softdot.log import LOG_FILE, log_file
+from softdot.progress import Logged, Progress
 
 
 def command(chosen: Namespace) -> int:
@@ -38,8 +28,8 @@ def command(chosen: Namespace) -> int:
     if find_spec("skfem") is None:
         raise InputError("prove needs scikit-fem, the other finite-element code: pip install 'softdot[prove]'")
     from diagnose.prove.world.cases import KINDS
-    from softdot.commands.sweep import progress_of_points
     from softdot.proof import CASES
+    from softdot.sweeps.progress import progress_of_points
 
     rigs = tuple(chosen.rigs.split(",")) if chosen.rigs else RIGS
     kinds = tuple(chosen.kinds.split(",")) if chosen.kinds else KINDS
@@ -180,9 +170,9 @@ def _tried(
 def _finished(request: Request, place: Path, records: Sequence[Mapping[str, Any]], reused: int) -> dict[str, Any]:
     """Count, draw and write."""
     from diagnose.prove.score import tally
-    from softdot.console import installed_version
-    from softdot.executors import hardware
+    from softdot.hardware import hardware
     from softdot.proof import draw, rival_rates, text
+    from softdot.version import installed_version
 
     scores = [score_from(record["score"]) for record in records if record["score"] is not None]
     summary: dict[str, Any] = plain({

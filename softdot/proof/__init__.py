@@ -11,7 +11,7 @@ from diagnose.prove.score import rate as counted
 from diagnose.prove.trial import verified
 from diagnose.prove.world.cases import LEFT_OUT, NONE, OUTSIDE, SINGLE, SIZES, Case
 from geometry.cache import read_checked, write_checked
-from softdot.console import plain, write_json
+from softdot.json_files import plain, write_json
 from softdot.output import Product, check_output
 
 FORMAT = "softdot-proof/1"

@@ -5,7 +5,7 @@ from typing import Any, TypeVar
 
 from geometry.executor import Executor
 from softdot.config import Config
-from softdot.console import Progress
+from softdot.progress import Progress
 
 Name = TypeVar("Name", bound=Hashable)
 

@@ -12,8 +12,8 @@ from diagnose.prove.world.effects import applied
 from diagnose.prove.world.reality import baseline, record
 from diagnose.prove.world.rigs import BENCHES
 from diagnose.prove.world.stack import Stack
-from softdot.commands.diagnose import engine_for
 from softdot.config.rig import load_rig
+from softdot.diagnosis.engine import engine_for
 
 SHARES = np.array([0.1, 0.25, 0.5, 0.75, 1.0])
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from geometry.executor import HERE
-from softdot.console import Logged
+from softdot.progress import Logged
 from softdot.studies.paper.beyond import search as searching
 from softdot.studies.paper.beyond.comparison import beats
 from softdot.studies.paper.beyond.designs import PAPERS, coordinates, sample

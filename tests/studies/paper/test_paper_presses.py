@@ -4,7 +4,7 @@ import pytest
 
 from geometry.base import InputError
 from geometry.executor import HERE
-from softdot.console import Logged
+from softdot.progress import Logged
 from softdot.studies.paper.presses import NotSolvedError, solve_named
 from softdot.studies.paper.segment import segment_config
 from softdot.studies.paper.segments.presses import press_of

@@ -1,11 +1,7 @@
 """Statements of the paper that its formulas alone decide."""
 
-from softdot.studies.paper.analytical.composite import (
-    bending_stiffness_Nm,
-)
-from softdot.studies.paper.analytical.softness import (
-    output_m,
-)
+from softdot.studies.paper.analytical.composite import bending_stiffness_Nm
+from softdot.studies.paper.analytical.softness import output_m
 from softdot.studies.paper.analytical.stack import FILM, medium1, stiffness_ratio
 from softdot.studies.paper.analytical.tables import FORMULAS, misprinted, recomputed
 from softdot.studies.paper.published import published, table_rows

@@ -3,12 +3,8 @@
 from pathlib import Path
 from typing import Any
 
-from softdot.studies.paper.analytical.composite import (
-    bending_stiffness_Nm,
-)
-from softdot.studies.paper.analytical.softness import (
-    shares,
-)
+from softdot.studies.paper.analytical.composite import bending_stiffness_Nm
+from softdot.studies.paper.analytical.softness import shares
 from softdot.studies.paper.analytical.stack import FILM, H1_MM, medium1
 from softdot.studies.paper.analytical.tables import recomputed
 from softdot.studies.paper.drawing import CLAMPED, FREE, LAYER_COLOURS, PAPER, SOFT, bars, label, new_figure, save

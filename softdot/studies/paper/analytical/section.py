@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from geometry.executor import Executor
-from softdot.console import Progress
+from softdot.progress import Progress
 from softdot.studies.paper.analytical import figures
 from softdot.studies.paper.analytical.claims import claims
 from softdot.studies.paper.analytical.composite_table import STRETCH, composite_rows, composite_table

@@ -3,13 +3,7 @@
 from collections.abc import Callable, Mapping
 
 from softdot.studies.paper.analytical.beam import bending_softness
-from softdot.studies.paper.analytical.softness import (
-    index_of_modulus,
-    index_of_thickness,
-    output_m,
-    regime,
-    softness,
-)
+from softdot.studies.paper.analytical.softness import index_of_modulus, index_of_thickness, output_m, regime, softness
 from softdot.studies.paper.published import Published, published, table_rows
 from softdot.studies.paper.section import Answer, Cell, PaperTable
 from softdot.studies.paper.segment import LENGTH_MM

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from geometry.executor import Executor
-from softdot.console import Progress
+from softdot.progress import Progress
 from softdot.studies.paper.beyond.designs import PAPERS, Design
 from softdot.studies.paper.beyond.ranking import SLICE_MESH
 from softdot.studies.paper.beyond.trials import DesignTrial, solve_trials

@@ -9,11 +9,7 @@ from scipy.stats import qmc
 
 from geometry.arrays import Floats
 from softdot.config import Config
-from softdot.studies.paper.segment import (
-    Boundary,
-    Reading,
-    segment_config,
-)
+from softdot.studies.paper.segment import Boundary, Reading, segment_config
 
 FILMS_UM = (9.0, 28.0, 52.0, 110.0)
 """Thicknesses of drawn PVDF film that are sold: MSI Piezo Film Sensors Technical Manual, p. 3."""

@@ -7,7 +7,7 @@ import numpy as np
 
 from geometry.executor import Executor
 from softdot.config import Config
-from softdot.console import Progress
+from softdot.progress import Progress
 from softdot.studies.paper.beyond.trials import DesignPress, press_of
 from softdot.studies.paper.presses import solve_named
 from softdot.studies.paper.segment import segment_config

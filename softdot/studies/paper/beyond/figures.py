@@ -8,14 +8,7 @@ import numpy as np
 
 from softdot.studies.paper.beyond.comparison import MESHERS
 from softdot.studies.paper.beyond.elastic_sides import STIFFNESS_N_PER_MM3, WALLS, Curve
-from softdot.studies.paper.beyond.ranking import (
-    CORRECTED,
-    WITHOUT_FILM,
-    Ranking,
-    correlations,
-    predicted_V,
-    voltages,
-)
+from softdot.studies.paper.beyond.ranking import CORRECTED, WITHOUT_FILM, Ranking, correlations, predicted_V, voltages
 from softdot.studies.paper.beyond.search import FIRST, GOALS, Search
 from softdot.studies.paper.beyond.trials import BOUNDARIES, DesignPress, DesignTrial
 from softdot.studies.paper.drawing import CLAMPED, FREE, PAPER, SOFT, label, new_figure, save

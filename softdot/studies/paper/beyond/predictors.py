@@ -14,12 +14,7 @@ from softdot.studies.paper.analytical.beam import bending_softness
 from softdot.studies.paper.analytical.composite import plane_strain_modulus_Pa
 from softdot.studies.paper.analytical.softness import index_of_modulus, index_of_thickness, softness
 from softdot.studies.paper.beyond.designs import Design
-from softdot.studies.paper.segment import (
-    INDENTATION_MM,
-    LENGTH_MM,
-    POISSON_RATIO,
-    RIDGE_RADIUS_MM,
-)
+from softdot.studies.paper.segment import INDENTATION_MM, LENGTH_MM, POISSON_RATIO, RIDGE_RADIUS_MM
 from solve.materials.parameters import VACUUM_PERMITTIVITY, PiezoelectricFilm, find_material
 
 CONTACT_MM = 2.0 * np.sqrt(RIDGE_RADIUS_MM * INDENTATION_MM)

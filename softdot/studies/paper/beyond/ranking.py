@@ -7,7 +7,7 @@ import numpy as np
 
 from geometry.arrays import Floats
 from geometry.executor import Executor
-from softdot.console import Progress
+from softdot.progress import Progress
 from softdot.studies.paper.beyond.designs import papers_variables, sample
 from softdot.studies.paper.beyond.predictors import clamped_voltage_V, columns, free_voltage_V, papers_parameters
 from softdot.studies.paper.beyond.trials import BOUNDARIES, DesignTrial, solve_trials

@@ -7,7 +7,7 @@ import numpy as np
 
 from geometry.arrays import Floats
 from geometry.executor import Executor
-from softdot.console import Progress
+from softdot.progress import Progress
 from softdot.studies.paper.beyond.designs import FILMS_UM, PAPERS, Design, coordinates, design_at, sample
 from softdot.studies.paper.beyond.predictors import film
 from softdot.studies.paper.beyond.surrogate import Surrogate

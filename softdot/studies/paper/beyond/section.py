@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from geometry.executor import Executor
-from softdot.console import Progress
+from softdot.progress import Progress
 from softdot.studies.paper.beyond import figures, tables
 from softdot.studies.paper.beyond.claims import claims
 from softdot.studies.paper.beyond.comparison import MESHERS

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from geometry.executor import Executor
-from softdot.console import Progress
+from softdot.progress import Progress
 from softdot.studies.paper.beyond.comparison import compare
 from softdot.studies.paper.beyond.elastic_sides import Curve, solve_curves
 from softdot.studies.paper.beyond.ranking import Ranking, rank

@@ -5,12 +5,7 @@ from collections.abc import Mapping, Sequence
 from softdot.studies.paper.beyond.comparison import MODELS
 from softdot.studies.paper.beyond.designs import PAPERS, Design
 from softdot.studies.paper.beyond.elastic_sides import WALLS, Curve
-from softdot.studies.paper.beyond.ranking import (
-    CORRECTED,
-    WITHOUT_FILM,
-    Ranking,
-    correlations,
-)
+from softdot.studies.paper.beyond.ranking import CORRECTED, WITHOUT_FILM, Ranking, correlations
 from softdot.studies.paper.beyond.search import CABLE_PF
 from softdot.studies.paper.beyond.trials import BOUNDARIES, DesignTrial
 from softdot.studies.paper.section import Cell, PaperTable

@@ -5,12 +5,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from geometry.executor import Executor
-from softdot.console import Progress
+from softdot.progress import Progress
 from softdot.studies.paper.beyond.designs import Design, design_config
-from softdot.studies.paper.segment import (
-    Boundary,
-    Reading,
-)
+from softdot.studies.paper.segment import Boundary, Reading
 
 BOUNDARIES: tuple[Boundary, Boundary] = ("free", "clamped")
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from geometry.executor import Executor
-from softdot.console import Progress
+from softdot.progress import Progress
 from softdot.studies.paper.calibration import contours, figures, tables
 from softdot.studies.paper.calibration.answers import answers
 from softdot.studies.paper.calibration.beam import tip_stiffness_N_per_mm

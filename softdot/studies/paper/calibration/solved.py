@@ -8,7 +8,7 @@ import numpy as np
 
 from geometry.executor import Executor
 from softdot.config import Config
-from softdot.console import Progress
+from softdot.progress import Progress
 from softdot.studies.paper.calibration.inputs import INPUTS, Values, assumed
 from softdot.studies.paper.calibration.press_curve import PressCurve
 from softdot.studies.paper.calibration.response import RigResponse

@@ -8,7 +8,7 @@ import numpy as np
 
 from geometry.executor import Executor
 from softdot.config import Config
-from softdot.console import Progress
+from softdot.progress import Progress
 from softdot.studies.paper.presses import solve_named
 from softdot.studies.paper.published import published
 from softdot.studies.paper.segment import Reading, segment_config

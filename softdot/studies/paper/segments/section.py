@@ -5,7 +5,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from geometry.executor import Executor
-from softdot.console import Progress
+from softdot.progress import Progress
 from softdot.studies.paper.section import Block, Figure, Heading, Section
 from softdot.studies.paper.segment import EFFECTOR_HEIGHT_MM, RIDGE_RADIUS_MM
 from softdot.studies.paper.segments import figures, tables

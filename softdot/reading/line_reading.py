@@ -1,4 +1,4 @@
-"""The job of softdot read: a text through the voltages and back, and the content of reading.json and signals.npz."""
+"""The reading of a line: a text through the voltages and back, and what reading.json and signals.npz say of it."""
 
 import logging
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ import numpy as np
 from geometry.arrays import Ints
 from geometry.base import InputError
 from softdot.arrays.kernel import ArrayKernel
-from softdot.console import Progress
+from softdot.progress import Progress
 from softdot.reading.cells import braille, text_of
 from softdot.reading.conditions import ReadingConditions, standard_of, standard_warnings
 from softdot.reading.decoders import DECODERS, seen_of
