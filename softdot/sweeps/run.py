@@ -15,7 +15,7 @@ from softdot.executors import executor_for
 from softdot.hardware import hardware
 from softdot.log import LOG_FILE, log_file
 from softdot.progress import Logged, Progress
-from softdot.sweeps import points as point_files
+from softdot.sweeps import folder as sweep_folder
 from softdot.sweeps.points import REFUSED, STATUSES, Record, failed, solve_all
 from softdot.sweeps.sampling import sampling_warnings
 from softdot.sweeps.space import Point, Space
@@ -33,10 +33,10 @@ def run_sweep(
     """
     check_tables()
     check_folder()
-    place = point_files.check_folder(Path(out))
+    place = sweep_folder.check_folder(Path(out))
     configs = {config_hash(point.config): point.config for point in space.points if point.config is not None}
     records = {
-        name: found for name, config in configs.items() if (found := point_files.kept(place, config)) is not None
+        name: found for name, config in configs.items() if (found := sweep_folder.kept(place, config)) is not None
     }
     missing = {name: config for name, config in configs.items() if name not in records}
     where = executor_for(scheduler, space.sweep.workers)
@@ -47,7 +47,7 @@ def run_sweep(
         ends = [_record(point, records) for point in space.points]
         summary = {**_heading(space, ends), "scheduler": scheduler, **measured, "hardware": hardware()}
         rows = [row(number, space.points[number].values, record) for number, record in enumerate(ends)]
-        point_files.finish(place, rows, list(space.points[0].values), space.text, summary)
+        sweep_folder.finish(place, rows, list(space.points[0].values), space.text, summary)
     return summary
 
 
@@ -66,17 +66,17 @@ def _solve(
     reused, count = len(records), len(records) + len(missing)
     begun = time.perf_counter()
     with where as executor:
-        point_files.begin(place)
-        stack.callback(release, point_files.take(place))
-        point_files.sweep_up(place)
-        stack.callback(point_files.sweep_up, place)
+        sweep_folder.begin(place)
+        stack.callback(release, sweep_folder.take(place))
+        sweep_folder.sweep_up(place)
+        stack.callback(sweep_folder.sweep_up, place)
         workers = executor.places
         ready = time.perf_counter()
         with log_file(place / LOG_FILE):
             progress.stage("solve")
             progress.step(reused, count, "")
             for name, record in solve_all(executor, missing):
-                records[name] = point_files.keep(place, missing[name], record)
+                records[name] = sweep_folder.keep(place, missing[name], record)
                 progress.step(len(records), count, record["reason"] or "")
         end = time.perf_counter()
     return _measured(len(missing), reused, workers, ready - begun, end - ready)
@@ -106,7 +106,7 @@ def _heading(space: Space, ends: list[Record]) -> dict[str, Any]:
 
     ended = Counter(record["status"] for record in ends)
     return {
-        "format": point_files.SWEEP.format,
+        "format": sweep_folder.SWEEP.format,
         "complete": True,
         "softdot_version": installed_version(),
         "sampling": space.sweep.sampling,
