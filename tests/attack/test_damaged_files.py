@@ -10,7 +10,7 @@ from geometry.cache import recall, remember
 from mesh.build import remembered
 from mesh.types import LinearMesh
 from softdot.config import config_from
-from softdot.sweeps import points
+from softdot.sweeps import folder as sweep_folder
 from solve.solution.checkpoint import read_archive, write_archive
 
 DAMAGED = 1000
@@ -52,8 +52,11 @@ KINDS = {
         archive_answer,
     ),
     "point": (
-        lambda folder: ((folder / "points").mkdir(exist_ok=True), points.keep(folder, CONFIG, {"status": "solved"})),
-        lambda folder: points.kept(folder, CONFIG),
+        lambda folder: (
+            (folder / "points").mkdir(exist_ok=True),
+            sweep_folder.keep(folder, CONFIG, {"status": "solved"}),
+        ),
+        lambda folder: sweep_folder.kept(folder, CONFIG),
     ),
 }
 
