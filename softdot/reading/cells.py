@@ -1,6 +1,5 @@
-"""Text to the cells of a line and back.
-
-A cell is a number from 0 to 63: bit k - 1 stands for dot k, as in Unicode's block from U+2800 on.
+"""Text to the cells of a line and back. A cell is a number from 0 to 63: bit k - 1 stands for dot k, as in Unicode's
+block from U+2800 on.
 """
 
 from collections.abc import Sequence

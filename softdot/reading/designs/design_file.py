@@ -1,6 +1,5 @@
-"""DESIGNS.toml: the configuration of an array, the axes along which it varies, and how the search goes on.
-
-[sweep] is that of softdot sweep and says what varies and which designs are tried first. [search] says what follows.
+"""DESIGNS.toml: the configuration of an array, the axes along which it varies, and how the search goes on. [sweep] is
+that of softdot sweep and says what varies and which designs are tried first. [search] says what follows.
 """
 
 import json

@@ -1,6 +1,5 @@
-"""Design parameters, the paper's own and corrected ones: what each says a segment's output goes with.
-
-All work on many designs at once; lengths in mm, moduli in MPa, forces in N per mm of width.
+"""Design parameters, the paper's own and corrected ones: what each says a segment's output goes with. All work on many
+designs at once; lengths in mm, moduli in MPa, forces in N per mm of width.
 """
 
 from collections.abc import Sequence
