@@ -25,8 +25,8 @@ from geometry.executor import LocalProcesses, each_done
 from mesh.array.mesh import array_mesh
 from softdot.arrays.case import ArrayCase, ArrayPress
 from softdot.arrays.kernel import load_kernel
+from softdot.braille_text.lines import translate
 from softdot.config import Config, config_from
-from softdot.printed_braille.request import translate
 from solve.mechanisms import Mechanism
 from solve.press import press_segment
 

@@ -27,10 +27,10 @@ from diagnose.forward import Candidate, Setting
 from diagnose.inference.diagnose import diagnose
 from diagnose.signals.recording import Recording, Run, one_after_the_other
 from diagnose.verdict.names import short_name
-from softdot.commands.diagnose import engine_for
-from softdot.commands.verdict_page import improved_text
 from softdot.config import config_from
 from softdot.config.rig import RIG_FILE, Bench, Rig
+from softdot.diagnosis.engine import engine_for
+from softdot.diagnosis.improved import improved_text
 from solve.model import Readout
 
 READOUT = {"input_resistance_MOhm": 1000.0, "input_capacitance_pF": 100.0}

@@ -21,8 +21,8 @@ from diagnose.signals.columns import FEWEST
 from diagnose.signals.reading import averaged, thinned
 from diagnose.signals.recording import Recording
 from diagnose.verdict.names import short_name
-from softdot.commands.diagnose import engine_for
 from softdot.config.rig import RIG_FILE, load_rig
+from softdot.diagnosis.engine import engine_for
 
 AS_IT_IS = "as it is"
 

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from geometry.solids import Part
-    from softdot.outcome import Derivative
+    from softdot.differentiation import Derivative
     from solve.readout.course import PressCourse
 
 OnStep = Callable[[Step, int, int], None]
@@ -192,13 +192,13 @@ class Case:
 
     def derivatives(self, keys: Sequence[str]) -> "list[Derivative]":
         """Of force, charge and voltage along the press by keys such as "segment.film.thickness_um". InputError."""
-        from softdot.outcome import derivatives
+        from softdot.differentiation import derivatives
 
         return derivatives(self.config, keys)
 
     def kit(self, folder: Path | str) -> dict[str, Any]:
         """The fabrication kit in a folder, as `softdot kit` writes it; returns kit.json. InputError."""
-        from softdot.commands.kit import make_kit
+        from softdot.kit.folder import make_kit
 
         return make_kit(self.config, Path(folder))
 

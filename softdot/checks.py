@@ -23,7 +23,7 @@ from mesh.outline import outline
 from mesh.sizing import sizing
 from mesh.types import Planes
 from softdot.config import Config
-from softdot.machine import needed_GB, refuse_too_little_memory
+from softdot.memory import needed_GB, refuse_too_little_memory
 from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.model import Model
 from solve.readout.course import PressCourse

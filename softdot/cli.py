@@ -12,9 +12,10 @@ from threading import Timer
 from types import FrameType
 
 from geometry.base import InputError
-from softdot.arguments import parser
-from softdot.console import BAD_INPUT, GOOD, INTERRUPTED, complain, lines_on_stderr
-from softdot.machine import without_room
+from softdot.command_line.parser import parser
+from softdot.console import BAD_INPUT, GOOD, INTERRUPTED, complain
+from softdot.log import lines_on_stderr
+from softdot.no_room import without_room
 
 COMMANDS = {
     "run": "softdot.commands.run",
@@ -113,7 +114,7 @@ def _refuse_unprintable(chosen: argparse.Namespace) -> None:
 def _command(chosen: argparse.Namespace) -> int:
     if chosen.command == "schema":
         from softdot.config import config_schema
-        from softdot.console import json_text
+        from softdot.json_files import json_text
 
         sys.stdout.write(json_text(config_schema()))
         return GOOD

@@ -10,8 +10,8 @@ from pathlib import Path
 
 from geometry.base import InputError
 from geometry.files import hold, release, sweep
-from softdot.console import LOG_FILE, log_file
-from softdot.machine import refuse_cut_files, refuse_full_disk
+from softdot.log import LOG_FILE, log_file
+from softdot.no_room import refuse_cut_files, refuse_full_disk
 
 
 @dataclass(frozen=True)

@@ -17,9 +17,9 @@ def sweep(space: Path | str | Mapping[str, Any], out: Path | str | None = None) 
     space : SPACE.toml, or its tables. out : folder of the points, which are not solved again; none: they are not kept.
     InputError for what cannot be read or written.
     """
-    from softdot.commands.sweep import run_sweep
+    from softdot.sweeps.folder import read_table
+    from softdot.sweeps.run import run_sweep
     from softdot.sweeps.space import load_space, space_from
-    from softdot.sweeps.table import read_table
 
     wanted = space_from(space) if isinstance(space, Mapping) else load_space(Path(space))
     with TemporaryDirectory() as folder:
@@ -43,7 +43,7 @@ def diagnose(
     without : mechanisms that are no candidates. hold_out : parts of labels of runs that only score the result.
     full_model_s : time for runs by the full model; None: every run, 0: none. InputError, NoEquilibriumError.
     """
-    from softdot.commands.diagnose import Options, run_diagnosis
+    from softdot.diagnosis.folder import Options, run_diagnosis
 
     kept = TemporaryDirectory() if out is None else None
     place = Path(kept.name) / "verdict" if kept is not None else Path(str(out))

@@ -1,5 +1,4 @@
 """What a second process does for a run while the first one meshes and presses: kernels, the parts' files and pictures.
-
 This module itself loads in no time, so that the second process starts before the first one has loaded anything.
 """
 

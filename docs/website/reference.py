@@ -12,7 +12,7 @@ PUBLIC_HEAD = f"""# Public names
 
 `import {PUBLIC}` gives these names. They load on first use, so that the import itself costs nothing. Everything else
 that the pages of the packages list may change from one release to the next. [Configuration](../configuration.md) lists
-the keys of `Config`, and [Derivative][softdot.outcome.Derivative] is what `derivatives` returns.
+the keys of `Config`, and [Derivative][softdot.differentiation.Derivative] is what `derivatives` returns.
 """
 
 

@@ -2,9 +2,7 @@
 
 A table of single presses. Where several dots press at once each finds a surface that the others have already pushed
 down, and up beside them: its depth counts from there,
-
     d_k = D_k - sum over m != k of s(x_m, d_m; x_k),
-
 with the sinking s of the surface at x_k when a dot alone is d_m deep at x_m. Charges and forces at these depths are
 summed. What this misses is the stretch of the film, which is quadratic in what the dots do.
 """

@@ -15,7 +15,7 @@ from softdot.arrays.matrix import CrosstalkMatrix, crosstalk, matrix_presses
 from softdot.arrays.presses import ArrayPresses, Signals
 from softdot.arrays.side_stiffness import EffectiveSides, effective_sides, lone_presses, lone_sides, representatives
 from softdot.arrays.variants import Worth, variant_presses, worth
-from softdot.console import Progress
+from softdot.progress import Progress
 from solve.result import PressResult
 
 Part = Literal["variants", "kernel"]

@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from softdot.console import BAD_INPUT, GOOD, complain, json_text, plain
+from softdot.console import BAD_INPUT, GOOD, complain
+from softdot.json_files import json_text, plain
 
 if TYPE_CHECKING:
     from softdot.checks import Cost

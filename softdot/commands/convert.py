@@ -9,10 +9,11 @@ from geometry.base import InputError
 from geometry.files import read_text
 from softdot.config.rig import load_rig
 from softdot.config.toml import parse_toml
-from softdot.console import GOOD, warn
+from softdot.console import GOOD
 from softdot.convert.files import read_log
 from softdot.convert.join import NamedLog, joined
 from softdot.convert.recording import write_recording
+from softdot.log import warn
 
 
 def command(chosen: Namespace) -> int:

@@ -4,7 +4,8 @@ import sys
 from argparse import Namespace
 from typing import Any
 
-from softdot.console import GOOD, json_text
+from softdot.console import GOOD
+from softdot.json_files import json_text
 
 ABOUT = ("model", "source", "confidence")
 

@@ -6,21 +6,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from softdot.console import (
-    GOOD,
-    INTERRUPTED,
-    NOT_CONVERGED,
-    Logged,
-    Progress,
-    complain,
-    installed_version,
-    only_the_summary_on_stdout,
-    plain,
-    show,
-    warn,
-    write_json,
-)
+from softdot.console import GOOD, INTERRUPTED, NOT_CONVERGED, complain, only_the_summary_on_stdout, show
+from softdot.json_files import plain, write_json
+from softdot.log import warn
 from softdot.output import Product, staged_folder
+from softdot.progress import Logged, Progress
+from softdot.version import installed_version
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -54,14 +45,14 @@ def run_read(
 
     from export.array.reading_page import write_reading_page
     from export.array.signals import draw_signals
-    from softdot.machine import named_when_missing
     from softdot.reading.cells import cells_of
     from softdot.reading.conditions import ReadingConditions
     from softdot.reading.decoders import named_decoders
-    from softdot.reading.job import content, read_line
     from softdot.reading.kernels import opened_kernel, readout_of
+    from softdot.reading.line_reading import content, read_line
     from softdot.reading.recorded_file import recorded_voltages
     from softdot.reading.signals import shown_signals, signals
+    from softdot.system_libraries import named_when_missing
 
     progress = progress or Logged()
     with named_when_missing():
@@ -99,7 +90,7 @@ def command(chosen: Namespace) -> int:
     """Read chosen.text into chosen.output, study how far conditions may go, or search for a design. InputError."""
     from geometry.base import InputError
     from softdot.config import load_config
-    from softdot.console import progress_of
+    from softdot.progress import progress_of
     from softdot.reading.conditions import refuse_idle
 
     if chosen.design is not None:
@@ -152,7 +143,7 @@ def _study(chosen: Namespace, config: Config | None) -> int:
 
 def _resumable(chosen: Namespace, folder: str, work: Callable[[Progress], dict[str, Any]]) -> dict[str, Any] | None:
     """What work returns; None where it was interrupted, after a sentence that says what is kept in folder."""
-    from softdot.console import progress_of
+    from softdot.progress import progress_of
 
     try:
         with only_the_summary_on_stdout(), progress_of(chosen) as progress:
@@ -168,7 +159,7 @@ def _design(chosen: Namespace) -> int:
     """Search into chosen.output; 3 when no design could be solved, 130 when it was interrupted. InputError."""
     from geometry.base import InputError
     from softdot.reading.decoders import named_decoders
-    from softdot.reading.designs.request import load_request
+    from softdot.reading.designs.design_file import load_request
     from softdot.reading.designs.run import FOLDER, AskedReading, run_designs
     from softdot.reading.study import USUAL_TEXT
 

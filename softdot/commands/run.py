@@ -14,22 +14,14 @@ from warnings import catch_warnings, simplefilter
 
 from geometry.base import InputError
 from geometry.library_loading import without_collector
-from softdot.console import (
-    GOOD,
-    NOT_CONVERGED,
-    Logged,
-    Progress,
-    complain,
-    lines_when_interactive,
-    only_the_summary_on_stdout,
-    plain,
-    show,
-    warn,
-    write_json,
-)
-from softdot.machine import named_when_missing, refuse_no_room_for_libraries
+from softdot.console import GOOD, NOT_CONVERGED, complain, only_the_summary_on_stdout, show
+from softdot.json_files import plain, write_json
+from softdot.log import lines_when_interactive, warn
+from softdot.memory import refuse_no_room_for_libraries
 from softdot.output import RUN, staged_folder
+from softdot.progress import Logged, Progress
 from softdot.second_process import SecondProcess, draw, make_cad
+from softdot.system_libraries import named_when_missing
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -194,7 +186,7 @@ def command(chosen: Namespace) -> int:
             Thread(target=_try_to_draw, daemon=True).start()
             from softdot.case import Case, ResultWarning
             from softdot.config import load_config
-            from softdot.console import progress_of
+            from softdot.progress import progress_of
             from softdot.tolerances.uncertainty import uncertainty  # noqa: F401 - loads the solver
 
         config = load_config(chosen.config, chosen.set)

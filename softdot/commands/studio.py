@@ -11,7 +11,8 @@ from tempfile import mkdtemp
 
 from geometry.base import InputError
 from geometry.files import read_text
-from softdot.console import GOOD, warn
+from softdot.console import GOOD
+from softdot.log import warn
 
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
 REDIRECT = """<!doctype html><meta charset="utf-8"><meta name="referrer" content="no-referrer">

@@ -8,22 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from export.page import page_environment
-from softdot.console import (
-    GOOD,
-    NOT_CONVERGED,
-    Logged,
-    Progress,
-    complain,
-    installed_version,
-    json_text,
-    only_the_summary_on_stdout,
-    plain,
-    progress_of,
-    write_json,
-)
+from softdot.console import GOOD, NOT_CONVERGED, complain, only_the_summary_on_stdout
+from softdot.json_files import json_text, plain, write_json
 from softdot.output import Product, staged_folder
+from softdot.progress import Logged, Progress, progress_of
 from softdot.verify.catalogue import chosen_problems
 from softdot.verify.problem import Problem
+from softdot.version import installed_version
 
 VERIFY = Product("softdot-verify/1", "verify.json", frozenset({"verify.json", "verify.html"}))
 HEADS = ("problem", "reference", "value", "unit", "deviation", "bound", "")

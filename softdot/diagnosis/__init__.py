@@ -1,1 +1,1 @@
-"""softdot diagnose: from a folder of recordings to a verdict, its evidence and an improved model."""
+"""From a folder of recordings to a verdict, its evidence and an improved model."""

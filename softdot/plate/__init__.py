@@ -1,1 +1,1 @@
-"""softdot plate: a printable Braille plate from a text."""
+"""A printable Braille plate from a text."""

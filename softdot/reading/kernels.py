@@ -10,8 +10,8 @@ from geometry.base import InputError
 from geometry.parameters import Finite, Positive
 from softdot.arrays.kernel import AGAIN, TABLES, ArrayKernel, load_kernel
 from softdot.config import Config, config_from, config_hash
-from softdot.console import installed_version
 from softdot.reading.conditions import PITCH_TOLERANCE_MM
+from softdot.version import installed_version
 from solve.mechanisms import with_mechanisms
 from solve.mechanisms.circuit.contact_electrification import CONTACT_ELECTRIFICATION
 from solve.model import Model, Physics, Readout

@@ -1,6 +1,5 @@
-"""The dots of a line: every cell at the pitches of the standard, with scatter, wear and missing dots.
-
-x runs along the line from the middle of the first cell, y across it from the middle row to the row of dots 3 and 6.
+"""The dots of a line: every cell at the pitches of the standard, with scatter, wear and missing dots. x runs along the
+line from the middle of the first cell, y across it from the middle row to the row of dots 3 and 6.
 """
 
 from dataclasses import dataclass

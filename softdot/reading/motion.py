@@ -1,6 +1,5 @@
-"""How the array moves over a line: it slides at constant depth or force, or is set down cell by cell.
-
-Tremor is white noise behind a Butterworth low-pass of order two, one for the place across the line and one for depth.
+"""How the array moves over a line: it slides at constant depth or force, or is set down cell by cell. Tremor is white
+noise behind a Butterworth low-pass of order two, one for the place across the line and one for depth.
 """
 
 from dataclasses import dataclass

@@ -7,8 +7,8 @@ import numpy as np
 from geometry.arrays import Floats
 from softdot.reading.cells import braille
 from softdot.reading.decoders.fitted import Track
-from softdot.reading.job import LineReading
 from softdot.reading.line import cell_pitch_mm, nominal_line
+from softdot.reading.line_reading import LineReading
 from softdot.reading.score import aligned
 
 

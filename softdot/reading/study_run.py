@@ -11,14 +11,16 @@ from geometry.executor import Executor
 from geometry.files import release
 from softdot.arrays.kernel import ArrayKernel
 from softdot.config import Config
-from softdot.console import Logged, Progress, installed_version, plain, write_json
+from softdot.json_files import plain, write_json
 from softdot.output import Product, check_output
+from softdot.progress import Logged, Progress
 from softdot.reading.conditions import ReadingConditions
 from softdot.reading.decoders import named_decoders
 from softdot.reading.kernels import opened_kernel, readout_of
 from softdot.reading.study import ReadingStudy, points, repeated, with_value
 from softdot.reading.study_limits import Readings, limits_of
 from softdot.reading.study_task import StudyTask, keep, kept, kernel_hash, read_task
+from softdot.version import installed_version
 
 FOLDER, TABLE, PICTURE = "conditions", "reading_study.csv", "reading_study.png"
 STUDY = Product(

@@ -11,13 +11,13 @@ from typing import Any
 from geometry.base import InputError
 from geometry.cache import read_checked, source_hash, write_checked
 from softdot.arrays.kernel import JSON, NPZ, ArrayKernel
-from softdot.console import Untold
+from softdot.progress import Untold
 from softdot.reading.cells import cells_of, text_of
 from softdot.reading.conditions import ReadingConditions
 from softdot.reading.decoders import named_decoders
 from softdot.reading.decoders.onset import NoDotError
-from softdot.reading.job import content, read_line
 from softdot.reading.kernels import opened_kernel
+from softdot.reading.line_reading import content, read_line
 from solve.model import Readout
 
 RATES = ("cell", "character", "word")

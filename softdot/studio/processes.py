@@ -200,7 +200,7 @@ def _outcome(task: str, arguments: Sequence[Any], tell: Tell) -> tuple[str, Any]
     """The kind of answer and its content; what went wrong is one sentence, and its traceback a line of the log."""
     from mesh.types import MeshingError
     from softdot.arrays.presses import StoppedPressError
-    from softdot.machine import without_room
+    from softdot.no_room import without_room
     from solve.solution.errors import NoEquilibriumError
     from solve.solution.full_load import StoppedShortError
     from solve.solution.linear import LinearSolveError

@@ -1,6 +1,7 @@
 """What a browser sends: bounded in size and number, and never written outside its own folder."""
 
 import io
+import json
 import re
 import stat
 import zipfile
@@ -104,3 +105,19 @@ def _place(name: str, folder: Path) -> Path:
 
 def _short(name: str) -> str:
     return "".join(character if character.isprintable() else "?" for character in name[:60])
+
+
+def split(body: bytes) -> list[tuple[str, bytes]]:
+    """Name and content of each file of an upload. InputError."""
+    head, _, rest = body.partition(b"\n")
+    try:
+        listed = [(str(name), int(size)) for name, size in json.loads(head)]
+    except (ValueError, TypeError, RecursionError):
+        raise InputError("the upload is not in the form in which the page sends it") from None
+    if any(size < 0 for _, size in listed) or sum(size for _, size in listed) != len(rest):
+        raise InputError("the upload is not as long as it says")
+    found, at = [], 0
+    for name, size in listed:
+        found.append((name, rest[at : at + size]))
+        at += size
+    return found

@@ -1,23 +1,21 @@
-"""Many presses: designs over any keys of the configuration, solved by an executor, gathered in one table.
-
-Public names load on first use.
-"""
+"""Many presses: designs over any keys of the configuration, solved by an executor, gathered in one table."""
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from softdot.commands.sweep import run_sweep
+    from softdot.sweeps.folder import read_table
     from softdot.sweeps.points import solve_points
+    from softdot.sweeps.run import run_sweep
     from softdot.sweeps.space import Space, load_space, space_from
-    from softdot.sweeps.table import read_table
 
 __all__ = ["Space", "load_space", "read_table", "run_sweep", "solve_points", "space_from"]
+# Public names load on first use.
 _HOMES = {
     "Space": "softdot.sweeps.space",
     "load_space": "softdot.sweeps.space",
-    "read_table": "softdot.sweeps.table",
-    "run_sweep": "softdot.commands.sweep",
+    "read_table": "softdot.sweeps.folder",
+    "run_sweep": "softdot.sweeps.run",
     "solve_points": "softdot.sweeps.points",
     "space_from": "softdot.sweeps.space",
 }

@@ -3,15 +3,13 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import copysign, sqrt
-from typing import Any, Literal
+from typing import Any
 
 from geometry.executor import HERE, Executor
-from mesh.types import MeshingError
 from softdot.config import Config
-from softdot.tolerances.responses import Question, Response, answered, coarser
+from softdot.tolerances.questions import Question, answered
+from softdot.tolerances.responses import Response, coarser
 from softdot.tolerances.tolerances import Tolerance, shifts, tolerances
-from solve.solution.full_load import StoppedShortError
-from solve.solution.linear import LinearSolveError
 
 MESH_FACTOR, CHECK_FACTOR = 2.0, 3.0
 """Elements of the budget and of its check, against those of the configuration."""
@@ -135,44 +133,3 @@ def _row(effect: Effect, nominal: Response) -> dict[str, Any]:
         "counted": row.counted,
         "note": row.note,
     }
-
-
-@dataclass(frozen=True)
-class BudgetOutcome:
-    """state : "unfinished" while it is computed and after an interrupt. budget : as in kit.json. note : for the bench,
-    where there is no budget. failure : for kit.json and the command line, in the solver's own words.
-    """
-
-    state: Literal["unfinished", "complete", "failed"]
-    budget: dict[str, Any] | None = None
-    note: str = ""
-    failure: str | None = None
-
-
-UNFINISHED = BudgetOutcome(
-    "unfinished",
-    note="The tolerance budget comes later: softdot kit is still pressing the simulated segment, which takes some "
-    "minutes, and then writes the budget into this page. If the command has ended, it was interrupted; run it again. "
-    "Everything else on this page is complete.",
-)
-
-
-def failed(error: Exception) -> BudgetOutcome:
-    """Of a budget that ended in an error."""
-    return BudgetOutcome(
-        "failed",
-        note=f"There is no tolerance budget, because {_reason(error)}. Everything else on this page is complete and "
-        "does not depend on it. Try a smaller depth or force of the press or a finer mesh first; 'softdot run' with "
-        "the same file tells more.",
-        failure=f"tolerance budget: {error}",
-    )
-
-
-def _reason(error: Exception) -> str:
-    if isinstance(error, StoppedShortError):
-        return "the simulated press did not reach its full load"
-    if isinstance(error, MeshingError):
-        return "no mesh could be made of elements as large as the budget uses"
-    if isinstance(error, LinearSolveError):
-        return "the simulated press could not be differentiated accurately enough"
-    return "the simulation refuses the segment at one end of its tolerances"

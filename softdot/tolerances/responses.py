@@ -1,9 +1,8 @@
-"""Force and voltage at the deepest step, their derivatives, and their values at the ends of a shift.
-
-Where the path of a press does not matter and its voltage is open-circuit, its full load is all that is solved.
+"""Force and voltage at the deepest step, their derivatives, and their values at the ends of a shift. Where the path of
+a press does not matter and its voltage is open-circuit, its full load is all that is solved.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -12,16 +11,15 @@ import numpy as np
 from geometry.arrays import Floats
 from geometry.base import InputError
 from geometry.cache import data_hash, recall, remember, source_hash
-from geometry.executor import Executor, each_done
 from mesh.morphing import morphed
 from mesh.types import TetMesh
 from softdot.case import Case
 from softdot.config import Config, config_hash, input_hash
 from softdot.config.model import model_of
-from softdot.console import plain
-from softdot.outcome import press_with_derivatives, variations_of
+from softdot.differentiation import press_with_derivatives, variations_of
+from softdot.json_files import plain
 from softdot.summary import history
-from softdot.tolerances.tolerances import with_factors
+from softdot.tolerances.factors import with_factors
 from solve.result import PressResult
 from solve.solution.full_load import FullLoad, StoppedShortError
 
@@ -120,68 +118,6 @@ class KitPress:
         if path_matters(moved):
             return value_along(moved, morphed(self._mesh, self.config.segment, moved.segment))
         return Response(*self._full_load.beside(model_of(moved)))
-
-
-class Question(NamedTuple):
-    """What another process is asked of the press of a configuration: its derivatives by keys, or, where that is given,
-    the response of a configuration that was moved.
-    """
-
-    config: Config
-    keys: tuple[str, ...] = ()
-    moved: Config | None = None
-
-    def answer(self) -> Any:
-        """As KitPress.slopes or KitPress.value, by the press that was asked last in this process where it fits."""
-        press = kept_press(self.config)
-        return press.slopes(self.keys) if self.moved is None else press.value(self.moved)
-
-    def recalled(self) -> Any | None:
-        """The answer to an earlier question."""
-        known = recall(self._name)
-        if known is None or self.moved is not None:
-            return None if known is None else Response(*known)
-        return Response(*known[0]), {key: Response(*pair) for key, pair in known[1].items()}
-
-    def keep(self, answer: Any) -> None:
-        """Have it recalled here where it was given elsewhere."""
-        if recall(self._name) is None:
-            remember(self._name, plain(answer))
-
-    @property
-    def _name(self) -> str:
-        if self.moved is None:
-            return name_of(with_factors(self.config), slopes_by(self.keys))
-        return name_of(self.moved, on_mesh_of(self.config))
-
-
-_LAST: list[KitPress] = []
-"""Of this process: what a press beside the last one begins from. More would be memory that nobody uses."""
-
-
-def kept_press(config: Config) -> KitPress:
-    """The press that was asked for last in this process, or a new one."""
-    if not _LAST or _LAST[0].config != config:
-        _LAST[:] = [KitPress(config)]
-    return _LAST[0]
-
-
-def answered(
-    questions: Mapping[str, Question], executor: Executor, told: Callable[[int, int, str], None]
-) -> dict[str, Any]:
-    """The answer to each question by its name; told : how many are there, of how many, and the name of the last one.
-
-    InputError, MeshingError, LinearSolveError, StoppedShortError.
-    """
-    found = {name: known for name, one in questions.items() if (known := one.recalled()) is not None}
-    missing = {name: (one,) for name, one in questions.items() if name not in found}
-    told(len(found), len(questions), "")
-    for name, future in each_done(executor, Question.answer, missing):
-        found[name] = future.result()
-        questions[name].keep(found[name])
-        told(len(found), len(questions), name)
-    _LAST.clear()  # where the executor is this process
-    return found
 
 
 def path_matters(config: Config) -> bool:

@@ -1,4 +1,4 @@
-"""What may be off by how much: one row for each quantity of a segment, and configurations with such an error."""
+"""What may be off by how much: one row for each quantity of a segment."""
 
 import tomllib
 from collections.abc import Mapping
@@ -12,46 +12,7 @@ from geometry.fabrication.parameters import cast_components, sheet_components
 from geometry.parameters import Dot, Segment
 from geometry.stack import Layer, layers
 from softdot.config import Config
-from solve.mechanisms import Mechanism
-from solve.mechanisms.layers.property_error import PROPERTY_ERROR
-
-MEDIUM = ("modulus_factor", "thickness_factor")
-FACTORS: dict[str, tuple[str, ...]] = {
-    "effector": MEDIUM,
-    "medium1": MEDIUM,
-    "film": (*MEDIUM, "d31_factor"),
-    "medium2": MEDIUM,
-    "dot": ("radius_factor",),
-}
-
-
-def with_factors(config: Config) -> Config:
-    """The configuration with a property error of every component, all factors one, behind its mechanisms.
-
-    Layers that share a material so get errors of their own.
-    """
-    added = (
-        Mechanism(name=PROPERTY_ERROR.name, component=component, parameters=dict.fromkeys(FACTORS[component], 1.0))
-        for component in _components(config)
-    )
-    return config.model_copy(update={"mechanisms": (*config.mechanisms, *added)})
-
-
-def factor_key(config: Config, component: str, factor: str) -> str:
-    """The key of a factor in the configuration that with_factors makes."""
-    return f"mechanisms[{len(config.mechanisms) + _components(config).index(component)}].parameters.{factor}"
-
-
-def has_component(config: Config, component: str) -> bool:
-    """Whether a configuration has a component that FACTORS names, with sizes of its own."""
-    if component == "effector":
-        return config.segment.effector is not None
-    return component != "dot" or config.dot.shape != "plate"
-
-
-def _components(config: Config) -> list[str]:
-    return [name for name in FACTORS if has_component(config, name)]
-
+from softdot.tolerances.factors import factor_key
 
 NAMES = {"medium1": "medium 1", "medium2": "medium 2"}
 SMALL = 1e-6

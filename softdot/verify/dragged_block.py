@@ -1,6 +1,5 @@
-"""A block on a rigid base, in plane strain along y, under a rigid dot that presses and drags.
-
-Newton's method on the solver's own solid and contact terms, with SciPy's SuperLU.
+"""A block on a rigid base, in plane strain along y, under a rigid dot that presses and drags. Newton's method on the
+solver's own solid and contact terms, with SciPy's SuperLU.
 """
 
 import numpy as np

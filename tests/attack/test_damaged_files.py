@@ -10,8 +10,8 @@ from geometry.cache import recall, remember
 from mesh.build import remembered
 from mesh.types import LinearMesh
 from softdot.config import config_from
-from softdot.sweeps import points
-from solve.solution.archive import read_archive, write_archive
+from softdot.sweeps import folder as sweep_folder
+from solve.solution.checkpoint import read_archive, write_archive
 
 DAMAGED = 1000
 LAYERS = {"medium1": {"thickness_mm": 0.5}, "film": {"thickness_um": 28}, "medium2": {"thickness_mm": 2}}
@@ -52,8 +52,11 @@ KINDS = {
         archive_answer,
     ),
     "point": (
-        lambda folder: ((folder / "points").mkdir(exist_ok=True), points.keep(folder, CONFIG, {"status": "solved"})),
-        lambda folder: points.kept(folder, CONFIG),
+        lambda folder: (
+            (folder / "points").mkdir(exist_ok=True),
+            sweep_folder.keep(folder, CONFIG, {"status": "solved"}),
+        ),
+        lambda folder: sweep_folder.kept(folder, CONFIG),
     ),
 }
 

@@ -71,10 +71,12 @@ def attempt(monkeypatch, tmp_path, capfd):
     def reached(*_args, **_kwargs):
         raise ReachedError
 
-    from softdot.commands import diagnose, plate, run, sweep
+    from softdot.commands import run, sweep
+    from softdot.diagnosis import folder as diagnosis
+    from softdot.plate import folder as plate
 
     monkeypatch.setattr(run, "staged_folder", reached)
-    monkeypatch.setattr(diagnose, "engine_for", reached)
+    monkeypatch.setattr(diagnosis, "engine_for", reached)
     monkeypatch.setattr(sweep, "run_sweep", reached)
     monkeypatch.setattr(plate, "staged_folder", reached)
     monkeypatch.chdir(tmp_path)

@@ -19,7 +19,7 @@ from geometry.base import InputError
 from mesh.types import MeshingError
 from softdot.checks import design_warnings, result_warnings
 from softdot.config import Config, config_from
-from softdot.console import plain
+from softdot.json_files import plain
 from softdot.summary import mesh_part, press_part
 from solve.mechanisms import MECHANISMS
 from solve.solution.newton import ROUNDED_TOLERANCE

@@ -4,8 +4,8 @@ import copy
 from contextlib import contextmanager
 
 from geometry.executor import HERE
-from softdot.executors import TINY
 from softdot.sweeps.points import solve_point
+from softdot.warm_up import TINY
 
 DEPTHS = "press.indentation_mm"
 

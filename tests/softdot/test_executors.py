@@ -16,14 +16,15 @@ import pytest
 
 from geometry.base import InputError
 from geometry.executor import LocalProcesses, each_done
-from softdot import executors as scheduler_module
+from softdot import dask_cluster as scheduler_module
 from softdot.cli import main
 from softdot.config import Config, config_from
-from softdot.console import Logged
-from softdot.executors import TINY, executor_for
+from softdot.executors import executor_for
 from softdot.outcome import outcome
+from softdot.progress import Logged
 from softdot.sweeps import read_table, run_sweep, solve_points, space_from
 from softdot.sweeps.points import solve_all
+from softdot.warm_up import TINY
 from tests.softdot.complaints import complaints
 from tests.softdot.interrupts import heard
 from tests.softdot.sweep_spaces import DEPTHS, depths, space_of

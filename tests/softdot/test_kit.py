@@ -10,7 +10,7 @@ import pytest
 import trimesh
 
 from softdot.cli import main
-from softdot.commands import kit as make
+from softdot.kit import folder as make
 from softdot.tolerances.budget import Budget, Effect
 from softdot.tolerances.responses import Response
 from softdot.tolerances.tolerances import Tolerance

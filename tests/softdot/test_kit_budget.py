@@ -3,10 +3,11 @@
 import pytest
 
 from softdot.config import config_from
-from softdot.tolerances import responses
+from softdot.tolerances import questions
 from softdot.tolerances.budget import budget_of
+from softdot.tolerances.factors import FACTORS, factor_key, with_factors
 from softdot.tolerances.responses import KitPress, Response, coarser, mesh_of, path_matters, slopes_along, value_along
-from softdot.tolerances.tolerances import FACTORS, factor_key, shifts, tolerances, with_factors
+from softdot.tolerances.tolerances import shifts, tolerances
 from tests.cases import for_each
 
 TABLES = {
@@ -199,7 +200,7 @@ def budget(config, monkeypatch, tmp_path):
             return next(ends)
 
     monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path))
-    monkeypatch.setattr(responses, "KitPress", MadeUp)
+    monkeypatch.setattr(questions, "KitPress", MadeUp)
     return budget_of(config)
 
 

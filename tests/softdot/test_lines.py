@@ -8,7 +8,8 @@ import pytest
 
 from softdot.cli import main
 from softdot.commands import run
-from softdot.console import LOG_FILE, Logged, lines_on_stderr, log_file, warn
+from softdot.log import LOG_FILE, lines_on_stderr, log_file, warn
+from softdot.progress import Logged
 
 DOT = ("plate", "--kind", "dot", "--standard", "marburg-medium", "-o", "out")
 SOLVED = {"warnings": ["segment.held_layers is not what you think"], "solver": {"converged": True}}
@@ -75,7 +76,7 @@ def test_a_warning_is_told_once_even_when_its_text_has_a_percent_sign(capsys):
 
 
 def test_lines_appear_at_the_prompt_of_python_and_in_a_notebook_but_not_in_a_script(monkeypatch, capsys):
-    from softdot.console import lines_when_interactive
+    from softdot.log import lines_when_interactive
 
     with lines_when_interactive():
         Logged().stage("mesh")

@@ -14,10 +14,11 @@ from diagnose.vocabulary import base as vocabulary
 from diagnose.vocabulary.base import Vocabulary
 from examples.recordings import leaky_amplifier
 from geometry.parameters import NonNegative
-from softdot.commands import diagnose as command
 from softdot.commands.run import run_config
 from softdot.config import config_from
-from softdot.outcome import derivatives, outcome
+from softdot.diagnosis import folder as command
+from softdot.differentiation import derivatives
+from softdot.outcome import outcome
 from solve.mechanisms import MECHANISMS, register
 from solve.mechanisms.base import MechanismType, Parameters, Traits, with_physics
 from solve.readout.stages import INPUT

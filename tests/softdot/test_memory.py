@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from geometry.base import InputError
-from softdot import machine as memory
+from softdot import memory
 from softdot.cli import main
 from tests.cases import for_each
 

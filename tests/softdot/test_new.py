@@ -6,9 +6,9 @@ import tomllib
 
 import pytest
 
-from softdot.arguments import TEMPLATES
 from softdot.case import Case
 from softdot.cli import main
+from softdot.command_line.configurations import TEMPLATES
 from softdot.commands.new import TABLES, config_schema, template_text
 from softdot.config import config_from, config_hash, load_config
 from tests.cases import for_each

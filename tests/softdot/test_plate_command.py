@@ -17,7 +17,7 @@ from scipy import ndimage
 
 from geometry.solids import volume_mm3
 from softdot.cli import main
-from softdot.commands import plate as make
+from softdot.plate import folder as make
 
 BRAILLE = "⠃⠗⠁⠊⠇⠇⠑"
 # diameter, height, dot pitch, cell pitch in mm, as the sources of the table print them; ADA: the middle of its ranges

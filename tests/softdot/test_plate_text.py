@@ -5,7 +5,9 @@ import shutil
 import pytest
 
 from geometry.base import InputError
-from softdot.printed_braille.request import english_table, liblouis, translate
+from softdot.braille_text.english import english_table
+from softdot.braille_text.liblouis import liblouis
+from softdot.braille_text.lines import translate
 from tests.cases import for_each
 
 # examples of The Rules of Unified English Braille, 2013: sections 4.1, 6.1-6.5, 7, 8.3-8.6
@@ -88,7 +90,7 @@ def fake_liblouis(folder, monkeypatch):
     )
     program.chmod(0o755)
     monkeypatch.setenv("PATH", str(folder), prepend=":")
-    monkeypatch.setattr("softdot.printed_braille.request.find_spec", lambda _: None)
+    monkeypatch.setattr("softdot.braille_text.liblouis.find_spec", lambda _: None)
 
 
 def test_a_table_is_given_to_liblouis(tmp_path, monkeypatch):
@@ -104,7 +106,7 @@ def test_a_table_is_given_to_liblouis(tmp_path, monkeypatch):
 
 def test_a_table_without_liblouis_says_how_to_install_it(monkeypatch):
     monkeypatch.setenv("PATH", "/nowhere")
-    monkeypatch.setattr("softdot.printed_braille.request.find_spec", lambda _: None)
+    monkeypatch.setattr("softdot.braille_text.liblouis.find_spec", lambda _: None)
     with pytest.raises(InputError, match=r"--table 'en-ueb-g2.ctb': liblouis is not installed; .*apt-get install"):
         translate("abc", "en-ueb-g2.ctb")
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from softdot.summary import least_detectable
+from softdot.sensitivity import least_detectable
 
 
 def test_a_linear_signal_is_detected_where_it_crosses_the_noise():

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from softdot.console import json_text
+from softdot.json_files import json_text
 from softdot.summary import history, press_part
 from solve.model import Physics, Press, Readout
 from solve.readout.course import course

@@ -9,9 +9,9 @@ import pytest
 from geometry.base import InputError
 from softdot import outcome as outcome_module
 from softdot.cli import main
-from softdot.commands import sweep as run_module
-from softdot.sweeps import points as store
+from softdot.sweeps import folder as store
 from softdot.sweeps import read_table, run_sweep, space_from
+from softdot.sweeps import run as run_module
 from softdot.sweeps.points import CRASHED, LOST, NOT_CONVERGED, REFUSED, failed, solve_point
 from softdot.sweeps.table import write_table
 from tests.softdot.complaints import complaints

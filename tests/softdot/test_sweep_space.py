@@ -12,8 +12,8 @@ import pytest
 from geometry.base import InputError
 from softdot.cli import main
 from softdot.config.toml import parsed, with_value
-from softdot.executors import TINY
 from softdot.sweeps.space import load_space, space_from
+from softdot.warm_up import TINY
 from tests.cases import for_each
 from tests.softdot.sweep_spaces import depths, space_of
 from tests.softdot.toml_text import toml_text

@@ -3,7 +3,7 @@
 import pytest
 
 from softdot.cli import main
-from softdot.machine import named_when_missing
+from softdot.system_libraries import named_when_missing
 from tests.softdot.complaints import complaints
 
 

@@ -20,7 +20,8 @@ from tornado.websocket import WebSocketClosedError, websocket_connect
 
 from softdot.commands import studio as command
 from softdot.studio.guard import Guard
-from softdot.studio.server import MOST_TABS, application
+from softdot.studio.handlers import application
+from softdot.studio.tabs import MOST_TABS
 from tests.cases import for_each
 from tests.diagnose.rigs import HEAD, RUN, SEGMENT, write_rig
 

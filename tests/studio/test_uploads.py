@@ -8,8 +8,7 @@ import pytest
 
 from geometry.base import InputError
 from softdot.studio import uploads
-from softdot.studio.server import split
-from softdot.studio.uploads import unpack
+from softdot.studio.uploads import split, unpack
 from tests.cases import for_each
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from softdot.outcome import solved
-from softdot.paper.published import segment_config
+from softdot.studies.paper.segment import segment_config
 
 MESHERS = [pytest.param("layered"), pytest.param("pytetwild", marks=pytest.mark.evidence)]
 FINE_MM = 0.15, 0.151, 0.152  # half the default, a fourth of the error; every size is another mesh of pytetwild

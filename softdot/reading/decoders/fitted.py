@@ -1,9 +1,7 @@
 """Least squares of the dots of several cells: amplitudes, and which of them are raised.
 
 The voltages are a sum of templates with unknown amplitudes a, V = sum a_k T_k + noise. For white noise
-
     a = G^-1 c,   G_kl = <T_k, T_l>,   c_k = <V, T_k>.
-
 Raised dots share one amplitude, the gain g, others have none: a_k = g b_k with b_k in {0, 1}. For known b the squares
 are least for g = b.c / b.G b, and smaller by (b.c)^2 / b.G b than without any dot: what the dots explain.
 """

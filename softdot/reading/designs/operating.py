@@ -21,14 +21,15 @@ from softdot.arrays.kernel import ArrayKernel
 from softdot.arrays.kernel_errors import with_about
 from softdot.arrays.kernel_presses import KernelDetail, KernelPress, filled, grid_of, pressed, recalled
 from softdot.config import Config, config_hash
-from softdot.console import Untold, installed_version
+from softdot.progress import Untold
 from softdot.reading.cells import cells_of, text_of
 from softdot.reading.conditions import ReadingConditions
 from softdot.reading.decoders.onset import NoDotError
-from softdot.reading.job import LineReading, read_line
 from softdot.reading.kernels import checked_kernel, readout_of
+from softdot.reading.line_reading import LineReading, read_line
 from softdot.reading.motion import near
 from softdot.reading.score import scores
+from softdot.version import installed_version
 
 COARSE = KernelDetail(coarser=4.0, steps=3, per_pitch=2)
 """20 presses for a cell of six. docs/design_by_reading.md says how far it is from the usual kernel."""

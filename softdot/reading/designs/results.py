@@ -7,12 +7,13 @@ import numpy as np
 
 from geometry.files import write_whole_text
 from softdot.config import config_hash
-from softdot.console import installed_version, plain, write_json
+from softdot.json_files import plain, write_json
 from softdot.reading.cells import cells_of, text_of
+from softdot.reading.designs.design_file import DesignRequest, TriedDesign, tables_of
 from softdot.reading.designs.operating import COARSE
-from softdot.reading.designs.request import DesignRequest, TriedDesign, tables_of
 from softdot.reading.designs.search import pareto
-from softdot.sweeps.space import sampling_warnings
+from softdot.sweeps.sampling import sampling_warnings
+from softdot.version import installed_version
 
 if TYPE_CHECKING:
     from softdot.reading.designs.run import AskedReading, DesignRecords
@@ -25,7 +26,8 @@ AIMS = ("mean_force_N", "crosstalk_percent", "error")
 def finish(place: Path, request: DesignRequest, asked: "AskedReading", found: "DesignRecords") -> dict[str, Any]:
     """Write everything into the folder place, the summary last, and return what it says."""
     from export.array.designs import draw_designs, write_designs_page
-    from softdot.sweeps.table import write_csv, write_table
+    from softdot.sweeps.report import write_csv
+    from softdot.sweeps.table import write_table
 
     summary: dict[str, Any] = plain(summary_of(request, asked, found))
     designs = summary["designs"]

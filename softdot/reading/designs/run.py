@@ -13,11 +13,13 @@ from geometry.cache import read_checked, source_hash, write_checked
 from geometry.executor import Executor
 from geometry.files import hold, release
 from softdot.config import config_hash
-from softdot.console import LOG_FILE, Logged, Progress, log_file, plain, write_json
+from softdot.json_files import plain, write_json
+from softdot.log import LOG_FILE, log_file
 from softdot.output import Product, check_output
+from softdot.progress import Logged, Progress
 from softdot.reading.conditions import ReadingConditions
+from softdot.reading.designs.design_file import DesignRequest, TriedDesign
 from softdot.reading.designs.operating import DesignTask, design_record
-from softdot.reading.designs.request import DesignRequest, TriedDesign
 from softdot.reading.designs.search import propose
 
 FOLDER = "designs"

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.stats import norm, qmc
 
 from geometry.arrays import Bools, Floats
-from softdot.sweeps.space import Axis, at, share_of
+from softdot.sweeps.sampling import Axis, at, share_of
 
 FEWEST = 3
 """Designs that read, below which the next ones fill the space instead."""

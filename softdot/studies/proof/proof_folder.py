@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from geometry.cache import read_checked, write_checked
-from softdot.console import plain, write_json
+from softdot.json_files import plain, write_json
 from softdot.output import Product, check_output
 from softdot.studies.proof.commitment import verified
 from softdot.studies.proof.world.cases import Case

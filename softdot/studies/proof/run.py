@@ -9,7 +9,9 @@ from typing import Any
 
 from geometry.base import InputError
 from geometry.cache import check_folder, data_hash, source_hash
-from softdot.console import LOG_FILE, Logged, Progress, log_file, plain, write_json
+from softdot.json_files import plain, write_json
+from softdot.log import LOG_FILE, log_file
+from softdot.progress import Logged, Progress
 from softdot.studies.proof import proof_folder as proof_files
 from softdot.studies.proof.score import Score
 from softdot.studies.proof.trial import Terms, tried
@@ -124,12 +126,12 @@ def _tried(
 
 def _finished(request: Request, place: Path, records: Sequence[Mapping[str, Any]], reused: int) -> dict[str, Any]:
     """Count, draw and write."""
-    from softdot.console import installed_version
-    from softdot.executors import hardware
+    from softdot.hardware import hardware
     from softdot.studies.proof.detection_curves import draw
     from softdot.studies.proof.proof_page import text
     from softdot.studies.proof.rates import tally
     from softdot.studies.proof.rival_rates import rival_rates
+    from softdot.version import installed_version
 
     scores = [score_from(record["score"]) for record in records if record["score"] is not None]
     summary: dict[str, Any] = plain({

@@ -16,7 +16,7 @@ from softdot.checks import design_warnings, expected_cost
 from softdot.config import Config, config_from, input_hash
 from softdot.config.mistakes import mistakes
 from softdot.config.toml import completed, parse_toml
-from softdot.console import plain
+from softdot.json_files import plain
 from softdot.second_process import PARTS
 
 NAME = "design"

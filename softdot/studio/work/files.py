@@ -13,7 +13,8 @@ from softdot.studio.work.press import TaskProgress
 
 def kit(text: str, folder: str, tell: Tell) -> dict[str, Any]:
     """As `softdot kit`. The file is told of before the tolerance budget is known, and then replaced."""
-    from softdot.commands.kit import make_kit, short_text
+    from softdot.commands.kit import short_text
+    from softdot.kit.folder import make_kit
 
     config, place = config_of(text), Path(folder) / "kit"
 
@@ -39,8 +40,9 @@ def kit(text: str, folder: str, tell: Tell) -> dict[str, Any]:
 
 def plate(asked: dict[str, Any], folder: str, tell: Tell) -> dict[str, Any]:
     """As `softdot plate` with a text or a kind, and a standard. InputError."""
-    from softdot.commands.plate import make_plate, short_text
-    from softdot.printed_braille.request import Kind, PlateRequest
+    from softdot.commands.plate import short_text
+    from softdot.plate.folder import make_plate
+    from softdot.plate.options import Kind, PlateRequest
 
     kind, words, standard = asked.get("kind", "text"), asked.get("text"), asked.get("standard")
     if kind not in get_args(Kind) or not isinstance(standard, str) or not isinstance(words, str | None):
@@ -71,7 +73,8 @@ def report(text: str, folder: str, tell: Tell) -> dict[str, Any]:
 
 
 def _report_of_array(config: Config, text: str, place: Path, tell: Tell) -> dict[str, Any]:
-    from softdot.commands.array import run_array, short_text
+    from softdot.arrays.folder import run_array
+    from softdot.commands.array import short_text
 
     summary = run_array(config, place, TaskProgress(tell))
     said = short_text(summary, "array").splitlines()[:-1]

@@ -5,13 +5,14 @@ from typing import Any
 from geometry.base import InputError
 from softdot.case import Case
 from softdot.config import Config
-from softdot.console import plain
+from softdot.json_files import plain
 from softdot.studio.processes import Tell
 from softdot.studio.work.design import case_of
 from softdot.studio.work.press import COARSE, TaskProgress
 from softdot.tolerances.budget import budget_of
+from softdot.tolerances.factors import FACTORS, factor_key, has_component
 from softdot.tolerances.responses import KitPress, coarser
-from softdot.tolerances.tolerances import FACTORS, NAMES, factor_key, has_component
+from softdot.tolerances.tolerances import NAMES
 
 LARGER = 0.1
 WORDS = {

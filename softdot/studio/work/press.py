@@ -12,7 +12,7 @@ from mesh.types import MeshingError
 from softdot.arrays.case import ArrayCase
 from softdot.arrays.presses import remembered, signals_of
 from softdot.case import Case
-from softdot.console import plain
+from softdot.json_files import plain
 from softdot.studio.processes import Tell
 from softdot.studio.work.design import case_of, config_of, pressed_part
 from softdot.studio.work.remedies import late_remedies

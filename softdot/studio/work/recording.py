@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from softdot.console import plain
+from softdot.json_files import plain
 from softdot.studio.processes import Tell
 from softdot.studio.work.press import TaskProgress
 
@@ -54,7 +54,7 @@ def _extremes(values: Any) -> Any:
 
 def diagnose(folder: str, out: str, quick: bool, tell: Tell) -> dict[str, Any]:
     """As `softdot diagnose`; quick : without runs by the full model. The verdict, its pictures and improved.toml."""
-    from softdot.commands.diagnose import Options, run_diagnosis
+    from softdot.diagnosis.folder import Options, run_diagnosis
 
     place = Path(out) / "diagnosis"
     found = run_diagnosis(Path(folder), place, Options(full_model_s=0.0) if quick else Options(), TaskProgress(tell))

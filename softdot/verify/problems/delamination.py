@@ -1,6 +1,5 @@
-"""Split beams of two arms, depth h each, that open or stay closed: the two standard delamination tests.
-
-Plane strain, E' = E / (1 - nu^2), per unit width, small displacements.
+"""Split beams of two arms, depth h each, that open or stay closed: the two standard delamination tests. Plane strain,
+E' = E / (1 - nu^2), per unit width, small displacements.
 """
 
 import numpy as np

@@ -7,8 +7,8 @@ import pytest
 
 from diagnose.inference.diagnose import diagnose
 from diagnose.signals.reading import thinned
-from softdot.commands.diagnose import engine_for
 from softdot.config.rig import load_rig
+from softdot.diagnosis.engine import engine_for
 from tests.cases import for_each
 from tests.diagnose.real import NEEDED, RECORDINGS, control, converted, silent
 

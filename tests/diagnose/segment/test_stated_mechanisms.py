@@ -13,10 +13,10 @@ from diagnose.engines.segment.response import mechanics
 from diagnose.forward import Setting
 from diagnose.inference.diagnose import diagnose
 from diagnose.signals.recording import Recording
-from softdot.commands.diagnose import engine_for
-from softdot.commands.verdict_page import improved_text
 from softdot.config import config_from
 from softdot.config.rig import RIG_FILE, Bench, Rig
+from softdot.diagnosis.engine import engine_for
+from softdot.diagnosis.improved import improved_text
 from tests.diagnose.segment import rigs
 
 TABLES = {

@@ -10,7 +10,7 @@ from diagnose.forward import Setting
 from diagnose.next_press.choose import next_presses
 from diagnose.verdict.content import verdict
 from diagnose.verdict.resimulation import resimulate
-from softdot.console import json_text
+from softdot.json_files import json_text
 from tests.diagnose.verdict.toy import LEAK, RELAXING, ToyEngine, fitted, found, toy_recording
 
 NUMBER, MAYBE = (int, float), (int, float, type(None))

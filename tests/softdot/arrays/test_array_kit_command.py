@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from softdot.cli import main
-from softdot.commands import kit as make
 from softdot.config import load_config
+from softdot.kit import folder as make
 from softdot.tolerances.budget import budget_of
 from tests.softdot.arrays.test_array_command import SMALL
 from tests.softdot.test_kit import MADE_UP, prepared

@@ -5,8 +5,8 @@ import json
 import pytest
 
 from softdot.cli import main
-from softdot.commands import diagnose as engines
-from softdot.commands import verdict_page as page
+from softdot.diagnosis import folder as engines
+from softdot.diagnosis import report as page
 from tests.diagnose.verdict.toy import ToyEngine
 from tests.softdot.complaints import complaints
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from softdot.cli import main
-from softdot.commands import diagnose as engines
+from softdot.diagnosis import folder as engines
 from tests.diagnose.rigs import COUPON, HEAD, RUN, SEGMENT, csv_text, samples, write_rig
 
 GOOD = HEAD + SEGMENT + RUN

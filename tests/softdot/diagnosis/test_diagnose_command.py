@@ -12,13 +12,13 @@ from diagnose.inference import diagnose as inference
 from diagnose.verdict import resimulation
 from diagnose.verdict.resimulation import Resimulated
 from mesh.types import MeshingError
-from softdot.commands import diagnose as engines
 from softdot.commands import diagnose as run
-from softdot.commands import verdict_page as page
 from softdot.commands.diagnose import short_text
 from softdot.config import load_config
 from softdot.config.rig import load_rig
-from solve.solution.errors import NoEquilibriumError
+from softdot.diagnosis import folder as engines
+from softdot.diagnosis import report as page
+from solve.solution.newton import NoEquilibriumError
 from tests.diagnose.verdict.test_verdict import QUIET, SHAPE, require
 from tests.diagnose.verdict.toy import LEAK, RELAXING, ToyEngine, fitted, found, toy_recording, toy_run
 from tests.softdot.diagnosis.toy_rig import write_toy
@@ -206,7 +206,7 @@ def test_the_full_model_can_be_left_out_and_that_is_told(tmp_path, diagnosed, fi
     finding(**NAMED)
     _, verdict, _ = diagnosed(write_toy(tmp_path / "rig"), "--fast-model-only")
     assert verdict["fit"]["resimulated"] == []
-    assert verdict["warnings"][-1] == run.UNCHECKED
+    assert verdict["warnings"][-1] == engines.UNCHECKED
 
 
 @pytest.mark.parametrize(

@@ -5,9 +5,9 @@ from types import SimpleNamespace
 import pytest
 
 from diagnose.forward import Setting
-from softdot.commands.verdict_page import improved_text
 from softdot.config import load_config
 from softdot.config.model import model_of
+from softdot.diagnosis.improved import improved_text
 from tests.diagnose.coupon.coupons import candidate, engine, specimen
 from tests.diagnose.verdict.toy import LEAK, fitted
 

@@ -7,9 +7,9 @@ import pytest
 
 from examples.recordings.leaky_amplifier import LEAK_MOHM, make, motion
 from softdot.cli import main
-from softdot.commands import diagnose as engines
 from softdot.config import load_config
 from softdot.config.rig import load_rig
+from softdot.diagnosis import folder as engines
 from tests.diagnose.verdict.test_verdict import SHAPE, require
 
 

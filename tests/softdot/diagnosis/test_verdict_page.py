@@ -14,8 +14,8 @@ from diagnose.verdict.content import verdict
 from diagnose.verdict.names import interval_words, mechanism_words
 from diagnose.verdict.resimulation import Resimulated
 from diagnose.verdict.words import sentences
-from softdot.commands.verdict_page import page_text
-from softdot.console import plain
+from softdot.diagnosis.report import page_text
+from softdot.json_files import plain
 from solve.mechanisms import MECHANISMS
 from tests.cases import for_each
 from tests.diagnose.verdict.toy import LEAK, RELAXING, ToyEngine, fitted, found, toy_recording

@@ -4,7 +4,7 @@ import numpy as np
 
 from softdot.arrays.kernel import ArrayKernel
 from softdot.config import config_hash, load_config
-from softdot.console import installed_version
+from softdot.version import installed_version
 
 PITCH = 2.5
 FILE = "examples/array-cell.toml"

@@ -10,17 +10,17 @@ from geometry.base import InputError
 from softdot.arrays.case import ArrayCase
 from softdot.cli import main
 from softdot.config import config_hash, load_config
-from softdot.console import Untold
+from softdot.progress import Untold
 from softdot.reading.conditions import ReadingConditions
 from softdot.reading.designs import operating
+from softdot.reading.designs.design_file import load_request
 from softdot.reading.designs.operating import DesignTask, crosstalk_percent, depths, design_record, reading_at
-from softdot.reading.designs.request import load_request
 from softdot.reading.designs.results import finish, reading_rows
 from softdot.reading.designs.run import FOLDER, AskedReading, DesignWork, searched
 from softdot.reading.designs.search import pareto, propose
+from softdot.sweeps.folder import read_table
 from softdot.sweeps.points import failed
-from softdot.sweeps.space import Axis, at, share_of
-from softdot.sweeps.table import read_table
+from softdot.sweeps.sampling import Axis, at, share_of
 from tests.cases import for_each
 from tests.softdot.reading.made_kernel import made_kernel
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from geometry.base import InputError
-from softdot.printed_braille.request import english_table, liblouis
+from softdot.braille_text.english import english_table
+from softdot.braille_text.liblouis import liblouis
 from softdot.reading.cells import MOST_CELLS, braille, cells_of, text_of
 from tests.cases import for_each
 

@@ -7,8 +7,8 @@ import pytest
 
 from diagnose.engines.segment.presses import SHARES as SHARES_OF_CHANGES
 from diagnose.forward import Setting
-from softdot.commands.diagnose import engine_for
 from softdot.config.rig import load_rig
+from softdot.diagnosis.engine import engine_for
 from softdot.studies.proof.recording_folder import files
 from softdot.studies.proof.world.effects import applied
 from softdot.studies.proof.world.reality import baseline, record

@@ -1,0 +1,1 @@
+"""Text in Braille cells and back: uncontracted English by a table of its own, else liblouis."""

@@ -1,0 +1,65 @@
+"""Arguments of softdot read."""
+
+from typing import Any
+
+from softdot.command_line.options import EXIT_STATUS, add_output, add_scheduler, add_set
+
+READING_OPTIONS = (
+    ("speed-mm-per-s", "MM_PER_S", "of the array along the line, 10 by default"),
+    ("depth-mm", "MM", "of nominal dots below the resting top; default: three quarters of the kernel's depth"),
+    ("force-N", "N", "instead of a depth: the force that is held, at most as deep as the kernel goes"),
+    ("yaw-deg", "DEG", "of the array against the line"),
+    ("offset-mm", "MM", "of the array's middle across the line"),
+    ("tremor-um", "UM", "root mean square of a slow wobble across the line and in depth, 3 by default"),
+    ("tremor-Hz", "HZ", "its bandwidth, 2 by default"),
+    ("height-mm", "MM", "of all dots; default: that of the standard"),
+    ("height-scatter-mm", "MM", "standard deviation of heights; default: by the range of the standard, else 0.015"),
+    ("position-scatter-mm", "MM", "standard deviation of places, 0.03 by default"),
+    ("worn", "SHARE", "share of the dots that are worn, 0 by default"),
+    ("wear-mm", "MM", "by how much a worn dot is lower, 0.1 by default"),
+    ("missing", "SHARE", "share of the dots that are missing, 0 by default"),
+    ("sampling-Hz", "HZ", "samples a second, 500 by default"),
+    ("noise-mV", "MV", "white noise of each sample, 1 by default"),
+    ("hum-mV", "MV", "amplitude of hum at 50 Hz, 0 by default"),
+    ("press-s", "S", "with --mode press: time to go down, and up, 0.2 by default"),
+    ("hold-s", "S", "with --mode press: time between them, 0.2 by default"),
+)
+"""Name, unit and meaning of what a line is read under."""
+
+
+def add_read(commands: Any) -> None:
+    """softdot read."""
+    read = commands.add_parser(
+        "read",
+        help="read a line of Braille with an array: voltages and back to text",
+        description="Let an array slide over a line of Braille, or set it down cell by cell: the voltages of all "
+        "segments by the kernel that softdot array wrote, and the text that decoders read from them.",
+        epilog="docs/reading.md explains the decoders, the results and the study. " + EXIT_STATUS,
+    )
+    read.add_argument("text", nargs="?", help="the text, or Unicode Braille cells; may be left out with --recording")
+    read.add_argument("config", nargs="?", metavar="CONFIG.toml", help="the design of the kernel, with its [readout]")
+    add_set(read)
+    read.add_argument(
+        "--kernel", metavar="FOLDER", help="with kernel.npz and kernel.json; must be given but with --design"
+    )
+    read.add_argument("--standard", metavar="NAME", help="a Braille standard of the kernel's pitch; default: its own")
+    read.add_argument("--table", metavar="TABLE", help="translate with this table of liblouis, such as en-ueb-g2.ctb")
+    read.add_argument("--mode", choices=("slide", "press"), help="slide along the line, or press cell by cell")
+    for name, unit, meaning in READING_OPTIONS:
+        read.add_argument(f"--{name}", type=float, metavar=unit, help=meaning)
+    read.add_argument("--seed", type=int, metavar="N", help="of scatter, tremor and noise, 0 by default")
+    read.add_argument(
+        "--decoders",
+        default="model,threshold,learned",
+        metavar="NAME,NAME",
+        help="the first one's text is what is read",
+    )
+    read.add_argument("--recording", metavar="FILE.csv", help="decode these voltages: time_s, voltage_1_V, ...")
+    read.add_argument("--study", action="store_true", help="how far conditions may go before reading fails")
+    read.add_argument("--conditions", metavar="FILE.toml", help="a study of these conditions")
+    read.add_argument("--design", metavar="DESIGNS.toml", help="search for the array that reads with the least force")
+    read.add_argument(
+        "--workers", type=int, metavar="N", help="processes of a study or search; one per core by default"
+    )
+    add_scheduler(read, " of a study or search")
+    add_output(read)

@@ -1,0 +1,98 @@
+"""Arguments of the commands that press: run, sweep, array, verify and studio."""
+
+from typing import Any
+
+from softdot.command_line.options import EXIT_STATUS, add_config, add_output, add_scheduler, add_set
+
+
+def add_run(commands: Any) -> None:
+    """softdot run."""
+    run = commands.add_parser(
+        "run",
+        help="build, mesh, press and export one segment",
+        description="Build, mesh and press one segment; write CAD, ParaView results, pictures and a report.",
+        epilog="'softdot schema' explains every key of CONFIG.toml; examples/ has files to start from. " + EXIT_STATUS,
+    )
+    add_config(run)
+    run.add_argument(
+        "--mesh-format",
+        action="append",
+        default=[],
+        metavar="FORMAT",
+        help="write the mesh for other codes too: msh (Gmsh), inp (Abaqus, CalculiX) or xdmf; may be repeated",
+    )
+    add_output(run)
+
+
+def add_sweep(commands: Any) -> None:
+    """softdot sweep."""
+    sweep = commands.add_parser(
+        "sweep",
+        help="press many designs over any keys of the configuration",
+        description="Solve every point of a design space on all cores, or on a Dask cluster, into one table. "
+        "A sweep that was stopped resumes where it was.",
+        epilog="examples/ has a SPACE.toml to start from. " + EXIT_STATUS,
+    )
+    sweep.add_argument("space", metavar="SPACE.toml", help="a configuration and its axes")
+    add_set(sweep)
+    add_scheduler(sweep)
+    add_output(sweep)
+
+
+def add_array(commands: Any) -> None:
+    """softdot array."""
+    array = commands.add_parser(
+        "array",
+        help="press several segments under shared layers: their crosstalk",
+        description="Press each segment of an array alone: charge and voltage of every segment, and the lone segment "
+        "that stands for one of them. Presses that were solved are kept, so that a second run goes on.",
+        epilog="docs/array.md explains the table [array] and the results. " + EXIT_STATUS,
+    )
+    add_config(array)
+    array.add_argument(
+        "--variants",
+        dest="parts",
+        action="append_const",
+        const="variants",
+        default=[],
+        help="press the same segments joined in other ways too, for comparison",
+    )
+    array.add_argument(
+        "--kernel", dest="parts", action="append_const", const="kernel",
+        help="write the kernel: charge of every segment against place and depth of a dot, as softdot read needs it",
+    )  # fmt: skip
+    add_scheduler(array)
+    add_output(array)
+
+
+def add_verify(commands: Any) -> None:
+    """softdot verify."""
+    verify = commands.add_parser(
+        "verify",
+        help="solve problems with known answers: is it right on this machine?",
+        description="Solve named verification problems on this machine and compare them with closed forms, published "
+        "benchmarks and other codes, each within a bound: a table, a page and verify.json.",
+        epilog="docs/verification.md says what is verified, what is validated, and what is neither. Exit status: 0 all "
+        "passed, 2 bad input, 3 a problem failed, 130 interrupted.",
+    )
+    verify.add_argument(
+        "--only", action="append", default=[], metavar="NAME", help="this problem alone; may be repeated"
+    )
+    add_output(verify)
+
+
+def add_studio(commands: Any) -> None:
+    """softdot studio."""
+    studio = commands.add_parser(
+        "studio",
+        help="design a segment in the browser, on this machine",
+        description="Open a page in the browser in which a design is changed by hand and pressed at once. It answers "
+        "on this machine only, and only to the address that it prints.",
+        epilog="Needs pip install 'softdot[studio]'; docs/studio.md explains the page. " + EXIT_STATUS,
+    )
+    studio.add_argument("config", nargs="?", metavar="CONFIG.toml", help="default: the final design of the paper")
+    studio.add_argument("--port", type=int, default=0, metavar="N", help="port of the page; default: a free one")
+    studio.add_argument(
+        "--host", default="127.0.0.1", metavar="ADDRESS", help="address of this machine; other than loopback it is open"
+    )
+    studio.add_argument("--no-browser", action="store_true", help="only print the address of the page")

@@ -1,0 +1,127 @@
+"""Derivatives of one press by any number of its configuration."""
+
+import copy
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from geometry.arrays import Floats
+from geometry.base import InputError
+from mesh.types import TetMesh
+from softdot.case import Case
+from softdot.config import Config, config_from
+from softdot.config.model import model_of
+from solve.result import PressResult
+
+if TYPE_CHECKING:
+    from solve.solution.sensitivity import Slopes, Variation
+
+
+RELATIVE_STEP = 1e-4
+
+
+@dataclass(frozen=True)
+class Derivative:
+    """d(quantity)/d(key), in the quantity's unit over the key's own; (t,) over the times of the press.
+
+    readout_voltage_V is None without an amplifier: no [readout] and no mechanism of one.
+    """
+
+    key: str
+    value: float
+    time_s: Floats
+    reaction_force_N: Floats
+    film_charge_pC: Floats
+    open_circuit_voltage_V: Floats
+    readout_voltage_V: Floats | None
+
+
+def derivatives(config: Config, keys: Sequence[str]) -> list[Derivative]:
+    """Differentiate the press of a configuration by its keys, such as "materials.vnr.youngs_modulus_MPa",
+    "segment.film.thickness_um" or "mechanisms[0].parameters.coefficient" (see solve.solution.sensitivity).
+
+    InputError for a key that is absent, no number, zero or decides which parts there are.
+
+    >>> from softdot import load_config
+    >>> coarse = ["segment.section=plane-strain", "dot.shape=ridge", "mesh.mesher=layered", "mesh.element_size_mm=0.8"]
+    >>> config = load_config(None, [*coarse, "press.load_steps=1"])
+    >>> (by_thickness,) = derivatives(config, ["segment.medium2.thickness_mm"])
+    >>> bool(by_thickness.reaction_force_N[-1] < 0.0)  # a thicker medium gives way more
+    True
+    """
+    result, found = press_with_derivatives(config, keys, Case(config).solved_mesh)
+    if not result.converged:
+        raise InputError(f"the press stopped early: {result.failure}")
+    return found
+
+
+def press_with_derivatives(
+    config: Config, keys: Sequence[str], tet_mesh: TetMesh
+) -> tuple[PressResult, list[Derivative]]:
+    """The press of a configuration that passed its checks, as far as it converged, and its derivatives along it.
+
+    tet_mesh : of its segment. InputError for the keys.
+    """
+    from solve.solution.sensitivity import press_with_sensitivities
+
+    try:
+        result, slopes = press_with_sensitivities(model_of(config), variations_of(config, keys), tet_mesh)
+    except ValueError as error:
+        raise InputError(str(error)) from None
+    return result, [_derivative(config, key, slope) for key, slope in slopes.items()]
+
+
+def variations_of(config: Config, keys: Sequence[str]) -> dict[str, "Variation"]:
+    """The models a little below and above each key. InputError for the keys."""
+    from solve.solution.sensitivity import Variation
+
+    variations = {}
+    for key in keys:
+        step = RELATIVE_STEP * abs(value_of(config, key))
+        below, above = (model_of(_varied(config, key, sign * step)) for sign in (-1.0, 1.0))
+        variations[key] = Variation(below, above, 2.0 * step)
+    return variations
+
+
+def _derivative(config: Config, key: str, slope: "Slopes") -> Derivative:
+    return Derivative(
+        key=key,
+        value=value_of(config, key),
+        time_s=slope.trace.time_s,
+        reaction_force_N=slope.trace.reaction_force_N,
+        film_charge_pC=1e12 * slope.trace.film_charge_C.sum(axis=1),
+        open_circuit_voltage_V=slope.open_circuit_voltage_V,
+        readout_voltage_V=slope.readout_voltage_V,
+    )
+
+
+def value_of(config: Config, key: str) -> float:
+    """The number under a dotted key. InputError where there is none."""
+    found: Any = config.model_dump(mode="json")
+    for part in _parts(key):
+        try:
+            found = found[part]
+        except (KeyError, IndexError, TypeError):
+            raise InputError(f"{key}: the configuration has no such key") from None
+    if isinstance(found, bool) or not isinstance(found, int | float) or found == 0.0:
+        raise InputError(f"{key} = {found!r}: must be a number that is not zero")
+    return float(found)
+
+
+def _parts(key: str) -> list[str | int]:
+    """segment.film.electrodes[0].size_mm[1] -> its names and indices."""
+    parts: list[str | int] = []
+    for name in key.split("."):
+        head, *indices = name.replace("]", "").split("[")
+        parts += [head, *(int(i) for i in indices)]
+    return parts
+
+
+def _varied(config: Config, key: str, change: float) -> Config:
+    tables = copy.deepcopy(config.model_dump(mode="json", exclude_none=True))
+    table: Any = tables
+    *path, last = _parts(key)
+    for part in path:
+        table = table[part]
+    table[last] += change
+    return config_from(tables)

@@ -1,0 +1,27 @@
+"""Refuses a module of another program that hides one of our packages: Python would load it in place of ours."""
+
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+BESIDE = Path(__file__).resolve().parents[1]
+PACKAGES = ("geometry", "mesh", "solve", "export", "diagnose")
+
+
+def refuse_foreign_packages() -> None:
+    """ImportError in one sentence for a module of another program that hides one of ours; a command exits with 2."""
+    for name in PACKAGES:
+        known = sys.modules.get(name)
+        spec = getattr(known, "__spec__", None) if known is not None else find_spec(name)
+        place = Path(spec.origin).resolve() if spec is not None and spec.origin else None
+        if place is not None and place.parent == BESIDE / name:
+            continue
+        where = place or getattr(known, "__file__", None) or "missing"
+        said = (
+            f"the package '{name}' of softdot is hidden by '{where}', which is earlier on Python's path; rename that "
+            "file or folder, or start Python elsewhere"
+        )
+        if Path(sys.argv[0]).stem == "softdot":
+            print(f"softdot: {said}", file=sys.stderr)
+            sys.exit(2)
+        raise ImportError(said)

@@ -1,0 +1,183 @@
+"""The folder of a kit: refused, built, checked and written at once or not at all; then its tolerance budget."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from export.build_sheet.contents import Contents
+from export.build_sheet.page import write_page
+from export.build_sheet.pictures import draw_all
+from export.cad import write_3mf, write_step, write_stl
+from export.cut_files.folder import write_cut_files
+from export.printability import check_part, printer_profile
+from export.view import ensure_rendering
+from geometry.base import InputError
+from geometry.executor import Executor
+from geometry.fabrication.device import Device, array_device, lone_device
+from geometry.fabrication.kit import solid_kit
+from geometry.fabrication.part import ROUNDING_MM
+from geometry.flat.flat_kit import FlatKit, flat_kit
+from mesh.types import MeshingError
+from softdot.arrays.case import ArrayCase
+from softdot.case import Case
+from softdot.checks import design_warnings
+from softdot.config import Config
+from softdot.dask_cluster import AwayError
+from softdot.executors import executor_for
+from softdot.json_files import json_text, plain, write_json
+from softdot.kit.layout import side_by_side
+from softdot.kit.summary import heading, pressed, summary_of
+from softdot.log import LOG_FILE, log_file, warn
+from softdot.output import Product, staged_folder
+from softdot.progress import Logged, Progress
+from softdot.system_libraries import named_when_missing
+from softdot.tolerances.budget import budget_of
+from softdot.tolerances.budget_outcome import UNFINISHED, BudgetOutcome, failed
+from solve.materials.parameters import PiezoelectricFilm
+from solve.solution.full_load import StoppedShortError
+from solve.solution.linear import LinearSolveError
+
+KIT = Product(
+    "softdot-kit/1",
+    "kit.json",
+    frozenset({"kit.json", "kit.html", "kit.step", "kit.3mf", "parts", "cut", "pictures"}),
+)
+
+
+def make_kit(
+    config: Config, out: Path, progress: Progress | None = None, scheduler: str | None = None
+) -> dict[str, Any]:
+    """Write the kit of a configuration into the folder out and return what kit.json says.
+
+    InputError with one sentence, before anything is written, for what cannot be made. The kit appears without its
+    tolerance budget; kit.json and kit.html are replaced when that is known. Where it fails nothing is raised: the kit
+    stays without it, and failure says why. Where it is interrupted the kit stays too. The budget's presses are done by
+    processes of this computer, or on the Dask cluster of a scheduler (tcp://HOST:PORT).
+    """
+    progress = progress or Logged()
+    with named_when_missing(), executor_for(scheduler) as executor:
+        warnings = _checked(config)
+        ensure_rendering()
+        with staged_folder(out, KIT) as folder:
+            contents = contents_of(config, warnings)
+            warn(list(contents.warnings))
+            progress.stage("export")
+            _write_parts(contents, folder)
+            first = _write_sheet(config, contents, UNFINISHED, folder)
+        with log_file(out / LOG_FILE):
+            progress.stage("tolerances")
+            outcome = _outcome(config, progress, executor)
+        if json_text(first) != _kit_json(out):
+            raise InputError(f"output '{out}': another kit was written there meanwhile; this one's budget has no place")
+        return _write_sheet(config, contents, outcome, out)
+
+
+def _kit_json(out: Path) -> str | None:
+    try:
+        return (out / KIT.summary).read_text("utf-8")
+    except OSError:
+        return None
+
+
+def _checked(config: Config) -> list[str]:
+    """What a user should know about the design. InputError for what cannot be built, or pressed for the budget."""
+    array = [] if config.array is None else ArrayCase(config).built
+    case = Case(budget_config(config))
+    return list(dict.fromkeys([*array, *case.checked[1], *design_warnings(case.model)]))
+
+
+def device_of(config: Config) -> Device:
+    """What the kit makes: one segment, or the array of the table [array]. InputError for what a kit cannot make."""
+    if config.array is None:
+        return lone_device(config.segment)
+    return array_device(ArrayCase(config).layout, config.fabrication)
+
+
+def budget_config(config: Config) -> Config:
+    """What the tolerance budget presses: of an array one segment alone, held where a grid holds it."""
+    if config.array is None:
+        return config
+    segment, held = config.segment, config.array.grid_layers
+    if held:
+        segment = segment.model_copy(update={"boundary": "clamped", "held_layers": held})
+    return ArrayCase(config).lone(segment).config.model_copy(update={"array": None})
+
+
+def contents_of(config: Config, warnings: list[str]) -> Contents:
+    """All but the budget. InputError."""
+    fabrication, device = config.fabrication, device_of(config)
+    flat = flat_kit(device, fabrication)  # the quicker one first: it refuses too
+    solid = solid_kit(device, fabrication)
+    profile, materials = printer_profile(fabrication.printer), config.layer_materials()
+    film = materials["film"]
+    assert isinstance(film, PiezoelectricFilm)
+    notes = dict.fromkeys(pour.note for pour in solid.pours if pour.note)
+    printability = tuple(check_part(part.label, part.solid, profile) for part in solid.parts)
+    unprintable = [f"{answer.label}: {answer.advice}" for answer in printability if not answer.printable]
+    return Contents(
+        device=device,
+        fabrication=fabrication,
+        solid=solid,
+        flat=flat,
+        densities_g_cm3={layer: 1e-3 * material.density_kg_m3 for layer, material in materials.items()},
+        permittivity=film.relative_permittivity,
+        printability=printability,
+        budget=None,
+        budget_note="",
+        press=pressed(budget_config(config)),
+        pressed=_pressed_segment(config),
+        warnings=(*warnings, *_loose_film(device, flat), *notes, *unprintable),
+    )
+
+
+def _loose_film(device: Device, flat: FlatKit) -> list[str]:
+    """What the simulation of a free rim does not know."""
+    if device.stack.boundary != "free" or flat.layout.beyond < ROUNDING_MM:
+        return []
+    return [
+        f"the film reaches up to {flat.layout.beyond:.3g} mm beyond the free rim, for the traces that go around the "
+        "array; the simulated film ends at the rim"
+    ]
+
+
+def _pressed_segment(config: Config) -> str:
+    """What the budget is of, in words."""
+    if config.array is None:
+        return "the segment"
+    held = config.array.grid_layers
+    sides = f"held at {', '.join(held)} as by the grid" if held else f"{config.segment.boundary} at its own sides"
+    return f"one segment of the array alone, {sides}"
+
+
+def _outcome(config: Config, progress: Progress, executor: Executor) -> BudgetOutcome:
+    """The tolerance budget, or why there is none."""
+    try:
+        budget = budget_of(budget_config(config), progress.step, executor)
+        return BudgetOutcome("complete", budget=plain(budget.as_dict()))
+    except AwayError:
+        raise
+    except (InputError, LinearSolveError, MeshingError, StoppedShortError) as error:
+        return failed(error)
+
+
+def _write_parts(contents: Contents, folder: Path) -> None:
+    """Solids, cut files and pictures."""
+    (folder / "parts").mkdir()
+    for part in contents.solid.parts:
+        write_stl(part, folder / "parts" / f"{part.label}.stl")
+    together = side_by_side(contents.solid.parts)
+    write_step(together, folder / "kit.step")
+    write_3mf(together, folder / "kit.3mf")
+    write_cut_files(contents.flat.patterns, folder / "cut")
+    (folder / "pictures").mkdir()
+    draw_all(contents, folder / "cut", folder / "pictures")
+
+
+def _write_sheet(config: Config, contents: Contents, outcome: BudgetOutcome, folder: Path) -> dict[str, Any]:
+    """The build sheet and kit.json, each replaced whole, kit.json last."""
+    contents = replace(contents, budget=outcome.budget, budget_note=outcome.note)
+    named = heading(config, KIT)
+    write_page(contents, named, folder / "pictures", folder / "kit.html")
+    summary: dict[str, Any] = plain(named | summary_of(contents, outcome.state, outcome.failure))
+    write_json(folder / KIT.summary, summary)
+    return summary

@@ -1,0 +1,55 @@
+"""The picture of a plate: seen from above, its sizes beside it."""
+
+from pathlib import Path
+from textwrap import shorten
+from typing import Any
+
+import numpy as np
+
+from export.printability.measure import surface_of
+from export.view import INK, DrawnBody, View, frame, page, render, save
+from softdot.plate.build import BuiltPlate
+
+VIEW = View(0.0, 50.0)
+TITLES = {"text": "Braille plate", "dot": "Single dot", "height-series": "Dots that grow", "tip": "Indenter tip"}
+
+
+def draw_plate(built: BuiltPlate, path: Path) -> None:
+    """Write a PNG. InputError without OpenGL."""
+    import pyvista
+
+    surface = surface_of(built.plate.part.solid)
+    box = frame(VIEW.flat(np.asarray(surface.vertices)))
+    red, green, blue = (round(255 * value) for value in built.plate.part.colour)
+    body = DrawnBody(pyvista.wrap(surface), f"#{red:02x}{green:02x}{blue:02x}")
+    figure, axes, pixels_per_mm = page(box, _title(built))
+    axes.imshow(render([body], VIEW, box, pixels_per_mm), extent=box, aspect="equal")
+    if built.translation is not None:
+        cells = "\n".join(built.translation.lines[:4])
+        middle, below = (box[0] + box[1]) / 2, box[2] - 0.03 * (box[1] - box[0])
+        axes.text(middle, below, cells, fontsize=14, color=INK, ha="center", va="top", multialignment="left")
+    _write_sizes(figure, built)
+    save(figure, path)
+
+
+def _title(built: BuiltPlate) -> str:
+    text = shorten(built.request.text or "", 26, placeholder="…")
+    return f"{TITLES[built.request.kind]}{f' “{text}”' if text else ''}, {built.sizes.standard}"
+
+
+def _write_sizes(figure: Any, built: BuiltPlate) -> None:
+    """Sizes in a column at the right."""
+    plate, first = built.plate, built.plate.dots[0]
+    heights = sorted({dot.height_mm for dot in plate.dots})
+    known = {name: size.value_mm for name, size in built.sizes.known.items() if name.endswith("pitch_mm")}
+    rows = [
+        ("plate", " × ".join(f"{size:.4g}" for size in plate.size_mm)),
+        ("dot diameter", f"{first.base_diameter_mm:g}"),
+        ("dot height", " to ".join(f"{height:g}" for height in dict.fromkeys((heights[0], heights[-1])))),
+    ]
+    if built.translation is not None:
+        rows += [(name.removesuffix("_mm").replace("_", " "), f"{value:g}") for name, value in known.items()]
+    for number, (name, value) in enumerate(rows):
+        figure.text(
+            0.75, 0.85 - 0.065 * number, f"{name}\n{value} mm", fontsize=9, color=INK, va="top", linespacing=1.3
+        )

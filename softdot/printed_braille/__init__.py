@@ -1,1 +1,0 @@
-"""softdot plate: a printable Braille plate from a text."""

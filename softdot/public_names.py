@@ -1,0 +1,19 @@
+"""Where the public names of softdot live: each is loaded on first use, so that importing the package costs nothing."""
+
+HOMES = {
+    "Case": "softdot.case",
+    "Config": "softdot.config",
+    "ConvergenceWarning": "softdot.case",
+    "InputError": "geometry.base",
+    "MeshingError": "mesh.types",
+    "Pressed": "softdot.case",
+    "ResultWarning": "softdot.case",
+    "Verdict": "softdot.scripting",
+    "config_hash": "softdot.config",
+    "config_schema": "softdot.config",
+    "derivatives": "softdot.differentiation",
+    "diagnose": "softdot.scripting",
+    "load_config": "softdot.config",
+    "run_config": "softdot.commands.run",
+    "sweep": "softdot.scripting",
+}

@@ -1,0 +1,166 @@
+"""The reading of a line: a text through the voltages and back, and what reading.json and signals.npz say of it."""
+
+import logging
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from geometry.arrays import Ints
+from geometry.base import InputError
+from softdot.arrays.kernel import ArrayKernel
+from softdot.progress import Progress
+from softdot.reading.cells import braille, text_of
+from softdot.reading.conditions import ReadingConditions, standard_of, standard_warnings
+from softdot.reading.decoders import DECODERS, seen_of
+from softdot.reading.decoders.fitted import Track
+from softdot.reading.decoders.model import DecodedCells
+from softdot.reading.decoders.pressing import PressedCells
+from softdot.reading.kernels import electronics_of
+from softdot.reading.line import DotLine, cell_pitch_mm, made_line
+from softdot.reading.motion import ArrayPath, moved, press_times
+from softdot.reading.score import scores
+from softdot.reading.voltages import Reader, Voltages, recorded
+from solve.model import Readout
+
+LOG = logging.getLogger(__name__)
+MOST_SAMPLES = 1e8
+"""Of all segments together: half an hour at 10 kHz of six; they take a gigabyte in some of the steps."""
+
+
+@dataclass(frozen=True)
+class LineReading:
+    """cells_true (c,) : None where nobody knows; line, path : None for a recording; found : by name of the decoder."""
+
+    reader: Reader
+    conditions: ReadingConditions
+    cells_true: Ints | None
+    heard: Voltages
+    line: DotLine | None
+    path: ArrayPath | None
+    seen: Track | PressedCells
+    found: dict[str, DecodedCells]
+
+    @property
+    def first(self) -> DecodedCells:
+        """Of the decoder that was named first."""
+        return next(iter(self.found.values()))
+
+
+def read_line(
+    kernel: ArrayKernel,
+    readout: Readout,
+    conditions: ReadingConditions,
+    names: list[str],
+    progress: Progress,
+    cells: Ints | None,
+    recording: Voltages | None = None,
+) -> LineReading:
+    """Simulate the voltages of cells, or take recorded ones, and decode them. InputError.
+
+    Every decoder is given the reader and the voltages alone.
+    """
+    known = conditions.resolved(kernel)
+    chosen = standard_of(kernel, known.standard)
+    times = press_times(known, cell_pitch_mm(chosen)) if known.mode == "press" else None
+    behind, physics = electronics_of(kernel, readout)
+    reader = Reader(kernel, chosen, behind, times, physics)
+    line: DotLine | None = None
+    path: ArrayPath | None = None
+    if recording is None:
+        assert cells is not None
+        _refuse_too_much(known, len(cells), reader)
+        progress.stage("simulate")
+        random = np.random.default_rng(known.seed)
+        line = made_line(cells, chosen, known, random)
+        path = moved(kernel, line, len(cells), chosen, known, random)
+        heard = recorded(reader, line, path, known, random, lambda done, all_: progress.step(done, all_, ""))
+    else:
+        heard = recording
+    progress.stage("decode")
+    seen = seen_of(reader, heard)
+    found = {}
+    for number, name in enumerate(names, 1):
+        found[name] = DECODERS[name](reader, seen)
+        progress.step(number, len(names), name)
+    return LineReading(reader, known, cells, heard, line, path, seen, found)
+
+
+def _refuse_too_much(known: ReadingConditions, cells: int, reader: Reader) -> None:
+    """InputError for more samples than a machine holds; else their number is told before they are made."""
+    travel_mm = cells * cell_pitch_mm(reader.standard)
+    seconds = travel_mm / known.speed_mm_per_s if reader.presses is None else cells * reader.presses.period_s
+    count = seconds * known.sampling_Hz * len(reader.kernel.centres_mm)
+    if count > MOST_SAMPLES:
+        raise InputError(
+            f"--sampling-Hz = {known.sampling_Hz:g}: {cells} cells take {seconds:.4g} s and {count:.3g} samples "
+            f"of all segments, at most {MOST_SAMPLES:.3g} are made; sample slower, move faster or read less"
+        )
+    LOG.info("%d cells in %.4g s, %.3g samples of all segments", cells, seconds, count)
+
+
+def content(reading: LineReading, text: str | None, table: str | None) -> dict[str, Any]:
+    """What reading.json says of a reading, but for format, version and configuration."""
+    first, true = reading.first, reading.cells_true
+    decoders = {name: _scored(true, found, table) for name, found in reading.found.items()}
+    own = next(iter(decoders.values()))
+    seconds = _duration_s(reading)
+    words = len((text_of(first.cells if true is None else true, table)).split())
+    count = len(first.cells) if true is None else len(true)
+    return {
+        "text_true": text,
+        "text_of_cells_true": None if true is None else text_of(true, table),
+        "cells_true": None if true is None else braille(true),
+        "characters": None if true is None else len(text_of(true, table)),
+        **own,
+        "decoder": next(iter(decoders)),
+        "decoders": decoders,
+        "words_per_minute": 60.0 * words / seconds if seconds > 0.0 else None,
+        "cells_per_s": count / seconds if seconds > 0.0 else None,
+        "duration_s": seconds,
+        "conditions": {**reading.conditions.as_dict(), **_readout(reading.reader.readout)},
+        "share_of_time_at_force": None if reading.path is None else reading.path.held,
+        "track": _track(reading.seen),
+        "kernel": {key: value for key, value in reading.reader.kernel.about.items() if key != "config"},
+        "warnings": _warnings(reading),
+    }
+
+
+def _readout(readout: Readout) -> dict[str, Any]:
+    """What is stated of the amplifier, beside the other conditions."""
+    stated = readout.model_dump(mode="json", exclude_none=True)
+    return {f"readout_{name}": value for name, value in stated.items()}
+
+
+def _scored(true: Ints | None, found: DecodedCells, table: str | None) -> dict[str, Any]:
+    if true is not None:
+        return scores(true, found.cells, table)
+    return {"text_read": text_of(found.cells, table), "cells_read": braille(found.cells)}
+
+
+def _duration_s(reading: LineReading) -> float:
+    """From the first cell to the last, and as much as one cell takes."""
+    passed = reading.first.passed_s if reading.path is None else reading.path.reached_s
+    if len(passed) < 2:
+        presses = reading.reader.presses
+        if presses is not None:
+            return presses.period_s
+        return cell_pitch_mm(reading.reader.standard) / reading.conditions.speed_mm_per_s
+    return float((passed[-1] - passed[0]) * len(passed) / (len(passed) - 1))
+
+
+def _track(seen: Track | PressedCells) -> dict[str, float] | None:
+    """What the voltages alone told of the motion."""
+    return vars(seen.posture) if isinstance(seen, Track) else None
+
+
+def _warnings(reading: LineReading) -> list[str]:
+    told = standard_warnings(reading.reader.kernel, reading.reader.standard)
+    held = None if reading.path is None else reading.path.held
+    if held is not None and held < 1.0:
+        told.append(
+            f"the force of {reading.conditions.force_N:g} N was held for {100 * held:.3g} % of the time; else a "
+            f"stop held the array at the depth of {reading.conditions.depth_mm:.3g} mm, where the kernel ends for the "
+            "highest dot"
+        )
+    return told

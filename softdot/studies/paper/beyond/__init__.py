@@ -1,0 +1,1 @@
+"""Part 4 of the study: between free and clamped, what softness predicts, and a better design."""

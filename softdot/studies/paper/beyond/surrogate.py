@@ -1,0 +1,83 @@
+"""A statistical stand-in for the solver: Gaussian processes of voltage, force and film stress over the designs."""
+
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from geometry.arrays import Floats
+from softdot.studies.paper.beyond.designs import Design, coordinates
+from softdot.studies.paper.beyond.predictors import clamped_voltage_V, columns, free_voltage_V
+from softdot.studies.paper.beyond.trials import DesignPress, DesignTrial
+
+LEAST_V = 0.01
+"""Voltages below are taken as this one, so that there is a logarithm; nobody wants such a design."""
+OUTPUTS = 3
+NOISE = 2e-3
+"""Variance of what another mesh changes, over that between designs."""
+
+
+@dataclass(frozen=True)
+class Guess:
+    """Draws of what a press would give. Each (boundaries, draws, n): free, clamped."""
+
+    charge_pC: Floats
+    force_N: Floats
+    film_stress_MPa: Floats
+
+
+class Surrogate:
+    """One Gaussian process for the logarithm of each number of a press.
+
+    Its features are the logarithms of the variables and of the two voltages by the corrected parameters: where
+    there are few designs yet, those parameters carry the trend.
+    """
+
+    def __init__(self, trials: Sequence[DesignTrial], constants: dict[str, float]) -> None:
+        self.constants = constants
+        features = self._features([trial.design for trial in trials])
+        self.middle, self.spread = features.mean(axis=0), features.std(axis=0)
+        presses = [[trial.presses[side] for trial in trials] for side in (0, 1)]
+        self.processes = [[self._fitted(features, target) for target in np.log(_numbers(side)).T] for side in presses]
+
+    def draw(self, designs: Sequence[Design], draws: int, seed: int) -> Guess:
+        """Independent draws for each number; the same seed draws the same luck for every design."""
+        luck = np.random.default_rng(seed).standard_normal((2, OUTPUTS, draws, 1))
+        features = (self._features(designs) - self.middle) / self.spread
+        found = np.empty((2, OUTPUTS, draws, len(designs)))
+        for side, processes in enumerate(self.processes):
+            for output, process in enumerate(processes):
+                mean, deviation = process.predict(features, return_std=True)
+                found[side, output] = np.exp(mean + luck[side, output] * deviation)
+        return Guess(found[:, 0], found[:, 1], found[:, 2])
+
+    def _features(self, designs: Sequence[Design]) -> Floats:
+        c, k = columns(designs), self.constants
+        trends = [free_voltage_V(c, k["tension_share"]), clamped_voltage_V(c, k["give"], k["rest"])]
+        return np.column_stack([coordinates(designs), np.log(trends).T])
+
+    def _fitted(self, features: Floats, target: Floats) -> Any:
+        """A linear trend, a smooth deviation from it, and the noise of the meshes."""
+        from sklearn.exceptions import ConvergenceWarning
+        from sklearn.gaussian_process import GaussianProcessRegressor
+        from sklearn.gaussian_process.kernels import ConstantKernel, DotProduct, Matern, WhiteKernel
+
+        trend = ConstantKernel(0.1, (1e-4, 1e2)) * DotProduct(1.0, "fixed")
+        deviation = ConstantKernel(0.1, (1e-4, 1e2)) * Matern(3.0, (1.0, 30.0), nu=2.5)
+        process = GaussianProcessRegressor(trend + deviation + WhiteKernel(NOISE, "fixed"), normalize_y=True)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ConvergenceWarning)  # a scale at its bound is an answer too
+            return process.fit((features - self.middle) / self.spread, target)
+
+
+def _numbers(presses: Sequence[DesignPress]) -> Floats:
+    """Charge, force and film stress (n, 3)."""
+    least = [LEAST_V * press.capacitance_pF for press in presses]
+    return np.array(
+        [
+            [max(press.charge_pC, floor), press.force_N, press.film_stress_MPa]
+            for press, floor in zip(presses, least, strict=True)
+        ]
+    )

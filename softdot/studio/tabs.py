@@ -1,0 +1,72 @@
+"""All tabs of the browser, and what they share."""
+
+import asyncio
+from contextlib import suppress
+from typing import Any
+
+from geometry.base import InputError
+from softdot.studio.autosave import new_name
+from softdot.studio.guard import Guard
+from softdot.studio.session import Session, Studio
+
+MOST_TABS = 12
+FIRST_PARTS_S = 1.0
+"""The tab that waits has its form before another process loads the solver."""
+GRACE_S = 5.0
+"""A tab that is loaded again is back within that time; after it its processes end."""
+
+
+class Tabs:
+    """All tabs, and what they share."""
+
+    def __init__(self, guard: Guard, studio: Studio, start: str) -> None:
+        self.guard, self.studio, self.start = guard, studio, start
+        self.sessions: dict[str, Session] = {}
+        self._form = asyncio.ensure_future(self._load())
+
+    async def form(self) -> Any:
+        """What the form is made of; asked for again where its process was lost."""
+        if self._form.done() and self._form.exception() is not None:
+            self._form = asyncio.ensure_future(self._load())
+        return await asyncio.shield(self._form)
+
+    async def _load(self) -> Any:
+        """What the form is made of; then a process that draws and one that presses."""
+        found = await self.studio.check.run("form:form")
+        self.studio.draw.prepare()
+        asyncio.get_running_loop().call_later(FIRST_PARTS_S, self.studio.solve.prepare)
+        return found
+
+    def session(self, name: str | None) -> Session:
+        """The design of a tab that comes back, also after a crash; else a new one. InputError for too many."""
+        known = self.sessions.get(name or "")
+        if known is not None and known.send is None:
+            return known
+        if len(self.sessions) >= MOST_TABS:
+            raise InputError(f"{MOST_TABS} designs are open, which is the most; close a tab")
+        saved = None
+        with suppress(InputError):
+            saved = self.studio.autosave.load(name) if name else None
+        if known is not None:  # a copy of a tab that is still open
+            made = Session(new_name(), known.text, self.studio)
+        elif name and saved is not None:
+            made = Session(name, saved, self.studio)
+        else:
+            made = Session(new_name(), self.start, self.studio)
+        self.sessions[made.name] = made
+        return made
+
+    def left(self, session: Session) -> None:
+        """A tab is gone: give up its work unless it comes back soon."""
+        session.send = None
+        asyncio.get_running_loop().call_later(GRACE_S, self._forget, session)
+
+    def _forget(self, session: Session) -> None:
+        if session.send is None and self.sessions.get(session.name) is session:
+            del self.sessions[session.name]
+            session.close()
+
+    def close(self) -> None:
+        """Give up all work."""
+        for session in self.sessions.values():
+            session.close()

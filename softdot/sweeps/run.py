@@ -1,0 +1,118 @@
+"""A whole sweep: from a space of designs to the folder with its table."""
+
+import time
+from collections import Counter
+from collections.abc import Mapping
+from contextlib import AbstractContextManager, ExitStack
+from pathlib import Path
+from typing import Any
+
+from geometry.cache import check_folder
+from geometry.executor import Executor
+from geometry.files import release
+from softdot.config import Config, config_hash
+from softdot.executors import executor_for
+from softdot.hardware import hardware
+from softdot.log import LOG_FILE, log_file
+from softdot.progress import Logged, Progress
+from softdot.sweeps import folder as sweep_folder
+from softdot.sweeps.points import REFUSED, STATUSES, Record, failed, solve_all
+from softdot.sweeps.sampling import sampling_warnings
+from softdot.sweeps.space import Point, Space
+from softdot.sweeps.table import check_tables, row
+
+
+def run_sweep(
+    space: Space, out: Path | str, scheduler: str | None = None, progress: Progress | None = None
+) -> dict[str, Any]:
+    """Solve every point of a space into the folder out and return the summary (sweep.json).
+
+    On one process per core, or on the Dask cluster of a scheduler (tcp://HOST:PORT). Points that an earlier sweep
+    left in out are not solved again. InputError before any work for a folder that cannot be written, for a
+    scheduler that does not answer, and without pyarrow. After Ctrl-C, or when killed, the finished points stay.
+    """
+    check_tables()
+    check_folder()
+    place = sweep_folder.check_folder(Path(out))
+    configs = {config_hash(point.config): point.config for point in space.points if point.config is not None}
+    records = {
+        name: found for name, config in configs.items() if (found := sweep_folder.kept(place, config)) is not None
+    }
+    missing = {name: config for name, config in configs.items() if name not in records}
+    where = executor_for(scheduler, space.sweep.workers)
+    with ExitStack() as stack:
+        measured = _measured(0, len(records))
+        if missing:
+            measured = _solve(missing, records, where, place, progress or Logged(), stack)
+        ends = [_record(point, records) for point in space.points]
+        summary = {**_heading(space, ends), "scheduler": scheduler, **measured, "hardware": hardware()}
+        rows = [row(number, space.points[number].values, record) for number, record in enumerate(ends)]
+        sweep_folder.finish(place, rows, list(space.points[0].values), space.text, summary)
+    return summary
+
+
+def _solve(
+    missing: Mapping[str, Config],
+    records: dict[str, Record],
+    where: AbstractContextManager[Executor],
+    place: Path,
+    progress: Progress,
+    stack: ExitStack,
+) -> dict[str, Any]:
+    """Add what is missing to the records and to the folder, which is made once somebody can work.
+
+    stack : gives the folder up at its end, so that no other sweep writes it meanwhile.
+    """
+    reused, count = len(records), len(records) + len(missing)
+    begun = time.perf_counter()
+    with where as executor:
+        sweep_folder.begin(place)
+        stack.callback(release, sweep_folder.take(place))
+        sweep_folder.sweep_up(place)
+        stack.callback(sweep_folder.sweep_up, place)
+        workers = executor.places
+        ready = time.perf_counter()
+        with log_file(place / LOG_FILE):
+            progress.stage("solve")
+            progress.step(reused, count, "")
+            for name, record in solve_all(executor, missing):
+                records[name] = sweep_folder.keep(place, missing[name], record)
+                progress.step(len(records), count, record["reason"] or "")
+        end = time.perf_counter()
+    return _measured(len(missing), reused, workers, ready - begun, end - ready)
+
+
+def _measured(solved: int, reused: int, workers: int = 0, start_s: float = 0.0, solve_s: float = 0.0) -> dict[str, Any]:
+    """What this call did, and how fast."""
+    return {
+        "solved_now": solved,
+        "reused": reused,
+        "workers": workers,
+        "timing_s": {"start": start_s, "solve": solve_s},
+        "points_per_minute": 60.0 * solved / solve_s if solved else None,
+    }
+
+
+def _record(point: Point, records: Mapping[str, Record]) -> Record:
+    """The record of a point; one without configuration has its reason."""
+    if point.config is None:
+        return failed(REFUSED, point.reason or "")
+    return records[config_hash(point.config)]
+
+
+def _heading(space: Space, ends: list[Record]) -> dict[str, Any]:
+    """Format, design and how the points ended."""
+    from softdot.version import installed_version
+
+    ended = Counter(record["status"] for record in ends)
+    return {
+        "format": sweep_folder.SWEEP.format,
+        "complete": True,
+        "softdot_version": installed_version(),
+        "sampling": space.sweep.sampling,
+        "seed": space.sweep.seed,
+        "points": len(ends),
+        "ended": {status: ended[status] for status in STATUSES},
+        "warnings": sampling_warnings(space.sweep),
+        "space": space.tables,
+    }
