@@ -42,7 +42,7 @@ def run_array(
     InputError before any work for what cannot be built or written. Where a press does not converge, StoppedPressError
     or MeshingError: nothing is written, and presses that were solved are kept in the cache.
     """
-    from export.view import ensure_rendering
+    from export.rendering import ensure_rendering
     from geometry.cache import check_folder
     from softdot.arrays.case import ArrayCase
     from softdot.arrays.study import study

@@ -7,7 +7,7 @@ from typing import Any
 from geometry.base import InputError
 from softdot.console import GOOD, NOT_CONVERGED, complain, only_the_summary_on_stdout, show
 from softdot.diagnosis.folder import FULL_MODEL_S, Options, run_diagnosis
-from solve.solution.newton import NoEquilibriumError
+from solve.solution.errors import NoEquilibriumError
 
 
 def command(chosen: Namespace) -> int:

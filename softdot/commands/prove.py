@@ -13,10 +13,10 @@ def command(chosen: Namespace) -> int:
     """Prove chosen.cases cases into chosen.output; 0, or 3 when not one was scored, or 130. InputError."""
     if find_spec("skfem") is None:
         raise InputError("prove needs scikit-fem, the other finite-element code: pip install 'softdot[prove]'")
-    from softdot.commands.sweep import progress_of_points
     from softdot.studies.proof.proof_folder import CASES
     from softdot.studies.proof.run import RIGS, Request, run_proof
     from softdot.studies.proof.world.cases import KINDS
+    from softdot.sweeps.progress import progress_of_points
 
     rigs = tuple(chosen.rigs.split(",")) if chosen.rigs else RIGS
     kinds = tuple(chosen.kinds.split(",")) if chosen.kinds else KINDS

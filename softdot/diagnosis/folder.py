@@ -29,7 +29,7 @@ from softdot.executors import executor_for
 from softdot.json_files import plain, write_json
 from softdot.output import Product, staged_folder
 from softdot.progress import Logged, Progress
-from solve.solution.newton import NoEquilibriumError
+from solve.solution.errors import NoEquilibriumError
 
 DIAGNOSIS = Product(
     FORMAT,

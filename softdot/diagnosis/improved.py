@@ -11,7 +11,8 @@ from diagnose.engines.coupon.engine import CouponEngine
 from diagnose.engines.coupon.improved_material import improved_material
 from diagnose.findings import Findings, FittedModel
 from diagnose.forward import Engine, Setting
-from diagnose.next_press.proposals import Shape, base_setup
+from diagnose.next_press.press_shape import Shape
+from diagnose.next_press.proposals import base_setup
 from diagnose.verdict.names import model_words
 from diagnose.verdict.resimulation import switched_on
 from softdot.config.rig import OWN, RIG_FILE, Rig

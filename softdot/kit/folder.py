@@ -10,7 +10,7 @@ from export.build_sheet.pictures import draw_all
 from export.cad import write_3mf, write_step, write_stl
 from export.cut_files.folder import write_cut_files
 from export.printability import check_part, printer_profile
-from export.view import ensure_rendering
+from export.rendering import ensure_rendering
 from geometry.base import InputError
 from geometry.executor import Executor
 from geometry.fabrication.device import Device, array_device, lone_device

@@ -6,7 +6,7 @@ from typing import Any
 from export.cad import write_3mf, write_step, write_stl
 from export.printability import CriticalSize, Printability, draw_findings, printer_names, printer_profile
 from export.printability.check import check_on_printers
-from export.view import ensure_rendering
+from export.rendering import ensure_rendering
 from geometry.braille_standards import QuantityName
 from softdot.json_files import write_json
 from softdot.output import Product, staged_folder

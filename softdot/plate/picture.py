@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from export.printability.measure import surface_of
+from export.printability.surface import surface_of
 from export.view import INK, DrawnBody, View, frame, page, render, save
 from softdot.plate.build import BuiltPlate
 
