@@ -17,8 +17,8 @@ import numpy as np
 from softdot.arrays.case import ArrayCase
 from softdot.arrays.matrix import CrosstalkMatrix, crosstalk
 from softdot.arrays.presses import ArrayPresses
-from softdot.config import config_from
-from softdot.config.toml import completed
+from softdot.config.default_design import completed
+from softdot.config.loading import config_from
 
 SIZES_MM = ((0.8, 0.25), (0.55, 0.17), (0.4, 0.12))
 ARRAYS = {"2 columns, 3 rows": (2, 3), "5 columns, 1 row": (5, 1)}

@@ -15,7 +15,7 @@ import numpy as np
 
 from benchmarks.timing import file_argument
 from softdot.case import Case
-from softdot.config import load_config
+from softdot.config.loading import load_config
 
 FACTORS = (2.0, 1.4, 1.0, 0.7, 0.5)
 

@@ -17,7 +17,7 @@ import numpy as np
 from softdot.arrays.case import ArrayCase
 from softdot.arrays.kernel import ArrayKernel
 from softdot.arrays.kernel_presses import KernelPress, KernelTask, grid_of, pressed, recalled
-from softdot.config import load_config
+from softdot.config.loading import load_config
 from softdot.reading.designs.operating import coarse_kernel
 
 

@@ -15,7 +15,7 @@ from softdot.arrays.case import ArrayCase
 from softdot.arrays.kernel import load_kernel
 from softdot.arrays.kernel_checks import cells_by_chance, places_by_chance
 from softdot.arrays.kernel_errors import measured, worst
-from softdot.config import config_from
+from softdot.config.loading import config_from
 
 PLACES, SEEDS = 10, range(1, 6)
 

@@ -8,7 +8,8 @@ import mesh
 from geometry.arrays import Ints
 from geometry.dot_at_rest import resolve_dot
 from mesh.types import TET_FACES, TetMesh, boundary_faces
-from softdot.config import Config, load_config
+from softdot.config.loading import load_config
+from softdot.config.schema import Config
 
 DEPTH_MM = 0.3
 PLANES = (0, 1)  # the default press is its own image in x = 0 and in y = 0

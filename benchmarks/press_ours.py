@@ -11,7 +11,8 @@ from pathlib import Path
 
 from benchmarks.press_case import DEPTH_MM, save, segment_mesh
 from mesh.types import TetMesh
-from softdot.config import Config, load_config
+from softdot.config.loading import load_config
+from softdot.config.schema import Config
 from solve.model import Model
 from solve.press import press_segment
 from solve.result import PressResult

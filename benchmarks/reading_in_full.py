@@ -26,7 +26,8 @@ from mesh.array.mesh import array_mesh
 from softdot.arrays.case import ArrayCase, ArrayPress
 from softdot.arrays.kernel import load_kernel
 from softdot.braille_text.lines import translate
-from softdot.config import Config, config_from
+from softdot.config.loading import config_from
+from softdot.config.schema import Config
 from solve.mechanisms import Mechanism
 from solve.press import press_segment
 

@@ -21,7 +21,8 @@ from geometry.arrays import Floats
 from geometry.dot_size import DEFAULT_STANDARD
 from mesh.array.mesh import array_mesh
 from softdot.arrays.case import ArrayCase, ArrayPress
-from softdot.config import Config, load_config
+from softdot.config.loading import load_config
+from softdot.config.schema import Config
 from solve.mechanisms import Mechanism
 from solve.model import Press
 from solve.press import Setup, discretise

@@ -27,7 +27,7 @@ from diagnose.forward import Candidate, Setting
 from diagnose.inference.diagnose import diagnose
 from diagnose.signals.recording import Recording, Run, one_after_the_other
 from diagnose.verdict.names import short_name
-from softdot.config import config_from
+from softdot.config.loading import config_from
 from softdot.config.rig import RIG_FILE, Bench, Rig
 from softdot.diagnosis.engine import engine_for
 from softdot.diagnosis.improved import improved_text

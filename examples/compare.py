@@ -21,7 +21,8 @@ from matplotlib.axes import Axes
 
 from geometry.arrays import Floats
 from softdot.case import Case
-from softdot.config import Config, load_config
+from softdot.config.loading import load_config
+from softdot.config.schema import Config
 from solve.materials.parameters import Hyperfoam, Material, NeoHookean, PiezoelectricFilm
 
 BLUE, ORANGE = "#2a6db0", "#d1600a"

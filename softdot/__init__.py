@@ -16,7 +16,9 @@ if TYPE_CHECKING:
     from mesh.types import MeshingError
     from softdot.case import Case, ConvergenceWarning, Pressed, ResultWarning
     from softdot.commands.run import run_config
-    from softdot.config import Config, config_hash, config_schema, load_config
+    from softdot.config.hashes import config_hash
+    from softdot.config.loading import load_config
+    from softdot.config.schema import Config, config_schema
     from softdot.differentiation import derivatives
     from softdot.scripting import Verdict, diagnose, sweep
 

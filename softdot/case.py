@@ -22,9 +22,11 @@ import numpy as np
 from geometry.arrays import Floats
 from geometry.dot import DotShape
 from mesh.types import Planes, TetMesh
-from softdot.config import Config, config_from, input_hash, load_config
+from softdot.config.default_design import completed
+from softdot.config.hashes import input_hash
+from softdot.config.loading import config_from, load_config
 from softdot.config.model import model_of
-from softdot.config.toml import completed
+from softdot.config.schema import Config
 from softdot.summary import course_columns, course_part, history
 from solve.model import Model
 from solve.result import PressResult, Step

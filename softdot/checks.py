@@ -22,7 +22,7 @@ from mesh.options import MeshOptions
 from mesh.outline import outline
 from mesh.sizing import sizing
 from mesh.types import Planes
-from softdot.config import Config
+from softdot.config.schema import Config
 from softdot.memory import needed_GB, refuse_too_little_memory
 from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.model import Model

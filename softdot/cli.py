@@ -113,7 +113,7 @@ def _refuse_unprintable(chosen: argparse.Namespace) -> None:
 
 def _command(chosen: argparse.Namespace) -> int:
     if chosen.command == "schema":
-        from softdot.config import config_schema
+        from softdot.config.schema import config_schema
         from softdot.json_files import json_text
 
         sys.stdout.write(json_text(config_schema()))

@@ -9,8 +9,9 @@ from geometry.arrays import Floats
 from geometry.base import InputError
 from mesh.types import TetMesh
 from softdot.case import Case
-from softdot.config import Config, config_from
+from softdot.config.loading import config_from
 from softdot.config.model import model_of
+from softdot.config.schema import Config
 from solve.result import PressResult
 
 if TYPE_CHECKING:

@@ -7,7 +7,8 @@ from geometry.cache import data_hash, recall, remember, source_hash
 from mesh.types import MeshingError
 from softdot.case import Case, OnStep
 from softdot.checks import course_warnings, design_warnings, result_warnings
-from softdot.config import Config, input_hash
+from softdot.config.hashes import input_hash
+from softdot.config.schema import Config
 from softdot.json_files import plain
 from softdot.summary import mesh_part, press_part, stopped_solver
 

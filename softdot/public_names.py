@@ -2,18 +2,18 @@
 
 HOMES = {
     "Case": "softdot.case",
-    "Config": "softdot.config",
+    "Config": "softdot.config.schema",
     "ConvergenceWarning": "softdot.case",
     "InputError": "geometry.base",
     "MeshingError": "mesh.types",
     "Pressed": "softdot.case",
     "ResultWarning": "softdot.case",
     "Verdict": "softdot.scripting",
-    "config_hash": "softdot.config",
-    "config_schema": "softdot.config",
+    "config_hash": "softdot.config.hashes",
+    "config_schema": "softdot.config.schema",
     "derivatives": "softdot.differentiation",
     "diagnose": "softdot.scripting",
-    "load_config": "softdot.config",
+    "load_config": "softdot.config.loading",
     "run_config": "softdot.commands.run",
     "sweep": "softdot.scripting",
 }

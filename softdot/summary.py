@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from geometry.arrays import Floats
-from softdot.config import Config, config_hash
+from softdot.config.hashes import config_hash
+from softdot.config.schema import Config
 from softdot.output import RUN
 from softdot.sensitivity import least_detectable, sensitivity
 from solve.model import Model, Readout, Waveform

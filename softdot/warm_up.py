@@ -1,7 +1,7 @@
 """The kernels compiled in one worker before others start."""
 
 from geometry.executor import Executor
-from softdot.config import config_from
+from softdot.config.loading import config_from
 from softdot.outcome import outcome, remembered
 
 TINY = {

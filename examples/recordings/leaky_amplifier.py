@@ -16,7 +16,7 @@ import numpy as np
 
 from geometry.arrays import Floats
 from softdot.case import Case
-from softdot.config import config_from
+from softdot.config.loading import config_from
 from softdot.config.toml import parse_toml
 from softdot.convert import run_text, write_recording
 from solve.model import Physics, Readout

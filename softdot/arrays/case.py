@@ -23,8 +23,8 @@ from mesh.array.mesh import array_mesh
 from mesh.array.sizing import expected_elements
 from mesh.types import Planes, TetMesh
 from softdot.checks import Cost, cost_of, design_warnings, refuse_held_rim, refuse_many_elements
-from softdot.config import Config
 from softdot.config.model import model_of
+from softdot.config.schema import Config
 from solve.materials.film import FilmLaw, film_law
 from solve.materials.parameters import PiezoelectricFilm
 from solve.model import Model

@@ -16,7 +16,7 @@ from softdot.version import installed_version
 
 if TYPE_CHECKING:
     from softdot.arrays.study import ArrayStudy, Part
-    from softdot.config import Config
+    from softdot.config.schema import Config
 
 
 ARRAY = Product(
@@ -72,7 +72,7 @@ def _summary(config: Config, found: ArrayStudy, warnings: list[str]) -> dict[str
     """The content of array.json but for its times."""
     from softdot.arrays.kernel_errors import worst
     from softdot.arrays.side_stiffness import ROLES, as_dict
-    from softdot.config import config_hash
+    from softdot.config.hashes import config_hash
 
     matrix, layout = found.matrix, found.matrix.layout
     presses = matrix.solved.values()

@@ -11,7 +11,7 @@ import numpy as np
 from geometry.arrays import Floats
 from softdot.arrays.case import ArrayCase
 from softdot.arrays.kernel_presses import by_one_dot
-from softdot.config import Config
+from softdot.config.schema import Config
 
 DOTS = 6
 PLACES, CELLS = 12, 3

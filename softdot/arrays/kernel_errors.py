@@ -18,7 +18,7 @@ from softdot.arrays.kernel import ArrayKernel
 from softdot.arrays.kernel_checks import check_presses
 from softdot.arrays.kernel_presses import KernelTask, all_pressed, filled, grid_of
 from softdot.arrays.matrix import CrosstalkMatrix
-from softdot.config import Config
+from softdot.config.schema import Config
 
 MESH = "the same press on the configured mesh"
 

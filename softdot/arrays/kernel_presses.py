@@ -21,7 +21,8 @@ from geometry.executor import Executor, each_done
 from softdot.arrays.case import ArrayCase, ArrayPress
 from softdot.arrays.kernel import ArrayKernel
 from softdot.arrays.presses import StoppedPressError
-from softdot.config import Config, input_hash
+from softdot.config.hashes import input_hash
+from softdot.config.schema import Config
 from solve.press import press_segment
 from solve.result import PressResult
 

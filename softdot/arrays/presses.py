@@ -20,7 +20,8 @@ from geometry.executor import HERE, Executor, each_done
 from geometry.parameters import Dot
 from softdot.arrays.case import ArrayCase, ArrayPress
 from softdot.checks import result_warnings
-from softdot.config import Config, input_hash
+from softdot.config.hashes import input_hash
+from softdot.config.schema import Config
 from solve.press import OnStep, press_segment
 from solve.readout.course import course
 from solve.result import PressResult

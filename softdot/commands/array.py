@@ -16,7 +16,7 @@ def command(chosen: Namespace) -> int:
     """Study chosen.config into chosen.output; 0, or 3 when a press did not converge. InputError."""
     from mesh.types import MeshingError
     from softdot.arrays.presses import StoppedPressError
-    from softdot.config import load_config
+    from softdot.config.loading import load_config
     from softdot.progress import progress_of
 
     config = load_config(chosen.config, chosen.set)

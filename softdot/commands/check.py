@@ -11,7 +11,7 @@ from softdot.json_files import json_text, plain
 
 if TYPE_CHECKING:
     from softdot.checks import Cost
-    from softdot.config import Config
+    from softdot.config.schema import Config
 
 FORMAT = "softdot-check/1"
 
@@ -30,9 +30,11 @@ def command(chosen: Namespace) -> int:
 
 def check_file(path: Path, settings: list[str]) -> dict[str, Any]:
     """Mistakes, warnings and the expected cost of a configuration."""
-    from softdot.config import config_from
+    from softdot.config.default_design import completed, from_default
+    from softdot.config.loading import config_from
     from softdot.config.mistakes import mistakes
-    from softdot.config.toml import completed, from_default, read_toml, with_settings
+    from softdot.config.settings import with_settings
+    from softdot.config.toml import read_toml
 
     def check(tables: Mapping[str, Any]) -> tuple[Any, ...]:
         config = config_from(completed(tables))
@@ -52,7 +54,7 @@ def _segment(config: "Config") -> "tuple[list[str], Cost]":
     """Warnings and cost of a run. InputError."""
     from softdot.case import Case
     from softdot.checks import design_warnings, expected_cost
-    from softdot.config import idle_materials
+    from softdot.config.loading import idle_materials
 
     case = Case(config)
     dot_shape, warnings = case.checked

@@ -12,7 +12,7 @@ ROWS = 5
 
 def command(chosen: Namespace) -> int:
     """Write the kit of chosen.config into chosen.output; 0, or 3 when its press did not converge. InputError."""
-    from softdot.config import load_config
+    from softdot.config.loading import load_config
     from softdot.progress import progress_of
 
     config = load_config(chosen.config, chosen.set)

@@ -13,7 +13,7 @@ from importlib.resources import files
 from typing import Any
 
 from geometry.parameters import ActsWith
-from softdot.config import config_schema
+from softdot.config.schema import config_schema
 from softdot.console import GOOD
 
 Json = dict[str, Any]
@@ -116,7 +116,8 @@ def command(chosen: Namespace) -> int:
 
 def template_text(name: str) -> str:
     """A whole configuration file."""
-    from softdot.config.toml import default_design, parse_toml
+    from softdot.config.default_design import default_design
+    from softdot.config.toml import parse_toml
 
     text = files("softdot.templates").joinpath(f"{name}.toml").read_text("utf-8")
     own = parse_toml(text, f"{name}.toml")

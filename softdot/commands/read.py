@@ -16,7 +16,7 @@ from softdot.version import installed_version
 if TYPE_CHECKING:
     from argparse import Namespace
 
-    from softdot.config import Config
+    from softdot.config.schema import Config
     from softdot.reading.conditions import ReadingConditions
 
 READING = Product(
@@ -89,7 +89,7 @@ def run_read(
 def command(chosen: Namespace) -> int:
     """Read chosen.text into chosen.output, study how far conditions may go, or search for a design. InputError."""
     from geometry.base import InputError
-    from softdot.config import load_config
+    from softdot.config.loading import load_config
     from softdot.progress import progress_of
     from softdot.reading.conditions import refuse_idle
 

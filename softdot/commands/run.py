@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from geometry.dot import DotShape
     from softdot.case import Case, OnStep
-    from softdot.config import Config
+    from softdot.config.schema import Config
     from solve.result import PressResult, Step
 
 LOG = logging.getLogger(__name__)
@@ -96,7 +96,7 @@ def _fill(
     from mesh.files.formats import write_mesh
     from mesh.types import MeshingError
     from softdot.checks import design_warnings
-    from softdot.config import idle_materials
+    from softdot.config.loading import idle_materials
     from softdot.summary import heading, mesh_part, press_part, stopped_solver
     from softdot.tolerances.uncertainty import prepare
     from solve.fem.warm_up import compile_cheap
@@ -147,7 +147,7 @@ def _fill(
 def _tell(config: Config) -> None:
     """What a user should know before it begins: what was not stated, and that the first run takes longer."""
     from softdot.checks import COMPILE_S
-    from softdot.config.toml import told
+    from softdot.config.default_design import told
     from solve.fem.warm_up import compiled
 
     if config.from_default:
@@ -185,7 +185,7 @@ def command(chosen: Namespace) -> int:
         with without_collector():
             Thread(target=_try_to_draw, daemon=True).start()
             from softdot.case import Case, ResultWarning
-            from softdot.config import load_config
+            from softdot.config.loading import load_config
             from softdot.progress import progress_of
             from softdot.tolerances.uncertainty import uncertainty  # noqa: F401 - loads the solver
 
@@ -221,7 +221,7 @@ def _halved(planes: Sequence[str]) -> list[str]:
 def short_text(summary: dict[str, Any], output: str) -> str:
     """The deepest step and where to look, in a few lines."""
     from export.report import plus_minus
-    from softdot.config.toml import told
+    from softdot.config.default_design import told
 
     lines = []
     if summary.get("indentation_mm"):

@@ -7,7 +7,7 @@ from geometry.array.checks import check_array
 from geometry.array.layout import ArrayLayout, array_layout
 from geometry.base import InputError
 from geometry.stack import layers
-from softdot.config import Config
+from softdot.config.schema import Config
 
 
 def as_one_segment(config: Config, runs: Sequence[RunTable]) -> tuple[Config, tuple[RunTable, ...]]:

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from contextlib import suppress
 from typing import Any
 
-from softdot.config import Config
 from softdot.config.errors import tables_at
+from softdot.config.schema import Config
 
 
 def take_out_idle(tables: Any, way: Sequence[str | int]) -> None:

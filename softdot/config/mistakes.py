@@ -12,8 +12,8 @@ from contextlib import suppress
 from typing import Any, TypeVar
 
 from geometry.base import InputError
-from softdot.config import Config
 from softdot.config.errors import dotted, tables_at
+from softdot.config.schema import Config
 from softdot.config.toml import parsed
 
 MOST = 100

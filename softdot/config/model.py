@@ -5,8 +5,8 @@ from pydantic import ValidationError
 from geometry.base import InputError
 from geometry.parameters import Table
 from geometry.part_checks import check_patch
-from softdot.config import Config
 from softdot.config.errors import sentence
+from softdot.config.schema import Config
 from solve.mechanisms import MECHANISMS, Mechanism, with_mechanisms
 from solve.mechanisms.base import channels_of
 from solve.mechanisms.boundaries.rig_compliance import RIG_COMPLIANCE

@@ -14,9 +14,10 @@ from diagnose.signals.recording import Recording, RigTables, Run, RunTable
 from geometry.base import InputError
 from geometry.parameters import Table
 from geometry.stack import layers
-from softdot.config import Config, config_from, with_built_in_constants
 from softdot.config.array_rig import as_one_segment
 from softdot.config.errors import refuse_absurd_numbers, sentence, without_round_off
+from softdot.config.loading import config_from, with_built_in_constants
+from softdot.config.schema import Config
 from softdot.config.toml import read_toml
 from solve.materials.parameters import AnyMaterial, Material, find_material
 from solve.model import Readout

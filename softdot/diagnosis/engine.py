@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from diagnose.forward import Engine
 from geometry.base import InputError, Report, nearest
 from geometry.executor import HERE, Executor
-from softdot.config import Config
 from softdot.config.rig import Rig
+from softdot.config.schema import Config
 from solve.mechanisms import MECHANISMS
 
 

@@ -21,7 +21,7 @@ from mesh.types import MeshingError
 from softdot.arrays.case import ArrayCase
 from softdot.case import Case
 from softdot.checks import design_warnings
-from softdot.config import Config
+from softdot.config.schema import Config
 from softdot.dask_cluster import AwayError
 from softdot.executors import executor_for
 from softdot.json_files import json_text, plain, write_json

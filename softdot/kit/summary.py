@@ -7,7 +7,8 @@ from export.build_sheet.contents import Contents, bill, components
 from export.build_sheet.page import capacitance_pF, checks, traces
 from export.build_sheet.steps import steps
 from geometry.flat.pattern import FlatPattern, compensated
-from softdot.config import Config, config_hash
+from softdot.config.hashes import config_hash
+from softdot.config.schema import Config
 from softdot.output import Product
 from softdot.version import installed_version
 

@@ -9,7 +9,9 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from geometry.base import InputError
 from geometry.parameters import Finite, Positive
 from softdot.arrays.kernel import AGAIN, TABLES, ArrayKernel, load_kernel
-from softdot.config import Config, config_from, config_hash
+from softdot.config.hashes import config_hash
+from softdot.config.loading import config_from
+from softdot.config.schema import Config
 from softdot.reading.conditions import PITCH_TOLERANCE_MM
 from softdot.version import installed_version
 from solve.mechanisms import with_mechanisms

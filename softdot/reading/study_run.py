@@ -10,7 +10,7 @@ from geometry.base import InputError
 from geometry.executor import Executor
 from geometry.files import release
 from softdot.arrays.kernel import ArrayKernel
-from softdot.config import Config
+from softdot.config.schema import Config
 from softdot.json_files import plain, write_json
 from softdot.output import Product, check_output
 from softdot.progress import Logged, Progress

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any
 from geometry.base import InputError
 from geometry.cache import read_checked, write_checked
 from geometry.files import hold, whole_file
-from softdot.config import Config, config_hash
+from softdot.config.hashes import config_hash
+from softdot.config.schema import Config
 from softdot.json_files import plain, write_json
 from softdot.outcome import outcome_key
 from softdot.output import Product, check_output

@@ -8,7 +8,7 @@ from typing import Any
 
 from geometry.base import InputError
 from geometry.executor import Executor, LostError, each_done
-from softdot.config import Config
+from softdot.config.schema import Config
 from softdot.dask_cluster import AwayError
 from softdot.executors import executor_for
 from softdot.outcome import keep_outcome, outcome, outcome_key, remembered

@@ -10,7 +10,8 @@ from typing import Any
 from geometry.cache import check_folder
 from geometry.executor import Executor
 from geometry.files import release
-from softdot.config import Config, config_hash
+from softdot.config.hashes import config_hash
+from softdot.config.schema import Config
 from softdot.executors import executor_for
 from softdot.hardware import hardware
 from softdot.log import LOG_FILE, log_file

@@ -11,7 +11,7 @@ from mesh.options import MeshOptions
 from mesh.types import MeshingError
 from softdot.case import Case
 from softdot.checks import refuse_huge_mesh
-from softdot.config import Config
+from softdot.config.schema import Config
 from softdot.tolerances.discretisation import RATIOS, answer_at, discretisation_error, follows_path, full_load
 from softdot.tolerances.responses import remembered
 from solve.solution.full_load import StoppedShortError

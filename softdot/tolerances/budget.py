@@ -6,7 +6,7 @@ from math import copysign, sqrt
 from typing import Any
 
 from geometry.executor import HERE, Executor
-from softdot.config import Config
+from softdot.config.schema import Config
 from softdot.tolerances.questions import Question, answered
 from softdot.tolerances.responses import Response, coarser
 from softdot.tolerances.tolerances import Tolerance, shifts, tolerances

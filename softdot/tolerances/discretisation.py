@@ -15,8 +15,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from geometry.arrays import Floats
-from softdot.config import Config
 from softdot.config.model import model_of
+from softdot.config.schema import Config
 from softdot.outcome import outcome
 from softdot.tolerances.responses import FullLoadResponse, KitPress, on_larger_elements
 from solve.solution.full_load import StoppedShortError

@@ -1,6 +1,6 @@
 """Property errors of a component as factors of the configuration: a modulus or a thickness off its nominal value."""
 
-from softdot.config import Config
+from softdot.config.schema import Config
 from solve.mechanisms import Mechanism
 from solve.mechanisms.layers.property_error import PROPERTY_ERROR
 

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 from geometry.cache import recall, remember
 from geometry.executor import Executor, each_done
-from softdot.config import Config
+from softdot.config.schema import Config
 from softdot.json_files import plain
 from softdot.tolerances.factors import with_factors
 from softdot.tolerances.responses import KitPress, Response, name_of, on_mesh_of, slopes_by

@@ -14,8 +14,9 @@ from geometry.cache import data_hash, recall, remember, source_hash
 from mesh.morphing import morphed
 from mesh.types import TetMesh
 from softdot.case import Case
-from softdot.config import Config, config_hash, input_hash
+from softdot.config.hashes import config_hash, input_hash
 from softdot.config.model import model_of
+from softdot.config.schema import Config
 from softdot.differentiation import press_with_derivatives, variations_of
 from softdot.json_files import plain
 from softdot.summary import history

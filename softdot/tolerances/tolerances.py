@@ -11,7 +11,7 @@ from geometry.dot_size import dot_size, dot_standard, from_base
 from geometry.fabrication.parameters import cast_components, sheet_components
 from geometry.parameters import Dot, Segment
 from geometry.stack import Layer, layers
-from softdot.config import Config
+from softdot.config.schema import Config
 from softdot.tolerances.factors import factor_key
 
 NAMES = {"medium1": "medium 1", "medium2": "medium 2"}

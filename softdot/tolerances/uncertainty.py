@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 
 from geometry.base import InputError
 from mesh.types import MeshingError
-from softdot.config import Config
+from softdot.config.schema import Config
 from softdot.tolerances.discretisation import (
     RATIOS,
     Answers,

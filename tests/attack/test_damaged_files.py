@@ -9,7 +9,7 @@ import pytest
 from geometry.cache import recall, remember
 from mesh.build import remembered
 from mesh.types import LinearMesh
-from softdot.config import config_from
+from softdot.config.loading import config_from
 from softdot.sweeps import folder as sweep_folder
 from solve.solution.checkpoint import read_archive, write_archive
 

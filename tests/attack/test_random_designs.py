@@ -18,7 +18,8 @@ import pytest
 from geometry.base import InputError
 from mesh.types import MeshingError
 from softdot.checks import design_warnings, result_warnings
-from softdot.config import Config, config_from
+from softdot.config.loading import config_from
+from softdot.config.schema import Config
 from softdot.json_files import plain
 from softdot.summary import mesh_part, press_part
 from solve.mechanisms import MECHANISMS

@@ -1,7 +1,9 @@
 """A key stands only where it acts: stated elsewhere it is refused by name, once, in program and schema alike."""
 
 import copy
+import tomllib
 from dataclasses import replace
+from itertools import permutations
 
 import numpy as np
 import pytest
@@ -10,12 +12,14 @@ from geometry.base import InputError, nearest
 from geometry.parameters import Dot, Effector, Segment
 from mesh.options import MeshOptions
 from softdot import Case
-from softdot.config import Config, config_from, config_schema
+from softdot.config.default_design import completed
 from softdot.config.errors import tables_at
+from softdot.config.loading import config_from
 from softdot.config.mistakes import mistakes
 from softdot.config.not_modelled import NOT_MODELLED, not_modelled
 from softdot.config.rig import Bench
-from softdot.config.toml import completed
+from softdot.config.schema import Config, config_schema
+from softdot.config.settings import with_settings
 from solve.mechanisms import MECHANISMS, Mechanism, with_mechanisms
 from solve.model import Readout, Waveform
 from tests.cases import for_each
@@ -380,3 +384,29 @@ def test_the_order_of_mechanisms_does_not_matter():
     one, other = (Case(**coarse, mechanisms=order).press() for order in (every, every[::-1]))
     np.testing.assert_allclose(one.readout_voltage_V, other.readout_voltage_V, rtol=1e-9)
     np.testing.assert_allclose(one.reaction_force_N, other.reaction_force_N, rtol=1e-9)
+
+
+@for_each(
+    ("tag", "idle", "value"),
+    [
+        ("mesh.file='slice.msh'", "mesh.element_size_mm", "0.4"),
+        ("segment.boundary=free", "segment.held_layers", '["film"]'),
+        ("press.waveform.shape=half-sine", "press.waveform.hold_s", "0.5"),
+        ("readout.mode=charge", "readout.input_capacitance_pF", "50.0"),
+    ],
+)
+def test_a_setting_leaves_out_what_the_file_states_for_another_mode(tag, idle, value):
+    """But what is set beside it stays, and is refused where it does not act, whichever comes first."""
+    table, _, key = idle.rpartition(".")
+    stated = tomllib.loads(f"[{table}]\n{key} = {value}\n")
+    assert key in place(stated, table)
+    assert key not in place(with_settings(stated, [tag]), table)
+    assert key in place(stated, table)
+    for both in permutations([tag, f"{idle}={value}"]):
+        assert key in place(with_settings(stated, both), table)
+
+
+def place(tables, dotted):
+    for part in dotted.split("."):
+        tables = tables[part]
+    return tables

@@ -12,7 +12,7 @@ import numpy as np
 
 from softdot.arrays.case import ArrayCase
 from softdot.case import Case
-from softdot.config import config_from
+from softdot.config.loading import config_from
 from solve import press as press_module
 from solve.fem.kinematics import deformation_gradient
 from solve.fem.quadrature import tetrahedron

@@ -245,7 +245,7 @@ def test_a_name_that_no_report_can_hold_is_refused(write_config, tmp_path, capfd
 
 
 def test_the_round_off_of_a_script_is_zero(write_config):
-    from softdot.config import load_config
+    from softdot.config.loading import load_config
 
     dot = load_config(write_config("[dot]\noffset_mm = [-1.1e-16, 0.0]\ngap_mm = -1.1e-16")).dot
     assert dot.offset_mm == (0.0, 0.0)
@@ -262,7 +262,7 @@ def test_friction_stated_twice_is_refused(write_config, tmp_path, capfd):
 
 
 def test_two_hums_superpose(write_config):
-    from softdot.config import load_config
+    from softdot.config.loading import load_config
 
     hum = TWICE.format("mains-hum", "readout", "{ frequency_Hz = 50.0, amplitude_V = 0.1 }")
     assert len(load_config(write_config(hum)).mechanisms) == 2

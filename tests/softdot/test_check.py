@@ -10,9 +10,9 @@ from geometry.base import InputError
 from softdot.case import Case
 from softdot.checks import expected_cost
 from softdot.cli import main
-from softdot.config import config_from, load_config
+from softdot.config.default_design import completed
+from softdot.config.loading import config_from, load_config
 from softdot.config.mistakes import mistakes
-from softdot.config.toml import completed
 from tests.softdot.random_mistakes import invalid_configurations
 from tests.softdot.toml_text import toml_text
 

@@ -4,7 +4,8 @@ import pytest
 
 from geometry.base import InputError
 from softdot.case import Case
-from softdot.config import config_hash, load_config
+from softdot.config.hashes import config_hash
+from softdot.config.loading import load_config
 from softdot.config.rig import load_rig
 from tests.cases import for_each
 

@@ -5,7 +5,7 @@ import pytest
 
 import softdot
 from geometry.base import InputError
-from softdot.config import config_from
+from softdot.config.loading import config_from
 from softdot.differentiation import derivatives, value_of
 from tests.cases import for_each
 

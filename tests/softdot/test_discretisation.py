@@ -5,7 +5,7 @@ import pytest
 
 from geometry.base import InputError
 from softdot.case import Case
-from softdot.config import config_from
+from softdot.config.loading import config_from
 from softdot.summary import press_part
 from softdot.tolerances.discretisation import LEAST_PERCENT, ORDER, Answers, answers_of, discretisation_error
 from tests.softdot.test_uncertainty import RELAXING

@@ -16,9 +16,10 @@ import solve.materials.parameters
 import solve.mechanisms
 import solve.model
 from softdot.commands.new import config_schema
-from softdot.config import Config, config_from
+from softdot.config.default_design import completed
+from softdot.config.loading import config_from
 from softdot.config.model import model_of
-from softdot.config.toml import completed
+from softdot.config.schema import Config
 from softdot.summary import heading, mesh_part, press_part
 from solve.readout.course import course
 from tests.cases import for_each

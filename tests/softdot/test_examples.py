@@ -17,8 +17,10 @@ import pytest
 from mesh.options import MeshOptions
 from softdot.case import Case
 from softdot.commands.run import run_config
-from softdot.config import Config, config_hash, load_config
+from softdot.config.hashes import config_hash
+from softdot.config.loading import load_config
 from softdot.config.model import model_of
+from softdot.config.schema import Config
 from softdot.summary import history
 from solve.mechanisms import MECHANISMS
 from solve.readout.course import course

@@ -18,7 +18,8 @@ from geometry.base import InputError
 from geometry.executor import LocalProcesses, each_done
 from softdot import dask_cluster as scheduler_module
 from softdot.cli import main
-from softdot.config import Config, config_from
+from softdot.config.loading import config_from
+from softdot.config.schema import Config
 from softdot.executors import executor_for
 from softdot.outcome import outcome
 from softdot.progress import Logged

@@ -2,7 +2,7 @@
 
 import pytest
 
-from softdot.config import config_from
+from softdot.config.loading import config_from
 from softdot.tolerances import questions
 from softdot.tolerances.budget import budget_of
 from softdot.tolerances.factors import FACTORS, factor_key, with_factors

@@ -15,7 +15,7 @@ from diagnose.vocabulary.base import Vocabulary
 from examples.recordings import leaky_amplifier
 from geometry.parameters import NonNegative
 from softdot.commands.run import run_config
-from softdot.config import config_from
+from softdot.config.loading import config_from
 from softdot.diagnosis import folder as command
 from softdot.differentiation import derivatives
 from softdot.outcome import outcome

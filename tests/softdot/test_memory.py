@@ -28,7 +28,7 @@ def test_a_segment_of_metres_is_meshed_or_refused_but_never_fills_the_memory(fac
     from geometry.dot_at_rest import resolve_dot
     from mesh.outline import outline
     from mesh.sizing import background, sizing
-    from softdot.config import config_from
+    from softdot.config.loading import config_from
 
     tables = {
         "segment": {

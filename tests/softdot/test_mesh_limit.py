@@ -7,7 +7,7 @@ from geometry.dot_at_rest import resolve_dot
 from mesh.build import build
 from mesh.options import MeshOptions
 from softdot.checks import expected_tetrahedra, refuse_huge_mesh
-from softdot.config import load_config
+from softdot.config.loading import load_config
 from tests.cases import for_each
 
 SEGMENT = load_config().segment

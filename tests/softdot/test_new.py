@@ -10,7 +10,8 @@ from softdot.case import Case
 from softdot.cli import main
 from softdot.command_line.configurations import TEMPLATES
 from softdot.commands.new import TABLES, config_schema, template_text
-from softdot.config import config_from, config_hash, load_config
+from softdot.config.hashes import config_hash
+from softdot.config.loading import config_from, load_config
 from tests.cases import for_each
 
 

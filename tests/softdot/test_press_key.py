@@ -5,7 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from softdot.case import Case, press_key
-from softdot.config import Config, config_from, input_hash
+from softdot.config.hashes import input_hash
+from softdot.config.loading import config_from
+from softdot.config.schema import Config
 from tests.cases import for_each
 from tests.softdot.stand_ins import one_tetrahedron
 

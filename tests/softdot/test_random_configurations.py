@@ -14,7 +14,7 @@ from hypothesis import HealthCheck, Phase, given, note, seed, settings
 from geometry.base import InputError
 from softdot.case import Case
 from softdot.commands.run import run_config
-from softdot.config import load_config
+from softdot.config.loading import load_config
 from tests.softdot.press_checks import solved, wrong
 from tests.softdot.random_configurations import ROUND, valid_configurations
 from tests.softdot.random_mistakes import invalid_configurations

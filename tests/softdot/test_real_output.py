@@ -15,7 +15,8 @@ from geometry.assembly import build_parts
 from geometry.dot_at_rest import resolve_dot
 from mesh.options import MeshOptions
 from softdot.commands.run import run_config
-from softdot.config import Config, load_config
+from softdot.config.loading import load_config
+from softdot.config.schema import Config
 from solve.model import Press
 
 DEPTH_MM, LOAD_STEPS = 0.2, 2

@@ -3,7 +3,8 @@
 import tomllib
 
 from softdot.commands.new import config_schema
-from softdot.config import config_from, config_hash, load_config
+from softdot.config.hashes import config_hash
+from softdot.config.loading import config_from, load_config
 from tests.cases import for_each
 
 EVERY_KEY = """

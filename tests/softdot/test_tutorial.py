@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from softdot.cli import main
-from softdot.config import config_from
+from softdot.config.loading import config_from
 from softdot.config.toml import parse_toml
 
 TEXT = (Path(__file__).parents[2] / "docs" / "tutorial.md").read_text("utf-8")

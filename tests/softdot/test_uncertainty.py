@@ -3,7 +3,7 @@
 import pytest
 
 from softdot.case import Case
-from softdot.config import config_from
+from softdot.config.loading import config_from
 from softdot.summary import press_part
 from softdot.tolerances.responses import KitPress
 from softdot.tolerances.uncertainty import uncertainty

@@ -8,7 +8,7 @@ import pytest
 from geometry.base import InputError
 from geometry.dot_at_rest import resolve_dot
 from softdot.checks import design_warnings, refuse_held_rim, result_warnings
-from softdot.config import config_from, load_config
+from softdot.config.loading import config_from, load_config
 from softdot.config.model import model_of
 from tests.cases import for_each
 from tests.softdot.stand_ins import cap_of_height, result_of, step_at

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from softdot import Case, load_config
-from softdot.config import config_from
-from softdot.config.toml import completed, parse_toml
+from softdot.config.default_design import completed
+from softdot.config.loading import config_from
+from softdot.config.toml import parse_toml
 from softdot.studio.comparison import compared, differences
 from softdot.studio.document import Document
 from softdot.studio.work import design, influences, press

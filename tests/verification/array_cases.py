@@ -1,8 +1,8 @@
 """Coarse arrays for verification: the paper's final design on segments of 2.3 mm at the pitch of 2.5 mm."""
 
 from softdot.arrays.case import ArrayCase
-from softdot.config import config_from
-from softdot.config.toml import completed
+from softdot.config.default_design import completed
+from softdot.config.loading import config_from
 from solve.press import press_segment
 
 COARSE = {"element_size_mm": 0.9, "contact_element_size_mm": 0.3}

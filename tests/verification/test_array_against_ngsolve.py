@@ -17,8 +17,8 @@ from mesh.types import TET_FACES, boundary_faces
 from softdot.arrays.case import ArrayCase
 from softdot.arrays.matrix import crosstalk
 from softdot.arrays.presses import ArrayPresses
-from softdot.config import config_from
-from softdot.config.toml import completed
+from softdot.config.default_design import completed
+from softdot.config.loading import config_from
 from tests.verification.row import agrees
 
 pytestmark = [

@@ -15,8 +15,8 @@ from mesh.files.formats import write_mesh
 from mesh.jacobian import volumes
 from mesh.options import MeshOptions
 from softdot.case import Case
-from softdot.config import config_from
-from softdot.config.toml import completed
+from softdot.config.default_design import completed
+from softdot.config.loading import config_from
 from softdot.outcome import solved
 from softdot.verify.body import ElasticBody
 from solve.materials.laws import LinearLaw, bulk_modulus

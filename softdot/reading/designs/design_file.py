@@ -13,10 +13,13 @@ from pydantic import Field, ValidationError, model_validator
 from geometry.base import InputError
 from geometry.parameters import Table
 from softdot.arrays.case import ArrayCase
-from softdot.config import Config, config_from
+from softdot.config.default_design import completed
 from softdot.config.errors import sentence
 from softdot.config.idle import take_out_idle
-from softdot.config.toml import completed, naming_the_flag, parsed, read_toml, with_settings, with_value
+from softdot.config.loading import config_from
+from softdot.config.schema import Config
+from softdot.config.settings import naming_the_flag, with_settings
+from softdot.config.toml import parsed, read_toml, with_value
 from softdot.sweeps.space import Space, space_from
 
 

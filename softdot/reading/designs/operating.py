@@ -20,7 +20,8 @@ from softdot.arrays.case import ArrayCase
 from softdot.arrays.kernel import ArrayKernel
 from softdot.arrays.kernel_errors import with_about
 from softdot.arrays.kernel_presses import KernelDetail, KernelPress, filled, grid_of, pressed, recalled
-from softdot.config import Config, config_hash
+from softdot.config.hashes import config_hash
+from softdot.config.schema import Config
 from softdot.progress import Untold
 from softdot.reading.cells import cells_of, text_of
 from softdot.reading.conditions import ReadingConditions

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from geometry.files import write_whole_text
-from softdot.config import config_hash
+from softdot.config.hashes import config_hash
 from softdot.json_files import plain, write_json
 from softdot.reading.cells import cells_of, text_of
 from softdot.reading.designs.design_file import DesignRequest, TriedDesign, tables_of

@@ -12,7 +12,7 @@ from geometry.base import InputError
 from geometry.cache import read_checked, source_hash, write_checked
 from geometry.executor import Executor
 from geometry.files import hold, release
-from softdot.config import config_hash
+from softdot.config.hashes import config_hash
 from softdot.json_files import plain, write_json
 from softdot.log import LOG_FILE, log_file
 from softdot.output import Product, check_output

@@ -4,7 +4,7 @@ from collections.abc import Hashable, Mapping
 from typing import Any, TypeVar
 
 from geometry.executor import Executor
-from softdot.config import Config
+from softdot.config.schema import Config
 from softdot.progress import Progress
 
 Name = TypeVar("Name", bound=Hashable)

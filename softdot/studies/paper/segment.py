@@ -8,7 +8,8 @@ experiment. `solid` takes the sentence that a segment reads one Braille dot at i
 from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 
-from softdot.config import Config, config_from
+from softdot.config.loading import config_from
+from softdot.config.schema import Config
 
 Reading = Literal["plane-strain", "solid"]
 Boundary = Literal["free", "clamped"]

@@ -13,9 +13,12 @@ from geometry.library_loading import load_alone
 from softdot.arrays.case import ArrayCase
 from softdot.case import Case
 from softdot.checks import design_warnings, expected_cost
-from softdot.config import Config, config_from, input_hash
+from softdot.config.default_design import completed
+from softdot.config.hashes import input_hash
+from softdot.config.loading import config_from
 from softdot.config.mistakes import mistakes
-from softdot.config.toml import completed, parse_toml
+from softdot.config.schema import Config
+from softdot.config.toml import parse_toml
 from softdot.json_files import plain
 from softdot.second_process import PARTS
 

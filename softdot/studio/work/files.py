@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any, get_args
 
 from geometry.base import InputError
-from softdot.config import Config
+from softdot.config.schema import Config
 from softdot.studio.processes import Tell
 from softdot.studio.work.design import case_of, config_of
 from softdot.studio.work.press import TaskProgress

@@ -4,7 +4,7 @@ from typing import Any
 
 from softdot.commands.list import LISTS
 from softdot.commands.new import UNITS
-from softdot.config import config_schema
+from softdot.config.schema import config_schema
 from solve.mechanisms import MECHANISMS
 from solve.mechanisms.base import MechanismType
 

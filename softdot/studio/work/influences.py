@@ -4,7 +4,7 @@ from typing import Any
 
 from geometry.base import InputError
 from softdot.case import Case
-from softdot.config import Config
+from softdot.config.schema import Config
 from softdot.json_files import plain
 from softdot.studio.processes import Tell
 from softdot.studio.work.design import case_of

@@ -6,8 +6,9 @@ from contextlib import suppress
 from typing import Any
 
 from geometry.base import InputError
-from softdot.config import Config
-from softdot.config.toml import completed, parsed, with_value
+from softdot.config.default_design import completed
+from softdot.config.schema import Config
+from softdot.config.toml import parsed, with_value
 from solve.mechanisms.layers.film_yield import FILM_YIELD
 
 KEY = r"([\w\-.\[\]\"]+)"

@@ -7,8 +7,8 @@ import numpy as np
 
 from softdot.arrays.case import ArrayCase
 from softdot.case import Case
-from softdot.config import config_from
-from softdot.config.toml import completed
+from softdot.config.default_design import completed
+from softdot.config.loading import config_from
 from softdot.verify.problem import Problem
 
 SHARE, TIME_S = 0.8, 0.2

@@ -13,7 +13,7 @@ from diagnose.forward import Setting
 from diagnose.signals.recording import Recording
 from diagnose.vocabulary.layers.viscoelasticity import LINEAR
 from geometry.base import InputError
-from softdot.config import config_from
+from softdot.config.loading import config_from
 from solve.materials.parameters import Hyperfoam, Linear, MooneyRivlin, NeoHookean, Ogden, PiezoelectricFilm, Yeoh
 from tests.cases import for_each
 from tests.diagnose.coupon.coupons import RUBBER, TIME, TRAVEL, candidate, engine, run, silent, specimen

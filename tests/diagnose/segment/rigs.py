@@ -5,7 +5,7 @@ import numpy as np
 from diagnose.engines.segment.engine import segment_engine
 from diagnose.signals.recording import Recording, Run
 from mesh.options import MeshOptions
-from softdot.config import config_from
+from softdot.config.loading import config_from
 from softdot.config.model import model_of
 from solve.model import Model, Readout
 

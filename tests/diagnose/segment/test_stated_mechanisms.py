@@ -13,7 +13,7 @@ from diagnose.engines.segment.response import mechanics
 from diagnose.forward import Setting
 from diagnose.inference.diagnose import diagnose
 from diagnose.signals.recording import Recording
-from softdot.config import config_from
+from softdot.config.loading import config_from
 from softdot.config.rig import RIG_FILE, Bench, Rig
 from softdot.diagnosis.engine import engine_for
 from softdot.diagnosis.improved import improved_text

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from softdot.cli import main
-from softdot.config import load_config
+from softdot.config.loading import load_config
 from softdot.kit import folder as make
 from softdot.tolerances.budget import budget_of
 from tests.softdot.arrays.test_array_command import SMALL

@@ -14,7 +14,7 @@ from softdot.arrays.kernel_errors import check, kernel_of, measured, places_of
 from softdot.arrays.kernel_presses import KernelPress, KernelTask, filled, grid_of
 from softdot.arrays.matrix import crosstalk
 from softdot.arrays.presses import ArrayPresses
-from softdot.config import load_config
+from softdot.config.loading import load_config
 from tests.cases import for_each
 
 CELL = Path(__file__).parents[3] / "examples" / "array-cell.toml"

@@ -14,7 +14,7 @@ from diagnose.verdict.resimulation import Resimulated
 from mesh.types import MeshingError
 from softdot.commands import diagnose as run
 from softdot.commands.diagnose import short_text
-from softdot.config import load_config
+from softdot.config.loading import load_config
 from softdot.config.rig import load_rig
 from softdot.diagnosis import folder as engines
 from softdot.diagnosis import report as page

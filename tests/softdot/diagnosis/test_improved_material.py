@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from diagnose.forward import Setting
-from softdot.config import load_config
+from softdot.config.loading import load_config
 from softdot.config.model import model_of
 from softdot.diagnosis.improved import improved_text
 from tests.diagnose.coupon.coupons import candidate, engine, specimen

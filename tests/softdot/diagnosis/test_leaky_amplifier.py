@@ -7,7 +7,7 @@ import pytest
 
 from examples.recordings.leaky_amplifier import LEAK_MOHM, make, motion
 from softdot.cli import main
-from softdot.config import load_config
+from softdot.config.loading import load_config
 from softdot.config.rig import load_rig
 from softdot.diagnosis import folder as engines
 from tests.diagnose.verdict.test_verdict import SHAPE, require

@@ -3,7 +3,8 @@
 import numpy as np
 
 from softdot.arrays.kernel import ArrayKernel
-from softdot.config import config_hash, load_config
+from softdot.config.hashes import config_hash
+from softdot.config.loading import load_config
 from softdot.version import installed_version
 
 PITCH = 2.5

@@ -9,7 +9,8 @@ import pytest
 from geometry.base import InputError
 from softdot.arrays.case import ArrayCase
 from softdot.cli import main
-from softdot.config import config_hash, load_config
+from softdot.config.hashes import config_hash
+from softdot.config.loading import load_config
 from softdot.progress import Untold
 from softdot.reading.conditions import ReadingConditions
 from softdot.reading.designs import operating

@@ -156,7 +156,7 @@ def test_a_damaged_medium_remembers_the_deeper_press_of_an_earlier_run(tmp_path,
 @pytest.mark.evidence
 def test_both_codes_press_the_same_slice_alike():
     """On a layered mesh: those of pytetwild differ by a tenth of a percent of the force from run to run."""
-    from softdot.config import config_from
+    from softdot.config.loading import config_from
     from softdot.outcome import outcome
 
     found = outcome(config_from({

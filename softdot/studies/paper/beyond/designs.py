@@ -8,7 +8,7 @@ import numpy as np
 from scipy.stats import qmc
 
 from geometry.arrays import Floats
-from softdot.config import Config
+from softdot.config.schema import Config
 from softdot.studies.paper.segment import Boundary, Reading, segment_config
 
 FILMS_UM = (9.0, 28.0, 52.0, 110.0)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from geometry.executor import Executor
-from softdot.config import Config
+from softdot.config.schema import Config
 from softdot.progress import Progress
 from softdot.studies.paper.beyond.trials import DesignPress, press_of
 from softdot.studies.paper.presses import solve_named

@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from softdot.config import Config, config_from
+from softdot.config.loading import config_from
+from softdot.config.schema import Config
 
 Section = Literal["plane-strain", "solid"]
 

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from geometry.executor import Executor
-from softdot.config import Config
+from softdot.config.schema import Config
 from softdot.progress import Progress
 from softdot.studies.paper.calibration.inputs import INPUTS, Values, assumed
 from softdot.studies.paper.calibration.press_curve import PressCurve

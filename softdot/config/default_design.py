@@ -1,0 +1,84 @@
+"""What a configuration leaves out of the default design.
+
+A file that states all three thicknesses describes its whole stack: without [segment.effector] it has none. A file
+that leaves one out starts from the default design: its thicknesses, its effector, the material of its medium 2. All
+other keys of the default design are the defaults of the schema. Recordings are never completed: rig.toml says what
+was built.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+from softdot.config.toml import parse_toml
+
+THICKNESSES = {"medium1": "thickness_mm", "film": "thickness_um", "medium2": "thickness_mm"}
+DOT_SIZES = {"standard", "base_diameter_mm", "height_mm", "radius_mm"}
+
+
+@cache
+def default_design() -> dict[str, Any]:
+    """The tables of default.toml."""
+    return parse_toml(files(__package__).joinpath("default.toml").read_text("utf-8"), "default.toml")
+
+
+def completed(tables: Mapping[str, Any]) -> dict[str, Any]:
+    """The tables of a file with what it leaves out of the default design; what is malformed stays as it is."""
+    segment, dot = tables.get("segment", {}), tables.get("dot", {})
+    if not isinstance(segment, dict) or not isinstance(dot, dict):
+        return dict(tables)
+    whole = dict(tables)
+    default = default_design()["segment"]
+    if not _states_its_stack(segment):
+        filled = {name: {**default[name], **_table(segment, name)} for name in THICKNESSES}
+        wrong = {name: table for name, table in segment.items() if not isinstance(table, dict) and name in THICKNESSES}
+        whole["segment"] = {"effector": default["effector"], **segment, **filled, **wrong}
+        if dot.get("shape") != "plate" and not DOT_SIZES & dot.keys():
+            whole["dot"] = dot = {"standard": default_design()["dot"]["standard"], **dot}
+    if segment.get("section") == "plane-strain" and "shape" not in dot:
+        whole["dot"] = {"shape": "ridge", **dot}  # the default's cap has no slice
+    return whole
+
+
+def from_default(tables: Mapping[str, Any], config: Mapping[str, Any]) -> tuple[str, ...]:
+    """Dotted keys of the default design that a file does not state and that hold in its configuration.
+
+    tables : the file as read. config : the whole configuration as nested tables.
+    """
+    standard = ("dot", "standard")  # also where the schema leaves it open, and the dot is that of the default
+    absent = (key for key in _leaves(default_design()) if _at(tables, key) is None)
+    kept = [key for key in absent if _at(config, key) is not None or key == standard]
+    dot = config.get("dot", {})
+    if dot.get("shape") == "plate" or any(dot.get(size) is not None for size in DOT_SIZES):
+        kept = [key for key in kept if key != standard or dot.get("standard") is not None]
+    return tuple(".".join(key) for key in kept)
+
+
+def _states_its_stack(segment: Mapping[str, Any]) -> bool:
+    return all(key in _table(segment, name) for name, key in THICKNESSES.items())
+
+
+def _table(tables: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    found = tables.get(name, {})
+    return found if isinstance(found, dict) else {}
+
+
+def _leaves(tables: Mapping[str, Any], way: tuple[str, ...] = ()) -> Iterator[tuple[str, ...]]:
+    for name, value in tables.items():
+        if isinstance(value, dict):
+            yield from _leaves(value, (*way, name))
+        else:
+            yield (*way, name)
+
+
+def _at(tables: Any, way: tuple[str, ...]) -> Any:
+    """The value at a dotted key, None where there is none."""
+    for name in way:
+        tables = tables.get(name) if isinstance(tables, Mapping) else None
+    return tables
+
+
+def told(keys: Sequence[str], config: Mapping[str, Any]) -> str:
+    """What came from the default design, in a line: its keys, or that all of it did."""
+    return f"from the default design: {'everything' if tuple(keys) == from_default({}, config) else ', '.join(keys)}"

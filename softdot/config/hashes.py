@@ -1,0 +1,49 @@
+"""Hashes of all that a user states of a press, by which results are kept."""
+
+import hashlib
+import json
+from pathlib import Path
+
+from geometry.array.parameters import Array as Array
+from geometry.fabrication.parameters import Fabrication as Fabrication
+from geometry.parameters import Dot as Dot
+from geometry.parameters import Segment as Segment
+from geometry.parameters import Table as Table
+from mesh.options import MeshOptions as MeshOptions
+from softdot.config.loading import resolved
+from softdot.config.schema import Config
+from solve.materials.parameters import AnyMaterial as AnyMaterial
+from solve.materials.parameters import Material as Material
+from solve.materials.parameters import PiezoelectricFilm as PiezoelectricFilm
+from solve.mechanisms import Mechanism as Mechanism
+from solve.mechanisms import refuse_repeated as refuse_repeated
+from solve.model import Press as Press
+from solve.model import Readout as Readout
+
+
+def config_hash(config: Config) -> str:
+    """SHA-256 of the canonical text of the resolved configuration, in hexadecimal.
+
+    How the parts are made is left out: it changes no press.
+
+    >>> six, seven = load_config(None, ["press.load_steps=6"]), load_config(None, ["press.load_steps=7"])
+    >>> config_hash(six) == config_hash(seven)
+    False
+    """
+    tables = resolved(config).model_dump(mode="json", exclude={"fabrication"})
+    text = json.dumps(tables, sort_keys=True, separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def input_hash(config: Config) -> str:
+    """SHA-256 of configuration and of the files of its waveform and mesh, where it names them: all that a user states
+    of a press.
+    """
+    waveform = config.press.waveform
+    file = Path(waveform.file) if waveform is not None and waveform.file is not None else None
+    content = file.read_bytes() if file is not None and file.is_file() else b""
+    if config.mesh.file is not None:
+        from mesh.files.own import contents
+
+        content += contents(config.mesh.file)
+    return hashlib.sha256(config_hash(config).encode() + content).hexdigest()

@@ -1,0 +1,103 @@
+"""A configuration read from its file, with every default and every used material filled in."""
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from geometry.array.parameters import Array as Array
+from geometry.base import InputError
+from geometry.fabrication.parameters import Fabrication as Fabrication
+from geometry.parameters import Dot as Dot
+from geometry.parameters import Segment as Segment
+from geometry.parameters import Table as Table
+from geometry.stack import layers
+from mesh.options import MeshOptions as MeshOptions
+from softdot.config.default_design import completed, default_design, from_default
+from softdot.config.errors import refuse_absurd_numbers, sentence, without_round_off
+from softdot.config.schema import Config
+from softdot.config.settings import naming_the_flag, with_settings
+from softdot.config.toml import read_toml
+from solve.materials.parameters import AnyMaterial as AnyMaterial
+from solve.materials.parameters import Material as Material
+from solve.materials.parameters import PiezoelectricFilm as PiezoelectricFilm
+from solve.materials.parameters import find_material, library_tables
+from solve.mechanisms import Mechanism as Mechanism
+from solve.mechanisms import refuse_repeated as refuse_repeated
+from solve.model import DEFAULT_INDENTATION_MM
+from solve.model import Press as Press
+from solve.model import Readout as Readout
+
+
+def load_config(path: Path | str | None = None, settings: Sequence[str] = ()) -> Config:
+    """Read a configuration, or the default one, with every default and every used material filled in.
+
+    What the file leaves out of the default design comes from there. settings : 'dotted.key=value' after the file.
+    InputError with one sentence for a file that cannot be read and for anything in it that is not allowed.
+
+    >>> load_config().segment.film.thickness_um
+    28.0
+    """
+    tables = with_settings(default_design() if path is None else read_toml(Path(path)), settings)
+    with naming_the_flag(settings):
+        config = config_from(completed(tables))
+    stated = tables if path is not None else with_settings({}, settings)
+    config._from_default = from_default(stated, config.model_dump(mode="json"))
+    return config
+
+
+def config_from(tables: Mapping[str, Any]) -> Config:
+    """A complete configuration from the tables of a TOML file. InputError with one sentence."""
+    tables = without_round_off(_with_parents(with_built_in_constants(tables)))
+    try:
+        # JSON, because only there pydantic is strict about numbers and yet takes a list for a tuple
+        config = Config.model_validate_json(json.dumps(tables, default=str), strict=True)
+    except ValidationError as error:
+        raise InputError(sentence(error, tables, Config)) from None
+    refuse_absurd_numbers(tables)
+    return resolved(config)
+
+
+def _with_parents(tables: Mapping[str, Any]) -> dict[str, Any]:
+    """Empty tables for missing layers, so that a message names the thickness and not the table."""
+    filled = dict(tables)
+    segment = filled.get("segment", {})
+    if isinstance(segment, dict):
+        filled["segment"] = {"medium1": {}, "film": {}, "medium2": {}, **segment}
+    return filled
+
+
+def with_built_in_constants(tables: Mapping[str, Any]) -> dict[str, Any]:
+    """A table that overrides a built-in material of the same model keeps the constants it does not state."""
+    own = tables.get("materials", {})
+    if not isinstance(own, dict):
+        return dict(tables)
+    return {**tables, "materials": {name: _overriding(name, table) for name, table in own.items()}}
+
+
+def _overriding(name: str, table: Any) -> Any:
+    if not isinstance(table, dict):
+        return table
+    built_in = library_tables().get(name, {"model": "neo-hookean"})
+    if table.get("model", built_in["model"]) != built_in["model"]:
+        return table
+    about = ("source", "confidence", "max_fitted_strain")
+    return {**{key: value for key, value in built_in.items() if key not in about}, **table}
+
+
+def resolved(config: Config) -> Config:
+    """The configuration with the materials it uses and the default indentation written out."""
+    used = {layer.material for layer in layers(config.segment)}
+    found = {name: find_material(name, config.materials, "material") for name in sorted(used)}
+    press = config.press
+    if press.indentation_mm is None and press.force_N is None:
+        press = press.model_copy(update={"indentation_mm": DEFAULT_INDENTATION_MM})
+    return config.model_copy(update={"materials": {**found, **config.materials}, "press": press})
+
+
+def idle_materials(config: Config) -> list[str]:
+    """A warning for each material of the user's own that no layer is of: its name may be mistyped."""
+    used = {layer.material for layer in layers(config.segment)}
+    return [f"materials.{name}: no layer is of this material" for name in config.materials if name not in used]
