@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.timing import file_argument
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from softdot.case import Case
 from solve.model import Waveform
 from solve.readout.course import PressCourse

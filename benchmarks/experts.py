@@ -23,7 +23,7 @@ from benchmarks.timing import Table, file_argument
 from diagnose.inference.true_refit import split
 from diagnose.signals.reading import thinned
 from diagnose.signals.recording import Recording, Run
-from geometry.arrays import Bools, Floats
+from foundation.arrays import Bools, Floats
 from softdot.config.rig import RIG_FILE, load_rig
 
 Chosen = Sequence[tuple[Run, Bools]]

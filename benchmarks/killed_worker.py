@@ -24,7 +24,7 @@ from typing import Any
 import psutil
 
 from examples.recordings.leaky_amplifier import RIG, make
-from geometry.environment import ONE_THREAD
+from foundation.thread_pools import ONE_THREAD
 from solve.mechanisms import MECHANISMS
 
 TOLERANCE = 1e-6  # relative: threads and paths of Newton's method differ, its equilibria do not

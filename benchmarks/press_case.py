@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 import mesh
-from geometry.arrays import Ints
+from foundation.arrays import Ints
 from geometry.dot_at_rest import resolve_dot
 from mesh.types import TET_FACES, TetMesh, boundary_faces
 from softdot.config.loading import load_config

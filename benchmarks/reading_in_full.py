@@ -17,11 +17,11 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
+from foundation.executor import LocalProcesses, each_done
+from foundation.thread_pools import usable_cores
 from geometry.braille_cells import dot_offset_mm, raised_dots
 from geometry.braille_standards import standard
-from geometry.environment import usable_cores
-from geometry.executor import LocalProcesses, each_done
 from mesh.array.mesh import array_mesh
 from softdot.arrays.case import ArrayCase, ArrayPress
 from softdot.arrays.kernel import load_kernel

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.reading_in_full import line_mm
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from geometry.dot_size import DEFAULT_STANDARD
 from mesh.array.mesh import array_mesh
 from softdot.arrays.case import ArrayCase, ArrayPress

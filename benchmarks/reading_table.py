@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from softdot.commands.read import run_read
 from softdot.reading.conditions import ReadingConditions, standard_of
 from softdot.reading.kernels import opened_kernel, readout_of

@@ -6,7 +6,7 @@ from enum import StrEnum
 from typing import Any
 
 from diagnose.forward import Setting, Signals
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 
 @dataclass(frozen=True)

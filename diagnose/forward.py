@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol, Self
 
 from diagnose.signals.recording import Run
-from geometry.arrays import Floats
-from geometry.base import Report
+from foundation.arrays import Floats
+from foundation.progress import Report
 from solve.mechanisms import Mechanism, Traits, traits_of
 
 Signals = Mapping[str, Floats]

@@ -19,7 +19,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from softdot.case import Case
 from softdot.config.loading import load_config
 from softdot.config.schema import Config

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from foundation.files import whole_folder
 from geometry.array.layout import ArrayLayout
 from geometry.array.parts import electrode_face
-from geometry.files import whole_folder
 from geometry.solids import Part
 
 RELATIVE_DEFLECTION = 5e-4

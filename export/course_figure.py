@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.readout.course import PressCourse
 
 if TYPE_CHECKING:

@@ -29,7 +29,7 @@ from export.view import (
     ruler,
     save,
 )
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from geometry.dot import DotShape
 from geometry.solids import PART_COLOURS
 from mesh.types import TetMesh

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from geometry.dot import DotShape
 from mesh.types import TetMesh
 

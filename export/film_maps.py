@@ -17,7 +17,7 @@ from export.view import (
     INK,
     WIDTH_IN,
 )
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from mesh.types import TetMesh
 from solve.result import FilmPeak, Step
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from export.dot_surface import dot_parts, in_segment_frame, triangle_surface
 from export.viewer_data import colour_maps, packed, rgb
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from geometry.dot import DotShape
 from geometry.solids import PART_COLOURS
 

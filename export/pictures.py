@@ -10,9 +10,9 @@ from export.cutaway import draw_parts, draw_von_mises, open_scene
 from export.film_maps import film_figure
 from export.skin import MM_PER_M
 from export.view import DPI, HEIGHT_IN, INK, WIDTH_IN, save
-from geometry.arrays import Floats
+from foundation.arrays import Floats
+from foundation.files import whole_folder
 from geometry.dot import DotShape
-from geometry.files import whole_folder
 from mesh.types import TetMesh
 from solve.readout.course import PressCourse
 from solve.result import PressResult, Step

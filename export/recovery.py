@@ -12,7 +12,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from export.subdivision import TETRA_EDGES
-from geometry.arrays import Bools, Floats, Ints
+from foundation.arrays import Bools, Floats, Ints
 from mesh.types import TetMesh
 from solve.result import film_columns
 

@@ -5,8 +5,8 @@ import subprocess
 import sys
 from threading import Lock
 
-from geometry.base import InputError
-from geometry.environment import own_path, own_python
+from foundation.child_processes import own_path, own_python
+from foundation.errors import InputError
 
 _SWITCH = "VTK_DEFAULT_OPENGL_WINDOW"
 _PROBE = """

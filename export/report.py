@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from export.page import page_environment, script_safe
-from geometry.files import write_whole_text
+from foundation.files import write_whole_text
 
 HERE = Path(__file__).parent
 CAPTIONS = {

@@ -10,7 +10,7 @@ import numpy as np
 
 from export.nodal_values import SplitNodes, film_values, largest_principal, split_nodes, spread
 from export.subdivision import tetra_pattern, triangle_pattern
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from mesh.types import TetMesh
 from solve.result import Step
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 
 TRIANGLE_EDGES = ((0, 1), (1, 2), (2, 0))
 TETRA_EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))

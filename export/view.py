@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from export.rendering import ensure_rendering
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 WIDTH_IN, HEIGHT_IN, DPI = 8.0, 6.0, 200
 PICTURE_SIZE = (int(WIDTH_IN * DPI), int(HEIGHT_IN * DPI))

@@ -14,7 +14,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 
 BLOCK, SAMPLE = 1 << 17, 1 << 12  # bytes
 WORTH = 0.8  # of its size, to which a sample must shrink

@@ -14,9 +14,9 @@ from export.nodal_values import split_nodes, spread
 from export.recovery import film_patches
 from export.skin import MM_PER_M, MPA_PER_PA, PC_PER_MM2_PER_C_PER_M2
 from export.vtk_xml import Arrays, VtkGrid
-from geometry.arrays import Ints
+from foundation.arrays import Ints
+from foundation.files import whole_folder
 from geometry.dot import DotShape
-from geometry.files import whole_folder
 from mesh.types import TetMesh
 from solve.result import PressResult, Step
 

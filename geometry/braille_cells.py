@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base import InputError
+from foundation.errors import InputError
 
 FIRST, LAST = 0x2800, 0x28FF
 COLUMN_AND_ROW = {1: (0, 0), 2: (0, 1), 3: (0, 2), 7: (0, 3), 4: (1, 0), 5: (1, 1), 6: (1, 2), 8: (1, 3)}

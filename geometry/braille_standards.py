@@ -7,7 +7,7 @@ from functools import cache
 from importlib.resources import files
 from typing import Any, Literal, get_args
 
-from geometry.base import InputError
+from foundation.errors import InputError
 
 Confidence = Literal["high", "medium", "low"]
 QuantityName = Literal["base_diameter_mm", "height_mm", "dot_pitch_mm", "cell_pitch_mm", "line_pitch_mm"]

@@ -7,8 +7,8 @@ from math import sqrt
 
 import numpy as np
 
+from foundation.errors import InputError
 from geometry.assembly import case_outside
-from geometry.base import InputError
 from geometry.dot import DotShape
 from geometry.parameters import Dot, Segment
 from geometry.part_checks import check_effector, check_electrodes, covers_footprint, refuse_out_of_plane

@@ -5,7 +5,7 @@ from math import cos, hypot, radians, sin
 
 import numpy as np
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.dot import DotShape, Floats
 from geometry.dot_cell import cell_tips, refuse_cell_of
 from geometry.dot_size import DotSize, dot_size

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.braille_cells import dot_offset_mm, raised_dots
 from geometry.dot_size import dot_standard
 from geometry.parameters import Dot

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.braille_standards import BrailleStandard, standard
 from geometry.parameters import Dot
 

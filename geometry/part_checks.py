@@ -2,7 +2,7 @@
 
 from itertools import combinations
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.parameters import Effector, Electrode, Segment
 
 USED_SIZES: dict[str, tuple[str, ...]] = {

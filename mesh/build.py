@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from geometry.cache import data_hash, folder, read_arrays, source_hash, write_arrays
+from foundation.cache import data_hash, folder, read_arrays, write_arrays
+from foundation.source_hash import source_hash
 from geometry.dot import DotShape
 from geometry.parameters import Segment
 from mesh.options import MeshOptions

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from geometry.parameters import Segment
 from mesh.outline import outline
 from mesh.types import TET_EDGES, TetMesh

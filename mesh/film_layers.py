@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from mesh.section import MeshedSection
 from mesh.types import TET_FACES, LinearMesh, face_neighbours, oriented, split_prisms
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
-from geometry.base import InputError
+from foundation.arrays import Floats, Ints
+from foundation.errors import InputError
 from mesh.bisection import Triangulation
 from mesh.outline import StackOutline
 

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from geometry.arrays import Bools, Ints
-from geometry.base import InputError
+from foundation.arrays import Bools, Ints
+from foundation.errors import InputError
 from mesh.types import TET_FACES, UPSIDE_DOWN, TetMesh, face_neighbours, node_mask
 
 # bond -> (part below, part above); the ground below the base is no part

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 _INNER = (5 - np.sqrt(5)) / 20
 

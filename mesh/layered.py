@@ -4,8 +4,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
-from geometry.base import InputError
+from foundation.arrays import Floats, Ints
+from foundation.errors import InputError
 from geometry.dot import DotShape
 from geometry.parameters import Segment
 from mesh.bisection import Triangulation, refine

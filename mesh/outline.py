@@ -7,7 +7,7 @@ from typing import Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from geometry.parameters import Segment
 from mesh.types import Planes
 

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from geometry.parameters import Segment
 from mesh.jacobian import smallest_determinant_ratio
 from mesh.options import MeshOptions

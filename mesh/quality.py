@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from geometry.parameters import Segment
 from mesh.jacobian import jacobians, scaled_jacobians, volumes
 from mesh.outline import curved_surface, outline

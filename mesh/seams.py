@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from mesh.types import TET_EDGES, TetMesh
 
 LEAST = 0.1

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from mesh.outline import StackOutline
 from mesh.sizing import Sizing, graded_through
 

@@ -7,7 +7,7 @@ from math import sqrt
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from geometry.dot import DotShape
 from mesh.options import MeshOptions
 from mesh.outline import StackOutline

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from geometry.dot import DotShape
 from geometry.parameters import Segment
 from mesh.film_layers import section_with_film

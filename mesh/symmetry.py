@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from geometry.arrays import Bools, Floats, Ints
+from foundation.arrays import Bools, Floats, Ints
 from mesh.types import UPSIDE_DOWN, Planes, TetMesh
 
 PLANE_NAMES = ("x = 0", "y = 0")

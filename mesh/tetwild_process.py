@@ -11,10 +11,10 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
-from geometry.environment import own_path, own_python
-from geometry.files import end_with_parent, scratch_folder
-from geometry.library_loading import load_alone
+from foundation.arrays import Floats, Ints
+from foundation.child_processes import end_with_parent, own_path, own_python
+from foundation.library_loading import load_alone
+from foundation.scratch_folders import scratch_folder
 from mesh.types import MeshingError
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 
 Planes = tuple[int, ...]
 """Axes of mirror planes: 0 is the plane x = 0, 1 the plane y = 0."""

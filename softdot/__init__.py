@@ -7,12 +7,12 @@ Case.load("mine.toml").press().plot()
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-import geometry  # noqa: F401 - sets the thread pools before NumPy is loaded
+import foundation  # noqa: F401 - sets the thread pools before NumPy is loaded
 from softdot.foreign_packages import refuse_foreign_packages
 from softdot.public_names import HOMES
 
 if TYPE_CHECKING:
-    from geometry.base import InputError
+    from foundation.errors import InputError
     from mesh.types import MeshingError
     from softdot.case import Case, ConvergenceWarning, Pressed, ResultWarning
     from softdot.commands.run import run_config

@@ -19,7 +19,7 @@ from warnings import warn
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from geometry.dot import DotShape
 from mesh.types import Planes, TetMesh
 from softdot.config.default_design import completed
@@ -166,7 +166,7 @@ class Case:
 
     def solve(self, on_step: OnStep | None = None, tet_mesh: TetMesh | None = None) -> PressResult:
         """The solver's own result in SI units; tet_mesh : another one of the same segment. A killed solve goes on."""
-        from geometry.cache import folder
+        from foundation.cache import folder
         from solve.press import press_segment
         from solve.solution.checkpoint import Checkpoint
 
@@ -213,7 +213,8 @@ class Case:
 
 def press_key(case: Case, tet_mesh: TetMesh) -> str:
     """Hash of all that a press depends on: configuration, the file of its waveform, mesh and program."""
-    from geometry.cache import data_hash, source_hash
+    from foundation.cache import data_hash
+    from foundation.source_hash import source_hash
     from mesh.types import mesh_hash
 
     return data_hash([source_hash("solve.press"), input_hash(case.config), mesh_hash(tet_mesh)])

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.base import InputError
-from geometry.cache import check_folder
+from foundation.arrays import Floats
+from foundation.cache import check_folder
+from foundation.errors import InputError
 from geometry.checks import along, check_press_depth, check_pushed_dot, check_segment, check_way, press_warnings
 from geometry.dot import DotShape
 from geometry.dot_at_rest import resolve_dot

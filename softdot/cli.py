@@ -11,7 +11,7 @@ from io import TextIOWrapper
 from threading import Timer
 from types import FrameType
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.command_line.parser import parser
 from softdot.console import BAD_INPUT, GOOD, INTERRUPTED, complain
 from softdot.log import lines_on_stderr

@@ -8,9 +8,9 @@ from contextlib import contextmanager
 from functools import partial
 from typing import Any
 
-from geometry.base import InputError
-from geometry.cache import source_hash
-from geometry.executor import LostError
+from foundation.errors import InputError
+from foundation.executor import LostError
+from foundation.source_hash import source_hash
 from softdot.warm_up import warm_up
 
 SILENT = 60  # above every level of Python's logging
@@ -36,7 +36,7 @@ class Cluster:
         return max(1, sum(threads.values()))
 
     def submit(self, function: Callable[..., Any], /, *arguments: Any) -> "Future[Any]":
-        """See geometry.executor.Executor. AwayError, also as what the call has raised."""
+        """See foundation.executor.Executor. AwayError, also as what the call has raised."""
         future: Future[Any] = Future()
         future.set_running_or_notify_cancel()
         asked = _reached(self._client.submit, function, *arguments, pure=False)

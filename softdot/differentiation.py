@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from geometry.arrays import Floats
-from geometry.base import InputError
+from foundation.arrays import Floats
+from foundation.errors import InputError
 from mesh.types import TetMesh
 from softdot.case import Case
 from softdot.config.loading import config_from

@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from geometry.environment import usable_cores
-from geometry.executor import Executor, LocalProcesses
+from foundation.executor import Executor, LocalProcesses
+from foundation.thread_pools import usable_cores
 from softdot.dask_cluster import existing_cluster
 from softdot.warm_up import warm_up
 

@@ -5,7 +5,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 BESIDE = Path(__file__).resolve().parents[1]
-PACKAGES = ("geometry", "mesh", "solve", "export", "diagnose")
+PACKAGES = ("foundation", "geometry", "mesh", "solve", "export", "diagnose")
 
 
 def refuse_foreign_packages() -> None:

@@ -5,7 +5,7 @@ import platform
 from pathlib import Path
 from typing import Any
 
-from geometry.environment import usable_cores
+from foundation.thread_pools import usable_cores
 
 CPUINFO = Path("/proc/cpuinfo")
 

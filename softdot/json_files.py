@@ -5,7 +5,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from geometry.files import whole_file
+from foundation.files import whole_file
 
 
 def plain(value: Any) -> Any:

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 LOG_FILE = "log.txt"
-PACKAGES = ("geometry", "mesh", "solve", "export", "diagnose", "softdot")
+PACKAGES = ("foundation", "geometry", "mesh", "solve", "export", "diagnose", "softdot")
 
 
 @contextmanager

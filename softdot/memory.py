@@ -4,7 +4,7 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
-from geometry.base import InputError
+from foundation.errors import InputError
 
 BASE_GB = 0.5
 """Libraries and fields of a run on a small mesh."""

@@ -6,7 +6,7 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from geometry.executor import LostError
+from foundation.executor import LostError
 from softdot.console import BAD_INPUT, NOT_CONVERGED
 
 CLOSED = {errno.EROFS, errno.EACCES, errno.EPERM}

@@ -3,7 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
-from geometry.cache import data_hash, recall, remember, source_hash
+from foundation.cache import data_hash, recall, remember
+from foundation.source_hash import source_hash
 from mesh.types import MeshingError
 from softdot.case import Case, OnStep
 from softdot.checks import course_warnings, design_warnings, result_warnings

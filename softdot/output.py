@@ -8,8 +8,8 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from geometry.base import InputError
-from geometry.files import hold, release, sweep
+from foundation.errors import InputError
+from foundation.scratch_folders import hold, release, sweep
 from softdot.log import LOG_FILE, log_file
 from softdot.no_room import refuse_cut_files, refuse_full_disk
 

@@ -4,7 +4,7 @@ HOMES = {
     "Case": "softdot.case",
     "Config": "softdot.config.schema",
     "ConvergenceWarning": "softdot.case",
-    "InputError": "geometry.base",
+    "InputError": "foundation.errors",
     "MeshingError": "mesh.types",
     "Pressed": "softdot.case",
     "ResultWarning": "softdot.case",

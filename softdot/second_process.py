@@ -8,8 +8,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from geometry.beside import Beside
-from geometry.library_loading import load_alone, without_collector
+from foundation.library_loading import load_alone, without_collector
+from foundation.worker_process import Beside
 
 if TYPE_CHECKING:
     from geometry.dot import DotShape

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.model import Readout
 
 

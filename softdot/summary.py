@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from softdot.config.hashes import config_hash
 from softdot.config.schema import Config
 from softdot.output import RUN

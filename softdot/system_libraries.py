@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from geometry.base import InputError
+from foundation.errors import InputError
 
 PACKAGES = {
     "libGL.so.1": "libgl1",

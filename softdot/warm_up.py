@@ -1,6 +1,6 @@
 """The kernels compiled in one worker before others start."""
 
-from geometry.executor import Executor
+from foundation.executor import Executor
 from softdot.config.loading import config_from
 from softdot.outcome import outcome, remembered
 

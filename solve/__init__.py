@@ -1,6 +1,6 @@
 """The finite-element method: solids, film, bonds, contact, rig and circuit, marched through time."""
 
-from geometry.environment import follow_free_cores
+from foundation.thread_pools import follow_free_cores
 
 follow_free_cores()  # before numba and MKL are loaded
 

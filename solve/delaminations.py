@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from geometry.arrays import Bools, Floats
-from geometry.base import InputError
+from foundation.arrays import Bools, Floats
+from foundation.errors import InputError
 from geometry.parameters import Segment
 from mesh.interfaces import inner_nodes, interface_facets
 from mesh.outline import outline

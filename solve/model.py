@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 import numpy as np
 from pydantic import Field, PrivateAttr, field_validator, model_validator
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from geometry.parameters import STATED, ActsWith, Dot, Finite, NonNegative, Positive, Segment, Table
 from solve.materials.mullins import Softening
 from solve.materials.parameters import Material, PiezoelectricFilm

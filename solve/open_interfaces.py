@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Bools, Ints
+from foundation.arrays import Bools, Ints
 from mesh.interfaces import interface_facets, split_interface
 from mesh.types import TetMesh
 from solve.delaminations import delaminated_facets

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.base import InputError
+from foundation.arrays import Floats
+from foundation.errors import InputError
 from geometry.dot import DotShape
 from geometry.parameters import Segment
 from mesh.types import TetMesh

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from geometry.parameters import Segment
 from mesh.symmetry import unfolded
 from mesh.types import TetMesh

@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from geometry.parameters import Segment
 from mesh.symmetry import Unfolded, in_plane
 from mesh.types import Planes, TetMesh

@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from geometry.arrays import Bools, Floats, Ints
+from foundation.arrays import Bools, Floats, Ints
 from solve.fem.assembly import scatter, scatter_unsymmetric
 from solve.fem.numbering import Unknowns
 from solve.fem.pattern import Pattern

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.compiled import piece
 
 I_OF = np.array([0, 1, 2, 0, 1, 0])

@@ -16,7 +16,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from geometry.arrays import Bools, Floats
+from foundation.arrays import Bools, Floats
 from mesh.types import TetMesh
 from solve.fem.quadrature import tetrahedron
 from solve.fem.shape_functions import quadratic

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from geometry.parameters import Segment
 from mesh.types import TetMesh
 from solve.symmetry import electrode_rectangles, images

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from hypothesis.internal.conjecture import providers
 
-from geometry.environment import ONE_THREAD
+from foundation.thread_pools import ONE_THREAD
 
 if "PYTEST_XDIST_WORKER" in os.environ:  # set before a library that reads it is loaded
     os.environ.update(ONE_THREAD)

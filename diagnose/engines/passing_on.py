@@ -6,7 +6,7 @@ from typing import Self
 
 from diagnose.forward import Candidate, Engine, Setting, Signals
 from diagnose.signals.recording import Run
-from geometry.base import Report
+from foundation.progress import Report
 from solve.mechanisms import Mechanism
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 from diagnose.engines.passing_on import PassingOn
 from diagnose.forward import Engine, Setting, Signals
 from diagnose.signals.recording import Recording
-from geometry.base import Report
+from foundation.progress import Report
 from solve.mechanisms import Mechanism
 
 

@@ -8,7 +8,7 @@ from diagnose.fit.linearised_system import LinearisedSystem, linearised
 from diagnose.fit.marginal_likelihood import Quadratic
 from diagnose.fit.nuisances import Nuisance, late
 from diagnose.fit.observed_model import ObservedModel
-from geometry.arrays import Bools, Floats
+from foundation.arrays import Bools, Floats
 
 BASELINE_ROUNDS = 12
 CLOSE = 0.01  # of a posterior standard deviation: another step is not worth it

@@ -13,7 +13,7 @@ from diagnose.fit.linearised_system import LinearisedSystem
 from diagnose.fit.nuisances import slope_by_step
 from diagnose.fit.observed_model import STEP, ObservedModel
 from diagnose.forward import Candidate, Coordinate, Setting
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 ITERATIONS = 40
 STILL = 0.02  # of a standard error: a step below it is none

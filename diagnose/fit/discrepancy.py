@@ -11,7 +11,7 @@ import numpy as np
 
 from diagnose.fit.samples import Samples
 from diagnose.forward import Signals
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 FORM_ERROR = 0.05
 """One sigma by which the effect of a mechanism may differ from that of the right one by its law alone."""

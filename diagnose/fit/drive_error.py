@@ -21,7 +21,7 @@ from diagnose.fit.signal_discrepancy import VISIBLE
 from diagnose.forward import Setting
 from diagnose.signals.phases import PressPhases
 from diagnose.signals.recording import Run
-from geometry.arrays import Bools, Floats, Ints
+from foundation.arrays import Bools, Floats, Ints
 
 BANDS_HZ = (2.0, 5.0, 10.0, 20.0)
 MOST_WAVES = 100  # over a press

@@ -11,7 +11,7 @@ import numpy as np
 from diagnose.fit.samples import Samples
 from diagnose.forward import Signals
 from diagnose.signals.phases import rest_of
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 
 def drive_noise(samples: Samples, signals: Sequence[Signals]) -> Floats:

@@ -6,7 +6,7 @@ import numpy as np
 
 from diagnose.fit.linearised_system import LinearisedSystem
 from diagnose.fit.samples import Samples
-from geometry.arrays import Bools, Floats
+from foundation.arrays import Bools, Floats
 
 SEEN = 0.3  # standard deviations: what no sensitivity, as large as all the residual, can make is not looked at
 

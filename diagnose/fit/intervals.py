@@ -20,7 +20,7 @@ from diagnose.fit.linearised_system import relative
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.refit import Fitted
 from diagnose.forward import Candidate, Setting
-from geometry.arrays import Bools, Floats
+from foundation.arrays import Bools, Floats
 
 LEVEL = 0.9
 STEPS = 8

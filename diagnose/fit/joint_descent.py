@@ -15,7 +15,7 @@ from diagnose.fit.marginal_likelihood import Quadratic
 from diagnose.fit.nuisances import Nuisance
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.forward import Candidate
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 JOINT_ITERATIONS = 30
 JOINT_LEAST_GAIN = 0.01  # in half squares: less is no progress

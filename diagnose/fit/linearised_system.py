@@ -11,7 +11,7 @@ from diagnose.fit.drive_noise import drive_noise
 from diagnose.fit.marginal_likelihood import Quadratic
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.forward import Setting
-from geometry.arrays import Bools, Floats
+from foundation.arrays import Bools, Floats
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ With columns T and prior deviations P the covariance is S = 1 + T P^2 T'. S^-1 =
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 TINY = np.finfo(float).tiny ** 0.25
 RIDGE = 1e-12  # relative to the square of a column's length: parallel columns without a prior

@@ -8,7 +8,7 @@ import numpy as np
 
 from diagnose.forward import Candidate, Engine
 from diagnose.signals.recording import Recording, Run
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 GAINS = {"gain": "V", "force_gain": "N"}
 OFFSETS = {"offset_V": "V", "offset_N": "N", "offset_mm": "mm"}

@@ -9,7 +9,7 @@ import numpy as np
 from diagnose.fit.nuisances import Nuisance, by_name, nuisances, observed, slope_by_step, tangent
 from diagnose.fit.samples import Samples
 from diagnose.forward import Candidate, Engine, Setting, Signals
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 REMEMBERED = 400  # predictions of one run
 STEP = 0.02  # of the first start of a coordinate, for slopes

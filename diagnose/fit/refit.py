@@ -14,7 +14,7 @@ from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.samples import Samples
 from diagnose.forward import Candidate, Setting
 from diagnose.statistics.error_rates import LARGEST_FORM_SHARE
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 ROUNDS = 2
 NEAR = 1.0  # standard deviations: variances stay so far

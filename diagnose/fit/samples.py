@@ -16,7 +16,7 @@ from diagnose.noise.model import NoiseModel, Whitening
 from diagnose.signals.recording import Recording, Run
 from diagnose.statistics.cells import CosineTransform, FilterBank, TimeSegment, octave_edges, segments
 from diagnose.statistics.hypotheses import Hypotheses, with_pools
-from geometry.arrays import Bools, Floats, Ints
+from foundation.arrays import Bools, Floats, Ints
 
 POOLS: tuple[frozenset[str], ...] = tuple(
     map(frozenset, [

@@ -14,7 +14,7 @@ import numpy as np
 
 from diagnose.fit.samples import Samples, noise_degrees
 from diagnose.noise.repeats import repeated
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 
 TINY = np.finfo(float).tiny ** 0.5
 VISIBLE = 0.01

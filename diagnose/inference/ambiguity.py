@@ -8,7 +8,7 @@ from diagnose.fit.refit import Fitted
 from diagnose.fit.samples import Samples
 from diagnose.statistics.error_rates import ALIKE, RATES
 from diagnose.statistics.separation import ambiguity_groups, least_separation
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 
 def separations(samples: Samples, fits: Sequence[Fitted]) -> Floats:

@@ -5,7 +5,7 @@ import numpy as np
 from diagnose.fit.linearised_system import LinearisedSystem
 from diagnose.fit.samples import SampleBlock, Samples
 from diagnose.statistics.impulse_response import doubling_edges, impulse_response_forecast, lagged_means
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 
 def memory(samples: Samples) -> Floats:

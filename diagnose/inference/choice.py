@@ -22,8 +22,8 @@ from diagnose.statistics.abstain import Decision, Evidence, decide
 from diagnose.statistics.error_rates import ALIKE, FIRSTS, LEFT, RATES
 from diagnose.statistics.held_out import Gain, gain_over_noise
 from diagnose.statistics.model_criteria import bic, held_out_probabilities
-from geometry.arrays import Bools, Floats
-from geometry.base import Report
+from foundation.arrays import Bools, Floats
+from foundation.progress import Report
 
 FEWER_DRAWS = 499  # for models that are not the best
 

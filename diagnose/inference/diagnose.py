@@ -36,7 +36,7 @@ from diagnose.noise.estimate import noise_models
 from diagnose.signals.recording import Recording
 from diagnose.statistics.error_rates import RATES
 from diagnose.verdict.names import in_common
-from geometry.base import Report
+from foundation.progress import Report
 
 
 def diagnose(recording: Recording, engine: Engine, seed: int, report: Report) -> Findings:

@@ -14,7 +14,7 @@ from diagnose.forward import Setting, Signals
 from diagnose.inference.choice import Judged
 from diagnose.inference.residual_test import Checked
 from diagnose.statistics.error_rates import RATES
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 
 def fitted_model(model: ObservedModel, one: Judged, probability: float, detailed: bool) -> FittedModel:

@@ -14,7 +14,7 @@ from diagnose.fit.samples import Samples
 from diagnose.statistics.error_rates import RATES
 from diagnose.statistics.held_out import Gain, gain_over_noise, leave_press_out
 from diagnose.statistics.linear_gaussian import Sums
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 
 FLAT = 1e4  # sigma of the noise: a prior for what has none, where nothing else limits it
 

@@ -16,7 +16,7 @@ from diagnose.inference.stepwise import Joined, joined
 from diagnose.inference.tolerant_judge import residual_beside
 from diagnose.inference.true_refit import trained_and_held
 from diagnose.signals.phases import PHASES
-from geometry.base import Report
+from foundation.progress import Report
 
 
 def with_more(model: ObservedModel, screening: Screening, findings: Findings, report: Report) -> Findings:

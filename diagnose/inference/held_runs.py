@@ -18,8 +18,8 @@ from diagnose.inference.true_refit import errors, relaxed, unimproved
 from diagnose.noise.estimate import noise_models
 from diagnose.signals.recording import Recording
 from diagnose.statistics.linear_gaussian import Sums
-from geometry.arrays import Bools, Floats
-from geometry.base import Report
+from foundation.arrays import Bools, Floats
+from foundation.progress import Report
 
 
 def diagnose_and_score(

@@ -15,8 +15,8 @@ from diagnose.forward import Candidate, Coordinate, Engine, Setting, Signals
 from diagnose.noise.mains_lines import Line, basis
 from diagnose.noise.model import NoiseModel
 from diagnose.signals.recording import Recording, Run
-from geometry.arrays import Floats
-from geometry.base import Report
+from foundation.arrays import Floats
+from foundation.progress import Report
 
 LOUD = 1.0  # power over that of all other noise, per whitened sample
 WIDEST = 10.0  # times the amplitude at rest: what a fit may reach

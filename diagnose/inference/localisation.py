@@ -13,7 +13,7 @@ from diagnose.signals.phases import PHASES
 from diagnose.statistics.component_shares import component_shares
 from diagnose.statistics.error_rates import RATES
 from diagnose.statistics.nuisance_projection import Marginal
-from geometry.arrays import Bools, Floats
+from foundation.arrays import Bools, Floats
 
 
 def shares_of_excess(energies: Floats, degrees: Floats) -> Floats:

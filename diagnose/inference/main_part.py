@@ -25,8 +25,8 @@ from diagnose.inference.tolerant_judge import TolerantJudge, held_together, left
 from diagnose.signals.phases import PHASES
 from diagnose.statistics.error_rates import RATES
 from diagnose.statistics.model_criteria import held_out_probabilities
-from geometry.arrays import Floats
-from geometry.base import Report
+from foundation.arrays import Floats
+from foundation.progress import Report
 
 MOST = 0.9
 """Share of the held-out excess over noise that a main part accounts for."""

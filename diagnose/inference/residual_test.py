@@ -10,7 +10,7 @@ from diagnose.fit.marginal_likelihood import Quadratic
 from diagnose.fit.samples import Samples
 from diagnose.statistics.family_wise import null_energies, step_down
 from diagnose.statistics.nuisance_projection import Marginal
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 DRAWS = 1999
 UNTOUCHED = 1e-6  # of its prior variance: what a parameter must at least have learnt to be judged

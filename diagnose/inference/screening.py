@@ -17,8 +17,8 @@ from diagnose.inference.sensitivities import Sensitivity, sensitivity
 from diagnose.statistics.error_rates import RATES
 from diagnose.statistics.nuisance_projection import Marginal
 from diagnose.statistics.score_test import holm, score_test
-from geometry.arrays import Bools, Floats
-from geometry.base import Report
+from foundation.arrays import Bools, Floats
+from foundation.progress import Report
 
 
 @dataclass(frozen=True)

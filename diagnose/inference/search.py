@@ -13,8 +13,8 @@ from diagnose.forward import Candidate
 from diagnose.inference.screening import Screening, least_degrees, screened
 from diagnose.inference.sensitivities import sensitivity
 from diagnose.statistics.error_rates import FINALISTS, PAIRS, RATES
-from geometry.arrays import Floats
-from geometry.base import Report
+from foundation.arrays import Floats
+from foundation.progress import Report
 
 STARTS = 3  # of each candidate's first fit
 REFINEMENTS = 3  # most full solves of each mechanism of a fit

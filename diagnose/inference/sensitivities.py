@@ -7,7 +7,7 @@ import numpy as np
 
 from diagnose.fit.observed_model import STEP, ObservedModel
 from diagnose.forward import Candidate, Coordinate, Setting
-from geometry.arrays import Bools, Floats
+from foundation.arrays import Bools, Floats
 
 FLAT = 0.05  # of the secant: a slope below it is none
 

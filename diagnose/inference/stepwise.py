@@ -19,8 +19,8 @@ from diagnose.inference.screening import Screening
 from diagnose.inference.search import pairs
 from diagnose.inference.tolerant_judge import TolerantJudge, judge_of_name, left_by
 from diagnose.inference.true_refit import trained_and_held
-from geometry.arrays import Floats
-from geometry.base import Report
+from foundation.arrays import Floats
+from foundation.progress import Report
 
 MOST_MECHANISMS = 3
 HALF = 0.5

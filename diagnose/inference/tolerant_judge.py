@@ -23,7 +23,7 @@ from diagnose.inference.forecasts import Forecasted, forecasted, gained, separat
 from diagnose.inference.screening import Screening
 from diagnose.statistics.error_rates import RATES
 from diagnose.statistics.held_out import Gain, leave_press_out
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 
 IN_EACH, MOST_LEFT, SIGMAS = 0.5, 0.5, 4.0
 """Share of an excess that most of it is: in a condition, channel or phase alone, where that holds this share of all

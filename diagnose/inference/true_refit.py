@@ -13,7 +13,7 @@ from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.refit import Fitted, fitted
 from diagnose.forward import Setting
 from diagnose.inference.screening import Screening
-from geometry.arrays import Bools, Floats
+from foundation.arrays import Bools, Floats
 
 ROUNDS = 2
 

@@ -14,7 +14,7 @@ from diagnose.next_press.variations import variations
 from diagnose.signals.recording import Recording, Run
 from diagnose.statistics.best_press import best_press, linked
 from diagnose.statistics.separation import Group, least_separation
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 MOST_RIVALS, MOST_PRESSES = 6, 3
 PLAUSIBLE = 0.01  # a model below this probability is no rival

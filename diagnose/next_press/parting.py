@@ -23,7 +23,7 @@ from diagnose.noise.estimate import noise_models
 from diagnose.noise.model import NoiseModel, white_noise
 from diagnose.signals.recording import Recording
 from diagnose.statistics.best_press import remaining_spread
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 
 def without_phase(settings: Sequence[Setting]) -> tuple[Setting, ...]:

@@ -7,7 +7,7 @@ import numpy as np
 
 from diagnose.signals.phases import PressPhases, rest_of
 from diagnose.signals.recording import Recording, Run
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 REST_S = 1.0  # noise and drift show at rest
 

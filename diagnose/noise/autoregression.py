@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import toeplitz
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 LARGEST_ORDER = 30
 SAMPLES_PER_ORDER = 10

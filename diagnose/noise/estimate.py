@@ -16,8 +16,8 @@ from diagnose.noise.repeats import repeated, scatter
 from diagnose.noise.rest import resting, stretches
 from diagnose.signals.phases import Segmentation
 from diagnose.signals.recording import Recording, Run
-from geometry.arrays import Floats
-from geometry.base import InputError
+from foundation.arrays import Floats
+from foundation.errors import InputError
 
 REPEATS, REST, STATED = "repeated runs", "rest", "stated"
 ENOUGH = 50  # samples: their variance is known to 20 %

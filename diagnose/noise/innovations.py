@@ -7,7 +7,7 @@ that gaps alone cost more.
 import numba as nb
 import numpy as np
 
-from geometry.arrays import Bools, Floats
+from foundation.arrays import Bools, Floats
 
 
 @nb.njit(cache=True)

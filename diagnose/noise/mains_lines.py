@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 from scipy.stats import f as f_distribution
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 MAINS_HZ = (50.0, 60.0)
 DEVIATION_HZ = 0.3  # of the mains' frequency

@@ -16,7 +16,7 @@ from diagnose.noise.autoregression import Autoregression
 from diagnose.noise.innovations import innovations
 from diagnose.noise.mains_lines import Line, basis
 from diagnose.signals.recording import even_pieces, is_even
-from geometry.arrays import Bools, Floats
+from foundation.arrays import Bools, Floats
 
 SAME_RATE = 0.1  # relative: at another rate the autoregression says only how large the noise is
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 LEVELS = 3  # fewer different values show no step
 SHARE = 0.99  # of the differences that must be whole multiples

@@ -11,7 +11,7 @@ import numpy as np
 from diagnose.signals.align import lag_between
 from diagnose.signals.phases import Segmentation
 from diagnose.signals.recording import Run
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 AGREE = 0.03  # root mean square difference of two drives, of their range
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from diagnose.signals.phases import Segmentation
 from diagnose.signals.recording import Run
-from geometry.arrays import Bools, Floats
+from foundation.arrays import Bools, Floats
 
 SHORTEST = 8  # samples of a stretch
 GUARD = 0.5

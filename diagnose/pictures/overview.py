@@ -9,7 +9,7 @@ from diagnose.findings import Findings, LocatedExcess
 from diagnose.pictures.style import new_figure, save
 from diagnose.signals.phases import PHASES
 from diagnose.signals.recording import Recording
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 EDGES_HZ = (0.0, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, np.inf)
 MOST_ROWS = 40

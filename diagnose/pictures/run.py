@@ -10,7 +10,7 @@ from diagnose.findings import Findings
 from diagnose.forward import Signals
 from diagnose.pictures.style import AFTER, BEFORE, CLOSEST, FULL, RECORDED, SOFT, new_figure, save
 from diagnose.signals.recording import Run
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 MOST_CHANNELS = 4
 SIGMAS = 2.0

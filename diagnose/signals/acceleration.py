@@ -12,7 +12,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from scipy.interpolate import UnivariateSpline
 
 from diagnose.signals.phases import sigma_of_differences
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.reduced.recording import second_differences
 
 DEGREE = 5  # its second derivative is smooth

@@ -13,7 +13,7 @@ from scipy.interpolate import CubicSpline
 from scipy.signal import correlate
 
 from diagnose.noise.autoregression import fit_autoregression
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 ROUNDS = 20
 FINEST = 1e-5  # steps: no lag is known better

@@ -15,9 +15,10 @@ import numpy as np
 
 from diagnose.signals.phases import segmented
 from diagnose.signals.recording import Run, gaps, rates_Hz
-from geometry.arrays import Bools, Floats, Ints
-from geometry.base import InputError, nearest
-from geometry.files import regular_file
+from foundation.arrays import Bools, Floats, Ints
+from foundation.errors import InputError
+from foundation.files import regular_file
+from foundation.nearest_name import nearest
 
 LARGEST_MB = 500  # of all files together: some 10 million rows, more than any fit could use
 LARGEST = 1e12  # squares and ratios of what is larger leave the range of a computer's numbers

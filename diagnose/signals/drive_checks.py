@@ -9,8 +9,8 @@ import numpy as np
 
 from diagnose.signals.phases import rest_of
 from diagnose.signals.recording import Run, Specimen
-from geometry.arrays import Bools, Floats
-from geometry.base import InputError
+from foundation.arrays import Bools, Floats
+from foundation.errors import InputError
 
 AGAINST = -0.5
 """Correlation of a displacement with a force: below it one of the two has the wrong sign."""

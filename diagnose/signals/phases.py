@@ -7,7 +7,7 @@ from math import comb
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
-from geometry.arrays import Bools, Floats, Ints
+from foundation.arrays import Bools, Floats, Ints
 
 PHASES = ("approach", "loading", "hold", "unloading", "after")
 APPROACH, LOADING, HOLD, UNLOADING, AFTER = range(5)

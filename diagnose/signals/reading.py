@@ -25,8 +25,8 @@ from diagnose.signals.columns import (
 from diagnose.signals.drive_checks import drive_suspicions, refuse_unlike_drive
 from diagnose.signals.phases import Segmentation
 from diagnose.signals.recording import Recording, Run, RunTable, Specimen, one_after_the_other
-from geometry.arrays import Bools, Floats, Ints
-from geometry.base import InputError
+from foundation.arrays import Bools, Floats, Ints
+from foundation.errors import InputError
 from solve.model import Readout
 
 COVARIATES = ("dot_x_mm", "dot_y_mm", "temperature_C")

@@ -14,8 +14,8 @@ from scipy.ndimage import median_filter
 
 from diagnose.signals.acceleration import acceleration_mm_per_s2
 from diagnose.signals.phases import Segmentation, segmented
-from geometry.arrays import Bools, Floats
-from geometry.base import nearest
+from foundation.arrays import Bools, Floats
+from foundation.nearest_name import nearest
 from geometry.parameters import Finite, Positive, Table
 from solve.model import Readout
 from solve.reduced.recording import second_differences

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.sparse.csgraph import connected_components
 
 from diagnose.statistics.separation import Group
-from geometry.arrays import Bools, Floats
+from foundation.arrays import Bools, Floats
 
 
 def remaining_spread(information: Floats) -> Floats:

@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.fft import dct
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.stats import chi2, multivariate_normal
 from scipy.stats import f as f_distribution
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 MOST = 8  # non-negative parameters: 256 faces
 CLOSED = 3  # dimensions of the orthants that have a closed form

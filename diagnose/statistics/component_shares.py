@@ -14,7 +14,7 @@ import numpy as np
 from scipy.linalg import qr
 from scipy.optimize import nnls
 
-from geometry.arrays import Bools, Floats
+from foundation.arrays import Bools, Floats
 
 MOST = 10  # components: 1 024 small fits
 

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.linalg import qr
 
 from diagnose.statistics.hypotheses import Hypotheses
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 
 
 def null_energies(hypotheses: Hypotheses, cell: Ints, free: Floats, draws: int, rng: np.random.Generator) -> Floats:

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.stats import norm
 
 from diagnose.statistics.linear_gaussian import Sums
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 
 
 @dataclass(frozen=True)

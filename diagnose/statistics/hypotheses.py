@@ -12,7 +12,7 @@ import numpy as np
 from scipy.sparse import csr_array, eye_array, vstack
 
 from diagnose.statistics.cells import Cell
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 
 
 def pooled(cells: Sequence[Cell], over: Collection[str]) -> csr_array:

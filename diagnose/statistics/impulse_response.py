@@ -13,7 +13,7 @@ from scipy.optimize import minimize_scalar
 
 from diagnose.statistics.held_out import Forecast, forecast
 from diagnose.statistics.linear_gaussian import Sums
-from geometry.arrays import Bools, Floats, Ints
+from foundation.arrays import Bools, Floats, Ints
 
 STRENGTHS = np.logspace(-2.0, 6.0, 17)  # of the response, in sigma of the noise over all samples: where s is sought
 

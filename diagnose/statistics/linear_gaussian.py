@@ -10,7 +10,7 @@ from typing import Self
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 
 @dataclass(frozen=True)

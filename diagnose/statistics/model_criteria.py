@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.special import softmax
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 
 def bic(log_likelihood: float, parameters: int, samples: int) -> float:

@@ -8,7 +8,7 @@ restricted likelihood (Harville, Biometrika 61 (1974) 383).
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 
 def orthonormal(columns: Floats) -> Floats:

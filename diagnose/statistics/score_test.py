@@ -12,7 +12,7 @@ from scipy.optimize import nnls
 
 from diagnose.statistics.chi_bar_square import f_tail, survival, weights
 from diagnose.statistics.nuisance_projection import orthonormal
-from geometry.arrays import Bools, Floats
+from foundation.arrays import Bools, Floats
 
 CERTAIN = 1e-12  # where the chance that all degrees of freedom give is as small, the weights of fewer do not matter
 PARALLEL = 1e-6  # of its length: what is left of a sensitivity that others in the same candidate already make

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.stats import norm
 
 from diagnose.statistics.nuisance_projection import orthonormal
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 Group = tuple[int, ...]
 

@@ -10,8 +10,8 @@ from diagnose.findings import Findings, Fit
 from diagnose.forward import Engine, Setting, Signals
 from diagnose.next_press.parting import without_phase
 from diagnose.signals.recording import Recording, Run
-from geometry.arrays import Floats
-from geometry.base import Report
+from foundation.arrays import Floats
+from foundation.progress import Report
 from solve.mechanisms import Mechanism
 
 TRAINING, HELD_OUT = "training", "held-out"

@@ -9,7 +9,7 @@ from diagnose.findings import Findings, LocatedExcess
 from diagnose.signals.phases import PHASES
 from diagnose.signals.recording import Recording
 from diagnose.verdict.names import listed
-from geometry.arrays import Bools
+from foundation.arrays import Bools
 
 MOST = 0.8  # of the excess: what a sentence has to cover
 ONE_SIDED = 0.5  # mean over root mean square, beyond which an error has a sign

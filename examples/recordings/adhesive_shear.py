@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from softdot.convert import read_sheet, run_text, white_noise, write_recording
 
 AREA_MM2, THICKNESS_MM = 100.0, 1.0

@@ -11,7 +11,7 @@ import numpy as np
 
 from diagnose.signals.align import lag_between
 from diagnose.signals.recording import Recording, Run
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 
 def shuffled(recording: Recording) -> Recording:

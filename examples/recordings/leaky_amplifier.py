@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from softdot.case import Case
 from softdot.config.loading import config_from
 from softdot.config.toml import parse_toml

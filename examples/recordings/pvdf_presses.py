@@ -23,7 +23,7 @@ from scipy.optimize import minimize_scalar
 from scipy.signal import decimate, lfilter
 
 from diagnose.signals.align import Lag, lag_between
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from softdot.convert import run_text, write_recording
 
 RATE_HZ = 2000.0

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from softdot.convert import read_sheet, run_text, write_recording
 
 BLOCKS = {"20": (0, 2), "50": (10, 12)}  # temperature in degrees -> columns of F11 and P11

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from softdot.convert import run_text, white_noise, write_recording
 
 MODULUS = 5.0  # one sigma, relative: what is stated is a start, and the modulus before anything relaxes is unknown

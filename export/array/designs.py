@@ -10,7 +10,7 @@ import numpy as np
 from export.page import page_environment
 from export.report import number
 from export.view import DPI, INK, save
-from geometry.files import write_whole_text
+from foundation.files import write_whole_text
 
 HERE = Path(__file__).parent
 TRIED, FRONT, BEST = "#9aa5b1", "#2a7f62", "#c0392b"

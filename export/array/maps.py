@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from export.view import DIVERGING, DPI, INK, save
+from foundation.arrays import Floats
 from geometry.array.layout import ArrayLayout
-from geometry.arrays import Floats
 
 MOST_NAMED = 20
 """Of more segments the matrix has no room for numbers and labels."""

@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 
 from export.page import page_environment, script_safe
 from export.report import number
-from geometry.arrays import Floats
-from geometry.base import InputError
-from geometry.files import write_whole_text
+from foundation.arrays import Floats
+from foundation.errors import InputError
+from foundation.files import write_whole_text
 
 HERE = Path(__file__).parent
 MOST_VALUES = 800_000

@@ -11,7 +11,7 @@ from export.build_sheet.steps import steps
 from export.cut_files.style import STYLES
 from export.page import page_environment
 from export.report import number
-from geometry.files import write_whole_text
+from foundation.files import write_whole_text
 from geometry.flat.electrodes import Metal, stray_area_mm2, stray_areas_mm2
 
 VACUUM_PF_PER_MM = 8.8541878128e-3

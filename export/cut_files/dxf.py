@@ -5,7 +5,7 @@ from typing import Any
 
 from export.cut_files.style import STYLES, size_text
 from export.cut_files.svg import TEXT_MM
-from geometry.files import write_whole_text as write_whole_text
+from foundation.files import write_whole_text as write_whole_text
 from geometry.flat.pattern import Circle, Dimension, FlatPattern, Label, Outline, Stroke
 from geometry.flat.pattern import LayerName as LayerName
 from geometry.flat.pattern import Point as Point

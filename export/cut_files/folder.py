@@ -8,8 +8,8 @@ from export.cut_files.style import STYLES as STYLES
 from export.cut_files.style import size_text as size_text
 from export.cut_files.svg import TEXT_MM as TEXT_MM
 from export.cut_files.svg import write_svg
-from geometry.files import whole_folder
-from geometry.files import write_whole_text as write_whole_text
+from foundation.files import whole_folder
+from foundation.files import write_whole_text as write_whole_text
 from geometry.flat.pattern import Circle as Circle
 from geometry.flat.pattern import Dimension as Dimension
 from geometry.flat.pattern import FlatPattern, compensated

@@ -4,7 +4,7 @@ from pathlib import Path
 from xml.etree import ElementTree as Xml
 
 from export.cut_files.style import STYLES, size_text
-from geometry.files import write_whole_text
+from foundation.files import write_whole_text
 from geometry.flat.pattern import Circle, Dimension, FlatPattern, Label, LayerName, Outline, Point, Stroke
 
 ROOM_MM = 8.0

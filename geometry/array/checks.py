@@ -1,7 +1,7 @@
 """Impossible arrays are refused by name before anything is built."""
 
+from foundation.errors import InputError
 from geometry.array.layout import ALONG, ArrayLayout
-from geometry.base import InputError
 from geometry.part_checks import covers_footprint
 from geometry.stack import layers
 

@@ -10,9 +10,9 @@ from itertools import pairwise
 
 import numpy as np
 
+from foundation.arrays import Bools, Floats
+from foundation.errors import InputError
 from geometry.array.parameters import Array, Groove
-from geometry.arrays import Bools, Floats
-from geometry.base import InputError
 from geometry.braille_standards import QuantityName
 from geometry.dot_size import dot_standard
 from geometry.parameters import Dot, Effector, Electrode, LayerName, Segment

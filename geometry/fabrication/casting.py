@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.fabrication.cavity import check_mould_sizes, styled_cavity
 from geometry.fabrication.device import Device
 from geometry.fabrication.mould import LID_MM, Mould, mould_of

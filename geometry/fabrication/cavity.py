@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from math import asin, degrees, radians, sqrt, tan
 from typing import Any, Literal
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.fabrication.device import Device
 from geometry.fabrication.parameters import Fabrication
 from geometry.fabrication.part import PrinterProfile, printer_profile, refuse_small_keys, refuse_thin, scaled, without

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, get_args
 
+from foundation.errors import InputError
 from geometry.array.layout import ArrayLayout, Rectangle
 from geometry.array.parameters import Array
 from geometry.array.parts import groove_solids
-from geometry.base import InputError
 from geometry.fabrication.parameters import Fabrication
 from geometry.fabrication.part import refuse_thin, without
 from geometry.parameters import LayerName, Segment

@@ -1,6 +1,6 @@
 """A clamp frame that cannot be printed or assembled is refused, with the limit that it breaks."""
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.fabrication.device import Device, held_names
 from geometry.fabrication.frame_layout import TAB_CLEARANCE_MM, TIE_MM, FrameLayout, widest_gap
 from geometry.fabrication.parameters import Fabrication

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal, get_args
 
 from pydantic import Field
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.parameters import NonNegative, Positive, Segment, Table
 from geometry.stack import layers
 

@@ -8,7 +8,7 @@ from functools import cache
 from importlib.resources import files
 from typing import Any, Literal, get_args
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.fabrication.parameters import Fabrication, Printer
 from geometry.solids import Part
 

@@ -10,8 +10,8 @@ from itertools import combinations
 
 import numpy as np
 
+from foundation.errors import InputError
 from geometry.array.layout import Rectangle
-from geometry.base import InputError
 from geometry.fabrication.part import ROUNDING_MM
 from geometry.flat.film import EDGE_MM, PAD_LENGTH_MM, FilmLayout
 from geometry.flat.paths import CrossSection, length_mm, quadrilaterals, ribbon, squares, turned_points

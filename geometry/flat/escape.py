@@ -13,8 +13,8 @@ from itertools import pairwise
 from math import floor, inf
 from typing import Literal
 
+from foundation.errors import InputError
 from geometry.array.layout import Rectangle
-from geometry.base import InputError
 from geometry.fabrication.part import ROUNDING_MM
 from geometry.flat.pattern import Point
 

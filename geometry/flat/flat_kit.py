@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.fabrication.device import Device
 from geometry.fabrication.frame_checks import check_tab
 from geometry.fabrication.frame_layout import frame_layout

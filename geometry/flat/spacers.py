@@ -2,7 +2,7 @@
 
 from itertools import pairwise
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.fabrication.device import Device
 from geometry.fabrication.parameters import Fabrication
 from geometry.fabrication.part import ROUNDING_MM

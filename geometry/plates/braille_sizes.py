@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.braille_standards import QUANTITIES, Quantity, QuantityName, standard
 
 SHORTEST_MM, LONGEST_MM = 0.01, 1000.0

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.plates.plate import THICKNESS_MM, PlacedDot, Plate, dotted_slab
 
 SPACING_MM = 10.0

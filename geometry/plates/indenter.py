@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.plates.plate import PlacedDot, Plate, printed_part, standing_dots
 from geometry.solids import upright_cylinder
 

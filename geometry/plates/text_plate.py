@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.braille_cells import COLUMN_AND_ROW, raised_dots
 from geometry.plates.braille_sizes import BrailleSizes
 from geometry.plates.plate import THICKNESS_MM, PlacedDot, Plate, dotted_slab

@@ -4,8 +4,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from foundation.arrays import Bools, Floats
 from geometry.array.layout import ArrayLayout
-from geometry.arrays import Bools, Floats
 from mesh.array.sizing import HYPOTENUSE, ArraySizing
 from mesh.bisection import Triangulation, refine
 from mesh.footprint import crossed, joined, round_patch

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from foundation.arrays import Bools, Floats, Ints
 from geometry.array.layout import ArrayLayout
-from geometry.arrays import Bools, Floats, Ints
 from geometry.dot import DotShape
 from geometry.stack import layers
 from mesh.array.footprint import footprint, from_middle, on_circles

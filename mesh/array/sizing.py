@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from foundation.arrays import Floats
 from geometry.array.layout import ArrayLayout, Rectangle
-from geometry.arrays import Floats
 from geometry.dot import DotShape
 from mesh.options import MeshOptions
 from mesh.outline import outline

@@ -13,9 +13,9 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from geometry.arrays import Floats
-from geometry.base import InputError
-from geometry.files import regular_file
+from foundation.arrays import Floats
+from foundation.errors import InputError
+from foundation.files import regular_file
 
 TETS = {"C3D4": 4, "C3D10": 10}
 """Beginning of a type, such as C3D10MH, and its nodes; those of Abaqus are in VTK's order."""

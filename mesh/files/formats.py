@@ -10,8 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.arrays import Ints
-from geometry.base import InputError, nearest
+from foundation.arrays import Ints
+from foundation.errors import InputError
+from foundation.nearest_name import nearest
 from mesh.types import TET_FACES, TetMesh
 
 REGIONS = {"medium2": 1, "film": 2, "medium1": 3, "effector": 4}

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from geometry.arrays import Bools, Floats, Ints
-from geometry.base import InputError
-from geometry.files import regular_file
+from foundation.arrays import Bools, Floats, Ints
+from foundation.errors import InputError
+from foundation.files import regular_file
 from geometry.parameters import Segment
 from geometry.stack import layers
 from mesh.files.abaqus import AbaqusMesh, is_tet, is_triangle, read_abaqus

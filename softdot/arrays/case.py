@@ -9,10 +9,10 @@ from functools import cached_property
 
 import numpy as np
 
+from foundation.arrays import Floats
+from foundation.errors import InputError
 from geometry.array.checks import check_array
 from geometry.array.layout import ArrayLayout, SegmentPlace, array_layout
-from geometry.arrays import Floats
-from geometry.base import InputError
 from geometry.braille_cells import COLUMN_AND_ROW, dot_offset_mm, raised_dots
 from geometry.checks import check_press_depth, check_pushed_dot, check_segment, press_warnings
 from geometry.dot import DotShape

@@ -43,7 +43,7 @@ def run_array(
     or MeshingError: nothing is written, and presses that were solved are kept in the cache.
     """
     from export.rendering import ensure_rendering
-    from geometry.cache import check_folder
+    from foundation.cache import check_folder
     from softdot.arrays.case import ArrayCase
     from softdot.arrays.study import study
     from softdot.executors import executor_for

@@ -17,8 +17,8 @@ from typing import Any
 import numba as nb
 import numpy as np
 
-from geometry.arrays import Bools, Floats, Ints
-from geometry.base import InputError
+from foundation.arrays import Bools, Floats, Ints
+from foundation.errors import InputError
 
 FORMAT = "softdot-kernel/1"
 NPZ, JSON = "kernel.npz", "kernel.json"

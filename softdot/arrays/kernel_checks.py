@@ -8,7 +8,7 @@ from itertools import combinations, product
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from softdot.arrays.case import ArrayCase
 from softdot.arrays.kernel_presses import by_one_dot
 from softdot.config.schema import Config

@@ -10,9 +10,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.base import Report
-from geometry.executor import HERE, Executor
+from foundation.arrays import Floats
+from foundation.executor import HERE, Executor
+from foundation.progress import Report
 from softdot.arrays.case import ArrayCase
 from softdot.arrays.kernel import ArrayKernel
 from softdot.arrays.kernel_checks import check_presses

@@ -14,10 +14,11 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import Akima1DInterpolator, LinearNDInterpolator, NearestNDInterpolator, PchipInterpolator
 
-from geometry.arrays import Floats
-from geometry.base import Report
-from geometry.cache import data_hash, folder, read_arrays, source_hash, write_arrays
-from geometry.executor import Executor, each_done
+from foundation.arrays import Floats
+from foundation.cache import data_hash, folder, read_arrays, write_arrays
+from foundation.executor import Executor, each_done
+from foundation.progress import Report
+from foundation.source_hash import source_hash
 from softdot.arrays.case import ArrayCase, ArrayPress
 from softdot.arrays.kernel import ArrayKernel
 from softdot.arrays.presses import StoppedPressError

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from foundation.arrays import Floats
 from geometry.array.layout import ArrayLayout
-from geometry.arrays import Floats
 from softdot.arrays.case import ArrayCase, ArrayPress
 from softdot.arrays.presses import ArrayPresses, Signals
 

@@ -14,9 +14,10 @@ from typing import Any
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.cache import data_hash, folder, read_kept, source_hash, write_kept
-from geometry.executor import HERE, Executor, each_done
+from foundation.arrays import Floats
+from foundation.cache import data_hash, folder, read_kept, write_kept
+from foundation.executor import HERE, Executor, each_done
+from foundation.source_hash import source_hash
 from geometry.parameters import Dot
 from softdot.arrays.case import ArrayCase, ArrayPress
 from softdot.checks import result_warnings

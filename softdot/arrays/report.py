@@ -7,7 +7,7 @@ import csv
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from geometry.files import write_whole_text
+from foundation.files import write_whole_text
 
 if TYPE_CHECKING:
     from softdot.arrays.kernel import ArrayKernel

@@ -13,8 +13,8 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import minimize_scalar
 
+from foundation.arrays import Floats
 from geometry.array.layout import ArrayLayout, SegmentPlace
-from geometry.arrays import Floats
 from geometry.parameters import LayerName
 from softdot.arrays.case import ArrayCase, ArrayPress
 from softdot.arrays.matrix import CrosstalkMatrix

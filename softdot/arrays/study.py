@@ -6,8 +6,8 @@ from typing import Any, Literal
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from geometry.arrays import Floats
-from geometry.executor import Executor
+from foundation.arrays import Floats
+from foundation.executor import Executor
 from softdot.arrays.case import ArrayCase, ArrayPress
 from softdot.arrays.kernel import ArrayKernel
 from softdot.arrays.kernel_errors import KernelCheck, kernel_of

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from foundation.errors import InputError
 from geometry.array.checks import check_array
 from geometry.array.layout import ArrayLayout, SegmentPlace, array_layout
 from geometry.array.parameters import Array, Groove
-from geometry.base import InputError
 from geometry.parameters import LayerName
 from softdot.arrays.case import ArrayCase, ArrayPress
 from softdot.arrays.presses import ArrayPresses

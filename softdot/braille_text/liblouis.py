@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.util import find_spec
 
-from geometry.base import InputError
+from foundation.errors import InputError
 
 INSTALL = (
     "liblouis translates contracted Braille and other languages: install it (Debian and Ubuntu 'apt-get install "

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.braille_text.english import english_cells, english_table
 from softdot.braille_text.liblouis import INSTALL, liblouis, louis_cells
 

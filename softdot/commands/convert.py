@@ -5,8 +5,8 @@ from argparse import Namespace
 from pathlib import Path
 
 from diagnose.signals.columns import NAMES, NUMBERED
-from geometry.base import InputError
-from geometry.files import read_text
+from foundation.errors import InputError
+from foundation.files import read_text
 from softdot.config.rig import load_rig
 from softdot.config.toml import parse_toml
 from softdot.console import GOOD

@@ -4,7 +4,7 @@ from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.console import GOOD, NOT_CONVERGED, complain, only_the_summary_on_stdout, show
 from softdot.diagnosis.folder import FULL_MODEL_S, Options, run_diagnosis
 from solve.solution.errors import NoEquilibriumError

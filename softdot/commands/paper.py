@@ -7,7 +7,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from geometry.executor import Executor
+from foundation.executor import Executor
 from softdot.console import GOOD, NOT_CONVERGED, complain, only_the_summary_on_stdout, show
 from softdot.executors import executor_for
 from softdot.json_files import plain, write_json

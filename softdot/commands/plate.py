@@ -4,7 +4,7 @@ from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.braille_standards import QUANTITIES
 from softdot.console import GOOD, only_the_summary_on_stdout, show
 from softdot.plate.folder import make_plate

@@ -5,7 +5,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.console import GOOD, INTERRUPTED, NOT_CONVERGED, complain, only_the_summary_on_stdout, show
 
 

@@ -88,7 +88,7 @@ def run_read(
 
 def command(chosen: Namespace) -> int:
     """Read chosen.text into chosen.output, study how far conditions may go, or search for a design. InputError."""
-    from geometry.base import InputError
+    from foundation.errors import InputError
     from softdot.config.loading import load_config
     from softdot.progress import progress_of
     from softdot.reading.conditions import refuse_idle
@@ -115,7 +115,7 @@ def _study(chosen: Namespace, config: Config | None) -> int:
     """Study into chosen.output; 130 when it was interrupted. InputError."""
     from dataclasses import replace
 
-    from geometry.base import InputError
+    from foundation.errors import InputError
     from softdot.reading.kernels import opened_kernel
     from softdot.reading.study import ReadingStudy, load_study, usual_axes
     from softdot.reading.study_run import FOLDER, run_reading_study
@@ -157,7 +157,7 @@ def _resumable(chosen: Namespace, folder: str, work: Callable[[Progress], dict[s
 
 def _design(chosen: Namespace) -> int:
     """Search into chosen.output; 3 when no design could be solved, 130 when it was interrupted. InputError."""
-    from geometry.base import InputError
+    from foundation.errors import InputError
     from softdot.reading.decoders import named_decoders
     from softdot.reading.designs.design_file import load_request
     from softdot.reading.designs.run import FOLDER, AskedReading, run_designs

@@ -12,8 +12,8 @@ from threading import Thread
 from typing import TYPE_CHECKING, Any
 from warnings import catch_warnings, simplefilter
 
-from geometry.base import InputError
-from geometry.library_loading import without_collector
+from foundation.errors import InputError
+from foundation.library_loading import without_collector
 from softdot.console import GOOD, NOT_CONVERGED, complain, only_the_summary_on_stdout, show
 from softdot.json_files import plain, write_json
 from softdot.log import lines_when_interactive, warn

@@ -9,8 +9,8 @@ from importlib.resources import files
 from pathlib import Path
 from tempfile import mkdtemp
 
-from geometry.base import InputError
-from geometry.files import read_text
+from foundation.errors import InputError
+from foundation.files import read_text
 from softdot.console import GOOD
 from softdot.log import warn
 

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 
 from diagnose.signals.recording import RunTable
+from foundation.errors import InputError
 from geometry.array.checks import check_array
 from geometry.array.layout import ArrayLayout, array_layout
-from geometry.base import InputError
 from geometry.stack import layers
 from softdot.config.schema import Config
 

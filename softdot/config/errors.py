@@ -8,7 +8,8 @@ from typing import Any, get_args
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from geometry.base import InputError, nearest
+from foundation.errors import InputError
+from foundation.nearest_name import nearest
 from geometry.parameters import Table
 from softdot.config.not_modelled import not_modelled
 

@@ -7,8 +7,8 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from foundation.errors import InputError
 from geometry.array.parameters import Array as Array
-from geometry.base import InputError
 from geometry.fabrication.parameters import Fabrication as Fabrication
 from geometry.parameters import Dot as Dot
 from geometry.parameters import Segment as Segment

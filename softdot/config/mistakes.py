@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import Any, TypeVar
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.config.errors import dotted, tables_at
 from softdot.config.schema import Config
 from softdot.config.toml import parsed

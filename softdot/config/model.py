@@ -2,7 +2,7 @@
 
 from pydantic import ValidationError
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.parameters import Table
 from geometry.part_checks import check_patch
 from softdot.config.errors import sentence

@@ -11,7 +11,7 @@ from pydantic import Field, ValidationError
 
 from diagnose.signals.reading import read_recording
 from diagnose.signals.recording import Recording, RigTables, Run, RunTable
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.parameters import Table
 from geometry.stack import layers
 from softdot.config.array_rig import as_one_segment

@@ -5,8 +5,8 @@ from typing import Any, Self
 
 from pydantic import Field, PrivateAttr, model_validator
 
+from foundation.errors import InputError
 from geometry.array.parameters import Array
-from geometry.base import InputError
 from geometry.fabrication.parameters import Fabrication
 from geometry.parameters import Dot, Segment, Table
 from geometry.stack import layers

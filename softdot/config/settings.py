@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.config.idle import take_out_idle
 from softdot.config.toml import parsed, with_value
 

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from geometry.base import InputError
-from geometry.files import read_text
+from foundation.errors import InputError
+from foundation.files import read_text
 
 DEEPEST = 100
 """Levels of a dotted key or of brackets: far more than any table of softdot has."""

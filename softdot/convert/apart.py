@@ -15,10 +15,12 @@ from typing import Any
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.base import InputError, nearest
-from geometry.environment import own_path, own_python
-from geometry.files import end_with_parent, regular_file, scratch_folder
+from foundation.arrays import Floats
+from foundation.child_processes import end_with_parent, own_path, own_python
+from foundation.errors import InputError
+from foundation.files import regular_file
+from foundation.nearest_name import nearest
+from foundation.scratch_folders import scratch_folder
 from softdot.convert.text_table import decoded
 
 LONGEST_S = 600.0

@@ -6,9 +6,9 @@ from zipfile import BadZipFile
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.base import InputError
-from geometry.files import regular_file
+from foundation.arrays import Floats
+from foundation.errors import InputError
+from foundation.files import regular_file
 from softdot.convert.apart import read_apart
 from softdot.convert.instruments import InstrumentLog, LogChannel, log_of, read_text_log, rising
 from softdot.convert.text_table import TextTable

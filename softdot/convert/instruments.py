@@ -16,8 +16,8 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.base import InputError
+from foundation.arrays import Floats
+from foundation.errors import InputError
 from softdot.convert.settings import Settings, bare, settings_above
 from softdot.convert.text_table import NO_NUMBER, TextTable, read_text_table
 from softdot.convert.units import Unit, known_unit, split_name, unit_of, usual_unit

@@ -13,8 +13,9 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from diagnose.signals.align import lag_between
-from geometry.arrays import Floats
-from geometry.base import InputError, nearest
+from foundation.arrays import Floats
+from foundation.errors import InputError
+from foundation.nearest_name import nearest
 from softdot.convert.instruments import InstrumentLog, LogChannel
 
 COLUMNS = {"V": "voltage_V", "N": "force_N", "mm": "displacement_mm", "C": "temperature_C"}

@@ -7,8 +7,8 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.base import InputError
+from foundation.arrays import Floats
+from foundation.errors import InputError
 from softdot.config.rig import RIG_FILE, load_rig
 
 

@@ -4,7 +4,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.convert.text_table import NUMBER, TextTable
 from softdot.convert.units import known_unit
 

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.base import InputError
-from geometry.files import regular_file
+from foundation.arrays import Floats
+from foundation.errors import InputError
+from foundation.files import regular_file
 
 LARGEST_MB = 500
 MARKS = {b"\xef\xbb\xbf": "utf-8-sig", b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}

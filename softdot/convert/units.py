@@ -7,7 +7,7 @@ is not known is refused by name: a factor of a thousand is no matter of guessing
 import re
 from dataclasses import dataclass
 
-from geometry.base import InputError
+from foundation.errors import InputError
 
 STANDARD_GRAVITY = 9.80665  # m/s2: gram-force and its kin (3rd General Conference on Weights and Measures, 1901)
 POUND_KG = 0.45359237

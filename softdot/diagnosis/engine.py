@@ -3,8 +3,10 @@
 from collections.abc import Sequence
 
 from diagnose.forward import Engine
-from geometry.base import InputError, Report, nearest
-from geometry.executor import HERE, Executor
+from foundation.errors import InputError
+from foundation.executor import HERE, Executor
+from foundation.nearest_name import nearest
+from foundation.progress import Report
 from softdot.config.rig import Rig
 from softdot.config.schema import Config
 from solve.mechanisms import MECHANISMS

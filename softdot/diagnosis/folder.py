@@ -20,9 +20,10 @@ from diagnose.signals.recording import Recording
 from diagnose.verdict.content import FORMAT, verdict, waveform
 from diagnose.verdict.resimulation import OutOfTimeError, Resimulated, resimulate
 from diagnose.verdict.words import sentences
-from geometry.base import InputError, Report
-from geometry.cache import check_folder
-from geometry.executor import Executor
+from foundation.cache import check_folder
+from foundation.errors import InputError
+from foundation.executor import Executor
+from foundation.progress import Report
 from softdot.config.rig import Rig, load_rig
 from softdot.diagnosis.engine import engine_for, narrowed
 from softdot.executors import executor_for

@@ -25,7 +25,7 @@ from diagnose.verdict.names import (
 from diagnose.verdict.resimulation import Resimulated
 from diagnose.verdict.words import Sentence, detected, separation_words
 from export.page import page_environment
-from geometry.files import write_whole_text
+from foundation.files import write_whole_text
 from softdot.version import installed_version
 
 HERE = Path(__file__).parent

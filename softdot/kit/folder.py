@@ -11,8 +11,8 @@ from export.cad import write_3mf, write_step, write_stl
 from export.cut_files.folder import write_cut_files
 from export.printability import check_part, printer_profile
 from export.rendering import ensure_rendering
-from geometry.base import InputError
-from geometry.executor import Executor
+from foundation.errors import InputError
+from foundation.executor import Executor
 from geometry.fabrication.device import Device, array_device, lone_device
 from geometry.fabrication.kit import solid_kit
 from geometry.fabrication.part import ROUNDING_MM

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal, get_args
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.braille_standards import QuantityName
 from geometry.plates.braille_sizes import require_length
 

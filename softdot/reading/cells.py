@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from geometry.arrays import Ints
-from geometry.base import InputError
+from foundation.arrays import Ints
+from foundation.errors import InputError
 from geometry.braille_cells import FIRST
 from softdot.braille_text.back_translation import back_translated, english_text
 from softdot.braille_text.english import english_cells

@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields, replace
 from math import isfinite
 from typing import Any, Literal, get_args
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.braille_standards import BrailleStandard, standard
 from softdot.arrays.kernel import ArrayKernel
 

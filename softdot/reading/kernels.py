@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.parameters import Finite, Positive
 from softdot.arrays.kernel import AGAIN, TABLES, ArrayKernel, load_kernel
 from softdot.config.hashes import config_hash

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import truncnorm
 
-from geometry.arrays import Bools, Floats, Ints
+from foundation.arrays import Bools, Floats, Ints
 from geometry.braille_cells import dot_offset_mm
 from geometry.braille_standards import BrailleStandard
 from softdot.reading.cells import DOTS

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from geometry.arrays import Ints
-from geometry.base import InputError
+from foundation.arrays import Ints
+from foundation.errors import InputError
 from softdot.arrays.kernel import ArrayKernel
 from softdot.progress import Progress
 from softdot.reading.cells import braille, text_of

@@ -7,8 +7,8 @@ from math import cos, radians, sin
 
 import numpy as np
 
-from geometry.arrays import Bools, Floats, Ints
-from geometry.base import InputError
+from foundation.arrays import Bools, Floats, Ints
+from foundation.errors import InputError
 from geometry.braille_standards import BrailleStandard
 from softdot.arrays.kernel import ArrayKernel
 from softdot.reading.conditions import WIDEST_TREMOR, ReadingConditions

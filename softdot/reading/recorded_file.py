@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.base import InputError
-from geometry.files import read_text
+from foundation.errors import InputError
+from foundation.files import read_text
 from softdot.reading.voltages import Voltages
 
 LEAST_SAMPLES, UNEVEN = 50, 0.2

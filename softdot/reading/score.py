@@ -9,7 +9,7 @@ from collections.abc import Hashable, Sequence
 from typing import Any
 
 from diagnose.statistics.proportions import wilson_interval
-from geometry.arrays import Ints
+from foundation.arrays import Ints
 from softdot.reading.cells import DOTS, braille, text_of
 
 BAND = 40

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from softdot.reading.cells import braille
 from softdot.reading.decoders.fitted import Track
 from softdot.reading.line import cell_pitch_mm, nominal_line

@@ -9,8 +9,8 @@ from typing import Any, get_type_hints
 
 from pydantic import Field, ValidationError, create_model
 
-from geometry.base import InputError
-from geometry.files import read_text
+from foundation.errors import InputError
+from foundation.files import read_text
 from geometry.parameters import Finite, Table
 from softdot.arrays.kernel import ArrayKernel
 from softdot.config.errors import sentence

@@ -6,9 +6,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from geometry.base import InputError
-from geometry.executor import Executor
-from geometry.files import release
+from foundation.errors import InputError
+from foundation.executor import Executor
+from foundation.scratch_folders import release
 from softdot.arrays.kernel import ArrayKernel
 from softdot.config.schema import Config
 from softdot.json_files import plain, write_json
@@ -43,7 +43,7 @@ def run_reading_study(
     On one process per core, as many as workers, or on the Dask cluster of a scheduler, whose workers find the kernel
     under the same path. Readings of an earlier study in out are not made again.
     """
-    from geometry.files import hold
+    from foundation.scratch_folders import hold
     from softdot.executors import executor_for
 
     progress = progress or Logged()

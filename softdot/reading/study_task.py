@@ -8,8 +8,9 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from geometry.base import InputError
-from geometry.cache import read_checked, source_hash, write_checked
+from foundation.checked_records import read_checked, write_checked
+from foundation.errors import InputError
+from foundation.source_hash import source_hash
 from softdot.arrays.kernel import JSON, NPZ, ArrayKernel
 from softdot.progress import Untold
 from softdot.reading.cells import cells_of, text_of

@@ -7,8 +7,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from geometry.base import InputError
-from geometry.files import read_text, write_whole_text
+from foundation.errors import InputError
+from foundation.files import read_text, write_whole_text
 
 MOST_DESIGNS = 50
 NAME = re.compile(r"[a-z0-9]{1,40}")

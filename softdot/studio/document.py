@@ -8,7 +8,7 @@ import tomlkit
 from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import Array, InlineTable
 
-from geometry.base import InputError
+from foundation.errors import InputError
 
 MOST_KEPT = 200
 LARGEST = 200_000

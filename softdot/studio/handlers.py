@@ -11,7 +11,7 @@ from tornado.http1connection import HTTP1Connection
 from tornado.web import Application, HTTPError, RequestHandler, stream_request_body
 from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.studio.guard import HEADERS, PAPER_POLICY
 from softdot.studio.session import Session
 from softdot.studio.tabs import Tabs

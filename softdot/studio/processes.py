@@ -20,10 +20,9 @@ from inspect import signature
 from multiprocessing.connection import Connection
 from typing import Any
 
-from geometry.base import InputError
-from geometry.environment import without_working_folder
-from geometry.files import end_with_parent
-from geometry.library_loading import without_collector
+from foundation.child_processes import end_with_parent, without_working_folder
+from foundation.errors import InputError
+from foundation.library_loading import without_collector
 
 LOG = logging.getLogger(__name__)
 WORK = "softdot.studio.work"

@@ -8,8 +8,8 @@ from contextlib import suppress
 from tornado.httpserver import HTTPServer
 from tornado.netutil import bind_sockets
 
-from geometry.base import InputError
-from geometry.files import scratch_folder
+from foundation.errors import InputError
+from foundation.scratch_folders import scratch_folder
 from softdot.studio.autosave import Autosave, folder
 from softdot.studio.guard import Guard
 from softdot.studio.handlers import application

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.studio.autosave import Autosave
 from softdot.studio.comparison import compared
 from softdot.studio.document import Document

@@ -4,7 +4,7 @@ import asyncio
 from contextlib import suppress
 from typing import Any
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.studio.autosave import new_name
 from softdot.studio.guard import Guard
 from softdot.studio.session import Session, Studio

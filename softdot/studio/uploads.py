@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from pathlib import Path, PurePosixPath
 from typing import IO
 
-from geometry.base import InputError
+from foundation.errors import InputError
 
 LARGEST_MB = 25.0
 """Of one upload, as it is sent."""

@@ -10,9 +10,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from geometry.base import InputError
-from geometry.cache import read_checked, write_checked
-from geometry.files import hold, whole_file
+from foundation.checked_records import read_checked, write_checked
+from foundation.errors import InputError
+from foundation.files import whole_file
+from foundation.scratch_folders import hold
 from softdot.config.hashes import config_hash
 from softdot.config.schema import Config
 from softdot.json_files import plain, write_json

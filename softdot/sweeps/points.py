@@ -6,8 +6,8 @@ from concurrent.futures import Future
 from contextlib import nullcontext
 from typing import Any
 
-from geometry.base import InputError
-from geometry.executor import Executor, LostError, each_done
+from foundation.errors import InputError
+from foundation.executor import Executor, LostError, each_done
 from softdot.config.schema import Config
 from softdot.dask_cluster import AwayError
 from softdot.executors import executor_for

@@ -10,7 +10,7 @@ from typing import Any
 from export.page import page_environment
 from export.report import number
 from export.view import INK
-from geometry.files import whole_file, write_whole_text
+from foundation.files import whole_file, write_whole_text
 from softdot.sweeps.points import SOLVED
 
 HERE = Path(__file__).parent

@@ -7,9 +7,9 @@ from contextlib import AbstractContextManager, ExitStack
 from pathlib import Path
 from typing import Any
 
-from geometry.cache import check_folder
-from geometry.executor import Executor
-from geometry.files import release
+from foundation.cache import check_folder
+from foundation.executor import Executor
+from foundation.scratch_folders import release
 from softdot.config.hashes import config_hash
 from softdot.config.schema import Config
 from softdot.executors import executor_for

@@ -8,8 +8,8 @@ from typing import Annotated, Any, Literal, Self
 import numpy as np
 from pydantic import Field, field_validator, model_validator
 
-from geometry.arrays import Floats
-from geometry.base import InputError
+from foundation.arrays import Floats
+from foundation.errors import InputError
 from geometry.parameters import Finite, Table
 from softdot.config.toml import parsed
 

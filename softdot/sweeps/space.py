@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.parameters import Table
 from softdot.config.default_design import completed
 from softdot.config.errors import sentence, shown

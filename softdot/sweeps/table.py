@@ -6,8 +6,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from geometry.base import InputError
-from geometry.files import whole_file
+from foundation.errors import InputError
+from foundation.files import whole_file
 from softdot.json_files import plain
 from softdot.sweeps.points import Record
 

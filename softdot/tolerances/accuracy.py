@@ -5,8 +5,8 @@ softdot.tolerances.discretisation estimates it, is at most what is asked. A pres
 elastic baseline, without mechanisms and slides: what the mesh resolves, the contact and the film, is the same there.
 """
 
-from geometry.base import InputError
-from geometry.cache import source_hash
+from foundation.errors import InputError
+from foundation.source_hash import source_hash
 from mesh.options import MeshOptions
 from mesh.types import MeshingError
 from softdot.case import Case

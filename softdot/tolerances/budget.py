@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from math import copysign, sqrt
 from typing import Any
 
-from geometry.executor import HERE, Executor
+from foundation.executor import HERE, Executor
 from softdot.config.schema import Config
 from softdot.tolerances.questions import Question, answered
 from softdot.tolerances.responses import Response, coarser

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from softdot.config.model import model_of
 from softdot.config.schema import Config
 from softdot.outcome import outcome

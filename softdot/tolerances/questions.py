@@ -3,8 +3,8 @@
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-from geometry.cache import recall, remember
-from geometry.executor import Executor, each_done
+from foundation.cache import recall, remember
+from foundation.executor import Executor, each_done
 from softdot.config.schema import Config
 from softdot.json_files import plain
 from softdot.tolerances.factors import with_factors

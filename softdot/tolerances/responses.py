@@ -8,9 +8,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.base import InputError
-from geometry.cache import data_hash, recall, remember, source_hash
+from foundation.arrays import Floats
+from foundation.cache import data_hash, recall, remember
+from foundation.errors import InputError
+from foundation.source_hash import source_hash
 from mesh.morphing import morphed
 from mesh.types import TetMesh
 from softdot.case import Case

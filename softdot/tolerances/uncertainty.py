@@ -12,7 +12,7 @@ from contextlib import suppress
 from math import hypot
 from typing import Any, TypeVar
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from mesh.types import MeshingError
 from softdot.config.schema import Config
 from softdot.tolerances.discretisation import (

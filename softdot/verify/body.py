@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.sparse import csr_matrix
 
-from geometry.arrays import Bools, Floats, Ints
+from foundation.arrays import Bools, Floats, Ints
 from softdot.verify.loads import FollowerPressure
 from solve.fem.assembly import scatter
 from solve.fem.numbering import Unknowns

@@ -1,6 +1,7 @@
 """All problems of softdot verify, in the order in which they are told."""
 
-from geometry.base import InputError, nearest
+from foundation.errors import InputError
+from foundation.nearest_name import nearest
 from softdot.verify.problem import Problem
 from softdot.verify.problems import (
     bonded,

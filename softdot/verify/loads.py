@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from solve.terms.base import Block, History, Term, Trial
 from solve.terms.contact import SHAPES, SLOPES, WEIGHTS
 

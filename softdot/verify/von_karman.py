@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.integrate import solve_bvp
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 POISSON = 0.3
 START = 1e-4  # radius at which the regular solution begins

@@ -6,7 +6,7 @@ belongs to elements comes as (elements, points, ...).
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.compiled import in_threads
 from solve.tensors import I_OF, J_OF
 

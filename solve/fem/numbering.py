@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Bools, Floats, Ints
+from foundation.arrays import Bools, Floats, Ints
 from mesh.symmetry import in_plane
 from mesh.types import TetMesh
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from solve.compiled import in_threads
 
 

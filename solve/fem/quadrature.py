@@ -4,7 +4,7 @@ from itertools import permutations
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 
 def _orbit(*barycentric: float) -> Floats:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 
 
 @dataclass(frozen=True)

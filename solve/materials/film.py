@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.materials.parameters import VACUUM_PERMITTIVITY, PiezoelectricFilm
 from solve.tensors import strain_rotation
 

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy.linalg
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.materials.inelastic import Memory, StressResponse
 
 # S.P S = dev S : dev S for stresses 11, 22, 33, 12, 23, 13

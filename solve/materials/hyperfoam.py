@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import exprel
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.materials.principal_stretches import log_stretches, principal_stress
 
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 Memory = tuple[Floats, ...]  # arrays whose first axis counts the quadrature points
 

@@ -8,7 +8,7 @@ c10 + 2 c20 x + 3 c30 x^2, that of the power c10 (1 + b x / n)^(n - 1) (Knowles,
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.compiled import in_threads, piece
 from solve.tensors import I_OF, J_OF, inverse
 

@@ -10,7 +10,7 @@ from typing import Protocol
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.materials.invariants import Power, isochoric_energy, isochoric_stress
 from solve.materials.principal_stretches import log_stretches, principal_stress
 from solve.tensors import to_voigt

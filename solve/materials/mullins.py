@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import erf
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.materials.inelastic import Memory, StressResponse
 
 ROUNDING = 1e-14  # energies below this part of the stiffness are rounding: strains below 1e-7

@@ -9,8 +9,9 @@ from typing import Annotated, Any, Literal, Self
 import numpy as np
 from pydantic import AfterValidator, Field, TypeAdapter, model_validator
 
-from geometry.arrays import Floats
-from geometry.base import InputError, nearest
+from foundation.arrays import Floats
+from foundation.errors import InputError
+from foundation.nearest_name import nearest
 from geometry.parameters import Finite, Positive, Table, require_one_of_each
 from solve.materials import laws
 from solve.materials.hyperfoam import HyperfoamLaw

@@ -15,7 +15,7 @@ gap: equal stretches need no tolerance, only the limit p at z = 0 itself.
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.compiled import in_threads, piece
 from solve.tensors import I_OF, J_OF
 

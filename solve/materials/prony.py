@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numba as nb
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.decay import mean_decay
 from solve.materials.inelastic import Memory, StressResponse
 

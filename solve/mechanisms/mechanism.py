@@ -6,7 +6,7 @@ from typing import Any, Self
 
 from pydantic import Field, ValidationError, model_validator
 
-from geometry.base import nearest
+from foundation.nearest_name import nearest
 from geometry.parameters import Table
 from solve.mechanisms.base import Traits, in_short
 from solve.mechanisms.layers.viscoelasticity import VISCOELASTICITY

@@ -9,7 +9,7 @@ The input is integrated exactly for what is linear between the samples; then com
 import numba as nb
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.decay import mean_decay
 from solve.model import Physics, Pyroelectric, Readout
 from solve.readout.filters import Filter

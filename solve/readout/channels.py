@@ -14,7 +14,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from scipy.linalg import eigh
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.model import Physics, Readout
 from solve.readout.amplifier import behind_input, input_of, leaky_integral, mixed_channels
 

@@ -15,7 +15,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from solve.model import Physics, Press, Readout, Waveform
 from solve.readout.amplifier import behind_input, curved_integral, input_of, stages
 from solve.readout.channels import behind_inputs, input_voltages

@@ -18,7 +18,7 @@ import numba as nb
 import numpy as np
 from scipy.linalg import expm
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from solve.readout.stages import FILTER
 
 SAME_STEP = 1e-9  # relative difference of two steps that count as one

@@ -16,7 +16,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.model import Press, Waveform
 from solve.result import PressResult, Trace
 from solve.solution.schedule import corners_s, duration_s, first_time_s, fraction, slide_s, stretches_s

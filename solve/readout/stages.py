@@ -10,7 +10,7 @@ from typing import ClassVar, Protocol
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 INPUT, LIMIT, FILTER = 0, 1, 2
 """Where a stage stands: at the input, at the limit of the amplifier, behind it."""

@@ -5,7 +5,7 @@ from dataclasses import fields
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from geometry.dot import DotShape
 from geometry.parameters import Dot, Segment
 from mesh.types import TetMesh

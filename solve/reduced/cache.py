@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from geometry.cache import data_hash, folder, read_arrays, source_hash, write_arrays
+from foundation.cache import data_hash, folder, read_arrays, write_arrays
+from foundation.source_hash import source_hash
 from mesh.types import mesh_hash
 from solve.reduced.fit import ResponseTable
 from solve.reduced.model import ReducedModel, structure

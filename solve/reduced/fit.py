@@ -14,7 +14,7 @@ from itertools import combinations_with_replacement
 import numpy as np
 from scipy.interpolate import Akima1DInterpolator
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from solve.reduced.modes import leading_modes
 from solve.reduced.sampling import CROWDING, Sample
 

@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.model import Physics, Readout
 from solve.readout.amplifier import amplify, input_of, other_charge_C, stages
 from solve.reduced.fit import CELLS, ResponseTable

@@ -12,7 +12,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 NEW_DIRECTION = 1e-3  # of the largest load: what is left of a smaller one is dropped
 WORTH_A_MODE = 0.02  # of the first mode's size

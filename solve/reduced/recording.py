@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from solve.materials.prony import Prony
 from solve.model import Physics
 from solve.reduced.time_stepping import BY_DEPTH, BY_FORCE

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import brentq
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.press import Setup
 from solve.reduced.frozen_memory import Frozen
 from solve.reduced.stress_metric import StressMetric

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.reduced.modes import Basis
 from solve.solution.linear import LinearSolver
 from solve.system import State, System

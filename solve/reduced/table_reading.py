@@ -2,7 +2,7 @@
 
 import numba as nb
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 
 STEPS = 60  # of the search for a depth
 CLOSE = 1e-12  # of the full depth

@@ -12,7 +12,7 @@ extrapolated to the middle of the sample: both second order. Of a mass that ring
 import numba as nb
 import numpy as np
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from solve.decay import mean_decay
 from solve.materials.prony import branch_stress
 from solve.reduced.table_reading import balance, first_touch, force_and_slope, read, set_features

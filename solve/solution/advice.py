@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from solve.solution.crushing import CRUSHED, smallest_volumes
 from solve.solution.errors import LostContactError, NoEquilibriumError
 from solve.solution.held_rim import rim_met

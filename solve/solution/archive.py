@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.cache import read_arrays, write_arrays
+from foundation.arrays import Floats
+from foundation.cache import read_arrays, write_arrays
 
 
 def write_archive(path: Path, content: Any) -> None:

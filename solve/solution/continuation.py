@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.solution.errors import NoEquilibriumError
 from solve.solution.linear import LinearSolveError, LinearSolver
 from solve.solution.newton import equilibrate

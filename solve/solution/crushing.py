@@ -1,6 +1,6 @@
 """How far elements are squeezed, and whether a step crushes one that can hardly be compressed."""
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.fem.kinematics import deformation_gradient, smallest_jacobian
 from solve.system import State, System
 from solve.terms.film import FilmRegion

@@ -1,6 +1,6 @@
 """Why a press ends without an equilibrium: Newton does not converge, or a dot that a force pushes loses contact."""
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 
 class NoEquilibriumError(RuntimeError):

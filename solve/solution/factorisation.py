@@ -14,7 +14,7 @@ from typing import Any, Protocol
 import numpy as np
 from scipy.sparse.linalg import splu
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.fem.tangent import Tangent
 
 

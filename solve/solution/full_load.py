@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from itertools import pairwise
 from typing import NamedTuple
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from geometry.dot_at_rest import resolve_dot
 from mesh.morphing import morphed
 from mesh.types import TetMesh

@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 EXHAUSTED = 1e-15  # relative length of a direction that is new by round-off alone
 

@@ -22,7 +22,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.fem.tangent import Tangent
 from solve.solution.factorisation import Factorisation, Pardiso, PivotingPardiso, SinglePardiso, SuperLU
 from solve.solution.krylov import flexible_gmres

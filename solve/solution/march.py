@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.solution.advice import explained
 from solve.solution.continuation import snapped
 from solve.solution.crushing import crushes

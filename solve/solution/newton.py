@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from geometry.arrays import Bools, Floats
+from foundation.arrays import Bools, Floats
 from solve.solution.errors import LostContactError, NoEquilibriumError
 from solve.solution.held_rim import OVERLAP, rim_met
 from solve.solution.linear import LinearSolveError, LinearSolver

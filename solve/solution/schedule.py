@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.arrays import Bools, Floats
-from geometry.base import InputError
-from geometry.files import read_text, regular_file
+from foundation.arrays import Bools, Floats
+from foundation.errors import InputError
+from foundation.files import read_text, regular_file
 from solve.model import Press, Waveform
 from solve.solution.thinning import thinned
 from solve.system import Load

@@ -14,7 +14,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from geometry.dot_at_rest import resolve_dot
 from mesh.morphing import morphed
 from mesh.types import TetMesh

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from mesh.symmetry import MIRRORED
 from mesh.types import UPSIDE_DOWN, Planes, TetMesh
 from solve.solution.crushing import crushes

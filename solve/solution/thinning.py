@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from geometry.arrays import Bools, Floats
+from foundation.arrays import Bools, Floats
 
 
 def thinned(time: Floats, values: Floats, tolerance: float, most: int) -> Bools:

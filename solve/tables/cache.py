@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.cache import data_hash, folder, read_arrays, source_hash, write_arrays
+from foundation.arrays import Floats
+from foundation.cache import data_hash, folder, read_arrays, write_arrays
+from foundation.source_hash import source_hash
 from mesh.types import mesh_hash
 from solve.model import Model
 from solve.solution.similar_press import Equilibria

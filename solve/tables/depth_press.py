@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from geometry.dot_at_rest import resolve_dot
 from mesh.types import TetMesh
 from solve.model import Model, Press

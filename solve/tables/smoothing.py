@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.polynomial import Polynomial, chebyshev
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 PRESSED = tuple(float(k / 16) ** 1.5 for k in range(2, 17))
 """Of the depth, at which a press is seen that is to be smoothed: closer where the contact is small."""

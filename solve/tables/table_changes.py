@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.interpolate import make_interp_spline
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.reduced.fit import CELLS, ResponseTable
 
 LEAST_FACTOR = 1e-3  # factor of force and area where contact is all but lost

@@ -4,9 +4,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.base import Report
-from geometry.executor import HERE, Executor, each_done
+from foundation.arrays import Floats
+from foundation.executor import HERE, Executor, each_done
+from foundation.progress import Report
 from solve.reduced.model import ReducedModel
 from solve.solution.errors import NoEquilibriumError
 from solve.tables import cache

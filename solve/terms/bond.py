@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from solve.fem.quadrature import triangle
 from solve.materials.inelastic import Inelastic, StressResponse, at_rest, respond, time_error
 from solve.terms.base import Block, History, Term, Trial

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from solve.decay import mean_decay
 from solve.terms.base import Block, History, Term, Trial
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Bools, Floats, Ints
+from foundation.arrays import Bools, Floats, Ints
 from solve.fem.numbering import Unknowns
 from solve.fem.quadrature import triangle
 from solve.fem.shape_functions import linear, quadratic

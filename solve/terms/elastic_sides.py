@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from solve.terms.base import Block, History, Term, Trial
 from solve.terms.contact import SHAPES, facet_area
 

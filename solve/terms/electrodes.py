@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from mesh.types import signed_volumes, split_prisms
 
 PRISM = split_prisms(np.array([[0, 1, 2]]), np.array([[3, 4, 5]]))

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from solve.fem.film_solid import film_solid
 from solve.fem.kinematics import deformation_gradient, green_lagrange
 from solve.fem.quadrature import tetrahedron

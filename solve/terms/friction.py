@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.arrays import Bools, Floats, Ints
+from foundation.arrays import Bools, Floats, Ints
 from solve.terms.base import Block, History, Term, Trial
 from solve.terms.contact import ACTIVE_SET_STIFFNESS, HATS, SHAPES, ContactFacets
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from solve.fem.shape_functions import quadratic
 from solve.terms.jump_kernels import differentiate_opening, integrate_tangent
 

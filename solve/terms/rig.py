@@ -19,7 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from solve.terms.base import Block, History, Term, Trial
 
 FADE = 0.5  # spectral radius at infinite frequency

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from solve.fem.compressible_solid import compressible_solid
 from solve.fem.kinematics import cauchy_green, deformation_gradient, smallest_jacobian
 from solve.fem.mixed_solid import mixed_solid

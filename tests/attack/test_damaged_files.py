@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.cache import recall, remember
+from foundation.cache import recall, remember
 from mesh.build import remembered
 from mesh.types import LinearMesh
 from softdot.config.loading import config_from

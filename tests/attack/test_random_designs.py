@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from mesh.types import MeshingError
 from softdot.checks import design_warnings, result_warnings
 from softdot.config.loading import config_from

@@ -5,7 +5,7 @@ import pytest
 
 from diagnose.signals.acceleration import acceleration_mm_per_s2, noise_mm
 from diagnose.signals.recording import Run
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from tests.cases import for_each
 
 TIME = np.arange(0.0, 3.0, 0.002)

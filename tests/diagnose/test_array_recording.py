@@ -2,7 +2,7 @@
 
 import pytest
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.config.rig import load_rig
 from tests.diagnose.rigs import HEAD, samples, write_rig
 

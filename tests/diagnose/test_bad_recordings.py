@@ -8,7 +8,7 @@ import pytest
 
 from diagnose.signals import columns
 from diagnose.signals.columns import refuse_slow_sampling
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.config.rig import load_rig
 from tests.diagnose.rigs import COUPON, HEAD, RUN, SEGMENT, csv_text, samples, write_rig
 

@@ -11,7 +11,7 @@ from scipy.io import savemat
 from diagnose.noise.autoregression import fit_autoregression
 from diagnose.noise.estimate import noise_models
 from diagnose.noise.model import NoiseModel
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.config.rig import load_rig
 from softdot.convert import read_mat, read_sheet, white_noise, write_recording
 from tests.diagnose.rigs import HEAD, RUN, SEGMENT, samples

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from diagnose.other_units import other_units
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.config.rig import load_rig
 from tests.diagnose.rigs import COUPON, HEAD, RUN, SEGMENT, samples, write_rig
 

@@ -6,7 +6,7 @@ import pytest
 from diagnose.noise.estimate import noise_models
 from diagnose.noise.rest import resting
 from diagnose.signals.phases import segmented
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.config.rig import load_rig
 from tests.diagnose.rigs import COUPON, HEAD, RUN, SEGMENT, samples, write_rig
 

@@ -10,7 +10,7 @@ from export.build_sheet.contents import gauging
 from export.build_sheet.page import checks, traces
 from export.build_sheet.pictures import ABOVE, _anchor
 from export.build_sheet.steps import steps
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.config.loading import config_from
 from softdot.kit.folder import contents_of
 from tests.cases import for_each

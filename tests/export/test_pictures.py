@@ -119,7 +119,7 @@ def test_missing_opengl_is_one_sentence_not_a_crash() -> None:
         "headless.ensure_rendering()"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, encoding="utf-8", timeout=60, check=False)
-    assert run.stderr.strip().splitlines()[-1] == f"geometry.base.InputError: {ADVICE}"
+    assert run.stderr.strip().splitlines()[-1] == f"foundation.errors.InputError: {ADVICE}"
 
 
 def test_parts_whose_stresses_are_far_apart_have_scales_of_their_own(

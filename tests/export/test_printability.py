@@ -16,7 +16,7 @@ from export.printability.drawing import RING_IN, VIEWS, buried_mm, clearest_view
 from export.printability.measure import measure
 from export.printability.surface import surface_of
 from export.view import frame, page
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.fabrication.part import LimitName
 from tests.cases import for_each
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from export.array.reading_page import MOST_BINS, MOST_VALUES, binned, differing, player_data, write_reading_page
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.braille_cells import dot_offset_mm, raised_dots
 from tests.cases import for_each
 

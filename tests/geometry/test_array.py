@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from foundation.errors import InputError
 from geometry.array.checks import check_array
 from geometry.array.layout import array_layout
 from geometry.array.parameters import Array, Groove
 from geometry.array.parts import array_parts
-from geometry.base import InputError
 from geometry.braille_cells import dot_offset_mm
 from geometry.dot_at_rest import resolve_dot
 from geometry.parameters import Dot, Effector, Electrode, Film, Medium, Segment

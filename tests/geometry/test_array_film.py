@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from matplotlib.path import Path
 
+from foundation.errors import InputError
 from geometry.array.layout import array_layout
 from geometry.array.parameters import Array
-from geometry.base import InputError
 from geometry.fabrication.device import array_device
 from geometry.fabrication.parameters import Fabrication
 from geometry.flat.electrodes import stray_area_mm2

@@ -2,7 +2,7 @@
 
 import pytest
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.braille_cells import dot_offset_mm, raised_dots
 from tests.cases import for_each
 

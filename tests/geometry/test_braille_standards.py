@@ -2,7 +2,7 @@
 
 import pytest
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.braille_standards import QUANTITIES, standard, standard_names
 from tests.cases import for_each
 

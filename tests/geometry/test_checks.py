@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.checks import check_press_depth, check_segment, press_warnings
 from geometry.dot_at_rest import resolve_dot
 from geometry.parameters import Bond, Dot, Effector, Electrode, Film

@@ -5,7 +5,7 @@ from math import asin, atan2, degrees, hypot, radians, sin
 import numpy as np
 import pytest
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.dot_at_rest import resolve_dot
 from geometry.parameters import Dot, Effector
 from geometry.stack import Box, Disc, Dome

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.dot_at_rest import resolve_dot
 from geometry.dot_size import dot_size
 from geometry.parameters import Dot

@@ -4,7 +4,7 @@ from math import pi
 
 import pytest
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.fabrication.device import lone_device
 from geometry.fabrication.parameters import Fabrication
 from geometry.flat.electrodes import stray_area_mm2

@@ -4,7 +4,7 @@ from math import pi
 
 import pytest
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.braille_standards import standard_names
 from geometry.plates.braille_sizes import braille_sizes
 from geometry.plates.height_series import height_series

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from mesh.files.own import read_file
 from tests.cases import for_each
 

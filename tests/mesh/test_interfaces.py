@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from mesh_samples import built, corner_faces, facet_area
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from mesh.interfaces import INTERFACES, inner_nodes, interface_facets, split_interface
 from mesh.types import TET_FACES, TetMesh
 from tests.cases import for_each

@@ -5,7 +5,7 @@ import pytest
 from mesh_samples import corner_faces, dot, options, segment
 
 import mesh
-from geometry.base import InputError
+from foundation.errors import InputError
 from mesh.bisection import refine
 from mesh.footprint import start_triangulation
 from mesh.outline import outline

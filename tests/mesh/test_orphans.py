@@ -13,7 +13,7 @@ pytestmark = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="ne
 CHILD = """
 import sys, time
 {wait}
-from geometry.files import end_with_parent
+from foundation.files import end_with_parent
 end_with_parent(int(sys.argv[1]))
 open(sys.argv[2], "w").close()
 time.sleep(60)

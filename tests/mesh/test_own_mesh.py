@@ -8,7 +8,7 @@ from mesh_samples import built, dot, segment_of
 from own_files import gmsh_22, linear, written
 
 import mesh
-from geometry.base import InputError
+from foundation.errors import InputError
 from mesh.files.formats import REGIONS, write_mesh
 from mesh.files.own import contents, own_mesh
 from mesh.options import MeshOptions

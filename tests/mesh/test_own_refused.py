@@ -9,7 +9,7 @@ import pytest
 from mesh_samples import built, segment, segment_of
 from own_files import linear, written
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from mesh.files.formats import write_mesh
 from mesh.files.own import own_mesh
 from mesh.outline import curved_surface, outline

@@ -8,7 +8,8 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from geometry.base import InputError, nearest
+from foundation.errors import InputError
+from foundation.nearest_name import nearest
 from geometry.parameters import Dot, Effector, Segment
 from mesh.options import MeshOptions
 from softdot import Case

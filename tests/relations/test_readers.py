@@ -11,7 +11,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.config.rig import load_rig
 from softdot.convert import apart, files, read_log, read_mat, read_oscilloscope, run_text, write_recording
 from tests.cases import for_each

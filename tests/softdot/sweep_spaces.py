@@ -3,7 +3,7 @@
 import copy
 from contextlib import contextmanager
 
-from geometry.executor import HERE
+from foundation.executor import HERE
 from softdot.sweeps.points import solve_point
 from softdot.warm_up import TINY
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import softdot
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot import Case
 
 TABLES = {

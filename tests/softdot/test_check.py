@@ -6,7 +6,7 @@ import tomllib
 import pytest
 from hypothesis import HealthCheck, given, settings
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.case import Case
 from softdot.checks import expected_cost
 from softdot.cli import main

@@ -2,7 +2,7 @@
 
 import pytest
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.case import Case
 from softdot.config.hashes import config_hash
 from softdot.config.loading import load_config

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import softdot
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.config.loading import config_from
 from softdot.differentiation import derivatives, value_of
 from tests.cases import for_each

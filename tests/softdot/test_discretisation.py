@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.case import Case
 from softdot.config.loading import config_from
 from softdot.summary import press_part

@@ -34,7 +34,19 @@ DOCUMENTS = sorted(
         ROOT / "examples" / "README.md",
     ]
 )
-SOURCES = ("geometry", "mesh", "solve", "export", "diagnose", "softdot", "docs", "tests", "examples", "benchmarks")
+SOURCES = (
+    "foundation",
+    "geometry",
+    "mesh",
+    "solve",
+    "export",
+    "diagnose",
+    "softdot",
+    "docs",
+    "tests",
+    "examples",
+    "benchmarks",
+)
 HOMES = (
     geometry.parameters, geometry.array.parameters, geometry.fabrication.parameters, import_module("mesh.build"),
     solve.model, solve.mechanisms, solve.materials.parameters,

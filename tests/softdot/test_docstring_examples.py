@@ -9,7 +9,7 @@ import pytest
 import softdot
 
 ROOT = Path(__file__).parents[2]
-PACKAGES = ("geometry", "mesh", "solve", "export", "diagnose", "softdot")
+PACKAGES = ("foundation", "geometry", "mesh", "solve", "export", "diagnose", "softdot")
 MODULES = sorted(
     ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
     for top in PACKAGES

@@ -14,8 +14,8 @@ from pathlib import Path
 import psutil
 import pytest
 
-from geometry.base import InputError
-from geometry.executor import LocalProcesses, each_done
+from foundation.errors import InputError
+from foundation.executor import LocalProcesses, each_done
 from softdot import dask_cluster as scheduler_module
 from softdot.cli import main
 from softdot.config.loading import config_from
@@ -182,7 +182,7 @@ def test_a_scheduler_that_goes_away_is_one_sentence_and_the_points_stay(tmp_path
 
 def workers_alive():
     """Numbers of the processes that this one has started and that do calls."""
-    return [child.pid for child in psutil.Process().children() if "geometry.beside" in child.cmdline()]
+    return [child.pid for child in psutil.Process().children() if "foundation.worker_process" in child.cmdline()]
 
 
 class Killer(Logged):

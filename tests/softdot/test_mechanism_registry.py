@@ -158,7 +158,7 @@ def test_a_diagnosis_names_it(tmp_path, monkeypatch):
 def test_a_name_stands_in_no_product_module_but_its_own_two_and_the_hidden_worlds():
     """Texts and docstrings may speak of friction; no string is the name."""
     found = {name: set() for name in MECHANISMS}
-    for package in ("geometry", "mesh", "solve", "export", "diagnose", "softdot"):
+    for package in ("foundation", "geometry", "mesh", "solve", "export", "diagnose", "softdot"):
         for path in (ROOT / package).rglob("*.py"):
             for node in ast.walk(ast.parse(path.read_text("utf-8"))):
                 if isinstance(node, ast.Constant) and node.value in found:

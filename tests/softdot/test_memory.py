@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot import memory
 from softdot.cli import main
 from tests.cases import for_each

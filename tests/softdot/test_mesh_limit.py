@@ -2,7 +2,7 @@
 
 import pytest
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.dot_at_rest import resolve_dot
 from mesh.build import build
 from mesh.options import MeshOptions

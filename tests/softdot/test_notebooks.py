@@ -11,7 +11,7 @@ import nbformat
 import pytest
 from nbclient import NotebookClient
 
-from geometry.environment import ONE_THREAD
+from foundation.thread_pools import ONE_THREAD
 from tests.cases import for_each
 
 ROOT = Path(__file__).parents[2]

@@ -4,7 +4,7 @@ import shutil
 
 import pytest
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.braille_text.english import english_table
 from softdot.braille_text.liblouis import liblouis
 from softdot.braille_text.lines import translate

@@ -11,7 +11,7 @@ from unittest.mock import patch
 import pytest
 from hypothesis import HealthCheck, Phase, given, note, seed, settings
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.case import Case
 from softdot.commands.run import run_config
 from softdot.config.loading import load_config

@@ -14,7 +14,7 @@ TEXT = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
 RECIPES = dict(re.findall(r"^### (.+?)\n(.*?)(?=^### |\Z)", TEXT, re.DOTALL | re.MULTILINE))
 BLOCK = re.compile(r"^```(?:python|toml)\n# (.+?)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 LEFT_OUT = shutil.ignore_patterns("*.pyc.*", "*.tmp.*")  # what is compiled stays, else it takes 20 s again
-PACKAGES = ("geometry", "mesh", "solve", "export", "diagnose", "softdot")
+PACKAGES = ("foundation", "geometry", "mesh", "solve", "export", "diagnose", "softdot")
 
 
 def apply(folder: Path, where: str, text: str) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from geometry import cache
+from foundation import cache
 from mesh.build import key as mesh_key
 from mesh.options import MeshOptions
 from softdot.case import Case, press_key
@@ -14,7 +14,7 @@ from softdot.outcome import outcome_key
 from tests.cases import for_each
 
 PROGRAM = cache.PROGRAM
-PACKAGES = ("geometry", "mesh", "solve", "export", "diagnose", "softdot")
+PACKAGES = ("foundation", "geometry", "mesh", "solve", "export", "diagnose", "softdot")
 
 
 @pytest.fixture(scope="module")

@@ -2,11 +2,13 @@
 
 import errno
 import json
+from dataclasses import replace
 from functools import partial
 
+import numpy as np
 import pytest
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot import outcome as outcome_module
 from softdot.cli import main
 from softdot.sweeps import folder as store
@@ -97,7 +99,9 @@ def test_the_summary_is_printed_and_kept(tmp_path, out, capfd):
 
 
 def test_the_peak_is_the_largest_magnitude_with_its_sign(stages, out):
-    stages.solve = lambda *_: result_of([0.0, -0.4, 0.3])
+    pressed = result_of([0.0, 0.1, 0.3])
+    charge_C = 1e-12 * np.array([[0.0], [-8.0], [6.0]])
+    stages.solve = lambda *_: replace(pressed, trace=replace(pressed.trace, film_charge_C=charge_C))
     run_sweep(space_from(space_of(depths(0.1))), out)
     assert rows(out)[0]["peak.open_circuit_voltage_V"] == pytest.approx(-0.8)
 
@@ -292,7 +296,7 @@ def test_a_sweep_is_a_csv_table_a_picture_and_a_page_too(presses, tmp_path, out)
 
 @pytest.mark.usefixtures("presses")
 def test_a_second_sweep_into_a_folder_is_refused_and_the_first_keeps_its_file(tmp_path, out):
-    from geometry.files import hold, release
+    from foundation.scratch_folders import hold, release
 
     assert sweep(tmp_path, out, depths(0.1)) == 0
     half = out / "points" / ".half.json.part"

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.cli import main
 from softdot.config.toml import parsed, with_value
 from softdot.sweeps.space import load_space, space_from

@@ -5,7 +5,7 @@ from contextlib import nullcontext
 
 import pytest
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.dot_at_rest import resolve_dot
 from softdot.checks import design_warnings, refuse_held_rim, result_warnings
 from softdot.config.loading import config_from, load_config

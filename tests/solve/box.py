@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse.linalg import spsolve
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from softdot.verify.lattice import KUHN
 from solve.fem.assembly import scatter
 from solve.fem.pattern import build_pattern

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from mesh.interfaces import interface_facets, split_interface
 from solve.delaminations import delaminated_facets
 from solve.materials.laws import InvariantLaw

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.checks import check_pushed_dot
 from geometry.dot import DotShape
 from geometry.parameters import Dot, Electrode, Film, Medium, Segment

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from solve.model import Physics, Press, Readout, Waveform
 from solve.readout.amplifier import leaky_integral
 from solve.readout.course import course

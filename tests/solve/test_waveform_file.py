@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from solve.model import Waveform
 from solve.solution.schedule import duration_s, fraction
 

@@ -4,7 +4,7 @@ import ast
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-PACKAGES = ("geometry", "mesh", "solve", "export", "diagnose", "softdot")
+PACKAGES = ("foundation", "geometry", "mesh", "solve", "export", "diagnose", "softdot")
 COMMANDS = {"softdot/commands/paper.py", "softdot/commands/prove.py"}
 
 

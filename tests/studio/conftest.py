@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from geometry.environment import ONE_THREAD
+from foundation.thread_pools import ONE_THREAD
 from tests.softdot.interrupts import heard
 
 QUICK = """\

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.studio.document import LARGEST, MOST_KEPT, Document
 from tests.cases import for_each
 

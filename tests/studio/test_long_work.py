@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.environment import ONE_THREAD
+from foundation.thread_pools import ONE_THREAD
 from softdot.commands.studio import start_text
 from tests.cases import for_each
 from tests.diagnose.rigs import COUPON, HEAD, write_rig

@@ -6,7 +6,7 @@ import zipfile
 
 import pytest
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.studio import uploads
 from softdot.studio.uploads import split, unpack
 from tests.cases import for_each

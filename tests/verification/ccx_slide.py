@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from softdot.verify.lattice import FACES, Grid, disc
 
 CCX = shutil.which("ccx")

@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.special import erf
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.fem.quadrature import tetrahedron
 from solve.fem.shape_functions import linear
 from solve.materials.film_yield import FilmPlasticity

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from geometry.dot import DotShape
 from geometry.parameters import Segment
 from mesh.layered import layered

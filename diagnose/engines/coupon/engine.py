@@ -23,8 +23,9 @@ from diagnose.signals.recording import Drive, Recording, Run, Specimen
 from diagnose.vocabulary.base import candidates_of_coupon
 from diagnose.vocabulary.layers.property_error import relative_error
 from diagnose.vocabulary.scene import CouponScene
-from geometry.arrays import Floats
-from geometry.base import InputError, Report
+from foundation.arrays import Floats
+from foundation.errors import InputError
+from foundation.progress import Report
 from solve.materials.parameters import Material, PiezoelectricFilm, find_material
 from solve.mechanisms import Mechanism
 from solve.model import Model

@@ -10,7 +10,7 @@ import numba as nb
 import numpy as np
 
 from diagnose.engines.coupon.relaxation import Relaxation, solved
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.materials.multiplicative import MultiplicativeMaxwell, flow_weights
 from solve.materials.prony import branch_stress
 

@@ -13,7 +13,7 @@ from typing import ClassVar, Protocol
 import numpy as np
 
 from diagnose.signals.recording import Specimen
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from diagnose.engines.coupon.flow import FlowingBranches
 from diagnose.engines.coupon.kinematics import Kinematics, Reading, SimpleShear
 from diagnose.engines.coupon.relaxation import NO_SERIES, Relaxation
 from diagnose.signals.recording import Drive
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.materials.inelastic import StressResponse
 from solve.materials.laws import MediumLaw
 from solve.materials.mullins import Softening

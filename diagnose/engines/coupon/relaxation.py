@@ -10,7 +10,7 @@ from functools import lru_cache
 import numba as nb
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.materials.prony import Prony, branch_stress
 
 NO_SERIES = Prony((), ())

@@ -19,7 +19,7 @@ from diagnose.engines.coupon.relaxation import NO_SERIES, Relaxation
 from diagnose.engines.coupon.tested_layer import LAYER
 from diagnose.engines.proportional.medium import LARGEST_STRAIN, MEDIUM
 from diagnose.vocabulary.scene import film_capacitance_pF
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.materials.laws import MediumLaw
 from solve.materials.mullins import Softening
 from solve.materials.parameters import PiezoelectricFilm

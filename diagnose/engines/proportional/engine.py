@@ -21,8 +21,9 @@ from diagnose.signals.recording import Recording, Run
 from diagnose.vocabulary.base import candidates_of_unknown_geometry
 from diagnose.vocabulary.scales import growing
 from diagnose.vocabulary.scene import Scene, film_capacitance_pF
-from geometry.arrays import Floats
-from geometry.base import InputError, Report
+from foundation.arrays import Floats
+from foundation.errors import InputError
+from foundation.progress import Report
 from solve.mechanisms import Mechanism
 from solve.model import Model, Readout
 from solve.solution.errors import NoEquilibriumError

@@ -11,8 +11,8 @@ from diagnose.engines.segment.prepared import Prepared
 from diagnose.engines.segment.presses import Place, moved
 from diagnose.forward import Candidate, Setting
 from diagnose.signals.recording import Recording
-from geometry.base import Report
-from geometry.executor import HERE, Executor
+from foundation.executor import HERE, Executor
+from foundation.progress import Report
 from solve.model import Model
 from solve.tables.rig_mesh import MeshSettings
 

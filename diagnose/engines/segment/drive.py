@@ -6,7 +6,7 @@ import numpy as np
 
 from diagnose.signals.phases import Segmentation
 from diagnose.signals.recording import Run
-from geometry.arrays import Bools, Floats
+from foundation.arrays import Bools, Floats
 from solve.reduced.time_stepping import BY_DEPTH, BY_FORCE
 
 

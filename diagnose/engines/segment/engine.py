@@ -24,9 +24,9 @@ from diagnose.forward import Candidate, Setting, Signals
 from diagnose.signals.recording import Recording, Run
 from diagnose.vocabulary.base import candidates_of_segment
 from diagnose.vocabulary.scene import Scene
-from geometry.arrays import Floats
-from geometry.base import Report
-from geometry.executor import HERE, Executor
+from foundation.arrays import Floats
+from foundation.executor import HERE, Executor
+from foundation.progress import Report
 from solve.materials.parameters import PiezoelectricFilm
 from solve.mechanisms import Mechanism, with_mechanisms
 from solve.model import Model, Readout

@@ -12,8 +12,8 @@ from diagnose.engines.segment.response import FilmPlate, Mechanics, shown
 from diagnose.engines.segment.solved_times import knots
 from diagnose.forward import Signals
 from diagnose.signals.recording import Run
-from geometry.arrays import Floats
-from geometry.base import Report
+from foundation.arrays import Floats
+from foundation.progress import Report
 from solve.model import Model, Press, Waveform
 from solve.press import press_segment
 from solve.result import PressResult, Trace

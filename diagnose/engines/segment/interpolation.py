@@ -14,7 +14,7 @@ import numpy as np
 from scipy.interpolate import BSpline, RBFInterpolator, make_interp_spline
 
 from diagnose.forward import Candidate, Coordinate
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 DEGREE = 3
 TIGHT = 100.0  # along to across a glue; with less than this between them, Newton's method has no trouble

@@ -12,7 +12,7 @@ import numpy as np
 
 from diagnose.engines.segment.drive import Drive
 from diagnose.engines.segment.response import Mechanics, mechanics
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.model import Model
 from solve.reduced.fit import ResponseTable
 

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from diagnose.engines.segment.response import Mechanics
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.reduced.fit import CELLS, ResponseTable
 from solve.tables.depth_press import RETURN
 

@@ -13,9 +13,9 @@ from diagnose.engines.segment.response import FilmPlate
 from diagnose.forward import Candidate, Setting
 from diagnose.signals.recording import Recording
 from diagnose.vocabulary.layers.viscoelasticity import LARGEST_SHARE, relaxable
-from geometry.arrays import Floats
-from geometry.base import Report
-from geometry.executor import HERE, Executor
+from foundation.arrays import Floats
+from foundation.executor import HERE, Executor
+from foundation.progress import Report
 from solve.mechanisms.layers.viscoelasticity import VISCOELASTICITY
 from solve.model import Model
 from solve.reduced.fit import CELLS, ResponseTable

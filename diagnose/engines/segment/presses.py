@@ -8,9 +8,9 @@ import numpy as np
 
 from diagnose.engines.segment.path_history import BACK
 from diagnose.forward import Candidate
-from geometry.arrays import Floats
-from geometry.base import Report
-from geometry.executor import Executor
+from foundation.arrays import Floats
+from foundation.executor import Executor
+from foundation.progress import Report
 from solve.delaminations import with_rims_of_patches
 from solve.mechanisms import with_mechanisms
 from solve.model import Model, Physics

@@ -1,7 +1,7 @@
 """What a diagnosis with the 3D model cannot take as its baseline."""
 
 from diagnose.signals.recording import Recording
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.checks import check_press_depth
 from solve.materials.parameters import PiezoelectricFilm
 from solve.model import Model

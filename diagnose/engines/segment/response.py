@@ -7,7 +7,7 @@ import numpy as np
 
 from diagnose.engines.segment.drive import Drive
 from diagnose.signals.recording import Run
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from solve.model import Model, Physics, Readout
 from solve.readout.amplifier import amplify, other_charge_C
 from solve.readout.channels import amplify_channels

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.reading.decoders import learned, model, threshold
 from softdot.reading.decoders.fitted import Track
 from softdot.reading.decoders.model import DecodedCells

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from geometry.arrays import Bools, Floats
+from foundation.arrays import Bools, Floats
 from softdot.reading.cells import DOTS
 from softdot.reading.decoders.fitted import Track, cell_fit, explained
 from softdot.reading.decoders.model import left_over

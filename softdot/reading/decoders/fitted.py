@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from softdot.reading.cells import DOTS
 from softdot.reading.decoders.templates import DotTemplates, Lagged, Posture
 from softdot.reading.line import cell_pitch_mm, dot_places_mm

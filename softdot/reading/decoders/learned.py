@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from sklearn.neural_network import MLPClassifier
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from softdot.reading.cells import KINDS_OF_CELL
 from softdot.reading.conditions import ReadingConditions
 from softdot.reading.decoders.fitted import Track

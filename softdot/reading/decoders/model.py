@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import solveh_banded
 
-from geometry.arrays import Bools, Floats, Ints
+from foundation.arrays import Bools, Floats, Ints
 from softdot.reading.cells import DOTS
 from softdot.reading.conditions import USUAL_SHARE_OF_DEPTH
 from softdot.reading.decoders.fitted import RIDGE, CellFit, Track

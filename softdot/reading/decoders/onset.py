@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.base import InputError
+from foundation.arrays import Floats
+from foundation.errors import InputError
 from softdot.reading.decoders.templates import Posture, templates
 from softdot.reading.voltages import Reader, Voltages
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
-from geometry.base import InputError
+from foundation.arrays import Floats, Ints
+from foundation.errors import InputError
 from softdot.reading.cells import KINDS_OF_CELL
 from softdot.reading.conditions import USUAL_SHARE_OF_DEPTH
 from softdot.reading.line import cell_pitch_mm, dot_places_mm, raised

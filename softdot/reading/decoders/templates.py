@@ -7,7 +7,7 @@ import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
 from scipy.ndimage import map_coordinates, spline_filter1d
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from softdot.reading.conditions import USUAL_SHARE_OF_DEPTH
 from softdot.reading.line import dot_places_mm
 from softdot.reading.motion import reach_mm

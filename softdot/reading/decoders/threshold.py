@@ -7,7 +7,7 @@ knows of crosstalk, of neighbours and of shapes is not used; speed and place are
 import numpy as np
 from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from softdot.reading.cells import DOTS
 from softdot.reading.decoders.fitted import Track
 from softdot.reading.decoders.model import DecodedCells, trimmed

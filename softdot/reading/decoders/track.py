@@ -9,7 +9,7 @@
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from softdot.reading.cells import DOTS
 from softdot.reading.decoders.first_cells import SHIFT_STEP_MM, first_cells
 from softdot.reading.decoders.fitted import CellFit, Track, cell_fit, explained

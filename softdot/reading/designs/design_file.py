@@ -10,7 +10,7 @@ from typing import Annotated, Any, Self
 
 from pydantic import Field, ValidationError, model_validator
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.parameters import Table
 from softdot.arrays.case import ArrayCase
 from softdot.config.default_design import completed

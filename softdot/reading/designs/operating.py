@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from diagnose.statistics.proportions import wilson_interval
-from geometry.arrays import Floats
-from geometry.base import InputError
+from foundation.arrays import Floats
+from foundation.errors import InputError
 from mesh.types import MeshingError
 from softdot.arrays.case import ArrayCase
 from softdot.arrays.kernel import ArrayKernel

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from geometry.files import write_whole_text
+from foundation.files import write_whole_text
 from softdot.config.hashes import config_hash
 from softdot.json_files import plain, write_json
 from softdot.reading.cells import cells_of, text_of

@@ -8,10 +8,11 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from geometry.base import InputError
-from geometry.cache import read_checked, source_hash, write_checked
-from geometry.executor import Executor
-from geometry.files import hold, release
+from foundation.checked_records import read_checked, write_checked
+from foundation.errors import InputError
+from foundation.executor import Executor
+from foundation.scratch_folders import hold, release
+from foundation.source_hash import source_hash
 from softdot.config.hashes import config_hash
 from softdot.json_files import plain, write_json
 from softdot.log import LOG_FILE, log_file

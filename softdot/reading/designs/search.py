@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import norm, qmc
 
-from geometry.arrays import Bools, Floats
+from foundation.arrays import Bools, Floats
 from softdot.sweeps.sampling import Axis, at, share_of
 
 FEWEST = 3

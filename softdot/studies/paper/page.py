@@ -8,7 +8,7 @@ from typing import Any
 
 from export.page import page_environment
 from export.report import number
-from geometry.files import write_whole_text
+from foundation.files import write_whole_text
 from softdot.studies.paper.comparison import claims_table, inconsistencies_table, numbers_table
 from softdot.studies.paper.section import Block, Figure, Heading, PaperTable, Section
 from softdot.version import installed_version

@@ -3,7 +3,7 @@
 from collections.abc import Hashable, Mapping
 from typing import Any, TypeVar
 
-from geometry.executor import Executor
+from foundation.executor import Executor
 from softdot.config.schema import Config
 from softdot.progress import Progress
 

@@ -12,9 +12,9 @@ from pathlib import Path
 from runpy import run_module
 from typing import Any
 
-from geometry.files import end_with_parent
+from foundation.child_processes import end_with_parent
 
-PACKAGES = ("geometry", "mesh", "solve", "export", "diagnose", "softdot")
+PACKAGES = ("foundation", "geometry", "mesh", "solve", "export", "diagnose", "softdot")
 SYSTEM = ("/dev", "/proc", "/sys", "/etc", "/usr", "/lib", "/lib64", "/opt")
 WATCHED = frozenset({"open", "os.listdir", "os.scandir"})
 

@@ -9,8 +9,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from geometry.environment import ONE_THREAD, own_python
-from geometry.files import scratch_folder
+from foundation.child_processes import own_python
+from foundation.scratch_folders import scratch_folder
+from foundation.thread_pools import ONE_THREAD
 
 KEPT = ("PATH", "LANG", "LC_ALL", "LD_LIBRARY_PATH")
 LINES = 3

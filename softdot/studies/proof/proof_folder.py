@@ -6,7 +6,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from geometry.cache import read_checked, write_checked
+from foundation.checked_records import read_checked, write_checked
 from softdot.json_files import plain, write_json
 from softdot.output import Product, check_output
 from softdot.studies.proof.commitment import verified

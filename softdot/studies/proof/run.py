@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from geometry.base import InputError
-from geometry.cache import check_folder, data_hash, source_hash
+from foundation.cache import check_folder, data_hash
+from foundation.errors import InputError
+from foundation.source_hash import source_hash
 from softdot.json_files import plain, write_json
 from softdot.log import LOG_FILE, log_file
 from softdot.progress import Logged, Progress
@@ -111,7 +112,7 @@ def _tried(
     """Names and records as they come, from one process per core or from a cluster that runs already."""
     if not missing:
         return
-    from geometry.cache import folder
+    from foundation.cache import folder
     from softdot.executors import executor_for
     from softdot.sweeps.points import all_ended
 

@@ -4,12 +4,12 @@ from collections.abc import Mapping
 from pathlib import PurePath
 from typing import Any
 
+from foundation.errors import InputError
+from foundation.library_loading import load_alone
 from geometry.array.checks import check_array
-from geometry.base import InputError
 from geometry.checks import check_segment
 from geometry.dot import DotShape
 from geometry.dot_at_rest import resolve_dot
-from geometry.library_loading import load_alone
 from softdot.arrays.case import ArrayCase
 from softdot.case import Case
 from softdot.checks import design_warnings, expected_cost

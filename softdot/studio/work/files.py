@@ -4,7 +4,7 @@ import shutil
 from pathlib import Path
 from typing import Any, get_args
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.config.schema import Config
 from softdot.studio.processes import Tell
 from softdot.studio.work.design import case_of, config_of

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.case import Case
 from softdot.config.schema import Config
 from softdot.json_files import plain

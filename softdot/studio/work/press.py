@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from export.viewer_data import viewer_data
-from geometry.base import InputError
+from foundation.errors import InputError
 from mesh.types import MeshingError
 from softdot.arrays.case import ArrayCase
 from softdot.arrays.presses import remembered, signals_of

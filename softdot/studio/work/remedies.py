@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.config.default_design import completed
 from softdot.config.schema import Config
 from softdot.config.toml import parsed, with_value

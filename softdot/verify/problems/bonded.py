@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.special import iv
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from softdot.verify.body import solid_body
 from softdot.verify.lattice import Grid, disc, graded, grid
 from softdot.verify.problem import Problem

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from softdot.verify.problem import Problem
 from solve.model import Physics, Readout
 from solve.readout.amplifier import amplify

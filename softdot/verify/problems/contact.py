@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from geometry.dot import DotShape
 from softdot.verify.body import ElasticBody, solid_body
 from softdot.verify.lattice import Grid, disc, graded

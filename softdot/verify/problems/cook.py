@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
+from foundation.arrays import Floats, Ints
 from softdot.verify.body import ElasticBody, solid_body
 from softdot.verify.lattice import Grid, grid
 from softdot.verify.loads import traction_force

@@ -4,7 +4,7 @@ E' = E / (1 - nu^2), per unit width, small displacements.
 
 import numpy as np
 
-from geometry.arrays import Bools, Floats, Ints
+from foundation.arrays import Bools, Floats, Ints
 from softdot.verify.body import ElasticBody, solid_body
 from softdot.verify.lattice import grid
 from softdot.verify.problem import Problem

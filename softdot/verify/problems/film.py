@@ -4,7 +4,7 @@ from functools import partial
 
 import numpy as np
 
-from geometry.arrays import Bools
+from foundation.arrays import Bools
 from softdot.verify.body import ElasticBody
 from softdot.verify.lattice import Grid, grid
 from softdot.verify.problem import Problem

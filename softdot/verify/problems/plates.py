@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from softdot.verify.body import solid_body
 from softdot.verify.lattice import Grid, disc, graded, grid
 from softdot.verify.loads import traction_force

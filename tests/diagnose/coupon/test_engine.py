@@ -12,7 +12,7 @@ from diagnose.engines.coupon.relaxation_spectrum import relaxation_times
 from diagnose.forward import Setting
 from diagnose.signals.recording import Recording
 from diagnose.vocabulary.layers.viscoelasticity import LINEAR
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.config.loading import config_from
 from solve.materials.parameters import Hyperfoam, Linear, MooneyRivlin, NeoHookean, Ogden, PiezoelectricFilm, Yeoh
 from tests.cases import for_each

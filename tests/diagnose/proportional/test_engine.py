@@ -7,7 +7,7 @@ from scipy.special import erf
 from diagnose.engines.proportional.engine import proportional_engine
 from diagnose.forward import Setting
 from diagnose.signals.recording import Recording, Run
-from geometry.base import InputError
+from foundation.errors import InputError
 from solve.model import Readout
 from tests.cases import for_each
 

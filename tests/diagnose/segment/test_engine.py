@@ -8,7 +8,7 @@ from diagnose.engines.segment.engine import segment_engine
 from diagnose.engines.segment.kept_answers import Courses
 from diagnose.forward import Setting
 from diagnose.signals.recording import Recording
-from geometry.base import InputError
+from foundation.errors import InputError
 from solve.mechanisms import Mechanism
 from solve.model import Readout
 from solve.tables import cache as store

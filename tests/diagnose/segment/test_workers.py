@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from geometry.executor import LocalProcesses
+from foundation.executor import LocalProcesses
 from solve.tables import cache as store
 from solve.tables import workers
 from tests.diagnose.segment.rigs import engine, silent

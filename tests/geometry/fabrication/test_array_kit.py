@@ -6,10 +6,10 @@ import pytest
 import trimesh
 
 from export.cad import write_stl
+from foundation.errors import InputError
 from geometry.array.layout import array_layout
 from geometry.array.parameters import Array, Groove
 from geometry.array.parts import array_parts
-from geometry.base import InputError
 from geometry.dot_at_rest import resolve_dot
 from geometry.fabrication.clamp_frame import frame_parts
 from geometry.fabrication.device import Device, array_device, lone_device

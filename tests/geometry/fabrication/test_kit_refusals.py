@@ -2,7 +2,7 @@
 
 import pytest
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.fabrication.device import lone_device
 from geometry.fabrication.kit import solid_kit
 from geometry.fabrication.parameters import Fabrication

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.arrays.case import ArrayCase
 from softdot.arrays.kernel import ArrayKernel, load_kernel
 from softdot.arrays.kernel_checks import cells_by_chance, every_cell, places_by_chance

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.arrays.case import ArrayCase
 from softdot.cli import main
 from softdot.config.hashes import config_hash

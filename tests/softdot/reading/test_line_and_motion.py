@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.braille_standards import standard
 from softdot.reading.cells import cells_of
 from softdot.reading.conditions import WIDEST_SIGMA, ReadingConditions, refuse_idle

@@ -6,7 +6,7 @@ import json
 import numpy as np
 import pytest
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.cli import main
 from softdot.reading.conditions import ReadingConditions
 from softdot.reading.study import ReadingStudy, load_study, points, repeated, with_value

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from softdot.braille_text.english import english_table
 from softdot.braille_text.liblouis import liblouis
 from softdot.reading.cells import MOST_CELLS, braille, cells_of, text_of

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from geometry.base import InputError
+from foundation.errors import InputError
 from geometry.braille_standards import standard
 from softdot.reading.decoders.templates import Posture, templates
 from softdot.reading.kernels import electronics_of

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from geometry.executor import HERE
+from foundation.executor import HERE
 from softdot.progress import Logged
 from softdot.studies.paper.beyond import search as searching
 from softdot.studies.paper.beyond.comparison import beats

@@ -2,8 +2,8 @@
 
 import pytest
 
-from geometry.base import InputError
-from geometry.executor import HERE
+from foundation.errors import InputError
+from foundation.executor import HERE
 from softdot.progress import Logged
 from softdot.studies.paper.presses import NotSolvedError, solve_named
 from softdot.studies.paper.segment import segment_config

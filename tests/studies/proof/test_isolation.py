@@ -9,15 +9,16 @@ from pathlib import Path
 
 import pytest
 
-from geometry.environment import ONE_THREAD
+from foundation.thread_pools import ONE_THREAD
 from softdot.studies.proof import isolation
 from softdot.studies.proof.commitment import digest_of, seal, verified
 from softdot.studies.proof.guard import PACKAGES, allowed_roots
 from tests.cases import for_each
 
 ROOT = Path(__file__).resolve().parents[3]
-HOLDERS = {"softdot", "softdot.studies"}  # what is imported with any module of the proof
-ENVIRONMENT = {"geometry", "geometry.environment"}  # by the first of them, for the number of threads
+HOLDERS = {"softdot", "softdot.foreign_packages", "softdot.public_names", "softdot.studies"}
+"""What is imported with any module of the proof."""
+ENVIRONMENT = {"foundation", "foundation.kernel_folder", "foundation.thread_pools"}  # before NumPy is loaded
 
 
 def run_guarded(where, code):
@@ -190,7 +191,7 @@ def test_a_record_with_a_changed_digit_is_told_of_and_not_used(tmp_path, caplog)
 def test_the_generator_shares_no_code_with_what_it_tests():
     text = (
         "import sys, softdot.studies.proof.world.cases, softdot.studies.proof.recording_folder;"
-        "print(*(n for n in sys.modules if n.split('.')[0] in ('solve','mesh','geometry','export','diagnose','softdot')"
+        f"print(*(n for n in sys.modules if n.split('.')[0] in {PACKAGES!r}"
         " and not n.startswith('softdot.studies.proof')))"
     )
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from geometry.executor import Executor
+from foundation.executor import Executor
 from softdot.progress import Progress
 from softdot.studies.paper.analytical import figures
 from softdot.studies.paper.analytical.claims import claims

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from geometry.executor import Executor
+from foundation.executor import Executor
 from softdot.progress import Progress
 from softdot.studies.paper.beyond.designs import PAPERS, Design
 from softdot.studies.paper.beyond.ranking import SLICE_MESH

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import qmc
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from softdot.config.schema import Config
 from softdot.studies.paper.segment import Boundary, Reading, segment_config
 

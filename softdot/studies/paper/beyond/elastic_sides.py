@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.executor import Executor
+from foundation.executor import Executor
 from softdot.config.schema import Config
 from softdot.progress import Progress
 from softdot.studies.paper.beyond.trials import DesignPress, press_of

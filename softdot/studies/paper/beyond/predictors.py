@@ -8,7 +8,7 @@ from typing import cast
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from softdot.studies.paper.analytical.beam import bending_softness
 from softdot.studies.paper.analytical.composite import plane_strain_modulus_Pa
 from softdot.studies.paper.analytical.softness import index_of_modulus, index_of_thickness, softness

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.executor import Executor
+from foundation.arrays import Floats
+from foundation.executor import Executor
 from softdot.progress import Progress
 from softdot.studies.paper.beyond.designs import papers_variables, sample
 from softdot.studies.paper.beyond.predictors import clamped_voltage_V, columns, free_voltage_V, papers_parameters

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.executor import Executor
+from foundation.arrays import Floats
+from foundation.executor import Executor
 from softdot.progress import Progress
 from softdot.studies.paper.beyond.designs import FILMS_UM, PAPERS, Design, coordinates, design_at, sample
 from softdot.studies.paper.beyond.predictors import film

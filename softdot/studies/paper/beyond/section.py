@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.executor import Executor
+from foundation.executor import Executor
 from softdot.progress import Progress
 from softdot.studies.paper.beyond import figures, tables
 from softdot.studies.paper.beyond.claims import claims

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from geometry.executor import Executor
+from foundation.executor import Executor
 from softdot.progress import Progress
 from softdot.studies.paper.beyond.comparison import compare
 from softdot.studies.paper.beyond.elastic_sides import Curve, solve_curves

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from softdot.studies.paper.beyond.designs import Design, coordinates
 from softdot.studies.paper.beyond.predictors import clamped_voltage_V, columns, free_voltage_V
 from softdot.studies.paper.beyond.trials import DesignPress, DesignTrial

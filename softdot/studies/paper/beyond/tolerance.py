@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from softdot.studies.paper.beyond.designs import Design
 from softdot.studies.paper.beyond.search import capacitance_pF
 from softdot.studies.paper.beyond.surrogate import Surrogate

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from geometry.executor import Executor
+from foundation.executor import Executor
 from softdot.progress import Progress
 from softdot.studies.paper.beyond.designs import Design, design_config
 from softdot.studies.paper.segment import Boundary, Reading

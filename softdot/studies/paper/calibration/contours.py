@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from softdot.studies.paper.calibration.factor import charge_pC, dot_depth
 from softdot.studies.paper.calibration.inputs import assumed
 from softdot.studies.paper.calibration.press_curve import PressCurve

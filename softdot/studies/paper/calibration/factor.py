@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from math import log, prod
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from softdot.studies.paper.calibration.beam import dot_depth_mm
 from softdot.studies.paper.calibration.inputs import Values
 from softdot.studies.paper.calibration.press_curve import PressCurve

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import qmc, rankdata
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from softdot.studies.paper.calibration.factor import PIECES, Factor, factors
 from softdot.studies.paper.calibration.inputs import INPUTS
 from softdot.studies.paper.calibration.solved import Rig

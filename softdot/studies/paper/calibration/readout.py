@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import butter, freqs
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 from softdot.studies.paper.calibration.inputs import Values
 from solve.model import Waveform
 from solve.solution.schedule import fraction

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from geometry.arrays import Floats
+from foundation.arrays import Floats
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from geometry.executor import Executor
+from foundation.executor import Executor
 from softdot.progress import Progress
 from softdot.studies.paper.calibration import contours, figures, tables
 from softdot.studies.paper.calibration.answers import answers

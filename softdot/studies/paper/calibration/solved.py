@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from geometry.executor import Executor
+from foundation.executor import Executor
 from softdot.config.schema import Config
 from softdot.progress import Progress
 from softdot.studies.paper.calibration.inputs import INPUTS, Values, assumed

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 
-from geometry.executor import Executor
+from foundation.executor import Executor
 from softdot.progress import Progress
 from softdot.studies.paper.section import Block, Figure, Heading, Section
 from softdot.studies.paper.segment import EFFECTOR_HEIGHT_MM, RIDGE_RADIUS_MM

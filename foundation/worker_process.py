@@ -15,8 +15,8 @@ from pathlib import Path
 from threading import Event
 from typing import Any, Self
 
-from geometry.environment import own_path, own_python
-from geometry.files import end_with_parent, sweep_scratch
+from foundation.child_processes import end_with_parent, own_path, own_python
+from foundation.scratch_folders import sweep_scratch
 
 OOM_SCORE = Path("/proc/self/oom_score_adj")
 

@@ -1,18 +1,16 @@
-"""What softdot keeps on disk for itself, and the hashes that say what it depends on.
+"""What softdot keeps on disk for itself.
 
 Each file ends with a SHA-256 of its content, so that damage is never believed: a damaged file is deleted and made
 again. Arrays go into one .npz file without pickle; several processes may write and read it at once. What a kept thing
-depends on in the program is derived from imports (source_hash), so that an edit forgets it.
+depends on in the program says foundation.source_hash.
 """
 
 import hashlib
 import json
 import logging
 import os
-import re
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from functools import cache
 from io import BytesIO
 from pathlib import Path
 from tempfile import TemporaryFile
@@ -20,13 +18,11 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from geometry.base import InputError
-from geometry.files import whole_file
+from foundation.errors import InputError
+from foundation.files import whole_file
 
 MARK = b"\nsoftdot sha256 "
 TRAILER = len(MARK) + 64 + 1
-PROGRAM = Path(__file__).parents[1]
-DATA = (".toml", ".csv")
 
 
 def folder() -> Path:
@@ -125,63 +121,6 @@ def data_hash(content: Any) -> str:
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
-@cache
-def source_hash(module: str) -> str:
-    """Of the program as far as a module depends on it: its own source, and that of all it imports, however indirectly.
-
-    Imports inside functions and packages' __init__ count too, data files that a source names beside itself, and all
-    modules of a package that finds its modules by walking through itself.
-    """
-    found: dict[Path, bytes] = {}
-    waiting, seen = [module], {module}
-    while waiting:
-        path = _source_path(waiting.pop())
-        if path is None or path in found:
-            continue
-        found[path], needed, data = _source(path)
-        waiting += needed - seen  # most are named by many sources, and to look for a file takes long
-        seen |= needed
-        found |= data
-    return hashlib.sha256(b"".join(found[path] for path in sorted(found))).hexdigest()
-
-
-def _source(path: Path) -> tuple[bytes, set[str], dict[Path, bytes]]:
-    """A source, the modules that it needs, and the data files that it names."""
-    text = path.read_bytes()
-    imported = imported_names(text.decode())
-    needed = imported | (_modules_below(path.parent) if "pkgutil.walk_packages" in imported else set())
-    beside = (data for data in path.parent.iterdir() if data.suffix in DATA and data.name.encode() in text)
-    return text, needed, {data: data.read_bytes() for data in beside}
-
-
-def _source_path(module: str) -> Path | None:
-    """The file of a module of this program, None for a name that is none."""
-    path = PROGRAM.joinpath(*module.split("."))
-    return next((one for one in (path.with_suffix(".py"), path / "__init__.py") if one.is_file()), None)
-
-
-def _modules_below(folder: Path) -> set[str]:
-    """Dotted names of all modules in a folder of this program, however deep."""
-    return {".".join(path.relative_to(PROGRAM).with_suffix("").parts) for path in folder.rglob("*.py")}
-
-
-FROM = re.compile(r"^[ \t]*from[ \t]+([\w.]+)[ \t]+import[ \t]+(\([^)]*\)|[^\n#;]*)", re.MULTILINE)
-IMPORT = re.compile(r"^[ \t]*import[ \t]+([^\n#;]*)", re.MULTILINE)
-NAME = re.compile(r"([\w.]+)(?:[ \t]+as[ \t]+\w+)?")
-
-
-def imported_names(source: str) -> set[str]:
-    """Names that a source imports, with the packages that hold them; some may be no modules.
-
-    By the look of its lines, in a tenth of the time of a syntax tree: a name too many does no harm.
-    """
-    names = {name for line in IMPORT.findall(source) for name in NAME.findall(line)}
-    for module, taken in FROM.findall(source):
-        names |= {module, *(f"{module}.{name}" for name in NAME.findall(re.sub(r"#.*", "", taken)))}
-    parts = [name.split(".") for name in names]
-    return {".".join(one[:count]) for one in parts for count in range(1, len(one) + 1)}
-
-
 def recall(name: str) -> Any | None:
     """The plain data remembered under a name, None when nothing was or the file is damaged."""
     content = read_kept(folder() / f"{name}.json")
@@ -193,33 +132,3 @@ def remember(name: str, value: Any) -> None:
     text = json.dumps(value, indent=2, allow_nan=False, ensure_ascii=False)
     with suppress(OSError):
         write_kept(folder() / f"{name}.json", text.encode())
-
-
-CHECKSUM = "sha256"
-"""Key of the SHA-256 of all the others, as canonical JSON."""
-
-
-def write_checked(path: Path, record: dict[str, Any]) -> None:
-    """Write a record of plain data and its checksum to the last digit, whole or not at all."""
-    text = json.dumps({**record, CHECKSUM: data_hash(record)}, indent=2, allow_nan=False, ensure_ascii=False)
-    with whole_file(path) as beside:
-        beside.write_text(text + "\n", "utf-8")
-
-
-def read_checked(path: Path, consequence: str) -> dict[str, Any] | None:
-    """What was written. None without a file, and for a damaged one: then a warning says so, and it is deleted.
-
-    consequence : what follows from that, for the warning.
-    """
-    try:
-        record = json.loads(path.read_bytes())
-        if record.pop(CHECKSUM, None) == data_hash(record):
-            return dict(record)
-    except FileNotFoundError:
-        return None
-    except (OSError, ValueError, AttributeError, TypeError, RecursionError):
-        pass
-    logging.getLogger("softdot").warning("'%s' is damaged; it is deleted and %s", path, consequence)
-    with suppress(OSError):
-        path.unlink()
-    return None

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from geometry.environment import PIECES, keep_kernels_apart
+from foundation.kernel_folder import PIECES, keep_kernels_apart
 
 ROOT = Path(__file__).parents[2]
 SAID = """
@@ -94,10 +94,10 @@ def free():
 @pytest.mark.parametrize("place", ["lib/python3.11/site-packages", "src/softdot"])
 def test_kernels_are_kept_where_pip_leaves_nothing_behind_and_what_the_user_set_stays(place, monkeypatch):
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
-    keep_kernels_apart(Path(place) / "geometry")
+    keep_kernels_apart(Path(place) / "foundation")
     assert Path(os.environ["NUMBA_CACHE_DIR"]).is_relative_to(place) == ("site-packages" not in place)
     monkeypatch.setenv("NUMBA_CACHE_DIR", "mine")
-    keep_kernels_apart(Path(place) / "geometry")
+    keep_kernels_apart(Path(place) / "foundation")
     assert os.environ["NUMBA_CACHE_DIR"] == "mine"
 
 
@@ -107,7 +107,7 @@ def test_kernels_are_kept_where_pip_leaves_nothing_behind_and_what_the_user_set_
 def test_kernels_are_compiled_anew_when_a_piece_of_them_changes(name, tmp_path, monkeypatch):
     def kept():
         monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
-        keep_kernels_apart(tmp_path / "geometry")
+        keep_kernels_apart(tmp_path / "foundation")
         return os.environ["NUMBA_CACHE_DIR"]
 
     piece = tmp_path / name

@@ -10,9 +10,9 @@ from queue import SimpleQueue
 from threading import Lock
 from typing import Any, Protocol, Self, TypeVar
 
-from geometry.beside import Beside, ProcessDiedError
-from geometry.environment import ONE_THREAD
-from geometry.files import sweep_scratch
+from foundation.scratch_folders import sweep_scratch
+from foundation.thread_pools import ONE_THREAD
+from foundation.worker_process import Beside, ProcessDiedError
 
 DEATHS = 1
 """A call whose process has died more often than this is given up."""

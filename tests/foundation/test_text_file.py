@@ -4,8 +4,8 @@ import os
 
 import pytest
 
-from geometry.base import InputError
-from geometry.files import LARGEST_MB, read_text
+from foundation.errors import InputError
+from foundation.files import LARGEST_MB, read_text
 
 
 def refusal(path):

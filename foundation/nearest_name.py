@@ -1,12 +1,8 @@
-"""What every package shares: the one exception for bad input, and what a mistyped name was probably meant to be."""
+"""What a mistyped name was probably meant to be."""
 
 import difflib
 import re
-from collections.abc import Callable, Iterable
-
-
-class InputError(ValueError):
-    """One clear sentence: the field, its value and what is allowed. The command line exits with 2."""
+from collections.abc import Iterable
 
 
 def nearest(word: str, known: Iterable[str]) -> str:
@@ -31,7 +27,3 @@ def _likeness(word: str, name: str) -> float:
     mine, theirs = set(re.split("[_-]", word)), set(re.split("[_-]", name))
     words = len(mine & theirs) / len(mine | theirs)
     return max(letters, words) + 0.5 * words if len(mine & theirs) > 1 else letters
-
-
-Report = Callable[[str, int, int], None]
-"""Told of long work: what, done, of how many."""

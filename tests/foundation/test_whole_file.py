@@ -2,7 +2,7 @@
 
 import pytest
 
-from geometry.files import whole_file
+from foundation.files import whole_file
 
 
 def test_the_file_is_there_when_the_block_has_ended(tmp_path):

@@ -6,12 +6,12 @@ import sys
 
 import pytest
 
-from geometry.library_loading import load_alone, without_collector
+from foundation.library_loading import load_alone, without_collector
 from softdot.second_process import PARTS
 
 CODE = """
 import sys
-from geometry.base import load_alone
+from foundation.library_loading import load_alone
 load_alone("build123d", *{parts})
 from build123d import Color, Compound, Mesher, Plane, Pos, Rot, Solid, export_step
 print("sklearn" in sys.modules, round((Pos(1, 0, 0) * Solid.make_box(1, 2, 3)).volume, 9))

@@ -5,8 +5,8 @@ import time
 
 import pytest
 
-from geometry.base import InputError
-from geometry.beside import Beside
+from foundation.errors import InputError
+from foundation.worker_process import Beside
 
 
 def refused(text):

@@ -8,8 +8,8 @@ from time import monotonic, sleep
 import psutil
 import pytest
 
-from geometry.base import InputError
-from geometry.executor import HERE, LocalProcesses, LostError, each_done
+from foundation.errors import InputError
+from foundation.executor import HERE, LocalProcesses, LostError, each_done
 
 
 def square(number):
@@ -50,7 +50,7 @@ def rest():
 
 def alive():
     """Numbers of the processes that do calls."""
-    return {child.pid for child in psutil.Process().children() if "geometry.beside" in child.cmdline()}
+    return {child.pid for child in psutil.Process().children() if "foundation.worker_process" in child.cmdline()}
 
 
 @pytest.fixture(scope="module")
