@@ -100,8 +100,10 @@ def test_the_summary_is_printed_and_kept(tmp_path, out, capfd):
 
 def test_the_peak_is_the_largest_magnitude_with_its_sign(stages, out):
     pressed = result_of([0.0, 0.1, 0.3])
-    charge_C = 1e-12 * np.array([[0.0], [-8.0], [6.0]])
-    stages.solve = lambda *_: replace(pressed, trace=replace(pressed.trace, film_charge_C=charge_C))
+    steps = [
+        replace(s, open_circuit_voltage_V=np.array([v])) for s, v in zip(pressed.steps, [0, -0.8, 0.6], strict=True)
+    ]
+    stages.solve = lambda *_: replace(pressed, steps=tuple(steps))
     run_sweep(space_from(space_of(depths(0.1))), out)
     assert rows(out)[0]["peak.open_circuit_voltage_V"] == pytest.approx(-0.8)
 
