@@ -101,7 +101,8 @@ def test_the_summary_is_printed_and_kept(tmp_path, out, capfd):
 def test_the_peak_is_the_largest_magnitude_with_its_sign(stages, out):
     pressed = result_of([0.0, 0.1, 0.3])
     steps = [
-        replace(s, open_circuit_voltage_V=np.array([v])) for s, v in zip(pressed.steps, [0, -0.8, 0.6], strict=True)
+        replace(step, open_circuit_voltage_V=np.array([voltage]))
+        for step, voltage in zip(pressed.steps, voltages_V, strict=True)
     ]
     stages.solve = lambda *_: replace(pressed, steps=tuple(steps))
     run_sweep(space_from(space_of(depths(0.1))), out)
