@@ -13,7 +13,7 @@ pytestmark = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="ne
 CHILD = """
 import sys, time
 {wait}
-from foundation.files import end_with_parent
+from foundation.child_processes import end_with_parent
 end_with_parent(int(sys.argv[1]))
 open(sys.argv[2], "w").close()
 time.sleep(60)
@@ -43,7 +43,7 @@ def test_a_child_ends_with_a_parent_that_is_killed(starting, tmp_path):
     command = [sys.executable, "-c", PARENT, code, str(begun)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, encoding="utf-8", env=own) as parent:
         child = int(parent.stdout.readline())
-        while not starting and not begun.exists():
+        while not starting and not begun.exists() and running(child):
             time.sleep(0.02)
         parent.kill()
     deadline = time.monotonic() + 10.0

@@ -99,7 +99,7 @@ def test_the_summary_is_printed_and_kept(tmp_path, out, capfd):
 
 
 def test_the_peak_is_the_largest_magnitude_with_its_sign(stages, out):
-    pressed = result_of([0.0, 0.1, 0.3])
+    pressed, voltages_V = result_of([0.0, 0.1, 0.3]), [0.0, -0.8, 0.6]
     steps = [
         replace(step, open_circuit_voltage_V=np.array([voltage]))
         for step, voltage in zip(pressed.steps, voltages_V, strict=True)
