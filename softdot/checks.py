@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from diagnose.figures import figure
 from foundation.arrays import Floats
 from foundation.cache import check_folder
 from foundation.errors import InputError
@@ -155,7 +156,7 @@ def course_warnings(model: Model, result: PressResult, along: PressCourse) -> li
     if along.together_V is None or error <= READOUT_ERROR_PERCENT or not result.converged:
         return []
     return [
-        f"the read-out may be off by {error:.2g} % of its largest value, as the charge between {len(result.steps)} "
+        f"the read-out may be off by {figure(error)} % of its largest value, as the charge between {len(result.steps)} "
         f"solved states is interpolated: press.load_steps = {model.press.load_steps} is too few, or state "
         "mesh.accuracy_percent"
     ]

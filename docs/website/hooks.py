@@ -19,7 +19,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PUBLISHED = (
     "*.md",
     "docs/*.md",
-    "docs/studies/*.md",
+    "docs/*/*.md",
     "docs/*.json",
     "docs/pictures/**/*.png",
     "examples/**/*.md",

@@ -26,6 +26,7 @@ def config_hash(config: Config) -> str:
 
     How the parts are made is left out: it changes no press.
 
+    >>> from softdot.config.loading import load_config
     >>> six, seven = load_config(None, ["press.load_steps=6"]), load_config(None, ["press.load_steps=7"])
     >>> config_hash(six) == config_hash(seven)
     False

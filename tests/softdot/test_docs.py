@@ -29,7 +29,7 @@ ROOT = Path(__file__).parents[2]
 DOCUMENTS = sorted(
     [
         *(ROOT / "docs").glob("*.md"),
-        *(ROOT / "docs" / "studies").glob("*.md"),
+        *(ROOT / "docs").glob("*/*.md"),
         *ROOT.glob("*.md"),
         ROOT / "examples" / "README.md",
     ]

@@ -18,7 +18,7 @@ EXCLUDED = re.findall(r"^  (\S+\.md)$", SETTINGS, re.MULTILINE)
 MADE = ["docs/gallery.md"]
 ON_SITE = sorted(
     path.relative_to(ROOT).as_posix()
-    for pattern in ("*.md", "docs/*.md", "docs/studies/*.md", "examples/**/*.md")
+    for pattern in ("*.md", "docs/*.md", "docs/*/*.md", "examples/**/*.md")
     for path in ROOT.glob(pattern)
 )
 LOADING = {"script": "src", "link": "href", "img": "src", "iframe": "src", "source": "src", "video": "src"}

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from foundation import cache
+from foundation import source_hash as hashes
 from mesh.build import key as mesh_key
 from mesh.options import MeshOptions
 from softdot.case import Case, press_key
 from softdot.outcome import outcome_key
 from tests.cases import for_each
 
-PROGRAM = cache.PROGRAM
+PROGRAM = hashes.PROGRAM
 PACKAGES = ("foundation", "geometry", "mesh", "solve", "export", "diagnose", "softdot")
 
 
@@ -29,12 +29,12 @@ def copied(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def kept(copied: Path, monkeypatch: pytest.MonkeyPatch):
     """The names under which a mesh, a press and an outcome are kept, as the copied program now stands."""
-    monkeypatch.setattr(cache, "PROGRAM", copied)
+    monkeypatch.setattr(hashes, "PROGRAM", copied)
     case = Case(segment={"section": "plane-strain"}, mesh={"mesher": "layered", "element_size_mm": 1.0})
     tet_mesh = case.mesh
 
     def names() -> dict[str, str]:
-        cache.source_hash.cache_clear()
+        hashes.source_hash.cache_clear()
         return {
             "mesh": mesh_key(case.model.segment, case.dot, MeshOptions()),
             "press": press_key(case, tet_mesh),
@@ -42,7 +42,7 @@ def kept(copied: Path, monkeypatch: pytest.MonkeyPatch):
         }
 
     yield names
-    cache.source_hash.cache_clear()
+    hashes.source_hash.cache_clear()
 
 
 @pytest.mark.process
@@ -77,4 +77,4 @@ def test_no_import_of_this_program_is_overlooked():
         source = path.read_text("utf-8")
         nodes = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.ImportFrom) and node.module]
         meant = {node.module for node in nodes} | {f"{node.module}.{one.name}" for node in nodes for one in node.names}
-        assert meant <= cache.imported_names(source), path
+        assert meant <= hashes.imported_names(source), path
