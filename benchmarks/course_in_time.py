@@ -19,9 +19,9 @@ import numpy as np
 from benchmarks.timing import file_argument
 from foundation.arrays import Floats
 from softdot.case import Case
-from solve.model import Waveform
 from solve.readout.course import PressCourse
 from solve.result import PressResult
+from solve.waveform import Waveform
 
 TIMES_AS_MANY = 20
 MEDIA = ("vnr", "vnr-soft", "ecoflex-00-30", "ecoflex-00-50", "dragon-skin-30", "rtv615")

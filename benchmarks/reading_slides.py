@@ -25,9 +25,9 @@ from softdot.config.loading import load_config
 from softdot.config.schema import Config
 from solve.mechanisms import Mechanism
 from solve.model import Press
-from solve.press import Setup, discretise
 from solve.recorder import Recorder
 from solve.result import Step
+from solve.setup import Setup, discretise
 from solve.solution.linear import LinearSolver
 from solve.solution.march import march, rest_state
 from solve.solution.schedule import Target

@@ -18,7 +18,8 @@ from mesh.build import build
 from mesh.options import MeshOptions
 from solve.materials.parameters import NeoHookean, PiezoelectricFilm
 from solve.materials.prony import Prony
-from solve.model import Physics, Readout
+from solve.model import Readout
+from solve.physics import Physics
 from solve.readout.stages import Hum
 from solve.reduced.build import build_reduced
 from solve.reduced.model import ReducedModel

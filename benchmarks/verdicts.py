@@ -17,9 +17,9 @@ from typing import Any
 from benchmarks.timing import Table, file_argument
 from diagnose.findings import Findings
 from diagnose.inference.diagnose import diagnose
-from diagnose.signals.columns import FEWEST
 from diagnose.signals.reading import averaged, thinned
 from diagnose.signals.recording import Recording
+from diagnose.signals.run_checks import FEWEST
 from diagnose.verdict.names import short_name
 from softdot.config.rig import RIG_FILE, load_rig
 from softdot.diagnosis.engine import engine_for

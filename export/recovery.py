@@ -14,7 +14,7 @@ import scipy.sparse as sp
 from export.subdivision import TETRA_EDGES
 from foundation.arrays import Bools, Floats, Ints
 from mesh.types import TetMesh
-from solve.result import film_columns
+from solve.film_means import film_columns
 
 SMALLEST = 1e-8  # relative eigenvalue below which a patch says nothing of that direction
 TINY = 1e-7  # mm

@@ -1,7 +1,6 @@
 """softdot: design, simulate and fabricate a soft piezoelectric tactile sensor segment over a Braille dot.
 
-from softdot import Case
-Case.load("mine.toml").press().plot()
+softdot.Case.load("mine.toml").press().plot()
 """
 
 from importlib import import_module
@@ -14,12 +13,13 @@ from softdot.public_names import HOMES
 if TYPE_CHECKING:
     from foundation.errors import InputError
     from mesh.types import MeshingError
-    from softdot.case import Case, ConvergenceWarning, Pressed, ResultWarning
+    from softdot.case import Case
     from softdot.commands.run import run_config
     from softdot.config.hashes import config_hash
     from softdot.config.loading import load_config
     from softdot.config.schema import Config, config_schema
     from softdot.differentiation import derivatives
+    from softdot.pressed import ConvergenceWarning, Pressed, ResultWarning
     from softdot.scripting import Verdict, diagnose, sweep
 
     __version__: str

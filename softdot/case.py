@@ -1,25 +1,17 @@
 """A case: one configuration, and what follows from it, each made when it is first asked for and then kept.
+Heavy libraries are imported inside the methods, so that a configuration that is refused is refused at once.
 
     case = Case.load("mine.toml")
     case.press().plot()
-
-Heavy libraries are imported inside the methods, so that a configuration that is refused is refused at once.
-
-A press as people read it: arrays with units in their names, tables, plots and ParaView's meshes.
 """
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cached_property
-from html import escape
-from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from warnings import warn
 
-import numpy as np
-
-from foundation.arrays import Floats
 from geometry.dot import DotShape
 from mesh.types import Planes, TetMesh
 from softdot.config.default_design import completed
@@ -27,28 +19,16 @@ from softdot.config.hashes import input_hash
 from softdot.config.loading import config_from, load_config
 from softdot.config.model import model_of
 from softdot.config.schema import Config
-from softdot.summary import course_columns, course_part, history
+from softdot.pressed import ConvergenceWarning, Pressed, ResultWarning
 from solve.model import Model
 from solve.result import PressResult, Step
 
 if TYPE_CHECKING:
-    import pandas as pd
-    import pyvista as pv
-    from matplotlib.figure import Figure
-
     from geometry.solids import Part
     from softdot.differentiation import Derivative
     from solve.readout.course import PressCourse
 
 OnStep = Callable[[Step, int, int], None]
-
-
-class ResultWarning(UserWarning):
-    """A number of a press is to be doubted; the sentence stands in Pressed.doubts too."""
-
-
-class ConvergenceWarning(ResultWarning):
-    """A press ended before the depth or force that was asked for: its last numbers are those of less."""
 
 
 class Case:
@@ -218,183 +198,3 @@ def press_key(case: Case, tet_mesh: TetMesh) -> str:
     from mesh.types import mesh_hash
 
     return data_hash([source_hash("solve.press"), input_hash(case.config), mesh_hash(tet_mesh)])
-
-
-LAST = -1
-FIGURE_SIZE_IN, SCREEN_DPI = (8.0, 3.2), 100
-
-
-class Pressed:
-    """What Case.press gives. All arrays have one value for each reported step (s,); index 0 is the unloaded state.
-
-    result : the solver's own result with its fields, in SI units. Electrodes are taken in parallel.
-
-    >>> coarse = {"mesher": "layered", "element_size_mm": 0.8}
-    >>> soft = Case(segment={"section": "plane-strain"}, dot={"shape": "ridge"}, press={"load_steps": 1}, mesh=coarse)
-    >>> pressed = soft.press()
-    >>> bool(pressed.reaction_force_N[-1] > 0.0), pressed.failure
-    (True, None)
-    >>> pressed.to_pyvista().point_data["displacement_mm"].shape[1]
-    3
-    """
-
-    def __init__(self, case: "Case", result: PressResult) -> None:
-        self.case, self.result = case, result
-        past = history(result)
-        self.indentation_mm, self.reaction_force_N = past.indentation_mm, past.reaction_force_N
-        self.film_charge_pC, self.open_circuit_voltage_V = past.film_charge_pC, past.open_circuit_voltage_V
-        self.time_s: Floats = np.array([step.time_s for step in result.steps])
-        """When the waveform first comes to each step."""
-
-    @property
-    def converged(self) -> bool:
-        """Whether the last asked depth or force was reached."""
-        return self.result.converged
-
-    @property
-    def failure(self) -> str | None:
-        """Where and why the press stopped short; None where it did not."""
-        return self.result.failure
-
-    @property
-    def warnings(self) -> list[str]:
-        """What a user should know, before and after the solution."""
-        from softdot.checks import design_warnings
-
-        return [*self.case.checked[1], *design_warnings(self.case.model), *self.doubts]
-
-    @cached_property
-    def doubts(self) -> list[str]:
-        """Why numbers of this solution should be doubted, a sentence each."""
-        from softdot.checks import course_warnings, result_warnings
-
-        model = self.case.model
-        told = result_warnings(model, self.case.dot, self.result)
-        return [*told, *course_warnings(model, self.result, self.course)]
-
-    @cached_property
-    def course(self) -> "PressCourse":
-        """The whole press in time, SI units: what comes between the steps, a hold and the way back included."""
-        return self.case.course(self.result)
-
-    @property
-    def readout_voltage_V(self) -> Floats | None:
-        """Behind the amplifier (s,); None without one."""
-        found = self.course.together_V
-        return None if found is None else found[self.course.solved]
-
-    @property
-    def channel_voltages_V(self) -> Floats | None:
-        """Of each electrode behind an amplifier of its own, (e, s); None without one."""
-        found = self.course.channels_V
-        return None if found is None else found[self.course.solved].T
-
-    @property
-    def film_capacitance_pF(self) -> float:
-        """Of the undeformed film under all electrodes."""
-        return 1e12 * float(self.result.capacitance_F.sum())
-
-    @property
-    def max_film_strain(self) -> float:
-        """Largest principal strain of the film, a mean through its thickness, away from held rims."""
-        return self.result.film_peak.strain
-
-    def to_dataframe(self) -> "pd.DataFrame":
-        """The course, one row a time; electrodes and channels by name, as charge_pC_film; solved : of the steps."""
-        import pandas as pd
-
-        table = pd.DataFrame(course_columns(course_part(self.case.model, self.result, self.course)))
-        table["solved"] = table.index.isin(self.course.solved)
-        return table
-
-    def _columns(self) -> dict[str, Floats]:
-        columns = {
-            "time_s": self.time_s,
-            "indentation_mm": self.indentation_mm,
-            "reaction_force_N": self.reaction_force_N,
-            "film_charge_pC": self.film_charge_pC,
-            "open_circuit_voltage_V": self.open_circuit_voltage_V,
-        }
-        if self.readout_voltage_V is not None:
-            columns["readout_voltage_V"] = self.readout_voltage_V
-        return columns
-
-    def to_pyvista(self, step: int = LAST) -> "pv.UnstructuredGrid":
-        """The undeformed mesh in mm with what the files of a step hold; film arrays are NaN elsewhere.
-
-        warp_by_vector("displacement_mm") deforms it. Quadratic tetrahedra (VTK type 24). Units stand in the names of
-        the arrays.
-        """
-        import pyvista as pv
-
-        fields, tet_mesh = self.result.steps[step].fields, self.result.tet_mesh
-        grid = pv.UnstructuredGrid({pv.CellType.QUADRATIC_TETRA: tet_mesh.tets}, tet_mesh.points_mm)
-        grid.point_data["displacement_mm"] = 1e3 * fields.displacement_m
-        grid.cell_data["region"] = tet_mesh.region
-        grid.cell_data["cauchy_stress_MPa"] = 1e-6 * fields.cauchy_stress_Pa
-        grid.cell_data["von_mises_MPa"] = 1e-6 * fields.von_mises_Pa
-        grid.cell_data["pressure_MPa"] = 1e-6 * fields.pressure_Pa
-        grid.cell_data["max_stretch"] = fields.max_stretch
-        film = {
-            "film_strain": fields.film_strain,
-            "film_stress_MPa": 1e-6 * fields.film_stress_Pa,
-            "charge_density_pC_per_mm2": 1e6 * fields.charge_density_C_per_m2,
-        }
-        for name, values in film.items():
-            everywhere = np.full((len(tet_mesh.tets), *values.shape[1:]), np.nan)
-            everywhere[fields.film_tets] = values
-            grid.cell_data[name] = everywhere
-        return grid
-
-    def plot(self) -> "Figure":
-        """Force and voltage against depth; with a waveform or an amplifier the whole course over time."""
-        from matplotlib.figure import Figure
-
-        from export.course_figure import course_figure
-
-        if self.case.is_amplified or self.result.follows_time or self.case.model.press.waveform is not None:
-            return _shown(course_figure(self.course, self.result.electrode_names))
-        figure = Figure(figsize=FIGURE_SIZE_IN, layout="constrained")
-        shown = {"reaction force (N)": self.reaction_force_N, "open-circuit voltage (V)": self.open_circuit_voltage_V}
-        for axes, (name, values) in zip(figure.subplots(1, 2), shown.items(), strict=True):
-            axes.plot(self.indentation_mm, values, "o-", markersize=3)
-            axes.set(xlabel="indentation (mm)", ylabel=name)
-            axes.grid(alpha=0.3)
-        return _shown(figure)
-
-    def plot_film(self) -> "Figure":
-        """Strain and charge density of the film at the deepest step, as in film.png of `softdot run`."""
-        from export.film_maps import film_figure
-        from export.pictures import deepest
-
-        return _shown(film_figure(self.result.tet_mesh, deepest(self.result), self.result.film_peak))
-
-    def _repr_html_(self) -> str:
-        """For notebooks: how it ended, and a table of the steps."""
-        columns = self._columns()
-        head = "".join(f"<th>{escape(name)}</th>" for name in columns)
-        rows = "".join(
-            "<tr>" + "".join(f"<td>{value:.4g}</td>" for value in row) + "</tr>"
-            for row in zip(*columns.values(), strict=True)
-        )
-        ended = "converged" if self.converged else f"not converged: {escape(str(self.failure))}"
-        return f"<p>Press, {ended}.</p><table><tr>{head}</tr>{rows}</table>"
-
-    def __repr__(self) -> str:
-        """The deepest step in a line."""
-        state = "" if self.converged else f", not converged: {self.failure}"
-        values: dict[str, Any] = {name: array[LAST] for name, array in self._columns().items()}
-        return "Pressed(" + ", ".join(f"{name}={value:.4g}" for name, value in values.items()) + f"{state})"
-
-
-def _shown(figure: "Figure") -> "Figure":
-    """The figure, which a notebook shows as a picture also where pyplot has not been imported."""
-
-    def png() -> bytes:
-        buffer = BytesIO()
-        figure.savefig(buffer, format="png", dpi=SCREEN_DPI)
-        return buffer.getvalue()
-
-    figure.set_dpi(SCREEN_DPI)
-    figure._repr_png_ = png  # type: ignore[attr-defined]
-    return figure

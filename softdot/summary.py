@@ -11,10 +11,11 @@ from softdot.config.hashes import config_hash
 from softdot.config.schema import Config
 from softdot.output import RUN
 from softdot.sensitivity import least_detectable, sensitivity
-from solve.model import Model, Readout, Waveform
+from solve.model import Model, Readout
 from solve.readout.course import PressCourse
 from solve.result import PressResult
 from solve.solution.schedule import fraction
+from solve.waveform import Waveform
 
 MM, PC, PF, MPA = 1e3, 1e12, 1e12, 1e-6
 

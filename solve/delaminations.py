@@ -9,7 +9,7 @@ from mesh.interfaces import inner_nodes, interface_facets
 from mesh.outline import outline
 from mesh.seams import with_columns_at
 from mesh.types import TetMesh
-from solve.model import Delamination
+from solve.physics import Delamination
 
 ROUND_OFF_MM = 1e-9
 

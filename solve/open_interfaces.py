@@ -9,7 +9,7 @@ from foundation.arrays import Bools, Ints
 from mesh.interfaces import interface_facets, split_interface
 from mesh.types import TetMesh
 from solve.delaminations import delaminated_facets
-from solve.model import BondLine, Delamination
+from solve.physics import BondLine, Delamination
 
 BONDS = (  # from the base up: the part below an interface keeps its nodes, so that earlier facets stay right
     "bond-base",

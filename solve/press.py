@@ -1,97 +1,21 @@
-"""Press the dot into the segment and, where a path is given, slide it.
+"""Press the dot into the segment and, where a path is given, slide it."""
 
-From a model and a mesh to what the march needs: the system and the recorder of its history.
-"""
-
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import replace
 from itertools import pairwise
 
 from geometry.dot import DotShape
 from geometry.dot_at_rest import resolve_dot
-from mesh.symmetry import unfolded
-from mesh.types import Planes, TetMesh
-from solve.delaminations import with_rims_of_patches
+from mesh.types import TetMesh
 from solve.model import Model
-from solve.open_interfaces import OpenInterface, open_interfaces
-from solve.problem import build_system, refuse_unresolved
 from solve.readout.course import course
-from solve.recorder import Recorder
 from solve.result import PressResult, Step
+from solve.setup import Setup, discretise
 from solve.solution.advice import explained
 from solve.solution.checkpoint import Checkpoint
 from solve.solution.errors import NoEquilibriumError
 from solve.solution.linear import LinearSolver
 from solve.solution.march import march, rest_state
-from solve.solution.schedule import Target, schedule
-from solve.symmetry import planes_of
-from solve.system import System
-from solve.units import Units
-from solve.whole_segment import meshed_share
-
-
-@dataclass(frozen=True)
-class Setup:
-    """A discretised press. tet_mesh : what is meshed of it, its interfaces open; unfolded : axes about which the mesh
-    that was given has been mirrored.
-    """
-
-    model: Model
-    tet_mesh: TetMesh
-    unfolded: Planes
-    opened: tuple[OpenInterface, ...]
-    system: System
-    recorder: Recorder
-
-    @property
-    def full_drive(self) -> float:
-        """Depth or force at the end of the press, solver units."""
-        press, segment = self.model.press, self.model.segment
-        if press.force_N is not None:
-            return press.force_N * meshed_share(segment, self.tet_mesh) / self.system.units.force
-        return 1e-3 * press.depth_mm / self.system.units.length
-
-    def targets(self, follows_time: bool) -> list[Target]:
-        """What is to be reached, and when (see solve.solution.schedule)."""
-        return schedule(self.model.press, self.full_drive, self.system.units.length, follows_time)
-
-
-def discretise(model: Model, tet_mesh: TetMesh, dot: DotShape, others: Iterable[Model] = ()) -> Setup:
-    """Discretise a press. A mesh of a half or a quarter is unfolded about every plane that the press does not have.
-
-    others : models that are to share this mesh, with dots of their own. InputError for a patch outside its interface.
-    """
-    kept = set(planes_of(model, dot))
-    for other in others:
-        kept &= set(planes_of(other, resolve_dot(other.dot, other.segment)))
-    lost = tuple(axis for axis in tet_mesh.planes if axis not in kept)
-    physics, plane_strain = model.physics, model.segment.section == "plane-strain"
-    whole = with_rims_of_patches(unfolded(tet_mesh, lost).tet_mesh, model.segment, physics.delaminations)
-    opened = open_interfaces(whole, physics.bonds, physics.delaminations, plane_strain)
-    return replace(set_up(model, dot, *opened), unfolded=lost)
-
-
-def set_up(
-    model: Model,
-    dot: DotShape,
-    tet_mesh: TetMesh,
-    opened: tuple[OpenInterface, ...],
-    units: Units | None = None,
-) -> Setup:
-    """On a mesh whose interfaces are open already; units : of another system, to share them.
-
-    ValueError for a mesh that ends at a plane which the press does not have.
-    """
-    if not set(tet_mesh.planes) <= set(planes_of(model, dot)):
-        raise ValueError("the press is not symmetric about a plane at which its mesh ends")
-    driven = model.press.force_N is not None
-    system = build_system(
-        model.segment, model.materials, dot, tet_mesh, driven, model.physics, model.amplifier, opened, units
-    )
-    refuse_unresolved(model.segment, tet_mesh, system.film)
-    recorder = Recorder(system, tet_mesh, model.physics, model.segment, model.materials)
-    return Setup(model, tet_mesh, (), opened, system, recorder)
-
 
 OnStep = Callable[[Step, int, int], None]
 

@@ -17,8 +17,9 @@ from solve.materials.film_yield import FilmPlasticity, YieldLaw
 from solve.materials.inelastic import Inelastic
 from solve.materials.laws import MediumLaw
 from solve.materials.parameters import Material, PiezoelectricFilm
-from solve.model import Physics, Readout
+from solve.model import Readout
 from solve.open_interfaces import OpenInterface
+from solve.physics import Physics
 from solve.readout.channels import mutual_F
 from solve.symmetry import electrode_rectangles, orbits
 from solve.system import System

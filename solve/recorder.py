@@ -15,12 +15,16 @@ from geometry.parameters import Segment
 from mesh.symmetry import unfolded
 from mesh.types import TetMesh
 from solve.convergence_warnings import doubtful_results
+from solve.fields import fields
+from solve.film_means import film_peak
 from solve.materials.parameters import Material, PiezoelectricFilm
-from solve.model import Physics, Press, Waveform
+from solve.model import Press
+from solve.physics import Physics
 from solve.readout.amplifier import other_charge_C
-from solve.result import PressResult, Record, Step, Trace, fields, film_peak
+from solve.result import PressResult, Record, Step, Trace
 from solve.solution.schedule import first_reached_s, fraction
 from solve.system import State, System
+from solve.waveform import Waveform
 from solve.whole_segment import meshed_share, whole_charge
 
 

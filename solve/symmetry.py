@@ -15,7 +15,8 @@ from mesh.options import MeshOptions
 from mesh.types import Planes
 from solve.materials.film import FilmLaw, film_law
 from solve.materials.parameters import PiezoelectricFilm
-from solve.model import Delamination, Model
+from solve.model import Model
+from solve.physics import Delamination
 from solve.tensors import strain_rotation
 
 SAME_MM, SAME = 1e-9, 1e-9

@@ -2,7 +2,8 @@
 
 from geometry.parameters import Dot
 from solve import press as pressing
-from solve.model import Model, Physics
+from solve.model import Model
+from solve.physics import Physics
 
 
 def press_segment(segment, materials, dot, press, tet_mesh, on_step=None, physics=None, readout=None, checkpoint=None):

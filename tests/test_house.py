@@ -20,7 +20,8 @@ MAY_IMPORT = {
     "softdot": {"foundation", "geometry", "mesh", "solve", "export", "diagnose"},
 }
 FILES = [path for top in MAY_IMPORT for path in sorted((ROOT / top).rglob("*.py"))]
-MOST_LINES = 500
+MOST_LINES, MOST_INIT_LINES = 400, 40
+REMARK = "    ", "Equation, source and typical values: docs/"
 HIDDEN_WORLD = ROOT / "softdot" / "studies" / "proof" / "world"  # knows nothing of the rest, so it has names of its own
 
 
@@ -79,7 +80,26 @@ def test_no_module_imports_itself_in_a_circle():
 
 def test_files_stay_small():
     lines = {path: len(path.read_text("utf-8").splitlines()) for path in FILES}
-    assert [path for path, count in lines.items() if count > MOST_LINES] == []
+    most = {path: MOST_INIT_LINES if path.name == "__init__.py" else MOST_LINES for path in FILES}
+    assert [path for path, count in lines.items() if count > most[path]] == []
+
+
+def test_no_package_is_empty():
+    """One that holds files of another kind, such as pages and templates, is not."""
+    holders = {path.parent for path in FILES if path.name == "__init__.py"}
+    assert [
+        folder for folder in holders if not set(folder.iterdir()) - {folder / "__init__.py", folder / "__pycache__"}
+    ] == []
+
+
+def test_a_docstring_of_a_module_has_one_headline():
+    """A second line that stands alone would be that of a second subject. A reference or an indented line is none."""
+    texts = {path: (ast.get_docstring(parsed(path)) or "").split("\n\n")[1:] for path in FILES}
+    lone = {
+        path: [text for text in more if "\n" not in text and not text.startswith(REMARK)]
+        for path, more in texts.items()
+    }
+    assert {path: found for path, found in lone.items() if found} == {}
 
 
 def test_no_class_name_occurs_twice():

@@ -1,5 +1,4 @@
 """Bounded Levenberg-Marquardt over the coordinates of mechanisms, with all nuisance parameters integrated out.
-
 What is linear leaves only inner products (variable projection; Golub and Pereyra, SIAM J. Numer. Anal. 10 (1973) 413).
 """
 

@@ -1,5 +1,4 @@
 """Whether a drive can be what it is called: its sign, its zero, its size, and a force that drifts.
-
 They come before all that a diagnosis asks for: with a wrong sign rests are presses, and noise is sought in vain.
 """
 

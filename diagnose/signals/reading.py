@@ -12,19 +12,18 @@ from pathlib import Path
 import numpy as np
 
 from diagnose.noise.quantisation import quantisation_step
-from diagnose.signals.columns import (
-    LARGEST_STRAIN,
-    read_columns,
-    refuse_bad_columns,
-    refuse_bad_time,
-    refuse_by_size,
-    refuse_untouched,
-    saturated,
-    suspicions,
-)
+from diagnose.signals.columns import read_columns, refuse_by_size
 from diagnose.signals.drive_checks import drive_suspicions, refuse_unlike_drive
 from diagnose.signals.phases import Segmentation
 from diagnose.signals.recording import Recording, Run, RunTable, Specimen, one_after_the_other
+from diagnose.signals.run_checks import (
+    LARGEST_STRAIN,
+    refuse_bad_columns,
+    refuse_bad_time,
+    refuse_untouched,
+    suspicions,
+)
+from diagnose.signals.saturation import saturated
 from foundation.arrays import Bools, Floats, Ints
 from foundation.errors import InputError
 from solve.model import Readout

@@ -19,7 +19,8 @@ from softdot.case import Case
 from softdot.config.loading import config_from
 from softdot.config.toml import parse_toml
 from softdot.convert import run_text, write_recording
-from solve.model import Physics, Readout
+from solve.model import Readout
+from solve.physics import Physics
 from solve.readout.amplifier import amplify
 
 RIG = """# Made up by examples/recordings/leaky_amplifier.py; no real sensor was pressed.

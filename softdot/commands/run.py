@@ -184,8 +184,9 @@ def command(chosen: Namespace) -> int:
     with SecondProcess() as ask:  # at once: it loads its libraries while this one does
         with without_collector():
             Thread(target=_try_to_draw, daemon=True).start()
-            from softdot.case import Case, ResultWarning
+            from softdot.case import Case
             from softdot.config.loading import load_config
+            from softdot.pressed import ResultWarning
             from softdot.progress import progress_of
             from softdot.tolerances.uncertainty import uncertainty  # noqa: F401 - loads the solver
 

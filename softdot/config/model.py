@@ -10,7 +10,8 @@ from softdot.config.schema import Config
 from solve.mechanisms import MECHANISMS, Mechanism, with_mechanisms
 from solve.mechanisms.base import channels_of
 from solve.mechanisms.boundaries.rig_compliance import RIG_COMPLIANCE
-from solve.model import Model, Physics, declared_bonds
+from solve.model import Model
+from solve.physics import Physics, declared_bonds
 
 STIFFEST_BOND_N_PER_MM3 = 1e6  # as in segment.bonds
 

@@ -14,9 +14,9 @@ from diagnose.forward import Engine
 from diagnose.next_press.choose import MOST_PRESSES, NextPress, next_presses
 from diagnose.noise.estimate import noise_models
 from diagnose.other_units import other_units
-from diagnose.signals.columns import refuse_slow_sampling
 from diagnose.signals.reading import thinned
 from diagnose.signals.recording import Recording
+from diagnose.signals.run_checks import refuse_slow_sampling
 from diagnose.verdict.content import FORMAT, verdict, waveform
 from diagnose.verdict.resimulation import OutOfTimeError, Resimulated, resimulate
 from diagnose.verdict.words import sentences

@@ -16,7 +16,8 @@ from softdot.reading.conditions import PITCH_TOLERANCE_MM
 from softdot.version import installed_version
 from solve.mechanisms import with_mechanisms
 from solve.mechanisms.circuit.contact_electrification import CONTACT_ELECTRIFICATION
-from solve.model import Model, Physics, Readout
+from solve.model import Model, Readout
+from solve.physics import Physics
 
 
 class KernelAbout(BaseModel):

@@ -12,7 +12,8 @@ from softdot.arrays.kernel import ArrayKernel
 from softdot.reading.conditions import ReadingConditions
 from softdot.reading.line import DotLine
 from softdot.reading.motion import CHUNK, ArrayPath, PressTimes, near
-from solve.model import Physics, Readout
+from solve.model import Readout
+from solve.physics import Physics
 from solve.readout.amplifier import amplify, input_of
 
 MAINS_HZ, LEAST_PERIODS = 50.0, 50

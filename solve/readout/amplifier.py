@@ -11,7 +11,8 @@ import numpy as np
 
 from foundation.arrays import Floats
 from solve.decay import mean_decay
-from solve.model import Physics, Pyroelectric, Readout
+from solve.model import Readout
+from solve.physics import Physics, Pyroelectric
 from solve.readout.filters import Filter
 from solve.readout.stages import Saturation, Stage
 

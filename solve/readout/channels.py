@@ -15,7 +15,8 @@ import numpy as np
 from scipy.linalg import eigh
 
 from foundation.arrays import Floats
-from solve.model import Physics, Readout
+from solve.model import Readout
+from solve.physics import Physics
 from solve.readout.amplifier import behind_input, input_of, leaky_integral, mixed_channels
 
 

@@ -16,13 +16,15 @@ from itertools import pairwise
 import numpy as np
 
 from foundation.arrays import Floats, Ints
-from solve.model import Physics, Press, Readout, Waveform
+from solve.model import Press, Readout
+from solve.physics import Physics
 from solve.readout.amplifier import behind_input, curved_integral, input_of, stages
 from solve.readout.channels import behind_inputs, input_voltages
 from solve.readout.legs import PressLeg, legs_of, legs_through
 from solve.readout.stages import Hum
 from solve.result import PressResult, Trace
 from solve.solution.schedule import corners_s, first_reached_s, slide_s, stretches_s
+from solve.waveform import Waveform
 
 STRAIGHT = 1e-4
 """Of the largest value of a curve: how far the course may be from the straight lines between its times."""

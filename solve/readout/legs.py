@@ -17,9 +17,10 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
 from foundation.arrays import Floats
-from solve.model import Press, Waveform
+from solve.model import Press
 from solve.result import PressResult, Trace
 from solve.solution.schedule import corners_s, duration_s, first_time_s, fraction, slide_s, stretches_s
+from solve.waveform import Waveform
 
 FASTER = 2.0
 """Ratio of two rates of loading from which relaxing stress has a corner between them that counts."""

@@ -11,12 +11,14 @@ from geometry.parameters import Dot, Segment
 from mesh.types import TetMesh
 from solve.materials.parameters import Material
 from solve.materials.prony import Prony
-from solve.model import Model, Physics, Press, Waveform
+from solve.model import Model, Press
+from solve.physics import Physics
 from solve.press import press_segment
 from solve.reduced.model import ReducedModel
 from solve.reduced.response import Accuracy
 from solve.result import Trace
 from solve.solution.errors import NoEquilibriumError
+from solve.waveform import Waveform
 
 BETWEEN = 20  # samples of the reduced model to each time step of the 3D model
 

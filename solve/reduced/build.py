@@ -17,8 +17,8 @@ from geometry.dot import DotShape
 from geometry.parameters import Dot, Segment
 from mesh.types import TetMesh
 from solve.materials.parameters import Material, PiezoelectricFilm
-from solve.model import Model, Physics, Press
-from solve.press import discretise
+from solve.model import Model, Press
+from solve.physics import Physics
 from solve.reduced.accuracy import measured
 from solve.reduced.cache import key, remembered
 from solve.reduced.fit import FINER, fit
@@ -27,6 +27,7 @@ from solve.reduced.model import ReducedModel, structure
 from solve.reduced.response import Accuracy
 from solve.reduced.sampling import Sample, SampledPress, Sampler
 from solve.reduced.task import ReductionTask
+from solve.setup import discretise
 from solve.solution.similar_press import combined
 
 DEPTH_NODES = 16

@@ -7,7 +7,8 @@ from functools import partial
 import numpy as np
 
 from foundation.arrays import Floats
-from solve.model import Physics, Readout
+from solve.model import Readout
+from solve.physics import Physics
 from solve.readout.amplifier import amplify, input_of, other_charge_C, stages
 from solve.reduced.fit import CELLS, ResponseTable
 from solve.reduced.recording import branches, given, second_differences, sensed

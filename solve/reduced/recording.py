@@ -6,7 +6,7 @@ import numpy as np
 
 from foundation.arrays import Floats, Ints
 from solve.materials.prony import Prony
-from solve.model import Physics
+from solve.physics import Physics
 from solve.reduced.time_stepping import BY_DEPTH, BY_FORCE
 
 

@@ -7,9 +7,9 @@ import numpy as np
 from scipy.optimize import brentq
 
 from foundation.arrays import Floats
-from solve.press import Setup
 from solve.reduced.frozen_memory import Frozen
 from solve.reduced.stress_metric import StressMetric
+from solve.setup import Setup
 from solve.solution.errors import NoEquilibriumError
 from solve.solution.linear import LinearSolver
 from solve.solution.march import rest_state

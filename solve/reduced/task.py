@@ -7,7 +7,7 @@ from geometry.dot import DotShape
 from geometry.parameters import Segment
 from mesh.types import TetMesh
 from solve.materials.parameters import Material
-from solve.model import Physics
+from solve.physics import Physics
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,8 @@ from geometry.dot_at_rest import resolve_dot
 from mesh.morphing import morphed
 from mesh.types import TetMesh
 from solve.model import Model
-from solve.press import Setup, discretise, set_up
 from solve.recorder import Recorder
+from solve.setup import Setup, discretise, set_up
 from solve.solution.errors import NoEquilibriumError
 from solve.solution.linear import LinearSolver
 from solve.solution.march import march, rest_state

@@ -12,9 +12,10 @@ import numpy as np
 from foundation.arrays import Bools, Floats
 from foundation.errors import InputError
 from foundation.files import read_text, regular_file
-from solve.model import Press, Waveform
+from solve.model import Press
 from solve.solution.thinning import thinned
 from solve.system import Load
+from solve.waveform import Waveform
 
 LARGEST_S = 1e12
 BISECTIONS = 60

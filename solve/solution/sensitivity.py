@@ -20,9 +20,9 @@ from mesh.morphing import morphed
 from mesh.types import TetMesh
 from solve.fem.tangent import Tangent
 from solve.model import Model, Press
-from solve.press import Setup, discretise, set_up
 from solve.readout.course import PressCourse, course, read_together
 from solve.result import PressResult, Trace
+from solve.setup import Setup, discretise, set_up
 from solve.solution.linear import LinearSolver
 from solve.solution.march import march, rest_state
 from solve.system import Load, State

@@ -10,7 +10,7 @@ from foundation.arrays import Floats
 from geometry.dot_at_rest import resolve_dot
 from mesh.types import TetMesh
 from solve.model import Model, Press
-from solve.press import Setup, discretise
+from solve.setup import Setup, discretise
 from solve.solution.errors import NoEquilibriumError
 from solve.solution.linear import LinearSolver
 from solve.solution.march import rest_state

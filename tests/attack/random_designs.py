@@ -12,7 +12,7 @@ from geometry.fabrication.parameters import Fabrication
 from geometry.parameters import Segment
 from mesh.options import MeshOptions
 from solve.mechanisms import MECHANISMS
-from solve.model import Waveform
+from solve.waveform import Waveform
 from tests.attack.drawing import Draw
 from tests.attack.random_materials import film_material, medium_material, modulus_MPa
 from tests.attack.random_mechanisms import mechanism

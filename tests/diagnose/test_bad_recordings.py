@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from diagnose.signals import columns
-from diagnose.signals.columns import refuse_slow_sampling
+from diagnose.signals.run_checks import refuse_slow_sampling
 from foundation.errors import InputError
 from softdot.config.rig import load_rig
 from tests.diagnose.rigs import COUPON, HEAD, RUN, SEGMENT, csv_text, samples, write_rig

@@ -18,7 +18,8 @@ from export.view import PICTURE_SIZE, View
 from geometry.dot import DotShape
 from geometry.solids import PART_COLOURS
 from mesh.types import TetMesh
-from solve.model import Physics, Press, Readout
+from solve.model import Press, Readout
+from solve.physics import Physics
 from solve.readout.course import PressCourse, course
 from solve.result import PressResult
 from tests.cases import for_each

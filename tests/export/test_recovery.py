@@ -6,7 +6,7 @@ import pytest
 from export.recovery import film_patches
 from mesh.types import TetMesh
 from softdot.case import Case
-from solve.result import film_columns
+from solve.film_means import film_columns
 from tests.cases import for_each
 
 COARSE = {"mesher": "layered", "element_size_mm": 0.7, "contact_element_size_mm": 0.35}

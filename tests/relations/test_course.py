@@ -8,10 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from solve.materials.prony import Prony
-from solve.model import Physics, Press, Readout, Waveform
+from solve.model import Press, Readout
+from solve.physics import Physics
 from solve.readout.amplifier import curved_integral, leaky_integral
 from solve.readout.course import course
 from solve.solution.schedule import duration_s, fraction, schedule
+from solve.waveform import Waveform
 from tests.cases import for_each
 from tests.verification.slices import pressed
 

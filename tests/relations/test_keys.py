@@ -22,7 +22,8 @@ from softdot.config.rig import Bench
 from softdot.config.schema import Config, config_schema
 from softdot.config.settings import with_settings
 from solve.mechanisms import MECHANISMS, Mechanism, with_mechanisms
-from solve.model import Readout, Waveform
+from solve.model import Readout
+from solve.waveform import Waveform
 from tests.cases import for_each
 
 TABLES = {

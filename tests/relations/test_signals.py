@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 from diagnose.signals.acceleration import acceleration_mm_per_s2, noise_mm
 from diagnose.signals.align import lag_between
-from diagnose.signals.columns import saturated
 from diagnose.signals.phases import rest_of, segmented
 from diagnose.signals.recording import even_pieces, gaps, is_even, rates_Hz
+from diagnose.signals.saturation import saturated
 from tests.diagnose.rigs import trapezoid
 
 SEVERAL = settings(max_examples=15, deadline=None)

@@ -4,7 +4,7 @@ from hypothesis import strategies as st
 
 from geometry.parameters import Segment
 from solve.mechanisms import MECHANISMS
-from solve.model import Waveform
+from solve.waveform import Waveform
 from tests.softdot.random_mechanisms import mechanisms
 from tests.softdot.random_numbers import between, log_between
 

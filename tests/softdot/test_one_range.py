@@ -11,7 +11,7 @@ from export.viewer_data import viewer_data
 from export.vtu import write_results
 from geometry.parameters import Film, Medium, Segment
 from softdot.summary import film
-from solve.result import film_peak
+from solve.film_means import film_peak
 from tests.export.pressed_box import box_dot, box_mesh, made_up_press
 
 SEGMENT = Segment(

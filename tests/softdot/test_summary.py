@@ -9,7 +9,8 @@ import pytest
 
 from softdot.json_files import json_text
 from softdot.summary import history, press_part
-from solve.model import Physics, Press, Readout
+from solve.model import Press, Readout
+from solve.physics import Physics
 from solve.readout.course import course
 from tests.cases import for_each
 from tests.softdot.stand_ins import result_of

@@ -3,7 +3,8 @@
 import numpy as np
 from scipy.signal import butter, lsim
 
-from solve.model import Physics, Readout
+from solve.model import Readout
+from solve.physics import Physics
 from solve.readout.amplifier import amplify
 from solve.readout.filters import Filter
 from tests.cases import for_each

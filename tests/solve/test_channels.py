@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from solve.mechanisms import Mechanism, with_mechanisms
-from solve.model import Physics, Readout
+from solve.model import Readout
+from solve.physics import Physics
 from solve.readout.amplifier import amplify
 from solve.readout.channels import amplify_channels, input_voltages
 from solve.readout.filters import Filter

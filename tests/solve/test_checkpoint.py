@@ -5,9 +5,11 @@ import pytest
 
 import solve.solution.checkpoint
 from solve.materials.prony import Prony
-from solve.model import Physics, Press, Waveform
+from solve.model import Press
+from solve.physics import Physics
 from solve.solution.archive import read_archive, write_archive
 from solve.solution.checkpoint import Checkpoint
+from solve.waveform import Waveform
 from tests.pressing import press_segment
 from tests.solve.segments import cap, coarse_mesh, materials, segment
 

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from solve.model import Physics, Readout
+from solve.model import Readout
+from solve.physics import Physics
 from solve.readout.amplifier import leaky_integral
 from solve.readout.channels import input_voltages
 from solve.terms.circuit import Circuit, Tied

@@ -7,7 +7,7 @@ from foundation.errors import InputError
 from mesh.interfaces import interface_facets, split_interface
 from solve.delaminations import delaminated_facets
 from solve.materials.laws import InvariantLaw
-from solve.model import Delamination
+from solve.physics import Delamination
 from solve.terms.unilateral_interface import opening_nodes, unilateral_interface
 from tests.cases import for_each
 from tests.solve.term_body import TermBody, layers, tangent_error

@@ -8,8 +8,8 @@ import pytest
 from geometry.parameters import Film, Medium, Segment
 from mesh.options import MeshOptions
 from mesh.types import TetMesh
+from solve.film_means import RIM_THICKNESSES, film_columns, film_peak
 from solve.model import Press
-from solve.result import RIM_THICKNESSES, film_columns, film_peak
 from tests.cases import for_each
 from tests.export.pressed_box import box_mesh, made_up_press
 from tests.pressing import press_segment

@@ -6,8 +6,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from solve.model import Physics
-from solve.press import set_up
+from solve.physics import Physics
+from solve.setup import set_up
 from solve.solution import crushing
 from solve.solution.errors import NoEquilibriumError
 from solve.solution.linear import LinearSolver

@@ -7,11 +7,13 @@ import pytest
 from pydantic import ValidationError
 
 from foundation.errors import InputError
-from solve.model import Physics, Press, Readout, Waveform
+from solve.model import Press, Readout
+from solve.physics import Physics
 from solve.readout.amplifier import leaky_integral
 from solve.readout.course import course
 from solve.readout.stages import Saturation
 from solve.solution.schedule import fraction
+from solve.waveform import Waveform
 from tests.cases import for_each
 
 FILM_F = 971e-12  # 16 x 16 mm, 28 um

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from solve.materials.prony import Prony
-from solve.model import Physics, Readout
+from solve.model import Readout
+from solve.physics import Physics
 from solve.reduced import cache
 from solve.reduced.fit import CELLS, ResponseTable
 from solve.reduced.model import ReducedModel, structure

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from solve.model import Press, Waveform
+from solve.model import Press
 from solve.solution.schedule import Target, load_between, schedule
 from solve.system import Load
+from solve.waveform import Waveform
 from tests.cases import for_each
 
 TRAPEZOID = Waveform(shape="trapezoid", rise_s=0.2, hold_s=0.5, fall_s=0.1)

@@ -11,8 +11,9 @@ from geometry.parameters import Dot
 from mesh.build import build
 from mesh.options import MeshOptions
 from solve.mechanisms import Mechanism, with_mechanisms
-from solve.model import Model, Press, Waveform
+from solve.model import Model, Press
 from solve.solution.sensitivity import Variation, press_with_sensitivities
+from solve.waveform import Waveform
 from tests.solve.segments import materials, segment
 
 NOISE = 1e-5  # relative to the press: what a parameter must change at least, or this compares round-off

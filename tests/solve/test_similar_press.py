@@ -8,9 +8,10 @@ import pytest
 import solve.solution.similar_press
 from geometry.parameters import Dot
 from mesh.types import TetMesh
-from solve.model import BondLine, Model, Physics, Press
+from solve.model import Model, Press
 from solve.open_interfaces import open_interfaces
-from solve.press import Setup, set_up
+from solve.physics import BondLine, Physics
+from solve.setup import Setup, set_up
 from solve.solution.linear import LinearSolver
 from solve.solution.march import rest_state
 from solve.solution.schedule import Target

@@ -6,9 +6,10 @@ import pytest
 import solve.solution.newton
 from geometry.parameters import Dot, Film
 from mesh.options import MeshOptions
-from solve.model import Model, Physics, Press
-from solve.press import set_up
+from solve.model import Model, Press
+from solve.physics import Physics
 from solve.problem import build_system
+from solve.setup import set_up
 from solve.solution.linear import LinearSolver
 from solve.solution.march import march
 from solve.system import Load

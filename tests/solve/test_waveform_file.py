@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from foundation.errors import InputError
-from solve.model import Waveform
 from solve.solution.schedule import duration_s, fraction
+from solve.waveform import Waveform
 
 GOOD = "time_s,fraction\n0,0\n1,0.5\n2,1\n"
 

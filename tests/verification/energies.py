@@ -17,7 +17,7 @@ from solve.fem.shape_functions import linear
 from solve.materials.film_yield import FilmPlasticity
 from solve.materials.mullins import Softening
 from solve.materials.prony import Prony
-from solve.press import Setup
+from solve.setup import Setup
 from solve.solution.linear import LinearSolver
 from solve.solution.march import march, rest_state
 from solve.solution.schedule import Target

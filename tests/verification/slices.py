@@ -10,10 +10,12 @@ from geometry.stack import layers
 from mesh.options import MeshOptions
 from mesh.types import TetMesh
 from solve.materials.parameters import Hyperfoam, PiezoelectricFilm
-from solve.model import Model, Physics, Press, Readout, Waveform
+from solve.model import Model, Press, Readout
 from solve.open_interfaces import open_interfaces
-from solve.press import Setup, set_up
+from solve.physics import Physics
 from solve.result import PressResult
+from solve.setup import Setup, set_up
+from solve.waveform import Waveform
 from tests.pressing import press_segment
 from tests.solve.segments import coarse_mesh, materials, ridge, segment
 

@@ -8,7 +8,7 @@ import pytest
 from mesh.array.mesh import array_mesh
 from mesh.symmetry import unfolded
 from softdot.case import Case
-from solve.press import discretise
+from solve.setup import discretise
 from tests.cases import for_each
 from tests.verification.array_cases import array, solved
 from tests.verification.energies import follow

@@ -6,7 +6,8 @@ Two-way coupling: the voltage stiffens the film, so that it differs from the pos
 import numpy as np
 import pytest
 
-from solve.model import Physics, Pyroelectric, Readout
+from solve.model import Readout
+from solve.physics import Physics, Pyroelectric
 from solve.readout.course import course
 from tests.cases import for_each
 from tests.verification.slices import charge, force, pressed, waved

@@ -8,7 +8,7 @@ import pytest
 from solve.materials.mullins import Softening
 from solve.materials.parameters import Linear
 from solve.materials.prony import Prony
-from solve.model import Physics, Yield
+from solve.physics import Physics, Yield
 from solve.solution.schedule import Target
 from solve.system import Load
 from tests.cases import for_each

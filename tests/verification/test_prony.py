@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from solve.materials.prony import Prony
-from solve.model import Physics
+from solve.physics import Physics
 from tests.cases import for_each
 from tests.verification.slices import charge, force, pressed, waved
 

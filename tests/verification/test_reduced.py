@@ -10,10 +10,12 @@ import pytest
 
 from mesh.options import MeshOptions
 from solve.materials.prony import Prony
-from solve.model import BondLine, Physics, Press, Readout, Waveform
+from solve.model import Press, Readout
+from solve.physics import BondLine, Physics
 from solve.readout.amplifier import amplify
 from solve.reduced.accuracy import BETWEEN, refined, relative_error
 from solve.reduced.build import build_reduced
+from solve.waveform import Waveform
 from tests.cases import for_each
 from tests.pressing import press_segment
 from tests.solve.segments import cap, coarse_mesh, materials, segment

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solve.model import Physics, Press
+from solve.model import Press
+from solve.physics import Physics
 from solve.terms.guide import GuideFriction
 from tests.cases import for_each
 from tests.pressing import press_segment

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from solve.delaminations import with_rims_of_patches
-from solve.model import Delamination, Physics, Press
+from solve.model import Press
+from solve.physics import Delamination, Physics
 from tests.pressing import press_segment
 from tests.solve.segments import materials, ridge
 from tests.verification.slices import STACK, force, mesh_of

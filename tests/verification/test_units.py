@@ -7,7 +7,9 @@ import pytest
 
 from geometry.parameters import Film, Medium
 from solve.materials.prony import Prony
-from solve.model import Physics, Press, Waveform
+from solve.model import Press
+from solve.physics import Physics
+from solve.waveform import Waveform
 from tests.cases import for_each
 from tests.pressing import press_segment
 from tests.solve.segments import materials, ridge, segment

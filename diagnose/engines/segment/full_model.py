@@ -14,11 +14,12 @@ from diagnose.forward import Signals
 from diagnose.signals.recording import Run
 from foundation.arrays import Floats
 from foundation.progress import Report
-from solve.model import Model, Press, Waveform
+from solve.model import Model, Press
 from solve.press import press_segment
 from solve.result import PressResult, Trace
 from solve.solution.errors import NoEquilibriumError
 from solve.tables.rig_mesh import Mesh
+from solve.waveform import Waveform
 
 LOAD_STEPS = 8  # of a press in which time does not count
 TOLERANCE = 0.002  # of the largest drive, by which the thinned drive may differ

@@ -13,7 +13,8 @@ from foundation.executor import Executor
 from foundation.progress import Report
 from solve.delaminations import with_rims_of_patches
 from solve.mechanisms import with_mechanisms
-from solve.model import Model, Physics
+from solve.model import Model
+from solve.physics import Physics
 from solve.solution.errors import NoEquilibriumError
 from solve.tables import cache
 from solve.tables.depth_press import DepthPress

@@ -8,7 +8,8 @@ import numpy as np
 from diagnose.engines.segment.drive import Drive
 from diagnose.signals.recording import Run
 from foundation.arrays import Floats
-from solve.model import Model, Physics, Readout
+from solve.model import Model, Readout
+from solve.physics import Physics
 from solve.readout.amplifier import amplify, other_charge_C
 from solve.readout.channels import amplify_channels
 from solve.reduced.fit import ResponseTable

@@ -8,7 +8,7 @@ from diagnose.forward import Candidate, Coordinate
 from diagnose.vocabulary.base import GIVES_WAY, Vocabulary, register
 from diagnose.vocabulary.scene import Scene
 from solve.mechanisms.boundaries.adhesive_compliance import ADHESIVE_COMPLIANCE
-from solve.model import BondLine
+from solve.physics import BondLine
 
 STIFF_N_PER_MM3 = 50.0  # a film of PVDF, a few mm long, begins to lag behind a medium
 PERFECT_N_PER_MM3 = 1e6

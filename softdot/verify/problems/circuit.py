@@ -4,7 +4,8 @@ import numpy as np
 
 from foundation.arrays import Floats
 from softdot.verify.problem import Problem
-from solve.model import Physics, Readout
+from solve.model import Readout
+from solve.physics import Physics
 from solve.readout.amplifier import amplify
 
 FILM_F, CHARGE_C = 100e-12, 1e-9

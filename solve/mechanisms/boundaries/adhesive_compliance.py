@@ -17,7 +17,8 @@ from solve.mechanisms.base import (
     register,
     with_physics,
 )
-from solve.model import BondLine, Model
+from solve.model import Model
+from solve.physics import BondLine
 from solve.terms.bond import layer_stiffness
 
 

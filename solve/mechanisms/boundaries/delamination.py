@@ -9,7 +9,8 @@ from pydantic import Field, model_validator
 
 from geometry.parameters import Finite, NonNegative, Positive
 from solve.mechanisms.base import BONDS, MechanismType, Parameters, Traits, register, with_physics
-from solve.model import Delamination, Model
+from solve.model import Model
+from solve.physics import Delamination
 
 
 class DelaminationPatch(Parameters):

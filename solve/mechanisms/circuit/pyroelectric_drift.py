@@ -7,7 +7,8 @@ from pydantic import Field
 
 from geometry.parameters import Finite, Positive
 from solve.mechanisms.base import MechanismType, Parameters, Traits, register, with_physics
-from solve.model import Model, Pyroelectric
+from solve.model import Model
+from solve.physics import Pyroelectric
 
 
 class PyroelectricDrift(Parameters):

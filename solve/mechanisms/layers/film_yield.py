@@ -15,7 +15,8 @@ from solve.mechanisms.base import (
     register,
     with_physics,
 )
-from solve.model import Model, Yield
+from solve.model import Model
+from solve.physics import Yield
 
 
 class FilmYield(Parameters):

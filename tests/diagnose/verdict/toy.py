@@ -9,7 +9,8 @@ from diagnose.findings import Detection, Findings, Fit, FittedModel, Interval, L
 from diagnose.forward import Candidate, Coordinate, Setting
 from diagnose.noise.estimate import noise_models
 from diagnose.signals.recording import Recording, Run
-from solve.model import Physics, Readout
+from solve.model import Readout
+from solve.physics import Physics
 from solve.readout.amplifier import amplify
 from tests.diagnose.rigs import trapezoid
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from softdot.studies.paper.calibration.readout import LOW_PASS_HZ, SAMPLES, Chain, pressed, recorded_V, swing_V, times_s
-from solve.model import Physics, Readout
+from solve.model import Readout
+from solve.physics import Physics
 from solve.readout.amplifier import amplify
 from tests.cases import for_each
 

@@ -15,8 +15,8 @@ from scipy.signal import butter, freqs
 
 from foundation.arrays import Floats
 from softdot.studies.paper.calibration.inputs import Values
-from solve.model import Waveform
 from solve.solution.schedule import fraction
+from solve.waveform import Waveform
 
 PERIOD_S = 1.0  # ten presses in ten seconds
 SAMPLES = 2048

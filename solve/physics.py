@@ -1,0 +1,125 @@
+"""Physics beyond the baseline, as the solver needs it. Every default is off and restores the baseline exactly."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from geometry.parameters import Segment
+from solve.materials.mullins import Softening
+from solve.materials.prony import Prony
+from solve.readout.stages import Stage
+from solve.terms.guide import GuideFriction
+
+if TYPE_CHECKING:
+    pass
+
+
+@dataclass(frozen=True)
+class BondLine:
+    """Stiffness of an adhesive, traction per jump of displacement."""
+
+    normal_stiffness_N_per_mm3: float
+    shear_stiffness_N_per_mm3: float
+
+
+@dataclass(frozen=True)
+class Delamination:
+    """A disc (in plane strain a strip of that width) without bond; outside : all but that disc without bond."""
+
+    bond: str
+    center_mm: tuple[float, float]
+    diameter_mm: float
+    outside: bool = False
+
+
+@dataclass(frozen=True)
+class Yield:
+    """Yield stress of the film and its linear isotropic hardening modulus."""
+
+    stress_MPa: float
+    hardening_MPa: float = 0.0
+
+
+@dataclass(frozen=True)
+class Pyroelectric:
+    """A temperature of the film that approaches temperature_step_K with time_constant_s."""
+
+    temperature_step_K: float = 0.0
+    time_constant_s: float = 1.0
+
+
+@dataclass(frozen=True)
+class Physics:
+    """What acts on the segment besides the baseline.
+
+    viscosity : layer or bond -> Prony series; softening : medium -> law (stress scale in MPa).
+    bonds : bond -> stiffness. friction : Coulomb coefficient between dot and surface.
+    rig_compliance_mm_per_N lies between the displacement sensor and the dot, moving_mass_g between the force sensor
+    and the dot; guide rubs where the displacement sensor is, and the force sensor carries it. prestretch : nominal
+    strain of the film in x and y. contact_charge_pC : charge that the dot leaves on the electrodes, all of it at the
+    largest contact area, before that by a power of the area. electronics : stages of the amplifier beside those of the
+    read-out. crosstalk : channel (from 1) -> share of the other channels' voltage.
+    mutual_pF : two channels -> capacitance between their inputs; channel_leak_uS : channel -> conductance parallel to
+    its input; channel_electronics : channel -> stages beside those of all. They need an amplifier for each electrode.
+    separate_channels : each electrode is on an amplifier of its own, against a common ground, where voltages act back
+    on the film; else all electrodes are in parallel on one.
+    """
+
+    viscosity: Mapping[str, Prony] = field(default_factory=dict)
+    softening: Mapping[str, Softening] = field(default_factory=dict)
+    film_yield: Yield | None = None
+    bonds: Mapping[str, BondLine] = field(default_factory=dict)
+    delaminations: tuple[Delamination, ...] = ()
+    friction: float = 0.0
+    rig_compliance_mm_per_N: float = 0.0
+    moving_mass_g: float = 0.0
+    guide: GuideFriction = field(default_factory=GuideFriction)
+    prestretch: tuple[float, float] = (0.0, 0.0)
+    pyroelectric: Pyroelectric = Pyroelectric()
+    contact_charge_pC: float = 0.0
+    contact_charge_exponent: float = 1.0
+    electronics: tuple[Stage, ...] = ()
+    crosstalk: Mapping[int, float] = field(default_factory=dict)
+    mutual_pF: Mapping[tuple[int, int], float] = field(default_factory=dict)
+    channel_leak_uS: Mapping[int, float] = field(default_factory=dict)
+    channel_electronics: Mapping[int, tuple[Stage, ...]] = field(default_factory=dict)
+    separate_channels: bool = False
+
+    @property
+    def of_channels(self) -> tuple[tuple[str, int], ...]:
+        """In words, what is of single channels, each with the highest of the channels that it needs."""
+        return (
+            *((f"crosstalk into 'channel-{n}'", n) for n in self.crosstalk),
+            *((f"crosstalk between 'channel-{i}' and 'channel-{j}'", max(i, j)) for i, j in self.mutual_pF),
+            *((f"a leak of 'channel-{n}'", n) for n in self.channel_leak_uS),
+            *((f"a filter of 'channel-{n}'", n) for n in self.channel_electronics),
+        )
+
+    @property
+    def follows_time(self) -> bool:
+        """Whether the path, or its speed, matters: the press then follows its waveform to the end."""
+        return bool(
+            self.viscosity
+            or self.softening
+            or self.film_yield
+            or self.friction > 0.0
+            or self.moving_mass_g > 0.0
+            or self.guide.forces_N
+            or self.pyroelectric.temperature_step_K != 0.0
+        )
+
+
+def declared_bonds(segment: Segment) -> dict[str, BondLine]:
+    """The compliant bonds of [[segment.bonds]] by name."""
+    return {
+        bond_name(*bond.between): BondLine(bond.normal_stiffness_N_per_mm3, bond.shear_stiffness_N_per_mm3)
+        for bond in segment.bonds
+    }
+
+
+def bond_name(one: str, other: str) -> str:
+    """bond-base, or bond-UPPER-LOWER of two neighbouring layers."""
+    if "base" in (one, other):
+        return "bond-base"
+    upper_first = ("effector", "medium1", "film", "medium2")
+    return "bond-" + "-".join(sorted((one, other), key=upper_first.index))
