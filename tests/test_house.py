@@ -94,7 +94,7 @@ def test_no_package_is_empty():
 
 def test_a_docstring_of_a_module_has_one_headline():
     """A second line that stands alone would be that of a second subject. A reference or an indented line is none."""
-    texts = {path: (ast.get_docstring(parsed(path)) or "").split("\n\n")[1:] for path in FILES}
+    texts = {path: (ast.get_docstring(parsed(path), clean=False) or "").rstrip().split("\n\n")[1:] for path in FILES}
     lone = {
         path: [text for text in more if "\n" not in text and not text.startswith(REMARK)]
         for path, more in texts.items()
