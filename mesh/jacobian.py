@@ -35,6 +35,12 @@ def jacobians(nodes: Floats, barycentric: Floats = SAMPLES) -> Floats:
     return np.asarray(np.einsum("mni,qnj->mqij", nodes, shape_gradients(barycentric), optimize=True))
 
 
+def determinants(matrices: Floats) -> Floats:
+    """Of 3 x 3 matrices (..., 3, 3), by expansion: a tenth of the time of numpy.linalg.det, which factorises each."""
+    (a, b, c), (d, e, f), (g, h, i) = np.moveaxis(matrices, (-2, -1), (0, 1))
+    return np.asarray(a * (e * i - f * h) + b * (f * g - d * i) + c * (d * h - e * g))
+
+
 def smallest_determinant_ratio(nodes: Floats) -> Floats:
     """Smallest over mean Jacobian determinant of each element (m,): 1 when straight, <= 0 when inverted."""
     if not len(nodes):

@@ -1,6 +1,6 @@
 """softdot: design, simulate and fabricate a soft piezoelectric tactile sensor segment over a Braille dot.
 
-    softdot.Case.load("mine.toml").press().plot()
+softdot.Case.load("mine.toml").press().plot()
 """
 
 from importlib import import_module

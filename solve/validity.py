@@ -17,6 +17,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from foundation.arrays import Bools, Floats
+from mesh.jacobian import determinants
 from mesh.types import TetMesh
 from solve.fem.quadrature import tetrahedron
 from solve.fem.shape_functions import quadratic
@@ -60,13 +61,13 @@ def smallest_volumes(tet_mesh: TetMesh, displacement_m: Floats) -> tuple[Floats,
 def _determinants(before: Floats, after: Floats, points: Floats) -> Floats:
     """det F (m, q) at reference points (q, 3) of elements with nodes (m, 10, 3)."""
     slope = quadratic(points)[1]
-    jacobians = [np.linalg.det(np.einsum("qna,mni->mqia", slope, nodes, optimize=True)) for nodes in (before, after)]
+    jacobians = [determinants(np.einsum("qna,mni->mqia", slope, nodes, optimize=True)) for nodes in (before, after)]
     return np.asarray(jacobians[1] / jacobians[0])
 
 
 def _edges(nodes: Floats) -> Floats:
     """Six times the volume (m,) of the tetrahedra of the corners."""
-    return np.asarray(np.linalg.det(nodes[:, 1:4] - nodes[:, :1]))
+    return determinants(nodes[:, 1:4] - nodes[:, :1])
 
 
 def _collapsed(model: Model, result: PressResult) -> Iterator[str]:
