@@ -1,5 +1,4 @@
 """softdot: design, simulate and fabricate a soft piezoelectric tactile sensor segment over a Braille dot.
-
 softdot.Case.load("mine.toml").press().plot()
 """
 

@@ -32,8 +32,8 @@ SMALL = 1e-2
 """Of the largest of its kind: below it a curve is compared with this instead of its own largest value."""
 FIRST_PARTS, HUM_PARTS, MOST_ROUNDS, MOST_TIMES, SAME_TIME = 4, 16, 45, 20_000, 1e-13
 TINY = 1e-300
-SAFETY = 1.5
-"""Of what straight lines and a soft touch change: covers 95 % of the slices on which it was chosen."""
+SAFETY = 2.0
+"""Of what straight lines and a soft touch change: with 1.5, 54 of 58 slices were covered, the others by 0.75 to 0.97."""
 
 
 @dataclass(frozen=True)
