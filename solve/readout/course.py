@@ -33,7 +33,7 @@ SMALL = 1e-2
 FIRST_PARTS, HUM_PARTS, MOST_ROUNDS, MOST_TIMES, SAME_TIME = 4, 16, 45, 20_000, 1e-13
 TINY = 1e-300
 SAFETY = 2.0
-"""Of what straight lines and a soft touch change: with 1.5, 54 of 58 slices were covered, the others by 0.75 to 0.97."""
+"""Of what straight lines and a soft touch change: with 1.5, 54 of 58 were covered, the others by 0.75 to 0.97."""
 
 
 @dataclass(frozen=True)
