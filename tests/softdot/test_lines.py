@@ -8,6 +8,7 @@ import pytest
 
 from softdot.cli import main
 from softdot.commands import run
+from softdot.commands.plate import short_text
 from softdot.log import LOG_FILE, lines_on_stderr, log_file, warn
 from softdot.progress import Logged
 
@@ -23,7 +24,8 @@ def _softdot(folder, *arguments):
 @pytest.mark.process
 def test_in_a_pipe_each_stage_is_a_line_with_its_time_on_stderr_and_in_the_log(tmp_path):
     done = _softdot(tmp_path, *DOT)
-    assert done.stdout.endswith("out/plate.stl\n")
+    summary = json.loads((tmp_path / "out" / "plate.json").read_text(encoding="utf-8"))
+    assert done.stdout == f"{short_text(summary, 'out')}\n"  # the result alone
     times, stages = zip(*(line.split(" s  ") for line in done.stderr.splitlines()), strict=True)
     assert list(stages) == ["printability", "export"]
     assert [float(time) for time in times] == sorted(float(time) for time in times)
