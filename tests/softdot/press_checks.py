@@ -48,8 +48,8 @@ def solved(tables) -> Pressed:
     case = Case(config) if config.array is None else first_press(config)
     _ = case.solved_mesh  # sizes for an accuracy are found by presses of their own
     kept = []
-    set_up = press_module.set_up
-    with patch.object(press_module, "set_up", lambda *given: kept.append(set_up(*given)) or kept[0]):
+    discretise = press_module.discretise
+    with patch.object(press_module, "discretise", lambda *given: kept.append(discretise(*given)) or kept[0]):
         result = case.solve()
     voltage = amplified(case, result)
     return Pressed(case.model, case.dot, result, voltage, kept[0].system, kept[0].tet_mesh, kept[0].recorder._last)

@@ -55,7 +55,7 @@ def by_ngsolve(tet_mesh, held, path):
 
 @pytest.mark.parametrize("held", [(), ("medium1", "film")], ids=["free", "film held"])
 def test_plate(held, tmp_path, monkeypatch):
-    for module in ("terms.solid", "terms.film", "result"):
+    for module in ("terms.solid", "terms.film", "fields"):
         monkeypatch.setattr(f"solve.{module}.tetrahedron", lambda: tetrahedron(5))
     stack = segment(boundary="clamped", held_layers=held) if held else segment(boundary="free")
     top = np.array([0.0, 0.0, layers(stack)[-1].top_mm])
