@@ -1,5 +1,6 @@
 """All pictures of a run, and its curves: reaction force and voltage against indentation or time."""
 
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +10,7 @@ from export.course_figure import course_figure
 from export.cutaway import draw_parts, draw_von_mises, open_scene
 from export.film_maps import film_figure
 from export.skin import MM_PER_M
-from export.view import DPI, HEIGHT_IN, INK, WIDTH_IN, save
+from export.view import DPI, HEIGHT_IN, INK, WIDTH_IN, DrawnBody, View, page, render, save
 from foundation.arrays import Floats
 from foundation.files import whole_folder
 from geometry.dot import DotShape
@@ -25,7 +26,7 @@ def draw_curves(
     reaction_force_N: Floats,
     open_circuit_voltage_V: Floats,
     readout_voltage_V: Floats | None,
-    path: Path,
+    path: Path | BytesIO,
 ) -> None:
     """Two panels over the abscissa, its values (s,) and label. Arrays of shape (s,)."""
     from matplotlib.figure import Figure
@@ -106,6 +107,20 @@ def write_pictures(
         draw_curves(abscissa(result), *_history(result), read, files["force_voltage"])
         save(course_figure(along, result.electrode_names), files["course"])
     return {name: folder / f"{name}.png" for name in FILES}
+
+
+def draw_sample() -> None:
+    """A surface and curves, drawn into memory; the next pictures of this process then take less time. InputError as
+    write_pictures.
+    """
+    import pyvista
+
+    box = (-1.0, 1.0, -1.0, 1.0)
+    figure, axes, _ = page(box, "sample")
+    sphere = DrawnBody(pyvista.Sphere().clip_closed_surface("y"), INK)
+    axes.imshow(render([sphere], View(28.0, 18.0), box, 50.0), extent=box)
+    save(figure, BytesIO())
+    draw_curves((np.arange(2.0), "sample"), np.arange(2.0), np.arange(2.0), None, BytesIO())
 
 
 def deepest(result: PressResult) -> Step:

@@ -1,8 +1,10 @@
 """A hash of the program as far as a result depends on it, derived from its imports, so that an edit forgets it."""
 
 import hashlib
+import os
 import re
 from functools import cache
+from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 
 PROGRAM = Path(__file__).parents[1]
@@ -14,39 +16,53 @@ def source_hash(module: str) -> str:
     """Of the program as far as a module depends on it: its own source, and that of all it imports, however indirectly.
 
     Imports inside functions and packages' __init__ count too, data files that a source names beside itself, and all
-    modules of a package that finds its modules by walking through itself.
+    modules of a package that finds its modules by walking through itself. Other distributions do not count.
     """
+    modules, data = _files(PROGRAM)
     found: dict[Path, bytes] = {}
     waiting, seen = [module], {module}
     while waiting:
-        path = _source_path(waiting.pop())
+        path = modules.get(waiting.pop())
         if path is None or path in found:
             continue
-        found[path], needed, data = _source(path)
-        waiting += needed - seen  # most are named by many sources, and to look for a file takes long
+        text, needed = _source(path)
+        found[path] = text
+        found |= {one: one.read_bytes() for one in data.get(path.parent, ()) if one.name.encode() in text}
+        if "pkgutil.walk_packages" in needed:
+            needed = needed | {name for name, one in modules.items() if path.parent in one.parents}
+        waiting += needed - seen
         seen |= needed
-        found |= data
     return hashlib.sha256(b"".join(found[path] for path in sorted(found))).hexdigest()
 
 
-def _source(path: Path) -> tuple[bytes, set[str], dict[Path, bytes]]:
-    """A source, the modules that it needs, and the data files that it names."""
+@cache
+def _files(program: Path) -> tuple[dict[str, Path], dict[Path, list[Path]]]:
+    """Every module of this distribution with its file, and the data files of each of its folders."""
+    modules, data = dict[str, Path](), dict[Path, list[Path]]()
+    for package in _packages(program):
+        for folder, _, names in os.walk(program / package):
+            dotted = Path(folder).relative_to(program).parts
+            for path in (Path(folder, name) for name in names):
+                if path.suffix == ".py":
+                    modules[".".join(dotted if path.stem == "__init__" else (*dotted, path.stem))] = path
+                elif path.suffix in DATA:
+                    data.setdefault(path.parent, []).append(path)
+    return modules, data
+
+
+def _packages(program: Path) -> list[str]:
+    """Of this distribution alone, as it may be installed among others; of a bare copy of the sources all there are."""
+    try:
+        return (distribution("softdot").read_text("top_level.txt") or "").split()
+    except PackageNotFoundError:
+        return [typed.parent.name for typed in program.glob("*/py.typed")]
+
+
+@cache
+def _source(path: Path) -> tuple[bytes, set[str]]:
+    """A source and the names that it imports."""
     text = path.read_bytes()
-    imported = imported_names(text.decode())
-    needed = imported | (_modules_below(path.parent) if "pkgutil.walk_packages" in imported else set())
-    beside = (data for data in path.parent.iterdir() if data.suffix in DATA and data.name.encode() in text)
-    return text, needed, {data: data.read_bytes() for data in beside}
-
-
-def _source_path(module: str) -> Path | None:
-    """The file of a module of this program, None for a name that is none."""
-    path = PROGRAM.joinpath(*module.split("."))
-    return next((one for one in (path.with_suffix(".py"), path / "__init__.py") if one.is_file()), None)
-
-
-def _modules_below(folder: Path) -> set[str]:
-    """Dotted names of all modules in a folder of this program, however deep."""
-    return {".".join(path.relative_to(PROGRAM).with_suffix("").parts) for path in folder.rglob("*.py")}
+    return text, imported_names(text.decode())
 
 
 FROM = re.compile(r"^[ \t]*from[ \t]+([\w.]+)[ \t]+import[ \t]+(\([^)]*\)|[^\n#;]*)", re.MULTILINE)

@@ -51,6 +51,13 @@ def load_libraries() -> None:
             import_module(name)
 
 
+def warm_drawing() -> None:
+    """Draw what nobody sees: the first pictures of a process load fonts, OpenGL and more, for a second and a half."""
+    from export.pictures import draw_sample
+
+    draw_sample()
+
+
 def make_cad(segment: "Segment", dot_shape: "DotShape", folder: Path) -> float:
     """The parts and their files; returns how many seconds they took. InputError."""
     from geometry import assembly

@@ -12,11 +12,11 @@ Specialties, Piezo Film Sensors Technical Manual); from its coercive field, some
 (Furukawa, Phase Transitions 18 (1989) 143).
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from foundation.arrays import Bools, Floats
+from foundation.arrays import Bools, Floats, Ints
 from mesh.jacobian import determinants
 from mesh.types import TetMesh
 from solve.fem.quadrature import tetrahedron
@@ -47,22 +47,35 @@ def doubts(model: Model, result: PressResult) -> list[str]:
     return [*_collapsed(model, result), *_unstable(model, result), *_wild_field(model, result)]
 
 
-def smallest_volumes(tet_mesh: TetMesh, displacement_m: Floats) -> tuple[Floats, Floats]:
-    """Of each element (m,) the smallest det F where it is integrated, and elsewhere: at its nodes and of its straight
-    edges."""
-    before = tet_mesh.points_mm[tet_mesh.tets]
-    after = before + 1e3 * displacement_m[tet_mesh.tets]
-    inside = _determinants(before, after, tetrahedron()[0])
-    straight = _edges(after) / _edges(before)
-    at_nodes = _determinants(before, after, CORNERS_AND_MIDDLES)
-    return inside.min(axis=1), np.minimum(at_nodes.min(axis=1), straight)
+def _part(result: PressResult) -> slice:
+    """The elements of the part that was solved; their mirror images follow them and have the same values."""
+    return slice(len(result.tet_mesh.tets) // 2 ** len(result.planes))
 
 
-def _determinants(before: Floats, after: Floats, points: Floats) -> Floats:
-    """det F (m, q) at reference points (q, 3) of elements with nodes (m, 10, 3)."""
-    slope = quadratic(points)[1]
-    jacobians = [determinants(np.einsum("qna,mni->mqia", slope, nodes, optimize=True)) for nodes in (before, after)]
-    return np.asarray(jacobians[1] / jacobians[0])
+def _of_layer(result: PressResult, layer: str) -> Ints:
+    """The elements of a layer in the part that was solved."""
+    tet_mesh = result.tet_mesh
+    return np.flatnonzero(tet_mesh.region[_part(result)] == tet_mesh.region_names.index(layer))
+
+
+def smallest_volumes(nodes_mm: Floats, displacements_m: Iterable[Floats]) -> tuple[Floats, Floats]:
+    """The smallest det F (m,) over all displacements (m, 10, 3) of elements with nodes (m, 10, 3): where it is
+    integrated, and elsewhere, which is at the nodes and of straight edges.
+    """
+    inside, at_nodes = tetrahedron()[0], CORNERS_AND_MIDDLES
+    rest = _determinants(nodes_mm, inside), _determinants(nodes_mm, at_nodes), _edges(nodes_mm)
+    smallest = np.full((2, len(nodes_mm)), np.inf)
+    for displacement_m in displacements_m:
+        moved = nodes_mm + 1e3 * displacement_m
+        beside = (_determinants(moved, at_nodes) / rest[1]).min(axis=1), _edges(moved) / rest[2]
+        now = (_determinants(moved, inside) / rest[0]).min(axis=1), np.minimum(*beside)
+        smallest = np.minimum(smallest, now)
+    return smallest[0], smallest[1]
+
+
+def _determinants(nodes: Floats, points: Floats) -> Floats:
+    """Of the Jacobian (m, q) at reference points (q, 3)."""
+    return determinants(np.einsum("qna,mni->mqia", quadratic(points)[1], nodes, optimize=True))
 
 
 def _edges(nodes: Floats) -> Floats:
@@ -71,13 +84,14 @@ def _edges(nodes: Floats) -> Floats:
 
 
 def _collapsed(model: Model, result: PressResult) -> Iterator[str]:
-    tet_mesh = result.tet_mesh
-    steps = [smallest_volumes(tet_mesh, step.fields.displacement_m) for step in result.steps]
-    inside, elsewhere = (np.min([step[n] for step in steps], axis=0) for n in (0, 1))
+    tet_mesh, part = result.tet_mesh, _part(result)
+    tets = tet_mesh.tets[part]
+    moved = (step.fields.displacement_m[tets] for step in result.steps)
+    inside, elsewhere = smallest_volumes(tet_mesh.points_mm[tets], moved)
     layers = [(layer, material) for layer, material in model.materials.items() if layer in tet_mesh.region_names]
     advice = "what is computed near it is not to be trusted; press less deep or mesh finer"
     for layer, material in layers:
-        tets = tet_mesh.region_tets(layer)
+        tets = _of_layer(result, layer)
         soft = not isinstance(material, PiezoelectricFilm) and material.law.compressible
         limit = SOLID if soft else CRUSHED
         turned, crushed = int(tets[np.argmin(elsewhere[tets])]), int(tets[np.argmin(inside[tets])])
@@ -98,16 +112,17 @@ def _unstable(model: Model, result: PressResult) -> Iterator[str]:
     for layer, material in model.materials.items():
         if isinstance(material, PiezoelectricFilm) or layer not in tet_mesh.region_names:
             continue
-        tets = tet_mesh.region_tets(layer)
+        tets = _of_layer(result, layer)
         for step in result.steps:
             strain = from_voigt(step.fields.green_lagrange_strain[tets])
             squared: Floats = np.asarray(2.0 * np.linalg.eigvalsh(strain) + 1.0, dtype=np.float64)
             stiff = has_positive_stiffness(material.law, squared)
             if not stiff.all():
                 stretch = float(np.sqrt(squared[~stiff]).max())
+                count = 2 ** len(result.planes) * int((~stiff).sum())
                 yield (
                     f"the law of {layer} ({material.model}) has no positive stiffness at the strain of "
-                    f"{int((~stiff).sum())} elements (stretches up to {stretch:.3g}) at an indentation of "
+                    f"{count} elements (stretches up to {stretch:.3g}) at an indentation of "
                     f"{1e3 * step.indentation_m:.3g} mm: beyond it the law means nothing"
                 )
                 break
@@ -122,7 +137,16 @@ def has_positive_stiffness(law: MediumLaw, squared_stretches: Floats) -> Bools:
     if not law.compressible:
         isochoric = np.linalg.svd(np.ones((1, 3)))[2][1:]
         slope = isochoric @ slope @ isochoric.T
-    return np.asarray(np.linalg.eigvalsh(0.5 * (slope + slope.swapaxes(1, 2)))[:, 0] > 0.0)
+    return positive_definite(0.5 * (slope + slope.swapaxes(1, 2)))
+
+
+def positive_definite(matrices: Floats) -> Bools:
+    """Whether symmetric matrices (n, d, d), d at most 3, are, shape (n,): all leading minors positive (Sylvester)."""
+    size = matrices.shape[-1]
+    minors = [matrices[:, 0, 0], matrices[:, 0, 0] * matrices[:, 1, 1] - matrices[:, 0, 1] ** 2]
+    if size == 3:
+        minors.append(determinants(matrices))
+    return np.asarray(np.all([minor > 0.0 for minor in minors], axis=0))
 
 
 def _wild_field(model: Model, result: PressResult) -> Iterator[str]:

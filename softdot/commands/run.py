@@ -20,7 +20,7 @@ from softdot.log import lines_when_interactive, warn
 from softdot.memory import refuse_no_room_for_libraries
 from softdot.output import RUN, staged_folder
 from softdot.progress import Logged, Progress
-from softdot.second_process import SecondProcess, draw, make_cad
+from softdot.second_process import SecondProcess, draw, make_cad, warm_drawing
 from softdot.system_libraries import named_when_missing
 
 if TYPE_CHECKING:
@@ -111,6 +111,7 @@ def _fill(
         with clock("mesh"):
             # a slice is pressed before another process has loaded the solver
             ahead = ask(prepare, case.sized) if config.segment.section == "solid" else None
+            ask(warm_drawing)
             quality = case.mesh_quality
     except MeshingError as error:
         clock.seconds["geometry"] = cad.result()

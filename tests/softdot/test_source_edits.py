@@ -34,7 +34,7 @@ def kept(copied: Path, monkeypatch: pytest.MonkeyPatch):
     tet_mesh = case.mesh
 
     def names() -> dict[str, str]:
-        hashes.source_hash.cache_clear()
+        forget()
         return {
             "mesh": mesh_key(case.model.segment, case.dot, MeshOptions()),
             "press": press_key(case, tet_mesh),
@@ -42,7 +42,13 @@ def kept(copied: Path, monkeypatch: pytest.MonkeyPatch):
         }
 
     yield names
+    forget()
+
+
+def forget() -> None:
+    """What a process has read of its own sources, which do not change while it runs."""
     hashes.source_hash.cache_clear()
+    hashes._source.cache_clear()
 
 
 @pytest.mark.process
