@@ -7,6 +7,7 @@ from math import sqrt
 
 import numpy as np
 
+from foundation.arrays import Floats
 from foundation.errors import InputError
 from geometry.assembly import case_outside
 from geometry.dot import DotShape
@@ -84,23 +85,31 @@ def press_warnings(
             f"the indentation of {indentation_mm:.3g} mm exceeds the dot's height of "
             f"{dot_shape.height_mm:.3g} mm: the plate around the dot touches the segment too"
         )
+    places = along(dot_shape, path_xy_mm)
     return [
         *warnings,
-        *_far_dot(dot_shape, segment, indentation_mm),
-        *_over_edge(along(dot_shape, path_xy_mm), segment, indentation_mm),
+        *_far_dot(places, segment, indentation_mm),
+        *_over_edge(places, segment, indentation_mm),
         *_hit_case(dot_shape, segment, indentation_mm),
     ]
 
 
-def _far_dot(dot_shape: DotShape, segment: Segment, indentation_mm: float) -> list[str]:
-    ball = dot_shape.origin_mm + dot_shape.rotation @ [0.0, 0.0, dot_shape.radius_mm]
-    clear = bodies(segment)[-1].distance(ball) - dot_shape.radius_mm
-    if dot_shape.kind != "cap" or clear <= indentation_mm:
+def _far_dot(places: Sequence[DotShape], segment: Segment, indentation_mm: float) -> list[str]:
+    if places[0].kind != "cap":
+        return []
+    top = bodies(segment)[-1]
+    clear = min(top.distance(_ball_mm(one)) - one.radius_mm for one in places)
+    if clear <= indentation_mm:
         return []
     return [
         f"the pressed dot stays {clear:.3g} mm clear of the top of the segment at rest, more than the "
         f"indentation of {indentation_mm:.3g} mm: it may not touch"
     ]
+
+
+def _ball_mm(dot_shape: DotShape) -> Floats:
+    """Middle (3,) of the ball that a cap is a part of."""
+    return np.asarray(dot_shape.origin_mm + dot_shape.rotation @ [0.0, 0.0, dot_shape.radius_mm])
 
 
 def _beyond_edge_mm(dot_shape: DotShape, segment: Segment, indentation_mm: float) -> float:
@@ -109,7 +118,7 @@ def _beyond_edge_mm(dot_shape: DotShape, segment: Segment, indentation_mm: float
     A ball touches a flat body to a radius of sqrt(R d) at a depth d (Hertz).
     """
     top, radius = bodies(segment)[-1], dot_shape.radius_mm
-    ball = dot_shape.origin_mm + dot_shape.rotation @ [0.0, 0.0, radius]
+    ball = _ball_mm(dot_shape)
     if top.distance(ball) - radius > indentation_mm:
         return 0.0
     reach = sqrt(radius * indentation_mm)

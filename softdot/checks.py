@@ -27,6 +27,7 @@ from softdot.config.schema import Config
 from softdot.memory import needed_GB, refuse_too_little_memory
 from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.model import Model
+from solve.physics import declared_bonds
 from solve.readout.course import PressCourse
 from solve.result import PressResult
 from solve.solution.schedule import duration_s
@@ -163,7 +164,20 @@ def course_warnings(model: Model, result: PressResult, along: PressCourse) -> li
 
 
 def design_warnings(model: Model) -> list[str]:
-    """Warnings that need no solution: holding medium 2 closes a cavity."""
+    """Warnings that need no solution: what is stated and not used, and a cavity that held sides close."""
+    return [*_replaced_bonds(model), *_closed_cavity(model)]
+
+
+def _replaced_bonds(model: Model) -> list[str]:
+    used = model.physics.bonds
+    replaced = [name for name, stated in declared_bonds(model.segment).items() if used[name] != stated]
+    return [
+        f"segment.bonds: the stiffness stated for '{name}' is not used, a mechanism states another one"
+        for name in replaced
+    ]
+
+
+def _closed_cavity(model: Model) -> list[str]:
     segment = model.segment
     material = model.materials["medium2"]
     held = segment.boundary == "clamped" and "medium2" in segment.held_layers

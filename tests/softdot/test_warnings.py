@@ -30,6 +30,19 @@ def test_holding_medium2_closes_a_cavity():
     assert warn(boundary="clamped", held_layers=every, medium2={"thickness_mm": 2, "material": "sponge"}) == []
 
 
+def test_a_bond_that_a_mechanism_replaces_is_told():
+    def warned(stiffness_N_per_mm3):
+        stated = {"between": ["film", "medium2"], "normal_stiffness_N_per_mm3": 10.0, "shear_stiffness_N_per_mm3": 4.0}
+        glue = {"normal_stiffness_N_per_mm3": stiffness_N_per_mm3, "shear_stiffness_N_per_mm3": 4.0}
+        mechanism = {"name": "adhesive-compliance", "component": "bond-film-medium2", "parameters": glue}
+        tables = {"segment": {**LAYERS, "bonds": [stated]}, "mechanisms": [mechanism]}
+        return design_warnings(model_of(config_from(tables)))
+
+    assert warned(10.0) == []
+    (told,) = warned(20.0)
+    assert "'bond-film-medium2' is not used" in told
+
+
 def test_film_beyond_yield():
     model, dot = model_of(load_config()), cap_of_height(0.5)
     assert result_warnings(model, dot, result_of([0.0, 0.3], stress_MPa=49.0)) == []
