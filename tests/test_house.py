@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from mesh.options import MeshOptions
+
 ROOT = Path(__file__).parents[1]
 MAY_IMPORT = {
     "foundation": set(),
@@ -109,18 +111,33 @@ def test_no_class_name_occurs_twice():
 
 
 def test_modules_that_a_text_names_exist():
-    """Dotted names in docstrings and comments; a name inside a module must occur in its source."""
-    lost = {(path.name, name) for path in FILES for name in named_in_texts(path) if not leads_somewhere(name)}
+    """Dotted names in docstrings, messages and comments; a name inside a module must occur in its source."""
+    named = {(path.name, name) for path in FILES for text in texts(path) for name in re.findall(DOTTED, text)}
+    keys = {f"mesh.{key}" for key in MeshOptions.model_fields}
+    assert {(file, name) for file, name in named if name not in keys and not leads_somewhere(name)} == set()
+
+
+def test_files_that_a_text_names_exist():
+    """By the end of their path; those that a program writes itself stand alone in a string."""
+    held = [f"/{path.relative_to(ROOT)}" for top in (*MAY_IMPORT, "benchmarks") for path in (ROOT / top).rglob("*.py")]
+    written = {text for path in FILES for text in strings(path) if text.endswith(".py") and " " not in text}
+    named = {(path.name, name) for path in FILES for text in texts(path) for name in re.findall(r"[\w/]+\.py\b", text)}
+    lost = {one for one in named if one[1] not in written and not any(path.endswith(f"/{one[1]}") for path in held)}
     assert lost == set()
 
 
-def named_in_texts(path):
-    """Dotted names below our packages in the docstrings, messages and comments of a file."""
-    source = path.read_text("utf-8")
-    strings = [node.value for node in ast.walk(parsed(path)) if isinstance(node, ast.Constant)]
-    texts = [text for text in strings if isinstance(text, str) and " " in text] + re.findall(r"#.*", source)
-    pattern = r"\b(?:foundation|geometry|solve|export|diagnose)(?:\.(?!md\b)[a-z_]+)+"
-    return {name for text in texts for name in re.findall(pattern, text)}
+DOTTED = rf"\b(?:{'|'.join(MAY_IMPORT)})(?:\.(?!md\b)[a-z_]+)+"
+
+
+def texts(path):
+    """Docstrings, messages and comments of a file."""
+    return [text for text in strings(path) if " " in text] + re.findall(r"#.*", path.read_text("utf-8"))
+
+
+@cache
+def strings(path):
+    constants = (node.value for node in ast.walk(parsed(path)) if isinstance(node, ast.Constant))
+    return [value for value in constants if isinstance(value, str)]
 
 
 def leads_somewhere(name):

@@ -117,7 +117,7 @@ class PressJudge:
         return remaining_spread(told + np.diag(np.square(1.0 / np.array(widths))))
 
     def _separation(self, one: ImaginedAnswer, other: ImaginedAnswer, *spreads: Floats) -> float:
-        """The expected separation of statistics/design.py, by inner products: presses may have many samples."""
+        """The expected separation of statistics/separation.py, by inner products: presses may have many samples."""
         weight = 1.0 / np.sqrt(np.maximum(one.system.variance, other.system.variance))[:, None]
         open_still = np.column_stack([one.slopes @ spreads[0], other.slopes @ spreads[1]])
         columns = np.column_stack([open_still, one.system.nuisance_design, other.system.nuisance_design])
