@@ -17,23 +17,6 @@ from softdot.console import BAD_INPUT, GOOD, INTERRUPTED, complain
 from softdot.log import lines_on_stderr
 from softdot.no_room import without_room
 
-COMMANDS = {
-    "run": "softdot.commands.run",
-    "paper": "softdot.commands.paper",
-    "sweep": "softdot.commands.sweep",
-    "convert": "softdot.commands.convert",
-    "diagnose": "softdot.commands.diagnose",
-    "prove": "softdot.commands.prove",
-    "kit": "softdot.commands.kit",
-    "plate": "softdot.commands.plate",
-    "array": "softdot.commands.array",
-    "read": "softdot.commands.read",
-    "verify": "softdot.commands.verify",
-    "studio": "softdot.commands.studio",
-    "check": "softdot.commands.check",
-    "new": "softdot.commands.new",
-    "list": "softdot.commands.list",
-}
 STOPPED = "interrupted, nothing was written"
 UNINTERRUPTED = "<frozen importlib", "llvmlite"  # in the file names of their code
 ASKED_AGAIN_S = 0.05
@@ -118,7 +101,7 @@ def _command(chosen: argparse.Namespace) -> int:
 
         sys.stdout.write(json_text(config_schema()))
         return GOOD
-    body = import_module(COMMANDS[chosen.command])
+    body = import_module(f"softdot.commands.{chosen.command}")
     with lines_on_stderr(getattr(chosen, "quiet", False), getattr(chosen, "verbose", False)):
         status: int = body.command(chosen)
     return status

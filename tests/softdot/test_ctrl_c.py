@@ -60,7 +60,7 @@ def test_an_import_is_finished_before_ctrl_c_is_answered(tmp_path):
     """VTK crashes where one of its libraries cannot be imported by another."""
     (tmp_path / "interrupted_import.py").write_text(INTERRUPTED_IMPORT, "utf-8")
     program = (
-        "import sys; from softdot import cli; cli.COMMANDS['run'] = 'interrupted_import';"
+        "import sys; from softdot import cli; cli.import_module = lambda _: __import__('interrupted_import');"
         "sys.exit(cli.main(['run', '-o', 'out']))"
     )
     done = subprocess.run(
