@@ -13,13 +13,11 @@ if TYPE_CHECKING:
     from foundation.errors import InputError
     from mesh.types import MeshingError
     from softdot.case import Case
-    from softdot.commands.run import run_config
     from softdot.config.hashes import config_hash
     from softdot.config.loading import load_config
     from softdot.config.schema import Config, config_schema
-    from softdot.differentiation import derivatives
     from softdot.pressed import ConvergenceWarning, Pressed, ResultWarning
-    from softdot.scripting import Verdict, diagnose, sweep
+    from softdot.scripting import Verdict, derivatives, diagnose, run_config, sweep
 
     __version__: str
 

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 from foundation.arrays import Floats
 from foundation.errors import InputError
 from mesh.types import TetMesh
-from softdot.case import Case
 from softdot.config.loading import config_from
 from softdot.config.model import model_of
 from softdot.config.schema import Config
@@ -37,20 +36,9 @@ class Derivative:
     readout_voltage_V: Floats | None
 
 
-def derivatives(config: Config, keys: Sequence[str]) -> list[Derivative]:
-    """Differentiate the press of a configuration by its keys, such as "materials.vnr.youngs_modulus_MPa",
-    "segment.film.thickness_um" or "mechanisms[0].parameters.coefficient" (see solve.solution.sensitivity).
-
-    InputError for a key that is absent, no number, zero or decides which parts there are.
-
-    >>> from softdot import load_config
-    >>> coarse = ["segment.section=plane-strain", "dot.shape=ridge", "mesh.mesher=layered", "mesh.element_size_mm=0.8"]
-    >>> config = load_config(None, [*coarse, "press.load_steps=1"])
-    >>> (by_thickness,) = derivatives(config, ["segment.medium2.thickness_mm"])
-    >>> bool(by_thickness.reaction_force_N[-1] < 0.0)  # a thicker medium gives way more
-    True
-    """
-    result, found = press_with_derivatives(config, keys, Case(config).solved_mesh)
+def converged_derivatives(config: Config, keys: Sequence[str], tet_mesh: TetMesh) -> list[Derivative]:
+    """As press_with_derivatives, without the press. InputError for the keys, and where it does not converge."""
+    result, found = press_with_derivatives(config, keys, tet_mesh)
     if not result.converged:
         raise InputError(f"the press stopped early: {result.failure}")
     return found

@@ -6,11 +6,12 @@ from typing import Any
 from foundation.cache import data_hash, recall, remember
 from foundation.source_hash import source_hash
 from mesh.types import MeshingError
-from softdot.case import Case, OnStep
+from softdot.case import Case
 from softdot.checks import course_warnings, design_warnings, result_warnings
 from softdot.config.hashes import input_hash
 from softdot.config.schema import Config
 from softdot.json_files import plain
+from softdot.prepared_press import OnStep
 from softdot.summary import mesh_part, press_part, stopped_solver
 
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import pyvista as pv
     from matplotlib.figure import Figure
 
-    from softdot.case import Case
+    from softdot.prepared_press import PreparedPress
     from solve.readout.course import PressCourse
 
 
@@ -47,7 +47,7 @@ class Pressed:
     3
     """
 
-    def __init__(self, case: "Case", result: PressResult) -> None:
+    def __init__(self, case: "PreparedPress", result: PressResult) -> None:
         self.case, self.result = case, result
         past = history(result)
         self.indentation_mm, self.reaction_force_N = past.indentation_mm, past.reaction_force_N

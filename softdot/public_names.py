@@ -11,9 +11,9 @@ HOMES = {
     "Verdict": "softdot.scripting",
     "config_hash": "softdot.config.hashes",
     "config_schema": "softdot.config.schema",
-    "derivatives": "softdot.differentiation",
+    "derivatives": "softdot.scripting",
     "diagnose": "softdot.scripting",
     "load_config": "softdot.config.loading",
-    "run_config": "softdot.commands.run",
+    "run_config": "softdot.scripting",
     "sweep": "softdot.scripting",
 }

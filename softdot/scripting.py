@@ -1,4 +1,4 @@
-"""Studies in a few lines of Python: many designs to a data frame, a recording to a verdict with tables and plots."""
+"""What commands do, in a line of Python each: a run, derivatives, many designs, a recording to a verdict."""
 
 import shutil
 from collections.abc import Mapping, Sequence
@@ -9,6 +9,36 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from softdot.config.schema import Config
+    from softdot.differentiation import Derivative
+    from softdot.progress import Progress
+
+
+def run_config(config: "Config", out: Path, progress: "Progress | None" = None) -> dict[str, Any]:
+    """All files of `softdot run` in the folder out; returns summary.json. As softdot.run_folder.run_case."""
+    from softdot.case import Case
+    from softdot.run_folder import run_case
+
+    return run_case(Case(config), out, progress)
+
+
+def derivatives(config: "Config", keys: Sequence[str]) -> "list[Derivative]":
+    """Differentiate the press of a configuration by its keys, such as "materials.vnr.youngs_modulus_MPa",
+    "segment.film.thickness_um" or "mechanisms[0].parameters.coefficient" (see solve.solution.sensitivity).
+
+    InputError for a key that is absent, no number, zero or decides which parts there are.
+
+    >>> from softdot import load_config
+    >>> coarse = ["segment.section=plane-strain", "dot.shape=ridge", "mesh.mesher=layered", "mesh.element_size_mm=0.8"]
+    >>> config = load_config(None, [*coarse, "press.load_steps=1"])
+    >>> (by_thickness,) = derivatives(config, ["segment.medium2.thickness_mm"])
+    >>> bool(by_thickness.reaction_force_N[-1] < 0.0)  # a thicker medium gives way more
+    True
+    """
+    from softdot.case import Case
+
+    return Case(config).derivatives(keys)
 
 
 def sweep(space: Path | str | Mapping[str, Any], out: Path | str | None = None) -> "pd.DataFrame":

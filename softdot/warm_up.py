@@ -1,8 +1,10 @@
 """The kernels compiled in one worker before others start."""
 
+from foundation.cache import data_hash, recall, remember
 from foundation.executor import Executor
+from foundation.source_hash import source_hash
 from softdot.config.loading import config_from
-from softdot.outcome import outcome, remembered
+from softdot.prepared_press import PreparedPress
 
 TINY = {
     "segment": {
@@ -18,6 +20,15 @@ TINY = {
 
 def warm_up(executor: Executor) -> None:
     """Compile the kernels in one worker: several at once could spoil numba's cache of compiled code."""
-    config = config_from(TINY)
-    if remembered(config) is None:
-        executor.submit(outcome, config).exception()
+    if recall(_name()) is None:
+        executor.submit(press_tiny).exception()
+
+
+def press_tiny() -> None:
+    """A press that takes every kernel, remembered as done."""
+    PreparedPress(config_from(TINY)).solve()
+    remember(_name(), True)
+
+
+def _name() -> str:
+    return f"warm-{data_hash([TINY, source_hash('solve.press')])}"

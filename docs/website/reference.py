@@ -53,11 +53,12 @@ def _public_page(root: Path) -> str:
         for node in tree.body
         if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__"
     )
-    shown = [_shown(root, f"{PUBLIC}.{name}", full_path=False) for name in sorted(names) if not name.startswith("_")]
+    public = sorted(name for name in names if not name.startswith("_"))
+    shown = [_shown(root, f"{PUBLIC}.{name}", full_path=False, inherited_members="true") for name in public]
     return "\n".join([PUBLIC_HEAD, *shown])
 
 
-def _shown(root: Path, name: str, full_path: bool) -> str:
+def _shown(root: Path, name: str, full_path: bool, **more: str) -> str:
     """What mkdocstrings replaces by the documentation of a name.
 
     It follows a name into another package only where that was loaded before, hence the list of all of them.
@@ -66,6 +67,7 @@ def _shown(root: Path, name: str, full_path: bool) -> str:
         "heading_level": 2,
         "show_root_full_path": str(full_path).lower(),
         "preload_modules": f"[{', '.join(top_packages(root))}]",
+        **more,
     }
     return "\n".join([f"::: {name}", "    options:", *(f"      {key}: {value}" for key, value in options.items()), ""])
 

@@ -19,7 +19,6 @@ from geometry.fabrication.part import ROUNDING_MM
 from geometry.flat.flat_kit import FlatKit, flat_kit
 from mesh.types import MeshingError
 from softdot.arrays.case import ArrayCase
-from softdot.case import Case
 from softdot.checks import design_warnings
 from softdot.config.schema import Config
 from softdot.dask_cluster import AwayError
@@ -29,6 +28,7 @@ from softdot.kit.layout import side_by_side
 from softdot.kit.summary import heading, pressed, summary_of
 from softdot.log import LOG_FILE, log_file, warn
 from softdot.output import Product, staged_folder
+from softdot.prepared_press import PreparedPress
 from softdot.progress import Logged, Progress
 from softdot.system_libraries import named_when_missing
 from softdot.tolerances.budget import budget_of
@@ -82,7 +82,7 @@ def _kit_json(out: Path) -> str | None:
 def _checked(config: Config) -> list[str]:
     """What a user should know about the design. InputError for what cannot be built, or pressed for the budget."""
     array = [] if config.array is None else ArrayCase(config).built
-    case = Case(budget_config(config))
+    case = PreparedPress(budget_config(config))
     return list(dict.fromkeys([*array, *case.checked[1], *design_warnings(case.model)]))
 
 

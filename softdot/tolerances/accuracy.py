@@ -9,9 +9,9 @@ from foundation.errors import InputError
 from foundation.source_hash import source_hash
 from mesh.options import MeshOptions
 from mesh.types import MeshingError
-from softdot.case import Case
 from softdot.checks import refuse_huge_mesh
 from softdot.config.schema import Config
+from softdot.prepared_press import PreparedPress
 from softdot.tolerances.discretisation import RATIOS, answer_at, discretisation_error, follows_path, full_load
 from softdot.tolerances.responses import remembered
 from solve.solution.full_load import StoppedShortError
@@ -84,7 +84,7 @@ def _error_percent(config: Config, factor: float) -> float:
 
 
 def _refuse_too_many(config: Config, options: MeshOptions) -> None:
-    case = Case(config)
+    case = PreparedPress(config)
     try:
         refuse_huge_mesh(case.model.segment, case.dot, options, case.planes)
     except InputError as error:

@@ -17,8 +17,9 @@ import numpy as np
 from foundation.arrays import Floats
 from softdot.config.model import model_of
 from softdot.config.schema import Config
-from softdot.outcome import outcome
-from softdot.tolerances.responses import FullLoadResponse, KitPress, on_larger_elements
+from softdot.prepared_press import PreparedPress
+from softdot.summary import history, not_finite
+from softdot.tolerances.responses import FullLoadResponse, KitPress, on_larger_elements, remembered
 from solve.solution.full_load import StoppedShortError
 
 RATIOS = 2.0, 3.0
@@ -59,10 +60,19 @@ def follows_path(config: Config) -> bool:
 
 def along_path(config: Config, ratio: float) -> Answers:
     """The whole press on larger elements, kept on disk. InputError, MeshingError, StoppedShortError."""
-    found = outcome(on_larger_elements(config, ratio))
-    if not found["solver"]["converged"]:
-        raise StoppedShortError(found["solver"]["failure"])
-    return answers_of(found)
+    larger = on_larger_elements(config, ratio)
+    return Answers(*map(np.array, remembered(larger, "answers along the path", lambda: _whole_press(larger))))
+
+
+def _whole_press(config: Config) -> Answers:
+    result = PreparedPress(config).solve()
+    past = history(result)
+    each = np.array([step.open_circuit_voltage_V for step in result.steps])
+    found = Answers(past.reaction_force_N[1:], past.open_circuit_voltage_V[1:], each[1:])
+    failure = result.failure or not_finite(found._asdict())
+    if failure:
+        raise StoppedShortError(failure)
+    return found
 
 
 def full_load(config: Config, ratio: float, keys: Sequence[str] = ()) -> FullLoadResponse:

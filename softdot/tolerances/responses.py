@@ -14,12 +14,12 @@ from foundation.errors import InputError
 from foundation.source_hash import source_hash
 from mesh.morphing import morphed
 from mesh.types import TetMesh
-from softdot.case import Case
 from softdot.config.hashes import config_hash, input_hash
 from softdot.config.model import model_of
 from softdot.config.schema import Config
 from softdot.differentiation import press_with_derivatives, variations_of
 from softdot.json_files import plain
+from softdot.prepared_press import PreparedPress
 from softdot.summary import history
 from softdot.tolerances.factors import with_factors
 from solve.result import PressResult
@@ -50,7 +50,7 @@ def on_larger_elements(config: Config, factor: float) -> Config:
 
 def mesh_of(config: Config) -> TetMesh:
     """The mesh that is solved of a configuration. InputError, MeshingError."""
-    return Case(config).solved_mesh
+    return PreparedPress(config).solved_mesh
 
 
 class FullLoadResponse(NamedTuple):
@@ -124,7 +124,7 @@ class KitPress:
 
 def path_matters(config: Config) -> bool:
     """Whether the response at full load depends on how the load came to be there."""
-    case = Case(config)
+    case = PreparedPress(config)
     return case.model.follows_time or case.is_amplified
 
 
@@ -142,7 +142,7 @@ def slopes_along(config: Config, keys: Sequence[str], tet_mesh: TetMesh) -> tupl
 
 def value_along(config: Config, tet_mesh: TetMesh) -> Response:
     """The response of a whole press on a given mesh. InputError, StoppedShortError."""
-    return _response(config, Case(config).solve(tet_mesh=tet_mesh))
+    return _response(config, PreparedPress(config).solve(tet_mesh=tet_mesh))
 
 
 def slopes_by(keys: Sequence[str]) -> str:
@@ -173,7 +173,7 @@ def remembered(config: Config, what: str, make: Callable[[], Any]) -> Any:
 def _response(config: Config, result: PressResult) -> Response:
     if not result.converged:
         raise StoppedShortError(result.failure)
-    along = Case(config).course(result)
+    along = PreparedPress(config).course(result)
     voltage = history(result).open_circuit_voltage_V if along.together_V is None else along.together_V[along.solved]
     step = _deepest(result)
     return Response(result.steps[step].reaction_force_N, float(voltage[step]))

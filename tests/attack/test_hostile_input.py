@@ -71,11 +71,12 @@ def attempt(monkeypatch, tmp_path, capfd):
     def reached(*_args, **_kwargs):
         raise ReachedError
 
-    from softdot.commands import run, sweep
+    from softdot import run_folder
+    from softdot.commands import sweep
     from softdot.diagnosis import folder as diagnosis
     from softdot.plate import folder as plate
 
-    monkeypatch.setattr(run, "staged_folder", reached)
+    monkeypatch.setattr(run_folder, "staged_folder", reached)
     monkeypatch.setattr(diagnosis, "engine_for", reached)
     monkeypatch.setattr(sweep, "run_sweep", reached)
     monkeypatch.setattr(plate, "staged_folder", reached)

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import pytest
 
 from geometry import assembly
-from softdot import second_process
+from softdot import run_folder, second_process
 from softdot.case import Case
 from softdot.commands import run
 from softdot.tolerances import uncertainty
@@ -73,13 +73,14 @@ def stages(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
     monkeypatch.setattr(assembly, "build_parts", called("parts"))
     for name in ("checked", "mesh", "mesh_quality"):
         monkeypatch.setattr(Case, name, property(called(name)))
-    for name in ("solve", "uncertainty"):
-        monkeypatch.setattr(Case, name, called(name))
+    monkeypatch.setattr(Case, "solve", called("solve"))
     monkeypatch.setattr(second_process, "write_cad", called("write_cad"))
-    monkeypatch.setattr(run, "write_outputs", called("write_outputs"))
-    monkeypatch.setattr(run, "SecondProcess", AtOnce)
-    monkeypatch.setattr(run, "draw", lambda *_: {})
+    monkeypatch.setattr(run_folder, "write_outputs", called("write_outputs"))
+    for module in (run_folder, run):
+        monkeypatch.setattr(module, "SecondProcess", AtOnce)
+    monkeypatch.setattr(run_folder, "draw", lambda *_: {})
     monkeypatch.setattr(uncertainty, "prepare", lambda _: None)
+    monkeypatch.setattr(uncertainty, "uncertainty", called("uncertainty"))
     return fakes
 
 

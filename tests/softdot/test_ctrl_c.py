@@ -13,14 +13,14 @@ SLOW_RUN = """
 import sys, time
 from pathlib import Path
 from softdot.case import Case
-from softdot.commands import run
+from softdot import run_folder
 Case.checked = property(lambda self: (None, []))
 def slow(case, folder, progress, *others):
     progress.stage("mesh")
     (folder / "half").write_text("half")
     Path("begun").touch()
     time.sleep(60)
-run._fill = slow
+run_folder._fill = slow
 from softdot.cli import main
 sys.exit(main(["run", "-o", "out"]))
 """

@@ -5,8 +5,9 @@ import pytest
 
 import softdot
 from foundation.errors import InputError
+from softdot import derivatives
 from softdot.config.loading import config_from
-from softdot.differentiation import derivatives, value_of
+from softdot.differentiation import value_of
 from tests.cases import for_each
 
 TABLES = {

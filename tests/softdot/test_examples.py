@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 
 from mesh.options import MeshOptions
+from softdot import run_config
 from softdot.case import Case
-from softdot.commands.run import run_config
 from softdot.config.hashes import config_hash
 from softdot.config.loading import load_config
 from softdot.config.model import model_of

@@ -14,10 +14,9 @@ from diagnose.vocabulary import base as vocabulary
 from diagnose.vocabulary.base import Vocabulary
 from examples.recordings import leaky_amplifier
 from geometry.parameters import NonNegative
-from softdot.commands.run import run_config
+from softdot import derivatives, run_config
 from softdot.config.loading import config_from
 from softdot.diagnosis import folder as command
-from softdot.differentiation import derivatives
 from softdot.outcome import outcome
 from solve.mechanisms import MECHANISMS, register
 from solve.mechanisms.base import MechanismType, Parameters, Traits, with_physics

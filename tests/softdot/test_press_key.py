@@ -4,10 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from softdot.case import Case, press_key
+from softdot.case import Case
 from softdot.config.hashes import input_hash
 from softdot.config.loading import config_from
 from softdot.config.schema import Config
+from softdot.prepared_press import press_key
 from tests.cases import for_each
 from tests.softdot.stand_ins import one_tetrahedron
 

@@ -12,8 +12,8 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, note, seed, settings
 
 from foundation.errors import InputError
+from softdot import run_config
 from softdot.case import Case
-from softdot.commands.run import run_config
 from softdot.config.loading import load_config
 from tests.softdot.press_checks import solved, wrong
 from tests.softdot.random_configurations import ROUND, valid_configurations

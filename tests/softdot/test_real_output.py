@@ -14,7 +14,7 @@ from PIL import Image
 from geometry.assembly import build_parts
 from geometry.dot_at_rest import resolve_dot
 from mesh.options import MeshOptions
-from softdot.commands.run import run_config
+from softdot import run_config
 from softdot.config.loading import load_config
 from softdot.config.schema import Config
 from solve.model import Press

@@ -10,6 +10,7 @@ import pytest
 
 from export import rendering
 from mesh.types import MeshingError
+from softdot import run_folder
 from softdot.cli import main
 from softdot.commands import run
 from softdot.second_process import SecondProcess
@@ -175,8 +176,8 @@ def test_a_failure_leaves_nothing_though_the_second_process_still_writes(tmp_pat
 
     monkeypatch.setattr(rendering, "ensure_rendering", does_nothing)
     monkeypatch.setattr(run, "SecondProcess", SecondProcess)
-    monkeypatch.setattr(run, "make_cad", does_nothing)
-    monkeypatch.setattr(run, "draw", writes_on_and_on)
+    monkeypatch.setattr(run_folder, "make_cad", does_nothing)
+    monkeypatch.setattr(run_folder, "draw", writes_on_and_on)
     stages.write_outputs = full
     assert main(["run", "-q", "-o", str(tmp_path / "out")]) == 2
     assert "a limit of the size of files" in complaints(capfd.readouterr().err)

@@ -9,8 +9,9 @@ import pytest
 from foundation import source_hash as hashes
 from mesh.build import key as mesh_key
 from mesh.options import MeshOptions
-from softdot.case import Case, press_key
+from softdot.case import Case
 from softdot.outcome import outcome_key
+from softdot.prepared_press import press_key
 from tests.cases import for_each
 
 PROGRAM = hashes.PROGRAM

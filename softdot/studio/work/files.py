@@ -59,7 +59,8 @@ def plate(asked: dict[str, Any], folder: str, tell: Tell) -> dict[str, Any]:
 
 def report(text: str, folder: str, tell: Tell) -> dict[str, Any]:
     """As `softdot run`, or `softdot array`: the report, CAD files, fields for ParaView and every number."""
-    from softdot.commands.run import run_case, short_text
+    from softdot.commands.run import short_text
+    from softdot.run_folder import run_case
 
     config, place = config_of(text), Path(folder) / "run"
     if config.array is not None:
