@@ -4,10 +4,11 @@ What is linear leaves only inner products (variable projection; Golub and Pereyr
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
-from scipy.optimize import lsq_linear
 
+from diagnose.fit.levenberg_marquardt import Patience, minimised
 from diagnose.fit.linearised_system import LinearisedSystem
 from diagnose.fit.nuisances import slope_by_step
 from diagnose.fit.observed_model import STEP, ObservedModel
@@ -17,13 +18,14 @@ from foundation.arrays import Floats
 ITERATIONS = 40
 STILL = 0.02  # of a standard error: a step below it is none
 LEAST_GAIN = 1e-3  # in half squares: less is no progress
-TIGHTEST = 1e6  # damping beyond which no step is tried
-RIDGE = 1e-12  # on a unit diagonal: coordinates that act exactly alike
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Place:
-    """values : (q,). predicted : (n,) there. left : weighted residual. cost : half its square."""
+    """values : (q,). predicted : (n,) there. left : weighted residual. cost : half its square.
+
+    One is equal to itself alone, so that what was found there can be looked up.
+    """
 
     values: Floats
     predicted: Floats
@@ -85,24 +87,18 @@ def descent(
 
 def descended(problem: Descent, start: Floats, least: float = LEAST_GAIN) -> tuple[Place, Floats]:
     """The best place from a start (q,), and the slopes (n, q) there; a step that gains less than least is the last."""
-    limits = bounds(problem.candidates)
-    here = problem.at(np.clip(start, *limits.T))
-    if not np.isfinite(here.cost):
-        return here, np.zeros((len(here.predicted), len(start)))
-    slopes, damping = problem.slopes(here), 1e-3
-    for _ in range(ITERATIONS):
-        columns = problem.system.weighted(slopes)
+    slopes_at = lru_cache(maxsize=1)(problem.slopes)
+
+    def expansion(here: Place) -> tuple[Floats, Floats]:
+        columns = problem.system.weighted(slopes_at(here))
         cleared = problem.system.quadratic.cleared(columns)
-        after, damping = _improved(problem, here, columns.T @ cleared, cleared.T @ here.left, damping, limits)
-        if after is None:
-            break
-        gain, moved = here.cost - after.cost, after.values - here.values
-        still = float(moved @ columns.T @ cleared @ moved) < STILL**2
-        here = after
-        slopes = problem.slopes(here)
-        if gain < least or still:
-            break
-    return here, slopes
+        return columns.T @ cleared, cleared.T @ here.left
+
+    patience = Patience(ITERATIONS, least, STILL)
+    found = minimised(problem.at, expansion, start, bounds(problem.candidates), patience)
+    if not np.isfinite(found.cost):
+        return found, np.zeros((len(found.predicted), len(start)))
+    return found, slopes_at(found)
 
 
 def lowest(problem: Descent, starts: Sequence[Floats], least: float = LEAST_GAIN) -> Place | None:
@@ -128,34 +124,3 @@ def coordinates(candidates: Sequence[Candidate]) -> tuple[Coordinate, ...]:
 def bounds(candidates: Sequence[Candidate]) -> Floats:
     """(q, 2) of all coordinates."""
     return np.array([(c.low, c.high) for c in coordinates(candidates)])
-
-
-def scales(hessian: Floats) -> Floats:
-    """Root of the diagonal (q,), 1 for a coordinate that changes nothing."""
-    diagonal = np.diag(hessian)
-    return np.asarray(np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0)))
-
-
-def _improved(
-    problem: Descent, here: Place, hessian: Floats, gradient: Floats, damping: float, limits: Floats
-) -> tuple[Place | None, float]:
-    """A better place and the damping that found it; none where only steps too small to matter are left."""
-    while damping < TIGHTEST:
-        step = bounded_step(hessian, gradient, damping, here.values, limits)
-        after = problem.at(here.values + step)
-        if after.cost < here.cost:
-            return after, damping / 10.0
-        if float(step @ hessian @ step) < STILL**2:
-            break
-        damping = max(damping * 10.0, 1e-3)
-    return None, damping
-
-
-def bounded_step(hessian: Floats, gradient: Floats, damping: float, values: Floats, limits: Floats) -> Floats:
-    """The damped Newton step within the bounds."""
-    scale = scales(hessian)
-    damped = hessian / np.outer(scale, scale) + (damping + RIDGE) * np.eye(len(values))
-    root = np.linalg.cholesky(damped)
-    low, high = ((limits - values[:, None]) * scale[:, None]).T
-    found = lsq_linear(root.T, np.linalg.solve(root, gradient / scale), (low, high), method="bvls")
-    return np.asarray(np.clip(found.x / scale, limits[:, 0] - values, limits[:, 1] - values))

@@ -15,7 +15,8 @@ from scipy.stats import chi2
 
 from diagnose.findings import Interval
 from diagnose.fit import discrepancy
-from diagnose.fit.descent import bounds, descent, scales, settings
+from diagnose.fit.descent import bounds, descent, settings
+from diagnose.fit.levenberg_marquardt import scales
 from diagnose.fit.linearised_system import relative
 from diagnose.fit.observed_model import ObservedModel
 from diagnose.fit.refit import Fitted

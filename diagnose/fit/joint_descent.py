@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnose.fit.descent import TIGHTEST, Place, bounded_step, bounds, descent, settings
+from diagnose.fit.descent import Place, bounds, descent, settings
+from diagnose.fit.levenberg_marquardt import Patience, minimised
 from diagnose.fit.linearised_system import LinearisedSystem
 from diagnose.fit.marginal_likelihood import Quadratic
 from diagnose.fit.nuisances import Nuisance
@@ -17,9 +18,7 @@ from diagnose.fit.observed_model import ObservedModel
 from diagnose.forward import Candidate
 from foundation.arrays import Floats
 
-JOINT_ITERATIONS = 30
-JOINT_LEAST_GAIN = 0.01  # in half squares: less is no progress
-JOINT_STILL = 0.05  # of a standard error: a step below it is none
+PATIENCE = Patience(iterations=30, least_gain=0.01, still=0.05)
 
 
 @dataclass(frozen=True)
@@ -42,14 +41,22 @@ class _Problem:
         own = np.array([_limits(nuisance) for nuisance in model.nuisances]).reshape(-1, 2)
         self.limits = np.concatenate([bounds(candidates), own])
 
-    def residual(self, point: Floats) -> tuple[Floats, float]:
-        """Weighted (l,), and the cost; infinite where the model has no answer."""
+    def at(self, point: Floats) -> Place:
+        """Residual and cost at a point (q + p,); the cost is infinite where the model has no answer."""
         try:
             predicted = self.model.vector(point[self.count :], settings(self.candidates, point[: self.count]))
         except ValueError:
-            return np.zeros(int(self.system.informative.sum())), np.inf
+            return Place(point, np.zeros(0), np.zeros(int(self.system.informative.sum())), np.inf)
         left = self.system.weighted(self.model.samples.recorded - predicted)
-        return left, 0.5 * self.nuisance_design.square(left) + 0.5 * float(self.precision @ point**2)
+        cost = 0.5 * self.nuisance_design.square(left) + 0.5 * float(self.precision @ point**2)
+        return Place(point, predicted, left, cost)
+
+    def expansion(self, here: Place) -> tuple[Floats, Floats]:
+        """Hessian (q + p, q + p) and downhill gradient of the cost."""
+        columns = self.columns(here.values)
+        cleared = self.nuisance_design.cleared(columns)
+        gradient = cleared.T @ here.left - self.precision * here.values
+        return columns.T @ cleared + np.diag(self.precision), gradient
 
     def columns(self, point: Floats) -> Floats:
         """Weighted slopes (l, q + p)."""
@@ -77,23 +84,6 @@ def fitted_jointly(
 ) -> Joint:
     """From values (q,) and the system's own nuisances."""
     problem = _Problem(model, system, candidates)
-    point = np.clip(np.concatenate([start, system.values]), *problem.limits.T)
-    left, cost = problem.residual(point)
-    damping = 1e-3
-    for _ in range(JOINT_ITERATIONS if np.isfinite(cost) else 0):
-        columns = problem.columns(point)
-        cleared = problem.nuisance_design.cleared(columns)
-        hessian = columns.T @ cleared + np.diag(problem.precision)
-        gradient = cleared.T @ left - problem.precision * point
-        gain, still = 0.0, False
-        while damping < TIGHTEST and not still:
-            step = bounded_step(hessian, gradient, damping, point, problem.limits)
-            after, lower = problem.residual(point + step)
-            gain, still = cost - lower, float(step @ hessian @ step) < JOINT_STILL**2
-            if gain > 0.0:
-                point, left, cost, damping = point + step, after, lower, damping / 10.0
-                break
-            damping = max(10.0 * damping, 1e-3)
-        if gain < JOINT_LEAST_GAIN or still:
-            break
-    return Joint(point[: problem.count], point[problem.count :], cost)
+    start = np.concatenate([start, system.values])
+    found = minimised(problem.at, problem.expansion, start, problem.limits, PATIENCE)
+    return Joint(found.values[: problem.count], found.values[problem.count :], found.cost)

@@ -7,15 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from diagnose.signals.recording import Recording
-from solve.materials.parameters import Material, PiezoelectricFilm
+from solve.materials.parameters import VACUUM_PERMITTIVITY, Material, PiezoelectricFilm
 from solve.mechanisms.base import BONDS, CHANNELS
 from solve.model import Model, Readout
 
 if TYPE_CHECKING:
     from diagnose.engines.coupon.point import MaterialPoint
-
-
-VACUUM_PF_PER_MM = 8.8541878128e-3
 
 
 @dataclass(frozen=True)
@@ -110,4 +107,4 @@ def film_capacitance_pF(model: Model) -> float:
     assert isinstance(film, PiezoelectricFilm)
     sizes = [electrode.size_mm for electrode in segment.film.electrodes] or [(segment.length_mm, segment.width_mm)]
     area = sum(min(x, segment.length_mm) * min(y, segment.width_mm) for x, y in sizes)
-    return VACUUM_PF_PER_MM * film.relative_permittivity * area / (1e-3 * segment.film.thickness_um)
+    return 1e9 * VACUUM_PERMITTIVITY * film.relative_permittivity * area / (1e-3 * segment.film.thickness_um)

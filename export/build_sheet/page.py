@@ -13,8 +13,8 @@ from export.page import page_environment
 from export.report import number
 from foundation.files import write_whole_text
 from geometry.flat.electrodes import Metal, stray_area_mm2, stray_areas_mm2
+from solve.materials.parameters import VACUUM_PERMITTIVITY
 
-VACUUM_PF_PER_MM = 8.8541878128e-3
 SHEET_OHM = {"NiAl": 3.0, "silver ink": 0.1}
 """Ohm per square, the most: MSI Piezo Film Sensors Technical Manual, p. 3."""
 
@@ -46,7 +46,7 @@ def capacitance_pF(contents: Contents) -> list[tuple[str, float]]:
 
 
 def _capacitance_pF_per_mm2(contents: Contents) -> float:
-    return VACUUM_PF_PER_MM * contents.permittivity / (1e-3 * contents.segment.film.thickness_um)
+    return 1e9 * VACUUM_PERMITTIVITY * contents.permittivity / (1e-3 * contents.segment.film.thickness_um)
 
 
 def _area_mm2(metal: Metal) -> float:

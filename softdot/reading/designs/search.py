@@ -5,7 +5,6 @@ the largest expected improvement (Jones, Schonlau and Welch, J. Global Optim. 13
 from a list is a corner of a simplex, so that no two values of it are nearer than others.
 """
 
-import warnings
 from collections.abc import Sequence
 from typing import Any
 
@@ -13,18 +12,20 @@ import numpy as np
 from scipy.stats import norm, qmc
 
 from foundation.arrays import Bools, Floats
+from softdot.bayesian_search import fitted_process, largest_apart, steps_beside
 from softdot.sweeps.sampling import Axis, at, share_of
 
 FEWEST = 3
 """Designs that read, below which the next ones fill the space instead."""
 WORSE = 1.5
 """What a design that does not read, or cannot be solved, counts as: so many times the largest force of all."""
-SPREAD, NEAR, STEP, SWITCH = 9, 512, 0.12, 0.2
+SPREAD, NEAR, SWITCH = 9, 512, 0.2
 """2^SPREAD candidates all over the space and NEAR beside the best design: steps along axes, and the share of its
 choices that change."""
 APART = 0.1
-NOISE = 4e-3
-"""Variance of the logarithm of the least force by halving alone, in units of that between designs."""
+LENGTH, NOISE = (0.3, 1.0, 10.0), 4e-3
+"""Over which the deviation from the trend changes, in edges of the space: least, guess, largest. Variance of the
+logarithm of the least force by halving alone, in units of that between designs."""
 
 
 def propose(
@@ -38,17 +39,10 @@ def propose(
     read = [number for number, force in enumerate(forces_N) if force is not None]
     best = known[min(read, key=lambda number: forces_N[number] or 0.0)] if read else None
     pool = [rounded(axes, shares) for shares in candidates(axes, best, seed)]
-    gain = np.ones(len(pool))
-    if len(read) >= FEWEST:
-        gain = expected_gain(axes, known, forces_N, np.array([_shares(axes, row) for row in pool]))
-    places = _features(axes, known)
-    chosen: list[tuple[Any, ...]] = []
-    for number in np.argsort(-gain, kind="stable"):
-        place = _features(axes, np.array([_shares(axes, pool[number])]))
-        if len(chosen) < count and np.linalg.norm(places - place, axis=1).min() > APART:
-            chosen.append(pool[number])
-            places = np.vstack([places, place])
-    return chosen
+    shares = np.array([_shares(axes, row) for row in pool])
+    gain = np.ones(len(pool)) if len(read) < FEWEST else expected_gain(axes, known, forces_N, shares)
+    chosen = largest_apart(gain, _features(axes, shares), _features(axes, known), count, APART)
+    return [pool[number] for number in chosen]
 
 
 def _shares(axes: Sequence[Axis], row: Sequence[Any]) -> list[float]:
@@ -61,7 +55,7 @@ def candidates(axes: Sequence[Axis], best: Floats | None, seed: int) -> Floats:
     spread = qmc.Sobol(len(axes), seed=random).random_base2(SPREAD)
     if best is None:
         return np.asarray(spread)
-    near = np.clip(best + STEP * random.standard_normal((NEAR, len(axes))), 0.0, 1.0)
+    near = steps_beside(best, NEAR, random)
     switched = random.random(near.shape) < SWITCH
     elsewhere = random.random(near.shape)
     for number, axis in enumerate(axes):
@@ -95,18 +89,9 @@ def _features(axes: Sequence[Axis], shares: Floats) -> Floats:
 
 def expected_gain(axes: Sequence[Axis], known: Floats, forces_N: Sequence[float | None], wanted: Floats) -> Floats:
     """Expected improvement (m,) of the logarithm of the least force at shares wanted (m, d) by that at known (n, d)."""
-    from sklearn.exceptions import ConvergenceWarning
-    from sklearn.gaussian_process import GaussianProcessRegressor
-    from sklearn.gaussian_process.kernels import ConstantKernel, DotProduct, Matern, WhiteKernel
-
     largest = WORSE * max(force for force in forces_N if force is not None)
     target = np.log([largest if force is None else force for force in forces_N])
-    trend = ConstantKernel(0.1, (1e-4, 1e2)) * DotProduct(1.0, "fixed")
-    deviation = ConstantKernel(0.1, (1e-4, 1e2)) * Matern(1.0, (0.3, 10.0), nu=2.5)
-    process = GaussianProcessRegressor(trend + deviation + WhiteKernel(NOISE, "fixed"), normalize_y=True)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ConvergenceWarning)  # a scale at its bound is an answer too
-        process.fit(_features(axes, known), target)
+    process = fitted_process(_features(axes, known), target, LENGTH, NOISE)
     mean, deviation_of = process.predict(_features(axes, wanted), return_std=True)
     below = target.min() - mean
     score = below / deviation_of

@@ -7,6 +7,7 @@ import numpy as np
 
 from foundation.arrays import Floats
 from foundation.executor import Executor
+from softdot.bayesian_search import largest_apart, steps_beside
 from softdot.progress import Progress
 from softdot.studies.paper.beyond.designs import FILMS_UM, PAPERS, Design, coordinates, design_at, sample
 from softdot.studies.paper.beyond.predictors import film
@@ -23,7 +24,7 @@ GOALS = {"open circuit": 0.0, "behind 100 pF": CABLE_PF}
 FIRST, ROUNDS, EACH = 8, 8, 3
 FORCE_MARGIN, STRESS_MARGIN = 0.98, 0.9
 """Shares of the limits that the search uses: by so much force and film stress differ between meshes."""
-CANDIDATES_LOG2, NEAR, STEP = 11, 1024, 0.12
+CANDIDATES_LOG2, NEAR = 11, 1024
 DRAWS, APART = 64, 0.15
 
 
@@ -87,9 +88,8 @@ def propose(surrogate: Surrogate, trials: Sequence[DesignTrial], limits: Limits,
     known = [trial.design for trial in trials]
     for cable_pF in GOALS.values():
         gains = expected_gain(surrogate, pool, trials, limits, cable_pF)
-        for _ in range(EACH):
-            free = far_from(pool, known)
-            known.append(pool[int(np.argmax(np.where(free, gains, -np.inf)))])
+        chosen = largest_apart(gains, coordinates(pool), coordinates(known), EACH, APART)
+        known += [pool[one] for one in chosen]
     return known[len(trials) :]
 
 
@@ -102,8 +102,7 @@ def candidates(trials: Sequence[DesignTrial], limits: Limits, number: int) -> li
     near = []
     for cable_pF in GOALS.values():
         promising = max(trials, key=lambda trial: limits.share(trial) * trial.worse_V(cable_pF))
-        centre = coordinates([promising.design])
-        near.append(np.clip(centre + STEP * random.standard_normal((NEAR, 7)), 0.0, 1.0))
+        near.append(steps_beside(coordinates([promising.design])[0], NEAR, random))
     films = random.choice(len(FILMS_UM), 2 * NEAR)
     points = np.concatenate(near)
     points[:, -1] = (films + 0.5) / len(FILMS_UM)
@@ -126,13 +125,6 @@ def expected_gain(
     so_far = to_beat(trials, limits, cable_pF).worse_V(cable_pF)
     gain: Floats = np.where(within.all(axis=0), np.maximum(worse / so_far - 1.0, 0.0), 0.0).mean(axis=0)
     return gain
-
-
-def far_from(designs: Sequence[Design], known: Sequence[Design]) -> Floats:
-    """Which designs (n,) are no near copies of known ones."""
-    steps = coordinates(designs)[:, None] - coordinates(known)[None]
-    apart: Floats = np.linalg.norm(steps, axis=2).min(axis=1) > APART
-    return apart
 
 
 def capacitance_pF(designs: Sequence[Design]) -> Floats:

@@ -1,13 +1,12 @@
 """A statistical stand-in for the solver: Gaussian processes of voltage, force and film stress over the designs."""
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from foundation.arrays import Floats
+from softdot.bayesian_search import fitted_process
 from softdot.studies.paper.beyond.designs import Design, coordinates
 from softdot.studies.paper.beyond.predictors import clamped_voltage_V, columns, free_voltage_V
 from softdot.studies.paper.beyond.trials import DesignPress, DesignTrial
@@ -15,8 +14,9 @@ from softdot.studies.paper.beyond.trials import DesignPress, DesignTrial
 LEAST_V = 0.01
 """Voltages below are taken as this one, so that there is a logarithm; nobody wants such a design."""
 OUTPUTS = 3
-NOISE = 2e-3
-"""Variance of what another mesh changes, over that between designs."""
+LENGTH, NOISE = (1.0, 3.0, 30.0), 2e-3
+"""Over which the deviation from the trend changes, in standard deviations of the features: least, guess, largest.
+Variance of what another mesh changes, over that between designs."""
 
 
 @dataclass(frozen=True)
@@ -39,8 +39,11 @@ class Surrogate:
         self.constants = constants
         features = self._features([trial.design for trial in trials])
         self.middle, self.spread = features.mean(axis=0), features.std(axis=0)
+        places = (features - self.middle) / self.spread
         presses = [[trial.presses[side] for trial in trials] for side in (0, 1)]
-        self.processes = [[self._fitted(features, target) for target in np.log(_numbers(side)).T] for side in presses]
+        self.processes = [
+            [fitted_process(places, target, LENGTH, NOISE) for target in np.log(_numbers(side)).T] for side in presses
+        ]
 
     def draw(self, designs: Sequence[Design], draws: int, seed: int) -> Guess:
         """Independent draws for each number; the same seed draws the same luck for every design."""
@@ -57,19 +60,6 @@ class Surrogate:
         c, k = columns(designs), self.constants
         trends = [free_voltage_V(c, k["tension_share"]), clamped_voltage_V(c, k["give"], k["rest"])]
         return np.column_stack([coordinates(designs), np.log(trends).T])
-
-    def _fitted(self, features: Floats, target: Floats) -> Any:
-        """A linear trend, a smooth deviation from it, and the noise of the meshes."""
-        from sklearn.exceptions import ConvergenceWarning
-        from sklearn.gaussian_process import GaussianProcessRegressor
-        from sklearn.gaussian_process.kernels import ConstantKernel, DotProduct, Matern, WhiteKernel
-
-        trend = ConstantKernel(0.1, (1e-4, 1e2)) * DotProduct(1.0, "fixed")
-        deviation = ConstantKernel(0.1, (1e-4, 1e2)) * Matern(3.0, (1.0, 30.0), nu=2.5)
-        process = GaussianProcessRegressor(trend + deviation + WhiteKernel(NOISE, "fixed"), normalize_y=True)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", ConvergenceWarning)  # a scale at its bound is an answer too
-            return process.fit((features - self.middle) / self.spread, target)
 
 
 def _numbers(presses: Sequence[DesignPress]) -> Floats:

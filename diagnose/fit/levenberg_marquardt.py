@@ -1,0 +1,102 @@
+"""Bounded Levenberg-Marquardt (Marquardt, J. Soc. Ind. Appl. Math. 11 (1963) 431): damped Newton steps that stay within
+bounds, on whatever gives a cost and its quadratic model.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple, Protocol, TypeVar
+
+import numpy as np
+from scipy.optimize import lsq_linear
+
+from foundation.arrays import Floats
+
+FIRST_DAMPING = 1e-3
+TIGHTEST = 1e6  # damping beyond which no step is tried
+RIDGE = 1e-12  # on a unit diagonal: coordinates that act exactly alike
+
+
+class CostedPoint(Protocol):
+    """Values and what they cost."""
+
+    @property
+    def values(self) -> Floats:
+        """(q,)."""
+
+    @property
+    def cost(self) -> float:
+        """What becomes least, infinite where there is no answer."""
+
+
+PointType = TypeVar("PointType", bound=CostedPoint)
+
+
+class Patience(NamedTuple):
+    """iterations : the most. least_gain : of the cost, a step that gains less is the last. still : of a standard error,
+    a step below it is none.
+    """
+
+    iterations: int
+    least_gain: float
+    still: float
+
+
+def minimised(
+    at: Callable[[Floats], PointType],
+    expansion: Callable[[PointType], tuple[Floats, Floats]],
+    start: Floats,
+    limits: Floats,
+    patience: Patience,
+) -> PointType:
+    """The best point from a start (q,) within limits (q, 2), the start itself where its cost is infinite.
+
+    at : the point at values. expansion : the Hessian (q, q) and the downhill gradient (q,) of the cost at a point.
+    """
+    here = at(np.clip(start, *limits.T))
+    damping = FIRST_DAMPING
+    for _ in range(patience.iterations if np.isfinite(here.cost) else 0):
+        hessian, gradient = expansion(here)
+        after, damping = _improved(at, here, hessian, gradient, damping, limits, patience.still)
+        if after is None:
+            break
+        gain, moved = here.cost - after.cost, after.values - here.values
+        here = after
+        if gain < patience.least_gain or float(moved @ hessian @ moved) < patience.still**2:
+            break
+    return here
+
+
+def _improved(
+    at: Callable[[Floats], PointType],
+    here: PointType,
+    hessian: Floats,
+    gradient: Floats,
+    damping: float,
+    limits: Floats,
+    still: float,
+) -> tuple[PointType | None, float]:
+    """A better point and the next damping; none where only steps too small to matter are left."""
+    while damping < TIGHTEST:
+        step = bounded_step(hessian, gradient, damping, here.values, limits)
+        after = at(here.values + step)
+        if after.cost < here.cost:
+            return after, damping / 10.0
+        if float(step @ hessian @ step) < still**2:
+            break
+        damping = max(damping * 10.0, FIRST_DAMPING)
+    return None, damping
+
+
+def bounded_step(hessian: Floats, gradient: Floats, damping: float, values: Floats, limits: Floats) -> Floats:
+    """The damped Newton step within the bounds."""
+    scale = scales(hessian)
+    damped = hessian / np.outer(scale, scale) + (damping + RIDGE) * np.eye(len(values))
+    root = np.linalg.cholesky(damped)
+    low, high = ((limits - values[:, None]) * scale[:, None]).T
+    found = lsq_linear(root.T, np.linalg.solve(root, gradient / scale), (low, high), method="bvls")
+    return np.asarray(np.clip(found.x / scale, limits[:, 0] - values, limits[:, 1] - values))
+
+
+def scales(hessian: Floats) -> Floats:
+    """Root of the diagonal (q,), 1 for a coordinate that changes nothing."""
+    diagonal = np.diag(hessian)
+    return np.asarray(np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0)))
