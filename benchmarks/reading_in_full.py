@@ -23,11 +23,12 @@ from foundation.thread_pools import usable_cores
 from geometry.braille_cells import dot_offset_mm, raised_dots
 from geometry.braille_standards import standard
 from mesh.array.mesh import array_mesh
-from softdot.arrays.case import ArrayCase, ArrayPress
+from softdot.arrays.case import ArrayCase
 from softdot.arrays.kernel import load_kernel
 from softdot.braille_text.lines import translate
 from softdot.config.loading import config_from
 from softdot.config.schema import Config
+from softdot.prepared_press import PreparedPress
 from solve.mechanisms import Mechanism
 from solve.press import press_segment
 
@@ -53,7 +54,7 @@ def charges(press: FullPress) -> tuple[float, Floats, Floats, Floats]:
     x, y = (float(v) for v in press.dots_mm[0])
     one = press.config.dot.lone(offset_mm=(x, y))
     case = ArrayCase(press.config)
-    made = ArrayPress(case, one)
+    made = PreparedPress(press.config.model_copy(update={"dot": one}))
     tips = np.column_stack([press.dots_mm - press.dots_mm[0], np.zeros(len(press.dots_mm))])
     dot = replace(made.dot, tips_mm=tips)  # all dots of the line, not of one cell
     result = press_segment(made.model, array_mesh(case.layout, dot, press.config.mesh, ()), dot=dot)

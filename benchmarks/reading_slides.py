@@ -20,9 +20,10 @@ from benchmarks.reading_in_full import line_mm
 from foundation.arrays import Floats
 from geometry.dot_size import DEFAULT_STANDARD
 from mesh.array.mesh import array_mesh
-from softdot.arrays.case import ArrayCase, ArrayPress
+from softdot.arrays.case import ArrayCase
 from softdot.config.loading import load_config
 from softdot.config.schema import Config
+from softdot.prepared_press import PreparedPress
 from solve.mechanisms import Mechanism
 from solve.model import Press
 from solve.recorder import Recorder
@@ -75,7 +76,8 @@ class Slide:
         case = ArrayCase(self.config)
         half = case.layout.half_mm[0]
         rows = np.unique(np.round(self.places_mm[:, 1] - self.offset_mm, 9))
-        press = ArrayPress(case, self.config.dot.lone(offset_mm=(0.0, float(rows[0]))))
+        one = self.config.dot.lone(offset_mm=(0.0, float(rows[0])))
+        press = PreparedPress(self.config.model_copy(update={"dot": one}))
         along = np.arange(-half, half + 0.2, 0.4)
         passed = np.array([[x, row - rows[0], 0.0] for row in rows for x in along])
         mesh = array_mesh(case.layout, replace(press.dot, tips_mm=passed), self.config.mesh, ())

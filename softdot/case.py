@@ -9,17 +9,21 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from foundation.errors import InputError
 from softdot.config.default_design import completed
 from softdot.config.loading import config_from, load_config
+from softdot.config.model import refuse_array
 from softdot.config.schema import Config
 from softdot.prepared_press import PreparedPress
+from solve.model import Model
 
 if TYPE_CHECKING:
+    from softdot.checks import Cost
     from softdot.differentiation import Derivative
 
 
 class Case(PreparedPress):
-    """One press of one configuration.
+    """One press of one configuration; of an array one over each of its segments, and one by a cell of dots.
 
     config : as stated, with all defaults. Everything else is derived from it, each made when it is first asked for and
     then kept; what cannot be built or solved is refused by an InputError with one sentence where it is first needed.
@@ -56,6 +60,42 @@ class Case(PreparedPress):
         0.2
         """
         return cls(load_config(path, settings))
+
+    @cached_property
+    def model(self) -> Model:
+        """What the solver is told, mechanisms switched on. InputError; of an array take over or by_cell."""
+        refuse_array(self.config)
+        return super().model
+
+    def over(self, segment: str) -> PreparedPress:
+        """The press of an array by one dot over a segment, such as "r1c2". InputError."""
+        from softdot.arrays.case import ArrayCase
+
+        array = ArrayCase(self.config)
+        places = {place.label.removeprefix("segment-"): place for place in array.layout.places}
+        if segment not in places:
+            raise InputError(f"segment '{segment}': is none of {', '.join(places)}")
+        return array.press_over(places[segment])
+
+    def by_cell(self) -> PreparedPress:
+        """The press of an array by all dots of dot.cell, dot 1 over r1c1. InputError."""
+        from softdot.arrays.case import ArrayCase
+
+        return ArrayCase(self.config).press_by_cell()
+
+    @property
+    def warnings(self) -> list[str]:
+        """All that a user should know before the solution, of an array about all its presses. InputError."""
+        from softdot.arrays.case import ArrayCase
+
+        return super().warnings if self.config.array is None else ArrayCase(self.config).warnings
+
+    @property
+    def cost(self) -> "Cost":
+        """What a run will take, of an array its presses over each segment. InputError."""
+        from softdot.arrays.case import ArrayCase
+
+        return super().cost if self.config.array is None else ArrayCase(self.config).cost
 
     @cached_property
     def sized(self) -> Config:

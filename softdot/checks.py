@@ -12,12 +12,15 @@ from diagnose.figures import figure
 from foundation.arrays import Floats
 from foundation.cache import check_folder
 from foundation.errors import InputError
+from geometry.array.checks import check_array
+from geometry.array.layout import ArrayLayout
 from geometry.checks import along, check_press_depth, check_pushed_dot, check_segment, check_way, press_warnings
 from geometry.dot import DotShape
 from geometry.dot_at_rest import resolve_dot
 from geometry.parameters import Segment
 from geometry.part_checks import covers_footprint
 from geometry.stack import layers
+from mesh.array.sizing import expected_elements
 from mesh.build import build
 from mesh.options import MeshOptions
 from mesh.outline import outline
@@ -42,13 +45,15 @@ FILL = 6.0 * np.sqrt(2.0)
 PRISMS = 12.0 / np.sqrt(3.0)
 
 
-def refuse_huge_mesh(segment: Segment, dot_shape: DotShape, options: MeshOptions, planes: Planes = ()) -> None:
+def refuse_huge_mesh(
+    segment: Segment, dot_shape: DotShape, options: MeshOptions, planes: Planes = (), layout: ArrayLayout | None = None
+) -> None:
     """InputError when the wished edge lengths mean more than a million elements, or more than fit into memory.
 
-    planes : mirror planes at which the mesh ends. Of mesh.file the elements are counted; InputError too when it is no
-    mesh of the segment.
+    planes : mirror planes at which the mesh ends. layout : of an array. Of mesh.file the elements are counted;
+    InputError too when it is no mesh of the segment.
     """
-    count = expected_tetrahedra(segment, dot_shape, options, planes)
+    count = expected_tetrahedra(segment, dot_shape, options, planes, layout)
     if options.file is not None:
         if count > TOO_MANY:
             raise InputError(f"mesh.file = '{options.file}': has {count:.0f} elements, at most {TOO_MANY} are allowed")
@@ -69,11 +74,15 @@ def refuse_many_elements(count: float, options: MeshOptions, is_slice: bool) -> 
     refuse_too_little_memory(count, is_slice, name, sizes[name])
 
 
-def expected_tetrahedra(segment: Segment, dot_shape: DotShape, options: MeshOptions, planes: Planes = ()) -> float:
+def expected_tetrahedra(
+    segment: Segment, dot_shape: DotShape, options: MeshOptions, planes: Planes = (), layout: ArrayLayout | None = None
+) -> float:
     """Rough number of elements of the soft layers: the mean of 6 sqrt 2 / h^3 over points in the stack.
 
     A slice is one layer of triangles of area sqrt 3 / 4 h^2, each of three tetrahedra. Of mesh.file their number.
     """
+    if layout is not None:
+        return expected_elements(layout, dot_shape, options, planes)
     if options.file is not None:
         return float(len(build(segment, dot_shape, options).tets))
     sliced = segment.section == "plane-strain"
@@ -106,13 +115,11 @@ class Cost:
     memory_GB: float
 
 
-def expected_cost(config: Config, dot_shape: DotShape, planes: Planes = ()) -> Cost:
-    """Cost of a run. Waveforms that are followed in time, slides and mechanisms may take several times as long."""
-    return cost_of(expected_tetrahedra(config.segment, dot_shape, config.mesh, planes), config)
-
-
 def cost_of(tetrahedra: float, config: Config, presses: int = 1) -> Cost:
-    """Cost of some presses on meshes of so many elements, and of what is made around them."""
+    """Cost of some presses on meshes of so many elements, and of what is made around them.
+
+    Waveforms that are followed in time, slides and mechanisms may take several times as long.
+    """
     unknowns = UNKNOWNS_PER_TETRAHEDRON[config.segment.section] * tetrahedra
     solve_s = ITERATIONS * config.press.load_steps * ITERATION_S * (unknowns / AT_UNKNOWNS) ** EXPONENT
     time_s = SOLIDS_AND_PICTURES_S + presses * (MESH_S_PER_TETRAHEDRON * tetrahedra + solve_s)
@@ -265,20 +272,21 @@ def _rim(segment: Segment, top_mm: float) -> Floats:
     return np.column_stack([np.concatenate(sides), np.full(4 * SAMPLES, top_mm)])
 
 
-def check_case(model: Model, options: MeshOptions) -> tuple[DotShape, list[str]]:
-    """The dot at rest and what a user should know about this design. InputError."""
+def check_case(model: Model, options: MeshOptions, layout: ArrayLayout | None = None) -> tuple[DotShape, list[str]]:
+    """The dot at rest and what a user should know about this design; layout : of an array. InputError."""
     check_folder()
     segment, press = model.segment, model.press
     if press.waveform is not None:
         duration_s(press.waveform)  # reads the file of shape = "file"
-    warnings = [*check_segment(segment), *check_way(model.dot, segment, press.path_xy_mm)]
+    warnings = check_segment(segment) if layout is None else [*check_segment(layout.segment), *check_array(layout)]
+    warnings += check_way(model.dot, segment, press.path_xy_mm)
     depth = press.indentation_mm
     if depth is not None:
         check_press_depth(segment, depth)
     else:
         check_pushed_dot(model.dot, segment, press.path_xy_mm)
     dot_shape = resolve_dot(model.dot, segment)
-    refuse_huge_mesh(segment, dot_shape, options, meshed_planes(model, dot_shape, options))
+    refuse_huge_mesh(segment, dot_shape, options, meshed_planes(model, dot_shape, options), layout)
     if depth is not None:
         warnings += press_warnings(dot_shape, segment, depth, press.path_xy_mm)
         for one in along(dot_shape, press.path_xy_mm):

@@ -7,7 +7,7 @@ from foundation.cache import data_hash, recall, remember
 from foundation.source_hash import source_hash
 from mesh.types import MeshingError
 from softdot.case import Case
-from softdot.checks import course_warnings, design_warnings, result_warnings
+from softdot.checks import course_warnings, result_warnings
 from softdot.config.hashes import input_hash
 from softdot.config.schema import Config
 from softdot.json_files import plain
@@ -55,7 +55,7 @@ def solved(config: Config, on_step: OnStep | None = None) -> dict[str, Any]:
     """Check, mesh and press one configuration, numbers only. InputError for what cannot be built."""
     case = Case(config)
     model = case.model
-    numbers: dict[str, Any] = {"warnings": [*case.checked[1], *design_warnings(model)]}
+    numbers: dict[str, Any] = {"warnings": case.warnings}
     try:
         quality = case.mesh_quality
     except MeshingError as error:

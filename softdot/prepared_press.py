@@ -8,10 +8,13 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 from warnings import warn
 
+from foundation.errors import InputError
+from geometry.array.layout import ArrayLayout, array_layout
 from geometry.dot import DotShape
+from geometry.dot_at_rest import resolve_dot
 from mesh.types import Planes, TetMesh
 from softdot.config.hashes import input_hash
-from softdot.config.model import model_of
+from softdot.config.model import as_segment, model_of
 from softdot.config.schema import Config
 from softdot.pressed import ConvergenceWarning, Pressed, ResultWarning
 from solve.model import Model
@@ -19,6 +22,7 @@ from solve.result import PressResult, Step
 
 if TYPE_CHECKING:
     from geometry.solids import Part
+    from softdot.checks import Cost
     from solve.readout.course import PressCourse
 
 OnStep = Callable[[Step, int, int], None]
@@ -28,39 +32,73 @@ class PreparedPress:
     """One press of one configuration on element sizes as they are stated, each part made when it is first asked for.
 
     config : with all defaults. Everything else is derived from it; what cannot be built or solved is refused by an
-    InputError with one sentence where it is first needed.
+    InputError with one sentence where it is first needed. With a table [array] several segments are pressed, and the
+    table [dot] says where its dots stand in the frame of the array.
     """
 
     def __init__(self, config: Config) -> None:
         self.config = config
 
     @cached_property
+    def layout(self) -> ArrayLayout | None:
+        """Where the segments of an array lie; None of one segment. InputError for a pitch that no standard states."""
+        config = self.config
+        return None if config.array is None else array_layout(config.array, config.segment, config.dot)
+
+    @cached_property
     def model(self) -> Model:
-        """What the solver is told, mechanisms switched on. InputError."""
-        return model_of(self.config)
+        """What the solver is told, mechanisms switched on; of an array as one wide segment. InputError."""
+        if self.layout is None:
+            return model_of(self.config)
+        stated = as_segment(self.config, self.layout)
+        return array_model(model_of(stated), stated)
 
     @cached_property
     def checked(self) -> tuple[DotShape, list[str]]:
         """The dot at rest and what a user should know about this design. InputError for what cannot be solved."""
         from softdot.checks import check_case
 
-        return check_case(self.model, self.config.mesh)
+        return check_case(self.model, self.config.mesh, self.layout)
 
     @property
+    def warnings(self) -> list[str]:
+        """All that a user should know before the solution. InputError for what cannot be solved."""
+        from softdot.checks import design_warnings
+
+        return [*self.checked[1], *design_warnings(self.model)]
+
+    @property
+    def elements(self) -> float:
+        """About how many elements the mesh will have. InputError."""
+        from softdot.checks import expected_tetrahedra
+
+        return expected_tetrahedra(self.model.segment, self.dot, self.config.mesh, self.planes, self.layout)
+
+    @property
+    def cost(self) -> "Cost":
+        """What a run will take. InputError."""
+        from softdot.checks import cost_of
+
+        return cost_of(self.elements, self.config)
+
+    @cached_property
     def dot(self) -> DotShape:
-        """The dot at rest. InputError."""
-        return self.checked[0]
+        """The dot at rest. InputError; presses of an array are checked together, and some of a kernel are beyond it."""
+        return self.checked[0] if self.layout is None else resolve_dot(self.model.dot, self.model.segment)
 
     @cached_property
     def parts(self) -> "Sequence[Part]":
-        """The labelled solids of the segment, its case and the dot (build123d). InputError."""
+        """The labelled solids of the segment or of the array, its case and the dot (build123d). InputError."""
+        from geometry.array.parts import array_parts
         from geometry.assembly import build_parts
 
+        if self.layout is not None:
+            return array_parts(self.layout, self.dot)
         return build_parts(self.model.segment, self.dot)
 
     @cached_property
     def mesh(self) -> TetMesh:
-        """The conforming mesh of the whole segment. InputError, MeshingError."""
+        """The conforming mesh of all that is pressed. InputError, MeshingError."""
         from mesh.symmetry import unfolded
 
         return unfolded(self.solved_mesh).tet_mesh
@@ -69,9 +107,13 @@ class PreparedPress:
     def solved_mesh(self) -> TetMesh:
         """What is solved: the mesh of a half or a quarter where all is symmetric. InputError, MeshingError."""
         import mesh
+        from mesh.array.mesh import array_mesh
 
-        touching = self.dot.origin_mm - [0.0, 0.0, self.model.dot.gap_mm]  # a gap is not another mesh
-        return mesh.build(self.model.segment, replace(self.dot, origin_mm=touching), self.sized.mesh, self.planes)
+        at_rest = self.dot.origin_mm - [0.0, 0.0, self.model.dot.gap_mm]  # a gap is not another mesh
+        touching = replace(self.dot, origin_mm=at_rest)
+        if self.layout is not None:
+            return array_mesh(self.layout, touching, self.sized.mesh, self.planes)
+        return mesh.build(self.model.segment, touching, self.sized.mesh, self.planes)
 
     @property
     def sized(self) -> Config:
@@ -127,6 +169,21 @@ class PreparedPress:
         from solve.readout.course import course
 
         return course(result, self.model.press, self.model.amplifier, self.model.physics)
+
+
+def array_model(model: Model, stated: Config) -> Model:
+    """The model of an array, with an amplifier for each segment; stated : the array as one segment.
+
+    InputError for a mechanism that changes what an array is made of.
+    """
+    changed = model.segment != stated.segment or model.dot != stated.dot
+    if changed or model.physics.bonds or model.physics.delaminations:
+        names = ", ".join(f"'{one.name}'" for one in stated.mechanisms)
+        raise InputError(
+            f"mechanisms: {names}: one of them changes the segment, the dot or a bond, which an array does not take; "
+            "leave it out"
+        )
+    return replace(model, physics=replace(model.physics, separate_channels=True))
 
 
 def press_key(prepared: PreparedPress, tet_mesh: TetMesh) -> str:

@@ -35,7 +35,8 @@ FIGURE_SIZE_IN, SCREEN_DPI = (8.0, 3.2), 100
 class Pressed:
     """What Case.press gives. All arrays have one value for each reported step (s,); index 0 is the unloaded state.
 
-    result : the solver's own result with its fields, in SI units. Electrodes are taken in parallel.
+    result : the solver's own result with its fields, in SI units. Where electrodes have no names they are taken in
+    parallel. What is pressed may be a segment or an array, whose electrodes are its segments.
 
     >>> from softdot import Case
     >>> coarse = {"mesher": "layered", "element_size_mm": 0.8}
@@ -52,8 +53,15 @@ class Pressed:
         past = history(result)
         self.indentation_mm, self.reaction_force_N = past.indentation_mm, past.reaction_force_N
         self.film_charge_pC, self.open_circuit_voltage_V = past.film_charge_pC, past.open_circuit_voltage_V
+        self.charges_pC = self._by_electrode(1e12 * np.array([step.film_charge_C for step in result.steps]))
+        self.voltages_V = self._by_electrode(np.array([step.open_circuit_voltage_V for step in result.steps]))
+        """Of each electrode by its name: short-circuit charge, and voltage of its open circuit."""
         self.time_s: Floats = np.array([step.time_s for step in result.steps])
         """When the waveform first comes to each step."""
+
+    def _by_electrode(self, values: Floats) -> dict[str, Floats]:
+        """values : (s, e)."""
+        return dict(zip(self.result.electrode_names, values.T, strict=True))
 
     @property
     def converged(self) -> bool:
@@ -68,9 +76,7 @@ class Pressed:
     @property
     def warnings(self) -> list[str]:
         """What a user should know, before and after the solution."""
-        from softdot.checks import design_warnings
-
-        return [*self.case.checked[1], *design_warnings(self.case.model), *self.doubts]
+        return [*self.case.warnings, *self.doubts]
 
     @cached_property
     def doubts(self) -> list[str]:

@@ -80,14 +80,13 @@ def _fill(
     """Everything but summary.json; returns the summary. Parts and pictures are made beside mesh, press and files."""
     from mesh.files.formats import write_mesh
     from mesh.types import MeshingError
-    from softdot.checks import design_warnings
     from softdot.config.loading import idle_materials
     from softdot.summary import heading, mesh_part, press_part, stopped_solver
     from softdot.tolerances.uncertainty import prepare, uncertainty
     from solve.fem.warm_up import compile_cheap
 
     clock, config, model = StageClock(), case.config, case.model
-    summary = {**heading(config), "warnings": [*case.checked[1], *design_warnings(model), *idle_materials(config)]}
+    summary = {**heading(config), "warnings": [*case.warnings, *idle_materials(config)]}
     warn(summary["warnings"])
     _tell(config)
     cad = ask(make_cad, model.segment, case.dot, folder / "cad")

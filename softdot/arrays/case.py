@@ -1,7 +1,7 @@
-"""An array of one configuration and its presses: what is solved, on which mesh, and which presses are images of others.
+"""An array of one configuration and its presses: over which segments, and which presses are images of others.
 
 Every press of an array is a press of one wide segment (geometry.array) on a mesh with its gaps and grooves
-(mesh.array), by the solver of one segment.
+(mesh.array), as softdot.prepared_press has it.
 """
 
 from dataclasses import replace
@@ -14,21 +14,16 @@ from foundation.errors import InputError
 from geometry.array.checks import check_array
 from geometry.array.layout import ArrayLayout, SegmentPlace, array_layout
 from geometry.braille_cells import COLUMN_AND_ROW, dot_offset_mm, raised_dots
-from geometry.checks import check_press_depth, check_pushed_dot, check_segment, press_warnings
-from geometry.dot import DotShape
-from geometry.dot_at_rest import resolve_dot
+from geometry.checks import check_press_depth, check_segment
 from geometry.dot_size import dot_standard
 from geometry.parameters import Dot, Segment
-from mesh.array.mesh import array_mesh
-from mesh.array.sizing import expected_elements
-from mesh.types import Planes, TetMesh
-from softdot.checks import Cost, cost_of, design_warnings, refuse_held_rim, refuse_many_elements
-from softdot.config.model import model_of
+from mesh.types import Planes
+from softdot.checks import Cost, cost_of
 from softdot.config.schema import Config
+from softdot.prepared_press import PreparedPress
 from solve.materials.film import FilmLaw, film_law
 from solve.materials.parameters import PiezoelectricFilm
-from solve.model import Model
-from solve.symmetry import meshed_planes, mirrored_dot, mirrored_law
+from solve.symmetry import mirrored_dot, mirrored_law
 
 
 class ArrayCase:
@@ -59,34 +54,21 @@ class ArrayCase:
             self.under_dots()
         return warnings
 
-    @cached_property
-    def checked(self) -> list[str]:
-        """What a user should know about this design. InputError for what cannot be built or solved."""
-        warnings, depth = [*self.built], self.config.press.indentation_mm
-        for press in self.presses:
-            if depth is None:
-                check_pushed_dot(press.config.dot, self.layout.whole)
-            else:
-                warnings += press_warnings(press.dot, self.layout.whole, depth)
-                refuse_held_rim(self.layout.whole, press.dot, depth)
-        refuse_many_elements(max(self._elements), self.config.mesh, False)
-        return list(dict.fromkeys([*warnings, *design_warnings(self.presses[0].model)]))
+    @property
+    def warnings(self) -> list[str]:
+        """What a user should know about this design and all its presses. InputError for what cannot be solved."""
+        return list(dict.fromkeys([*self.built, *(text for press in self.presses for text in press.warnings)]))
 
     @cached_property
-    def presses(self) -> "list[ArrayPress]":
+    def presses(self) -> list[PreparedPress]:
         """All that are solved of the array: a dot over one segment each, and the cell where there is one."""
         alone = [self.press_over(self.layout.places[number]) for number in self.solved]
         return [*alone, self.press_by_cell()] if self.config.dot.cell is not None else alone
 
     @property
-    def _elements(self) -> list[float]:
-        """Rough number of elements of each press that is solved. InputError for a dot that overlaps the array."""
-        return [expected_elements(self.layout, press.dot, self.config.mesh, press.planes) for press in self.presses]
-
-    @property
     def cost(self) -> Cost:
         """Of all presses of the array, whose meshes are of about the size of the largest. InputError."""
-        return cost_of(max(self._elements), self.config, len(self._elements))
+        return cost_of(max(press.elements for press in self.presses), self.config, len(self.presses))
 
     def _refuse_what_is_one_segments(self) -> None:
         """Keys of the configuration that an array does not take."""
@@ -120,12 +102,12 @@ class ArrayCase:
                 "and the coupling of the read-out"
             )
 
-    def press_over(self, place: SegmentPlace) -> "ArrayPress":
+    def press_over(self, place: SegmentPlace) -> PreparedPress:
         """One dot alone over one segment. InputError."""
         x, y = self.config.dot.offset_mm
-        return ArrayPress(self, self.config.dot.lone(offset_mm=(place.x_mm + x, place.y_mm + y)))
+        return self._press(self.config.dot.lone(offset_mm=(place.x_mm + x, place.y_mm + y)))
 
-    def press_by_cell(self) -> "ArrayPress":
+    def press_by_cell(self) -> PreparedPress:
         """All dots of dot.cell on one plate, dot 1 over segment r1c1, the others at the pitch of the standard.
 
         InputError without a cell, or where the standard states no pitch.
@@ -136,7 +118,10 @@ class ArrayCase:
         standard = dot_standard(dot)
         pitch = self.layout.pitch_mm if standard is None else standard.nominal_mm("dot_pitch_mm")
         x, y = np.add(dot.offset_mm, dot_offset_mm(dot.cell_dot, pitch))
-        return ArrayPress(self, dot.model_copy(update={"offset_mm": (first.x_mm + float(x), first.y_mm + float(y))}))
+        return self._press(dot.model_copy(update={"offset_mm": (first.x_mm + float(x), first.y_mm + float(y))}))
+
+    def _press(self, dot: Dot) -> PreparedPress:
+        return PreparedPress(self.config.model_copy(update={"dot": dot}))
 
     def under_dots(self) -> dict[int, int]:
         """Number of the segment under each raised dot of dot.cell, dot 1 over segment r1c1. InputError for a dot that
@@ -211,40 +196,3 @@ class ArrayCase:
         kept = tuple(one for one in self.config.mechanisms if not one.component.startswith("channel-"))
         update = {"array": alone, "segment": segment, "dot": self.config.dot.lone(), "mechanisms": kept}
         return ArrayCase(self.config.model_copy(update=update))
-
-
-class ArrayPress:
-    """One press of an array: where the dots stand, and what the solver is told."""
-
-    def __init__(self, case: ArrayCase, dot: Dot) -> None:
-        self.case = case
-        self.config = case.config.model_copy(update={"array": None, "segment": case.layout.whole, "dot": dot})
-
-    @cached_property
-    def model(self) -> Model:
-        """InputError for a mechanism that changes what an array is made of."""
-        model = model_of(self.config)
-        changed = model.segment != self.config.segment or model.dot != self.config.dot
-        if changed or model.physics.bonds or model.physics.delaminations:
-            names = ", ".join(f"'{one.name}'" for one in self.config.mechanisms)
-            raise InputError(
-                f"mechanisms: {names}: one of them changes the segment, the dot or a bond, which an array does not "
-                "take; leave it out"
-            )
-        return replace(model, physics=replace(model.physics, separate_channels=True))
-
-    @cached_property
-    def dot(self) -> DotShape:
-        """At rest. InputError for a dot that overlaps the array."""
-        return resolve_dot(self.config.dot, self.config.segment)
-
-    @property
-    def planes(self) -> Planes:
-        """Mirror planes at which the mesh ends."""
-        return meshed_planes(self.model, self.dot, self.config.mesh)
-
-    @cached_property
-    def mesh(self) -> TetMesh:
-        """Of the part that is solved; fine under these dots. MeshingError."""
-        touching = self.dot.origin_mm - [0.0, 0.0, self.config.dot.gap_mm]  # a gap is not another mesh
-        return array_mesh(self.case.layout, replace(self.dot, origin_mm=touching), self.config.mesh, self.planes)

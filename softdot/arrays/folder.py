@@ -43,16 +43,14 @@ def run_array(
     or MeshingError: nothing is written, and presses that were solved are kept in the cache.
     """
     from export.rendering import ensure_rendering
-    from foundation.cache import check_folder
     from softdot.arrays.case import ArrayCase
     from softdot.arrays.study import study
     from softdot.executors import executor_for
 
     progress = progress or Logged()
     with named_when_missing():
-        check_folder()
         case = ArrayCase(config)
-        warnings = case.checked
+        warnings = case.warnings
         if "kernel" in parts:
             case.refuse_kernel()
         ensure_rendering()

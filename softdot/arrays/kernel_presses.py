@@ -19,12 +19,12 @@ from foundation.cache import data_hash, folder, read_arrays, write_arrays
 from foundation.executor import Executor, each_done
 from foundation.progress import Report
 from foundation.source_hash import source_hash
-from softdot.arrays.case import ArrayCase, ArrayPress
+from softdot.arrays.case import ArrayCase
 from softdot.arrays.kernel import ArrayKernel
 from softdot.arrays.presses import StoppedPressError
 from softdot.config.hashes import input_hash
 from softdot.config.schema import Config
-from solve.press import press_segment
+from softdot.prepared_press import PreparedPress
 from solve.result import PressResult
 
 FINE_MM, FINE_STEPS = 0.1, 20
@@ -76,9 +76,9 @@ class KernelTask:
         return f"the press at x = {x:.3g} mm, y = {y:.3g} mm"
 
     @property
-    def press(self) -> ArrayPress:
+    def press(self) -> PreparedPress:
         """What is solved."""
-        return ArrayPress(ArrayCase(self.config), self.config.dot)
+        return PreparedPress(self.config)
 
 
 def by_one_dot(case: ArrayCase, x_mm: float, y_mm: float, detail: KernelDetail = USUAL_DETAIL) -> Config:
@@ -118,8 +118,7 @@ def _path(task: KernelTask) -> Path:
 
 
 def _solved(task: KernelTask) -> KernelPress:
-    press = task.press
-    result = press_segment(press.model, press.mesh, dot=press.dot)
+    result = task.press.solve()
     steps = result.steps
     return KernelPress(
         np.array([1e3 * step.indentation_m for step in steps]),

@@ -9,8 +9,9 @@ import numpy as np
 
 from foundation.arrays import Floats
 from geometry.array.layout import ArrayLayout
-from softdot.arrays.case import ArrayCase, ArrayPress
+from softdot.arrays.case import ArrayCase
 from softdot.arrays.presses import ArrayPresses, Signals
+from softdot.prepared_press import PreparedPress
 
 SYMMETRIC_WITHIN = 1e-9
 
@@ -130,7 +131,7 @@ class CrosstalkMatrix:
         }
 
 
-def matrix_presses(case: ArrayCase) -> dict[str, ArrayPress]:
+def matrix_presses(case: ArrayCase) -> dict[str, PreparedPress]:
     """Those that are no image of another one, by their names."""
     places = [case.layout.places[number] for number in case.solved]
     return {f"the press of {place.label}": case.press_over(place) for place in places}

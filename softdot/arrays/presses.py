@@ -18,15 +18,11 @@ from foundation.arrays import Floats
 from foundation.cache import data_hash, folder, read_kept, write_kept
 from foundation.executor import HERE, Executor, each_done
 from foundation.source_hash import source_hash
-from geometry.parameters import Dot
-from softdot.arrays.case import ArrayCase, ArrayPress
-from softdot.checks import result_warnings
 from softdot.config.hashes import input_hash
 from softdot.config.schema import Config
-from solve.press import OnStep, press_segment
-from solve.readout.course import course
+from softdot.prepared_press import OnStep, PreparedPress
+from softdot.pressed import Pressed
 from solve.result import PressResult
-from solve.solution.checkpoint import Checkpoint
 
 
 @dataclass(frozen=True)
@@ -76,14 +72,14 @@ class ArrayPresses:
         self._executor, self._told = executor, told
         self._known: dict[Path, Signals] = {}
 
-    def __call__(self, presses: Mapping[str, ArrayPress]) -> dict[str, Signals]:
+    def __call__(self, presses: Mapping[str, PreparedPress]) -> dict[str, Signals]:
         """Of each press by its name. StoppedPressError where one did not converge, InputError, MeshingError."""
         paths = {name: _path(press) for name, press in presses.items()}
         self._known |= {path: found for path in paths.values() if (found := self._recalled(path)) is not None}
         missing = {path: name for name, path in paths.items() if path not in self._known}
-        calls = {path: _told(presses[name]) for path, name in missing.items()}
+        calls = {path: (presses[name].config,) for path, name in missing.items()}
         there = len(presses) - len(missing)
-        for number, (path, future) in enumerate(each_done(self._executor, signals_of_dot, calls), 1 + there):
+        for number, (path, future) in enumerate(each_done(self._executor, signals_of_config, calls), 1 + there):
             self.know(path, converged(future.result(), missing[path]))
             self._told(number, len(presses), missing[path])
         return {name: self._known[path] for name, path in paths.items()}
@@ -91,9 +87,9 @@ class ArrayPresses:
     def _recalled(self, path: Path) -> Signals | None:
         return self._known.get(path) or recalled(path)
 
-    def with_fields(self, press: ArrayPress, name: str, others: Mapping[str, ArrayPress]) -> PressResult:
+    def with_fields(self, press: PreparedPress, name: str, others: Mapping[str, PreparedPress]) -> PressResult:
         """The solver's own result of a press, solved beside others, which are then known. Errors as for a call."""
-        future = self._executor.submit(result_of_dot, *_told(press))
+        future = self._executor.submit(result_of_config, press.config)
         self({key: other for key, other in others.items() if _path(other) != _path(press)})
         found, result = future.result()
         assert isinstance(result, PressResult)
@@ -106,19 +102,14 @@ class ArrayPresses:
         _keep(path, found)
 
 
-def _told(press: ArrayPress) -> tuple[Config, Dot]:
-    """What another process makes the press from."""
-    return press.case.config, press.config.dot
+def signals_of_config(config: Config) -> Signals:
+    """As signals, of the press of a configuration."""
+    return signals(PreparedPress(config))
 
 
-def signals_of_dot(config: Config, dot: Dot) -> Signals:
-    """As signals, of the array of a configuration."""
-    return signals(ArrayPress(ArrayCase(config), dot))
-
-
-def result_of_dot(config: Config, dot: Dot) -> tuple[Signals, PressResult]:
+def result_of_config(config: Config) -> tuple[Signals, PressResult]:
     """The same with the solver's own result."""
-    return _solved(ArrayPress(ArrayCase(config), dot), None)
+    return _solved(PreparedPress(config), None)
 
 
 def converged(found: Signals, what: str) -> Signals:
@@ -128,7 +119,7 @@ def converged(found: Signals, what: str) -> Signals:
     return found
 
 
-def signals(press: ArrayPress) -> Signals:
+def signals(press: PreparedPress) -> Signals:
     """Solve a press, or take it from the cache. What did not converge has a failure and what was reached before it.
 
     InputError, MeshingError.
@@ -142,48 +133,43 @@ def recalled(path: Path) -> Signals | None:
     return None if kept is None else _decoded(json.loads(kept))
 
 
-def remembered(press: ArrayPress, on_step: OnStep | None = None) -> PressResult:
+def remembered(press: PreparedPress, on_step: OnStep | None = None) -> PressResult:
     """The solver's own result with its fields, whose numbers are then kept for signals. InputError, MeshingError."""
     return _solved(press, on_step)[1]
 
 
-def _solved(press: ArrayPress, on_step: OnStep | None) -> tuple[Signals, PressResult]:
-    path = _path(press)
+def _solved(press: PreparedPress, on_step: OnStep | None) -> tuple[Signals, PressResult]:
     begun = time.perf_counter()
-    checkpoint = Checkpoint(path.with_suffix(".npz"), path.stem)
-    result = press_segment(press.model, press.mesh, on_step, checkpoint, press.dot)
+    result = press.solve(on_step)
     found = signals_of(press, result, time.perf_counter() - begun)
-    _keep(path, found)
+    _keep(_path(press), found)
     return found, result
 
 
-def _path(press: ArrayPress) -> Path:
+def _path(press: PreparedPress) -> Path:
     """Where a press is kept."""
-    config = press.case.config.model_copy(update={"dot": press.config.dot})
-    key = data_hash([source_hash(__name__), input_hash(config)])
+    key = data_hash([source_hash(__name__), input_hash(press.config)])
     return folder() / f"array-{key}.json"
 
 
-def signals_of(press: ArrayPress, result: PressResult, solve_s: float) -> Signals:
+def signals_of(press: PreparedPress, result: PressResult, solve_s: float) -> Signals:
     """The numbers of a result."""
-    model = press.model
-    along = course(result, model.press, model.amplifier, model.physics)
-    amplified = None if along.channels_V is None else along.channels_V[along.solved]
-    steps = result.steps
+    pressed, steps = Pressed(press, result), result.steps
+    readout = pressed.channel_voltages_V
     return Signals(
-        depth_mm=np.array([1e3 * step.indentation_m for step in steps]),
-        force_N=np.array([step.reaction_force_N for step in steps]) + 0.0,
-        charge_pC=np.array([1e12 * step.film_charge_C for step in steps]),
-        voltage_V=np.array([step.open_circuit_voltage_V for step in steps]),
-        readout_voltage_V=amplified,
+        depth_mm=pressed.indentation_mm,
+        force_N=pressed.reaction_force_N,
+        charge_pC=np.column_stack(list(pressed.charges_pC.values())),
+        voltage_V=np.column_stack(list(pressed.voltages_V.values())),
+        readout_voltage_V=None if readout is None else readout.T,
         capacitance_pF=1e12 * result.capacitance_F,
-        film_strain=result.film_peak.strain,
+        film_strain=pressed.max_film_strain,
         planes=tuple(result.planes),
         unknowns=result.unknowns,
         newton_iterations=sum(step.newton_iterations for step in steps),
         max_relative_residual=result.max_relative_residual,
         solve_s=solve_s,
-        warnings=tuple(result_warnings(model, press.dot, result)),
+        warnings=tuple(pressed.doubts),
         failure=result.failure,
     )
 

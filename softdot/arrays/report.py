@@ -21,10 +21,9 @@ def write_files(case: Any, found: ArrayStudy, summary: dict[str, Any], folder: P
     """All but array.json; summary : what that will say."""
     from export.cad import write_array_cad
     from export.vtu import write_results
-    from geometry.array.parts import array_parts
     from softdot.arrays.kernel_errors import with_about
 
-    write_array_cad(case.layout, array_parts(case.layout, found.shown.dot), folder / "cad")
+    write_array_cad(case.layout, found.shown.parts, folder / "cad")
     write_results(found.result.tet_mesh, found.result, found.shown.dot, folder / "results")
     _write_csv(found, folder / "crosstalk.csv")
     if found.kernel is not None:

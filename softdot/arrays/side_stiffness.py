@@ -16,9 +16,10 @@ from scipy.optimize import minimize_scalar
 from foundation.arrays import Floats
 from geometry.array.layout import ArrayLayout, SegmentPlace
 from geometry.parameters import LayerName
-from softdot.arrays.case import ArrayCase, ArrayPress
+from softdot.arrays.case import ArrayCase
 from softdot.arrays.matrix import CrosstalkMatrix
 from softdot.arrays.presses import ArrayPresses, Signals
+from softdot.prepared_press import PreparedPress
 
 STIFFNESSES_N_PER_MM3 = (0.01, 0.1, 0.5, 2.0, 10.0, 50.0, 300.0, 3000.0)
 ROLES = ("inner", "edge", "corner")
@@ -93,7 +94,7 @@ class Sides:
         spring = f" {self.stiffness_N_per_mm3:.4g} N/mm3" if self.boundary == "elastic" else ""
         return f"lone segment, {self.boundary}{spring}, {' '.join(self.held) or 'no layer'} held"
 
-    def press(self, case: ArrayCase) -> ArrayPress:
+    def press(self, case: ArrayCase) -> PreparedPress:
         """Of one segment of an array alone."""
         update = {
             "boundary": self.boundary,
@@ -114,7 +115,7 @@ def lone_sides(layout: ArrayLayout) -> list[Sides]:
     return [Sides("elastic", held, k) for held in held_candidates(layout) for k in STIFFNESSES_N_PER_MM3] + [FREE]
 
 
-def lone_presses(case: ArrayCase, sides: Sequence[Sides]) -> dict[str, ArrayPress]:
+def lone_presses(case: ArrayCase, sides: Sequence[Sides]) -> dict[str, PreparedPress]:
     """By their names."""
     return {one.name: one.press(case) for one in sides}
 

@@ -8,13 +8,14 @@ from scipy.interpolate import PchipInterpolator
 
 from foundation.arrays import Floats
 from foundation.executor import Executor
-from softdot.arrays.case import ArrayCase, ArrayPress
+from softdot.arrays.case import ArrayCase
 from softdot.arrays.kernel import ArrayKernel
 from softdot.arrays.kernel_errors import KernelCheck, kernel_of
 from softdot.arrays.matrix import CrosstalkMatrix, crosstalk, matrix_presses
 from softdot.arrays.presses import ArrayPresses, Signals
 from softdot.arrays.side_stiffness import EffectiveSides, effective_sides, lone_presses, lone_sides, representatives
 from softdot.arrays.variants import Worth, variant_presses, worth
+from softdot.prepared_press import PreparedPress
 from softdot.progress import Progress
 from solve.result import PressResult
 
@@ -62,7 +63,7 @@ class ArrayStudy:
     sides: dict[str, EffectiveSides]
     cell: CellPress | None
     variants: list[Worth]
-    shown: ArrayPress
+    shown: PreparedPress
     result: PressResult
     shown_title: str
     kernel: ArrayKernel | None
@@ -96,7 +97,7 @@ def study(case: ArrayCase, executor: Executor, progress: Progress, parts: frozen
     return replace(found, kernel=kernel, checks=checks)
 
 
-def _known_presses(case: ArrayCase, parts: frozenset[Part]) -> dict[str, ArrayPress]:
+def _known_presses(case: ArrayCase, parts: frozenset[Part]) -> dict[str, PreparedPress]:
     """All that are solved whatever comes out, in one go, so that no core waits in between."""
     presses = {**matrix_presses(case), **lone_presses(case, lone_sides(case.layout))}
     return {**presses, **variant_presses(case)[0]} if "variants" in parts else presses

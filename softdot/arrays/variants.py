@@ -9,9 +9,10 @@ from geometry.array.checks import check_array
 from geometry.array.layout import ArrayLayout, SegmentPlace, array_layout
 from geometry.array.parameters import Array, Groove
 from geometry.parameters import LayerName
-from softdot.arrays.case import ArrayCase, ArrayPress
+from softdot.arrays.case import ArrayCase
 from softdot.arrays.presses import ArrayPresses
 from softdot.arrays.side_stiffness import representatives
+from softdot.prepared_press import PreparedPress
 
 GROOVE_WIDTH, GROOVE_DEPTH = 0.1, 0.75
 """Of the pitch, and of the thickness of medium 2."""
@@ -62,7 +63,7 @@ def ways(layout: ArrayLayout) -> dict[str, Array]:
     return found
 
 
-def variant_presses(case: ArrayCase) -> tuple[dict[str, ArrayPress], dict[str, str]]:
+def variant_presses(case: ArrayCase) -> tuple[dict[str, PreparedPress], dict[str, str]]:
     """Of each way of joining, by its name, the press of the segment nearest to the middle, or why there is none."""
     presses, why_not = {}, {}
     for name, array in ways(case.layout).items():

@@ -4,14 +4,10 @@ import sys
 from argparse import Namespace
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from softdot.console import BAD_INPUT, GOOD, complain
 from softdot.json_files import json_text, plain
-
-if TYPE_CHECKING:
-    from softdot.checks import Cost
-    from softdot.config.schema import Config
 
 FORMAT = "softdot-check/1"
 
@@ -30,15 +26,16 @@ def command(chosen: Namespace) -> int:
 
 def check_file(path: Path, settings: list[str]) -> dict[str, Any]:
     """Mistakes, warnings and the expected cost of a configuration."""
+    from softdot.case import Case
     from softdot.config.default_design import completed, from_default
-    from softdot.config.loading import config_from
+    from softdot.config.loading import config_from, idle_materials
     from softdot.config.mistakes import mistakes
     from softdot.config.settings import with_settings
     from softdot.config.toml import read_toml
 
     def check(tables: Mapping[str, Any]) -> tuple[Any, ...]:
-        config = config_from(completed(tables))
-        return (config, *(_segment(config) if config.array is None else _array(config)))
+        case = Case(config_from(completed(tables)))
+        return case.config, [*case.warnings, *idle_materials(case.config)], case.cost
 
     stated = with_settings(read_toml(path), settings)
     found, checked = mistakes(stated, check)
@@ -48,27 +45,6 @@ def check_file(path: Path, settings: list[str]) -> dict[str, Any]:
     config, warnings, cost = checked
     told: dict[str, Any] = plain({"warnings": warnings, "expected": vars(cost)})
     return {**summary, **told, "from_default": list(from_default(stated, config.model_dump(mode="json")))}
-
-
-def _segment(config: "Config") -> "tuple[list[str], Cost]":
-    """Warnings and cost of a run. InputError."""
-    from softdot.case import Case
-    from softdot.checks import design_warnings, expected_cost
-    from softdot.config.loading import idle_materials
-
-    case = Case(config)
-    dot_shape, warnings = case.checked
-    return [*warnings, *design_warnings(case.model), *idle_materials(config)], expected_cost(
-        config, dot_shape, case.planes
-    )
-
-
-def _array(config: "Config") -> "tuple[list[str], Cost]":
-    """Warnings and cost of the crosstalk of an array, whose lone segments come on top. InputError."""
-    from softdot.arrays.case import ArrayCase
-
-    case = ArrayCase(config)
-    return case.checked, case.cost
 
 
 def short_text(summary: dict[str, Any]) -> str:

@@ -3,6 +3,7 @@
 from pydantic import ValidationError
 
 from foundation.errors import InputError
+from geometry.array.layout import ArrayLayout
 from geometry.parameters import Table
 from geometry.part_checks import check_patch
 from softdot.config.errors import sentence
@@ -52,6 +53,11 @@ def refuse_array(config: Config) -> None:
         raise InputError(
             "array: this is one segment's command; use softdot array, or leave the table out for a segment alone"
         )
+
+
+def as_segment(config: Config, layout: ArrayLayout) -> Config:
+    """An array as the one wide segment that it is, with an electrode on each of its own."""
+    return config.model_copy(update={"array": None, "segment": layout.whole})
 
 
 def _refuse_missing_layer(key: str, component: str, model: Model) -> None:

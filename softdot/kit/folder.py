@@ -19,7 +19,6 @@ from geometry.fabrication.part import ROUNDING_MM
 from geometry.flat.flat_kit import FlatKit, flat_kit
 from mesh.types import MeshingError
 from softdot.arrays.case import ArrayCase
-from softdot.checks import design_warnings
 from softdot.config.schema import Config
 from softdot.dask_cluster import AwayError
 from softdot.executors import executor_for
@@ -83,7 +82,7 @@ def _checked(config: Config) -> list[str]:
     """What a user should know about the design. InputError for what cannot be built, or pressed for the budget."""
     array = [] if config.array is None else ArrayCase(config).built
     case = PreparedPress(budget_config(config))
-    return list(dict.fromkeys([*array, *case.checked[1], *design_warnings(case.model)]))
+    return list(dict.fromkeys([*array, *case.warnings]))
 
 
 def device_of(config: Config) -> Device:

@@ -5,7 +5,6 @@ Nodal forces are summed here from the stress at the quadrature points, the gaps 
 """
 
 from dataclasses import dataclass
-from types import SimpleNamespace
 from unittest.mock import patch
 
 import numpy as np
@@ -66,15 +65,8 @@ def amplified(case, result):
 def first_press(config):
     """As Case has it, of an array."""
     array = ArrayCase(config)
-    _ = array.checked
-    press = array.press_over(array.layout.places[0])
-
-    return SimpleNamespace(
-        model=press.model,
-        dot=press.dot,
-        solved_mesh=press.mesh,
-        solve=lambda: press_module.press_segment(press.model, press.mesh, dot=press.dot),
-    )
+    _ = array.warnings
+    return array.press_over(array.layout.places[0])
 
 
 def wrong(pressed) -> list[str]:

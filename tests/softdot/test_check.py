@@ -8,10 +8,10 @@ from hypothesis import HealthCheck, given, settings
 
 from foundation.errors import InputError
 from softdot.case import Case
-from softdot.checks import expected_cost
+from softdot.checks import cost_of, expected_tetrahedra
 from softdot.cli import main
 from softdot.config.default_design import completed
-from softdot.config.loading import config_from, load_config
+from softdot.config.loading import config_from
 from softdot.config.mistakes import mistakes
 from tests.softdot.random_mistakes import invalid_configurations
 from tests.softdot.toml_text import toml_text
@@ -97,8 +97,9 @@ def test_a_good_file_is_told_its_mesh_time_and_memory(checked, monkeypatch):
 
 def test_the_expected_size_of_the_default_is_that_of_its_mesh():
     """The default design has 15,400 tetrahedra and 68,000 unknowns, whatever the mesher's scatter."""
-    config = load_config()
-    cost = expected_cost(config, Case(config).dot)
+    case = Case()
+    whole = expected_tetrahedra(case.model.segment, case.dot, case.config.mesh)
+    cost = cost_of(whole, case.config)
     assert 15_400 / 2 < cost.tetrahedra < 15_400 * 2
     assert 68_000 / 2 < cost.unknowns < 68_000 * 2
 

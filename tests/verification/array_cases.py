@@ -22,6 +22,6 @@ def array(columns=2, rows=1, segment=None, press=None, mesh=None, tables=None, *
 
 def solved(press, mesh=None):
     """The result of a press of an array, on another mesh where one is given; AssertionError without convergence."""
-    result = press_segment(press.model, press.mesh if mesh is None else mesh, dot=press.dot)
+    result = press_segment(press.model, press.solved_mesh if mesh is None else mesh, dot=press.dot)
     assert result.converged, result.failure
     return result

@@ -39,7 +39,7 @@ TABLES = {
 
 def by_ngsolve(press, electrodes, path):
     """Force (N) and voltage of both electrodes (V) at full depth, from a process of its own."""
-    half = press.mesh
+    half = press.solved_mesh
     assert half.planes == (1,)
     owner, face = boundary_faces(half.tets)
     outer = half.tets[owner[:, None], TET_FACES[face, :3]]

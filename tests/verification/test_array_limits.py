@@ -69,7 +69,7 @@ def test_half_an_array_is_the_whole():
     """The press of a row is its own image in y = 0; a half of the mesh gives what all of it gives."""
     press = array().press_over(array().layout.places[0])
     assert press.planes == (1,)
-    half, whole = (solved(press, mesh).steps[-1] for mesh in (press.mesh, unfolded(press.mesh).tet_mesh))
+    half, whole = (solved(press, mesh).steps[-1] for mesh in (press.solved_mesh, press.mesh))
     np.testing.assert_allclose(half.film_charge_C, whole.film_charge_C, rtol=1e-6)
 
 
@@ -125,7 +125,7 @@ def test_rows_and_columns_are_alike_for_a_film_that_is():
 def test_the_dot_does_the_work_that_the_array_stores():
     """Over twelve steps the work of the dot is the elastic energy, within 1 %: the rule of the trapezoid ends there."""
     press = array(press={"load_steps": 12}).press_over(array().layout.places[0])
-    setup = discretise(press.model, press.mesh, press.dot)
+    setup = discretise(press.model, press.solved_mesh, press.dot)
     assert follow(setup, setup.targets(False)).error < 0.01
 
 

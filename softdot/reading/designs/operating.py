@@ -90,7 +90,7 @@ def coarse_kernel(config: Config, detail: KernelDetail = COARSE) -> ArrayKernel:
     InputError for what cannot be built or read with, StoppedDesignError, MeshingError.
     """
     case = ArrayCase(config)
-    case.checked  # noqa: B018 - refuses
+    case.warnings  # noqa: B018 - refuses
     case.refuse_kernel()
     grid = grid_of(case, detail)
     presses: dict[tuple[int, int], KernelPress] = {}

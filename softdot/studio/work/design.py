@@ -12,7 +12,6 @@ from geometry.dot import DotShape
 from geometry.dot_at_rest import resolve_dot
 from softdot.arrays.case import ArrayCase
 from softdot.case import Case
-from softdot.checks import design_warnings, expected_cost
 from softdot.config.default_design import completed
 from softdot.config.hashes import input_hash
 from softdot.config.loading import config_from
@@ -78,13 +77,12 @@ class SegmentDesign:
     @property
     def warnings(self) -> list[str]:
         """InputError for what cannot be pressed."""
-        return [*self._case.checked[1], *design_warnings(self._case.model)]
+        return self._case.warnings
 
     def told(self) -> dict[str, Any]:
         """What it costs, and a hash of all that its press depends on."""
         case = self._case
-        cost = vars(expected_cost(case.config, case.checked[0], case.planes))
-        return {"cost": cost, "press_hash": input_hash(pressed_part(case).config)}
+        return {"cost": vars(case.cost), "press_hash": input_hash(pressed_part(case).config)}
 
     def solids(self) -> tuple[Solids, DotShape]:
         """Solids by their labels, and the dot. InputError."""
@@ -108,7 +106,7 @@ class ArrayDesign:
     @property
     def warnings(self) -> list[str]:
         """InputError for what cannot be pressed."""
-        return self._case.checked
+        return self._case.warnings
 
     def told(self) -> dict[str, Any]:
         """What it costs, where its segments lie (mm), which of them is under which dot of the first cell, and a hash of

@@ -49,10 +49,10 @@ def accurate_press(text: str, tell: Tell) -> dict[str, Any]:
 def press_of_cell(text: str, tell: Tell) -> dict[str, Any]:
     """The press of an array by the cell of its dots, on large elements: what each segment reads. InputError."""
     case, progress = ArrayCase(on_larger_elements(config_of(text), COARSE)), TaskProgress(tell)
-    _ = case.checked
+    _ = case.warnings
     press = case.press_by_cell()
     progress.stage("mesh")
-    _ = press.mesh
+    _ = press.solved_mesh
     progress.stage("press")
     result = remembered(press, progress.on_step)
     found = signals_of(press, result, 0.0)

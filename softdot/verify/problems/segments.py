@@ -71,11 +71,8 @@ def force_alone() -> float:
 
 def force_of_two() -> float:
     """Of a cell of two dots on two segments that share nothing, N."""
-    from solve.press import press_segment
-
     pair = _pair({"dot": {"cell": "⠉", "standard": "marburg-medium"}})
-    press = pair.press_by_cell()
-    return float(press_segment(press.model, press.mesh, dot=press.dot).trace.reaction_force_N[-1])
+    return float(pair.press_by_cell().solve().trace.reaction_force_N[-1])
 
 
 PROBLEMS = (

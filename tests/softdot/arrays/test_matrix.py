@@ -11,7 +11,9 @@ from softdot.arrays.case import ArrayCase
 from softdot.arrays.matrix import CrosstalkMatrix, crosstalk
 from softdot.arrays.presses import ArrayPresses, Signals, StoppedPressError, signals
 from softdot.arrays.side_stiffness import representatives, role
+from softdot.case import Case
 from softdot.config.model import model_of
+from softdot.prepared_press import PreparedPress
 from tests.cases import for_each
 from tests.verification.array_cases import array
 
@@ -86,7 +88,7 @@ def test_a_solved_press_is_kept(monkeypatch, tmp_path):
     def never(*_given, **_named):
         raise AssertionError("solved again")
 
-    monkeypatch.setattr(presses_module, "press_segment", never)
+    monkeypatch.setattr(PreparedPress, "solve", never)
     again = signals(press)
     for name, value in vars(first).items():
         np.testing.assert_array_equal(getattr(again, name), value)
@@ -99,7 +101,7 @@ def test_a_press_that_stops_is_told_by_its_segment(monkeypatch, tmp_path):
     """Nothing is made of the others."""
     monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path))
     stopped = replace(made_up([1.0, 1.0]), failure="step 1 of 2 stopped")
-    monkeypatch.setattr(presses_module, "signals_of_dot", lambda _config, _dot: stopped)
+    monkeypatch.setattr(presses_module, "signals_of_config", lambda _config: stopped)
     with pytest.raises(StoppedPressError, match="the press of segment-r1c1 did not converge: step 1 of 2 stopped"):
         crosstalk(array(), ArrayPresses())
 
@@ -126,7 +128,7 @@ def test_what_an_array_does_not_take_is_refused_by_name(name):
     tables = {key: value for key, value in changes.items() if key not in ("press", "mesh")}
     case = array(press=changes.get("press"), mesh=changes.get("mesh"), tables=tables)
     with pytest.raises(InputError) as refusal:
-        _ = case.checked
+        _ = case.warnings
     assert str(refusal.value).startswith(sentence)
 
 
@@ -138,3 +140,19 @@ def test_one_segments_commands_refuse_an_array():
 def test_a_configuration_without_an_array_is_refused():
     with pytest.raises(InputError, match="array is missing"):
         ArrayCase(array().config.model_copy(update={"array": None}))
+
+
+def test_a_case_of_an_array_is_pressed_over_a_segment_by_its_name():
+    """The same press as that of the study; the array itself has no single one."""
+    case = Case(array().config)
+    press = case.over("r1c2")
+    assert press.dot.origin_mm[:2] == pytest.approx([1.25, 0.0])  # half the pitch of 2.5 mm from the middle
+    assert [one.name for one in press.model.segment.film.electrodes] == ["segment-r1c1", "segment-r1c2"]
+    assert case.warnings == array().warnings
+    assert case.cost == array().cost
+    with pytest.raises(InputError, match="segment 'r2c1': is none of r1c1, r1c2"):
+        case.over("r2c1")
+    with pytest.raises(InputError, match="array: this is one segment's command"):
+        case.press()
+    with pytest.raises(InputError, match="array is missing"):
+        Case().over("r1c1")

@@ -237,7 +237,7 @@ def test_results_are_one_table_a_picture_and_a_design_that_can_be_pressed(tmp_pa
     assert "design 2: not-converged, at 0.1 mm" in told["warnings"]
     best = load_config(tmp_path / "best.toml")
     assert config_hash(best) == told["best"]["config_hash"] == config_hash(found.best.config)
-    assert ArrayCase(best).checked is not None
+    assert ArrayCase(best).warnings is not None
     (tmp_path / "sweep.parquet").write_bytes((tmp_path / "designs.parquet").read_bytes())
     rows = read_table(tmp_path).to_pylist()
     assert [row["name"] for row in rows] == [one.name for one in found.designs]
