@@ -105,6 +105,12 @@ class Pressed:
         return None if found is None else found[self.course.solved].T
 
     @property
+    def signals_V(self) -> dict[str, Floats]:
+        """What is read of each electrode by its name: behind an amplifier of its own, without one at open circuit."""
+        behind = self.channel_voltages_V
+        return self.voltages_V if behind is None else self._by_electrode(behind.T)
+
+    @property
     def film_capacitance_pF(self) -> float:
         """Of the undeformed film under all electrodes."""
         return 1e12 * float(self.result.capacitance_F.sum())

@@ -20,7 +20,7 @@ from foundation.executor import HERE, Executor, each_done
 from foundation.source_hash import source_hash
 from softdot.config.hashes import input_hash
 from softdot.config.schema import Config
-from softdot.prepared_press import OnStep, PreparedPress
+from softdot.prepared_press import PreparedPress
 from softdot.pressed import Pressed
 from solve.result import PressResult
 
@@ -89,7 +89,7 @@ class ArrayPresses:
 
     def with_fields(self, press: PreparedPress, name: str, others: Mapping[str, PreparedPress]) -> PressResult:
         """The solver's own result of a press, solved beside others, which are then known. Errors as for a call."""
-        future = self._executor.submit(result_of_config, press.config)
+        future = self._executor.submit(solved_config, press.config)
         self({key: other for key, other in others.items() if _path(other) != _path(press)})
         found, result = future.result()
         assert isinstance(result, PressResult)
@@ -107,9 +107,9 @@ def signals_of_config(config: Config) -> Signals:
     return signals(PreparedPress(config))
 
 
-def result_of_config(config: Config) -> tuple[Signals, PressResult]:
+def solved_config(config: Config) -> tuple[Signals, PressResult]:
     """The same with the solver's own result."""
-    return _solved(PreparedPress(config), None)
+    return _solved(PreparedPress(config))
 
 
 def converged(found: Signals, what: str) -> Signals:
@@ -124,7 +124,7 @@ def signals(press: PreparedPress) -> Signals:
 
     InputError, MeshingError.
     """
-    return recalled(_path(press)) or _solved(press, None)[0]
+    return recalled(_path(press)) or _solved(press)[0]
 
 
 def recalled(path: Path) -> Signals | None:
@@ -133,14 +133,9 @@ def recalled(path: Path) -> Signals | None:
     return None if kept is None else _decoded(json.loads(kept))
 
 
-def remembered(press: PreparedPress, on_step: OnStep | None = None) -> PressResult:
-    """The solver's own result with its fields, whose numbers are then kept for signals. InputError, MeshingError."""
-    return _solved(press, on_step)[1]
-
-
-def _solved(press: PreparedPress, on_step: OnStep | None) -> tuple[Signals, PressResult]:
+def _solved(press: PreparedPress) -> tuple[Signals, PressResult]:
     begun = time.perf_counter()
-    result = press.solve(on_step)
+    result = press.solve()
     found = signals_of(press, result, time.perf_counter() - begun)
     _keep(_path(press), found)
     return found, result

@@ -7,6 +7,7 @@ from foundation.errors import InputError
 from geometry.array.checks import check_array
 from geometry.array.layout import ArrayLayout, array_layout
 from geometry.stack import layers
+from softdot.config.model import as_segment
 from softdot.config.schema import Config
 
 
@@ -26,8 +27,7 @@ def as_one_segment(config: Config, runs: Sequence[RunTable]) -> tuple[Config, tu
     layout = array_layout(config.array, config.segment, config.dot)
     check_array(layout)
     _refuse_what_ends(layout)
-    whole = config.model_copy(update={"array": None, "segment": layout.whole})
-    return whole, tuple(_placed(run, number, layout) for number, run in enumerate(runs))
+    return as_segment(config, layout), tuple(_placed(run, number, layout) for number, run in enumerate(runs))
 
 
 def _refuse_what_ends(layout: ArrayLayout) -> None:

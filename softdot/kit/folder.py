@@ -87,9 +87,8 @@ def _checked(config: Config) -> list[str]:
 
 def device_of(config: Config) -> Device:
     """What the kit makes: one segment, or the array of the table [array]. InputError for what a kit cannot make."""
-    if config.array is None:
-        return lone_device(config.segment)
-    return array_device(ArrayCase(config).layout, config.fabrication)
+    layout = PreparedPress(config).layout
+    return lone_device(config.segment) if layout is None else array_device(layout, config.fabrication)
 
 
 def budget_config(config: Config) -> Config:

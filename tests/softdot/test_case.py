@@ -52,6 +52,8 @@ def test_units_stand_in_the_names_of_a_press(case):
     capacitance_F = 1e-12 * pressed.film_capacitance_pF
     assert pressed.open_circuit_voltage_V == pytest.approx(1e-12 * pressed.film_charge_pC / capacitance_F)
     assert pressed.readout_voltage_V is None
+    assert pressed.charges_pC["film"] == pytest.approx(pressed.film_charge_pC)  # of its only electrode
+    assert pressed.signals_V["film"] == pytest.approx(pressed.open_circuit_voltage_V)
     table = pressed.to_dataframe()
     assert list(table.columns) == [
         "time_s", "indentation_mm", "reaction_force_N", "charge_pC_film", "voltage_V_film", "solved"

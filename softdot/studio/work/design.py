@@ -7,6 +7,7 @@ from typing import Any
 from foundation.errors import InputError
 from foundation.library_loading import load_alone
 from geometry.array.checks import check_array
+from geometry.array.layout import ArrayLayout
 from geometry.checks import check_segment
 from geometry.dot import DotShape
 from geometry.dot_at_rest import resolve_dot
@@ -66,42 +67,17 @@ def pressed_part(case: Case) -> Case:
     return Case(config)
 
 
-class SegmentDesign:
-    """A design of one segment, as the page speaks of it."""
-
-    presses = ("press:coarse_press", "press:accurate_press")
+class StudioDesign:
+    """A design of one segment or of an array, as the page speaks of it."""
 
     def __init__(self, config: Config) -> None:
         self._case = Case(config)
 
     @property
-    def warnings(self) -> list[str]:
-        """InputError for what cannot be pressed."""
-        return self._case.warnings
-
-    def told(self) -> dict[str, Any]:
-        """What it costs, and a hash of all that its press depends on."""
-        case = self._case
-        return {"cost": vars(case.cost), "press_hash": input_hash(pressed_part(case).config)}
-
-    def solids(self) -> tuple[Solids, DotShape]:
-        """Solids by their labels, and the dot. InputError."""
-        from geometry.assembly import case_solid, layer_solids
-
-        model = self._case.model
-        segment = model.segment
-        check_segment(segment)
-        solids = {**layer_solids(segment, 1e-3 * segment.film.thickness_um), "case": case_solid(segment)}
-        return solids, resolve_dot(model.dot, segment)
-
-
-class ArrayDesign:
-    """A design of an array, which the raised dots of a cell press."""
-
-    presses = ("press:press_of_cell",)
-
-    def __init__(self, config: Config) -> None:
-        self._case = ArrayCase(config)
+    def presses(self) -> tuple[str, ...]:
+        """The tasks that press it."""
+        one = self._case.layout is None
+        return ("press:coarse_press", "press:accurate_press") if one else ("press:press_of_cell",)
 
     @property
     def warnings(self) -> list[str]:
@@ -109,37 +85,51 @@ class ArrayDesign:
         return self._case.warnings
 
     def told(self) -> dict[str, Any]:
-        """What it costs, where its segments lie (mm), which of them is under which dot of the first cell, and a hash of
-        the press; that is None where no dot is raised.
+        """What it costs, a hash of all that its press depends on, and of an array where its segments are.
+
+        The hash is None where no dot of a cell is raised over an array.
         """
-        case = self._case
-        cell, layout = case.config.dot.cell, case.layout
-        under = {dot: number for dot in DOTS if (number := case.under_dot(dot)) is not None}
-        segments = {"labels": [place.label for place in layout.places], "centres_mm": layout.middles}
-        about = {**segments, "size_mm": layout.size_mm, "half_mm": layout.half_mm, "cell": cell, "under": under}
-        pressed = None if cell is None else input_hash(case.config)
-        return {"cost": vars(case.cost), "press_hash": pressed, "array": about}
+        case, cost = self._case, vars(self._case.cost)
+        if case.layout is None:
+            return {"cost": cost, "press_hash": input_hash(pressed_part(case).config)}
+        pressed = None if case.config.dot.cell is None else input_hash(case.config)
+        return {"cost": cost, "press_hash": pressed, "array": places(case.config, case.layout)}
 
     def solids(self) -> tuple[Solids, DotShape]:
-        """As of a segment: the islands of a layer are one body, and the grid belongs to the case. InputError."""
-        from build123d import Compound
+        """Solids by their labels, and the dot. The islands of a layer are one body, and a grid belongs to the case.
 
-        from geometry.array.parts import array_parts
-
+        InputError.
+        """
         case = self._case
-        check_array(case.layout)
-        alone = case.config.dot.cell is None
-        press = case.press_over(case.layout.places[0]) if alone else case.press_by_cell()
-        parts: dict[str, list[Any]] = {}
-        for part in array_parts(case.layout, press.dot):
-            parts.setdefault(part.label.replace("grid", "case").rpartition("-")[2], []).append(part.solid)
-        del parts["dot"]
-        return {name: Compound(solids) for name, solids in parts.items()}, press.dot
+        if case.layout is not None:
+            return array_solids(case, case.layout)
+        from geometry.assembly import case_solid, layer_solids
+
+        segment = case.model.segment
+        check_segment(segment)
+        solids = {**layer_solids(segment, 1e-3 * segment.film.thickness_um), "case": case_solid(segment)}
+        return solids, resolve_dot(case.model.dot, segment)
 
 
-def design_of(config: Config) -> SegmentDesign | ArrayDesign:
-    """Of the kind that a configuration states. InputError."""
-    return SegmentDesign(config) if config.array is None else ArrayDesign(config)
+def places(config: Config, layout: ArrayLayout) -> dict[str, Any]:
+    """Where the segments of an array lie (mm), and which of them is under which dot of the first cell."""
+    under = {dot: number for dot in DOTS if (number := ArrayCase(config).under_dot(dot)) is not None}
+    segments = {"labels": [place.label for place in layout.places], "centres_mm": layout.middles}
+    sizes = {"size_mm": layout.size_mm, "half_mm": layout.half_mm}
+    return {**segments, **sizes, "cell": config.dot.cell, "under": under}
+
+
+def array_solids(case: Case, layout: ArrayLayout) -> tuple[Solids, DotShape]:
+    """As of a segment, the islands of a layer together, under the cell or a dot over the first segment. InputError."""
+    from build123d import Compound
+
+    check_array(layout)
+    press = case.over("r1c1") if case.config.dot.cell is None else case.by_cell()
+    parts: dict[str, list[Any]] = {}
+    for part in press.parts:
+        parts.setdefault(part.label.replace("grid", "case").rpartition("-")[2], []).append(part.solid)
+    del parts["dot"]
+    return {name: Compound(solids) for name, solids in parts.items()}, press.dot
 
 
 def draw(text: str) -> dict[str, Any] | None:
@@ -147,7 +137,7 @@ def draw(text: str) -> dict[str, Any] | None:
     from export.parts_view import parts_view
 
     try:
-        return parts_view(*design_of(config_of(text)).solids())
+        return parts_view(*StudioDesign(config_of(text)).solids())
     except InputError:
         return None
 
@@ -166,9 +156,9 @@ def examine(text: str) -> dict[str, Any]:
     except InputError as error:
         return {"values": None, "stated": None, "mistakes": [str(error)], "warnings": [], "remedies": [None]}
 
-    def check(found: Mapping[str, Any]) -> tuple[Config, SegmentDesign | ArrayDesign, list[str]]:
+    def check(found: Mapping[str, Any]) -> tuple[Config, StudioDesign, list[str]]:
         config = _config(found)
-        design = design_of(config)
+        design = StudioDesign(config)
         return config, design, design.warnings
 
     found, checked = mistakes(tables, check)

@@ -9,10 +9,10 @@ from typing import Any
 from export.viewer_data import viewer_data
 from foundation.errors import InputError
 from mesh.types import MeshingError
-from softdot.arrays.case import ArrayCase
-from softdot.arrays.presses import remembered, signals_of
 from softdot.case import Case
 from softdot.json_files import plain
+from softdot.prepared_press import PreparedPress
+from softdot.pressed import Pressed
 from softdot.studio.processes import Tell
 from softdot.studio.work.design import case_of, config_of, pressed_part
 from softdot.studio.work.remedies import late_remedies
@@ -48,42 +48,46 @@ def accurate_press(text: str, tell: Tell) -> dict[str, Any]:
 
 def press_of_cell(text: str, tell: Tell) -> dict[str, Any]:
     """The press of an array by the cell of its dots, on large elements: what each segment reads. InputError."""
-    case, progress = ArrayCase(on_larger_elements(config_of(text), COARSE)), TaskProgress(tell)
+    case, progress = Case(on_larger_elements(config_of(text), COARSE)), TaskProgress(tell)
     _ = case.warnings
-    press = case.press_by_cell()
+    press = case.by_cell()
+    pressed = _pressed_with_progress(press, progress)
+    numbers = {
+        "cell": case.config.dot.cell,
+        "depth_mm": pressed.indentation_mm[-1],
+        "force_N": pressed.reaction_force_N[-1],
+        "charge_pC": [charge[-1] for charge in pressed.charges_pC.values()],
+        "voltage_V": [voltage[-1] for voltage in pressed.signals_V.values()],
+        "amplified": press.is_amplified,
+        "warnings": pressed.doubts,
+        "failure": pressed.failure,
+    }
+    return {"array": plain(numbers), "view": _view(pressed)}
+
+
+def _pressed_with_progress(press: PreparedPress, progress: "TaskProgress") -> Pressed:
     progress.stage("mesh")
     _ = press.solved_mesh
     progress.stage("press")
-    result = remembered(press, progress.on_step)
-    found = signals_of(press, result, 0.0)
-    numbers = {
-        "cell": case.config.dot.cell,
-        "depth_mm": found.depth_mm[-1],
-        "force_N": found.force_N[-1],
-        "charge_pC": found.charge_pC[-1],
-        "voltage_V": found.signal_V[-1],
-        "amplified": found.readout_voltage_V is not None,
-        "warnings": found.warnings,
-        "failure": found.failure,
-    }
-    view = viewer_data(result.tet_mesh, result, press.dot) if len(result.steps) > 1 else None
-    return {"array": plain(numbers), "view": view}
+    return press.press(progress.on_step)
+
+
+def _view(pressed: Pressed) -> dict[str, Any] | None:
+    """For the page; None where no step converged."""
+    result = pressed.result
+    return viewer_data(result.tet_mesh, result, pressed.case.dot) if len(result.steps) > 1 else None
 
 
 def _pressed(case: Case, progress: "TaskProgress", quality: str) -> dict[str, Any]:
     _ = case.checked
-    progress.stage("mesh")
-    unknown = case.mesh_quality
-    progress.stage("press")
-    pressed = case.press(progress.on_step)
+    pressed = _pressed_with_progress(case, progress)
     result = pressed.result
-    numbers = {"mesh": mesh_part(unknown, result.unknowns), **press_part(case.model, result, pressed.course)}
+    numbers = {"mesh": mesh_part(case.mesh_quality, result.unknowns), **press_part(case.model, result, pressed.course)}
     numbers |= {"warnings": pressed.doubts, "remedies": late_remedies(case.config, pressed.doubts)}
-    view = viewer_data(result.tet_mesh, result, case.dot) if len(result.steps) > 1 else None
     return {
         "quality": quality,
         "numbers": plain(numbers),
-        "view": view,
+        "view": _view(pressed),
         "history": pickle.dumps(without_fields(result)),
     }
 

@@ -85,6 +85,10 @@ def test_a_solved_press_is_kept(monkeypatch, tmp_path):
     assert first.failure is None
     np.testing.assert_allclose(case.capacitance_pF, first.capacitance_pF)  # eps A / t of what the margin leaves
 
+    pressed = press.press()  # on the mesh that is there
+    assert list(pressed.charges_pC) == ["segment-r1c1", "segment-r1c2"]
+    np.testing.assert_allclose(np.column_stack(list(pressed.signals_V.values())), first.signal_V, rtol=1e-9)
+
     def never(*_given, **_named):
         raise AssertionError("solved again")
 
