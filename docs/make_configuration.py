@@ -1,8 +1,8 @@
 """Make the tables of the documents from the configuration schema and from the data tables of the program.
 
 Run ``python docs/make_configuration.py`` at the top of the repository after a key, a material or a Braille
-standard has changed. It writes docs/configuration.md and the marked blocks of docs/geometry.md,
-docs/kit_parts.md, docs/limits.md and docs/mechanisms.md; tests/softdot/test_docs.py fails while they are out of step.
+standard has changed. It writes the marked blocks of docs/configuration.md, docs/geometry.md, docs/kit_parts.md,
+docs/limits.md and docs/mechanisms.md; tests/softdot/test_docs.py fails while they are out of step.
 """
 
 import sys
@@ -25,10 +25,9 @@ from softdot.commands.new import (  # noqa: E402
     allowed,
     config_schema,
     toml,
-    unit,
 )
 from softdot.config.not_modelled import NOT_MODELLED  # noqa: E402
-from solve.materials.parameters import library_tables  # noqa: E402
+from solve.materials.parameters import PiezoelectricFilm, library_tables  # noqa: E402
 from solve.mechanisms import MECHANISMS  # noqa: E402
 from solve.mechanisms.base import in_short  # noqa: E402
 
@@ -63,8 +62,9 @@ TABLES = {
 }
 """Heading -> name of its definition in the schema, in the order of the document."""
 
-LAST = ("density_kg_m3", "max_fitted_strain", "source", "confidence")
-"""What every material may state comes after its own constants."""
+MATERIAL = "`[materials.NAME]`"
+EVERY_MATERIAL = ("density_kg_m3", "max_fitted_strain", "source", "confidence")
+"""What a material of any model may state: it stands once, before the models."""
 
 MATERIAL_NAME = "a [built-in material](#built-in-materials) or the NAME of a `[materials.NAME]`"
 HINTS = {
@@ -85,32 +85,42 @@ HINTS = {
 """What is allowed where the schema alone says too little or too much."""
 
 
-def configuration_page() -> str:
-    """The whole text of docs/configuration.md."""
+def tables_of_keys() -> str:
+    """A section for every table of a configuration, and one for the built-in materials."""
     schema = config_schema()
     definitions = {**schema["$defs"], "Config": schema}
     examples = _read_toml("configuration_examples.toml")
-    parts = [(DOCS / "configuration_head.md").read_text("utf-8")]
+    parts = []
     for title, name in TABLES.items():
-        parts.append(_section(title, name, definitions, examples[name]))
+        keys = list(definitions[name]["properties"])
+        about = f"{definitions[name].get('description', '').strip()}\n\n" if name != "Config" else ""
+        if title.startswith(MATERIAL):
+            if name == "NeoHookean":
+                common = _keys(title, name, list(EVERY_MATERIAL), definitions, examples[name])
+                parts.append(f"## {MATERIAL}, every model\n\n{_common_note()}\n\n{common}")
+            keys = [key for key in keys if key not in (*EVERY_MATERIAL, "model")]
+        parts.append(f"## {title}\n\n{about}{_keys(title, name, keys, definitions, examples[name])}")
     parts.append(f"## Built-in materials\n\n{_materials_note()}\n\n{material_table()}")
-    return "\n\n".join(part.strip() for part in parts) + "\n"
+    return "\n\n".join(parts)
 
 
-def _section(title: str, name: str, definitions: Json, examples: Json) -> str:
-    table = definitions[name]
-    keys = sorted(table["properties"], key=lambda key: key in LAST)
-    rows = []
+def _keys(title: str, name: str, keys: list[str], definitions: Json, examples: Json) -> str:
+    """The rows of one table of a configuration."""
+    table, rows = definitions[name], []
     for key in keys:
         value, required = table["properties"][key], key in table.get("required", [])
         meaning = value.get("description") or _description(value, definitions)
         meaning = "; ".join(part for part in (meaning, acting(value)) if part)
         bounds = HINTS.get(f"{name}.{key}") or allowed(value)
-        rows.append(
-            [f"`{key}`", meaning, unit(key), _default(value, required), bounds, _example(title, key, value, examples)]
-        )
-    about = "" if name == "Config" else f"{table['description'].strip()}\n\n"
-    return f"## {title}\n\n{about}{_table(['key', 'meaning', 'unit', 'default', 'allowed', 'example'], rows)}"
+        rows.append([f"`{key}`", meaning, _default(value, required), bounds, _example(title, key, value, examples)])
+    return _table(["key", "meaning", "default", "allowed", "example"], rows)
+
+
+def _common_note() -> str:
+    return (
+        "Beside these, a material states its `model`, one of the following, and the constants of that model. "
+        f"Without a density a film has {toml(PiezoelectricFilm.model_fields['density_kg_m3'].default)} kg/m³."
+    )
 
 
 def _description(value: Json, definitions: Json) -> str:
@@ -242,6 +252,7 @@ def table_of_nothing() -> str:
 
 
 BLOCKS: dict[str, tuple[str, Callable[[], str]]] = {
+    "configuration.md": ("tables of keys", tables_of_keys),
     "geometry.md": ("Braille table", braille_table),
     "kit_parts.md": ("casting table", casting_table),
     "limits.md": ("table of what there is not", table_of_nothing),
@@ -252,7 +263,7 @@ BLOCKS: dict[str, tuple[str, Callable[[], str]]] = {
 
 def pages() -> dict[str, str]:
     """The text of every document that holds something generated, by file name."""
-    made = {"configuration.md": configuration_page()}
+    made = {}
     for file, (name, block) in BLOCKS.items():
         made[file] = with_block((DOCS / file).read_text("utf-8"), name, block())
     return made
