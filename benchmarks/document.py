@@ -33,11 +33,11 @@ def newton_step(rows: list[dict]) -> str:
 
 
 def growth(rows: list[dict]) -> str:
-    """Seconds of the phases, memory, and the share of what the machine can do, in both precisions."""
+    """Seconds of the phases, memory, and the share of what the machine can do, of some sizes in both precisions."""
     phases, body = ("assemble", "factorise", "back substitute", "gmres", "to 1e-10"), []
     for precision in UP_TO:
         own = of_precision(rows, precision)
-        for row in own:
+        for row in own[2::2]:
             flops, read = efficiency(row)
             times = [f"{row['seconds'][name]:.3f}" for name in phases]
             shares = [f"{100 * flops:.0f} %", f"{100 * read:.0f} %"]
@@ -80,14 +80,11 @@ def neighbours(rows: list[dict]) -> str:
     return _table(("busy loops", "press s", "against idle cores"), body)
 
 
-def against_itself(rows: list[dict]) -> str:
-    """Seconds of whole commands of both versions."""
-    body = [
-        [row["earlier"], row["case"], row["part"], f"{row['then_s']:.1f}", f"{row['now_s']:.1f}", f"{row['ratio']:.2f}",
-         f"{row['aim']:g}"]
-        for row in rows
-    ]  # fmt: skip
-    return _table(("earlier", "command", "part", "then s", "now s", "ratio", "aim"), body)
+def whole_commands(rows: list[dict]) -> str:
+    """Seconds of whole commands, of each the row that was measured last."""
+    last = {(row["case"], row["part"]): row["now_s"] for row in rows}
+    body = [[case, part, f"{taken:.1f}"] for (case, part), taken in last.items()]
+    return _table(("command", "part", "s"), body)
 
 
 def error_bars(rows: list[dict]) -> str:
@@ -106,14 +103,12 @@ def error_bars(rows: list[dict]) -> str:
 def machine(section: dict) -> str:
     """One line on what it ran."""
     on = section["measured_on"]
-    versions = ", ".join(f"{name} {version}" for name, version in on["versions"].items())
-    where = f"{on['cpu']}, {on['cores']} cores, {on['memory_GB']} GB, load {on['load_before']} before the run"
-    return f"Measured on {where}; Python {on['python']}, {versions}."
+    return f"{on['cpu']}, {on['cores']} cores, {on['memory_GB']} GB, load {on['load_before']} before the run."
 
 
 TABLES = {
     "newton_step": newton_step, "growth": growth, "press": press, "diagnosis": diagnosis, "neighbours": neighbours,
-    "against itself": against_itself, "error bars": error_bars,
+    "against itself": whole_commands, "error bars": error_bars,
 }  # fmt: skip
 
 
