@@ -112,8 +112,8 @@ def _keys(title: str, name: str, keys: list[str], definitions: Json, examples: J
         meaning = value.get("description") or _description(value, definitions)
         meaning = "; ".join(part for part in (meaning, acting(value)) if part)
         bounds = HINTS.get(f"{name}.{key}") or allowed(value)
-        rows.append([f"`{key}`", meaning, _default(value, required), bounds, _example(title, key, value, examples)])
-    return _table(["key", "meaning", "default", "allowed", "example"], rows)
+        rows.append([f"`{key}`", meaning, _default(title, key, value, required, examples), bounds])
+    return _table(["key", "meaning", "default", "allowed"], rows)
 
 
 def _common_note() -> str:
@@ -128,24 +128,22 @@ def _description(value: Json, definitions: Json) -> str:
     return str(definitions[value["$ref"].rpartition("/")[2]]["description"]).rstrip(".").lower()
 
 
-def _default(value: Json, required: bool) -> str:
-    if required:
-        return "required"
-    default = value["default"]
-    if default in (None, [], {}):
-        return "none"
-    if isinstance(default, dict):
+def _default(title: str, key: str, value: Json, required: bool, examples: Json) -> str:
+    """The default, which shows how a value is written; without one an example, or the head of its table."""
+    default = None if required else value["default"]
+    if isinstance(default, dict) and default:
         return "its own defaults"
-    return f"`{toml(default)}`"
+    if default not in (None, [], {}):
+        return f"`{toml(default)}`"
+    shown = f"e.g. `{toml(examples[key])}`" if key in examples else f"table `{_head(title, key, value)}`"
+    return f"{'required' if required else 'none'}, {shown}"
 
 
-def _example(title: str, key: str, value: Json, examples: Json) -> str:
-    """A line of TOML: the key with a value, or the head of a table of its own."""
-    if key in examples:
-        return f"`{key} = {toml(examples[key])}`"
+def _head(title: str, key: str, value: Json) -> str:
+    """The head of the table of a key."""
     parent = title.strip("[]`") + "." if title.startswith("`") else ""
     head = f"[{parent}{key}{'.my-rubber' if key in ('materials', 'casting') else ''}]"
-    return f"`[{head}]`" if value.get("type") == "array" else f"`{head}`"
+    return f"[{head}]" if value.get("type") == "array" else head
 
 
 def _materials_note() -> str:
