@@ -20,10 +20,11 @@ def _table(head: tuple[str, ...], body: list[list[str]]) -> str:
 
 
 def newton_step(rows: list[dict]) -> str:
-    """Seconds and ratios, code by code."""
+    """Seconds and ratios, code by code, of the smallest and the largest problem."""
     ours = {(row["size"], row["law"]): row["seconds"] for row in rows if row["code"] == "softdot"}
+    ends = {min(row["size"] for row in rows), max(row["size"] for row in rows)}
     body = []
-    for row in rows:
+    for row in (row for row in rows if row["size"] in ends):
         seconds, own = row["seconds"], ours[row["size"], row["law"]]
         times = [f"{seconds[name]:.3f}" for name in ("assemble", "factorise", "solve", "total")]
         ratios = [f"{own[name] / seconds[name]:.2f}" for name in ("assemble", "total")]
