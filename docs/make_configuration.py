@@ -202,12 +202,9 @@ def _range(quantity: Quantity) -> str:
 
 
 def mechanism_table() -> str:
-    """Every mechanism name that the schema knows."""
-    rows = [
-        [f"`{name}`", ", ".join(in_short(kind.components)), ", ".join(kind.parameters.model_fields) or "none"]
-        for name, kind in MECHANISMS.items()
-    ]
-    return _table(["name", "component", "parameters"], rows)
+    """Every mechanism name that the schema knows, and where it can act."""
+    rows = [[f"`{name}`", ", ".join(in_short(kind.components))] for name, kind in MECHANISMS.items()]
+    return _table(["name", "component"], rows)
 
 
 def with_block(text: str, name: str, block: str) -> str:
