@@ -1,6 +1,7 @@
 """Put the measured tables into the page: python -m benchmarks.document docs/speed.json docs/speed.md.
 
-Each table stands between <!-- name --> and <!-- /name -->, and only that is rewritten.
+Each table stands between <!-- name --> and <!-- /name -->, and only that is rewritten. Sections that have no table are
+for the text beside them.
 """
 
 import json
@@ -38,7 +39,7 @@ def growth(rows: list[dict]) -> str:
     phases, body = ("assemble", "factorise", "back substitute", "gmres", "to 1e-10"), []
     for precision in UP_TO:
         own = of_precision(rows, precision)
-        for row in own[2::2]:
+        for row in own[4::4]:
             flops, read = efficiency(row)
             times = [f"{row['seconds'][name]:.3f}" for name in phases]
             shares = [f"{100 * flops:.0f} %", f"{100 * read:.0f} %"]
@@ -75,12 +76,6 @@ def diagnosis(rows: list[dict]) -> str:
     return _table(("rig", "first s", "further s", "first/further", "first GB", "further GB"), body)
 
 
-def neighbours(rows: list[dict]) -> str:
-    """Seconds of the press beside busy loops."""
-    body = [[str(row["busy loops"]), f"{row['press s']:.1f}", f"{row['ratio']:.2f}"] for row in rows]
-    return _table(("busy loops", "press s", "against idle cores"), body)
-
-
 def whole_commands(rows: list[dict]) -> str:
     """Seconds of whole commands, of each the row that was measured last."""
     last = {(row["case"], row["part"]): row["now_s"] for row in rows}
@@ -108,7 +103,7 @@ def machine(section: dict) -> str:
 
 
 TABLES = {
-    "newton_step": newton_step, "growth": growth, "press": press, "diagnosis": diagnosis, "neighbours": neighbours,
+    "newton_step": newton_step, "growth": growth, "press": press, "diagnosis": diagnosis,
     "against itself": whole_commands, "error bars": error_bars,
 }  # fmt: skip
 
@@ -116,7 +111,8 @@ TABLES = {
 def main(table: Path, page: Path) -> None:
     """Rewrite the tables of the sections that the file has."""
     text = page.read_text("utf-8")
-    for name, section in json.loads(table.read_text(encoding="utf-8")).items():
+    sections = json.loads(table.read_text(encoding="utf-8"))
+    for name, section in ((name, section) for name, section in sections.items() if name in TABLES):
         content = f"{TABLES[name](section['rows'])}\n\n{machine(section)}"
         pattern = rf"(<!-- {name} -->\n).*?(<!-- /{name} -->)"
         text = re.sub(pattern, lambda found, content=content: f"{found[1]}{content}\n{found[2]}", text, flags=re.DOTALL)

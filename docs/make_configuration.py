@@ -5,6 +5,7 @@ standard has changed. It writes the marked blocks of docs/configuration.md, docs
 docs/limits.md and docs/mechanisms.md; tests/softdot/test_docs.py fails while they are out of step.
 """
 
+import re
 import sys
 import tomllib
 from collections.abc import Callable
@@ -110,8 +111,8 @@ def _keys(title: str, name: str, keys: list[str], definitions: Json, examples: J
     for key in keys:
         value, required = table["properties"][key], key in table.get("required", [])
         meaning = value.get("description") or _description(value, definitions)
-        meaning = "; ".join(part for part in (meaning, acting(value)) if part)
-        bounds = HINTS.get(f"{name}.{key}") or allowed(value)
+        meaning = "; ".join(part for part in (meaning, acting(value).replace("acts only", "only")) if part)
+        bounds = HINTS.get(f"{name}.{key}") or _in_short(allowed(value))
         rows.append([f"`{key}`", meaning, _default(title, key, value, required, examples), bounds])
     return _table(["key", "meaning", "default", "allowed"], rows)
 
@@ -121,6 +122,12 @@ def _common_note() -> str:
         "Beside these, a material states its `model`, one of the following, and the constants of that model. "
         f"Without a density a film has {toml(PiezoelectricFilm.model_fields['density_kg_m3'].default)} kg/m³."
     )
+
+
+def _in_short(bounds: str) -> str:
+    """Bounds in the words of a table: 'whole, 1 to 20', 'above 0, at most 100'."""
+    short = re.sub(r"number at least (\S+) and at most", r"\1 to", bounds.replace("whole number", "whole, number"))
+    return re.sub(r"number (?=above|below|at )", "", short).replace(" and at most", ", at most")
 
 
 def _description(value: Json, definitions: Json) -> str:
