@@ -16,8 +16,8 @@ from benchmarks.timing import file_argument
 
 def _table(head: tuple[str, ...], body: list[list[str]]) -> str:
     """A Markdown table."""
-    lines = [head, ["---"] * len(head), *body]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+    lines = [f"| {' | '.join(line)} |" for line in (head, *body)]
+    return "\n".join([lines[0], f"|{'---|' * len(head)}", *lines[1:]])
 
 
 def newton_step(rows: list[dict]) -> str:

@@ -162,17 +162,12 @@ def _materials_note() -> str:
 
 def material_table() -> str:
     """The built-in materials with their constants."""
-    about = ("model", "source", "confidence")
-    rows = [
-        [
-            f"`{name}`",
-            table["model"],
-            ", ".join(f"{key} {toml(value)}" for key, value in table.items() if key not in about),
-            table["confidence"],
-            table["source"],
-        ]
-        for name, table in library_tables().items()
-    ]
+    about, rows, last = ("model", "source", "confidence"), [], ""
+    for name, table in library_tables().items():
+        constants = ", ".join(f"{key} {toml(value)}" for key, value in table.items() if key not in about)
+        source = "the same" if table["source"] == last else table["source"]
+        rows.append([f"`{name}`", table["model"], constants, table["confidence"], source])
+        last = table["source"]
     return _table(["name", "model", "constants", "confidence", "source"], rows)
 
 
@@ -226,8 +221,10 @@ def with_block(text: str, name: str, block: str) -> str:
 
 def _table(heads: list[str], rows: list[list[str]]) -> str:
     """A Markdown table; a pipe inside a cell is escaped."""
-    lines = [heads, ["---"] * len(heads), *[[cell.replace("|", "\\|") for cell in row] for row in rows]]
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+    lines = [
+        f"| {' | '.join(line)} |" for line in (heads, *([cell.replace("|", "\\|") for cell in row] for row in rows))
+    ]
+    return "\n".join([lines[0], f"|{'---|' * len(heads)}", *lines[1:]])
 
 
 def _read_toml(name: str) -> Json:
