@@ -16,8 +16,8 @@ from benchmarks.timing import file_argument
 
 def _table(head: tuple[str, ...], body: list[list[str]]) -> str:
     """A Markdown table."""
-    lines = [f"| {' | '.join(line)} |" for line in (head, *body)]
-    return "\n".join([lines[0], f"|{'---|' * len(head)}", *lines[1:]])
+    first, *others = (f"| {' | '.join(line)} |" for line in (head, *body))
+    return "\n".join([first, f"|{'---|' * len(head)}", *others])
 
 
 def newton_step(rows: list[dict]) -> str:

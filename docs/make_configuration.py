@@ -221,10 +221,9 @@ def with_block(text: str, name: str, block: str) -> str:
 
 def _table(heads: list[str], rows: list[list[str]]) -> str:
     """A Markdown table; a pipe inside a cell is escaped."""
-    lines = [
-        f"| {' | '.join(line)} |" for line in (heads, *([cell.replace("|", "\\|") for cell in row] for row in rows))
-    ]
-    return "\n".join([lines[0], f"|{'---|' * len(heads)}", *lines[1:]])
+    escaped = [[cell.replace("|", "\\|") for cell in row] for row in rows]
+    first, *others = (f"| {' | '.join(line)} |" for line in (heads, *escaped))
+    return "\n".join([first, f"|{'---|' * len(heads)}", *others])
 
 
 def _read_toml(name: str) -> Json:
