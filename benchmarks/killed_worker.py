@@ -24,7 +24,7 @@ from typing import Any
 import psutil
 
 from examples.recordings.leaky_amplifier import RIG, make
-from foundation.thread_pools import ONE_THREAD
+from foundation.thread_pools import ONE_THREAD_VARIABLES
 from solve.mechanisms import MECHANISMS
 
 TOLERANCE = 1e-6  # relative: threads and paths of Newton's method differ, its equilibria do not
@@ -95,7 +95,7 @@ class Workers:
     def __init__(self, folder: Path) -> None:
         self._file, self.cache = folder / "scheduler.json", folder / "cache of the workers"
         place = ["--scheduler-file", str(self._file), "--no-dashboard"]
-        own = {**os.environ, **ONE_THREAD, "SOFTDOT_CACHE": str(self.cache)}
+        own = {**os.environ, **ONE_THREAD_VARIABLES, "SOFTDOT_CACHE": str(self.cache)}
         log = (folder / "cluster.txt").open("w")
         base = [sys.executable, "-m"]
         scheduler = [*base, "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0", *place]

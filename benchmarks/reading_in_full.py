@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from foundation.arrays import Floats
-from foundation.executor import LocalProcesses, each_done
+from foundation.executor import LocalProcesses, completed_calls
 from foundation.thread_pools import usable_cores
 from geometry.braille_cells import dot_offset_mm, raised_dots
 from geometry.braille_standards import standard
@@ -120,7 +120,7 @@ def main() -> None:
         presses[str(number)] = FullPress(config, float(x), dots[(np.abs(dots) < half).all(axis=1)])
     begun, found = time.perf_counter(), {}
     with LocalProcesses(usable_cores()) as executor:
-        for name, future in each_done(executor, charges, {name: (press,) for name, press in presses.items()}):
+        for name, future in completed_calls(executor, charges, {name: (press,) for name, press in presses.items()}):
             answer = found[int(name)] = future.result()
             print(f"{len(found)} of {len(presses)}: x = {answer[0]:.2f} mm, {answer[3][-1]:.3f} N", flush=True)
     most = STEPS + 1

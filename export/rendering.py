@@ -5,7 +5,7 @@ import subprocess
 import sys
 from threading import Lock
 
-from foundation.child_processes import own_path, own_python
+from foundation.child_processes import child_python_path, python_command
 from foundation.errors import InputError
 
 _SWITCH = "VTK_DEFAULT_OPENGL_WINDOW"
@@ -65,8 +65,10 @@ def _working_window() -> str:
 
 def _draws(window: str, seconds: float) -> bool:
     """Whether a process that draws with this window comes to its end. TimeoutExpired."""
-    environment = {**os.environ, **own_path(), **({_SWITCH: window} if window else {})}
-    run = subprocess.run(own_python("-c", _PROBE), env=environment, capture_output=True, timeout=seconds, check=False)
+    environment = {**os.environ, **child_python_path(), **({_SWITCH: window} if window else {})}
+    run = subprocess.run(
+        python_command("-c", _PROBE), env=environment, capture_output=True, timeout=seconds, check=False
+    )
     return run.returncode == 0 and b"drawn" in run.stdout
 
 

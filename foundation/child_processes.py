@@ -8,16 +8,16 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-SAFE_PATH = "PYTHONSAFEPATH"
+SAFE_PATH_VARIABLE = "PYTHONSAFEPATH"
 
 
-def own_python(*arguments: str) -> list[str]:
-    """A command that runs this Python, to be started with own_path: the working folder holds no modules of ours."""
+def python_command(*arguments: str) -> list[str]:
+    """Return a command that runs this Python without modules of its working folder, with child_python_path."""
     return [sys.executable, "-P", *arguments]
 
 
-def own_path() -> dict[str, str]:
-    """The variable by which a child process finds the modules of this one, and none in its working folder."""
+def child_python_path() -> dict[str, str]:
+    """Return PYTHONPATH for a child process, by which it finds the modules of this one."""
     program = str(Path(__file__).resolve().parents[1])
     folders = [folder for folder in sys.path if folder]
     return {"PYTHONPATH": os.pathsep.join([*folders, *({program} - set(folders))])}
@@ -25,28 +25,28 @@ def own_path() -> dict[str, str]:
 
 @contextmanager
 def without_working_folder() -> Iterator[None]:
-    """Python processes that libraries start inside this block do not look for modules in the working folder."""
-    before = os.environ.get(SAFE_PATH)
-    os.environ[SAFE_PATH] = "1"
+    """Keep Python processes that libraries start inside this block from looking for modules in the working folder."""
+    before = os.environ.get(SAFE_PATH_VARIABLE)
+    os.environ[SAFE_PATH_VARIABLE] = "1"
     try:
         yield
     finally:
-        os.environ.pop(SAFE_PATH)
+        os.environ.pop(SAFE_PATH_VARIABLE)
         if before is not None:
-            os.environ[SAFE_PATH] = before
+            os.environ[SAFE_PATH_VARIABLE] = before
 
 
-EVERY_S = 1.0
+PARENT_CHECK_S = 1.0
 PR_SET_PDEATHSIG, SIGKILL = 1, 9  # linux/prctl.h
 
 
 def end_with_parent(parent: int) -> None:
-    """Called by a child: have it killed when its parent ends, however that ends.
+    """Have the calling child process killed when its parent ends, however that ends.
 
-    parent : process number, told by the parent itself: it may have ended while the child was starting, and who asks
-    then is told of another process.
+    parent : process number, passed by the parent itself: it may have ended while the child was starting, and the child
+    would then be given the number of another process.
 
-    On Linux by the kernel, since a mesher that holds Python's lock could not see to it; elsewhere by a thread.
+    On Linux the kernel does it, since a mesher that holds Python's lock could not; elsewhere a thread does.
     """
     if sys.platform == "linux":
         import ctypes
@@ -55,11 +55,11 @@ def end_with_parent(parent: int) -> None:
         if os.getppid() != parent:  # it ended before
             os._exit(1)
     else:
-        threading.Thread(target=_watch, args=(parent,), daemon=True).start()
+        threading.Thread(target=_watch_parent, args=(parent,), daemon=True).start()
 
 
-def _watch(parent: int) -> None:
+def _watch_parent(parent: int) -> None:
     """End this process once it belongs to another one."""
     while os.getppid() == parent:
-        time.sleep(EVERY_S)
+        time.sleep(PARENT_CHECK_S)
     os._exit(1)

@@ -1,4 +1,4 @@
-"""Where heavy calls are done: in this process, in warm processes of this computer, or on what else is an Executor.
+"""Executors of heavy calls: in this process, in warm processes of this computer, or on a cluster.
 
 A command makes one executor and hands it down; whatever presses asks that one. So the same presses run on the cores of
 one machine and on a cluster, and their processes are started once for a command, when the first call needs them.
@@ -11,38 +11,40 @@ from threading import Lock
 from typing import Any, Protocol, Self, TypeVar
 
 from foundation.scratch_folders import sweep_scratch
-from foundation.thread_pools import ONE_THREAD
-from foundation.worker_process import Beside, ProcessDiedError
+from foundation.thread_pools import ONE_THREAD_VARIABLES
+from foundation.worker_process import ProcessDiedError, WorkerProcess
 
-DEATHS = 1
+MOST_DEATHS = 1
 """A call whose process has died more often than this is given up."""
 Name = TypeVar("Name", bound=Hashable)
 
 
 class LostError(RuntimeError):
-    """A call was given up."""
+    """A call that was given up, since its worker died each time or the work was stopped."""
 
     def __init__(self, reason: str = "its worker died each time, perhaps for lack of memory") -> None:
         super().__init__(reason)
 
 
 class Executor(Protocol):
-    """Does calls of functions that a module holds under their name."""
+    """Executes calls of functions that a module holds under their name."""
 
     @property
     def places(self) -> int:
-        """How many calls are done at a time."""
+        """Number of calls that run at a time."""
 
     def submit(self, function: Callable[..., Any], /, *arguments: Any) -> "Future[Any]":
-        """What the function returns or raises, later. LostError where its process died each time."""
+        """Return the future of a call. It raises what the function raises, LostError where its
+        process died each time.
+        """
 
 
-def each_done(
+def completed_calls(
     executor: Executor, function: Callable[..., Any], calls: Mapping[Name, tuple[Any, ...]]
 ) -> Iterator[tuple[Name, "Future[Any]"]]:
-    """Name and future of each call as it ends; calls : name -> arguments, begun in this order.
+    """Yield name and future of each call as it ends. calls : name -> arguments, begun in this order.
 
-    No more are under way than there are places, so that little is given up where the caller stops.
+    No more calls run at a time than there are places, so that few are lost where the caller stops.
     """
     waiting, under_way = iter(calls.items()), dict["Future[Any]", Name]()
     ended: SimpleQueue[Future[Any]] = SimpleQueue()
@@ -62,12 +64,12 @@ def each_done(
 
 
 class Here:
-    """Calls are done in this process, when they are asked for."""
+    """Executor that does each call in this process as soon as it is submitted."""
 
     places = 1
 
     def submit(self, function: Callable[..., Any], /, *arguments: Any) -> "Future[Any]":
-        """Done already."""
+        """Return a future that is done already."""
         future: Future[Any] = Future()
         try:
             future.set_result(function(*arguments))
@@ -80,17 +82,17 @@ HERE = Here()
 
 
 class LocalProcesses:
-    """Processes of one thread each, for the time of a block, as many as there are calls at a time.
+    """Executor with worker processes of one thread each, for the time of a block.
 
-    Each is started when a call finds none that is free, and kept. One that dies is replaced, and its call tried again.
-    Ctrl-C does not reach them: all have ended when the block ends.
+    A process is started when a call finds none that is free, and kept. One that dies is replaced, and its call is tried
+    again. Ctrl-C does not reach them: all have ended when the block ends.
     """
 
     def __init__(self, places: int, prepare: Callable[[Executor], object] | None = None) -> None:
-        """prepare : called before the first call, such as to compile in one process what all of them need."""
+        """places : most processes. prepare : called before the first call, to compile once what all need."""
         self.places, self._prepare = places, prepare
         self._threads, self._lock, self._over = ThreadPoolExecutor(places), Lock(), False
-        self._free, self._alive = list[Beside](), list[Beside]()
+        self._free, self._alive = list[WorkerProcess](), list[WorkerProcess]()
 
     def __enter__(self) -> Self:
         return self
@@ -108,32 +110,32 @@ class LocalProcesses:
         if self._prepare is not None:
             prepare, self._prepare = self._prepare, None
             prepare(self)
-        return self._threads.submit(self._answer, function, arguments)
+        return self._threads.submit(self._call_worker, function, arguments)
 
-    def _answer(self, function: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
-        for _ in range(1 + DEATHS):
-            process = self._taken()
+    def _call_worker(self, function: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
+        for _ in range(1 + MOST_DEATHS):
+            process = self._idle_process()
             try:
-                return process.answer(function, *arguments)
+                return process.call(function, *arguments)
             except ProcessDiedError:
-                self._bury(process)
+                self._discard(process)
             finally:
                 if process in self._alive:
                     self._free.append(process)
         raise LostError
 
-    def _taken(self) -> Beside:
-        """A free process, or a new one."""
+    def _idle_process(self) -> WorkerProcess:
+        """Return a process without work, or a new one. LostError after the end of the block."""
         with self._lock:
             if self._over:
                 raise LostError("the work was stopped")
             if self._free:
                 return self._free.pop()
-            process = Beside(ONE_THREAD)
+            process = WorkerProcess(ONE_THREAD_VARIABLES)
             self._alive.append(process)
             return process
 
-    def _bury(self, process: Beside) -> None:
+    def _discard(self, process: WorkerProcess) -> None:
         with self._lock:
             process.kill()
             self._alive.remove(process)

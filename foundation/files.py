@@ -1,4 +1,4 @@
-"""Files written whole or not at all, and text files read whole."""
+"""Files and folders that are written whole or not at all, and text files that are read whole."""
 
 import os
 import shutil
@@ -13,10 +13,10 @@ from foundation.errors import InputError
 
 @contextmanager
 def whole_file(path: Path, shared: bool = False) -> Iterator[Path]:
-    """Yield where to write; that file takes the place of path when the block ends without an exception.
+    """Yield a path to write to; that file replaces path when the block ends without an exception.
 
     After any exception, Ctrl-C too, nothing is left beside path. A process that was killed leaves .NAME.part.
-    shared : several processes may write path at once, so each one writes beside under a name of its own.
+    shared : whether several processes may write path at once; each then writes under a name of its own.
     """
     own = f".{os.urandom(8).hex()}" if shared else ""
     beside = path.with_name(f".{path.name}{own}.part")
@@ -27,12 +27,12 @@ def whole_file(path: Path, shared: bool = False) -> Iterator[Path]:
         beside.unlink(missing_ok=True)
 
 
-LARGEST_MB = 50
+LARGEST_TEXT_MB = 50
 """More than any configuration or table of a waveform holds; recordings have a bound of their own."""
 
 
-def regular_file(path: Path, what: str) -> int:
-    """The size in bytes of the file that a symbolic link or name leads to.
+def regular_file_size(path: Path, what: str) -> int:
+    """Return the size in bytes of a regular file, symbolic links followed.
 
     what : how a message calls the file, such as "configuration 'mine.toml'". InputError when there is none, or when
     it is no regular file: a pipe or a device may never end.
@@ -52,10 +52,13 @@ def regular_file(path: Path, what: str) -> int:
 
 
 def read_text(path: Path, what: str) -> str:
-    """The text of a file. what : how a message calls it. InputError with one sentence for what cannot be read."""
-    size = regular_file(path, what)
-    if size > 1e6 * LARGEST_MB:
-        raise InputError(f"{what}: has {size / 1e6:.0f} MB, at most {LARGEST_MB} MB are read")
+    """Return the text of a UTF-8 file. InputError where it cannot be read or is too large.
+
+    what : how a message calls the file.
+    """
+    size = regular_file_size(path, what)
+    if size > 1e6 * LARGEST_TEXT_MB:
+        raise InputError(f"{what}: has {size / 1e6:.0f} MB, at most {LARGEST_TEXT_MB} MB are read")
     try:
         return path.read_bytes().decode("utf-8-sig")
     except UnicodeDecodeError as error:

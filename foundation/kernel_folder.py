@@ -1,7 +1,7 @@
-"""Where compiled kernels are kept.
+"""The folder in which numba keeps compiled kernels.
 
-numba compiles one anew when its own file changes, not when a file changes whose pieces it calls. They are therefore
-kept in a folder that is named by these files. It lies in the source, as by numba's default, but not in that of an
+numba compiles a kernel anew when its own file changes, not when a file changes whose functions it calls. The folder is
+therefore named by a hash of these files. It lies in the source, as by numba's default, but not in that of an
 installed package: kernels would stay behind when pip removes it, and the folders that hold them would hide a source
 checkout that is installed afterwards.
 """
@@ -10,7 +10,7 @@ import os
 from hashlib import sha256
 from pathlib import Path
 
-PIECES = (
+SHARED_KERNEL_SOURCES = (
     "solve/compiled.py",
     "solve/decay.py",
     "solve/tensors.py",
@@ -22,10 +22,10 @@ PIECES = (
 )
 
 
-def keep_kernels_apart(package: Path) -> None:
-    """Before numba is loaded: where the kernels of a program are kept, one of whose packages is this folder.
+def set_kernel_folder(package: Path) -> None:
+    """Set NUMBA_CACHE_DIR, before numba is loaded, unless the user has set it.
 
-    What the user has set stays.
+    package : folder of one of the packages of the program.
     """
     if "NUMBA_CACHE_DIR" in os.environ:
         return
@@ -34,10 +34,10 @@ def keep_kernels_apart(package: Path) -> None:
         from platformdirs import user_cache_path
 
         kept = user_cache_path("softdot", appauthor=False)
-    os.environ["NUMBA_CACHE_DIR"] = str(kept / "kernels" / _state_of_pieces(package.parent))
+    os.environ["NUMBA_CACHE_DIR"] = str(kept / "kernels" / _sources_hash(package.parent))
 
 
-def _state_of_pieces(program: Path) -> str:
-    """A name that changes with the files whose pieces are compiled into kernels of other files; some milliseconds."""
-    sources = sorted(file for place in PIECES for file in program.glob(place))
+def _sources_hash(program: Path) -> str:
+    """Return a name that changes with the files whose functions are compiled into kernels of other files."""
+    sources = sorted(file for place in SHARED_KERNEL_SOURCES for file in program.glob(place))
     return sha256(b"".join(file.read_bytes() for file in sources)).hexdigest()[:12]

@@ -1,4 +1,4 @@
-"""Large libraries, of which a few modules are loaded without the rest."""
+"""Large libraries of which a few modules are loaded without the rest."""
 
 import gc
 import sys
@@ -10,10 +10,10 @@ from typing import Any
 
 
 def load_alone(package: str, *modules: str) -> None:
-    """Load some modules of a package without the rest, which may take longer by far; their names are the package's.
+    """Load some modules of a package without the rest, which may take far longer; their names become the package's.
 
-    What else is asked of the package loads all of it, so that nobody misses anything. Nothing is done where the package
-    is loaded already.
+    Any other attribute of the package loads all of it. Nothing is done where the package is loaded already.
+    ModuleNotFoundError where it is not installed.
     """
     if package in sys.modules:
         return
@@ -37,8 +37,8 @@ def load_alone(package: str, *modules: str) -> None:
 
 
 @contextmanager
-def without_collector() -> Iterator[None]:
-    """For a block that loads libraries: they leave no garbage, and to look for it takes a quarter of their time."""
+def without_garbage_collection() -> Iterator[None]:
+    """Switch the garbage collector off for a block that loads libraries: it costs a quarter of their time."""
     was_on = gc.isenabled()
     gc.disable()
     try:

@@ -1,14 +1,14 @@
-"""What a mistyped name was probably meant to be."""
+"""The known name that a mistyped one was probably meant to be."""
 
 import difflib
 import re
 from collections.abc import Iterable
 
 
-def nearest(word: str, known: Iterable[str]) -> str:
-    """The sentence end "did you mean 'x'?" where something is near, else the list of what is known.
+def nearest_name_hint(word: str, known: Iterable[str]) -> str:
+    """Return "did you mean 'x'?" where a known name is near the word, else the list of known names.
 
-    >>> nearest("thicknes_mm", ["thickness_mm", "material"])
+    >>> nearest_name_hint("thicknes_mm", ["thickness_mm", "material"])
     "did you mean 'thickness_mm'?"
     """
     names = sorted(known)
@@ -17,7 +17,7 @@ def nearest(word: str, known: Iterable[str]) -> str:
 
 
 def _likeness(word: str, name: str) -> float:
-    """How alike two names are: letter by letter and by the words that they are made of, whichever is more.
+    """Return how alike two names are, 0 to 1.5: the larger of the share of equal letters and a score of common words.
 
     >>> typed = "feedback_capacitance_pF"
     >>> _likeness(typed, "feedback_pF") > _likeness(typed, "input_capacitance_pF")

@@ -1,6 +1,6 @@
-"""How long work says how far it is."""
+"""The callback by which long work reports its progress."""
 
 from collections.abc import Callable
 
 Report = Callable[[str, int, int], None]
-"""Told of long work: what, done, of how many."""
+"""Called with the name of the work, the number of pieces that are done, and that of all pieces."""

@@ -1,4 +1,4 @@
-"""Temporary folders, of which those of processes that were killed are removed by the next one.
+"""Temporary folders; those of processes that were killed are removed by the next process.
 
 A process holds a scratch folder by an advisory lock on it (flock), which the kernel gives up when the process ends,
 however it ends. Where a system has no such locks nothing is held and nothing is swept.
@@ -16,11 +16,11 @@ try:
 except ImportError:  # not on Windows
     fcntl = None  # type: ignore[assignment]
 
-PREFIX = "softdot-scratch-"
+SCRATCH_PREFIX = "softdot-scratch-"
 
 
-def hold(folder: Path) -> int | None:
-    """Lock an existing folder until release; a file descriptor, or None while another process holds it.
+def lock_folder(folder: Path) -> int | None:
+    """Lock an existing folder and return a file descriptor, or None while another process holds it.
 
     -1 where the file system has no locks. FileNotFoundError when the folder has been swept away.
     """
@@ -45,43 +45,43 @@ def hold(folder: Path) -> int | None:
     raise FileNotFoundError(folder)
 
 
-def release(held: int | None) -> None:
-    """Give up what hold has returned."""
+def unlock_folder(held: int | None) -> None:
+    """Give up a lock that lock_folder has returned."""
     if held is not None and held >= 0:
         os.close(held)
 
 
-def sweep(folder: Path) -> None:
+def sweep_folder(folder: Path) -> None:
     """Remove a folder that no process holds."""
     with suppress(OSError):
-        held = hold(folder)
+        held = lock_folder(folder)
         if held is not None and held >= 0:
             shutil.rmtree(folder, ignore_errors=True)
-        release(held)
+        unlock_folder(held)
 
 
 @contextmanager
 def scratch_folder() -> Iterator[Path]:
-    """A temporary folder of this process alone; those of processes that were killed are removed first."""
+    """Yield a temporary folder of this process alone; those of processes that were killed are removed first."""
     sweep_scratch()
-    folder, held = _made()
+    folder, held = _new_locked_folder()
     try:
         yield folder
     finally:
         shutil.rmtree(folder, ignore_errors=True)
-        release(held)
+        unlock_folder(held)
 
 
 def sweep_scratch() -> None:
     """Remove the temporary folders of processes that were killed."""
-    for left in Path(gettempdir()).glob(f"{PREFIX}*"):
-        sweep(left)
+    for left in Path(gettempdir()).glob(f"{SCRATCH_PREFIX}*"):
+        sweep_folder(left)
 
 
-def _made() -> tuple[Path, int | None]:
-    """A new folder and the lock on it; made again where another process swept it before the lock."""
+def _new_locked_folder() -> tuple[Path, int | None]:
+    """Return a new folder and its lock; another one where a process swept it before it was locked."""
     while True:
-        folder = Path(gettempdir()) / f"{PREFIX}{os.urandom(6).hex()}"
+        folder = Path(gettempdir()) / f"{SCRATCH_PREFIX}{os.urandom(6).hex()}"
         folder.mkdir(mode=0o700)
         with suppress(FileNotFoundError):
-            return folder, hold(folder)
+            return folder, lock_folder(folder)

@@ -7,25 +7,25 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 
-PROGRAM = Path(__file__).parents[1]
-DATA = (".toml", ".csv")
+PROGRAM_FOLDER = Path(__file__).parents[1]
+DATA_SUFFIXES = (".toml", ".csv")
 
 
 @cache
 def source_hash(module: str) -> str:
-    """Of the program as far as a module depends on it: its own source, and that of all it imports, however indirectly.
+    """Return the SHA-256 of a module's source and of all that it imports, however indirectly.
 
     Imports inside functions and packages' __init__ count too, data files that a source names beside itself, and all
     modules of a package that finds its modules by walking through itself. Other distributions do not count.
     """
-    modules, data = _files(PROGRAM)
+    modules, data = _program_files(PROGRAM_FOLDER)
     found: dict[Path, bytes] = {}
     waiting, seen = [module], {module}
     while waiting:
         path = modules.get(waiting.pop())
         if path is None or path in found:
             continue
-        text, needed = _source(path)
+        text, needed = _source_and_imports(path)
         found[path] = text
         found |= {one: one.read_bytes() for one in data.get(path.parent, ()) if one.name.encode() in text}
         if "pkgutil.walk_packages" in needed:
@@ -36,22 +36,22 @@ def source_hash(module: str) -> str:
 
 
 @cache
-def _files(program: Path) -> tuple[dict[str, Path], dict[Path, list[Path]]]:
-    """Every module of this distribution with its file, and the data files of each of its folders."""
+def _program_files(program: Path) -> tuple[dict[str, Path], dict[Path, list[Path]]]:
+    """Return every module of this distribution with its file, and the data files of each of its folders."""
     modules, data = dict[str, Path](), dict[Path, list[Path]]()
-    for package in _packages(program):
+    for package in _package_names(program):
         for folder, _, names in os.walk(program / package):
             dotted = Path(folder).relative_to(program).parts
             for path in (Path(folder, name) for name in names):
                 if path.suffix == ".py":
                     modules[".".join(dotted if path.stem == "__init__" else (*dotted, path.stem))] = path
-                elif path.suffix in DATA:
+                elif path.suffix in DATA_SUFFIXES:
                     data.setdefault(path.parent, []).append(path)
     return modules, data
 
 
-def _packages(program: Path) -> list[str]:
-    """Of this distribution alone, as it may be installed among others; of a bare copy of the sources all there are."""
+def _package_names(program: Path) -> list[str]:
+    """Return the top packages of this distribution, or all that a bare copy of the sources has."""
     try:
         return (distribution("softdot").read_text("top_level.txt") or "").split()
     except PackageNotFoundError:
@@ -59,24 +59,24 @@ def _packages(program: Path) -> list[str]:
 
 
 @cache
-def _source(path: Path) -> tuple[bytes, set[str]]:
-    """A source and the names that it imports."""
+def _source_and_imports(path: Path) -> tuple[bytes, set[str]]:
+    """Return the bytes of a source and the names that it imports."""
     text = path.read_bytes()
     return text, imported_names(text.decode())
 
 
-FROM = re.compile(r"^[ \t]*from[ \t]+([\w.]+)[ \t]+import[ \t]+(\([^)]*\)|[^\n#;]*)", re.MULTILINE)
-IMPORT = re.compile(r"^[ \t]*import[ \t]+([^\n#;]*)", re.MULTILINE)
-NAME = re.compile(r"([\w.]+)(?:[ \t]+as[ \t]+\w+)?")
+FROM_IMPORT = re.compile(r"^[ \t]*from[ \t]+([\w.]+)[ \t]+import[ \t]+(\([^)]*\)|[^\n#;]*)", re.MULTILINE)
+PLAIN_IMPORT = re.compile(r"^[ \t]*import[ \t]+([^\n#;]*)", re.MULTILINE)
+IMPORTED_NAME = re.compile(r"([\w.]+)(?:[ \t]+as[ \t]+\w+)?")
 
 
 def imported_names(source: str) -> set[str]:
-    """Names that a source imports, with the packages that hold them; some may be no modules.
+    """Return the names that a source imports, with the packages that hold them; some may be no modules.
 
-    By the look of its lines, in a tenth of the time of a syntax tree: a name too many does no harm.
+    Regular expressions find them in a tenth of the time of a syntax tree; a name too many does no harm.
     """
-    names = {name for line in IMPORT.findall(source) for name in NAME.findall(line)}
-    for module, taken in FROM.findall(source):
-        names |= {module, *(f"{module}.{name}" for name in NAME.findall(re.sub(r"#.*", "", taken)))}
+    names = {name for line in PLAIN_IMPORT.findall(source) for name in IMPORTED_NAME.findall(line)}
+    for module, taken in FROM_IMPORT.findall(source):
+        names |= {module, *(f"{module}.{name}" for name in IMPORTED_NAME.findall(re.sub(r"#.*", "", taken)))}
     parts = [name.split(".") for name in names]
     return {".".join(one[:count]) for one in parts for count in range(1, len(one) + 1)}

@@ -9,23 +9,25 @@ small or narrow matrices, thousands of them in a diagnosis, and waking a second 
 
 import os
 
-POOLS = {
+POOL_VARIABLES = {
     "OPENBLAS_NUM_THREADS": "1",
     "OPENBLAS_THREAD_TIMEOUT": "4",  # 2^4 cycles, the least it takes; 2^26 by default
     "OMP_WAIT_POLICY": "PASSIVE",
     "KMP_BLOCKTIME": "0",  # MKL sets it by itself, and not to what OMP_WAIT_POLICY asks for
 }
-ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
+ONE_THREAD_VARIABLES = dict.fromkeys(
+    ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1"
+)
 
 
 def quiet_pools() -> None:
-    """Before NumPy is loaded. What the user has set stays."""
-    for name, value in POOLS.items():
+    """Set the variables of all thread pools, before NumPy is loaded; those that the user has set stay."""
+    for name, value in POOL_VARIABLES.items():
         os.environ.setdefault(name, value)
 
 
 def follow_free_cores() -> None:
-    """Before numba and MKL are loaded; both follow OMP_NUM_THREADS where the user has set it."""
+    """Set the threads of numba and MKL to the usable cores, before they are loaded; OMP_NUM_THREADS comes first."""
     if "OMP_NUM_THREADS" not in os.environ:  # counting takes a fifth of a second, which worker processes are spared
         os.environ["OMP_NUM_THREADS"] = str(usable_cores())
     threads = os.environ["OMP_NUM_THREADS"].split(",")[0]
@@ -34,7 +36,7 @@ def follow_free_cores() -> None:
 
 
 def usable_cores() -> int:
-    """Cores that this process may use: affinity and the limits of a container count."""
+    """Return the number of cores that this process may use: affinity and the limits of a container count."""
     from dask.system import cpu_count
 
     return int(cpu_count())

@@ -1,7 +1,7 @@
-"""A process beside this one that does one call after another, on a core that this one leaves free.
+"""A worker process that does one call after another, on a core that this process leaves free.
 
-Calls and answers are pickled through its standard input and output. Started with one argument: the process number of
-its parent. It ends with its parent, however that ends.
+Calls and answers are pickled through its standard input and output. It is started with one argument, the process number
+of its parent, and ends with its parent, however that ends.
 """
 
 import os
@@ -15,27 +15,28 @@ from pathlib import Path
 from threading import Event
 from typing import Any, Self
 
-from foundation.child_processes import end_with_parent, own_path, own_python
+from foundation.child_processes import child_python_path, end_with_parent, python_command
 from foundation.scratch_folders import sweep_scratch
 
-OOM_SCORE = Path("/proc/self/oom_score_adj")
+OOM_SCORE_FILE = Path("/proc/self/oom_score_adj")
 
 
 class ProcessDiedError(RuntimeError):
-    """The process ended before it had answered."""
+    """A worker process that ended before it had answered."""
 
 
-class Beside:
-    """A process for the time of a block, with these environment variables beside those of this process.
+class WorkerProcess:
+    """A worker process for the time of a block.
 
-    Calls are done in the order in which they were asked for; what a process that dies leaves undone is done here. At
+    Calls are done in the order in which they were submitted; what a process that dies leaves undone is done here. At
     the end of the block, or when it is interrupted, the process is ended and calls that are not done yet are given up.
     An inner block may end it earlier.
     """
 
     def __init__(self, variables: Mapping[str, str] | None = None) -> None:
-        command = own_python("-m", __name__, str(os.getpid()))
-        own = {**os.environ, **(variables or {}), **own_path()}
+        """variables : environment variables of the worker beside those of this process."""
+        command = python_command("-m", __name__, str(os.getpid()))
+        own = {**os.environ, **(variables or {}), **child_python_path()}
         pipe = subprocess.PIPE
         # in a session of its own: Ctrl-C in the terminal reaches this process alone, which ends it
         self._process = subprocess.Popen(command, env=own, stdin=pipe, stdout=pipe, start_new_session=True)
@@ -51,22 +52,25 @@ class Beside:
         sweep_scratch()
 
     def kill(self) -> None:
-        """End the process: asked to end, it could be held up by a library for seconds."""
+        """Kill the process at once: a library could hold up one that is asked to end for seconds."""
         self._process.kill()
         self._process.wait()
 
     def __call__(self, function: Callable[..., Any], *arguments: Any) -> "Future[Any]":
-        """What a function returns or raises, later; function : one that a module holds under its name."""
-        return self._pool.submit(self._answer, function, *arguments)
+        """Return the future of a call. function : one that a module holds under its name."""
+        return self._pool.submit(self._call_or_do_here, function, *arguments)
 
-    def _answer(self, function: Callable[..., Any], *arguments: Any) -> Any:
+    def _call_or_do_here(self, function: Callable[..., Any], *arguments: Any) -> Any:
         try:
-            return self.answer(function, *arguments)
+            return self.call(function, *arguments)
         except ProcessDiedError:
             return None if self._over.is_set() else function(*arguments)
 
-    def answer(self, function: Callable[..., Any], *arguments: Any) -> Any:
-        """What a function returns or raises, waited for. ProcessDiedError; by one thread at a time."""
+    def call(self, function: Callable[..., Any], *arguments: Any) -> Any:
+        """Do a call in the worker and return what the function returns, or raise what it raises.
+
+        ProcessDiedError where the worker ends before. Only one thread may call at a time.
+        """
         asked, answered = self._process.stdin, self._process.stdout
         assert asked is not None
         assert answered is not None
@@ -82,11 +86,11 @@ class Beside:
         return value
 
 
-def work() -> None:
-    """Do what standard input asks for until it ends. What libraries print goes to standard error."""
+def serve_calls() -> None:
+    """Do the calls that come on standard input until it ends. What libraries print goes to standard error."""
     end_with_parent(int(sys.argv[1]))
     with suppress(OSError):  # where memory runs out, Linux ends this process rather than its parent
-        OOM_SCORE.write_text("500", "ascii")
+        OOM_SCORE_FILE.write_text("500", "ascii")
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
     while True:
@@ -97,13 +101,13 @@ def work() -> None:
         try:
             answer = pickle.dumps((True, function(*arguments)))
         except Exception as error:
-            answer = pickle.dumps((False, sendable(error)))
+            answer = pickle.dumps((False, picklable_error(error)))
         answers.write(answer)
         answers.flush()
 
 
-def sendable(error: Exception) -> Exception:
-    """The error, or another one that says the same where it cannot be pickled or made again from its sentence."""
+def picklable_error(error: Exception) -> Exception:
+    """Return the error, or a RuntimeError with the same message where it cannot be pickled or rebuilt from it."""
     try:
         pickle.loads(pickle.dumps(error))
     except Exception:
@@ -112,4 +116,4 @@ def sendable(error: Exception) -> Exception:
 
 
 if __name__ == "__main__":
-    work()
+    serve_calls()

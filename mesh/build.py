@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from foundation.cache import data_hash, folder, read_arrays, write_arrays
+from foundation.cache import cache_folder, data_hash, read_arrays, write_arrays
 from foundation.source_hash import source_hash
 from geometry.dot import DotShape
 from geometry.parameters import Segment
@@ -73,7 +73,7 @@ def _places(dot: DotShape) -> tuple[Any, Any, Any]:
 
 def remembered(name: str, make: Callable[[], LinearMesh]) -> LinearMesh:
     """The mesh kept under this name, or a new one that is then kept. A damaged file is a miss."""
-    path = folder() / f"mesh-{name}.npz"
+    path = cache_folder() / f"mesh-{name}.npz"
     found = read_arrays(path, _decoded)
     if found is not None:
         return found

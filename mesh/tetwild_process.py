@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from foundation.arrays import Floats, Ints
-from foundation.child_processes import end_with_parent, own_path, own_python
+from foundation.child_processes import child_python_path, end_with_parent, python_command
 from foundation.library_loading import load_alone
 from foundation.scratch_folders import scratch_folder
 from mesh.types import MeshingError
@@ -26,7 +26,7 @@ def tetrahedralize(timeout_s: float, **arrays: object) -> tuple[Floats, Ints]:
     """
     with scratch_folder() as folder:
         np.savez(folder / "input.npz", timeout=timeout_s, **arrays)  # type: ignore[arg-type]
-        _run(own_python("-m", "mesh.tetwild_process", str(folder), str(os.getpid())), timeout_s)
+        _run(python_command("-m", "mesh.tetwild_process", str(folder), str(os.getpid())), timeout_s)
         with np.load(folder / "output.npz") as data:
             return data["points"].astype(np.float64), data["tets"].astype(np.int64)
 
@@ -39,7 +39,7 @@ def _run(command: list[str], timeout_s: float) -> None:
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
-        env={**os.environ, **own_path()},
+        env={**os.environ, **child_python_path()},
         start_new_session=True,
     )
     try:

@@ -10,7 +10,7 @@ import numpy as np
 
 from diagnose.figures import figure
 from foundation.arrays import Floats
-from foundation.cache import check_folder
+from foundation.cache import check_cache_folder
 from foundation.errors import InputError
 from geometry.array.checks import check_array
 from geometry.array.layout import ArrayLayout
@@ -274,7 +274,7 @@ def _rim(segment: Segment, top_mm: float) -> Floats:
 
 def check_case(model: Model, options: MeshOptions, layout: ArrayLayout | None = None) -> tuple[DotShape, list[str]]:
     """The dot at rest and what a user should know about this design; layout : of an array. InputError."""
-    check_folder()
+    check_cache_folder()
     segment, press = model.segment, model.press
     if press.waveform is not None:
         duration_s(press.waveform)  # reads the file of shape = "file"

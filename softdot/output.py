@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from foundation.errors import InputError
-from foundation.scratch_folders import hold, release, sweep
+from foundation.scratch_folders import lock_folder, sweep_folder, unlock_folder
 from softdot.log import LOG_FILE, log_file
 from softdot.no_room import refuse_cut_files, refuse_full_disk
 
@@ -60,7 +60,7 @@ def staged_folder(out: Path, product: Product) -> Iterator[Path]:
         raise
     finally:
         shutil.rmtree(staging, ignore_errors=True)
-        release(held)
+        unlock_folder(held)
         _remove_empty(made)
 
 
@@ -127,7 +127,7 @@ def _make_staging(out: Path, place: Path, made: list[Path]) -> tuple[Path, int |
         try:
             _recover(staging, place)
             staging.mkdir()
-            held = hold(staging)
+            held = lock_folder(staging)
         except FileExistsError:
             raise _in_use(out, staging) from None
         except OSError as error:
@@ -151,7 +151,7 @@ def _recover(staging: Path, place: Path) -> None:
     """Remove what a killed process left; one killed between two renamings left the earlier result beside its place."""
     old = _put_aside(staging)
     if staging.exists():
-        sweep(staging)
+        sweep_folder(staging)
     if old.exists() and not staging.exists():
         shutil.rmtree(old, ignore_errors=True) if place.exists() else old.rename(place)
 

@@ -150,13 +150,13 @@ class PreparedPress:
 
     def solve(self, on_step: OnStep | None = None, tet_mesh: TetMesh | None = None) -> PressResult:
         """The solver's own result in SI units; tet_mesh : another one of the same segment. A killed solve goes on."""
-        from foundation.cache import folder
+        from foundation.cache import cache_folder
         from solve.press import press_segment
         from solve.solution.checkpoint import Checkpoint
 
         on_mesh = self.solved_mesh if tet_mesh is None else tet_mesh
         key = press_key(self, on_mesh)
-        kept, asked = Checkpoint(folder() / f"press-{key}.npz", key), self.config.mesh.accuracy_percent
+        kept, asked = Checkpoint(cache_folder() / f"press-{key}.npz", key), self.config.mesh.accuracy_percent
         return press_segment(self.model, on_mesh, on_step, kept, self.dot, asked)
 
     @property

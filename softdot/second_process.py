@@ -8,8 +8,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from foundation.library_loading import load_alone, without_collector
-from foundation.worker_process import Beside
+from foundation.library_loading import load_alone, without_garbage_collection
+from foundation.worker_process import WorkerProcess
 
 if TYPE_CHECKING:
     from geometry.dot import DotShape
@@ -21,7 +21,7 @@ PARTS = ("geometry", "topology", "exporters3d", "mesher")
 DRAWING = ("trimesh", "solve.result", "matplotlib.figure", "pyvista.plotting", "export.pictures")
 
 
-class SecondProcess(Beside):
+class SecondProcess(WorkerProcess):
     """Begins at once to compile kernels that this machine has not kept, and to load what it needs.
 
     kernels : done when a press will find them.
@@ -45,7 +45,7 @@ def compile_kernels() -> None:
 
 def load_libraries() -> None:
     """Load what parts and pictures take, which is two seconds of work."""
-    with without_collector():
+    with without_garbage_collection():
         load_alone("build123d", *PARTS)
         for name in DRAWING:
             import_module(name)

@@ -8,10 +8,10 @@ from typing import Any
 import pytest
 from hypothesis.internal.conjecture import providers
 
-from foundation.thread_pools import ONE_THREAD
+from foundation.thread_pools import ONE_THREAD_VARIABLES
 
 if "PYTEST_XDIST_WORKER" in os.environ:  # set before a library that reads it is loaded
-    os.environ.update(ONE_THREAD)
+    os.environ.update(ONE_THREAD_VARIABLES)
 
 # Hypothesis mixes in constants of whatever modules are imported, which tests that ran before decide.
 providers.is_local_module_file = lambda _: False

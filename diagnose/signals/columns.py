@@ -12,8 +12,8 @@ import numpy as np
 
 from foundation.arrays import Floats
 from foundation.errors import InputError
-from foundation.files import regular_file
-from foundation.nearest_name import nearest
+from foundation.files import regular_file_size
+from foundation.nearest_name import nearest_name_hint
 
 LARGEST_MB = 500  # of all files together: some 10 million rows, more than any fit could use
 LARGEST = 1e12  # squares and ratios of what is larger leave the range of a computer's numbers
@@ -25,7 +25,7 @@ def refuse_by_size(files: Iterable[Path]) -> None:
     """InputError, before anything is read, for a missing file and for files that are too large together."""
     total = 0.0
     for file in files:
-        size = regular_file(file, f"recording '{file}'") / 1e6
+        size = regular_file_size(file, f"recording '{file}'") / 1e6
         total += size
         if total > LARGEST_MB:
             raise InputError(
@@ -83,7 +83,7 @@ def _header(stream: TextIO, file: Path) -> list[str]:
 
 def _meant(name: str) -> str:
     """The nearest column, with a word on its unit."""
-    text = nearest(name, NAMES)
+    text = nearest_name_hint(name, NAMES)
     quantity = name.rpartition("_")[0]
     return f"{text} (mind the unit)" if quantity and f"'{quantity}_" in text else text
 

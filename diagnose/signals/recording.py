@@ -15,7 +15,7 @@ from scipy.ndimage import median_filter
 from diagnose.signals.acceleration import acceleration_mm_per_s2
 from diagnose.signals.phases import Segmentation, segmented
 from foundation.arrays import Bools, Floats
-from foundation.nearest_name import nearest
+from foundation.nearest_name import nearest_name_hint
 from geometry.parameters import Finite, Positive, Table
 from solve.model import Readout
 from solve.reduced.recording import second_differences
@@ -71,7 +71,7 @@ class RunTable(Table):
         flat = _flattened(value) if isinstance(value, Mapping) else value
         for name in flat if isinstance(flat, Mapping) else ():
             if name not in NUISANCES:
-                raise ValueError(f"'{name}' is not a nuisance parameter; {nearest(name, NUISANCES)}")
+                raise ValueError(f"'{name}' is not a nuisance parameter; {nearest_name_hint(name, NUISANCES)}")
         return flat
 
     @property

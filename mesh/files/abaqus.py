@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 
 from foundation.arrays import Floats
 from foundation.errors import InputError
-from foundation.files import regular_file
+from foundation.files import regular_file_size
 
 TETS = {"C3D4": 4, "C3D10": 10}
 """Beginning of a type, such as C3D10MH, and its nodes; those of Abaqus are in VTK's order."""
@@ -283,7 +283,7 @@ def _blocks(path: Path, where: str, outer: tuple[Path, ...]) -> Iterator[Keyword
 def _text(path: Path, where: str, named: bool) -> str:
     """Of a file; what is not UTF-8 in it can only be a remark or a name that is none of ours."""
     what = f"{where}: '{path.name}'" if named else where
-    if (size := regular_file(path, what)) > 1e6 * LARGEST_MB:
+    if (size := regular_file_size(path, what)) > 1e6 * LARGEST_MB:
         raise InputError(f"{what}: has {size / 1e6:.0f} MB, at most {LARGEST_MB} MB are read")
     try:
         return path.read_bytes().decode("utf-8-sig", errors="replace")

@@ -11,7 +11,7 @@ import numpy as np
 
 from foundation.arrays import Ints
 from foundation.errors import InputError
-from foundation.nearest_name import nearest
+from foundation.nearest_name import nearest_name_hint
 from mesh.types import TET_FACES, TetMesh
 
 REGIONS = {"medium2": 1, "film": 2, "medium1": 3, "effector": 4}
@@ -45,7 +45,7 @@ def check_formats(formats: Sequence[str]) -> None:
     """InputError for a format that has no writer."""
     for name in formats:
         if name not in WRITERS:
-            raise InputError(f"--mesh-format = '{name}': there is no such format; {nearest(name, WRITERS)}")
+            raise InputError(f"--mesh-format = '{name}': there is no such format; {nearest_name_hint(name, WRITERS)}")
 
 
 def _surfaces(tet_mesh: TetMesh) -> dict[str, Ints]:

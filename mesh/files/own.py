@@ -12,7 +12,7 @@ import numpy as np
 
 from foundation.arrays import Bools, Floats, Ints
 from foundation.errors import InputError
-from foundation.files import regular_file
+from foundation.files import regular_file_size
 from geometry.parameters import Segment
 from geometry.stack import layers
 from mesh.files.abaqus import AbaqusMesh, is_tet, is_triangle, read_abaqus
@@ -192,7 +192,7 @@ def read_file(file: str) -> FileMesh:
     kind = READERS.get(path.suffix.lower())
     if kind is None and path.suffix.lower() != ".inp":
         raise InputError(f"{where}: must end with .msh (Gmsh), .inp (Abaqus, CalculiX) or .xdmf")
-    regular_file(path, where)
+    regular_file_size(path, where)
     return _of_abaqus(read_abaqus(path, where), where) if kind is None else _by_meshio(path, kind, where)
 
 

@@ -15,8 +15,8 @@ import numpy as np
 from scipy.interpolate import Akima1DInterpolator, LinearNDInterpolator, NearestNDInterpolator, PchipInterpolator
 
 from foundation.arrays import Floats
-from foundation.cache import data_hash, folder, read_arrays, write_arrays
-from foundation.executor import Executor, each_done
+from foundation.cache import cache_folder, data_hash, read_arrays, write_arrays
+from foundation.executor import Executor, completed_calls
 from foundation.progress import Report
 from foundation.source_hash import source_hash
 from softdot.arrays.case import ArrayCase
@@ -114,7 +114,7 @@ def _keep(task: KernelTask, found: KernelPress) -> None:
 
 
 def _path(task: KernelTask) -> Path:
-    return folder() / f"kernel-{data_hash([source_hash(__name__), input_hash(task.config), task.nodes_mm])}.npz"
+    return cache_folder() / f"kernel-{data_hash([source_hash(__name__), input_hash(task.config), task.nodes_mm])}.npz"
 
 
 def _solved(task: KernelTask) -> KernelPress:
@@ -219,7 +219,7 @@ def all_pressed(tasks: Mapping[str, KernelTask], told: Report, executor: Executo
     """Each task solved. StoppedPressError for one that does not converge; the others are kept."""
     found = {name: press for name, task in tasks.items() if (press := recalled(task)) is not None}
     left = {name: (task,) for name, task in tasks.items() if name not in found}
-    for name, future in each_done(executor, pressed, left):
+    for name, future in completed_calls(executor, pressed, left):
         press = future.result()
         if press.failure:
             raise StoppedPressError(f"{tasks[name].where} did not converge: {press.failure}")

@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 
 from foundation.arrays import Floats
-from foundation.cache import data_hash, folder, read_kept, write_kept
-from foundation.executor import HERE, Executor, each_done
+from foundation.cache import cache_folder, data_hash, read_with_checksum, write_with_checksum
+from foundation.executor import HERE, Executor, completed_calls
 from foundation.source_hash import source_hash
 from softdot.config.hashes import input_hash
 from softdot.config.schema import Config
@@ -79,7 +79,7 @@ class ArrayPresses:
         missing = {path: name for name, path in paths.items() if path not in self._known}
         calls = {path: (presses[name].config,) for path, name in missing.items()}
         there = len(presses) - len(missing)
-        for number, (path, future) in enumerate(each_done(self._executor, signals_of_config, calls), 1 + there):
+        for number, (path, future) in enumerate(completed_calls(self._executor, signals_of_config, calls), 1 + there):
             self.know(path, converged(future.result(), missing[path]))
             self._told(number, len(presses), missing[path])
         return {name: self._known[path] for name, path in paths.items()}
@@ -129,7 +129,7 @@ def signals(press: PreparedPress) -> Signals:
 
 def recalled(path: Path) -> Signals | None:
     """The numbers of a press that was solved before."""
-    kept = read_kept(path)
+    kept = read_with_checksum(path)
     return None if kept is None else _decoded(json.loads(kept))
 
 
@@ -144,7 +144,7 @@ def _solved(press: PreparedPress) -> tuple[Signals, PressResult]:
 def _path(press: PreparedPress) -> Path:
     """Where a press is kept."""
     key = data_hash([source_hash(__name__), input_hash(press.config)])
-    return folder() / f"array-{key}.json"
+    return cache_folder() / f"array-{key}.json"
 
 
 def signals_of(press: PreparedPress, result: PressResult, solve_s: float) -> Signals:
@@ -174,7 +174,7 @@ def _keep(path: Path, found: Signals) -> None:
         return
     tree = {key: value.tolist() if isinstance(value, np.ndarray) else value for key, value in asdict(found).items()}
     with suppress(OSError):  # a cache that cannot be written is no cache
-        write_kept(path, json.dumps(tree).encode())
+        write_with_checksum(path, json.dumps(tree).encode())
 
 
 def _decoded(tree: dict[str, Any]) -> Signals:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from warnings import catch_warnings, simplefilter
 
 from foundation.errors import InputError
-from foundation.library_loading import without_collector
+from foundation.library_loading import without_garbage_collection
 from softdot.console import GOOD, NOT_CONVERGED, complain, only_the_summary_on_stdout, show
 from softdot.memory import refuse_no_room_for_libraries
 from softdot.run_folder import run_case
@@ -24,7 +24,7 @@ def command(chosen: Namespace) -> int:
     """Run chosen.config into chosen.output; 0, or 3 when a computation did not converge. InputError."""
     refuse_no_room_for_libraries()
     with SecondProcess() as ask:  # at once: it loads its libraries while this one does
-        with without_collector():
+        with without_garbage_collection():
             Thread(target=_try_to_draw, daemon=True).start()
             from softdot.case import Case
             from softdot.config.loading import load_config

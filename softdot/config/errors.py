@@ -9,7 +9,7 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from foundation.errors import InputError
-from foundation.nearest_name import nearest
+from foundation.nearest_name import nearest_name_hint
 from geometry.parameters import Table
 from softdot.config.not_modelled import not_modelled
 
@@ -76,7 +76,7 @@ def _explain(problem: ErrorDetails, tables: Mapping[str, Any], model: type[Table
     if kind == "union_tag_invalid":
         tag = str(context["tag"])
         known = {name.strip(" '") for name in str(context["expected_tags"]).split(",")}
-        return f"{key}.model = '{tag}': {nearest(tag, known)}"
+        return f"{key}.model = '{tag}': {nearest_name_hint(tag, known)}"
     if kind == "literal_error":
         return f"{key} = {shown(problem['input'])}: must be {_either(choices)}"
     if kind in BOUNDS:
@@ -95,7 +95,7 @@ def _meant(path: Sequence[str | int], known: set[str], model: type[Table]) -> st
     inner = {key for table in tables_at(("segment",), model) for key in table.model_fields}
     if len(path) == 1 and name in inner:
         return f"did you mean 'segment.{name}'?"
-    text = nearest(name, known)
+    text = nearest_name_hint(name, known)
     same = next((key for key in known if f"'{key}'" in text and _unitless(key) == _unitless(name)), name)
     return text if same == name or _unitless(name) == name else f"{text} (mind the other unit)"
 

@@ -16,10 +16,10 @@ from typing import Any
 import numpy as np
 
 from foundation.arrays import Floats
-from foundation.child_processes import end_with_parent, own_path, own_python
+from foundation.child_processes import child_python_path, end_with_parent, python_command
 from foundation.errors import InputError
-from foundation.files import regular_file
-from foundation.nearest_name import nearest
+from foundation.files import regular_file_size
+from foundation.nearest_name import nearest_name_hint
 from foundation.scratch_folders import scratch_folder
 from softdot.convert.text_table import decoded
 
@@ -31,14 +31,14 @@ Arrays = dict[str, Any]
 
 def read_apart(reader: str, file: Path, asked: Mapping[str, str] | None = None) -> Arrays:
     """The arrays that a reader of READERS makes of a file. InputError, also where its process dies or is slow."""
-    regular_file(file, f"'{file}'")
+    regular_file_size(file, f"'{file}'")
     with scratch_folder() as folder:
         (folder / "asked.json").write_text(json.dumps(dict(asked or {})), "utf-8")
-        command = own_python("-m", "softdot.convert.apart", reader, str(file), str(folder), str(os.getpid()))
+        command = python_command("-m", "softdot.convert.apart", reader, str(file), str(folder), str(os.getpid()))
         try:
             done = subprocess.run(
                 command,
-                env={**os.environ, **own_path()},
+                env={**os.environ, **child_python_path()},
                 stdin=subprocess.DEVNULL,
                 capture_output=True,
                 timeout=LONGEST_S,
@@ -91,7 +91,7 @@ def _vector(tables: Mapping[str, object], path: str, file: Path) -> Floats:
     for name in path.split("."):
         known = {key for key in value if not key.startswith("__")} if isinstance(value, Mapping) else set()
         if not isinstance(value, Mapping) or name not in known:
-            raise InputError(f"'{file}': has no variable '{path}'; {nearest(name, known)}")
+            raise InputError(f"'{file}': has no variable '{path}'; {nearest_name_hint(name, known)}")
         value = value[name]
     array = np.asarray(value)
     if array.dtype.kind not in "fiu" or array.ndim != 1:

@@ -8,7 +8,7 @@ import numpy as np
 
 from foundation.arrays import Floats
 from foundation.errors import InputError
-from foundation.files import regular_file
+from foundation.files import regular_file_size
 from softdot.convert.apart import read_apart
 from softdot.convert.instruments import InstrumentLog, LogChannel, log_of, read_text_log, rising
 from softdot.convert.text_table import TextTable
@@ -79,7 +79,7 @@ def _cells(file: Path, first_row: int, sheet: int) -> list[list[str]]:
 
 def _sheet(file: Path, first_row: int, sheet: int) -> list[list[object]]:
     """Rows of one length."""
-    regular_file(file, f"'{file}'")
+    regular_file_size(file, f"'{file}'")
     try:
         from openpyxl import load_workbook  # type: ignore[import-untyped]
     except ImportError:

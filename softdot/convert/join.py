@@ -15,7 +15,7 @@ from scipy.interpolate import PchipInterpolator
 from diagnose.signals.align import lag_between
 from foundation.arrays import Floats
 from foundation.errors import InputError
-from foundation.nearest_name import nearest
+from foundation.nearest_name import nearest_name_hint
 from softdot.convert.instruments import InstrumentLog, LogChannel
 
 COLUMNS = {"V": "voltage_V", "N": "force_N", "mm": "displacement_mm", "C": "temperature_C"}
@@ -116,7 +116,7 @@ def _found(every: Sequence[tuple[int, str, LogChannel]], channel: str, column: s
     """Where a channel is. InputError where none, or several, are called so, or where it has another unit."""
     mine = [(n, name, one) for n, name, one in every if name == channel]
     if len(mine) != 1:
-        known = nearest(channel, [name for _, name, _ in every])
+        known = nearest_name_hint(channel, [name for _, name, _ in every])
         told = f"{len(mine)} logs have one" if mine else f"there is none; {known}"
         raise InputError(f"--column '{channel}={column}': {told}")
     number, name, one = mine[0]

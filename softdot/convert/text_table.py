@@ -12,7 +12,7 @@ import numpy as np
 
 from foundation.arrays import Floats
 from foundation.errors import InputError
-from foundation.files import regular_file
+from foundation.files import regular_file_size
 
 LARGEST_MB = 500
 MARKS = {b"\xef\xbb\xbf": "utf-8-sig", b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
@@ -82,7 +82,7 @@ def read_text_table(file: Path) -> TextTable:
 
 def decoded(file: Path) -> str:
     """The text of a file in UTF-8, UTF-16 or, where it is neither, Latin-1. InputError."""
-    if (size := regular_file(file, f"'{file}'")) > 1e6 * LARGEST_MB:
+    if (size := regular_file_size(file, f"'{file}'")) > 1e6 * LARGEST_MB:
         raise InputError(f"'{file}': has {size / 1e6:.0f} MB, at most {LARGEST_MB} MB are read")
     try:
         content = file.read_bytes()

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from diagnose.forward import Engine
 from foundation.errors import InputError
 from foundation.executor import HERE, Executor
-from foundation.nearest_name import nearest
+from foundation.nearest_name import nearest_name_hint
 from foundation.progress import Report
 from softdot.config.rig import Rig
 from softdot.config.schema import Config
@@ -16,7 +16,7 @@ def narrowed(engine: Engine, without: Sequence[str]) -> Engine:
     """The engine without the candidates of some mechanisms. InputError for a name that no mechanism has."""
     for name in without:
         if name not in MECHANISMS:
-            raise InputError(f"--without '{name}': {nearest(name, MECHANISMS)}")
+            raise InputError(f"--without '{name}': {nearest_name_hint(name, MECHANISMS)}")
     return engine.with_candidates(tuple(one for one in engine.candidates if one.mechanism not in without))
 
 

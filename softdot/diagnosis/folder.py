@@ -20,7 +20,7 @@ from diagnose.signals.run_checks import refuse_slow_sampling
 from diagnose.verdict.content import FORMAT, verdict, waveform
 from diagnose.verdict.resimulation import OutOfTimeError, Resimulated, resimulate
 from diagnose.verdict.words import sentences
-from foundation.cache import check_folder
+from foundation.cache import check_cache_folder
 from foundation.errors import InputError
 from foundation.executor import Executor
 from foundation.progress import Report
@@ -78,7 +78,7 @@ def run_diagnosis(
     both cases nothing is written. A named mechanism that the full model cannot press is told in fit.failure.
     """
     options, progress = options or Options(), progress or Logged()
-    check_folder()
+    check_cache_folder()
     rig = load_rig(folder)
     _refuse_what_sampling_misses(rig)
     rig = replace(rig, recording=thinned(rig.recording))

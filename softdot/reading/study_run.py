@@ -8,7 +8,7 @@ from typing import Any
 
 from foundation.errors import InputError
 from foundation.executor import Executor
-from foundation.scratch_folders import release
+from foundation.scratch_folders import unlock_folder
 from softdot.arrays.kernel import ArrayKernel
 from softdot.config.schema import Config
 from softdot.json_files import plain, write_json
@@ -43,7 +43,7 @@ def run_reading_study(
     On one process per core, as many as workers, or on the Dask cluster of a scheduler, whose workers find the kernel
     under the same path. Readings of an earlier study in out are not made again.
     """
-    from foundation.scratch_folders import hold
+    from foundation.scratch_folders import lock_folder
     from softdot.executors import executor_for
 
     progress = progress or Logged()
@@ -51,7 +51,7 @@ def run_reading_study(
     study.base.resolved(kernel)
     place = check_output(out, STUDY)
     (place / FOLDER).mkdir(parents=True, exist_ok=True)
-    held = hold(place)
+    held = lock_folder(place)
     if held is None:
         raise InputError(f"output '{out}': another study is writing it; wait for it or name another folder")
     try:
@@ -69,7 +69,7 @@ def run_reading_study(
         _draw(summary, place / PICTURE)
         write_json(place / STUDY.summary, summary)
     finally:
-        release(held)
+        unlock_folder(held)
     return summary
 
 

@@ -22,7 +22,7 @@ from typing import Any
 
 from foundation.child_processes import end_with_parent, without_working_folder
 from foundation.errors import InputError
-from foundation.library_loading import without_collector
+from foundation.library_loading import without_garbage_collection
 
 LOG = logging.getLogger(__name__)
 WORK = "softdot.studio.work"
@@ -180,7 +180,7 @@ def serve_tasks(connection: Connection, parent: int, warm_up: str) -> None:
     """In the process: do one task after another until the other end is gone."""
     end_with_parent(parent)
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # what libraries print is no answer
-    with without_collector(), suppress(Exception):
+    with without_garbage_collection(), suppress(Exception):
         named(warm_up)()
     with suppress(EOFError, OSError):
         while True:

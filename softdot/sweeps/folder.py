@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from foundation.checked_records import read_checked, write_checked
 from foundation.errors import InputError
 from foundation.files import whole_file
-from foundation.scratch_folders import hold
+from foundation.scratch_folders import lock_folder
 from softdot.config.hashes import config_hash
 from softdot.config.schema import Config
 from softdot.json_files import plain, write_json
@@ -51,7 +51,7 @@ def begin(place: Path) -> None:
 
 def take(place: Path) -> int | None:
     """Hold the folder for this process, to be released at the end. InputError while another sweep writes it."""
-    held = hold(place)
+    held = lock_folder(place)
     if held is None:
         raise InputError(f"output '{place}': another sweep is writing it; wait for it or name another folder")
     return held

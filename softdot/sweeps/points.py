@@ -7,7 +7,7 @@ from contextlib import nullcontext
 from typing import Any
 
 from foundation.errors import InputError
-from foundation.executor import Executor, LostError, each_done
+from foundation.executor import Executor, LostError, completed_calls
 from softdot.config.schema import Config
 from softdot.dask_cluster import AwayError
 from softdot.executors import executor_for
@@ -84,7 +84,7 @@ def solve_all(executor: Executor, configs: Mapping[str, Config]) -> Iterator[tup
 
 def all_ended(executor: Executor, task: Task, arguments: Mapping[str, tuple[Any, ...]]) -> Iterator[tuple[str, Record]]:
     """Name and record of the task with each arguments, in the order in which they end. AwayError."""
-    for name, future in each_done(executor, task, arguments):
+    for name, future in completed_calls(executor, task, arguments):
         yield name, _record(future)
 
 

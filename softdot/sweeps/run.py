@@ -7,9 +7,9 @@ from contextlib import AbstractContextManager, ExitStack
 from pathlib import Path
 from typing import Any
 
-from foundation.cache import check_folder
+from foundation.cache import check_cache_folder
 from foundation.executor import Executor
-from foundation.scratch_folders import release
+from foundation.scratch_folders import unlock_folder
 from softdot.config.hashes import config_hash
 from softdot.config.schema import Config
 from softdot.executors import executor_for
@@ -33,7 +33,7 @@ def run_sweep(
     scheduler that does not answer, and without pyarrow. After Ctrl-C, or when killed, the finished points stay.
     """
     check_tables()
-    check_folder()
+    check_cache_folder()
     place = sweep_folder.check_folder(Path(out))
     configs = {config_hash(point.config): point.config for point in space.points if point.config is not None}
     records = {
@@ -68,7 +68,7 @@ def _solve(
     begun = time.perf_counter()
     with where as executor:
         sweep_folder.begin(place)
-        stack.callback(release, sweep_folder.take(place))
+        stack.callback(unlock_folder, sweep_folder.take(place))
         sweep_folder.sweep_up(place)
         stack.callback(sweep_folder.sweep_up, place)
         workers = executor.places

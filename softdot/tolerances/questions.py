@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from foundation.cache import recall, remember
-from foundation.executor import Executor, each_done
+from foundation.executor import Executor, completed_calls
 from softdot.config.schema import Config
 from softdot.json_files import plain
 from softdot.tolerances.factors import with_factors
@@ -65,7 +65,7 @@ def answered(
     found = {name: known for name, one in questions.items() if (known := one.recalled()) is not None}
     missing = {name: (one,) for name, one in questions.items() if name not in found}
     told(len(found), len(questions), "")
-    for name, future in each_done(executor, Question.answer, missing):
+    for name, future in completed_calls(executor, Question.answer, missing):
         found[name] = future.result()
         questions[name].keep(found[name])
         told(len(found), len(questions), name)

@@ -1,7 +1,7 @@
 """All problems of softdot verify, in the order in which they are told."""
 
 from foundation.errors import InputError
-from foundation.nearest_name import nearest
+from foundation.nearest_name import nearest_name_hint
 from softdot.verify.problem import Problem
 from softdot.verify.problems import (
     bonded,
@@ -31,5 +31,5 @@ def chosen_problems(names: list[str]) -> list[Problem]:
     """Those of these names, in the order of the catalogue; all for no name. InputError for one that is unknown."""
     for name in names:
         if name not in PROBLEMS:
-            raise InputError(f"--only {name}: no such problem; {nearest(name, PROBLEMS)}")
+            raise InputError(f"--only {name}: no such problem; {nearest_name_hint(name, PROBLEMS)}")
     return [problem for problem in PROBLEMS.values() if not names or problem.name in names]

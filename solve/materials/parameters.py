@@ -11,7 +11,7 @@ from pydantic import AfterValidator, Field, TypeAdapter, model_validator
 
 from foundation.arrays import Floats
 from foundation.errors import InputError
-from foundation.nearest_name import nearest
+from foundation.nearest_name import nearest_name_hint
 from geometry.parameters import Finite, Positive, Table, require_one_of_each
 from solve.materials import laws
 from solve.materials.hyperfoam import HyperfoamLaw
@@ -341,4 +341,4 @@ def find_material(name: str, own: Mapping[str, Material], key: str) -> Material:
     known = {**library(), **own}
     if name in known:
         return known[name]
-    raise InputError(f"{key} = '{name}': no such material; {nearest(name, known)}")
+    raise InputError(f"{key} = '{name}': no such material; {nearest_name_hint(name, known)}")

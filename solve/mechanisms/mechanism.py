@@ -6,7 +6,7 @@ from typing import Any, Self
 
 from pydantic import Field, ValidationError, model_validator
 
-from foundation.nearest_name import nearest
+from foundation.nearest_name import nearest_name_hint
 from geometry.parameters import Table
 from solve.mechanisms.base import Traits, in_short
 from solve.mechanisms.layers.viscoelasticity import VISCOELASTICITY
@@ -28,7 +28,7 @@ class Mechanism(Table):
     @model_validator(mode="after")
     def _known(self) -> Self:
         if self.name not in MECHANISMS:
-            raise ValueError(f"name = '{self.name}': {nearest(self.name, MECHANISMS)}")
+            raise ValueError(f"name = '{self.name}': {nearest_name_hint(self.name, MECHANISMS)}")
         kind = MECHANISMS[self.name]
         if self.component not in kind.components:
             raise ValueError(

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from foundation.cache import data_hash, folder, read_arrays, write_arrays
+from foundation.cache import cache_folder, data_hash, read_arrays, write_arrays
 from foundation.source_hash import source_hash
 from mesh.types import mesh_hash
 from solve.reduced.fit import ResponseTable
@@ -35,7 +35,7 @@ def key(case: ReductionTask, check: bool) -> str:
 
 def remembered(name: str, make: Callable[[], ReducedModel]) -> ReducedModel:
     """The model kept under this name, or a new one that is then kept. A damaged file is a miss."""
-    path = folder() / f"reduced-{name}.npz"
+    path = cache_folder() / f"reduced-{name}.npz"
     found = read(path)
     if found is None:
         found = make()

@@ -11,7 +11,7 @@ import numpy as np
 
 from foundation.arrays import Bools, Floats
 from foundation.errors import InputError
-from foundation.files import read_text, regular_file
+from foundation.files import read_text, regular_file_size
 from solve.model import Press
 from solve.solution.thinning import thinned
 from solve.system import Load
@@ -112,7 +112,7 @@ def _rows(waveform: Waveform) -> Floats:
     if waveform.file is None:
         raise InputError("press.waveform.file is missing: shape = 'file' needs a CSV file")
     file = Path(waveform.file)
-    regular_file(file, _told(file))
+    regular_file_size(file, _told(file))
     stat = file.stat()
     return _read(file, stat.st_mtime_ns, stat.st_size)
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from foundation.arrays import Floats
-from foundation.cache import data_hash, folder, read_arrays, write_arrays
+from foundation.cache import cache_folder, data_hash, read_arrays, write_arrays
 from foundation.source_hash import source_hash
 from mesh.types import mesh_hash
 from solve.model import Model
@@ -56,4 +56,4 @@ def keep_equilibria(name: str, found: Equilibria) -> None:
 
 
 def _path(name: str, what: str = "table") -> Path:
-    return folder() / f"press-{what}-{name}.npz"
+    return cache_folder() / f"press-{what}-{name}.npz"

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from foundation.arrays import Floats
-from foundation.executor import HERE, Executor, each_done
+from foundation.executor import HERE, Executor, completed_calls
 from foundation.progress import Report
 from solve.reduced.model import ReducedModel
 from solve.solution.errors import NoEquilibriumError
@@ -54,7 +54,7 @@ def run_all(
         report(WHAT, 0, len(missing))
     places = executor if _worth(missing) else HERE
     calls = {name: (job,) for name, job in missing.items()}
-    for number, (name, future) in enumerate(each_done(places, answer, calls), start=1):
+    for number, (name, future) in enumerate(completed_calls(places, answer, calls), start=1):
         job, outputs = missing[name], future.result()
         if isinstance(job, DepthPress):
             found[name] = np.zeros(0) if isinstance(outputs, str) else outputs

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from foundation.kernel_folder import PIECES, keep_kernels_apart
+from foundation.kernel_folder import SHARED_KERNEL_SOURCES, set_kernel_folder
 
 ROOT = Path(__file__).parents[2]
 SAID = """
@@ -94,10 +94,10 @@ def free():
 @pytest.mark.parametrize("place", ["lib/python3.11/site-packages", "src/softdot"])
 def test_kernels_are_kept_where_pip_leaves_nothing_behind_and_what_the_user_set_stays(place, monkeypatch):
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
-    keep_kernels_apart(Path(place) / "foundation")
+    set_kernel_folder(Path(place) / "foundation")
     assert Path(os.environ["NUMBA_CACHE_DIR"]).is_relative_to(place) == ("site-packages" not in place)
     monkeypatch.setenv("NUMBA_CACHE_DIR", "mine")
-    keep_kernels_apart(Path(place) / "foundation")
+    set_kernel_folder(Path(place) / "foundation")
     assert os.environ["NUMBA_CACHE_DIR"] == "mine"
 
 
@@ -107,7 +107,7 @@ def test_kernels_are_kept_where_pip_leaves_nothing_behind_and_what_the_user_set_
 def test_kernels_are_compiled_anew_when_a_piece_of_them_changes(name, tmp_path, monkeypatch):
     def kept():
         monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
-        keep_kernels_apart(tmp_path / "foundation")
+        set_kernel_folder(tmp_path / "foundation")
         return os.environ["NUMBA_CACHE_DIR"]
 
     piece = tmp_path / name
@@ -133,5 +133,5 @@ def test_every_piece_that_another_file_calls_is_among_those_that_name_the_folder
         for file in compiled
         for module in re.findall(r"^from ([\w.]+) import", (ROOT / file).read_text("utf-8"), re.MULTILINE)
     }
-    named = {file.relative_to(ROOT) for place in PIECES for file in ROOT.glob(place)}
+    named = {file.relative_to(ROOT) for place in SHARED_KERNEL_SOURCES for file in ROOT.glob(place)}
     assert taken & compiled <= named

@@ -9,7 +9,7 @@ import psutil
 import pytest
 
 from foundation.errors import InputError
-from foundation.executor import HERE, LocalProcesses, LostError, each_done
+from foundation.executor import HERE, LocalProcesses, LostError, completed_calls
 
 
 def square(number):
@@ -67,7 +67,7 @@ def executor(request):
 
 def test_every_call_is_answered_under_its_name(executor):
     calls = {f"of {number}": (number,) for number in range(5)}
-    found = {name: future.result() for name, future in each_done(executor, square, calls)}
+    found = {name: future.result() for name, future in completed_calls(executor, square, calls)}
     assert found == {f"of {number}": number**2 for number in range(5)}
 
 
@@ -94,7 +94,7 @@ def test_a_call_whose_process_dies_is_done_by_another_one(processes, tmp_path):
 
 def test_a_call_whose_process_dies_each_time_is_lost_and_no_other(processes):
     calls = {"deadly": (die_always,), **{str(number): (square, number) for number in range(4)}}
-    found = dict(each_done(processes, called, calls))
+    found = dict(completed_calls(processes, called, calls))
     with pytest.raises(LostError, match="its worker died each time"):
         found.pop("deadly").result()
     assert {name: future.result() for name, future in found.items()} == {str(n): n**2 for n in range(4)}

@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from foundation.library_loading import load_alone, without_collector
+from foundation.library_loading import load_alone, without_garbage_collection
 from softdot.second_process import PARTS
 
 CODE = """
@@ -36,9 +36,9 @@ def test_what_is_loaded_already_or_does_not_exist():
 
 
 def test_the_collector_is_as_it_was():
-    with without_collector():
+    with without_garbage_collection():
         assert not gc.isenabled()
-        with without_collector():
+        with without_garbage_collection():
             pass
         assert not gc.isenabled()
     assert gc.isenabled()

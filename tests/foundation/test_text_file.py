@@ -5,7 +5,7 @@ import os
 import pytest
 
 from foundation.errors import InputError
-from foundation.files import LARGEST_MB, read_text
+from foundation.files import LARGEST_TEXT_MB, read_text
 
 
 def refusal(path):
@@ -35,5 +35,5 @@ def test_a_name_with_nul(tmp_path):
 
 def test_a_huge_file_is_refused_before_it_is_read(tmp_path):
     with (tmp_path / "huge").open("wb") as stream:
-        stream.truncate(int(1e6 * LARGEST_MB) + 1)  # sparse
-    assert f"at most {LARGEST_MB} MB" in refusal(tmp_path / "huge")
+        stream.truncate(int(1e6 * LARGEST_TEXT_MB) + 1)  # sparse
+    assert f"at most {LARGEST_TEXT_MB} MB" in refusal(tmp_path / "huge")

@@ -6,7 +6,7 @@ import time
 import pytest
 
 from foundation.errors import InputError
-from foundation.worker_process import Beside
+from foundation.worker_process import WorkerProcess
 
 
 def refused(text):
@@ -28,7 +28,7 @@ def exists(process):
 
 
 def test_calls_are_done_in_order_in_another_process():
-    with Beside() as ask:
+    with WorkerProcess() as ask:
         other, second = ask(os.getpid), ask(len, [1, 2])
         assert other.result() != os.getpid()
         assert second.result() == 2
@@ -37,20 +37,20 @@ def test_calls_are_done_in_order_in_another_process():
 
 
 def test_what_a_call_raises_is_raised_here():
-    with Beside() as ask:
+    with WorkerProcess() as ask:
         with pytest.raises(InputError, match="no such dot"):
             ask(refused, "no such dot").result()
         assert ask(len, "abc").result() == 3
 
 
 def test_what_a_process_that_dies_leaves_undone_is_done_here():
-    with Beside({"SOFTDOT_TEST_BESIDE": "1"}) as ask:
+    with WorkerProcess({"SOFTDOT_TEST_BESIDE": "1"}) as ask:
         assert ask(dies).result() == os.getpid()
 
 
 def test_a_block_that_is_left_waits_for_nothing():
     start = time.perf_counter()
-    with Beside() as ask:
+    with WorkerProcess() as ask:
         slow, never = ask(time.sleep, 60.0), ask(len, "abc")
     assert time.perf_counter() - start < 20.0
     assert slow.done()
@@ -58,7 +58,7 @@ def test_a_block_that_is_left_waits_for_nothing():
 
 
 def test_an_inner_block_may_end_it():
-    with Beside() as ask:
+    with WorkerProcess() as ask:
         with ask:
             other = ask(os.getpid).result()
         assert not exists(other)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from foundation.errors import InputError
-from foundation.nearest_name import nearest
+from foundation.nearest_name import nearest_name_hint
 from geometry.parameters import Dot, Effector, Segment
 from mesh.options import MeshOptions
 from softdot import Case
@@ -313,7 +313,7 @@ TYPED = {
 @for_each(("typed", "meant"), TYPED.items(), ids=str)
 def test_a_hint_is_by_words_and_letters(typed, meant):
     known = {key for table in tables_at(typed[:1], Config) for key in table.model_fields}
-    assert nearest(typed[1], known) == f"did you mean '{meant}'?"
+    assert nearest_name_hint(typed[1], known) == f"did you mean '{meant}'?"
 
 
 def test_mistakes_keep_the_indices_of_the_file():
@@ -354,7 +354,7 @@ def test_what_there_is_not_is_said():
             assert not_modelled(f"{word}_mm", one.under).startswith("not modelled: ")
     for table in tables_at((), Config), *(tables_at(way, Config) for way in TABLES):
         known = [key for kind in table for key in kind.model_fields]
-        assert all(nearest(key, known) == f"did you mean '{key}'?" for key in known)
+        assert all(nearest_name_hint(key, known) == f"did you mean '{key}'?" for key in known)
     with pytest.raises(InputError, match="not modelled: humidity"):
         Case(mechanisms=[{"name": "humidity", "component": "film"}])
 

@@ -15,7 +15,7 @@ import psutil
 import pytest
 
 from foundation.errors import InputError
-from foundation.executor import LocalProcesses, each_done
+from foundation.executor import LocalProcesses, completed_calls
 from softdot import dask_cluster as scheduler_module
 from softdot.cli import main
 from softdot.config.loading import config_from
@@ -331,7 +331,7 @@ def test_a_worker_of_a_cluster_that_is_killed_loses_no_call():
     ):
         assert cluster.places == 2
         found = {}
-        for name, future in each_done(cluster, slowly, {number: (number,) for number in range(12)}):
+        for name, future in completed_calls(cluster, slowly, {number: (number,) for number in range(12)}):
             found[name] = future.result()
             if len(found) == 4:
                 os.kill(found[name][0], signal.SIGKILL)

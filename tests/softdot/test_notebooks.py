@@ -11,7 +11,7 @@ import nbformat
 import pytest
 from nbclient import NotebookClient
 
-from foundation.thread_pools import ONE_THREAD
+from foundation.thread_pools import ONE_THREAD_VARIABLES
 from tests.cases import for_each
 
 ROOT = Path(__file__).parents[2]
@@ -74,7 +74,11 @@ def test_a_notebook_is_stored_without_results(path):
 @pytest.mark.process
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_a_notebook_runs_and_finds_what_it_explains(path, tmp_path, monkeypatch):
-    for name, value in {**ONE_THREAD, "SOFTDOT_CACHE": str(tmp_path / "cache"), "PYTHONPATH": str(ROOT)}.items():
+    for name, value in {
+        **ONE_THREAD_VARIABLES,
+        "SOFTDOT_CACHE": str(tmp_path / "cache"),
+        "PYTHONPATH": str(ROOT),
+    }.items():
         monkeypatch.setenv(name, value)
     place = tmp_path / "elsewhere"
     place.mkdir()

@@ -14,7 +14,7 @@ from softdot.outcome import outcome_key
 from softdot.prepared_press import press_key
 from tests.cases import for_each
 
-PROGRAM = hashes.PROGRAM
+PROGRAM = hashes.PROGRAM_FOLDER
 PACKAGES = ("foundation", "geometry", "mesh", "solve", "export", "diagnose", "softdot")
 
 
@@ -30,7 +30,7 @@ def copied(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def kept(copied: Path, monkeypatch: pytest.MonkeyPatch):
     """The names under which a mesh, a press and an outcome are kept, as the copied program now stands."""
-    monkeypatch.setattr(hashes, "PROGRAM", copied)
+    monkeypatch.setattr(hashes, "PROGRAM_FOLDER", copied)
     case = Case(segment={"section": "plane-strain"}, mesh={"mesher": "layered", "element_size_mm": 1.0})
     tet_mesh = case.mesh
 
@@ -49,7 +49,7 @@ def kept(copied: Path, monkeypatch: pytest.MonkeyPatch):
 def forget() -> None:
     """What a process has read of its own sources, which do not change while it runs."""
     hashes.source_hash.cache_clear()
-    hashes._source.cache_clear()
+    hashes._source_and_imports.cache_clear()
 
 
 @pytest.mark.process

@@ -299,16 +299,16 @@ def test_a_sweep_is_a_csv_table_a_picture_and_a_page_too(presses, tmp_path, out)
 
 @pytest.mark.usefixtures("presses")
 def test_a_second_sweep_into_a_folder_is_refused_and_the_first_keeps_its_file(tmp_path, out):
-    from foundation.scratch_folders import hold, release
+    from foundation.scratch_folders import lock_folder, unlock_folder
 
     assert sweep(tmp_path, out, depths(0.1)) == 0
     half = out / "points" / ".half.json.part"
     half.write_text("half", "utf-8")
-    held = hold(out)
+    held = lock_folder(out)
     try:
         assert sweep(tmp_path, out, depths(0.1, 0.2)) == 2
         assert half.exists()
     finally:
-        release(held)
+        unlock_folder(held)
     assert sweep(tmp_path, out, depths(0.1, 0.2)) == 0
     assert not half.exists()

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from foundation.thread_pools import ONE_THREAD
+from foundation.thread_pools import ONE_THREAD_VARIABLES
 from tests.softdot.interrupts import heard
 
 QUICK = """\
@@ -48,7 +48,7 @@ class Running:
     def __init__(self, folder: Path, text: str, *arguments: str) -> None:
         (folder / "mine.toml").write_text(text, "utf-8")
         command = [sys.executable, "-m", "softdot", "studio", "mine.toml", "--no-browser", *arguments]
-        environment = {**os.environ, **ONE_THREAD, "SOFTDOT_STUDIO": str(folder / "designs")}
+        environment = {**os.environ, **ONE_THREAD_VARIABLES, "SOFTDOT_STUDIO": str(folder / "designs")}
         self.folder = folder
         self.process = subprocess.Popen(
             command, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8",

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from foundation.thread_pools import ONE_THREAD
+from foundation.thread_pools import ONE_THREAD_VARIABLES
 from softdot.commands.studio import start_text
 from tests.cases import for_each
 from tests.diagnose.rigs import COUPON, HEAD, write_rig
@@ -113,7 +113,12 @@ def test_the_default_design_gives_the_numbers_of_softdot_run(start_studio, open_
     (tmp_path / "mine.toml").write_text(tab.text, "utf-8")
     command = [sys.executable, "-m", "softdot", "run", "mine.toml", "-o", "out", "--json"]
     done = subprocess.run(
-        command, cwd=tmp_path, capture_output=True, encoding="utf-8", env={**os.environ, **ONE_THREAD}, timeout=300
+        command,
+        cwd=tmp_path,
+        capture_output=True,
+        encoding="utf-8",
+        env={**os.environ, **ONE_THREAD_VARIABLES},
+        timeout=300,
     )
     summary = json.loads(done.stdout)
     for name in ("reaction_force_N", "film_charge_pC", "open_circuit_voltage_V"):

@@ -11,7 +11,7 @@ from typing import Any
 from foundation.checked_records import read_checked, write_checked
 from foundation.errors import InputError
 from foundation.executor import Executor
-from foundation.scratch_folders import hold, release
+from foundation.scratch_folders import lock_folder, unlock_folder
 from foundation.source_hash import source_hash
 from softdot.config.hashes import config_hash
 from softdot.json_files import plain, write_json
@@ -107,7 +107,7 @@ def run_designs(
 def _held_folder(place: Path) -> Iterator[None]:
     """Make the folder and hold it for this process; an earlier search in it stays. InputError while another writes."""
     (place / FOLDER).mkdir(parents=True, exist_ok=True)
-    held = hold(place)
+    held = lock_folder(place)
     if held is None:
         raise InputError(f"output '{place}': another search is writing it; wait for it or name another folder")
     try:
@@ -115,7 +115,7 @@ def _held_folder(place: Path) -> Iterator[None]:
             write_json(place / DESIGNS.summary, {"format": DESIGNS.format, "complete": False})
         yield
     finally:
-        release(held)
+        unlock_folder(held)
 
 
 def searched(work: "DesignWork") -> DesignRecords:

@@ -9,9 +9,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from foundation.child_processes import own_python
+from foundation.child_processes import python_command
 from foundation.scratch_folders import scratch_folder
-from foundation.thread_pools import ONE_THREAD
+from foundation.thread_pools import ONE_THREAD_VARIABLES
 
 KEPT = ("PATH", "LANG", "LC_ALL", "LD_LIBRARY_PATH")
 LINES = 3
@@ -37,7 +37,7 @@ def diagnosed(files: Mapping[str, str], cache: Path, limit_s: float, options: tu
         (folder / "tmp").mkdir()
         for file, text in files.items():
             (recording / file).write_text(text, "utf-8")
-        guard = own_python("-m", "softdot.studies.proof.guard", str(os.getpid()), str(folder), str(cache), PROGRAM)
+        guard = python_command("-m", "softdot.studies.proof.guard", str(os.getpid()), str(folder), str(cache), PROGRAM)
         begun = time.perf_counter()
         try:
             ended = subprocess.run(
@@ -74,7 +74,7 @@ def environment(folder: Path, cache: Path) -> dict[str, str]:
     return {
         **kept,
         **apart,
-        **ONE_THREAD,
+        **ONE_THREAD_VARIABLES,
         "HOME": str(folder),
         "TMPDIR": str(folder / "tmp"),
         "PYTHONPATH": str(program),

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from foundation.cache import check_folder, data_hash
+from foundation.cache import check_cache_folder, data_hash
 from foundation.errors import InputError
 from foundation.source_hash import source_hash
 from softdot.json_files import plain, write_json
@@ -63,7 +63,7 @@ def run_proof(request: Request, out: Path, progress: Progress | None = None) -> 
     Cases that an earlier proof left in out are not tried again. After Ctrl-C those that were finished stay.
     """
     _check(request)
-    check_folder()
+    check_cache_folder()
     place, program = proof_files.check(out), program_hash()
     cases = plan(
         request.cases, request.seed, request.rigs, request.staged, request.kinds, request.details, request.mechanisms
@@ -112,11 +112,11 @@ def _tried(
     """Names and records as they come, from one process per core or from a cluster that runs already."""
     if not missing:
         return
-    from foundation.cache import folder
+    from foundation.cache import cache_folder
     from softdot.executors import executor_for
     from softdot.sweeps.points import all_ended
 
-    terms = Terms(folder().resolve(), request.limit_s)
+    terms = Terms(cache_folder().resolve(), request.limit_s)
     arguments = {case.name: (case, terms, place.resolve(), program) for case in missing}
     with executor_for(request.scheduler, request.workers) as executor:
         proof_files.begin(place)  # once somebody can work

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from foundation.thread_pools import ONE_THREAD
+from foundation.thread_pools import ONE_THREAD_VARIABLES
 from softdot.studies.proof import isolation
 from softdot.studies.proof.commitment import digest_of, seal, verified
 from softdot.studies.proof.guard import PACKAGES, allowed_roots
@@ -82,7 +82,15 @@ def test_no_variable_gives_a_hint(house, monkeypatch):
         monkeypatch.setenv(name, "charge-leakage")
     given = isolation.environment(house / "folder", house / "cache")
     assert "charge-leakage" not in given.values()
-    assert set(given) <= {*isolation.KEPT, *ONE_THREAD, "HOME", "TMPDIR", "PYTHONPATH", "SOFTDOT_CACHE", "MPLCONFIGDIR"}
+    assert set(given) <= {
+        *isolation.KEPT,
+        *ONE_THREAD_VARIABLES,
+        "HOME",
+        "TMPDIR",
+        "PYTHONPATH",
+        "SOFTDOT_CACHE",
+        "MPLCONFIGDIR",
+    }
 
 
 def test_the_process_gets_a_folder_with_the_recording_alone(monkeypatch, tmp_path):
