@@ -34,9 +34,7 @@ class Executor(Protocol):
         """Number of calls that run at a time."""
 
     def submit(self, function: Callable[..., Any], /, *arguments: Any) -> "Future[Any]":
-        """Return the future of a call. It raises what the function raises, LostError where its
-        process died each time.
-        """
+        """Return the future of a call, which raises what the function raises, or LostError where it was given up."""
 
 
 def completed_calls(

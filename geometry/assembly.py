@@ -1,4 +1,4 @@
-"""All parts of the assembly as solids: layers, the rigid case, the dot with its neighbours and their plate."""
+"""Solids of all parts of the assembly: layers, the rigid case, the dot with its neighbours and their plate."""
 
 from itertools import product
 from typing import Any
@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 from geometry.dot import DotShape
 from geometry.parameters import Segment
 from geometry.part_checks import covers_footprint
-from geometry.solids import Part, ball, labelled_part, layer_solids, upright_box, upright_cylinder
+from geometry.solids import Part, labelled_part, layer_solids, sphere, upright_box, upright_cylinder
 from geometry.stack import Box, Layer, layers
 
 PLATE_THICKNESS_MM = 1.0
-"""Over the 0.6 mm of an unsupported wall in stereolithography (addema.se, layerx3d.in, forgelabs.com)."""
+"""More than the 0.6 mm of an unsupported wall in stereolithography (addema.se, layerx3d.in, forgelabs.com)."""
 PLATE_MARGIN_MM = 1.0
-"""Beyond the footprint and the dots, on each side."""
+"""Plate beyond the footprint and the dots, on each side."""
 
 Floats = NDArray[np.float64]
 
@@ -29,7 +29,7 @@ def dot_solid(dot_shape: DotShape, segment: Segment) -> Any:
     plate = _box(low, high, face, face + PLATE_THICKNESS_MM)
     solid = plate
     if dot_shape.kind != "plate":
-        dots = [_bump(dot_shape, tip, low[1], high[1]) for tip in dot_shape.tips_mm]
+        dots = [_dot_in_cell(dot_shape, tip, low[1], high[1]) for tip in dot_shape.tips_mm]
         solid = plate.fuse(*dots).solid()
     rotation, origin = dot_shape.rotation, dot_shape.origin_mm
     place = Plane(origin=tuple(origin), x_dir=tuple(rotation[:, 0]), z_dir=tuple(rotation[:, 2])).location
@@ -54,11 +54,11 @@ def cap_solid(radius_mm: float, height_mm: float, foot_mm: float) -> Any:
 
     equator = min(radius_mm, height_mm)
     lower = upright_box(2 * radius_mm, 2 * radius_mm, -radius_mm, equator)
-    cap = ((Pos(0, 0, radius_mm) * ball(radius_mm)) & lower).solid()
+    cap = ((Pos(0, 0, radius_mm) * sphere(radius_mm)) & lower).solid()
     return cap.fuse(upright_cylinder(radius_mm, equator, height_mm)).solid() if foot_mm > 0.0 else cap
 
 
-def _bump(dot_shape: DotShape, tip: Floats, low_y: float, high_y: float) -> Any:
+def _dot_in_cell(dot_shape: DotShape, tip: Floats, low_y: float, high_y: float) -> Any:
     """One cap on its foot, or one ridge over the whole plate, in the dot frame."""
     from build123d import Pos
 
@@ -89,11 +89,11 @@ def _box(low: Floats, high: Floats, bottom: float, top: float) -> Any:
     return Pos(low[0], low[1], bottom) * Solid.make_box(high[0] - low[0], high[1] - low[1], top - bottom)
 
 
-WALL_MM = 0.4
-FLOOR_MM = 0.4
+CASE_WALL_MM = 0.4
+CASE_FLOOR_MM = 0.4
 """Thinnest supported wall of stereolithography, 0.4 mm (addema.se, layerx3d.in, forgelabs.com)."""
-CLEARANCE_MM = 0.3
-"""Beside layers that are not held: the smallest loose clearance of stereolithography (same sources)."""
+CASE_CLEARANCE_MM = 0.3
+"""Gap beside layers that are not held: the smallest loose clearance of stereolithography (same sources)."""
 
 
 def case_solid(segment: Segment) -> Any:
@@ -102,29 +102,29 @@ def case_solid(segment: Segment) -> Any:
     Walls rise to the top of the highest held layer. Beside a layer below it that is not held, the cavity is
     wider by the clearance, so that this layer can bulge.
     """
-    outside = case_outside(segment)
+    outside = case_outer_box(segment)
     tray = upright_box(outside.half_x, outside.half_y, outside.bottom, outside.top)
     for bottom, top, gap in _cavities(segment):
         # cut through the open top, so that no skin is left there
-        above = top + FLOOR_MM if top == outside.top else top
+        above = top + CASE_FLOOR_MM if top == outside.top else top
         half_x, half_y = segment.length_mm / 2 + gap, segment.width_mm / 2 + gap
         tray = (tray - upright_box(half_x, half_y, bottom, above)).solid()
     return tray
 
 
-def case_outside(segment: Segment) -> Box:
+def case_outer_box(segment: Segment) -> Box:
     """The outer box of the case, in mm."""
     cavities = _cavities(segment)
-    out = WALL_MM + max((gap for _, _, gap in cavities), default=0.0)
+    out = CASE_WALL_MM + max((gap for _, _, gap in cavities), default=0.0)
     top = cavities[-1][1] if cavities else 0.0
-    return Box(segment.length_mm / 2 + out, segment.width_mm / 2 + out, -FLOOR_MM, top)
+    return Box(segment.length_mm / 2 + out, segment.width_mm / 2 + out, -CASE_FLOOR_MM, top)
 
 
 def case_is_printable(segment: Segment) -> bool:
     """Whether every ledge of the case is at least as thick as the thinnest wall."""
     cavities = _cavities(segment)
     ledges = [top - bottom for bottom, top, gap in cavities if gap == 0.0]
-    return len(cavities) < 2 or min(ledges) >= WALL_MM
+    return len(cavities) < 2 or min(ledges) >= CASE_WALL_MM
 
 
 def _is_held(layer: Layer, segment: Segment) -> bool:
@@ -141,15 +141,12 @@ def _cavities(segment: Segment) -> list[tuple[float, float, float]]:
     for layer in layers(segment):
         if not held or layer.top_mm > held[-1].top_mm:
             break
-        gap = 0.0 if layer in held else CLEARANCE_MM
+        gap = 0.0 if layer in held else CASE_CLEARANCE_MM
         if runs and runs[-1][2] == gap:
             runs[-1] = (runs[-1][0], layer.top_mm, gap)
         else:
             runs.append((layer.bottom_mm, layer.top_mm, gap))
     return runs
-
-
-__all__ = ["Part", "build_parts", "layer_solids"]
 
 
 def build_parts(segment: Segment, dot_shape: DotShape) -> tuple[Part, ...]:

@@ -1,4 +1,4 @@
-"""Impossible geometry is refused by name before any solid is built."""
+"""Checks that refuse impossible geometry by name before any solid is built, and warnings about doubtful presses."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -9,7 +9,7 @@ import numpy as np
 
 from foundation.arrays import Floats
 from foundation.errors import InputError
-from geometry.assembly import case_outside
+from geometry.assembly import case_outer_box
 from geometry.dot import DotShape
 from geometry.parameters import Dot, Segment
 from geometry.part_checks import check_effector, check_electrodes, covers_footprint, refuse_out_of_plane
@@ -33,8 +33,8 @@ def check_press_depth(segment: Segment, indentation_mm: float) -> None:
         )
 
 
-def check_way(dot: Dot, segment: Segment, path_xy_mm: Sequence[tuple[float, float]]) -> list[str]:
-    """InputError for a slide in y over a slice, where that changes nothing; a warning for the place of a plate."""
+def check_slide(dot: Dot, segment: Segment, path_xy_mm: Sequence[tuple[float, float]]) -> list[str]:
+    """Refuse a slide along y over a slice, where it changes nothing; return a warning about the offset of a plate."""
     for number, point in enumerate(path_xy_mm):
         refuse_out_of_plane(segment, f"press.path_xy_mm[{number}][1]", point[1])
     if dot.shape == "plate" and any(dot.offset_mm):
@@ -43,9 +43,9 @@ def check_way(dot: Dot, segment: Segment, path_xy_mm: Sequence[tuple[float, floa
 
 
 def check_pushed_dot(dot: Dot, segment: Segment, path_xy_mm: tuple[tuple[float, float], ...] = ()) -> None:
-    """A dot that is pushed with a force must stand over the segment: beside it nothing pushes back. InputError.
+    """Raise InputError for a dot pushed with a force that stands beside the segment, where nothing pushes back.
 
-    path_xy_mm : way points of a slide, from where the dot stands at rest.
+    path_xy_mm : way points of a slide in mm, from where the dot stands at rest.
     """
     halves = (segment.length_mm / 2.0, segment.width_mm / 2.0)
     for number, point in enumerate(path_xy_mm):
@@ -63,14 +63,14 @@ def check_pushed_dot(dot: Dot, segment: Segment, path_xy_mm: tuple[tuple[float, 
             )
 
 
-PLACES = 20
-"""Of the dot on each leg of a slide."""
+PLACES_PER_LEG = 20
+"""Number of places of the dot on each leg of a slide."""
 
 
-def along(dot_shape: DotShape, path_xy_mm: Sequence[tuple[float, float]]) -> list[DotShape]:
-    """The dot where it is pressed and at places on its way through the waypoints of a slide."""
+def dots_along_slide(dot_shape: DotShape, path_xy_mm: Sequence[tuple[float, float]]) -> list[DotShape]:
+    """The dot where it is pressed first and at places on its way through the waypoints (x, y) of a slide, in mm."""
     ways = np.vstack([np.zeros((1, 2)), *np.reshape(path_xy_mm, (-1, 1, 2))])
-    legs = np.linspace(0.0, len(ways) - 1.0, PLACES * (len(ways) - 1) + 1)
+    legs = np.linspace(0.0, len(ways) - 1.0, PLACES_PER_LEG * (len(ways) - 1) + 1)
     places = np.column_stack([np.interp(legs, np.arange(len(ways)), way) for way in ways.T] + [0.0 * legs])
     return [replace(dot_shape, origin_mm=dot_shape.origin_mm + place) for place in places]
 
@@ -78,27 +78,30 @@ def along(dot_shape: DotShape, path_xy_mm: Sequence[tuple[float, float]]) -> lis
 def press_warnings(
     dot_shape: DotShape, segment: Segment, indentation_mm: float, path_xy_mm: Sequence[tuple[float, float]] = ()
 ) -> list[str]:
-    """What to know about a press that is possible; indentation_mm : final depth in mm. path_xy_mm : of a slide."""
+    """Warnings about a press that is possible but may not be the one that is meant.
+
+    indentation_mm : final depth. path_xy_mm : waypoints of a slide.
+    """
     warnings = []
     if dot_shape.kind != "plate" and indentation_mm > dot_shape.height_mm:
         warnings.append(
             f"the indentation of {indentation_mm:.3g} mm exceeds the dot's height of "
             f"{dot_shape.height_mm:.3g} mm: the plate around the dot touches the segment too"
         )
-    places = along(dot_shape, path_xy_mm)
+    places = dots_along_slide(dot_shape, path_xy_mm)
     return [
         *warnings,
-        *_far_dot(places, segment, indentation_mm),
-        *_over_edge(places, segment, indentation_mm),
-        *_hit_case(dot_shape, segment, indentation_mm),
+        *_far_dot_warnings(places, segment, indentation_mm),
+        *_edge_warnings(places, segment, indentation_mm),
+        *_case_warnings(dot_shape, segment, indentation_mm),
     ]
 
 
-def _far_dot(places: Sequence[DotShape], segment: Segment, indentation_mm: float) -> list[str]:
+def _far_dot_warnings(places: Sequence[DotShape], segment: Segment, indentation_mm: float) -> list[str]:
     if places[0].kind != "cap":
         return []
     top = bodies(segment)[-1]
-    clear = min(top.distance(_ball_mm(one)) - one.radius_mm for one in places)
+    clear = min(top.distance(_cap_centre_mm(one)) - one.radius_mm for one in places)
     if clear <= indentation_mm:
         return []
     return [
@@ -107,18 +110,18 @@ def _far_dot(places: Sequence[DotShape], segment: Segment, indentation_mm: float
     ]
 
 
-def _ball_mm(dot_shape: DotShape) -> Floats:
-    """Middle (3,) of the ball that a cap is a part of."""
+def _cap_centre_mm(dot_shape: DotShape) -> Floats:
+    """Centre (3,) in mm of the ball that a cap is a part of."""
     return np.asarray(dot_shape.origin_mm + dot_shape.rotation @ [0.0, 0.0, dot_shape.radius_mm])
 
 
 def _beyond_edge_mm(dot_shape: DotShape, segment: Segment, indentation_mm: float) -> float:
-    """How far a dot at one place touches beyond an edge, 0 where it does not or may not touch at all.
+    """Distance in mm by which a dot at one place touches beyond an edge; 0 where it does not or may not touch at all.
 
     A ball touches a flat body to a radius of sqrt(R d) at a depth d (Hertz).
     """
     top, radius = bodies(segment)[-1], dot_shape.radius_mm
-    ball = _ball_mm(dot_shape)
+    ball = _cap_centre_mm(dot_shape)
     if top.distance(ball) - radius > indentation_mm:
         return 0.0
     reach = sqrt(radius * indentation_mm)
@@ -126,8 +129,8 @@ def _beyond_edge_mm(dot_shape: DotShape, segment: Segment, indentation_mm: float
     return max(0.0, *(abs(float(axis @ ball)) + reach - top.reach(axis) for axis in across))
 
 
-def _over_edge(places: Sequence[DotShape], segment: Segment, indentation_mm: float) -> list[str]:
-    """Sides are no contact surface: a dot that presses over an edge, or slides there, passes through them."""
+def _edge_warnings(places: Sequence[DotShape], segment: Segment, indentation_mm: float) -> list[str]:
+    """Warn of a dot that presses or slides over an edge: sides are no contact surface, so it passes through them."""
     if places[0].kind == "plate" or isinstance(bodies(segment)[-1], Dome):
         return []
     beyond = max(_beyond_edge_mm(one, segment, indentation_mm) for one in places)
@@ -140,13 +143,13 @@ def _over_edge(places: Sequence[DotShape], segment: Segment, indentation_mm: flo
     ]
 
 
-def _hit_case(dot_shape: DotShape, segment: Segment, indentation_mm: float) -> list[str]:
-    """The case is rigid and no part of the simulation: a plate that comes down on its walls is only told."""
+def _case_warnings(dot_shape: DotShape, segment: Segment, indentation_mm: float) -> list[str]:
+    """Warn of a plate that comes down on the walls of the case, which is rigid and no part of the simulation."""
     if segment.boundary == "free":
         return []
     normal = dot_shape.rotation[:, 2]
     face = float(normal @ dot_shape.origin_mm) + dot_shape.height_mm
-    travel = (face - case_outside(segment).reach(normal)) / float(normal[2])
+    travel = (face - case_outer_box(segment).reach(normal)) / float(normal[2])
     if travel >= indentation_mm:
         return []
     return [
@@ -176,7 +179,7 @@ def _check_held_layers(segment: Segment) -> list[str]:
 
 
 def _check_bonds(segment: Segment) -> None:
-    """Bonds join neighbours that exist, each pair once."""
+    """Refuse bonds between layers that are absent or no neighbours, and a second bond of the same two."""
     names = ["base", *(layer.name for layer in layers(segment))]
     neighbours = [set(pair) for pair in pairwise(names)]
     seen: list[set[str]] = []

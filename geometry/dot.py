@@ -33,11 +33,11 @@ class DotShape:
 
     @property
     def heights_mm(self) -> Floats:
-        """Of each dot over the plate (n,)."""
+        """Height (n,) of each dot over the plate, in mm."""
         return np.asarray(self.height_mm - self.tips_mm[:, 2])
 
     @property
     def base_diameter_mm(self) -> float:
-        """Of the widest cap, or its foot, where it stands on the plate; 0 for a plate."""
+        """Diameter in mm of the widest cap, or of its foot, where it stands on the plate; 0 for a plate."""
         below = min(float(self.heights_mm.max()), self.radius_mm)
         return 2.0 * float(np.sqrt(below * (2.0 * self.radius_mm - below)))

@@ -1,4 +1,4 @@
-"""The dot at rest: how it is turned, where it just touches, and whether it overlaps the segment."""
+"""The dot at rest: its rotation, where it just touches, and whether it overlaps the segment."""
 
 from dataclasses import dataclass, replace
 from math import cos, hypot, radians, sin
@@ -7,26 +7,26 @@ import numpy as np
 
 from foundation.errors import InputError
 from geometry.dot import DotShape, Floats
-from geometry.dot_cell import cell_tips, refuse_cell_of
+from geometry.dot_cell import cell_tips, single_tip
 from geometry.dot_size import DotSize, dot_size
 from geometry.parameters import Dot, Segment
 from geometry.part_checks import refuse_out_of_plane
 from geometry.stack import bodies, layers
 
-TOUCHING_MM = 1e-9
+TOUCHING_TOLERANCE_MM = 1e-9
 FOOT_SAMPLES = 17
 
 
 @dataclass(frozen=True)
 class Overlap:
-    """What overlaps the segment and by how much in mm."""
+    """The name of what overlaps the segment, and the depth of the overlap in mm."""
 
     what: str
     depth_mm: float
 
 
-def rotation_of(tilt_deg: tuple[float, float]) -> Floats:
-    """Rotation (3, 3): about x by tilt_deg[0], then about y by tilt_deg[1]. InputError from 90 degrees."""
+def tilt_rotation(tilt_deg: tuple[float, float]) -> Floats:
+    """Rotation matrix (3, 3) about x by tilt_deg[0], then about y by tilt_deg[1]. InputError from 90 degrees."""
     for axis, tilt in enumerate(tilt_deg):
         if abs(tilt) >= 90.0:
             raise InputError(f"dot.tilt_deg[{axis}] = {tilt:g}: must be above -90 and below 90")
@@ -51,7 +51,7 @@ def rest_origin(shape: "DotShape", segment: Segment, offset_mm: tuple[float, flo
 
 
 def _ridge_lift(shape: "DotShape", segment: Segment, ball: Floats) -> float:
-    """How far a ridge rises so that it touches the effector (else the top) with its lowest point over it.
+    """Height in mm by which a ridge rises to touch the effector (else the top) with its lowest point over it.
 
     On the plane y = const the cylinder is lowest where its normal has no x part; over a range of y the lowest
     of these points is at one end.
@@ -68,7 +68,7 @@ def _ridge_lift(shape: "DotShape", segment: Segment, ball: Floats) -> float:
 
 
 def overlap_at_rest(shape: "DotShape", segment: Segment) -> Overlap:
-    """The deepest overlap of the plate and of the neighbours with the resting segment; 0 for none."""
+    """The deepest overlap of the plate and of the neighbouring dots with the resting segment; 0 mm for none."""
     normal = shape.rotation[:, 2]
     face = float(normal @ shape.origin_mm) + shape.height_mm
     solids = bodies(segment)
@@ -80,41 +80,42 @@ def overlap_at_rest(shape: "DotShape", segment: Segment) -> Overlap:
             depth = float(shape.radius_mm - min(body.distance(ball) for body in solids))
             if depth > deepest.depth_mm:
                 deepest = Overlap("neighbouring dot", depth)
-    return deepest if deepest.depth_mm > TOUCHING_MM else Overlap("nothing", 0.0)
+    return deepest if deepest.depth_mm > TOUCHING_TOLERANCE_MM else Overlap("nothing", 0.0)
 
 
 def refuse_overlap(shape: "DotShape", segment: Segment, dot: Dot) -> None:
-    """InputError when the plate or a neighbour overlaps the resting segment; says what tilt would do."""
+    """Raise InputError, with the largest tilt, where the plate or a neighbouring dot overlaps the segment."""
     found = overlap_at_rest(shape, segment)
     if found.depth_mm == 0.0:
         return
     x, y = dot.tilt_deg
     share = _allowed_share(shape, segment, dot)
+    allowed_x, allowed_y = (_rounded_towards_zero(share * tilt) for tilt in (x, y))
     raise InputError(
         f"dot.tilt_deg = [{x:g}, {y:g}]: the {found.what} overlaps the segment by {found.depth_mm:.3g} mm "
-        f"at rest; in this direction at most [{_down(share * x)}, {_down(share * y)}] is allowed"
+        f"at rest; in this direction at most [{allowed_x}, {allowed_y}] is allowed"
     )
 
 
 def _allowed_share(shape: "DotShape", segment: Segment, dot: Dot) -> float:
-    """Largest share of the tilt without overlap, by bisection; without tilt nothing can overlap."""
+    """Largest share of the tilt, 0 to 1, without overlap, by bisection; without tilt nothing can overlap."""
     low, high = 0.0, 1.0
     while high - low > 1e-6:
         middle = (low + high) / 2
         tilt = (middle * dot.tilt_deg[0], middle * dot.tilt_deg[1])
-        turned = replace(shape, rotation=rotation_of(tilt))
+        turned = replace(shape, rotation=tilt_rotation(tilt))
         turned = replace(turned, origin_mm=rest_origin(turned, segment, dot.offset_mm))
         low, high = (middle, high) if overlap_at_rest(turned, segment).depth_mm == 0.0 else (low, middle)
     return low
 
 
-def _down(angle: float) -> str:
+def _rounded_towards_zero(angle: float) -> str:
     """An angle rounded towards zero to a hundredth of a degree, so that what is printed is allowed."""
     return f"{int(angle * 100) / 100:g}"
 
 
 def resolve_dot(dot: Dot, segment: Segment) -> DotShape:
-    """The exact dot at rest over a segment: nothing given means a cap of Marburg Medium.
+    """The exact dot at rest over a segment; a dot without stated sizes is a cap of Marburg Medium.
 
     At rest the lowest point of the pressed ball or cylinder is at the top of the stack, whatever the offset;
     over a dome or beside a narrow effector a gap remains. A tilt turns the dot about the centre of the
@@ -125,8 +126,8 @@ def resolve_dot(dot: Dot, segment: Segment) -> DotShape:
     """
     _refuse_out_of_plane(dot, segment)
     size = DotSize(0.0, 0.0, 0.0) if dot.shape == "plate" else dot_size(dot)
-    tips, height = cell_tips(dot, size.height_mm) if dot.shape == "cap" else refuse_cell_of(dot, size.height_mm)
-    turned = DotShape(dot.shape, size.radius_mm, height, tips, np.zeros(3), rotation_of(dot.tilt_deg))
+    tips, height = cell_tips(dot, size.height_mm) if dot.shape == "cap" else single_tip(dot, size.height_mm)
+    turned = DotShape(dot.shape, size.radius_mm, height, tips, np.zeros(3), tilt_rotation(dot.tilt_deg))
     origin = rest_origin(turned, segment, dot.offset_mm) + np.array([0.0, 0.0, dot.gap_mm])
     rest = replace(turned, origin_mm=origin)
     refuse_overlap(rest, segment, dot)

@@ -1,4 +1,4 @@
-"""The cell of the dot of a segment: the tips of all its raised dots."""
+"""The Braille cell around the pressed dot: the tips of all its raised dots."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,13 +12,13 @@ Floats = NDArray[np.float64]
 
 
 def cell_tips(dot: Dot, height_mm: float) -> tuple[Floats, float]:
-    """Tips (n, 3) of the raised dots from that of the pressed one, which comes first, z towards the plate, and the
-    height of the pressed one, in mm. InputError.
+    """Tips (n, 3) of the raised dots from that of the pressed one, and the height of the pressed one, in mm.
 
-    height_mm : of all dots where the cell does not state their own.
+    The pressed dot comes first; z points towards the plate. height_mm : of all dots where the cell does not state their
+    own. InputError for a cell that does not exist.
     """
     if dot.cell is None:
-        return refuse_cell_of(dot, height_mm)
+        return single_tip(dot, height_mm)
     raised = raised_dots(dot.cell)
     if dot.cell_dot not in raised:
         known = ", ".join(map(str, raised)) or "none"
@@ -35,8 +35,8 @@ def cell_tips(dot: Dot, height_mm: float) -> tuple[Floats, float]:
     return np.array([np.zeros(3), *(top - pressed for top in tops.values())]), -float(pressed[2])
 
 
-def refuse_cell_of(dot: Dot, height_mm: float) -> tuple[Floats, float]:
-    """The one tip (1, 3) of a dot without a cell, and its height. InputError when a cell is asked for."""
+def single_tip(dot: Dot, height_mm: float) -> tuple[Floats, float]:
+    """The one tip (1, 3) of a dot without a cell, and its height in mm. InputError when a cell is asked for."""
     if dot.cell is not None:
         raise InputError(f"dot.cell = '{dot.cell}': a cell has dots of dot.shape = 'cap', not '{dot.shape}'")
     return np.zeros((1, 3)), height_mm

@@ -1,4 +1,4 @@
-"""The sizes of the dot of a segment: those of a Braille standard, or given ones."""
+"""Sizes of the dot of a segment: those of a Braille standard, or stated ones."""
 
 from dataclasses import dataclass
 
@@ -7,12 +7,12 @@ from geometry.braille_standards import BrailleStandard, standard
 from geometry.parameters import Dot
 
 DEFAULT_STANDARD = "marburg-medium"
-SIZES = ("base_diameter_mm", "height_mm", "radius_mm")
+SIZE_KEYS = ("base_diameter_mm", "height_mm", "radius_mm")
 
 
 @dataclass(frozen=True)
 class DotSize:
-    """In mm: radius of the sphere or cylinder, height over the plate, height of the cylindrical foot."""
+    """Sizes of a dot in mm: radius of the sphere or cylinder, height over the plate, height of the cylindrical foot."""
 
     radius_mm: float
     height_mm: float
@@ -20,8 +20,11 @@ class DotSize:
 
 
 def dot_standard(dot: Dot) -> BrailleStandard | None:
-    """The standard a dot follows: the named one, the default when no size is given, else None. InputError."""
-    given = [name for name in SIZES if getattr(dot, name) is not None]
+    """The standard that a dot follows: the named one, the default when no size is stated, else None.
+
+    InputError where both a standard and sizes are stated.
+    """
+    given = [name for name in SIZE_KEYS if getattr(dot, name) is not None]
     if dot.standard is None:
         return None if given else standard(DEFAULT_STANDARD)
     if given:
@@ -33,12 +36,12 @@ def dot_standard(dot: Dot) -> BrailleStandard | None:
 
 
 def dot_size(dot: Dot) -> DotSize:
-    """The sizes of a cap or ridge. InputError for sizes that miss, contradict each other or are not fixed."""
+    """The sizes of a cap or ridge. InputError for sizes that are missing, contradict each other or are not fixed."""
     chosen = dot_standard(dot)
     if chosen is not None:
-        return from_base(chosen.nominal_mm("base_diameter_mm"), chosen.nominal_mm("height_mm"))
+        return dot_size_from_base(chosen.nominal_mm("base_diameter_mm"), chosen.nominal_mm("height_mm"))
     if dot.radius_mm is not None:
-        return _from_radius(dot.radius_mm, dot)
+        return _dot_size_from_radius(dot.radius_mm, dot)
     if dot.base_diameter_mm is None:
         raise InputError(
             f"dot.height_mm = {dot.height_mm:g}: a height alone is not a dot; add dot.base_diameter_mm or dot.radius_mm"
@@ -47,16 +50,16 @@ def dot_size(dot: Dot) -> DotSize:
         raise InputError(
             f"dot.base_diameter_mm = {dot.base_diameter_mm:g}: a base alone is not a dot; add dot.height_mm"
         )
-    return from_base(dot.base_diameter_mm, dot.height_mm)
+    return dot_size_from_base(dot.base_diameter_mm, dot.height_mm)
 
 
-def from_base(base_diameter_mm: float, height_mm: float) -> DotSize:
+def dot_size_from_base(base_diameter_mm: float, height_mm: float) -> DotSize:
     """Sizes of a dot from its base and height in mm.
 
     A spherical cap has R = (d^2 / 4 + h^2) / 2h. Higher than d / 2 it would pass the hemisphere and undercut
     its base: such a dot is a hemisphere of radius d / 2 on a cylindrical foot of height h - d / 2.
 
-    >>> from_base(1.5, 0.5).radius_mm
+    >>> dot_size_from_base(1.5, 0.5).radius_mm
     0.8125
     """
     half = base_diameter_mm / 2
@@ -65,8 +68,8 @@ def from_base(base_diameter_mm: float, height_mm: float) -> DotSize:
     return DotSize((half**2 + height_mm**2) / (2 * height_mm), height_mm, 0.0)
 
 
-def _from_radius(radius_mm: float, dot: Dot) -> DotSize:
-    """Sizes from the radius of the sphere or cylinder; without a height it stands out by its radius."""
+def _dot_size_from_radius(radius_mm: float, dot: Dot) -> DotSize:
+    """Sizes from the radius of the sphere or cylinder in mm; without a height it stands out by that. InputError."""
     if dot.base_diameter_mm is not None:
         raise InputError(
             f"dot.radius_mm = {radius_mm:g}: dot.base_diameter_mm = {dot.base_diameter_mm:g} is given too; "

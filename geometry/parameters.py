@@ -33,7 +33,7 @@ JsonSchema = dict[str, Any]
 
 
 class ActsWith:
-    """Where a key acts: one of the keys named here has one of these values, is STATED at all or is ABSENT.
+    """The condition on which a key acts: a key named here has one of these values, is STATED at all, or is ABSENT.
 
     Annotated[NonNegative, ActsWith(shape=("ramp", "trapezoid"))] is the type of a key that acts with two shapes. It is
     the member of a tagged union to which the key belongs, said at the key. Classes of their own for all members would
@@ -42,41 +42,41 @@ class ActsWith:
     """
 
     def __init__(self, needed: bool = False, **tags: tuple[str, ...] | Literal["stated", "absent"]) -> None:
-        """needed : the key must be stated where it acts."""
+        """tags : key -> values with which this one acts. needed : whether the key must be stated where it acts."""
         self.tags, self.needed = tags, needed
 
     def holds(self, values: Mapping[str, Any]) -> bool:
         """Whether the key acts beside the values of a table."""
-        return any(self._has(values[key], wanted) for key, wanted in self.tags.items())
+        return any(self._is_wanted(values[key], wanted) for key, wanted in self.tags.items())
 
     @staticmethod
-    def _has(value: Any, wanted: tuple[str, ...] | str) -> bool:
+    def _is_wanted(value: Any, wanted: tuple[str, ...] | str) -> bool:
         if isinstance(wanted, tuple):
             return value in wanted
         return (value is not None) == (wanted == STATED)
 
     @property
     def words(self) -> str:
-        """For example "with shape = 'ramp' or 'trapezoid'"."""
-        return " or ".join(self._said(key, wanted) for key, wanted in self.tags.items())
+        """The condition in words, for example "with shape = 'ramp' or 'trapezoid'"."""
+        return " or ".join(self._tag_text(key, wanted) for key, wanted in self.tags.items())
 
     @staticmethod
-    def _said(key: str, wanted: tuple[str, ...] | str) -> str:
+    def _tag_text(key: str, wanted: tuple[str, ...] | str) -> str:
         if isinstance(wanted, tuple):
             return f"with {key} = {' or '.join(repr(one) for one in wanted)}"
         return f"with{'' if wanted == STATED else 'out'} {key}"
 
-    def here(self, table: BaseModel) -> str:
-        """What the tags are in a table, for example "shape = 'half-sine'"; nothing where one is missing."""
+    def stated_tags(self, table: BaseModel) -> str:
+        """The values of the tags in a table, for example "shape = 'half-sine'"; empty where one is missing."""
         stated = {key: getattr(table, key) for key in self.tags}
         return ", ".join(f"{key} = {value!r}" for key, value in stated.items() if value is not None)
 
     def condition(self, defaults: JsonSchema) -> JsonSchema:
-        """The same as JSON Schema of the whole table. defaults : of its keys, which need not be stated."""
-        return {"anyOf": [self._condition(key, wanted, defaults.get(key)) for key, wanted in self.tags.items()]}
+        """The condition as JSON Schema of the whole table. defaults : of its keys, which need not be stated."""
+        return {"anyOf": [self._tag_condition(key, wanted, defaults.get(key)) for key, wanted in self.tags.items()]}
 
     @staticmethod
-    def _condition(key: str, wanted: tuple[str, ...] | str, default: Any) -> JsonSchema:
+    def _tag_condition(key: str, wanted: tuple[str, ...] | str, default: Any) -> JsonSchema:
         if isinstance(wanted, tuple):
             one_of: JsonSchema = {"properties": {key: {"enum": list(wanted)}}}
             return one_of if default in wanted else {**one_of, "required": [key]}
@@ -84,12 +84,12 @@ class ActsWith:
         return stated if wanted == STATED else {"not": stated}
 
     def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchema:
-        """The schema of the key says what it acts with: of all conditions one of the tags."""
+        """The schema of the key with the tags that it acts with, as "x-acts-with"."""
         made = handler(core)
         return {**made, "x-acts-with": [*made.get("x-acts-with", []), self.tags]}
 
 
-def _shown(value: Any) -> str:
+def _message_value(value: Any) -> str:
     """A value as messages show it."""
     if isinstance(value, float):
         return f"{value:g}"
@@ -106,41 +106,43 @@ class Table(BaseModel):
 
     @classmethod
     def acting(cls) -> list[tuple[str, ActsWith]]:
-        """The keys that act beside some others only, once for each of their conditions."""
+        """Name and condition of the keys that act beside some others only, once for each condition."""
         fields = cls.model_fields.items()
         return [(name, one) for name, field in fields for one in field.metadata if isinstance(one, ActsWith)]
 
     @classmethod
     def overridden(cls, inherited: Mapping[str, Any], stated: Mapping[str, Any]) -> dict[str, Any]:
-        """Inherited keys with those stated in their place; an inherited one that no longer acts is left out."""
+        """Inherited keys with the stated ones in their place, without inherited keys that no longer act."""
         merged = {**inherited, **stated}
         values = {**{name: field.default for name, field in cls.model_fields.items()}, **merged}
         idle = {name for name, acts in cls.acting() if name not in stated and not acts.holds(values)}
         return {name: value for name, value in merged.items() if name not in idle}
 
     def lacks(self, name: str) -> bool:
-        """Whether a key that is needed is missing."""
+        """Whether a needed key is missing."""
         return getattr(self, name) is None
 
     @model_validator(mode="after")
-    def _each_key_acts(self) -> Self:
+    def _refuse_idle_keys(self) -> Self:
         for name, acts in self.acting():
             value = getattr(self, name)
             if acts.needed and self.lacks(name) and acts.holds(self.__dict__):
-                raise ValueError(f"{name} is missing: {acts.here(self)} needs it")
+                raise ValueError(f"{name} is missing: {acts.stated_tags(self)} needs it")
             if name in self.model_fields_set and value is not None and not acts.holds(self.__dict__):
-                here = acts.here(self)
-                raise ValueError(f"{name} = {_shown(value)}: acts only {acts.words}{f', here {here}' if here else ''}")
+                here = acts.stated_tags(self)
+                raise ValueError(
+                    f"{name} = {_message_value(value)}: acts only {acts.words}{f', here {here}' if here else ''}"
+                )
         return self
 
     @model_serializer(mode="wrap")
-    def _what_acts(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+    def _write_acting_keys(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
         idle = {name for name, acts in self.acting() if not acts.holds(self.__dict__)}
         return {name: value for name, value in write(self).items() if name not in idle}
 
     @classmethod
     def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchema:
-        """With the conditions of the keys that act beside some others only, as a JSON Schema states them."""
+        """The JSON Schema of the table, with the conditions of the keys that act beside some others only."""
         made = handler(core)
         table = handler.resolve_ref_schema(made)
         defaults = {name: field.default for name, field in cls.model_fields.items()}
@@ -154,7 +156,7 @@ class Table(BaseModel):
 
 
 def require_one_of_each(per: str, **lists: Sequence[float]) -> None:
-    """ValueError where one of the lists of a table, given by their keys, is not as long as the first."""
+    """Raise ValueError where one of the lists of a table, given by their keys, is not as long as the first."""
     (first, known), *others = lists.items()
     for name, values in others:
         if len(values) != len(known):
@@ -261,5 +263,5 @@ class Dot(Table):
     )
 
     def lone(self, **changes: Any) -> Self:
-        """One dot of the same kind without a cell; changes : of other keys."""
+        """The same dot without a cell; changes : of other keys."""
         return self.model_copy(update={"cell": None, "cell_dot": 1, "cell_heights_mm": (), **changes})

@@ -1,11 +1,11 @@
-"""Whether an effector, the electrodes and a delaminated patch fit on their segment."""
+"""Checks whether an effector, the electrodes and a delaminated patch fit on their segment."""
 
 from itertools import combinations
 
 from foundation.errors import InputError
 from geometry.parameters import Effector, Electrode, Segment
 
-USED_SIZES: dict[str, tuple[str, ...]] = {
+SIZES_OF_SHAPE: dict[str, tuple[str, ...]] = {
     "layer": (),
     "block": ("length_mm", "width_mm"),
     "cylinder": ("diameter_mm",),
@@ -15,7 +15,7 @@ ROUNDING_MM = 1e-9
 
 
 def refuse_out_of_plane(segment: Segment, key: str, y: float) -> None:
-    """Raise InputError for a place, of that key, beside the middle of what is the same for all y."""
+    """Raise InputError for a place y, stated by a key, beside the middle of a plane-strain segment."""
     if segment.section == "plane-strain" and y != 0.0:
         raise InputError(f"{key} = {y:g}: segment.section = 'plane-strain' has nothing that varies over y; must be 0")
 
@@ -48,7 +48,7 @@ def covers_footprint(segment: Segment) -> bool:
 
 
 def _check_sizes(segment: Segment, effector: Effector) -> None:
-    used = USED_SIZES[effector.shape]
+    used = SIZES_OF_SHAPE[effector.shape]
     sliced = segment.section == "plane-strain"
     for name in ("length_mm", "width_mm", "diameter_mm"):
         value = getattr(effector, name)
@@ -62,7 +62,7 @@ def _check_sizes(segment: Segment, effector: Effector) -> None:
 
 
 def _check_foot(segment: Segment, effector: Effector) -> None:
-    """The foot lies within the footprint."""
+    """Refuse a foot that leaves the footprint."""
     limits = [("length_mm", segment.length_mm), ("width_mm", segment.width_mm)]
     if effector.diameter_mm is not None:
         limits = [("diameter_mm", segment.length_mm), ("diameter_mm", segment.width_mm)]
@@ -76,7 +76,7 @@ def _check_foot(segment: Segment, effector: Effector) -> None:
 
 
 def _check_dome(effector: Effector) -> None:
-    """A spherical cap is at most a hemisphere: h <= d / 2."""
+    """Refuse a spherical cap higher than a hemisphere, h > d / 2."""
     diameter = effector.diameter_mm or 0.0
     if effector.height_mm > diameter / 2 + ROUNDING_MM:
         raise InputError(
@@ -94,10 +94,10 @@ def check_electrodes(segment: Segment) -> None:
     for first, second in combinations(electrodes, 2):
         if first.name == second.name:
             raise InputError(f"segment.film.electrodes: the name '{first.name}' is given twice")
-        if all(_shared(first, second, axis) > ROUNDING_MM for axis in (0, 1)):
+        if all(_shared_length_mm(first, second, axis) > ROUNDING_MM for axis in (0, 1)):
             raise InputError(
                 f"segment.film.electrodes: '{first.name}' and '{second.name}' overlap by "
-                f"{_shared(first, second, 0):.3g} x {_shared(first, second, 1):.3g} mm"
+                f"{_shared_length_mm(first, second, 0):.3g} x {_shared_length_mm(first, second, 1):.3g} mm"
             )
 
 
@@ -111,7 +111,7 @@ def _check_on_film(number: int, electrode: Electrode, segment: Segment) -> None:
             )
 
 
-def _shared(first: Electrode, second: Electrode, axis: int) -> float:
+def _shared_length_mm(first: Electrode, second: Electrode, axis: int) -> float:
     """Length in mm along an axis that two electrodes share; negative for a gap."""
     high = min(one.center_mm[axis] + one.size_mm[axis] / 2 for one in (first, second))
     low = max(one.center_mm[axis] - one.size_mm[axis] / 2 for one in (first, second))
@@ -138,7 +138,7 @@ def check_patch(segment: Segment, bond: str, center_mm: tuple[float, float], dia
 
 
 def _half_sizes(segment: Segment, bond: str) -> tuple[float, float]:
-    """Half the size in x and y of an interface."""
+    """Half the size in x and y, in mm, of the interface of a bond."""
     effector = segment.effector
     sizes = (segment.length_mm, segment.width_mm)
     if bond == "bond-effector-medium1" and effector is not None and effector.shape != "layer":

@@ -34,7 +34,7 @@ def upright_box(half_x: float, half_y: float, bottom: float, top: float) -> Any:
     return Pos(-half_x, -half_y, bottom) * Solid.make_box(2 * half_x, 2 * half_y, top - bottom)
 
 
-def ball(radius: float) -> Any:
+def sphere(radius: float) -> Any:
     """A sphere about the origin whose poles lie aside on y: a pole at the top gives a degenerate facet."""
     from build123d import Rot, Solid
 
@@ -59,7 +59,7 @@ def _effector(segment: Segment, bottom: float) -> Any:
         return upright_cylinder(body.radius, bottom, bottom + body.top - body.bottom)
     assert isinstance(body, Dome)
     reach = 2 * body.radius
-    dome = (Pos(0, 0, body.centre_z) * ball(body.radius)) & upright_box(reach, reach, body.bottom, body.top + reach)
+    dome = (Pos(0, 0, body.centre_z) * sphere(body.radius)) & upright_box(reach, reach, body.bottom, body.top + reach)
     return Pos(0, 0, bottom - body.bottom) * dome.solid()
 
 
@@ -76,7 +76,7 @@ PART_COLOURS: dict[str, str] = {
 
 @dataclass(frozen=True)
 class Part:
-    """One solid, with its label and colour set on the build123d shape as well.
+    """A labelled and coloured solid; label and colour are set on the build123d shape as well.
 
     solid : build123d Solid in the segment frame, millimetres.
     colour : red, green, blue from 0 to 1.
@@ -106,7 +106,7 @@ def labelled_part(label: str, solid: Any, material: str | None, printable: bool)
 
 
 def volume_mm3(solid: Any) -> float:
-    """Volume within 1e-9 of itself; solid.volume is 0.1 % off for caps near a hemisphere."""
+    """Volume in mm^3 within a relative 1e-9; solid.volume is 0.1 % off for caps near a hemisphere."""
     from OCP.BRepGProp import BRepGProp  # type: ignore[import-untyped]
     from OCP.GProp import GProp_GProps  # type: ignore[import-untyped]
 

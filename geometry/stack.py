@@ -56,7 +56,7 @@ class Body(Protocol):
 
 @dataclass(frozen=True)
 class Box:
-    """half_x, half_y : half its sizes; bottom, top : heights. All in mm."""
+    """An upright box about the axis. half_x, half_y : half its sizes; bottom, top : heights. All in mm."""
 
     half_x: float
     half_y: float
@@ -64,12 +64,12 @@ class Box:
     top: float
 
     def reach(self, direction: Vector) -> float:
-        """See Body."""
+        """Largest projection of the box on a unit direction (3,), in mm."""
         x, y, z = direction
         return float(abs(x) * self.half_x + abs(y) * self.half_y + max(z * self.bottom, z * self.top))
 
     def distance(self, point: Vector) -> float:
-        """See Body."""
+        """Distance of a point (3,) from the box in mm, 0 inside."""
         x, y, z = point
         beside = hypot(max(abs(x) - self.half_x, 0.0), max(abs(y) - self.half_y, 0.0))
         return hypot(beside, max(z - self.top, self.bottom - z, 0.0))
@@ -77,26 +77,26 @@ class Box:
 
 @dataclass(frozen=True)
 class Disc:
-    """An upright cylinder. radius, bottom, top in mm."""
+    """An upright cylinder on the axis. radius, bottom, top in mm."""
 
     radius: float
     bottom: float
     top: float
 
     def reach(self, direction: Vector) -> float:
-        """See Body."""
+        """Largest projection of the cylinder on a unit direction (3,), in mm."""
         x, y, z = direction
         return float(hypot(x, y) * self.radius + max(z * self.bottom, z * self.top))
 
     def distance(self, point: Vector) -> float:
-        """See Body."""
+        """Distance of a point (3,) from the cylinder in mm, 0 inside."""
         x, y, z = point
         return hypot(max(hypot(x, y) - self.radius, 0.0), max(z - self.top, self.bottom - z, 0.0))
 
 
 @dataclass(frozen=True)
 class Dome:
-    """A spherical cap of at most a hemisphere. foot_radius, bottom, top in mm."""
+    """A spherical cap of at most a hemisphere on the axis. foot_radius, bottom, top in mm."""
 
     foot_radius: float
     bottom: float
@@ -114,14 +114,17 @@ class Dome:
         return self.top - self.radius
 
     def reach(self, direction: Vector) -> float:
-        """See Body: the sphere, or the rim of the foot where the direction leaves the cap."""
+        """Largest projection of the cap on a unit direction (3,), in mm.
+
+        It is that of the sphere, or of the rim of the foot where the direction leaves the cap.
+        """
         x, y, z = direction
         if self.centre_z + self.radius * z >= self.bottom:
             return float(self.centre_z * z + self.radius)
         return float(hypot(x, y) * self.foot_radius + z * self.bottom)
 
     def distance(self, point: Vector) -> float:
-        """See Body, for points above the foot or beside it."""
+        """Distance in mm of a point (3,) above the foot or beside it, 0 inside."""
         beside, above = hypot(point[0], point[1]), point[2] - self.centre_z
         away = sqrt(beside**2 + above**2)
         if away <= self.radius:

@@ -14,7 +14,14 @@ from foundation.cache import check_cache_folder
 from foundation.errors import InputError
 from geometry.array.checks import check_array
 from geometry.array.layout import ArrayLayout
-from geometry.checks import along, check_press_depth, check_pushed_dot, check_segment, check_way, press_warnings
+from geometry.checks import (
+    check_press_depth,
+    check_pushed_dot,
+    check_segment,
+    check_slide,
+    dots_along_slide,
+    press_warnings,
+)
 from geometry.dot import DotShape
 from geometry.dot_at_rest import resolve_dot
 from geometry.parameters import Segment
@@ -279,7 +286,7 @@ def check_case(model: Model, options: MeshOptions, layout: ArrayLayout | None = 
     if press.waveform is not None:
         duration_s(press.waveform)  # reads the file of shape = "file"
     warnings = check_segment(segment) if layout is None else [*check_segment(layout.segment), *check_array(layout)]
-    warnings += check_way(model.dot, segment, press.path_xy_mm)
+    warnings += check_slide(model.dot, segment, press.path_xy_mm)
     depth = press.indentation_mm
     if depth is not None:
         check_press_depth(segment, depth)
@@ -289,6 +296,6 @@ def check_case(model: Model, options: MeshOptions, layout: ArrayLayout | None = 
     refuse_huge_mesh(segment, dot_shape, options, meshed_planes(model, dot_shape, options), layout)
     if depth is not None:
         warnings += press_warnings(dot_shape, segment, depth, press.path_xy_mm)
-        for one in along(dot_shape, press.path_xy_mm):
+        for one in dots_along_slide(dot_shape, press.path_xy_mm):
             refuse_held_rim(segment, one, depth)
     return dot_shape, warnings

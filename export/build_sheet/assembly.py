@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from export.build_sheet.contents import Contents, in_words
-from geometry.fabrication.device import held_names
+from geometry.fabrication.device import held_layer_names
 from geometry.flat.pattern import FlatPattern
 
 
@@ -61,7 +61,7 @@ def _push(contents: Contents) -> list[str]:
 
 def _between_strips(contents: Contents, name: str, where: str, outer: str) -> str:
     """How islands are set down; where : the strips stand; outer : how the outer islands lie."""
-    count = contents.device.pieces(name)
+    count = contents.device.piece_count(name)
     return (
         f"For {in_words(name)}, stand the {_grid_of_strips(contents)} {where}, set its {count} pieces between them, "
         f"the outer ones {outer}, and draw the strips out upwards when the pieces are bonded."
@@ -209,7 +209,7 @@ def _one_by_one(contents: Contents) -> list[WorkStep]:
 def _medium2_into_frame(contents: Contents) -> tuple[str, ...]:
     body, glue = contents.frame.body, contents.fabrication.adhesive_thickness_mm
     gap = contents.fabrication.side_clearance_mm if body is None else body.gap
-    paper = "" if "medium2" in held_names(contents.device.stack) else "; strips of paper of that thickness help"
+    paper = "" if "medium2" in held_layer_names(contents.device.stack) else "; strips of paper of that thickness help"
     several = body is not None and len(body.feet) > 1
     opening = "each opening" if several else "the opening"
     set_down = f"Set medium 2 on it with a gap of {gap:g} mm on every side{paper}."
@@ -229,7 +229,7 @@ def _medium2_into_frame(contents: Contents) -> tuple[str, ...]:
 
 def _glue_medium2(contents: Contents) -> list[str]:
     """Where the body of the frame holds it."""
-    if "medium2" not in held_names(contents.device.stack):
+    if "medium2" not in held_layer_names(contents.device.stack):
         return []
     fills = f"it fills the gap of {contents.fabrication.glue_gap_mm:g} mm to medium 2"
     return [f"Wet the walls of the opening thinly with flexible adhesive: {fills}."]
@@ -274,7 +274,7 @@ def _upper_layers(contents: Contents, title: str) -> WorkStep:
 
 def _held(contents: Contents) -> str:
     """Layers that are glued to the ring."""
-    names = held_names(contents.device.stack) - {"film", "medium2"}
+    names = held_layer_names(contents.device.stack) - {"film", "medium2"}
     return " and ".join(in_words(layer.name) for layer in contents.layers if layer.name in names)
 
 

@@ -68,7 +68,7 @@ class Contents:
     @property
     def centers(self) -> list[tuple[float, float]]:
         """Places of the devices of one frame, x and y."""
-        return [self.frame.frame.placed_point(place) for place in self.frame.centers]
+        return [self.frame.frame.point_in_device(place) for place in self.frame.centers]
 
     @property
     def stacked(self) -> dict[str, float]:
@@ -150,7 +150,7 @@ def components(contents: Contents) -> list[Component]:
         around = layer.name == "effector" and effector is not None and effector.shape in ("cylinder", "dome")
         wide = f"{size.X:.4g} mm across" if around else f"{size.X:.4g} × {size.Y:.4g} mm"
         size_text = f"{wide}, {thick}{' high' if around else ''}{_grooved(contents, layer.name)}"
-        pieces = contents.device.pieces(layer.name)
+        pieces = contents.device.piece_count(layer.name)
         found.append(Component(spoken(layer.name), pieces, layer.material, made, size_text, volume, density * volume))
     return found
 
@@ -270,7 +270,7 @@ class Gauging:
 def gauging(contents: Contents, name: str) -> Gauging:
     """A layer other than the film."""
     layer = next(one for one in contents.layers if one.name == name)
-    source, size = contents.device.source(name), layer.thickness_mm
+    source, size = contents.device.stated_segment(name), layer.thickness_mm
     body = bodies(source)[-1]
     if name == "effector" and isinstance(body, Disc | Dome):
         across = 2 * float(body.reach(np.array([1.0, 0.0, 0.0])))

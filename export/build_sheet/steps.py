@@ -3,7 +3,7 @@
 from export.build_sheet.assembly import WorkStep, assembly_steps, jig_step
 from export.build_sheet.contents import FINEST_CRIMP_MM, GAUGE, Contents, gauging, in_words
 from geometry.fabrication.casting import Pour
-from geometry.flat.film import EDGE_MM, PAD_LENGTH_MM
+from geometry.flat.film import METAL_EDGE_MM, PAD_LENGTH_MM
 
 
 def steps(contents: Contents) -> list[WorkStep]:
@@ -68,7 +68,7 @@ def _cast(pour: Pour, contents: Contents) -> WorkStep:
 
 def _spares(pour: Pour, contents: Contents) -> list[str]:
     """A mould of islands makes as many as one array has."""
-    if contents.device.pieces(pour.component) == 1:
+    if contents.device.piece_count(pour.component) == 1:
         return []
     return [f"The array needs all {pour.cavities} of them: pour again for spares."]
 
@@ -110,9 +110,9 @@ def _film(contents: Contents) -> WorkStep:
             "Find the draw direction of the film: it is marked on the roll, and the film tears easily along it. The "
             f"double arrow in the drawing is turned by {angle:g}° from the x axis.",
             patterns["film"].instruction,
-            f"The leads are {layout.lead:.3g} mm wide, {layout.tab_gap:g} mm apart and {EDGE_MM:g} mm from the edge "
-            f"of the tab; the pads are {layout.pad_width:.3g} × {PAD_LENGTH_MM:g} mm, {layout.pad_pitch:g} mm from "
-            f"middle to middle. Seen with the tab to the right, the pad of the common electrode is {common}.",
+            f"The leads are {layout.lead_width:.3g} mm wide, {layout.tab_gap:g} mm apart and {METAL_EDGE_MM:g} mm from "
+            f"the edge of the tab; the pads are {layout.pad_width:.3g} × {PAD_LENGTH_MM:g} mm, {layout.pad_pitch:g} mm "
+            f"from middle to middle. Seen with the tab to the right, the pad of the common electrode is {common}.",
             "Turn the panel over about the axis of its tab: its two registration holes then meet the same pins, and "
             "mask-bottom fits.",
             "Remove the metal with resist and etchant, or with a laser that spares the film. Use no solvent and stay "

@@ -12,7 +12,7 @@ from foundation.files import whole_folder
 from foundation.files import write_whole_text as write_whole_text
 from geometry.flat.pattern import Circle as Circle
 from geometry.flat.pattern import Dimension as Dimension
-from geometry.flat.pattern import FlatPattern, compensated
+from geometry.flat.pattern import FlatPattern, kerf_compensated_pattern
 from geometry.flat.pattern import Label as Label
 from geometry.flat.pattern import LayerName as LayerName
 from geometry.flat.pattern import Outline as Outline
@@ -24,6 +24,6 @@ def write_cut_files(patterns: Sequence[FlatPattern], folder: Path) -> None:
     """Write <name>.dxf and <name>.svg of every pattern, kerf compensated; the folder appears whole or not at all."""
     with whole_folder(folder) as scratch:
         for pattern in patterns:
-            cut = compensated(pattern)
+            cut = kerf_compensated_pattern(pattern)
             write_dxf(cut, scratch / f"{pattern.name}.dxf")
             write_svg(cut, scratch / f"{pattern.name}.svg")

@@ -1,1 +1,1 @@
-"""Arrays of segments: which layers run through, where each segment lies, and the solids. Imports nothing by itself."""
+"""Arrays of segments: their layout, the layers that run through, and the solids. Imports nothing by itself."""

@@ -1,16 +1,16 @@
-"""Impossible arrays are refused by name before anything is built."""
+"""Checks that refuse impossible arrays by name before anything is built."""
 
 from foundation.errors import InputError
-from geometry.array.layout import ALONG, ArrayLayout
+from geometry.array.layout import AXIS_NAMES, ArrayLayout
 from geometry.part_checks import covers_footprint
 from geometry.stack import layers
 
 ROUNDING_MM = 1e-9
 LEAST_GAP_MM = 0.02
-"""A narrower gap is no gap: a knife's kerf, and neighbours that bulge would touch, which the model does not know."""
+"""A narrower gap is a knife's kerf, and neighbours that bulge would touch across it, which the model does not know."""
 
-ROUND_SHARE = 0.95
-"""A round effector leaves that much of a rim for elements beside it."""
+ROUND_EFFECTOR_SHARE = 0.95
+"""Largest diameter of a round effector as a share of the segment's width, so that elements beside it have room."""
 
 
 def check_array(layout: ArrayLayout) -> list[str]:
@@ -45,11 +45,11 @@ def _check_segment(layout: ArrayLayout) -> None:
             f"array.shared: names 'effector', whose shape '{effector.shape}' stands on each segment alone; use shape "
             "'layer'"
         )
-    widest = ROUND_SHARE * min(layout.size_mm)
+    widest = ROUND_EFFECTOR_SHARE * min(layout.size_mm)
     if effector.diameter_mm is not None and effector.diameter_mm > widest + ROUNDING_MM:
         raise InputError(
             f"segment.effector.diameter_mm = {effector.diameter_mm:g}: in an array at most {widest:g}, "
-            f"{ROUND_SHARE:g} of the segment's width"
+            f"{ROUND_EFFECTOR_SHARE:g} of the segment's width"
         )
 
 
@@ -64,29 +64,29 @@ def _check_names(layout: ArrayLayout) -> None:
 
 
 def _check_pitch(layout: ArrayLayout) -> None:
-    """Segments do not overlap."""
+    """Refuse segments or cells that overlap."""
     for axis, name in enumerate(("length_mm", "width_mm")):
         size, count = layout.size_mm[axis], len(layout.centres(axis))
         across = layout.array.columns if axis == 0 else layout.array.rows
         if across > 1 and size > layout.pitch_mm + ROUNDING_MM:
             raise InputError(
-                f"array.pitch_mm = {layout.pitch_mm:g}: the segments overlap along {ALONG[axis]}, "
+                f"array.pitch_mm = {layout.pitch_mm:g}: the segments overlap along {AXIS_NAMES[axis]}, "
                 f"segment.{name} = {size:g} may be at most the pitch"
             )
-        if axis == 0 and count > across and _room_between_cells(layout) < size - ROUNDING_MM:
+        if axis == 0 and count > across and _column_distance_between_cells(layout) < size - ROUNDING_MM:
             raise InputError(
                 f"array.cell_pitch_mm = {layout.cell_pitch_mm:g}: the cells overlap, it must be at least "
                 f"{(across - 1) * layout.pitch_mm + size:g} for {across} columns of segments {size:g} mm long"
             )
 
 
-def _room_between_cells(layout: ArrayLayout) -> float:
-    """From the last column of a cell to the first of the next."""
+def _column_distance_between_cells(layout: ArrayLayout) -> float:
+    """Distance in mm from the middle of a cell's last column to that of the next cell's first one."""
     return layout.cell_pitch_mm - (layout.array.columns - 1) * layout.pitch_mm
 
 
 def _check_walls(layout: ArrayLayout) -> None:
-    """Islands and what the grid holds need a gap between segments."""
+    """Refuse islands and layers held by the grid where no gap is left between the segments."""
     for layer in layers(layout.segment):
         if not layout.ends_at_walls(layer.name):
             continue
@@ -96,8 +96,9 @@ def _check_walls(layout: ArrayLayout) -> None:
             if gap < LEAST_GAP_MM - ROUNDING_MM:
                 why = "held by the grid" if layer.name in layout.array.grid_layers else "not in array.shared"
                 raise InputError(
-                    f"segment.{name} = {size:g}: leaves a gap of {max(gap, 0.0):g} mm along {ALONG[axis]} at the pitch "
-                    f"of {layout.pitch_mm:g} mm, and {layer.name}, which is {why}, needs at least {LEAST_GAP_MM:g} mm"
+                    f"segment.{name} = {size:g}: leaves a gap of {max(gap, 0.0):g} mm along {AXIS_NAMES[axis]} at the "
+                    f"pitch of {layout.pitch_mm:g} mm, and {layer.name}, which is {why}, needs at least "
+                    f"{LEAST_GAP_MM:g} mm"
                 )
 
 

@@ -1,4 +1,4 @@
-"""Where the segments of an array lie, and where each layer has material. Lengths in mm.
+"""Layout of an array: where its segments lie, and where each layer has material. Lengths in mm.
 
 The origin is the middle of the array's base. Columns follow x and rows follow y, as the dots of a Braille cell do
 (geometry.braille_standards): segment r1c1 is under dot 1 of the first cell, r2c1 under dot 2, r1c2 under dot 4.
@@ -18,15 +18,15 @@ from geometry.dot_size import dot_standard
 from geometry.parameters import Dot, Effector, Electrode, LayerName, Segment
 from geometry.stack import layers
 
-ALONG = ("x", "y")
-PATCH = 1.3
+AXIS_NAMES = ("x", "y")
+PATCH_PER_RADIUS = 1.3
 Rectangle = tuple[float, float, float, float]
 """Least and largest x, least and largest y in mm."""
 
 
 @dataclass(frozen=True)
 class SegmentPlace:
-    """One segment: its row and column, counted from 1, and its centre in mm."""
+    """The place of one segment: its row and column, counted from 1, and its centre in mm."""
 
     row: int
     column: int
@@ -35,7 +35,7 @@ class SegmentPlace:
 
     @property
     def label(self) -> str:
-        """As it is called in files and results: segment-r1c2."""
+        """Name of the segment in files and results, such as segment-r1c2."""
         return f"segment-r{self.row}c{self.column}"
 
 
@@ -50,26 +50,26 @@ class ArrayLayout:
 
     @property
     def size_mm(self) -> tuple[float, float]:
-        """Of one segment in x and y."""
+        """Size of one segment in x and y, in mm."""
         return self.segment.length_mm, self.segment.width_mm
 
     @property
     def gap_mm(self) -> tuple[float, float]:
-        """Least gap between neighbours in x and y."""
+        """Smallest gap between neighbouring segments in x and y, in mm; infinite without neighbours."""
         nearest = np.diff(self.centres(0)).min(initial=np.inf), np.diff(self.centres(1)).min(initial=np.inf)
         return float(nearest[0] - self.size_mm[0]), float(nearest[1] - self.size_mm[1])
 
     def centres(self, axis: int) -> Floats:
-        """Middles of the columns (axis 0) or of the rows (axis 1), rising and mirrored about 0."""
+        """Middles (n,) of the columns (axis 0) or of the rows (axis 1) in mm, rising and mirrored about 0."""
         array = self.array
         if axis == 1:
-            return _centred(self.pitch_mm * np.arange(array.rows, dtype=np.float64))
+            return _centred_positions(self.pitch_mm * np.arange(array.rows, dtype=np.float64))
         cells = self.cell_pitch_mm * np.arange(array.cells, dtype=np.float64)
-        return _centred((cells[:, None] + self.pitch_mm * np.arange(array.columns)).ravel())
+        return _centred_positions((cells[:, None] + self.pitch_mm * np.arange(array.columns)).ravel())
 
     @cached_property
     def places(self) -> tuple[SegmentPlace, ...]:
-        """All segments, row by row."""
+        """Places of all segments, row by row."""
         return tuple(
             SegmentPlace(row, column, float(x), float(y))
             for row, y in enumerate(self.centres(1), start=1)
@@ -78,21 +78,21 @@ class ArrayLayout:
 
     @property
     def middles(self) -> Floats:
-        """Of all segments (n, 2), in the order of places."""
+        """Middles (n, 2) of all segments in mm, in the order of places."""
         return np.array([(place.x_mm, place.y_mm) for place in self.places])
 
     @property
     def half_mm(self) -> tuple[float, float]:
-        """Half the size of the whole array in x and y."""
+        """Half the size of the whole array in x and y, in mm."""
         return tuple(float(self.centres(axis)[-1]) + self.size_mm[axis] / 2 for axis in (0, 1))  # type: ignore[return-value]
 
     def edges(self, axis: int) -> list[tuple[float, float]]:
-        """Both edges of each column or row of segments."""
+        """Lower and upper edge in mm of each column (axis 0) or row (axis 1) of segments."""
         half = self.size_mm[axis] / 2
         return [(float(middle) - half, float(middle) + half) for middle in self.centres(axis)]
 
     def seams(self, axis: int) -> list[float]:
-        """Midway between neighbouring columns or rows."""
+        """Coordinates in mm midway between neighbouring columns (axis 0) or rows (axis 1)."""
         return [float(a + b) / 2 for a, b in pairwise(self.centres(axis))]
 
     def ends_at_walls(self, layer: str) -> bool:
@@ -100,11 +100,11 @@ class ArrayLayout:
         return layer not in self.array.shared or layer in self.array.grid_layers
 
     def is_cut(self, layer: str) -> bool:
-        """Whether a layer is one solid a segment. A film that runs through passes a grid as one sheet."""
+        """Whether a layer has a solid on each segment; a film that runs through passes a grid as one sheet."""
         return self.ends_at_walls(layer) and not (layer == "film" and layer in self.array.shared)
 
     def foot_mm(self, layer: str) -> tuple[float, float]:
-        """Size in x and y of a layer on one segment; that of an effector narrower than the segment is its own."""
+        """Size in x and y, in mm, of a layer on one segment: the segment's, or that of a narrower effector."""
         effector = self.segment.effector
         if layer != "effector" or effector is None or effector.shape == "layer":
             return self.size_mm
@@ -113,21 +113,21 @@ class ArrayLayout:
 
     @property
     def foot_radius_mm(self) -> float | None:
-        """Of effectors that are cylinders or domes; None for others."""
+        """Radius in mm of effectors that are cylinders or domes; None for others."""
         effector = self.segment.effector
         return None if effector is None or effector.diameter_mm is None else effector.diameter_mm / 2
 
     @property
     def patch_mm(self) -> float:
-        """Half the square around a round effector within which its mesh is round."""
-        return min(PATCH * (self.foot_radius_mm or 0.0), *(size / 2 for size in self.size_mm))
+        """Half side in mm of the square around a round effector within which its mesh is round."""
+        return min(PATCH_PER_RADIUS * (self.foot_radius_mm or 0.0), *(size / 2 for size in self.size_mm))
 
     def grooves(self, layer: str) -> list[Groove]:
-        """Those of one layer."""
+        """Grooves that are cut into one layer."""
         return [groove for groove in self.array.grooves if groove.layer == layer]
 
     def lines(self, axis: int) -> Floats:
-        """Coordinates at which some layer begins or ends, rising, the middle and the rim included."""
+        """Coordinates (n,) in mm at which some layer begins or ends, rising, the middle and the rim included."""
         half = self.half_mm[axis]
         at = {-half, 0.0, half}
         for layer in layers(self.segment):
@@ -140,7 +140,7 @@ class ArrayLayout:
         return np.asarray(rounded[np.abs(rounded) <= half + 1e-9])
 
     def holds(self, layer: str, xy_mm: Floats, z_mm: float) -> Bools:
-        """Whether a layer has material over points (n, 2), at a height within it."""
+        """Whether a layer has material at points (n, 2) and a height, both in mm; the height is one of the layer."""
         if self.ends_at_walls(layer):
             foot = self.foot_mm(layer)
             return self._within(xy_mm[:, 0], 0, foot[0] / 2) & self._within(xy_mm[:, 1], 1, foot[1] / 2)
@@ -157,7 +157,7 @@ class ArrayLayout:
         return np.asarray((np.abs(along[:, None] - self.centres(axis)) < half).any(axis=1))
 
     def rectangles(self, layer: str) -> list[Rectangle]:
-        """What a layer that ends at walls covers: one rectangle a segment, in the order of places."""
+        """Rectangles that a layer which ends at walls covers, one for each segment in the order of places."""
         half_x, half_y = (size / 2 for size in self.foot_mm(layer))
         return [(p.x_mm - half_x, p.x_mm + half_x, p.y_mm - half_y, p.y_mm + half_y) for p in self.places]
 
@@ -187,28 +187,28 @@ class ArrayLayout:
 
     @property
     def held_layers(self) -> tuple[LayerName, ...]:
-        """Layers of which some sides are held: by the grid, or at the rim."""
+        """Names of the layers of which some sides are held, by the grid or at the rim."""
         rim = self.segment.held_layers if self.segment.boundary != "free" else ()
         return tuple(dict.fromkeys((*self.array.grid_layers, *rim)))
 
 
-def _centred(positions: Floats) -> Floats:
-    """Rising positions moved so that they are mirrored about 0 to the last digit."""
+def _centred_positions(positions: Floats) -> Floats:
+    """Rising positions (n,), shifted so that they are mirrored about 0 to the last digit."""
     middle = positions - positions.mean()
     return np.asarray((middle - middle[::-1]) / 2, dtype=np.float64)
 
 
 def array_layout(array: Array, segment: Segment, dot: Dot) -> ArrayLayout:
-    """The layout with its pitches resolved. InputError where the standard states none."""
-    pitch = array.pitch_mm or _of_standard("dot_pitch_mm", "array.pitch_mm", dot)
+    """The layout of an array with its pitches resolved. InputError where the standard states none."""
+    pitch = array.pitch_mm or _standard_pitch_mm("dot_pitch_mm", "array.pitch_mm", dot)
     cell_pitch = array.cell_pitch_mm
     if cell_pitch is None:
-        cell_pitch = _of_standard("cell_pitch_mm", "array.cell_pitch_mm", dot) if array.cells > 1 else 0.0
+        cell_pitch = _standard_pitch_mm("cell_pitch_mm", "array.cell_pitch_mm", dot) if array.cells > 1 else 0.0
     return ArrayLayout(array, segment, pitch, cell_pitch)
 
 
-def _of_standard(quantity: QuantityName, field: str, dot: Dot) -> float:
-    """A pitch of the dot's standard, of the default one where nothing is said of the dot."""
+def _standard_pitch_mm(quantity: QuantityName, field: str, dot: Dot) -> float:
+    """A pitch in mm of the dot's standard, or of the default standard where the dot states no sizes. InputError."""
     chosen = dot_standard(dot)
     if chosen is None:
         raise InputError(f"{field} is missing: the dot has sizes of its own and no dot.standard with a pitch")

@@ -1,4 +1,4 @@
-"""The moulds of all components that are cast, checked against the parts that are to come out, and what to pour."""
+"""Moulds of all cast components, the check of their cavities against the designed parts, and the amounts to pour."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -6,7 +6,7 @@ from typing import Any
 from foundation.errors import InputError
 from geometry.fabrication.cavity import check_mould_sizes, styled_cavity
 from geometry.fabrication.device import Device
-from geometry.fabrication.mould import LID_MM, Mould, mould_of
+from geometry.fabrication.mould import LID_THICKNESS_MM, Mould, mould_of
 from geometry.fabrication.parameters import CastComponent, Fabrication, cast_components
 from geometry.fabrication.part import (
     PROCESSES,
@@ -14,9 +14,9 @@ from geometry.fabrication.part import (
     box,
     fabrication_part,
     printer_profile,
-    scaled,
-    volume,
-    without,
+    scale_solid,
+    shape_volume_mm3,
+    subtract_solids,
 )
 
 
@@ -58,7 +58,10 @@ class Pour:
 
 
 def pour_of(component: CastComponent, mould: Mould, fabrication: Fabrication) -> Pour:
-    """What one mould takes. The liquid is counted at the density of the cured part and the volume of the cavity."""
+    """The amounts to pour into one mould.
+
+    The liquid is counted at the density of the cured part and the volume of the cavity.
+    """
     recipe, cavities = component.recipe, len(mould.gang.centers)
     cavity_volume = cavities * float(mould.cavity.solid.volume)
     poured_volume = cavity_volume * (1.0 + fabrication.overfill_percent / 100.0)
@@ -85,7 +88,7 @@ def pour_of(component: CastComponent, mould: Mould, fabrication: Fabrication) ->
 
 @dataclass(frozen=True)
 class CavityCheck:
-    """The void of the closed mould, shrunk, against the designed part.
+    """Comparison of the void of the closed mould, shrunk, with the designed part.
 
     component : "effector", "medium1" or "medium2".
     style : "open" or "split".
@@ -105,40 +108,43 @@ class CavityCheck:
 
 
 def check_cavity(mould: Mould, fabrication: Fabrication) -> CavityCheck:
-    """Measure the void of the closed mould by cuts with its printed parts, not with what it was made from.
+    """Compare the void of the closed mould, cut out of a block by the printed parts, with the designed part.
 
     What stands in the vents is trimmed off the cast part and does not count.
     """
     designed, shrink = mould.cavity.designed, 1.0 - mould.cavity.shrinkage
-    void, vents = scaled(_void(mould, fabrication), shrink), [scaled(notch, shrink) for notch in _vents_at_axis(mould)]
+    void, vents = (
+        scale_solid(_void_solid(mould, fabrication), shrink),
+        [scale_solid(notch, shrink) for notch in _vents_at_axis(mould)],
+    )
     beyond = _volume_outside(vents, void.cut(designed))
-    lacking = volume(designed.cut(void))
+    lacking = shape_volume_mm3(designed.cut(void))
     return CavityCheck(
         component=mould.component,
         style=mould.style,
         designed_volume_mm3=float(designed.volume),
         cast_volume_mm3=float(designed.volume) + beyond - lacking,
         difference_mm3=beyond + lacking,
-        deviation_mm=max(_farthest(void, designed, vents), _farthest(designed, void, vents)),
+        deviation_mm=max(_largest_distance_mm(void, designed, vents), _largest_distance_mm(designed, void, vents)),
         tolerance_mm=fabrication.tolerance_mm,
     )
 
 
-def _void(mould: Mould, fabrication: Fabrication) -> Any:
-    """What the closed mould leaves hollow around its first cavity, moved to the axis.
+def _void_solid(mould: Mould, fabrication: Fabrication) -> Any:
+    """The void that the closed mould leaves around its first cavity, moved to the axis.
 
-    The probe reaches half-way into the land and the walls, not as far as the overflow.
+    It is measured within a box that reaches half-way into the land and the walls, not as far as the overflow.
     """
     from build123d import Pos
 
     cavity, (x, y) = mould.cavity, mould.gang.centers[0]
-    reach = min(fabrication.land_mm, fabrication.mould_wall_mm, LID_MM) / 2
+    reach = min(fabrication.land_mm, fabrication.mould_wall_mm, LID_THICKNESS_MM) / 2
     probe = box(
         (x - cavity.size_x / 2 - reach, x + cavity.size_x / 2 + reach),
         (y - cavity.size_y / 2 - reach, y + cavity.size_y / 2 + reach),
         (-reach, cavity.height + reach),
     )
-    return Pos(-x, -y, 0) * without(probe, mould.solids.values())
+    return Pos(-x, -y, 0) * subtract_solids(probe, mould.solids.values())
 
 
 def _vents_at_axis(mould: Mould) -> list[Any]:
@@ -152,37 +158,37 @@ def _vents_at_axis(mould: Mould) -> list[Any]:
 def _volume_outside(vents: list[Any], excess: Any) -> float:
     """Volume in mm^3 of what lies beyond the part, without what stands in the vents."""
     pieces = [] if excess is None else excess.solids()
-    return sum(volume(piece.cut(*vents)) for piece in pieces)
+    return sum(shape_volume_mm3(piece.cut(*vents)) for piece in pieces)
 
 
-def _farthest(solid: Any, other: Any, vents: list[Any]) -> float:
+def _largest_distance_mm(solid: Any, other: Any, vents: list[Any]) -> float:
     """Largest distance in mm of points on one surface, outside the vents, from the other surface."""
     from build123d import Vertex
 
     points, _ = solid.tessellate(0.02, 0.5)
     surface, boxes = other.shell(), [notch.bounding_box() for notch in vents]
-    kept = [point for point in points if not any(_within(one, point) for one in boxes)]
+    kept = [point for point in points if not any(_is_in_box(one, point) for one in boxes)]
     return max(float(surface.distance_to(Vertex(*point))) for point in kept)
 
 
-def _within(one: Any, point: Any) -> bool:
-    """Whether a point lies in a box or on it."""
+def _is_in_box(one: Any, point: Any) -> bool:
+    """Whether a point lies in a bounding box or on it."""
     low, high, edge = tuple(one.min), tuple(one.max), 1e-6
     return all(a - edge <= x <= b + edge for a, x, b in zip(low, point, high, strict=True))
 
 
-PURPOSES = {
+PART_PURPOSES = {
     "plate": "Holds the cavities of {component}; the cast parts leave it upwards.",
     "floor": "Carries the bars of the mould of {component} on its pins.",
     "bar": "Forms the sides of {component}; is drawn off sideways before the parts are lifted.",
     "lid": "Presses what is poured for {component} flat; line it with acetate film, or use a glass slide in its place.",
 }
-IN_WORDS = {"effector": "the effector", "medium1": "medium 1", "medium2": "medium 2"}
+COMPONENT_NAMES = {"effector": "the effector", "medium1": "medium 1", "medium2": "medium 2"}
 
 
 @dataclass(frozen=True)
 class CastingKit:
-    """parts : printable; pours and checks : one for each cast component, from the top down."""
+    """All that casting takes. parts : printable; pours and checks : one for each cast component, from the top down."""
 
     parts: tuple[FabricationPart, ...]
     pours: tuple[Pour, ...]
@@ -190,7 +196,7 @@ class CastingKit:
 
 
 def casting_kit(device: Device, fabrication: Fabrication) -> CastingKit:
-    """Moulds and pours of a device that has passed its checks.
+    """Moulds, pours and checks of a device that has passed its checks.
 
     InputError for what cannot be cast, printed or taken out of its mould, and for a cavity that deviates from
     the design by more than tolerance_mm.
@@ -206,7 +212,7 @@ def casting_kit(device: Device, fabrication: Fabrication) -> CastingKit:
     return CastingKit(
         parts=tuple(part for mould in moulds for part in _mould_parts(mould, fabrication)),
         pours=tuple(pour_of(*pair, fabrication) for pair in zip(components, moulds, strict=True)),
-        checks=tuple(_within_tolerance(check_cavity(mould, fabrication)) for mould in moulds),
+        checks=tuple(_refuse_deviation(check_cavity(mould, fabrication)) for mould in moulds),
     )
 
 
@@ -220,14 +226,15 @@ def _mould_parts(mould: Mould, fabrication: Fabrication) -> list[FabricationPart
                 label=f"mould-{mould.component}-{name}",
                 solid=solid,
                 kind="lid" if lid else "mould",
-                purpose=PURPOSES[kind].format(component=IN_WORDS[mould.component]),
+                purpose=PART_PURPOSES[kind].format(component=COMPONENT_NAMES[mould.component]),
                 process="either" if lid else PROCESSES[fabrication.printer],
             )
         )
     return found
 
 
-def _within_tolerance(check: CavityCheck) -> CavityCheck:
+def _refuse_deviation(check: CavityCheck) -> CavityCheck:
+    """Return the check itself. InputError where the cast part deviates by more than its tolerance."""
     if check.deviation_mm > check.tolerance_mm:
         raise InputError(
             f"fabrication.tolerance_mm = {check.tolerance_mm:g}: the cast {check.component} deviates by "

@@ -1,4 +1,4 @@
-"""The cavity of one component: the designed part enlarged for shrinkage, with draft; and the kind of mould it gets."""
+"""The cavity of one component: the designed part enlarged for shrinkage, with draft; and the style of its mould."""
 
 from dataclasses import dataclass
 from math import asin, degrees, radians, sqrt, tan
@@ -7,7 +7,14 @@ from typing import Any, Literal
 from foundation.errors import InputError
 from geometry.fabrication.device import Device
 from geometry.fabrication.parameters import Fabrication
-from geometry.fabrication.part import PrinterProfile, printer_profile, refuse_small_keys, refuse_thin, scaled, without
+from geometry.fabrication.part import (
+    PrinterProfile,
+    printer_profile,
+    refuse_small_keys,
+    refuse_thin,
+    scale_solid,
+    subtract_solids,
+)
 from geometry.stack import Box, Disc, Dome, bodies
 
 
@@ -41,12 +48,12 @@ def cavity_of(name: str, device: Device, shrinkage: float, draft_deg: float, fab
     """
     designed = designed_part(name, device, fabrication)
     growth = 1.0 / (1.0 - shrinkage)
-    enlarged = scaled(designed, growth)
-    shape, size = _shape(name, device), enlarged.bounding_box().size
+    enlarged = scale_solid(designed, growth)
+    shape, size = _component_shape(name, device), enlarged.bounding_box().size
     widening = draft_widening(shape, size.Z, draft_deg)
     solid = enlarged
     if widening > 0.0:
-        solid = without(_drafted(shape, size, widening), ridges(name, device, growth, draft_deg))
+        solid = subtract_solids(_drafted_solid(shape, size, widening), groove_ridges(name, device, growth, draft_deg))
     return Cavity(
         designed=designed,
         enlarged=enlarged,
@@ -56,19 +63,19 @@ def cavity_of(name: str, device: Device, shrinkage: float, draft_deg: float, fab
         height=size.Z,
         shape=shape,
         shrinkage=shrinkage,
-        counts=_counts(name, device, fabrication),
+        counts=_cavity_counts(name, device, fabrication),
     )
 
 
-def _counts(name: str, device: Device, fabrication: Fabrication) -> tuple[int, int]:
-    """One for each island of an array, in rows and columns as they will lie."""
-    if device.pieces(name) > 1:
+def _cavity_counts(name: str, device: Device, fabrication: Fabrication) -> tuple[int, int]:
+    """Cavities of one mould in x and y: one for each island of an array, in rows and columns as they will lie."""
+    if device.piece_count(name) > 1:
         return len(device.layout.centres(0)), len(device.layout.centres(1))
     return fabrication.cavities or ((1, 1) if device.is_array else (2, 2))
 
 
 def designed_part(name: str, device: Device, fabrication: Fabrication) -> Any:
-    """One piece on the floor of its mould: with lid_face = 'base' it stands on its head."""
+    """One piece as designed, on the floor of its mould; with lid_face = 'base' it stands on its head."""
     from build123d import Pos, Rot
 
     solid = device.piece(name)
@@ -78,8 +85,8 @@ def designed_part(name: str, device: Device, fabrication: Fabrication) -> Any:
     return Pos(0, 0, solid.bounding_box().max.Z) * Rot(180, 0, 0) * solid
 
 
-def ridges(name: str, device: Device, growth: float, draft_deg: float) -> list[Any]:
-    """What forms the grooves of a layer on the floor of its mould, with draft, beyond the sides of the cavity."""
+def groove_ridges(name: str, device: Device, growth: float, draft_deg: float) -> list[Any]:
+    """Solids that form the grooves of a layer on the floor of its mould, drafted, longer than the cavity."""
     from build123d import Plane, Pos, Solid, Wire
 
     layout, found = device.layout, []
@@ -98,22 +105,22 @@ def ridges(name: str, device: Device, growth: float, draft_deg: float) -> list[A
 
 
 def draft_widening(shape: str, height: float, draft_deg: float) -> float:
-    """By how much draft widens each side at the lid and narrows it at the floor, in mm; a dome needs none."""
+    """Distance in mm by which draft widens each side at the lid and narrows it at the floor; 0 for a dome."""
     return 0.0 if shape == "dome" else tan(radians(draft_deg)) * height / 2
 
 
 def draft_deviation(shape: str, height: float, draft_deg: float) -> float:
-    """Largest distance between the drafted and the designed surface in mm: at the corners of a box."""
+    """Largest distance in mm between the drafted and the designed surface, which is at the corners of a box."""
     return draft_widening(shape, height, draft_deg) * (sqrt(2.0) if shape == "box" else 1.0)
 
 
-def _shape(name: str, device: Device) -> str:
-    body = bodies(device.source(name))[-1] if name == "effector" else Box(1.0, 1.0, 0.0, 1.0)
+def _component_shape(name: str, device: Device) -> str:
+    body = bodies(device.stated_segment(name))[-1] if name == "effector" else Box(1.0, 1.0, 0.0, 1.0)
     return {Box: "box", Disc: "disc", Dome: "dome"}[type(body)]
 
 
-def _drafted(shape: str, size: Any, widening: float) -> Any:
-    """A box or cylinder that is wider at the top and narrower at the bottom."""
+def _drafted_solid(shape: str, size: Any, widening: float) -> Any:
+    """A box or cylinder that is wider at the top and narrower at the bottom by the widening in mm on each side."""
     from build123d import Plane, Solid, Wire
 
     if shape == "disc":
@@ -125,13 +132,13 @@ def _drafted(shape: str, size: Any, widening: float) -> Any:
     return Solid.make_loft(wires, ruled=True)
 
 
-Style = Literal["open", "split"]
+MouldStyle = Literal["open", "split"]
 LEAST_DRAFT_DEG = 1.0
-"""Of a wall that the part slides along when it leaves the mould: 1 to 3 degrees are the rule of the trade."""
+"""Least draft of a wall that the part slides along when it leaves the mould; 1 to 3 degrees are usual."""
 
 
-def styled_cavity(name: str, device: Device, shrinkage: float, fabrication: Fabrication) -> tuple[Style, Cavity]:
-    """The style of the mould of a component and its cavity. InputError for a mould that cannot be opened.
+def styled_cavity(name: str, device: Device, shrinkage: float, fabrication: Fabrication) -> tuple[MouldStyle, Cavity]:
+    """The mould style of a component and its cavity. InputError for a mould that cannot be opened.
 
     A dome opens by itself towards its base. Walls of boxes and cylinders need draft in one plate, and none in
     a split mould, whose bars are drawn off sideways.
@@ -145,7 +152,7 @@ def styled_cavity(name: str, device: Device, shrinkage: float, fabrication: Fabr
     deviation = draft_deviation(plain.shape, plain.height, fabrication.draft_deg)
     fits = fabrication.draft_deg >= LEAST_DRAFT_DEG and deviation <= fabrication.tolerance_mm
     if fabrication.mould_style == "open" and not fits:
-        _refuse_open(name, deviation, fabrication)
+        _refuse_open_mould(name, deviation, fabrication)
     if device.layout.grooves(name):
         _check_grooves(name, device, fits and fabrication.mould_style != "split", fabrication)
     if fabrication.mould_style == "split" or not fits:
@@ -154,14 +161,14 @@ def styled_cavity(name: str, device: Device, shrinkage: float, fabrication: Fabr
 
 
 def least_draft_deg(cavity: Any, height: float) -> float:
-    """Smallest angle by which a wall of the cavity opens towards the lid, in degrees; negative for an undercut."""
+    """Smallest angle in degrees by which a wall of the cavity opens towards the lid; negative for an undercut."""
     walls = [face for face in cavity.faces() if height - face.bounding_box().min.Z > 1e-6]
     normals = [face.normal_at(point).Z for face in walls for point in face.tessellate(0.02, 0.3)[0]]
     return min(degrees(asin(min(max(-z, -1.0), 1.0))) for z in normals)
 
 
 def check_mould_sizes(fabrication: Fabrication, printer: PrinterProfile) -> None:
-    """InputError for walls, vents or pins that the printer cannot make."""
+    """Raise InputError for walls, vents or pins that the printer cannot make."""
     checks = (
         ("mould_wall_mm", "a wall", printer["wall_mm"], "unsupported wall"),
         ("land_mm", "a rim", printer["supported_wall_mm"], "supported wall"),
@@ -183,7 +190,7 @@ def _refuse_shallow(name: str, cavity: Cavity, printer: PrinterProfile) -> None:
 
 
 def _refuse_large_vents(name: str, cavity: Cavity, fabrication: Fabrication) -> None:
-    """A vent that takes more than half of a side leaves no wall to form it."""
+    """Refuse a vent that takes more than half of a side, as it leaves no wall to form it."""
     for key, size in (("vent_depth_mm", cavity.height), ("vent_width_mm", min(cavity.size_x, cavity.size_y))):
         value = getattr(fabrication, key)
         if value > size / 2:
@@ -204,7 +211,7 @@ def _refuse_undercut(name: str, cavity: Cavity) -> None:
 
 
 def _check_grooves(name: str, device: Device, opens: bool, fabrication: Fabrication) -> None:
-    """Ridges that can be printed, with draft, on the floor of an open mould."""
+    """Refuse ridges of grooves that cannot be printed, or that do not stand on the floor of an open mould."""
     printer = printer_profile(fabrication.printer)
     for number, groove in enumerate(device.layout.array.grooves):
         field = f"array.grooves[{number}]"
@@ -229,7 +236,7 @@ def _check_grooves(name: str, device: Device, opens: bool, fabrication: Fabricat
         )
 
 
-def _refuse_open(name: str, deviation: float, fabrication: Fabrication) -> None:
+def _refuse_open_mould(name: str, deviation: float, fabrication: Fabrication) -> None:
     if fabrication.draft_deg < LEAST_DRAFT_DEG:
         raise InputError(
             f"fabrication.draft_deg = {fabrication.draft_deg:g}: the walls of segment.{name} do not leave a mould "

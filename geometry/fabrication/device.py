@@ -1,4 +1,4 @@
-"""What a kit makes, one segment or an array of them under shared layers, and how it is seen from its cable. In mm."""
+"""What a kit makes, a segment or an array under shared layers, and its frame as seen from the cable. In mm."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -9,7 +9,7 @@ from geometry.array.layout import ArrayLayout, Rectangle
 from geometry.array.parameters import Array
 from geometry.array.parts import groove_solids
 from geometry.fabrication.parameters import Fabrication
-from geometry.fabrication.part import refuse_thin, without
+from geometry.fabrication.part import refuse_thin, subtract_solids
 from geometry.parameters import LayerName, Segment
 from geometry.part_checks import covers_footprint
 from geometry.solids import layer_solids
@@ -18,8 +18,9 @@ from geometry.stack import layers
 
 @dataclass(frozen=True)
 class Device:
-    """layout : where its segments lie and what runs through; one segment is an array of one.
+    """What a kit makes.
 
+    layout : where its segments lie and what runs through; one segment is an array of one.
     stack : the whole as one stack of layers, with an electrode for each segment; frame, film and jig fit it.
     """
 
@@ -28,20 +29,20 @@ class Device:
 
     @property
     def segment(self) -> Segment:
-        """One of its segments, as the configuration states it."""
+        """One of the segments, as the configuration states it."""
         return self.layout.segment
 
     @property
     def is_array(self) -> bool:
-        """Whether it has several segments."""
+        """Whether the device has several segments."""
         return len(self.layout.places) > 1
 
-    def pieces(self, name: str) -> int:
-        """Of how many pieces a layer is."""
+    def piece_count(self, name: str) -> int:
+        """Number of pieces that a layer consists of."""
         return len(self.layout.places) if self.layout.is_cut(name) else 1
 
-    def source(self, name: str) -> Segment:
-        """The segment or the stack that states one piece of a layer."""
+    def stated_segment(self, name: str) -> Segment:
+        """The segment or the stack whose sizes are those of one piece of a layer."""
         return self.segment if self.layout.is_cut(name) else self.stack
 
     def in_grid(self, name: str) -> bool:
@@ -53,37 +54,37 @@ class Device:
         return self.segment.film.thickness_um * 1e-3
 
     def piece(self, name: str) -> Any:
-        """One piece of a layer, a build123d Solid about the z axis at its height, with its grooves."""
+        """One piece of a layer with its grooves, a build123d Solid about the z axis at its height."""
         layer = next(one for one in layers(self.segment) if one.name == name)
-        solid = layer_solids(self.source(name), self._film_mm)[name]
-        return without(solid, groove_solids(self.layout, layer))
+        solid = layer_solids(self.stated_segment(name), self._film_mm)[name]
+        return subtract_solids(solid, groove_solids(self.layout, layer))
 
     def solids(self, name: str) -> list[Any]:
-        """All pieces of a layer in their places."""
+        """All pieces of a layer in their places, build123d Solids."""
         from build123d import Pos
 
         piece = self.piece(name)
         return [Pos(x, y, 0) * piece for x, y in self.layout.middles] if self.layout.is_cut(name) else [piece]
 
     @property
-    def feet_of_stack(self) -> list[Rectangle]:
-        """What the whole stack covers."""
+    def stack_rectangles(self) -> list[Rectangle]:
+        """The one rectangle that the whole stack covers."""
         half_x, half_y = self.stack.length_mm / 2, self.stack.width_mm / 2
         return [(-half_x, half_x, -half_y, half_y)]
 
-    def feet(self, name: str) -> list[Rectangle]:
-        """What the pieces of a layer cover, round ones within a rectangle."""
-        return self.layout.rectangles(name) if self.layout.is_cut(name) else self.feet_of_stack
+    def layer_rectangles(self, name: str) -> list[Rectangle]:
+        """Rectangles that the pieces of a layer cover; round pieces lie within theirs."""
+        return self.layout.rectangles(name) if self.layout.is_cut(name) else self.stack_rectangles
 
 
 def lone_device(segment: Segment) -> Device:
-    """One segment that has passed its checks."""
+    """The device of one segment that has passed its checks."""
     array = Array(columns=1, rows=1, shared=get_args(LayerName))
     return Device(ArrayLayout(array, segment, 0.0, 0.0), segment)
 
 
 def array_device(layout: ArrayLayout, fabrication: Fabrication) -> Device:
-    """An array that has passed its checks. InputError for what a kit cannot make of it."""
+    """The device of an array that has passed its checks. InputError for an array that a kit cannot make."""
     for key, value, plain in (
         ("array", list(fabrication.array), [1, 1]),
         ("pitch_mm", fabrication.pitch_mm, None),
@@ -97,16 +98,16 @@ def array_device(layout: ArrayLayout, fabrication: Fabrication) -> Device:
         raise InputError(
             f"array.shared = {list(layout.array.shared)}: no trace leads out of a film that is an island; name 'film'"
         )
-    _check_grid_passes(layout)
-    _check_webs(layout)
+    _refuse_cut_medium1(layout)
+    _refuse_thin_webs(layout)
     held = layout.held_layers
     if not covers_footprint(layout.segment):
         held = tuple(name for name in held if name != "effector")
     return Device(layout, layout.whole.model_copy(update={"held_layers": held}))
 
 
-def _check_grid_passes(layout: ArrayLayout) -> None:
-    """Bars that clamp the film from above stand where medium 1 would run through."""
+def _refuse_cut_medium1(layout: ArrayLayout) -> None:
+    """Refuse bars that clamp the film from above where medium 1 would run through."""
     if set(layout.array.grid_layers) - {"medium2"} == {"film"} and not layout.is_cut("medium1"):
         raise InputError(
             f"array.grid_layers = {list(layout.array.grid_layers)}: the bars that clamp the film from above would cut "
@@ -115,10 +116,10 @@ def _check_grid_passes(layout: ArrayLayout) -> None:
 
 
 LEAST_WEB_MM = 0.2
-"""Of rubber under a groove: a thinner web tears when the part is lifted from its mould (judged here)."""
+"""Least rubber under a groove: a thinner web tears when the part is lifted from its mould (judged here)."""
 
 
-def _check_webs(layout: ArrayLayout) -> None:
+def _refuse_thin_webs(layout: ArrayLayout) -> None:
     thick = {layer.name: layer.thickness_mm for layer in layers(layout.segment)}
     for number, groove in enumerate(layout.array.grooves):
         refuse_thin(
@@ -130,7 +131,7 @@ def _check_webs(layout: ArrayLayout) -> None:
         )
 
 
-def held_names(segment: Segment) -> set[str]:
+def held_layer_names(segment: Segment) -> set[str]:
     """Names of the layers whose sides the frame holds."""
     if segment.boundary == "free":
         return set()
@@ -138,14 +139,15 @@ def held_names(segment: Segment) -> set[str]:
     return names if covers_footprint(segment) else names - {"effector"}
 
 
-TURNS_DEG = {"+x": 0.0, "+y": 90.0, "-x": 180.0, "-y": 270.0}
+CABLE_EXIT_TURNS_DEG = {"+x": 0.0, "+y": 90.0, "-x": 180.0, "-y": 270.0}
 
 
 @dataclass(frozen=True)
 class ExitFrame:
-    """along, across : sizes of the footprint in x (towards the cable) and y of this frame.
+    """The frame whose x axis u points towards the cable, y axis v across it.
 
-    count_along, count_across : devices in one clamp frame. turn_deg : about z, back into the axes of the device.
+    along, across : sizes in mm of the footprint along u and v. count_along, count_across : devices in one clamp frame.
+    turn_deg : angle about z back into the axes of the device.
     """
 
     along: float
@@ -154,19 +156,19 @@ class ExitFrame:
     count_across: int
     turn_deg: float
 
-    def placed(self, solid: Any) -> Any:
-        """A solid of this frame in the axes of the device."""
+    def solid_in_device(self, solid: Any) -> Any:
+        """A solid of this frame, turned into the axes of the device."""
         from build123d import Rot
 
         return Rot(0, 0, self.turn_deg) * solid
 
-    def placed_point(self, place: tuple[float, float]) -> tuple[float, float]:
-        """A point of this frame in the axes of the device."""
+    def point_in_device(self, place: tuple[float, float]) -> tuple[float, float]:
+        """A point of this frame, in the axes of the device."""
         u, v = place
         return ((u, v), (-v, u), (-u, -v), (v, -u))[round(self.turn_deg / 90.0) % 4]
 
-    def seen(self, rectangle: Rectangle) -> Rectangle:
-        """A rectangle of the device in this frame: least and largest u and v."""
+    def rectangle_in_frame(self, rectangle: Rectangle) -> Rectangle:
+        """A rectangle of the device, in this frame: least and largest u and v."""
         quarter = round(self.turn_deg / 90.0) % 4
         x0, x1, y0, y1 = rectangle
         corners = [((x, y), (y, -x), (-x, -y), (-y, x))[quarter] for x, y in ((x0, y0), (x1, y1))]
@@ -179,4 +181,4 @@ def exit_frame(segment: Segment, fabrication: Fabrication) -> ExitFrame:
     sizes, counts = (segment.length_mm, segment.width_mm), fabrication.array
     if fabrication.cable_exit.endswith("y"):
         sizes, counts = (sizes[1], sizes[0]), (counts[1], counts[0])
-    return ExitFrame(*sizes, *counts, TURNS_DEG[fabrication.cable_exit])
+    return ExitFrame(*sizes, *counts, CABLE_EXIT_TURNS_DEG[fabrication.cable_exit])

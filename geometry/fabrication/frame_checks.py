@@ -1,8 +1,8 @@
-"""A clamp frame that cannot be printed or assembled is refused, with the limit that it breaks."""
+"""Checks that refuse a clamp frame that cannot be printed or assembled, with the limit that it breaks."""
 
 from foundation.errors import InputError
-from geometry.fabrication.device import Device, held_names
-from geometry.fabrication.frame_layout import TAB_CLEARANCE_MM, TIE_MM, FrameLayout, widest_gap
+from geometry.fabrication.device import Device, held_layer_names
+from geometry.fabrication.frame_layout import TAB_CLEARANCE_MM, TIE_SLOT_MM, FrameLayout, widest_gap
 from geometry.fabrication.parameters import Fabrication
 from geometry.fabrication.part import (
     ROUNDING_MM,
@@ -15,7 +15,7 @@ from geometry.flat.film import FilmLayout
 
 
 def check_frame(device: Device, layout: FrameLayout, fabrication: Fabrication) -> None:
-    """InputError with the limit that a wall, ledge, hole or flange breaks."""
+    """Raise InputError with the limit that a wall, ledge, hole or flange breaks."""
     printer = printer_profile(fabrication.printer)
     _check_keys(fabrication, printer)
     _check_pitch(layout, fabrication, printer)
@@ -44,7 +44,7 @@ def _check_keys(fabrication: Fabrication, printer: PrinterProfile) -> None:
 
 
 def _check_cable(layout: FrameLayout, fabrication: Fabrication, printer: PrinterProfile) -> None:
-    """The tab is narrow enough, its channel leaves a floor and the shelf has room for a tie."""
+    """Refuse a tab that is too wide, a channel that leaves no floor, and a shelf without room for a cable tie."""
     widest = layout.room_for_tab - 2 * TAB_CLEARANCE_MM
     if 2 * layout.half_tab > widest + ROUNDING_MM:
         side = "" if fabrication.tab_width_mm else "; the leads need it, so let the cable leave on a longer side"
@@ -61,7 +61,7 @@ def _check_cable(layout: FrameLayout, fabrication: Fabrication, printer: Printer
     )
     refuse_thin(
         f"fabrication.shelf_mm = {fabrication.shelf_mm:g}: the slots for the cable tie leave a wall",
-        (fabrication.shelf_mm - TIE_MM[0]) / 2,
+        (fabrication.shelf_mm - TIE_SLOT_MM[0]) / 2,
         printer["supported_wall_mm"],
         f"the {printer.process.upper()} limit for the supported wall",
         "make the shelf longer",
@@ -69,7 +69,7 @@ def _check_cable(layout: FrameLayout, fabrication: Fabrication, printer: Printer
 
 
 def _check_pitch(layout: FrameLayout, fabrication: Fabrication, printer: PrinterProfile) -> None:
-    """The wall between neighbours is what the pitch leaves beside the widest opening."""
+    """Refuse a pitch that leaves too thin a wall between neighbouring openings."""
     if fabrication.pitch_mm is None:
         if max(fabrication.array) > 1:
             raise InputError(f"fabrication.pitch_mm is missing: array = {list(fabrication.array)} needs it")
@@ -88,7 +88,7 @@ def _check_pitch(layout: FrameLayout, fabrication: Fabrication, printer: Printer
 
 
 def _check_grid(device: Device, layout: FrameLayout, printer: PrinterProfile) -> None:
-    """The bars between the openings of one device are what its gaps leave beside the glue."""
+    """Refuse gaps between segments that leave too thin bars between the openings of one device."""
     for run in (layout.body, *layout.ring):
         if run is None or len(run.feet) == 1:
             continue
@@ -107,7 +107,7 @@ def _check_grid(device: Device, layout: FrameLayout, printer: PrinterProfile) ->
 
 
 def check_tab(film: FilmLayout, case: FrameLayout, fabrication: Fabrication) -> None:
-    """InputError for a tab that does not fit its film or its frame."""
+    """Raise InputError for a tab that does not fit its film or its frame."""
     if film.half_tab > film.half_body + ROUNDING_MM:
         raise InputError(
             f"fabrication.tab_width_mm = {2 * film.half_tab:g}: the film is only {2 * film.half_body:g} mm "
@@ -127,9 +127,9 @@ def check_tab(film: FilmLayout, case: FrameLayout, fabrication: Fabrication) -> 
 
 
 def _check_flange(device: Device, layout: FrameLayout, fabrication: Fabrication) -> None:
-    """The flange of a held film lies on the body beside medium 2."""
+    """Refuse a flange of a held film that is wider than the body beside medium 2, on which it lies."""
     room = layout.half_along - layout.frame.along / 2 - (layout.frame.count_along - 1) * layout.pitch / 2
-    if "film" in held_names(device.stack) and fabrication.film_flange_mm > room + ROUNDING_MM:
+    if "film" in held_layer_names(device.stack) and fabrication.film_flange_mm > room + ROUNDING_MM:
         raise InputError(
             f"fabrication.film_flange_mm = {fabrication.film_flange_mm:g}: the frame has only {room:.3g} mm beside "
             f"the footprint; must be at most that, or give a thicker wall than wall_mm = {fabrication.wall_mm:g}"

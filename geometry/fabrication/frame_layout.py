@@ -1,25 +1,25 @@
-"""How wide the clamp frame is at each height, seen from the cable: x points to where it leaves. Millimetres."""
+"""Layout of the clamp frame: its width at each height, seen from the cable, to which u points. In millimetres."""
 
 from dataclasses import dataclass, replace
 from itertools import product
 
 from geometry.array.layout import Rectangle
-from geometry.fabrication.device import Device, ExitFrame, held_names
+from geometry.fabrication.device import Device, ExitFrame, held_layer_names
 from geometry.fabrication.parameters import Fabrication
 from geometry.flat.film import film_layout
 from geometry.stack import layers
 
 TAB_CLEARANCE_MM = 0.3
-"""On each side of the film's tab: the smallest loose clearance (addema.se, layerx3d.in, forgelabs.com)."""
-TIE_MM = (1.6, 3.0)
-"""Slots for a cable tie, along and across the tab."""
+"""Gap on each side of the film's tab: the smallest loose clearance (addema.se, layerx3d.in, forgelabs.com)."""
+TIE_SLOT_MM = (1.6, 3.0)
+"""Size of the slots for a cable tie, along and across the tab."""
 LUG_MARGIN_MM = 1.5
-"""Of material around the hole of a screw."""
+"""Material around the hole of a screw."""
 
 
 @dataclass(frozen=True)
 class WallRun:
-    """Heights between which each opening is wider than what stands in it by the gap on each side, in mm.
+    """Heights in mm between which each opening is wider, by the gap on each side, than what stands in it.
 
     feet : what stands in the openings, seen from the cable; several where bars of a grid stand between them.
     """
@@ -32,12 +32,12 @@ class WallRun:
 
 @dataclass(frozen=True)
 class FrameLayout:
-    """frame : from the cable's side.
+    """Sizes of the clamp frame in mm, in the frame of the cable.
 
-    film_bottom, film_top : heights. body : around medium 2, None where nothing is held. ring : above the film,
-    empty where it is not needed. half_along, half_across : half the outer sizes, half_across with the lugs.
+    film_bottom, film_top : heights. body : walls around medium 2, None where nothing is held. ring : walls above the
+    film, empty where it is not needed. half_along, half_across : half the outer sizes, half_across with the lugs.
     pitch : between devices, 0 for a single one. screws_across : distance of the screws from the axis.
-    half_tab : half the width of the film's tab. room_for_tab : of the footprint, of an array that of its film.
+    half_tab : half the width of the film's tab. room_for_tab : width of the footprint, of an array that of its film.
     """
 
     frame: ExitFrame
@@ -54,25 +54,25 @@ class FrameLayout:
 
     @property
     def size_between(self) -> float:
-        """The larger size of the footprint in the directions that have neighbours; a single device may have any."""
+        """The larger size in mm of the footprint in the directions that have neighbours; in any for a single device."""
         counted = ((self.frame.count_along, self.frame.along), (self.frame.count_across, self.frame.across))
         sizes = [size for count, size in counted if count > 1]
         return max(sizes or [size for _, size in counted])
 
     @property
     def centers(self) -> list[tuple[float, float]]:
-        """Places of the devices."""
+        """Centres (u, v) of the devices, in mm."""
         counts = (self.frame.count_along, self.frame.count_across)
         along, across = ([(k - (count - 1) / 2) * self.pitch for k in range(count)] for count in counts)
         return list(product(along, across))
 
 
 def frame_layout(device: Device, fabrication: Fabrication) -> FrameLayout:
-    """The layout for a device that has passed its checks."""
+    """The layout of the clamp frame of a device that has passed its checks."""
     film, stack = film_layout(device, fabrication), {layer.name: layer for layer in layers(device.segment)}
-    frame, held = film.frame, held_names(device.stack)
-    ring = _closed_ring(device, held, frame, fabrication)
-    body = _run("medium2", device, held, frame, fabrication) if held else None
+    frame, held = film.frame, held_layer_names(device.stack)
+    ring = _ring_runs(device, held, frame, fabrication)
+    body = _wall_run("medium2", device, held, frame, fabrication) if held else None
     pitch = fabrication.pitch_mm or 0.0
     traces = film.beyond if film.lattice is not None else 0.0
     beside = max(widest_gap(body, ring) + fabrication.wall_mm, traces)
@@ -99,8 +99,8 @@ def widest_gap(body: WallRun | None, ring: tuple[WallRun, ...]) -> float:
     return max((run.gap for run in (body, *ring) if run is not None), default=0.0)
 
 
-def _closed_ring(device: Device, held: set[str], frame: ExitFrame, fabrication: Fabrication) -> tuple[WallRun, ...]:
-    """Openings above the film up to the highest held layer, or around medium 1 where only the film is held."""
+def _ring_runs(device: Device, held: set[str], frame: ExitFrame, fabrication: Fabrication) -> tuple[WallRun, ...]:
+    """Walls above the film up to the highest held layer, or around medium 1 where only the film is held."""
     above = [layer.name for layer in layers(device.segment) if layer.name in ("medium1", "effector")]
     kept = [name for name in above if name in held]
     if kept:
@@ -110,17 +110,17 @@ def _closed_ring(device: Device, held: set[str], frame: ExitFrame, fabrication: 
     else:
         above = []
     runs: list[WallRun] = []
-    for run in (_run(name, device, held, frame, fabrication) for name in above):
+    for run in (_wall_run(name, device, held, frame, fabrication) for name in above):
         if runs and (runs[-1].gap, runs[-1].feet) == (run.gap, run.feet):
             run = replace(run, bottom=runs.pop().bottom)
         runs.append(run)
     return tuple(runs)
 
 
-def _run(name: str, device: Device, held: set[str], frame: ExitFrame, fabrication: Fabrication) -> WallRun:
-    """The openings around one layer: one for each piece where the grid holds it or, above the film, clamps that."""
+def _wall_run(name: str, device: Device, held: set[str], frame: ExitFrame, fabrication: Fabrication) -> WallRun:
+    """Walls around one layer: one opening for each piece that the grid holds or beside which it clamps the film."""
     layer = next(one for one in layers(device.segment) if one.name == name)
     gap = fabrication.glue_gap_mm if name in held else fabrication.side_clearance_mm
     clamps = name == "medium1" and device.layout.is_cut(name) and "film" in device.layout.array.grid_layers
-    feet = device.feet(name) if device.in_grid(name) or clamps else device.feet_of_stack
-    return WallRun(layer.bottom_mm, layer.top_mm, gap, tuple(map(frame.seen, feet)))
+    feet = device.layer_rectangles(name) if device.in_grid(name) or clamps else device.stack_rectangles
+    return WallRun(layer.bottom_mm, layer.top_mm, gap, tuple(map(frame.rectangle_in_frame, feet)))

@@ -15,24 +15,24 @@ from geometry.fabrication.part import (
     FabricationPart,
     box,
     fabrication_part,
-    joined,
+    fuse_solids,
     pin,
     post,
     printer_profile,
     refuse_thin,
-    without,
+    subtract_solids,
 )
 from geometry.flat.film import film_layout
 from geometry.part_checks import covers_footprint
 from geometry.stack import Box, bodies, layers
 
-RELIEF_MM = 1.0
+CORNER_RELIEF_MM = 1.0
 """Diameter of the hole in the corner: sharp edges of the layers find room there."""
-STEP_MM = 3.0
+GAUGE_STEP_MM = 3.0
 """Width of a step of the gauge."""
-REACH_MM = 4.0
+FLOOR_REACH_MM = 4.0
 """Floor beyond the footprint, at least, for tweezers."""
-LOCATOR_MM = 1.2
+LOCATOR_THICKNESS_MM = 1.2
 
 
 def jig_parts(device: Device, fabrication: Fabrication) -> tuple[FabricationPart, ...]:
@@ -44,20 +44,22 @@ def jig_parts(device: Device, fabrication: Fabrication) -> tuple[FabricationPart
     frame = exit_frame(stacked.stack, fabrication)
     narrow = not covers_footprint(device.segment)
     stops = list(tops.values())[-2 if narrow else -1]
-    jig = joined(_corner(frame, stops, fabrication), _steps(tops, frame, fabrication))
+    jig = fuse_solids(_corner_solid(frame, stops, fabrication), _gauge_steps(tops, frame, fabrication))
     if narrow:
-        tall = (-fabrication.floor_mm / 2, stops + LOCATOR_MM)
-        jig = joined(jig, [pin(x, y, tall, fabrication.pin_diameter_mm) for x, y in _pins(frame, fabrication)])
+        tall = (-fabrication.floor_mm / 2, stops + LOCATOR_THICKNESS_MM)
+        jig = fuse_solids(
+            jig, [pin(x, y, tall, fabrication.pin_diameter_mm) for x, y in _pin_places(frame, fabrication)]
+        )
     heights = ", ".join(f"{top:.3g} mm" for name, top in tops.items() if name != "film")
     purpose = (
         "The layers are stacked against its two stops; the steps beside it show how high the stack is after each "
         f"layer: {heights}."
     )
     fine = PROCESSES[fabrication.printer]
-    parts = [fabrication_part("jig", frame.placed(jig), "jig", purpose, fine)]
+    parts = [fabrication_part("jig", frame.solid_in_device(jig), "jig", purpose, fine)]
     if narrow:
         _check_locator(stacked, fabrication)
-        plate = _locator(stacked, frame, stops, fabrication)
+        plate = _locator_plate(stacked, frame, stops, fabrication)
         what = "the effectors" if stacked.is_array else "the effector"
         purpose = f"Lies on the jig's stops and pins and centres {what} on medium 1."
         parts.append(fabrication_part("jig-locator", plate, "jig", purpose, fine))
@@ -76,13 +78,13 @@ def stacked_tops(device: Device, fabrication: Fabrication) -> dict[str, float]:
 
 
 def jig_device(device: Device, fabrication: Fabrication) -> Device:
-    """What is stacked in the jig at once: all, or one segment where all layers that are stacked there are islands."""
+    """The device that is stacked in the jig at once: the whole, or one segment where all these layers are islands."""
     islands = all(device.layout.is_cut(name) for name in stacked_tops(device, fabrication))
     return lone_device(device.segment) if islands else device
 
 
 def _check_locator(device: Device, fabrication: Fabrication) -> None:
-    """Walls between the holes of neighbouring effectors."""
+    """Refuse too thin walls between the holes of neighbouring effectors."""
     if not device.is_array:
         return
     layout, printer = device.layout, printer_profile(fabrication.printer)
@@ -99,58 +101,71 @@ def _check_locator(device: Device, fabrication: Fabrication) -> None:
     )
 
 
-def _corner(frame: ExitFrame, stops: float, fabrication: Fabrication) -> Any:
-    """Floor and two walls: one away from the cable, one beside it."""
-    half_x, half_y, thick, reach = frame.along / 2, frame.across / 2, _thick(fabrication), _reach(fabrication)
+def _corner_solid(frame: ExitFrame, stops: float, fabrication: Fabrication) -> Any:
+    """Floor of the jig and two walls: one away from the cable, one beside it."""
+    half_x, half_y, thick, reach = (
+        frame.along / 2,
+        frame.across / 2,
+        _stop_thickness_mm(fabrication),
+        _floor_reach_mm(fabrication),
+    )
     whole_x, whole_y = (-half_x - thick, half_x + reach), (-half_y - thick, half_y + reach)
     floor = box(whole_x, whole_y, (-fabrication.floor_mm, 0.0))
     low = -fabrication.floor_mm / 2
     behind = box((-half_x - thick, -half_x), whole_y, (low, stops))
     beside = box(whole_x, (-half_y - thick, -half_y), (low, stops))
-    return without(joined(floor, [behind, beside]), [post(-half_x, -half_y, (0.0, stops + 1.0), RELIEF_MM)])
+    return subtract_solids(
+        fuse_solids(floor, [behind, beside]), [post(-half_x, -half_y, (0.0, stops + 1.0), CORNER_RELIEF_MM)]
+    )
 
 
-def _steps(tops: dict[str, float], frame: ExitFrame, fabrication: Fabrication) -> list[Any]:
-    """A staircase along the outer side of the wall beside the cable; the film is too thin for a step of its own."""
-    start = -frame.along / 2 - _thick(fabrication)
-    outer = -frame.across / 2 - _thick(fabrication)
+def _gauge_steps(tops: dict[str, float], frame: ExitFrame, fabrication: Fabrication) -> list[Any]:
+    """Steps of a staircase along the outer side of the wall beside the cable; the film is too thin for one."""
+    start = -frame.along / 2 - _stop_thickness_mm(fabrication)
+    outer = -frame.across / 2 - _stop_thickness_mm(fabrication)
     return [
         box(
-            (start + number * STEP_MM, start + (number + 1) * STEP_MM),
-            (outer - STEP_MM, outer),
+            (start + number * GAUGE_STEP_MM, start + (number + 1) * GAUGE_STEP_MM),
+            (outer - GAUGE_STEP_MM, outer),
             (-fabrication.floor_mm, top),
         )
         for number, top in enumerate(top for name, top in tops.items() if name != "film")
     ]
 
 
-def _thick(fabrication: Fabrication) -> float:
-    """Of the stops: they carry the pins of the locator, whose holes are wider by the clearance."""
+def _stop_thickness_mm(fabrication: Fabrication) -> float:
+    """Thickness in mm of the stops, which carry the pins of the locator, with a clearance around each."""
     beside = fabrication.wall_mm + fabrication.pin_clearance_mm
     return max(2 * fabrication.wall_mm, fabrication.pin_diameter_mm + 2 * beside)
 
 
-def _reach(fabrication: Fabrication) -> float:
-    """Floor beyond the footprint; the end of the stop that stands on it carries a pin too."""
-    return max(REACH_MM, _thick(fabrication))
+def _floor_reach_mm(fabrication: Fabrication) -> float:
+    """Width in mm of the floor beyond the footprint; the end of the stop that stands on it carries a pin too."""
+    return max(FLOOR_REACH_MM, _stop_thickness_mm(fabrication))
 
 
-def _pins(frame: ExitFrame, fabrication: Fabrication) -> list[tuple[float, float]]:
-    """On the stop behind, in the middle of its ends, so that each hole of the locator has a whole wall around it."""
-    thick, half = _thick(fabrication), frame.across / 2
+def _pin_places(frame: ExitFrame, fabrication: Fabrication) -> list[tuple[float, float]]:
+    """Places of the pins on the stop behind, each in the middle of an end, so that it has a whole wall around it."""
+    thick, half = _stop_thickness_mm(fabrication), frame.across / 2
     x = -frame.along / 2 - thick / 2
-    return [(x, -half - thick / 2), (x, half + _reach(fabrication) / 2)]
+    return [(x, -half - thick / 2), (x, half + _floor_reach_mm(fabrication) / 2)]
 
 
-def _locator(device: Device, frame: ExitFrame, stops: float, fabrication: Fabrication) -> Any:
-    """The plate in the axes of the device."""
-    thick, reach, tall = _thick(fabrication), _reach(fabrication), (stops, stops + LOCATOR_MM)
+def _locator_plate(device: Device, frame: ExitFrame, stops: float, fabrication: Fabrication) -> Any:
+    """The locator plate in the axes of the device."""
+    thick, reach, tall = (
+        _stop_thickness_mm(fabrication),
+        _floor_reach_mm(fabrication),
+        (stops, stops + LOCATOR_THICKNESS_MM),
+    )
     low_x, low_y = -frame.along / 2 - thick, -frame.across / 2 - thick
     plate = box((low_x, frame.along / 2 + reach), (low_y, frame.across / 2 + reach), tall)
     through = (tall[0] - 1.0, tall[1] + 1.0)
     hole = fabrication.pin_diameter_mm + 2 * fabrication.pin_clearance_mm
-    holes = [post(x, y, through, hole) for x, y in _pins(frame, fabrication)]
-    return without(frame.placed(without(plate, holes)), _effector_holes(device, through, fabrication))
+    holes = [post(x, y, through, hole) for x, y in _pin_places(frame, fabrication)]
+    return subtract_solids(
+        frame.solid_in_device(subtract_solids(plate, holes)), _effector_holes(device, through, fabrication)
+    )
 
 
 def _effector_holes(device: Device, through: tuple[float, float], fabrication: Fabrication) -> list[Any]:
@@ -170,7 +185,7 @@ def _effector_feet(device: Device, body: Box) -> list[tuple[float, float, float,
 
 @dataclass(frozen=True)
 class SolidKit:
-    """parts : all printable parts, labels unique.
+    """Solids of a kit. parts : all printable parts, labels unique.
 
     pours : one for each cast component.
     cavity_checks : one for each cast component, in the same order.

@@ -1,20 +1,20 @@
-"""The printed parts of one mould, and where its cavities, channels, vents and pins lie. Lengths in millimetres."""
+"""Printed parts of one mould, and where its cavities, channels, vents and pins lie. Lengths in millimetres."""
 
 from dataclasses import dataclass
 from itertools import pairwise, product
 from typing import Any
 
-from geometry.fabrication.cavity import Cavity, Style
+from geometry.fabrication.cavity import Cavity, MouldStyle
 from geometry.fabrication.parameters import Fabrication
-from geometry.fabrication.part import box, joined, pin, post, printer_profile, refuse_thin, without
+from geometry.fabrication.part import box, fuse_solids, pin, post, printer_profile, refuse_thin, subtract_solids
 
 PIN_MARGIN_MM = 1.5
-"""Of material around the hole of a pin."""
+"""Material around the hole of a pin."""
 
 
 @dataclass(frozen=True)
 class Gang:
-    """columns_x, rows_y : the axes of the cavities.
+    """Layout of the cavities of one mould in mm. columns_x, rows_y : the axes of the cavities.
 
     pitch_x, pitch_y : between neighbours. half_x, half_y : half the sizes of the mould.
     channels_x : half the length over the outer overflow channels. pin_x : the pins stand at -pin_x and pin_x.
@@ -31,12 +31,12 @@ class Gang:
 
     @property
     def centers(self) -> list[tuple[float, float]]:
-        """x and y of each cavity."""
+        """Centre (x, y) of each cavity."""
         return list(product(self.columns_x, self.rows_y))
 
 
-def gang_of(cavity: Cavity, style: Style, fabrication: Fabrication) -> Gang:
-    """The layout of the cavities: each has a land around it, then an overflow channel."""
+def gang_of(cavity: Cavity, style: MouldStyle, fabrication: Fabrication) -> Gang:
+    """The layout of the cavities: around each lies a land, then an overflow channel."""
     around = 2 * fabrication.land_mm + fabrication.overflow_mm
     hole = fabrication.pin_diameter_mm + 2 * fabrication.pin_clearance_mm
     lug = hole + 2 * PIN_MARGIN_MM
@@ -48,8 +48,8 @@ def gang_of(cavity: Cavity, style: Style, fabrication: Fabrication) -> Gang:
     channels_x = (columns * pitch_x + fabrication.overflow_mm) / 2
     channels_y = (rows * pitch_y + fabrication.overflow_mm) / 2
     return Gang(
-        columns_x=_spread(columns, pitch_x),
-        rows_y=_spread(rows, pitch_y),
+        columns_x=_evenly_spaced(columns, pitch_x),
+        rows_y=_evenly_spaced(rows, pitch_y),
         pitch_x=pitch_x,
         pitch_y=pitch_y,
         half_x=channels_x + max(fabrication.mould_wall_mm, lug),
@@ -59,19 +59,19 @@ def gang_of(cavity: Cavity, style: Style, fabrication: Fabrication) -> Gang:
     )
 
 
-def overflow(gang: Gang, top: float, depth: float, width: float) -> list[Any]:
+def overflow_channels(gang: Gang, top: float, depth: float, width: float) -> list[Any]:
     """Channels around every cavity; those along y run out at the edges of the mould."""
     high = (top - depth, top + depth)
     along_y = [
         box((x - width / 2, x + width / 2), (-gang.half_y - 1.0, gang.half_y + 1.0), high)
-        for x in _between(gang.columns_x, gang.pitch_x)
+        for x in _channel_positions(gang.columns_x, gang.pitch_x)
     ]
     ends = (-gang.channels_x + width / 2, gang.channels_x - width / 2)
-    along_x = [box(ends, (y - width / 2, y + width / 2), high) for y in _between(gang.rows_y, gang.pitch_y)]
+    along_x = [box(ends, (y - width / 2, y + width / 2), high) for y in _channel_positions(gang.rows_y, gang.pitch_y)]
     return along_y + along_x
 
 
-def vents(gang: Gang, cavity: Cavity, fabrication: Fabrication) -> list[Any]:
+def vent_notches(gang: Gang, cavity: Cavity, fabrication: Fabrication) -> list[Any]:
     """Two shallow notches under the lid from each cavity to the overflow; they reach a little into the cavity.
 
     A box has them beside two opposite corners, off the middle of its faces; round cavities at x. What is left of the
@@ -90,20 +90,20 @@ def vents(gang: Gang, cavity: Cavity, fabrication: Fabrication) -> list[Any]:
     return found
 
 
-def _spread(count: int, pitch: float) -> tuple[float, ...]:
+def _evenly_spaced(count: int, pitch: float) -> tuple[float, ...]:
     return tuple((number - (count - 1) / 2) * pitch for number in range(count))
 
 
-def _between(axes: tuple[float, ...], pitch: float) -> list[float]:
-    """Between the axes and beyond the outer ones."""
+def _channel_positions(axes: tuple[float, ...], pitch: float) -> list[float]:
+    """Positions of the channels: between the axes and beyond the outer ones."""
     return [axes[0] - pitch / 2, *(axis + pitch / 2 for axis in axes)]
 
 
-LID_MM = 3.0
-SHALLOWEST_MM = 0.1
-"""Of an overflow channel."""
-OVERHANG_MM = 2.0
-"""By which the lid stands out along y, to be lifted there."""
+LID_THICKNESS_MM = 3.0
+LEAST_OVERFLOW_DEPTH_MM = 0.1
+"""Least depth of an overflow channel."""
+LID_OVERHANG_MM = 2.0
+"""Distance by which the lid stands out along y, to be lifted there."""
 
 
 @dataclass(frozen=True)
@@ -115,32 +115,32 @@ class Mould:
     """
 
     component: str
-    style: Style
+    style: MouldStyle
     cavity: Cavity
     gang: Gang
     solids: dict[str, Any]
     vents: list[Any]
 
 
-def mould_of(component: str, style: Style, cavity: Cavity, fabrication: Fabrication) -> Mould:
+def mould_of(component: str, style: MouldStyle, cavity: Cavity, fabrication: Fabrication) -> Mould:
     """The mould of one component. InputError for bars that are too thin to print."""
     from build123d import Pos
 
     gang = gang_of(cavity, style, fabrication)
     depth = _overflow_depth(style, cavity, fabrication)
-    notches = vents(gang, cavity, fabrication)
+    notches = vent_notches(gang, cavity, fabrication)
     hollow = [Pos(x, y, 0) * cavity.solid for x, y in gang.centers]
-    hollow += overflow(gang, cavity.height, depth, fabrication.overflow_mm) + notches
+    hollow += overflow_channels(gang, cavity.height, depth, fabrication.overflow_mm) + notches
     if style == "open":
-        solids = {"plate": _plate(gang, cavity, hollow, fabrication)}
+        solids = {"plate": _plate_solid(gang, cavity, hollow, fabrication)}
     else:
-        solids = {"floor": _floor(gang, cavity, fabrication), **_bars(gang, cavity, hollow, fabrication)}
-    solids["lid"] = _lid(gang, style, cavity, fabrication)
+        solids = {"floor": _floor_solid(gang, cavity, fabrication), **_bar_solids(gang, cavity, hollow, fabrication)}
+    solids["lid"] = _lid_solid(gang, style, cavity, fabrication)
     return Mould(component, style, cavity, gang, solids, notches)
 
 
-def pin_places(gang: Gang, style: Style, cavity: Cavity) -> list[tuple[float, float]]:
-    """x and y of the pins: one at each end, in a split mould at each end of each bar."""
+def pin_places(gang: Gang, style: MouldStyle, cavity: Cavity) -> list[tuple[float, float]]:
+    """Places (x, y) of the pins: one at each end, in a split mould at each end of each bar."""
     if style == "open":
         return [(-gang.pin_x, 0.0), (gang.pin_x, 0.0)]
     middles = [(low + high) / 2 for low, high in bar_spans(gang, cavity)]
@@ -148,7 +148,7 @@ def pin_places(gang: Gang, style: Style, cavity: Cavity) -> list[tuple[float, fl
 
 
 def bar_spans(gang: Gang, cavity: Cavity) -> list[tuple[float, float]]:
-    """y of both faces of each bar.
+    """Both ends in y of each bar.
 
     The mould parts at one face of the boxes, whose seam then runs along two edges, or through the axes of
     the cylinders.
@@ -158,13 +158,13 @@ def bar_spans(gang: Gang, cavity: Cavity) -> list[tuple[float, float]]:
     return list(pairwise(cuts))
 
 
-def _overflow_depth(style: Style, cavity: Cavity, fabrication: Fabrication) -> float:
+def _overflow_depth(style: MouldStyle, cavity: Cavity, fabrication: Fabrication) -> float:
     if style == "open":
         return min(fabrication.overflow_mm, cavity.height + fabrication.mould_wall_mm) / 2
     printer = printer_profile(fabrication.printer)
     refuse_thin(
         f"fabrication.mould_style = 'split': a part of {cavity.height:.3g} mm leaves bars",
-        cavity.height - SHALLOWEST_MM,
+        cavity.height - LEAST_OVERFLOW_DEPTH_MM,
         printer["supported_wall_mm"],
         f"the {printer.process.upper()} limit for the supported wall",
         "use mould_style = 'open' or 'auto'",
@@ -172,42 +172,44 @@ def _overflow_depth(style: Style, cavity: Cavity, fabrication: Fabrication) -> f
     return min(fabrication.overflow_mm / 2, cavity.height - printer["supported_wall_mm"])
 
 
-def _plate(gang: Gang, cavity: Cavity, hollow: list[Any], fabrication: Fabrication) -> Any:
-    block = _block(gang, (-fabrication.mould_wall_mm, cavity.height))
-    return joined(without(block, hollow), _pins(gang, "open", cavity, cavity.height, fabrication))
+def _plate_solid(gang: Gang, cavity: Cavity, hollow: list[Any], fabrication: Fabrication) -> Any:
+    block = _block_solid(gang, (-fabrication.mould_wall_mm, cavity.height))
+    return fuse_solids(subtract_solids(block, hollow), _pin_solids(gang, "open", cavity, cavity.height, fabrication))
 
 
-def _floor(gang: Gang, cavity: Cavity, fabrication: Fabrication) -> Any:
-    block = _block(gang, (-fabrication.mould_wall_mm, 0.0))
-    return joined(block, _pins(gang, "split", cavity, 0.0, fabrication))
+def _floor_solid(gang: Gang, cavity: Cavity, fabrication: Fabrication) -> Any:
+    block = _block_solid(gang, (-fabrication.mould_wall_mm, 0.0))
+    return fuse_solids(block, _pin_solids(gang, "split", cavity, 0.0, fabrication))
 
 
-def _bars(gang: Gang, cavity: Cavity, hollow: list[Any], fabrication: Fabrication) -> dict[str, Any]:
+def _bar_solids(gang: Gang, cavity: Cavity, hollow: list[Any], fabrication: Fabrication) -> dict[str, Any]:
     tall = (0.0, cavity.height)
-    holes = _holes(gang, "split", cavity, (-1.0, cavity.height + 1.0), fabrication)
+    holes = _hole_solids(gang, "split", cavity, (-1.0, cavity.height + 1.0), fabrication)
     return {
-        f"bar-{number}": without(box((-gang.half_x, gang.half_x), span, tall), hollow + holes)
+        f"bar-{number}": subtract_solids(box((-gang.half_x, gang.half_x), span, tall), hollow + holes)
         for number, span in enumerate(bar_spans(gang, cavity), 1)
     }
 
 
-def _lid(gang: Gang, style: Style, cavity: Cavity, fabrication: Fabrication) -> Any:
-    tall = (cavity.height, cavity.height + LID_MM)
-    out = gang.half_y + OVERHANG_MM
+def _lid_solid(gang: Gang, style: MouldStyle, cavity: Cavity, fabrication: Fabrication) -> Any:
+    tall = (cavity.height, cavity.height + LID_THICKNESS_MM)
+    out = gang.half_y + LID_OVERHANG_MM
     block = box((-gang.half_x, gang.half_x), (-out, out), tall)
-    return without(block, _holes(gang, style, cavity, (tall[0] - 1.0, tall[1] + 1.0), fabrication))
+    return subtract_solids(block, _hole_solids(gang, style, cavity, (tall[0] - 1.0, tall[1] + 1.0), fabrication))
 
 
-def _block(gang: Gang, tall: tuple[float, float]) -> Any:
+def _block_solid(gang: Gang, tall: tuple[float, float]) -> Any:
     return box((-gang.half_x, gang.half_x), (-gang.half_y, gang.half_y), tall)
 
 
-def _pins(gang: Gang, style: Style, cavity: Cavity, foot: float, fabrication: Fabrication) -> list[Any]:
+def _pin_solids(gang: Gang, style: MouldStyle, cavity: Cavity, foot: float, fabrication: Fabrication) -> list[Any]:
     """Pins that end within the lid, so that a flat weight can lie on it."""
-    tip = cavity.height + LID_MM - 0.5
+    tip = cavity.height + LID_THICKNESS_MM - 0.5
     return [pin(x, y, (foot, tip), fabrication.pin_diameter_mm) for x, y in pin_places(gang, style, cavity)]
 
 
-def _holes(gang: Gang, style: Style, cavity: Cavity, tall: tuple[float, float], fabrication: Fabrication) -> list[Any]:
+def _hole_solids(
+    gang: Gang, style: MouldStyle, cavity: Cavity, tall: tuple[float, float], fabrication: Fabrication
+) -> list[Any]:
     diameter = fabrication.pin_diameter_mm + 2 * fabrication.pin_clearance_mm
     return [post(x, y, tall, diameter) for x, y in pin_places(gang, style, cavity)]

@@ -1,4 +1,4 @@
-"""The [fabrication] table, what to pour for a material, and which components are cast or cut from sheet."""
+"""The [fabrication] table, recipes of castable materials, and which components are cast or cut from sheet."""
 
 import tomllib
 from dataclasses import dataclass
@@ -144,29 +144,29 @@ class Recipe:
 
 
 def recipe_for(material: str, fabrication: Fabrication) -> Recipe | None:
-    """The recipe of a material: your own, the built-in one, that of its stand-in, or None if it cannot be cast."""
+    """The recipe of a material: the user's, the built-in one, that of its stand-in, or None if it cannot be cast."""
     if material in fabrication.casting:
-        return _own(material, fabrication.casting[material])
-    sheet = _table()["sheets"].get(material, {})
+        return _user_recipe(material, fabrication.casting[material])
+    sheet = _casting_table()["sheets"].get(material, {})
     name = sheet.get("cast_as", material)
     if name in fabrication.casting:
-        return _own(name, fabrication.casting[name])
-    row = _table()["recipes"].get(name)
-    return None if row is None else _built_in(name, sheet.get("note", ""), row)
+        return _user_recipe(name, fabrication.casting[name])
+    row = _casting_table()["recipes"].get(name)
+    return None if row is None else _built_in_recipe(name, sheet.get("note", ""), row)
 
 
 def castable_materials(fabrication: Fabrication) -> tuple[str, ...]:
     """Names of the materials that can be cast."""
-    stand_ins = [name for name, row in _table()["sheets"].items() if "cast_as" in row]
-    return tuple(sorted({*_table()["recipes"], *stand_ins, *fabrication.casting}))
+    stand_ins = [name for name, row in _casting_table()["sheets"].items() if "cast_as" in row]
+    return tuple(sorted({*_casting_table()["recipes"], *stand_ins, *fabrication.casting}))
 
 
 @cache
-def _table() -> dict[str, Any]:
+def _casting_table() -> dict[str, Any]:
     return tomllib.loads(files(__package__).joinpath("casting.toml").read_text("utf-8"))
 
 
-def _built_in(name: str, note: str, row: dict[str, Any]) -> Recipe:
+def _built_in_recipe(name: str, note: str, row: dict[str, Any]) -> Recipe:
     return Recipe(
         name=name,
         note=note,
@@ -177,12 +177,12 @@ def _built_in(name: str, note: str, row: dict[str, Any]) -> Recipe:
         densities_g_cm3=(row["density_g_cm3"], row["density_g_cm3"]),
         pot_life_min=row["pot_life_min"],
         cure_time_h=row["cure_time_h"],
-        release=_table()["release"][row["release"]],
+        release=_casting_table()["release"][row["release"]],
         source=f"{row['source']} (confidence {row['confidence']})",
     )
 
 
-def _own(name: str, numbers: CastingNumbers) -> Recipe:
+def _user_recipe(name: str, numbers: CastingNumbers) -> Recipe:
     density = numbers.density_g_cm3
     return Recipe(
         name=name,
@@ -201,7 +201,7 @@ def _own(name: str, numbers: CastingNumbers) -> Recipe:
 
 @dataclass(frozen=True)
 class CastComponent:
-    """name : "effector", "medium1" or "medium2"; material : of the configuration; recipe : what is poured."""
+    """A component to cast. name : "effector", "medium1" or "medium2"; recipe : that of what is poured."""
 
     name: Component
     material: str
@@ -215,7 +215,9 @@ def cast_components(segment: Segment, fabrication: Fabrication) -> tuple[CastCom
         if name not in materials:
             raise InputError(f"fabrication.routes.{name} = '{route}': segment.{name} is absent")
     recipes = {
-        name: _recipe(name, materials[name], segment, fabrication) for name in get_args(Component) if name in materials
+        name: _component_recipe(name, materials[name], segment, fabrication)
+        for name in get_args(Component)
+        if name in materials
     }
     return tuple(CastComponent(name, materials[name], recipe) for name, recipe in recipes.items() if recipe)
 
@@ -226,7 +228,7 @@ def sheet_components(segment: Segment, fabrication: Fabrication) -> tuple[str, .
     return tuple(layer.name for layer in reversed(layers(segment)) if layer.name not in {"film", *cast})
 
 
-def _recipe(name: Component, material: str, segment: Segment, fabrication: Fabrication) -> Recipe | None:
+def _component_recipe(name: Component, material: str, segment: Segment, fabrication: Fabrication) -> Recipe | None:
     """The recipe of a component that is cast, None for one that is cut from sheet."""
     route = fabrication.routes.get(name, "auto")
     recipe = recipe_for(material, fabrication)

@@ -1,4 +1,4 @@
-"""A printable part of the fabrication kit, the shapes it is made of, and what a printer can make. Millimetres."""
+"""A printable part of the fabrication kit, the solids it is built from, and the limits of printers. Millimetres."""
 
 import tomllib
 from collections.abc import Iterable
@@ -33,7 +33,7 @@ LimitName = Literal[
 
 @dataclass(frozen=True)
 class Limit:
-    """One number of a profile, where it was read, and how sure it is."""
+    """One number of a printer profile, its source, and the confidence in it."""
 
     value: float
     source: str
@@ -60,24 +60,24 @@ class PrinterProfile:
     limits: dict[LimitName, Limit]
 
     def __getitem__(self, name: LimitName) -> float:
-        """The number of that name."""
+        """The value of the limit of that name."""
         return self.limits[name].value
 
 
 def printer_names() -> tuple[str, ...]:
-    """Names of all profiles in the order of the table."""
-    return tuple(_table()["printers"])
+    """Names of all printer profiles in the order of the table."""
+    return tuple(_printer_table()["printers"])
 
 
 @cache
 def printer_profile(name: str, field: str = "--printer") -> PrinterProfile:
-    """A profile by its name. InputError, which names the field and the nearest name, for none."""
-    rows = _table()["printers"]
+    """A printer profile by its name. InputError, which names the field and the nearest name, for an unknown one."""
+    rows = _printer_table()["printers"]
     if name not in rows:
         near = get_close_matches(name.lower(), rows, n=1, cutoff=0.5)
         hint = f"did you mean '{near[0]}'?" if near else f"known are {', '.join(rows)}"
         raise InputError(f"{field} = '{name}': no such printer profile; {hint}")
-    row, sources = rows[name], _table()["sources"]
+    row, sources = rows[name], _printer_table()["sources"]
     limits = {
         key: Limit(value, sources[source], confidence)
         for key in get_args(LimitName)
@@ -87,7 +87,7 @@ def printer_profile(name: str, field: str = "--printer") -> PrinterProfile:
 
 
 @cache
-def _table() -> dict[str, Any]:
+def _printer_table() -> dict[str, Any]:
     return tomllib.loads(files(__package__).joinpath("printers.toml").read_text("utf-8"))
 
 
@@ -105,7 +105,7 @@ KIT_COLOURS: dict[str, str] = {
 
 @dataclass(frozen=True)
 class FabricationPart(Part):
-    """One printable solid, where it lies in its own assembly, with what the build sheet says of it.
+    """A printable solid where it lies in its own assembly, with what the build sheet says of it.
 
     label : unique in a kit; names the file.
     material : what it is printed from, such as "SLA resin".
@@ -120,7 +120,7 @@ class FabricationPart(Part):
 
     @property
     def size_mm(self) -> tuple[float, float, float]:
-        """Sides of the bounding box, x, y and z."""
+        """Sides of the bounding box in mm: x, y and z."""
         size = self.solid.bounding_box().size
         return (float(size.X), float(size.Y), float(size.Z))
 
@@ -156,41 +156,41 @@ Interval = tuple[float, float]
 
 
 def box(x: Interval, y: Interval, z: Interval) -> Any:
-    """A box from its intervals."""
+    """A box from its intervals in x, y and z, in mm."""
     from build123d import Pos, Solid
 
     return Pos(x[0], y[0], z[0]) * Solid.make_box(x[1] - x[0], y[1] - y[0], z[1] - z[0])
 
 
 def post(x: float, y: float, z: Interval, diameter: float) -> Any:
-    """An upright cylinder: a pin, or what a hole takes away."""
+    """An upright cylinder at x, y, in mm: a pin, or what a hole takes away."""
     from build123d import Pos, Solid
 
     return Pos(x, y, z[0]) * Solid.make_cylinder(diameter / 2, z[1] - z[0])
 
 
 def pin(x: float, y: float, z: Interval, diameter: float) -> Any:
-    """A pin whose tip is a cone that finds its hole: a sixth of the diameter smaller on each side."""
+    """A pin at x, y, in mm, whose tip is a cone that finds its hole: a sixth of the diameter smaller on each side."""
     from build123d import Pos, Solid
 
     lead = min(diameter / 4, (z[1] - z[0]) / 2)
     tip = Pos(x, y, z[1] - lead) * Solid.make_cone(diameter / 2, diameter / 3, lead)
-    return joined(post(x, y, (z[0], z[1] - lead), diameter), [tip])
+    return fuse_solids(post(x, y, (z[0], z[1] - lead), diameter), [tip])
 
 
-def joined(solid: Any, others: Iterable[Any]) -> Any:
-    """One solid from several that touch. RuntimeError where they do not hang together."""
-    return _single(solid.fuse(*others))
+def fuse_solids(solid: Any, others: Iterable[Any]) -> Any:
+    """Fuse solids that touch into one. RuntimeError where they do not hang together."""
+    return _single_solid(solid.fuse(*others))
 
 
-def without(solid: Any, others: Iterable[Any]) -> Any:
-    """What is left of a solid. RuntimeError where it falls to pieces."""
+def subtract_solids(solid: Any, others: Iterable[Any]) -> Any:
+    """Cut other solids away from one. RuntimeError where it falls to pieces."""
     tools = list(others)
-    return _single(solid.cut(*tools)) if tools else solid
+    return _single_solid(solid.cut(*tools)) if tools else solid
 
 
-def scaled(solid: Any, factor: float) -> Any:
-    """A solid scaled about the origin."""
+def scale_solid(solid: Any, factor: float) -> Any:
+    """Scale a solid about the origin."""
     from build123d import Solid
     from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform  # type: ignore[import-untyped]
     from OCP.gp import gp_Pnt, gp_Trsf  # type: ignore[import-untyped]
@@ -200,8 +200,8 @@ def scaled(solid: Any, factor: float) -> Any:
     return Solid(BRepBuilderAPI_Transform(solid.wrapped, change, True).Shape())
 
 
-def volume(shape: Any) -> float:
-    """Volume of whatever a cut or an intersection returned; 0 for nothing."""
+def shape_volume_mm3(shape: Any) -> float:
+    """Volume in mm^3 of what a cut or an intersection returned; 0 for nothing."""
     if shape is None:
         return 0.0
     if isinstance(shape, list):
@@ -209,7 +209,7 @@ def volume(shape: Any) -> float:
     return float(shape.volume)
 
 
-def _single(shape: Any) -> Any:
+def _single_solid(shape: Any) -> Any:
     solids = shape.solids()
     if len(solids) != 1:
         raise RuntimeError(f"a part of the kit falls into {len(solids)} pieces")
@@ -220,7 +220,7 @@ ROUNDING_MM = 1e-9
 
 
 def refuse_thin(what: str, size_mm: float, least_mm: float, limit: str, advice: str) -> None:
-    """InputError for a size in mm below the limit.
+    """Raise InputError for a size in mm below the limit.
 
     what : the key with its value, and what follows from it; limit : the name of the limit; advice : how to mend it.
     """
@@ -231,7 +231,7 @@ def refuse_thin(what: str, size_mm: float, least_mm: float, limit: str, advice: 
 def refuse_small_keys(
     fabrication: Fabrication, printer: PrinterProfile, checks: Iterable[tuple[str, str, float, str]]
 ) -> None:
-    """InputError for a size of the table [fabrication] that the printer cannot make.
+    """Raise InputError for a size of the table [fabrication] that the printer cannot make.
 
     checks : key, what it is the size of, least in mm, name of the limit.
     """

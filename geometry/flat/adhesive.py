@@ -6,14 +6,14 @@ from geometry.fabrication.device import Device
 from geometry.fabrication.frame_layout import WallRun, frame_layout
 from geometry.fabrication.parameters import Fabrication
 from geometry.flat.film import FilmLayout
-from geometry.flat.film_sheet import devices
+from geometry.flat.film_sheet import device_count
 from geometry.flat.panel import Panel
 from geometry.flat.pattern import Circle, Dimension, FlatPattern, Outline, rectangle
 from geometry.stack import Box, bodies, layers
 
-NAMES = {"effector": "effector", "medium1": "medium 1", "medium2": "medium 2"}
-PAD = "Bonds {where}: rub it onto the lower one, peel off the liner."
-RING = "Rub it onto the flange of the film, {where}; the {left} free."
+LAYER_NAMES = {"effector": "effector", "medium1": "medium 1", "medium2": "medium 2"}
+PAD_INSTRUCTION = "Bonds {where}: rub it onto the lower one, peel off the liner."
+RING_INSTRUCTION = "Rub it onto the flange of the film, {where}; the {left} free."
 JOINTS = (
     ("base", "medium2", "the frame and medium 2"),
     ("medium2", "film", "medium 2 and the film"),
@@ -31,48 +31,50 @@ def adhesive_patterns(device: Device, fabrication: Fabrication, layout: FilmLayo
     found = []
     for low, high, where in JOINTS:
         if high in present:
-            own = high if device.pieces(high) >= device.pieces(low if low != "base" else high) else low
-            cut, count = body_outline(own, device, layout), devices(fabrication) * device.pieces(own)
-            title = f"Adhesive: {NAMES.get(low, low)} to {NAMES.get(high, high)}"
-            found.append(_pad(f"{low}-{high}", title, cut, where, count, fabrication))
-    return found + (_rings(device, fabrication, layout, panel) if layout.flange > 0.0 else [])
+            own = high if device.piece_count(high) >= device.piece_count(low if low != "base" else high) else low
+            cut, count = body_outline(own, device, layout), device_count(fabrication) * device.piece_count(own)
+            title = f"Adhesive: {LAYER_NAMES.get(low, low)} to {LAYER_NAMES.get(high, high)}"
+            found.append(_pad_pattern(f"{low}-{high}", title, cut, where, count, fabrication))
+    return found + (_ring_patterns(device, fabrication, layout, panel) if layout.flange > 0.0 else [])
 
 
 def body_outline(name: str, device: Device, layout: FilmLayout) -> Outline | Circle:
-    """The outline of one piece of a layer on CUT, seen from its cable."""
-    source = device.source(name)
+    """The outline of one piece of a layer on the layer CUT, seen from the cable."""
+    source = device.stated_segment(name)
     body, halves = bodies(source)[-1], (source.length_mm / 2, source.width_mm / 2)
     if name == "effector":
         if not isinstance(body, Box):
             return Circle("CUT", (0.0, 0.0), float(body.reach(np.array([1.0, 0.0, 0.0]))), hole=False)
         halves = (body.half_x, body.half_y)
-    u0, u1, v0, v1 = layout.frame.seen((-halves[0], halves[0], -halves[1], halves[1]))
+    u0, u1, v0, v1 = layout.frame.rectangle_in_frame((-halves[0], halves[0], -halves[1], halves[1]))
     return rectangle("CUT", (u0, u1), (v0, v1))
 
 
 def body_dimensions(cut: Outline | Circle) -> tuple[Dimension, ...]:
-    """Both sizes of a rectangle, or the diameter."""
+    """The dimensions of an outline: both sides of a rectangle, or the diameter of a circle."""
     if isinstance(cut, Circle):
         return (Dimension((-cut.radius, 0.0), (cut.radius, 0.0), "x", -cut.radius - 1.5),)
     (u0, v0), _, (u1, v1), _ = cut.points
     return (Dimension((u0, v0), (u1, v0), "x", -1.5), Dimension((u0, v0), (u0, v1), "y", -1.5))
 
 
-def _pad(name: str, title: str, cut: Outline | Circle, where: str, count: int, fabrication: Fabrication) -> FlatPattern:
+def _pad_pattern(
+    name: str, title: str, cut: Outline | Circle, where: str, count: int, fabrication: Fabrication
+) -> FlatPattern:
     return FlatPattern(
         name=f"adhesive-{name}",
         title=title,
         material="double-sided adhesive sheet",
         thickness_mm=fabrication.adhesive_thickness_mm,
         count=count,
-        instruction=PAD.format(where=where),
+        instruction=PAD_INSTRUCTION.format(where=where),
         cuts=(cut,),
         dimensions=body_dimensions(cut),
         kerf_mm=fabrication.kerf_mm,
     )
 
 
-def _rings(device: Device, fabrication: Fabrication, layout: FilmLayout, panel: Panel) -> list[FlatPattern]:
+def _ring_patterns(device: Device, fabrication: Fabrication, layout: FilmLayout, panel: Panel) -> list[FlatPattern]:
     case = frame_layout(device, fabrication)
     faces: list[tuple[str, WallRun, str]] = []
     if case.body is not None:
@@ -80,19 +82,24 @@ def _rings(device: Device, fabrication: Fabrication, layout: FilmLayout, panel: 
     if case.ring:
         faces.append(("upper", case.ring[0], "on the face towards the ring of the frame"))
     return [
-        _ring(name, run, where, fabrication, layout, panel) for name, run, where in faces if run.gap < layout.flange
+        _ring_pattern(name, run, where, fabrication, layout, panel)
+        for name, run, where in faces
+        if run.gap < layout.flange
     ]
 
 
-def _ring(
+def _ring_pattern(
     name: str, run: WallRun, where: str, fabrication: Fabrication, layout: FilmLayout, panel: Panel
 ) -> FlatPattern:
-    """As wide as the film, with the openings of the frame as windows; between them it bonds the film to a grid."""
+    """A ring as wide as the film, with the openings of the frame as windows.
+
+    Its webs between several windows bond the film to a grid.
+    """
     end, half, back = layout.body_end, layout.half_body, layout.back_end
     gap = run.gap
     windows = [((u0 - gap, u1 + gap), (v0 - gap, v1 + gap)) for u0, u1, v0, v1 in run.feet]
     (inner_u, inner_v), several = windows[0], len(windows) > 1
-    rub = RING.format(
+    rub = RING_INSTRUCTION.format(
         where=where, left="windows leave the pressed parts" if several else "window leaves the pressed part"
     )
     return FlatPattern(
@@ -100,14 +107,14 @@ def _ring(
         title=f"Adhesive: {name} ring on the film's flange",
         material="double-sided adhesive sheet",
         thickness_mm=fabrication.adhesive_thickness_mm,
-        count=devices(fabrication),
+        count=device_count(fabrication),
         instruction=f"Pin its panel onto that of the film before the film is cut out. {rub}",
         cuts=(
             *panel.cuts,
             rectangle("CUT", (-back, end), (-half, half)),
             *(rectangle("CUT", u, v, hole=True) for u, v in windows),
         ),
-        marks=(panel.words(f"RING, {name}"),),
+        marks=(panel.edge_label(f"RING, {name}"),),
         dimensions=(
             *panel.dimensions,
             Dimension((-back, half), (end, half), "x", 1.2),

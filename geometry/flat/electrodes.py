@@ -13,20 +13,21 @@ import numpy as np
 from foundation.errors import InputError
 from geometry.array.layout import Rectangle
 from geometry.fabrication.part import ROUNDING_MM
-from geometry.flat.film import EDGE_MM, PAD_LENGTH_MM, FilmLayout
-from geometry.flat.paths import CrossSection, length_mm, quadrilaterals, ribbon, squares, turned_points
-from geometry.flat.pattern import LayerName, Outline, Point, gap_mm, rectangle, shared_area_mm2
+from geometry.flat.film import METAL_EDGE_MM, PAD_LENGTH_MM, FilmLayout
+from geometry.flat.paths import CrossSection, length_mm, quadrilaterals, ribbon_sections, squares, turn_points
+from geometry.flat.pattern import LayerName, Outline, Point, polygon_gap_mm, rectangle, shared_area_mm2
 
-COMMON = "common"
+COMMON_ELECTRODE = "common"
 
 
 @dataclass(frozen=True)
 class Metal:
-    """One electrode with its lead and pad.
+    """One electrode with its lead and pad. Lengths in mm.
 
     face : "top" or "bottom". rect : (u0, u1, v0, v1) around the electrode itself; plates : convex pieces of it.
-    outline : of all its metal. lead : its convex pieces. length : of the lead without its pad; squares : length over
-    width, by which its resistance counts. pad : its number, from the upper end as seen with the cable to the right.
+    outline : of all its metal. lead : convex pieces of the lead. length : of the lead without its pad; squares : its
+    length over its width, by which its resistance counts. pad : number of the pad, from the upper end as seen with the
+    cable to the right.
     """
 
     name: str
@@ -41,58 +42,66 @@ class Metal:
 
 
 def metals(layout: FilmLayout) -> tuple[Metal, ...]:
-    """All electrodes, top ones first. InputError for leads that do not fit or come too near to other metal."""
-    _refuse_near(layout)
+    """Metal of all electrodes, top ones first. InputError for leads that do not fit or are too near to other metal."""
+    _refuse_near_electrodes(layout)
     refuse_narrow_tab(layout)
-    found = _of_array(layout) if layout.lattice is not None else _of_segment(layout)
+    found = _array_metals(layout) if layout.lattice is not None else _segment_metals(layout)
     _refuse_shorts(found, layout)
     return found
 
 
 def refuse_narrow_tab(layout: FilmLayout) -> None:
-    """InputError where the leads side by side on the tab are too thin."""
-    if layout.lead < layout.trace_width - ROUNDING_MM:
-        count, gap, least = layout.count, layout.tab_gap, layout.trace_width
-        needed = 2 * EDGE_MM + (count - 1) * gap + count * least
+    """Raise InputError where the leads side by side on the tab are too thin."""
+    if layout.lead_width < layout.trace_width - ROUNDING_MM:
+        count, gap, least = layout.pad_count, layout.tab_gap, layout.trace_width
+        needed = 2 * METAL_EDGE_MM + (count - 1) * gap + count * least
         raise InputError(
-            f"fabrication.tab_width_mm = {2 * layout.half_tab:g}: leaves {count} leads of {max(layout.lead, 0.0):.3g} "
-            f"mm, below the limit of {least:g} mm for patterned metal; must be at least {needed:.3g}"
+            f"fabrication.tab_width_mm = {2 * layout.half_tab:g}: leaves {count} leads of "
+            f"{max(layout.lead_width, 0.0):.3g} mm, below the limit of {least:g} mm for patterned metal; must be at "
+            f"least {needed:.3g}"
         )
 
 
 def stray_areas_mm2(every: tuple[Metal, ...]) -> dict[str, float]:
-    """Name -> where its lead crosses metal of the bottom: active film that is no electrode of the simulation."""
+    """Electrode -> area in mm2 in which its lead crosses metal of the bottom face.
+
+    This film is active, but under no electrode of the simulation.
+    """
     *tops, bottom = every
     below = (*bottom.plates, *bottom.lead)
     return {top.name: sum(shared_area_mm2(piece, one) for piece in top.lead for one in below) for top in tops}
 
 
 def stray_area_mm2(every: tuple[Metal, ...]) -> float:
-    """Of all leads together."""
+    """Area in mm2 in which all leads together cross metal of the bottom face."""
     return sum(stray_areas_mm2(every).values())
 
 
-def _of_segment(layout: FilmLayout) -> tuple[Metal, ...]:
-    """Electrodes anywhere on one segment: each lead runs aslant to its lane, the highest electrode has the highest."""
+def _segment_metals(layout: FilmLayout) -> tuple[Metal, ...]:
+    """Metal of electrodes anywhere on one segment; each lead runs aslant to its lane, the highest to the highest."""
     ordered = sorted(layout.electrodes.items(), key=lambda item: -(item[1][2] + item[1][3]))
-    bottom = _around(list(layout.electrodes.values()))
-    every = [*((name, "top", rect) for name, rect in ordered), (COMMON, "bottom", bottom)]
+    bottom = _bounding_rectangle(list(layout.electrodes.values()))
+    every = [*((name, "top", rect) for name, rect in ordered), (COMMON_ELECTRODE, "bottom", bottom)]
     found = []
     for number, (name, face, rect) in enumerate(every):
-        place = layout.count - 1 - number
-        start = _start(name, rect, layout.lanes[place], layout)
+        place = layout.pad_count - 1 - number
+        start = _lead_start(name, rect, layout.lanes[place], layout)
         line = (start, (layout.body_end, layout.lanes[place]))
-        width = min(layout.lead, rect[3] - rect[2])
+        width = min(layout.lead_width, rect[3] - rect[2])
         first = ((start[0], start[1] - width / 2), (start[0], start[1] + width / 2))
         far = length_mm(line), (layout.body_end - start[0]) / width
-        found.append(_metal(name, face, rect, (_corners(rect),), _corners(rect), 2, [first], far, place, layout))
+        found.append(
+            _metal_with_lead(
+                name, face, rect, (_rectangle_corners(rect),), _rectangle_corners(rect), 2, [first], far, place, layout
+            )
+        )
     return tuple(found)
 
 
-def _start(name: str, rect: Rectangle, lane: float, layout: FilmLayout) -> Point:
-    """Where a lead leaves its electrode towards the cable, as near to its lane as can be."""
+def _lead_start(name: str, rect: Rectangle, lane: float, layout: FilmLayout) -> Point:
+    """Point at which a lead leaves its electrode towards the cable, as near to its lane as can be. InputError."""
     _, u1, v0, v1 = rect
-    half = min(layout.lead, v1 - v0) / 2
+    half = min(layout.lead_width, v1 - v0) / 2
     v = min(max(lane, v0 + half), v1 - half)
     if abs(v - lane) > ROUNDING_MM and layout.body_end - u1 < layout.tab_gap:
         raise InputError(
@@ -103,30 +112,43 @@ def _start(name: str, rect: Rectangle, lane: float, layout: FilmLayout) -> Point
     return (u1, v)
 
 
-def _of_array(layout: FilmLayout) -> tuple[Metal, ...]:
-    """Electrodes on a lattice: out of the array by escape routing, then around corners to their lanes."""
+def _array_metals(layout: FilmLayout) -> tuple[Metal, ...]:
+    """Metal of electrodes on a lattice: escape routing leads out of the array, then around corners to the lanes."""
     lattice = layout.lattice
     assert lattice is not None
-    lines = {**lattice.lines, COMMON: ((layout.front_edge, layout.common_v),)}
+    lines = {**lattice.lines, COMMON_ELECTRODE: ((layout.front_edge, layout.common_v),)}
     ordered = sorted(lines, key=lambda name: lines[name][-1][1])
     first_u = layout.front_edge + lattice.gap + lattice.width / 2
-    turns = turned_points(layout.entries, layout.lanes, first_u, lattice.apart)
+    turns = turn_points(layout.entries, layout.lanes, first_u, lattice.trace_pitch)
     found = {}
     for place, (name, turn) in enumerate(zip(ordered, turns, strict=True)):
         line = (*lines[name], *turn, (layout.body_end, layout.lanes[place]))
-        sections, way = ribbon(line, lattice.width), (length_mm(line), squares(line, lattice.width))
-        if name == COMMON:
+        sections, way = ribbon_sections(line, lattice.width), (length_mm(line), squares(line, lattice.width))
+        if name == COMMON_ELECTRODE:
             every = list(layout.electrodes.values())
             plates, corners, at = *_common_plates(layout), 2
-            found[name] = _metal(name, "bottom", _around(every), plates, corners, at, sections, way, place, layout)
+            found[name] = _metal_with_lead(
+                name, "bottom", _bounding_rectangle(every), plates, corners, at, sections, way, place, layout
+            )
         else:
             rect = layout.electrodes[name]
-            at = _side(rect, line[0])
-            found[name] = _metal(name, "top", rect, (_corners(rect),), _corners(rect), at, sections, way, place, layout)
-    return (*(found[name] for name in layout.electrodes), found[COMMON])
+            at = _lead_side(rect, line[0])
+            found[name] = _metal_with_lead(
+                name,
+                "top",
+                rect,
+                (_rectangle_corners(rect),),
+                _rectangle_corners(rect),
+                at,
+                sections,
+                way,
+                place,
+                layout,
+            )
+    return (*(found[name] for name in layout.electrodes), found[COMMON_ELECTRODE])
 
 
-def _side(rect: Rectangle, start: Point) -> int:
+def _lead_side(rect: Rectangle, start: Point) -> int:
     """Number of the corner, counter-clockwise, before which a lead leaves its electrode."""
     u0, u1, v0, v1 = rect
     distances = (abs(start[0] - u0), abs(start[1] - v0), abs(start[0] - u1), abs(start[1] - v1))
@@ -141,7 +163,7 @@ def _common_plates(layout: FilmLayout) -> tuple[tuple[tuple[Point, ...], ...], t
     """
     lattice = layout.lattice
     assert lattice is not None
-    u0, u1, v0, v1 = _around(list(layout.electrodes.values()))
+    u0, u1, v0, v1 = _bounding_rectangle(list(layout.electrodes.values()))
     pieces, corners, low = [], [(u0, v0), (u1, v0)], v0
     for file, slit in enumerate(lattice.slits):
         if slit is None:
@@ -152,7 +174,7 @@ def _common_plates(layout: FilmLayout) -> tuple[tuple[tuple[Point, ...], ...], t
         corners += [(u1, below), (slit, below), (slit, above), (u1, above)]
         low = above
     pieces.append((u0, u1, low, v1))
-    return tuple(_corners(piece) for piece in pieces), (*corners, (u1, v1), (u0, v1))
+    return tuple(_rectangle_corners(piece) for piece in pieces), (*corners, (u1, v1), (u0, v1))
 
 
 def _refuse_narrow_bridge(width: float, layout: FilmLayout) -> None:
@@ -163,7 +185,7 @@ def _refuse_narrow_bridge(width: float, layout: FilmLayout) -> None:
         )
 
 
-def _metal(
+def _metal_with_lead(
     name: str,
     face: str,
     rect: Rectangle,
@@ -175,9 +197,9 @@ def _metal(
     place: int,
     layout: FilmLayout,
 ) -> Metal:
-    """Its metal from the cross-sections of the lead on the body, which leaves before a corner of its electrode.
+    """Metal of an electrode whose lead on the body has these cross-sections and leaves before a corner of it.
 
-    way : length and squares of that lead. place : of its lane and pad, counted from the lowest.
+    way : length and squares of that lead. place : number of its lane and pad, counted from the lowest.
     """
     tab = _tab_line(place, layout)
     pad = layout.pads[place]
@@ -185,10 +207,10 @@ def _metal(
         ((u, pad - layout.pad_width / 2), (u, pad + layout.pad_width / 2))
         for u in (tab[-1][0], tab[-1][0] + PAD_LENGTH_MM)
     ]
-    lead = [*sections, *ribbon(tab, layout.lead), *ends]
+    lead = [*sections, *ribbon_sections(tab, layout.lead_width), *ends]
     right, left = zip(*lead, strict=True)
     layer: LayerName = "ELECTRODE-TOP" if face == "top" else "ELECTRODE-BOTTOM"
-    points = distinct([*corners[:before], *right, *reversed(left), *corners[before:]])
+    points = distinct_points([*corners[:before], *right, *reversed(left), *corners[before:]])
     return Metal(
         name=name,
         face=face,
@@ -197,36 +219,36 @@ def _metal(
         outline=Outline(layer, points),
         lead=tuple(quadrilaterals(lead)),
         length=way[0] + length_mm(tab),
-        squares=way[1] + squares(tab, layout.lead),
-        pad=layout.count - place,
+        squares=way[1] + squares(tab, layout.lead_width),
+        pad=layout.pad_count - place,
     )
 
 
 def _tab_line(place: int, layout: FilmLayout) -> tuple[Point, ...]:
-    """From the body along the tab, then around corners to the pad."""
-    first_u = layout.tab_end + EDGE_MM + layout.lead / 2
-    turn = turned_points(layout.lanes, layout.pads, first_u, layout.lead + layout.tab_gap)[place]
+    """Centre line of a lead from the body along the tab, then around corners to the pad."""
+    first_u = layout.tab_end + METAL_EDGE_MM + layout.lead_width / 2
+    turn = turn_points(layout.lanes, layout.pads, first_u, layout.lead_width + layout.tab_gap)[place]
     far = layout.tab_end + layout.taper
     return ((layout.body_end, layout.lanes[place]), *turn, (far, layout.pads[place]))
 
 
-def _around(rects: list[Rectangle]) -> Rectangle:
+def _bounding_rectangle(rects: list[Rectangle]) -> Rectangle:
     u0, u1, v0, v1 = zip(*rects, strict=True)
     return (min(u0), max(u1), min(v0), max(v1))
 
 
-def _corners(rect: Rectangle) -> tuple[Point, ...]:
+def _rectangle_corners(rect: Rectangle) -> tuple[Point, ...]:
     return rectangle("ELECTRODE-TOP", rect[:2], rect[2:]).points
 
 
-def distinct(points: list[Point]) -> tuple[Point, ...]:
-    """Without points that repeat their predecessor; closed."""
+def distinct_points(points: list[Point]) -> tuple[Point, ...]:
+    """A closed polygon without points that repeat the next one."""
     after = [*points[1:], points[0]]
     return tuple(p for p, q in zip(points, after, strict=True) if max(abs(p[0] - q[0]), abs(p[1] - q[1])) > ROUNDING_MM)
 
 
-def _refuse_near(layout: FilmLayout) -> None:
-    """Electrodes that touch in the simulation would be one in metal."""
+def _refuse_near_electrodes(layout: FilmLayout) -> None:
+    """Refuse electrodes that touch in the simulation, as they would be one in metal."""
     least = layout.trace_gap
     for (one, first), (other, second) in combinations(layout.electrodes.items(), 2):
         apart = max(first[0] - second[1], second[0] - first[1], first[2] - second[3], second[2] - first[3])
@@ -242,7 +264,7 @@ def _refuse_near(layout: FilmLayout) -> None:
 
 
 def _refuse_shorts(every: tuple[Metal, ...], layout: FilmLayout) -> None:
-    """Metal of one face keeps its distance; on the tab, of both faces."""
+    """Refuse metal of one face that is too near to other metal of it."""
     *tops, _ = every
     owned = [(other, piece) for other in tops for piece in (*other.plates, *other.lead)]
     low, high = (np.array([pick(np.array(piece), axis=0) for _, piece in owned]) for pick in (np.min, np.max))
@@ -254,7 +276,7 @@ def _refuse_shorts(every: tuple[Metal, ...], layout: FilmLayout) -> None:
             for number in np.flatnonzero(boxes < layout.trace_gap):
                 other, body = owned[number]
                 if other is not one:
-                    _refuse_short(one, other, gap_mm(piece, body), layout.trace_gap)
+                    _refuse_short(one, other, polygon_gap_mm(piece, body), layout.trace_gap)
 
 
 def _refuse_short(one: Metal, other: Metal, near: float, least: float) -> None:

@@ -15,20 +15,23 @@ CrossSection = tuple[Point, Point]
 """Right and left edge of a ribbon, as seen along its way."""
 
 
-def ribbon(points: Sequence[Point], width: float) -> list[CrossSection]:
+def ribbon_sections(points: Sequence[Point], width: float) -> list[CrossSection]:
     """Cross-sections at the points of a centre line; mitred where it turns, so that the width stays."""
-    ways = [_way(a, b) for a, b in pairwise(points)]
+    ways = [_unit_direction(a, b) for a, b in pairwise(points)]
     before, after = [ways[0], *ways], [*ways, ways[-1]]
-    return [_mitred(point, a, b, width / 2) for point, a, b in zip(points, before, after, strict=True)]
+    return [_mitre_section(point, a, b, width / 2) for point, a, b in zip(points, before, after, strict=True)]
 
 
-def _way(a: Point, b: Point) -> Point:
+def _unit_direction(a: Point, b: Point) -> Point:
     length = hypot(b[0] - a[0], b[1] - a[1])
     return ((b[0] - a[0]) / length, (b[1] - a[1]) / length)
 
 
-def _mitred(point: Point, a: Point, b: Point, half: float) -> CrossSection:
-    """Half a width to either side along the bisector of both normals, longer by one over its cosine."""
+def _mitre_section(point: Point, a: Point, b: Point, half: float) -> CrossSection:
+    """The cross-section at a point where the direction turns from a to b.
+
+    It has half a width to either side along the bisector of both normals, longer by one over its cosine.
+    """
     scale = half / (1.0 + a[0] * b[0] + a[1] * b[1])
     du, dv = scale * (a[1] + b[1]), -scale * (a[0] + b[0])
     return ((point[0] + du, point[1] + dv), (point[0] - du, point[1] - dv))
@@ -43,17 +46,17 @@ def quadrilaterals(sections: Sequence[CrossSection]) -> Iterator[tuple[Point, ..
 
 
 def squares(points: Sequence[Point], width: float) -> float:
-    """Length over width, by which the resistance of a ribbon counts."""
+    """Length over width of a ribbon, by which its resistance counts."""
     return length_mm(points) / width
 
 
 def length_mm(points: Sequence[Point]) -> float:
-    """Length of a centre line."""
+    """Length in mm of a centre line."""
     return sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(points))
 
 
 def turning_columns(before: Sequence[float], after: Sequence[float]) -> list[int | None]:
-    """The column in which each ribbon turns from its v before to that after; None for one that goes straight on.
+    """Column in which each ribbon turns from its v before to that after; None for one that goes straight on.
 
     before, after : strictly rising. Of ribbons that fall the lowest turns first, of those that rise the highest:
     what one passes on its way down has turned away already, so that no two cross (river routing of one layer).
@@ -68,11 +71,11 @@ def turning_columns(before: Sequence[float], after: Sequence[float]) -> list[int
 
 
 def column_count(before: Sequence[float], after: Sequence[float]) -> int:
-    """Of columns that turning_columns takes."""
+    """Number of columns that turning_columns takes."""
     return max((column + 1 for column in turning_columns(before, after) if column is not None), default=0)
 
 
-def turned_points(
+def turn_points(
     before: Sequence[float], after: Sequence[float], first_u: float, apart: float
 ) -> list[tuple[Point, ...]]:
     """The two points of each ribbon's turn, none for one that goes straight on; the first column lies at first_u."""

@@ -19,13 +19,13 @@ class Outline:
 
     @property
     def length_mm(self) -> float:
-        """Of the closed line."""
+        """Length in mm of the closed line."""
         after = (*self.points[1:], self.points[0])
         return sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in zip(self.points, after, strict=True))
 
     @property
     def area_mm2(self) -> float:
-        """By the shoelace formula."""
+        """Area in mm2 inside the line, by the shoelace formula."""
         after = (*self.points[1:], self.points[0])
         return abs(sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(self.points, after, strict=True))) / 2
 
@@ -41,12 +41,12 @@ class Circle:
 
     @property
     def length_mm(self) -> float:
-        """Of the closed line."""
+        """Circumference in mm."""
         return 2 * pi * self.radius
 
     @property
     def area_mm2(self) -> float:
-        """Inside the line."""
+        """Area in mm2 inside the circle."""
         return pi * self.radius**2
 
 
@@ -60,7 +60,7 @@ class Stroke:
 
 @dataclass(frozen=True)
 class Label:
-    """Words on the pattern, centred at a point; height in mm; upright: read from the right."""
+    """Text on the pattern, centred at a point; height in mm; upright: read from the right."""
 
     layer: LayerName
     place: Point
@@ -83,7 +83,7 @@ class Dimension:
 
     @property
     def length_mm(self) -> float:
-        """The size."""
+        """The stated size in mm."""
         axis = 0 if self.along == "x" else 1
         return abs(self.end[axis] - self.start[axis])
 
@@ -122,34 +122,34 @@ class FlatPattern:
 
     @property
     def on_panel(self) -> bool:
-        """Whether it lies on a panel with registration holes."""
+        """Whether the pattern lies on a panel with registration holes."""
         return sum(isinstance(cut, Circle) and cut.hole for cut in self.cuts) > 1
 
     @property
     def size_mm(self) -> Point:
-        """Of the sheet that it needs, x and y, cuts included."""
+        """Size in mm, x and y, of the sheet that the pattern needs, cuts included."""
         xs, ys = zip(*self.points, strict=True)
         return (max(xs) - min(xs) + self.kerf_mm, max(ys) - min(ys) + self.kerf_mm)
 
 
 def rectangle(layer: LayerName, x: tuple[float, float], y: tuple[float, float], hole: bool = False) -> Outline:
-    """A rectangle from its intervals."""
+    """A rectangle from its intervals in x and y."""
     return Outline(layer, ((x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1])), hole)
 
 
-def turned(pattern: FlatPattern, angle_deg: float) -> FlatPattern:
-    """The pattern turned about the origin by a multiple of 90 degrees."""
+def rotated_pattern(pattern: FlatPattern, angle_deg: float) -> FlatPattern:
+    """The pattern rotated about the origin by a multiple of 90 degrees."""
     quarter = round(angle_deg / 90.0) % 4
     return replace(
         pattern,
-        cuts=tuple(_turned_cut(cut, quarter) for cut in pattern.cuts),
-        marks=tuple(_turned_mark(mark, quarter) for mark in pattern.marks),
-        dimensions=tuple(_turned_dimension(one, quarter) for one in pattern.dimensions),
+        cuts=tuple(_rotated_cut(cut, quarter) for cut in pattern.cuts),
+        marks=tuple(_rotated_mark(mark, quarter) for mark in pattern.marks),
+        dimensions=tuple(_rotated_dimension(one, quarter) for one in pattern.dimensions),
     )
 
 
 def arrow(layer: LayerName, middle: Point, angle_deg: float, length: float) -> Stroke:
-    """A double-headed arrow: a direction without a sense."""
+    """A double-headed arrow, which shows a direction without a sense."""
     c, s = cos(radians(angle_deg)), sin(radians(angle_deg))
 
     def at(u: float, v: float) -> Point:
@@ -161,42 +161,45 @@ def arrow(layer: LayerName, middle: Point, angle_deg: float, length: float) -> S
     return Stroke(layer, (*left, *right))
 
 
-def _turned_point(point: Point, quarter: int) -> Point:
+def _rotated_point(point: Point, quarter: int) -> Point:
     x, y = point
     return ((x, y), (-y, x), (-x, -y), (y, -x))[quarter]
 
 
-def _turned_cut(cut: Outline | Circle, quarter: int) -> Outline | Circle:
+def _rotated_cut(cut: Outline | Circle, quarter: int) -> Outline | Circle:
     if isinstance(cut, Circle):
-        return replace(cut, center=_turned_point(cut.center, quarter))
-    return replace(cut, points=tuple(_turned_point(p, quarter) for p in cut.points))
+        return replace(cut, center=_rotated_point(cut.center, quarter))
+    return replace(cut, points=tuple(_rotated_point(p, quarter) for p in cut.points))
 
 
-def _turned_mark(mark: Outline | Stroke | Label, quarter: int) -> Outline | Stroke | Label:
+def _rotated_mark(mark: Outline | Stroke | Label, quarter: int) -> Outline | Stroke | Label:
     if isinstance(mark, Label):
-        return replace(mark, place=_turned_point(mark.place, quarter), upright=mark.upright ^ bool(quarter % 2))
-    return replace(mark, points=tuple(_turned_point(p, quarter) for p in mark.points))
+        return replace(mark, place=_rotated_point(mark.place, quarter), upright=mark.upright ^ bool(quarter % 2))
+    return replace(mark, points=tuple(_rotated_point(p, quarter) for p in mark.points))
 
 
-def _turned_dimension(one: Dimension, quarter: int) -> Dimension:
-    """The side on which its line lies turns too; from left to right, and upwards."""
+def _rotated_dimension(one: Dimension, quarter: int) -> Dimension:
+    """A rotated dimension, from left to right or upwards; the side on which its line lies turns too."""
     along, shift = one.along, one.shift
     if quarter % 2:
         along = "y" if along == "x" else "x"
     up = (0.0, shift) if one.along == "x" else (shift, 0.0)
-    moved = _turned_point(up, quarter)
-    ends = (_turned_point(one.start, quarter), _turned_point(one.end, quarter))
+    moved = _rotated_point(up, quarter)
+    ends = (_rotated_point(one.start, quarter), _rotated_point(one.end, quarter))
     start, end = sorted(ends, key=lambda point: point[0 if along == "x" else 1])
     return Dimension(start, end, along, moved[1] if along == "x" else moved[0])
 
 
-def gap_mm(one: Sequence[Point], other: Sequence[Point]) -> float:
-    """Distance of two convex polygons; where they touch or overlap the separation along a normal, zero or negative."""
+def polygon_gap_mm(one: Sequence[Point], other: Sequence[Point]) -> float:
+    """Distance in mm of two convex polygons.
+
+    Where they touch or overlap it is their separation along a normal, zero or negative.
+    """
     apart = _separation(one, other)
     if apart <= 0.0:
         return apart
     pairs = ((one, other), (other, one))
-    return min(_to_segment(p, a, b) for first, second in pairs for p in first for a, b in _edges(second))
+    return min(_distance_to_segment(p, a, b) for first, second in pairs for p in first for a, b in _edges(second))
 
 
 def _edges(polygon: Sequence[Point]) -> Iterator[tuple[Point, Point]]:
@@ -215,8 +218,8 @@ def _separation(one: Sequence[Point], other: Sequence[Point]) -> float:
     return found
 
 
-def _to_segment(p: Point, a: Point, b: Point) -> float:
-    """Distance of a point from the line between two others."""
+def _distance_to_segment(p: Point, a: Point, b: Point) -> float:
+    """Distance of a point from the line segment between two others."""
     along = (b[0] - a[0], b[1] - a[1])
     share = ((p[0] - a[0]) * along[0] + (p[1] - a[1]) * along[1]) / (along[0] ** 2 + along[1] ** 2)
     share = min(max(share, 0.0), 1.0)
@@ -227,13 +230,13 @@ def shared_area_mm2(one: Sequence[Point], other: Sequence[Point]) -> float:
     """Area common to two convex, counter-clockwise polygons (Sutherland and Hodgman, 1974)."""
     kept = list(one)
     for a, b in zip(other, (*other[1:], other[0]), strict=True):
-        kept = _left_of(kept, a, b)
+        kept = _clip_left(kept, a, b)
     after = [*kept[1:], *kept[:1]]
     return abs(sum(p[0] * q[1] - q[0] * p[1] for p, q in zip(kept, after, strict=True))) / 2
 
 
-def _left_of(polygon: list[Point], a: Point, b: Point) -> list[Point]:
-    """What of a polygon lies to the left of the line from a to b."""
+def _clip_left(polygon: list[Point], a: Point, b: Point) -> list[Point]:
+    """The part of a polygon to the left of the line from a to b."""
 
     def side(p: Point) -> float:
         return (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])
@@ -249,31 +252,31 @@ def _left_of(polygon: list[Point], a: Point, b: Point) -> list[Point]:
     return kept
 
 
-def compensated(pattern: FlatPattern) -> FlatPattern:
+def kerf_compensated_pattern(pattern: FlatPattern) -> FlatPattern:
     """The pattern with its cut lines moved by half a kerf into the waste; marks stay."""
     half = pattern.kerf_mm / 2
-    return replace(pattern, cuts=tuple(_moved(cut, half) for cut in pattern.cuts))
+    return replace(pattern, cuts=tuple(_offset_cut(cut, half) for cut in pattern.cuts))
 
 
-def _moved(cut: Outline | Circle, distance: float) -> Outline | Circle:
-    """Outer lines grow, holes shrink."""
+def _offset_cut(cut: Outline | Circle, distance: float) -> Outline | Circle:
+    """A cut line moved into the waste: outer lines grow, holes shrink."""
     outwards = -distance if cut.hole else distance
     if isinstance(cut, Circle):
         return replace(cut, radius=cut.radius + outwards)
-    return replace(cut, points=offset(cut.points, outwards))
+    return replace(cut, points=offset_polygon(cut.points, outwards))
 
 
-def offset(points: tuple[Point, ...], distance: float) -> tuple[Point, ...]:
+def offset_polygon(points: tuple[Point, ...], distance: float) -> tuple[Point, ...]:
     """A counter-clockwise polygon with every edge moved outwards by the distance; corners stay sharp.
 
     For distances below the lengths of the edges.
     """
     before, after = (points[-1], *points[:-1]), (*points[1:], points[0])
-    return tuple(_corner(a, b, c, distance) for a, b, c in zip(before, points, after, strict=True))
+    return tuple(_offset_corner(a, b, c, distance) for a, b, c in zip(before, points, after, strict=True))
 
 
-def _corner(a: Point, b: Point, c: Point, distance: float) -> Point:
-    """b moved along the bisector: b + d (n1 + n2) / (1 + n1 . n2), with the outward normals of both edges."""
+def _offset_corner(a: Point, b: Point, c: Point, distance: float) -> Point:
+    """Corner b moved along the bisector: b + d (n1 + n2) / (1 + n1 . n2), with the outward normals of both edges."""
     n1, n2 = _normal(a, b), _normal(b, c)
     scale = distance / (1.0 + n1[0] * n2[0] + n1[1] * n2[1])
     return (b[0] + scale * (n1[0] + n2[0]), b[1] + scale * (n1[1] + n2[1]))

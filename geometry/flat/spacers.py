@@ -10,21 +10,22 @@ from geometry.flat.pattern import Dimension, FlatPattern, Outline, Point
 from geometry.part_checks import covers_footprint
 from geometry.stack import layers
 
-GRIP_MM = 4.0
-"""Of a strip above the islands, to draw it out."""
+STRIP_GRIP_MM = 4.0
+"""Height of a strip above the islands, to draw it out."""
 
 
 def spaced_layers(device: Device) -> list[str]:
-    """Layers of islands that spacers keep apart, from the base up: all but those of narrow effectors, which a locator
-    places, and those within the windows of a grid.
+    """Names of the layers of islands that spacers keep apart, from the base up.
+
+    Not among them are narrow effectors, which a locator places, and islands within the windows of a grid.
     """
     narrow = set() if covers_footprint(device.segment) else {"effector"}
     names = [layer.name for layer in layers(device.segment)]
-    return [name for name in names if device.pieces(name) > 1 and not device.in_grid(name) and name not in narrow]
+    return [name for name in names if device.piece_count(name) > 1 and not device.in_grid(name) and name not in narrow]
 
 
 def spacer_patterns(device: Device, fabrication: Fabrication) -> list[FlatPattern]:
-    """A pattern for each direction and each thickness of gap, in the axes of the device; none without such islands.
+    """A pattern for each direction and each width of gap, in the axes of the device; none without such islands.
 
     Strips along y stand between columns and have notches from below, those along x between rows from above.
     InputError for a gap whose notches are too near to each other.
@@ -32,24 +33,24 @@ def spacer_patterns(device: Device, fabrication: Fabrication) -> list[FlatPatter
     spaced = spaced_layers(device)
     if not spaced:
         return []
-    tall = GRIP_MM + max(layer.thickness_mm for layer in layers(device.segment) if layer.name in spaced)
+    tall = STRIP_GRIP_MM + max(layer.thickness_mm for layer in layers(device.segment) if layer.name in spaced)
     found = []
     for axis in (0, 1):
         gaps = _gaps(device, axis)
         for number, gap in enumerate(sorted({gap for _, gap in gaps})):
             count = sum(one == gap for _, one in gaps)
             name = f"spacer-{'yx'[axis]}" + (f"-{number + 1}" if number else "")
-            found.append(_strip(name, gap, count, axis, tall, device, fabrication))
+            found.append(_strip_pattern(name, gap, count, axis, tall, device, fabrication))
     return found
 
 
 def _gaps(device: Device, axis: int) -> list[tuple[float, float]]:
-    """Middle and width of each gap between neighbouring columns or rows."""
+    """Middle and width in mm of each gap between neighbouring columns (axis 0) or rows (axis 1)."""
     edges = device.layout.edges(axis)
     return [((a[1] + b[0]) / 2, round(b[0] - a[1], 9)) for a, b in pairwise(edges)]
 
 
-def _strip(
+def _strip_pattern(
     name: str, thick: float, count: int, axis: int, tall: float, device: Device, fabrication: Fabrication
 ) -> FlatPattern:
     half = device.layout.half_mm[1 - axis]

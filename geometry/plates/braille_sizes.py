@@ -1,4 +1,4 @@
-"""The sizes that a printed plate takes from a Braille standard and from the user, and where each comes from."""
+"""Sizes that a printed plate takes from a Braille standard and from the user, with the source of each."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from foundation.errors import InputError
 from geometry.braille_standards import QUANTITIES, Quantity, QuantityName, standard
 
-SHORTEST_MM, LONGEST_MM = 0.01, 1000.0
-"""Between a fifth of the thinnest layer and more than any printer builds."""
+SHORTEST_LENGTH_MM, LONGEST_LENGTH_MM = 0.01, 1000.0
+"""A fifth of the thinnest layer, and more than any printer builds."""
 
 
 @dataclass(frozen=True)
 class BrailleSize:
-    """One size in mm with where it comes from; basis: "nominal", "middle of the range", "minimum" or "given".
+    """One size in mm and its source; basis: "nominal", "middle of the range", "minimum" or "given".
 
     deviation_mm : the smaller distance to a limit of the standard; None where it gives no limits.
     """
@@ -25,7 +25,7 @@ class BrailleSize:
 
 @dataclass(frozen=True)
 class BrailleSizes:
-    """The sizes that one standard and the explicit sizes give together."""
+    """The sizes that a standard and the user's explicit sizes give together."""
 
     standard: str
     title: str
@@ -42,13 +42,13 @@ class BrailleSizes:
 
 
 def braille_sizes(name: str, given: Mapping[QuantityName, float] | None = None) -> BrailleSizes:
-    """The sizes of a standard by its name or alias; what is given (mm) comes first.
+    """The sizes of a standard by its name or alias; sizes given in mm take the place of its own.
 
-    Else the nominal size, else the middle of the range, else the minimum. InputError for an unknown standard
-    and for a size that is no length of a plate.
+    Of the standard the nominal size counts, else the middle of the range, else the minimum. InputError for an unknown
+    standard and for a size that is no length of a plate.
     """
     found = standard(name, field="--standard")
-    known = {key: size for key in QUANTITIES if (size := _size(found.quantities[key])) is not None}
+    known = {key: size for key in QUANTITIES if (size := _plate_size(found.quantities[key])) is not None}
     for key, value in (given or {}).items():
         require_length(f"--{key.replace('_', '-')}", value)
         known[key] = BrailleSize(value, "given", "the user", None)
@@ -56,13 +56,13 @@ def braille_sizes(name: str, given: Mapping[QuantityName, float] | None = None) 
 
 
 def require_length(option: str, value_mm: float) -> None:
-    """InputError, which names the option, for a length that no solid is built with."""
-    if not SHORTEST_MM <= value_mm <= LONGEST_MM:
-        raise InputError(f"{option} = {value_mm:g}: must be from {SHORTEST_MM:g} to {LONGEST_MM:g} mm")
+    """Raise InputError, which names the option, for a length in mm that no solid is built with."""
+    if not SHORTEST_LENGTH_MM <= value_mm <= LONGEST_LENGTH_MM:
+        raise InputError(f"{option} = {value_mm:g}: must be from {SHORTEST_LENGTH_MM:g} to {LONGEST_LENGTH_MM:g} mm")
 
 
-def _size(quantity: Quantity) -> BrailleSize | None:
-    """What a plate takes from one quantity of the table."""
+def _plate_size(quantity: Quantity) -> BrailleSize | None:
+    """The size that a plate takes from one quantity of the table; None where it has neither nominal nor minimum."""
     nominal, low, high = quantity.nominal_mm, quantity.minimum_mm, quantity.maximum_mm
     if nominal is None:
         return None if low is None else BrailleSize(low, "minimum", quantity.source, None)

@@ -3,22 +3,22 @@
 from collections.abc import Sequence
 
 from foundation.errors import InputError
-from geometry.plates.plate import THICKNESS_MM, PlacedDot, Plate, dotted_slab
+from geometry.plates.plate import SLAB_THICKNESS_MM, PlacedDot, Plate, dotted_slab
 
-SPACING_MM = 10.0
-"""Between the dots: a segment of 2.5 mm in its case meets one dot alone."""
-EDGE_MM = 10.0
-"""From the axis of a dot to the edge of the plate: room for a clamp on each side."""
-HEIGHTS_MM = (0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
+DOT_SPACING_MM = 10.0
+"""Distance between the dots: a segment of 2.5 mm in its case meets one dot alone."""
+DOT_TO_EDGE_MM = 10.0
+"""Distance from the axis of a dot to the edge of the plate: room for a clamp on each side."""
+SERIES_HEIGHTS_MM = (0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
 """From the target of medicine cartons to the highest dot of signs."""
 
 
 def height_series(
     base_diameter_mm: float,
     heights_mm: Sequence[float],
-    thickness_mm: float = THICKNESS_MM,
-    spacing_mm: float = SPACING_MM,
-    edge_mm: float = EDGE_MM,
+    thickness_mm: float = SLAB_THICKNESS_MM,
+    spacing_mm: float = DOT_SPACING_MM,
+    edge_mm: float = DOT_TO_EDGE_MM,
 ) -> Plate:
     """A row of dots of one base, from left to right of the given heights; one height gives a plate of one dot.
 

@@ -7,9 +7,9 @@ from foundation.errors import InputError
 from geometry.plates.plate import PlacedDot, Plate, printed_part, standing_dots
 from geometry.solids import upright_cylinder
 
-POST_MM = 10.0
+POST_DIAMETER_MM = 10.0
 """Diameter of the post; half of it is the thickness over the hole."""
-CONE = 1.2
+CONE_HEIGHT_PER_RADIUS = 1.2
 """Height over radius of the cone that ends the hole: steeper than 45 degrees."""
 
 
@@ -37,21 +37,21 @@ def indenter_tip(base_diameter_mm: float, height_mm: float, thread: str = "M6") 
     """
     if thread not in THREADS:
         raise InputError(f"--thread = '{thread}': no such thread, known are {', '.join(THREADS)}")
-    if base_diameter_mm >= POST_MM:
-        raise InputError(f"base_diameter_mm = {base_diameter_mm:g}: must be less than the post of {POST_MM:g}")
+    if base_diameter_mm >= POST_DIAMETER_MM:
+        raise InputError(f"base_diameter_mm = {base_diameter_mm:g}: must be less than the post of {POST_DIAMETER_MM:g}")
     hole = THREADS[thread]
-    top = hole.depth_mm + CONE * hole.hole_mm / 2 + POST_MM / 2
+    top = hole.depth_mm + CONE_HEIGHT_PER_RADIUS * hole.hole_mm / 2 + POST_DIAMETER_MM / 2
     dot = PlacedDot(0.0, 0.0, top, base_diameter_mm, height_mm)
-    post = upright_cylinder(POST_MM / 2, 0.0, top).cut(_hole(hole)).solid()
+    post = upright_cylinder(POST_DIAMETER_MM / 2, 0.0, top).cut(_threaded_hole(hole)).solid()
     solid = post.fuse(*standing_dots([dot])).solid()
-    return Plate(printed_part("tip", solid), (dot,), (POST_MM, POST_MM, top + height_mm))
+    return Plate(printed_part("tip", solid), (dot,), (POST_DIAMETER_MM, POST_DIAMETER_MM, top + height_mm))
 
 
-def _hole(hole: GaugeThread) -> Any:
+def _threaded_hole(hole: GaugeThread) -> Any:
     """A cylinder with a cone on top, from below the foot."""
     from build123d import Pos, Solid
 
     radius, start = hole.hole_mm / 2, -1.0
     bore = upright_cylinder(radius, start, hole.depth_mm)
-    cone = Pos(0, 0, hole.depth_mm) * Solid.make_cone(radius, 0.0, CONE * radius)
+    cone = Pos(0, 0, hole.depth_mm) * Solid.make_cone(radius, 0.0, CONE_HEIGHT_PER_RADIUS * radius)
     return bore.fuse(cone).solid()

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from geometry.assembly import cap_solid
-from geometry.dot_size import from_base
+from geometry.dot_size import dot_size_from_base
 from geometry.solids import Part, volume_mm3
 
 
@@ -41,14 +41,14 @@ class Plate:
 
 
 PLATE_COLOUR = (0xE9 / 255, 0xDD / 255, 0xC7 / 255)
-"""Between white and sand: dots throw a shadow that is seen."""
+"""A colour between white and sand, on which the shadow of the dots is seen."""
 
 
 def dotted_slab(
     size_xy_mm: tuple[float, float], thickness_mm: float, dots: Sequence[PlacedDot], corner_mm: float
 ) -> Plate:
-    """A plate with its dots as one solid; its upper left corner is cut, so that it is not read upside down."""
-    solid = _slab(size_xy_mm, thickness_mm, corner_mm).fuse(*standing_dots(dots)).solid()
+    """A plate with its dots as one solid; its upper left corner is cut off, so that it is not read upside down."""
+    solid = _slab_solid(size_xy_mm, thickness_mm, corner_mm).fuse(*standing_dots(dots)).solid()
     highest = max(dot.base_z_mm + dot.height_mm for dot in dots)
     return Plate(printed_part("plate", solid), tuple(dots), (*size_xy_mm, highest))
 
@@ -57,7 +57,7 @@ def standing_dots(dots: Sequence[PlacedDot]) -> list[Any]:
     """The dots, tips upwards, at their places: copies, because OCC leaves gaps where one shape is meshed twice."""
     from build123d import Pos
 
-    shapes = {size: _tip_up(*size) for size in {(dot.base_diameter_mm, dot.height_mm) for dot in dots}}
+    shapes = {size: _upward_dot(*size) for size in {(dot.base_diameter_mm, dot.height_mm) for dot in dots}}
     return [
         Pos(dot.x_mm, dot.y_mm, dot.base_z_mm) * deepcopy(shapes[dot.base_diameter_mm, dot.height_mm]) for dot in dots
     ]
@@ -71,7 +71,7 @@ def printed_part(label: str, solid: Any) -> Part:
     return Part(label, solid, PLATE_COLOUR, None, True, True, volume_mm3(solid))
 
 
-def _slab(size_xy_mm: tuple[float, float], thickness_mm: float, corner_mm: float) -> Any:
+def _slab_solid(size_xy_mm: tuple[float, float], thickness_mm: float, corner_mm: float) -> Any:
     from build123d import Face, Solid, Vector, Wire
 
     x, y = size_xy_mm[0] / 2, size_xy_mm[1] / 2
@@ -80,13 +80,13 @@ def _slab(size_xy_mm: tuple[float, float], thickness_mm: float, corner_mm: float
     return Solid.extrude(face, Vector(0, 0, thickness_mm))
 
 
-def _tip_up(base_diameter_mm: float, height_mm: float) -> Any:
-    """One dot with its base at z = 0."""
+def _upward_dot(base_diameter_mm: float, height_mm: float) -> Any:
+    """One dot with its base at z = 0 and its tip upwards."""
     from build123d import Pos, Rot
 
-    size = from_base(base_diameter_mm, height_mm)
+    size = dot_size_from_base(base_diameter_mm, height_mm)
     return Pos(0, 0, height_mm) * Rot(180, 0, 0) * cap_solid(size.radius_mm, size.height_mm, size.foot_mm)
 
 
-THICKNESS_MM = 2.0
+SLAB_THICKNESS_MM = 2.0
 """Stiff under a finger, and above the thinnest wall of every printer."""

@@ -6,7 +6,7 @@ from typing import Any
 from export.build_sheet.contents import Contents, bill, components
 from export.build_sheet.page import capacitance_pF, checks, traces
 from export.build_sheet.steps import steps
-from geometry.flat.pattern import FlatPattern, compensated
+from geometry.flat.pattern import FlatPattern, kerf_compensated_pattern
 from softdot.config.hashes import config_hash
 from softdot.config.schema import Config
 from softdot.output import Product
@@ -74,5 +74,5 @@ def _flat(pattern: FlatPattern) -> dict[str, Any]:
         "pieces": pattern.count,
         "sheet_mm": pattern.size_mm,
         "kerf_mm": pattern.kerf_mm,
-        "cut_length_mm": sum(cut.length_mm for cut in compensated(pattern).cuts),
+        "cut_length_mm": sum(cut.length_mm for cut in kerf_compensated_pattern(pattern).cuts),
     }

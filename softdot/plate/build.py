@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 
 from geometry.plates.braille_sizes import BrailleSizes, braille_sizes
-from geometry.plates.height_series import HEIGHTS_MM, height_series
+from geometry.plates.height_series import SERIES_HEIGHTS_MM, height_series
 from geometry.plates.indenter import THREADS, indenter_tip
-from geometry.plates.plate import THICKNESS_MM, Plate
-from geometry.plates.text_plate import MARGIN_MM, text_plate
+from geometry.plates.plate import SLAB_THICKNESS_MM, Plate
+from geometry.plates.text_plate import TEXT_MARGIN_MM, text_plate
 from softdot.braille_text.lines import Translation, translate
 from softdot.plate.options import PlateRequest, check_request
 
@@ -25,10 +25,10 @@ def build_plate(request: PlateRequest) -> BuiltPlate:
     """Check, translate and build. InputError for everything that cannot be built."""
     check_request(request)
     sizes = braille_sizes(request.standard, request.given)
-    thickness = request.thickness_mm or THICKNESS_MM
+    thickness = request.thickness_mm or SLAB_THICKNESS_MM
     if request.kind == "text":
         translation = translate(request.text or "", request.table, request.width_cells)
-        margin = request.margin_mm or MARGIN_MM
+        margin = request.margin_mm or TEXT_MARGIN_MM
         return BuiltPlate(request, text_plate(translation.lines, sizes, thickness, margin), sizes, translation)
     base = sizes["base_diameter_mm"]
     if request.kind == "tip":
@@ -36,5 +36,5 @@ def build_plate(request: PlateRequest) -> BuiltPlate:
     elif request.kind == "dot":
         plate = height_series(base, (sizes["height_mm"],), thickness)
     else:
-        plate = height_series(base, request.heights_mm or HEIGHTS_MM, thickness)
+        plate = height_series(base, request.heights_mm or SERIES_HEIGHTS_MM, thickness)
     return BuiltPlate(request, plate, sizes, None)

@@ -8,7 +8,7 @@ import numpy as np
 
 from foundation.arrays import Ints
 from foundation.errors import InputError
-from geometry.braille_cells import FIRST
+from geometry.braille_cells import FIRST_CELL
 from softdot.braille_text.back_translation import back_translated, english_text
 from softdot.braille_text.english import english_cells
 from softdot.braille_text.liblouis import INSTALL, liblouis, louis_cells
@@ -26,7 +26,7 @@ def cells_of(text: str, table: str | None = None) -> Ints:
     if not line.strip("⠀"):
         raise InputError("text: is empty, a line needs at least one character")
     characters = (english_cells(line, INSTALL) if table is None else louis_cells(line, table)).strip("⠀ ")
-    cells = np.array([ord(one) - FIRST for one in characters.replace(" ", "⠀")], dtype=np.int64)
+    cells = np.array([ord(one) - FIRST_CELL for one in characters.replace(" ", "⠀")], dtype=np.int64)
     if len(cells) > MOST_CELLS:
         raise InputError(f"text: has {len(cells)} cells, at most {MOST_CELLS} are allowed in a line")
     if (cells >= KINDS_OF_CELL).any():
@@ -37,7 +37,7 @@ def cells_of(text: str, table: str | None = None) -> Ints:
 
 def braille(cells: Sequence[int] | Ints) -> str:
     """Unicode Braille of cells (c,)."""
-    return "".join(chr(FIRST + int(cell)) for cell in cells)
+    return "".join(chr(FIRST_CELL + int(cell)) for cell in cells)
 
 
 def text_of(cells: Sequence[int] | Ints, table: str | None = None) -> str:

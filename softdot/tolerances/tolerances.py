@@ -7,7 +7,7 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
-from geometry.dot_size import dot_size, dot_standard, from_base
+from geometry.dot_size import dot_size, dot_size_from_base, dot_standard
 from geometry.fabrication.parameters import cast_components, sheet_components
 from geometry.parameters import Dot, Segment
 from geometry.stack import Layer, layers
@@ -174,7 +174,10 @@ def _dot(config: Config) -> list[Tolerance]:
         return [_row("height of the dot", size.height_mm, height["mm"], "mm", height, deeper), across]
     diameter = _base_diameter(dot)
     by_height, by_base = (
-        (from_base(diameter + d, size.height_mm + h).radius_mm - from_base(diameter - d, size.height_mm - h).radius_mm)
+        (
+            dot_size_from_base(diameter + d, size.height_mm + h).radius_mm
+            - dot_size_from_base(diameter - d, size.height_mm - h).radius_mm
+        )
         / (2 * SMALL * size.radius_mm)
         for d, h in ((0.0, SMALL), (SMALL, 0.0))
     )

@@ -111,7 +111,7 @@ def test_every_electrode_has_exactly_one_pad(film):
                if Path(metal.outline.points).contains_point(((u0 + u1) / 2, (v0 + v1) / 2))]  # fmt: skip
         assert own == (list(kit.layout.electrodes) if metal is common else [metal.name])
     assert sorted(found) == list(range(len(kit.metals)))
-    assert [kit.layout.count - metal.pad for metal in kit.metals] == found
+    assert [kit.layout.pad_count - metal.pad for metal in kit.metals] == found
 
 
 def test_electrodes_lie_on_their_segments(film):
@@ -189,15 +189,15 @@ def test_a_gap_takes_as_many_traces_as_it_is_wide_for(traces):
     """n traces of w and n + 1 gaps of g beside them."""
     exact = traces * 0.3 + (traces + 1) * 0.2
     for gap, room in ((exact, traces), (exact - 1e-3, traces - 1)):
-        assert Lattice(squares(3, gap), 0.3, 0.2, 0.0).room[1:-1] == [room, room]
+        assert Lattice(squares(3, gap), 0.3, 0.2, 0.0).channel_rooms[1:-1] == [room, room]
 
 
 def test_a_trace_of_a_farthest_electrode_goes_around_where_the_gaps_are_full():
     """Of three files the middle one: through the gap where there is room, else behind and beside all others."""
     around, through = (Lattice(squares(3, gap, ranks=2), 0.3, 0.2, 0.0) for gap in (0.5, 0.7))
-    assert around.behind == pytest.approx(0.5)
-    assert around.beside == pytest.approx(1.0)
-    assert (through.behind, through.beside) == (0.0, pytest.approx(0.5))
+    assert around.width_behind == pytest.approx(0.5)
+    assert around.width_beside == pytest.approx(1.0)
+    assert (through.width_behind, through.width_beside) == (0.0, pytest.approx(0.5))
 
 
 @for_each(

@@ -9,7 +9,7 @@ from geometry.fabrication.device import lone_device
 from geometry.fabrication.parameters import Fabrication
 from geometry.flat.electrodes import stray_area_mm2
 from geometry.flat.flat_kit import flat_kit
-from geometry.flat.pattern import Label, gap_mm, shared_area_mm2
+from geometry.flat.pattern import Label, polygon_gap_mm, shared_area_mm2
 from geometry.parameters import Electrode, Film
 from tests.cases import for_each
 
@@ -79,7 +79,7 @@ def test_a_lead_over_the_common_electrode_counts_as_stray_film(make_segment):
 
 def test_leads_of_one_face_keep_their_distance(make_segment):
     one, other, _ = flat_kit(lone_device(side_by_side(make_segment)), Fabrication(tab_width_mm=2.4)).metals
-    assert min(gap_mm(a, b) for a in one.lead for b in other.lead) >= 0.2
+    assert min(polygon_gap_mm(a, b) for a in one.lead for b in other.lead) >= 0.2
 
 
 @for_each("way", EXITS)

@@ -12,12 +12,12 @@ from geometry.flat.pattern import (
     Dimension,
     FlatPattern,
     Outline,
-    compensated,
-    gap_mm,
-    offset,
+    kerf_compensated_pattern,
+    offset_polygon,
+    polygon_gap_mm,
     rectangle,
+    rotated_pattern,
     shared_area_mm2,
-    turned,
 )
 from geometry.parameters import Effector
 
@@ -28,21 +28,21 @@ def test_right_angles_grow_by_perimeter_and_four_corners(segment):
     """A polygon of right angles that is moved outwards by d: area A + P d + 4 d^2, perimeter P + 8 d."""
     for cut in flat_kit(lone_device(segment), Fabrication()).patterns[0].cuts:
         if isinstance(cut, Outline):
-            moved = Outline("CUT", offset(cut.points, 0.05))
+            moved = Outline("CUT", offset_polygon(cut.points, 0.05))
             assert moved.area_mm2 == pytest.approx(cut.area_mm2 + 0.05 * cut.length_mm + 4 * 0.05**2)
             assert moved.length_mm == pytest.approx(cut.length_mm + 8 * 0.05)
 
 
 def test_oblique_corner_keeps_its_distance():
     """A right triangle of legs 3 and 4 moved outwards by its inradius 1 is twice as large."""
-    larger = offset(((0.0, 0.0), (4.0, 0.0), (0.0, 3.0)), 1.0)
+    larger = offset_polygon(((0.0, 0.0), (4.0, 0.0), (0.0, 3.0)), 1.0)
     assert Outline("CUT", larger).length_mm == pytest.approx(24.0)
 
 
 def test_the_cut_takes_half_a_kerf_from_the_waste():
     cuts = (Outline("CUT", SQUARE), Circle("CUT", (1.0, 1.0), 0.5), rectangle("CUT", (0.2, 0.4), (0.2, 0.4), hole=True))
     pattern = FlatPattern("a", "a", "a", 1.0, 1, "", cuts, kerf_mm=0.1)
-    outer, hole, window = compensated(pattern).cuts
+    outer, hole, window = kerf_compensated_pattern(pattern).cuts
     assert outer.area_mm2 == pytest.approx(2.1**2)
     assert hole.area_mm2 == pytest.approx(pi * 0.45**2)
     assert window.area_mm2 == pytest.approx(0.1**2)
@@ -51,21 +51,21 @@ def test_the_cut_takes_half_a_kerf_from_the_waste():
 def test_convex_polygons_share_and_keep_apart():
     moved = tuple((x + 1.5, y + 0.5) for x, y in SQUARE)
     assert shared_area_mm2(SQUARE, moved) == pytest.approx(0.5 * 1.5)
-    assert gap_mm(SQUARE, moved) == pytest.approx(-0.5)
-    assert gap_mm(SQUARE, tuple((x + 2.7, y + 1.0) for x, y in SQUARE)) == pytest.approx(0.7)
+    assert polygon_gap_mm(SQUARE, moved) == pytest.approx(-0.5)
+    assert polygon_gap_mm(SQUARE, tuple((x + 2.7, y + 1.0) for x, y in SQUARE)) == pytest.approx(0.7)
 
 
 def test_four_quarter_turns_are_none(segment):
     pattern = flat_kit(lone_device(segment), Fabrication()).patterns[0]
-    once = turned(pattern, 90.0)
-    assert turned(once, 270.0) == pattern
+    once = rotated_pattern(pattern, 90.0)
+    assert rotated_pattern(once, 270.0) == pattern
     assert once.size_mm == pytest.approx(pattern.size_mm[::-1])
 
 
 def test_dimensions_turn_with_the_part():
     below = Dimension(*SQUARE[:2], "x", -1.0)
     pattern = FlatPattern("a", "a", "a", 1.0, 1, "", (Outline("CUT", SQUARE),), (), (below,))
-    (size,) = turned(pattern, 90.0).dimensions
+    (size,) = rotated_pattern(pattern, 90.0).dimensions
     assert (size.along, size.length_mm, size.shift) == ("y", 2.0, 1.0)
 
 

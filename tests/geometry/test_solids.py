@@ -6,10 +6,17 @@ from math import pi, radians, tan
 import pytest
 from build123d import GeomType, Vector
 
-from geometry.assembly import CLEARANCE_MM, FLOOR_MM, PLATE_THICKNESS_MM, WALL_MM, build_parts, dot_solid, layer_solids
+from geometry.assembly import (
+    CASE_CLEARANCE_MM,
+    CASE_FLOOR_MM,
+    CASE_WALL_MM,
+    PLATE_THICKNESS_MM,
+    build_parts,
+    dot_solid,
+)
 from geometry.dot_at_rest import resolve_dot
 from geometry.parameters import Dot, Effector
-from geometry.solids import PART_COLOURS
+from geometry.solids import PART_COLOURS, layer_solids
 from tests.cases import for_each
 
 EXACT = 1e-9
@@ -120,22 +127,22 @@ def test_the_plate_is_flush_over_the_tilted_footprint(segment):
 
 def test_the_case_touches_the_held_layers_only(make_segment):
     case = parts_of(make_segment(held_layers=("medium1", "film")))["case"]
-    outer = 2.5 + 2 * (CLEARANCE_MM + WALL_MM)
-    cavity = 2.5**2 * 0.528 + (2.5 + 2 * CLEARANCE_MM) ** 2 * 2.0
-    assert case.volume_mm3 == pytest.approx(outer**2 * (2.528 + FLOOR_MM) - cavity, rel=EXACT)
+    outer = 2.5 + 2 * (CASE_CLEARANCE_MM + CASE_WALL_MM)
+    cavity = 2.5**2 * 0.528 + (2.5 + 2 * CASE_CLEARANCE_MM) ** 2 * 2.0
+    assert case.volume_mm3 == pytest.approx(outer**2 * (2.528 + CASE_FLOOR_MM) - cavity, rel=EXACT)
     assert pytest.approx(2.528) == case.solid.bounding_box().max.Z
 
 
 def test_a_case_that_holds_all_layers_is_a_plain_tray(make_segment):
     held = ("effector", "medium1", "film", "medium2")
     case = parts_of(make_segment(held_layers=held, boundary="elastic"))["case"]
-    outer = 2.5 + 2 * WALL_MM
-    assert case.volume_mm3 == pytest.approx(outer**2 * (3.528 + FLOOR_MM) - 2.5**2 * 3.528, rel=EXACT)
+    outer = 2.5 + 2 * CASE_WALL_MM
+    assert case.volume_mm3 == pytest.approx(outer**2 * (3.528 + CASE_FLOOR_MM) - 2.5**2 * 3.528, rel=EXACT)
 
 
 def test_a_free_segment_stands_on_a_base_plate(make_segment):
     case = parts_of(make_segment(boundary="free"))["case"]
-    assert case.volume_mm3 == pytest.approx((2.5 + 2 * WALL_MM) ** 2 * FLOOR_MM, rel=EXACT)
+    assert case.volume_mm3 == pytest.approx((2.5 + 2 * CASE_WALL_MM) ** 2 * CASE_FLOOR_MM, rel=EXACT)
     assert pytest.approx(0.0, abs=1e-6) == case.solid.bounding_box().max.Z
 
 

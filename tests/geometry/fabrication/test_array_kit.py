@@ -15,7 +15,7 @@ from geometry.fabrication.clamp_frame import frame_parts
 from geometry.fabrication.device import Device, array_device, lone_device
 from geometry.fabrication.kit import jig_device, jig_parts, solid_kit, stacked_tops
 from geometry.fabrication.parameters import CastingNumbers, Fabrication
-from geometry.fabrication.part import box, volume
+from geometry.fabrication.part import box, shape_volume_mm3
 from geometry.flat.flat_kit import flat_kit
 from geometry.parameters import Dot, Effector, Film, Medium, Segment
 from tests.cases import for_each
@@ -87,7 +87,7 @@ def test_castings_have_the_volume_of_the_arrays_layers(kit):
     volumes = designed_volumes(device)
     assert {check.component for check in solids.cavity_checks} == {"effector", "medium1", "medium2"}
     for check in solids.cavity_checks:
-        pieces = device.pieces(check.component)
+        pieces = device.piece_count(check.component)
         assert pieces * check.designed_volume_mm3 == pytest.approx(volumes[check.component], rel=1e-6)
         assert pieces * check.cast_volume_mm3 == pytest.approx(volumes[check.component], rel=2e-3)
         assert check.deviation_mm <= check.tolerance_mm
@@ -96,7 +96,7 @@ def test_castings_have_the_volume_of_the_arrays_layers(kit):
 def test_one_pour_makes_the_pieces_of_one_array(kit):
     device, solids = kit
     for pour in solids.pours:
-        assert pour.cavities == device.pieces(pour.component)
+        assert pour.cavities == device.piece_count(pour.component)
 
 
 def test_grooves_are_ridges_in_the_mould():
@@ -109,7 +109,7 @@ def test_grooves_are_ridges_in_the_mould():
     assert check.designed_volume_mm3 == pytest.approx(4 * half_x * half_y * 2.0 - 1.4 * area)
     plate = next(part for part in solids.parts if part.label == "mould-medium2-plate").solid
     ridge = box((-0.2, 0.2), (-1.0, 1.0), (0.0, 1.39))
-    assert volume(plate.intersect(ridge)) == pytest.approx(ridge.volume)
+    assert shape_volume_mm3(plate.intersect(ridge)) == pytest.approx(ridge.volume)
 
 
 def test_every_part_is_one_closed_solid(kit, tmp_path):
@@ -130,7 +130,7 @@ def test_no_layer_overlaps_frame_or_base(kit):
     assert holders
     for name in ("medium2", "film", "medium1", "effector"):
         for piece in device.solids(name):
-            assert all(volume(part.solid.intersect(piece)) < 1e-9 for part in holders)
+            assert all(shape_volume_mm3(part.solid.intersect(piece)) < 1e-9 for part in holders)
 
 
 def test_the_grid_is_a_glue_line_away_from_every_segment():
@@ -148,7 +148,7 @@ def test_the_grid_is_a_glue_line_away_from_every_segment():
                     edge = (x, y)[axis] + side * (1.0 + GLUE)
                     beside[axis] = (edge, edge + 0.1) if side > 0 else (edge - 0.1, edge)
             wall = box(*beside)
-            assert volume(ring.intersect(wall)) == pytest.approx(wall.volume)
+            assert shape_volume_mm3(ring.intersect(wall)) == pytest.approx(wall.volume)
 
 
 def test_the_film_is_bonded_to_the_bars_of_the_grid():
@@ -169,7 +169,7 @@ def test_medium_2_that_runs_through_a_grid_has_one_opening_with_air():
     body = next(part for part in solids.parts if part.label == "frame-body").solid
     half_x, half_y = device.layout.half_mm
     inside = box((-half_x - AIR, half_x + AIR), (-half_y - AIR, half_y + AIR), (0.0, 2.0))
-    assert volume(body.intersect(inside)) < 1e-9
+    assert shape_volume_mm3(body.intersect(inside)) < 1e-9
 
 
 def test_the_film_with_its_traces_lies_on_the_frame():
@@ -225,7 +225,7 @@ def test_a_single_segment_is_an_array_of_one(make_kit_segment):
         pairs = zip(make(one, made), make(alone, made), strict=True)
         assert all(a.label == b.label and a.volume_mm3 == pytest.approx(b.volume_mm3) for a, b in pairs)
     for name in ("effector", "medium1", "medium2"):
-        assert one.pieces(name) == alone.pieces(name) == 1
+        assert one.piece_count(name) == alone.piece_count(name) == 1
         assert one.piece(name).volume == pytest.approx(alone.piece(name).volume)
 
 

@@ -6,7 +6,7 @@ from build123d import Solid
 from geometry.fabrication.clamp_frame import frame_parts
 from geometry.fabrication.device import lone_device
 from geometry.fabrication.parameters import Fabrication
-from geometry.fabrication.part import box, volume
+from geometry.fabrication.part import box, shape_volume_mm3
 from geometry.parameters import Effector
 from geometry.solids import layer_solids
 from tests.cases import for_each
@@ -37,23 +37,23 @@ def test_held_sides_are_a_glue_line_away_and_free_ones_have_air(make_kit_segment
 def test_free_sides_of_medium_2_have_air_to_bulge_into(make_kit_segment):
     body = parts_of(make_kit_segment())["frame-body"].solid
     bulged = box((-1.25 - AIR, 1.25 + AIR), (-1.25 - AIR, 1.25 + AIR), (0.0, 2.0))
-    assert volume(body.intersect(bulged)) < 1e-9
+    assert shape_volume_mm3(body.intersect(bulged)) < 1e-9
     wider = box((-1.35 - AIR, 1.35 + AIR), (-1.35 - AIR, 1.35 + AIR), (0.0, 2.0))
-    assert volume(body.intersect(wider)) > 0.1
+    assert shape_volume_mm3(body.intersect(wider)) > 0.1
 
 
 def test_soft_layers_and_frame_do_not_overlap(design):
     frame = [part for part in design.kit.parts if part.label.startswith(("frame", "base"))]
     for layer in layer_solids(design.segment, 0.028).values():
         for part in frame:
-            assert volume(part.solid.intersect(layer)) < 1e-9
+            assert shape_volume_mm3(part.solid.intersect(layer)) < 1e-9
 
 
 def test_the_film_is_clamped_between_body_and_ring(make_kit_segment):
     frame = parts_of(make_kit_segment(), film_flange_mm=0.8)
     film = box((-2.05, 2.05), (-2.05, 2.05), (2.0, 2.028))
     for part in frame.values():
-        assert volume(part.solid.intersect(film)) < 1e-9
+        assert shape_volume_mm3(part.solid.intersect(film)) < 1e-9
         assert apart(part, film) < 1e-9
     lower, upper = frame["frame-body"].solid.bounding_box(), frame["frame-ring"].solid.bounding_box()
     assert pytest.approx(0.028) == upper.min.Z - lower.max.Z
@@ -64,7 +64,7 @@ def test_the_dot_reaches_the_top_of_the_segment(make_kit_segment):
         segment = make_kit_segment(effector=effector)
         above = box((-1.25, 1.25), (-1.25, 1.25), (2.03, 9.0))
         for part in parts_of(segment).values():
-            assert volume(part.solid.intersect(above)) < 1e-9
+            assert shape_volume_mm3(part.solid.intersect(above)) < 1e-9
 
 
 @for_each(("side", "axis", "end"), [("+x", 0, 1), ("-x", 0, 0), ("+y", 1, 1), ("-y", 1, 0)])
@@ -77,7 +77,7 @@ def test_the_cable_leaves_on_its_side(make_kit_segment, side, axis, end):
     span = (0.0, ends[1]) if end == 1 else (-ends[0], 0.0)
     tab = [(-0.8, 0.8), (-0.8, 0.8), (1.6, 2.028)]
     tab[axis] = span
-    assert volume(body.intersect(box(*tab))) < 1e-9
+    assert shape_volume_mm3(body.intersect(box(*tab))) < 1e-9
 
 
 def test_a_free_segment_stands_on_an_open_base(make_kit_segment):
@@ -85,7 +85,7 @@ def test_a_free_segment_stands_on_an_open_base(make_kit_segment):
     assert base.label == "base"
     assert pytest.approx(0.0, abs=1e-6) == base.solid.bounding_box().max.Z
     under = box((-1.25, 1.25), (-1.25, 1.25), (-0.4, 0.0))
-    assert volume(base.solid.intersect(under)) == pytest.approx(6.25 * 0.4)
+    assert shape_volume_mm3(base.solid.intersect(under)) == pytest.approx(6.25 * 0.4)
 
 
 def test_an_array_has_one_window_for_each_segment(make_kit_segment):

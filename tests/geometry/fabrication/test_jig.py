@@ -6,7 +6,7 @@ from build123d import Pos
 from geometry.fabrication.device import lone_device
 from geometry.fabrication.kit import jig_parts, stacked_tops
 from geometry.fabrication.parameters import Fabrication
-from geometry.fabrication.part import box, volume
+from geometry.fabrication.part import box, shape_volume_mm3
 from geometry.parameters import Effector
 from geometry.solids import layer_solids
 from tests.cases import for_each
@@ -23,9 +23,9 @@ def test_two_sides_of_every_layer_touch_the_stops_and_two_are_open(make_kit_segm
     segment = make_kit_segment(boundary="free", length_mm=3.0)
     jig = parts_of(segment, cable_exit=side)["jig"]
     for layer in layer_solids(segment, 0.028).values():
-        assert volume(jig.intersect(layer)) < 1e-9
+        assert shape_volume_mm3(jig.intersect(layer)) < 1e-9
         ways = [(0.1, 0.0), (-0.1, 0.0), (0.0, 0.1), (0.0, -0.1)]
-        blocked = [way for way in ways if volume(jig.intersect(Pos(*way, 0) * layer)) > 1e-4]
+        blocked = [way for way in ways if shape_volume_mm3(jig.intersect(Pos(*way, 0) * layer)) > 1e-4]
         assert len(blocked) == 2
         assert blocked[0][0] * blocked[1][0] == 0.0  # one along x, one along y
         tab = {"+x": (0.1, 0.0), "-x": (-0.1, 0.0), "+y": (0.0, 0.1), "-y": (0.0, -0.1)}[side]
@@ -52,11 +52,11 @@ def test_the_locator_centres_a_narrow_effector(make_kit_segment):
     segment = make_kit_segment(effector=CYLINDER, boundary="free")
     parts = parts_of(segment)
     effector, locator = layer_solids(segment, 0.028)["effector"], parts["jig-locator"]
-    assert volume(parts["jig"].intersect(locator)) < 1e-9
+    assert shape_volume_mm3(parts["jig"].intersect(locator)) < 1e-9
     assert locator.distance_to(effector) == pytest.approx(0.05)
     assert pytest.approx(2.528) == locator.bounding_box().min.Z
     moved = Pos(0.1, 0, 0) * effector
-    assert volume(locator.intersect(moved)) > 0.01
+    assert shape_volume_mm3(locator.intersect(moved)) > 0.01
 
 
 def test_no_locator_for_a_layer(make_kit_segment):
@@ -69,7 +69,7 @@ def test_the_locator_of_a_block_turns_with_the_cable(make_kit_segment):
     for side in ("+x", "+y"):
         locator = parts_of(segment, cable_exit=side)["jig-locator"]
         hole = box((-1.05, 1.05), (-0.55, 0.55), (2.6, 3.6))
-        assert volume(locator.intersect(hole)) < 1e-9
+        assert shape_volume_mm3(locator.intersect(hole)) < 1e-9
         assert locator.distance_to(box((-1.0, 1.0), (-0.5, 0.5), (2.6, 3.6))) == pytest.approx(0.05)
 
 

@@ -11,7 +11,7 @@ from geometry.fabrication.cavity import check_mould_sizes, least_draft_deg, styl
 from geometry.fabrication.device import lone_device
 from geometry.fabrication.mould import mould_of
 from geometry.fabrication.parameters import Fabrication
-from geometry.fabrication.part import box, printer_profile, volume
+from geometry.fabrication.part import box, printer_profile, shape_volume_mm3
 from geometry.parameters import Effector
 from geometry.stack import layers
 
@@ -78,7 +78,7 @@ def test_the_parts_of_a_closed_mould_do_not_overlap(mould):
     solids = list(mould.solids.values())
     for number, one in enumerate(solids):
         for other in solids[number + 1 :]:
-            assert volume(one.intersect(other)) < 1e-9
+            assert shape_volume_mm3(one.intersect(other)) < 1e-9
 
 
 def test_air_leaves_every_cavity(mould):
@@ -101,10 +101,10 @@ def test_the_part_leaves_the_mould_without_meeting_a_wall(mould):
     part = mould.cavity.solid
     for way in (0.05, 0.4, 1.5):
         if mould.style == "open":
-            assert volume((Pos(0, 0, way) * part).intersect(mould.solids["plate"])) < 1e-9
+            assert shape_volume_mm3((Pos(0, 0, way) * part).intersect(mould.solids["plate"])) < 1e-9
         else:
-            assert volume(part.intersect(Pos(0, -way, 0) * mould.solids["bar-1"])) < 1e-9
-            assert volume(part.intersect(Pos(0, way, 0) * mould.solids["bar-2"])) < 1e-9
+            assert shape_volume_mm3(part.intersect(Pos(0, -way, 0) * mould.solids["bar-1"])) < 1e-9
+            assert shape_volume_mm3(part.intersect(Pos(0, way, 0) * mould.solids["bar-2"])) < 1e-9
 
 
 def test_walls_of_an_open_mould_have_their_draft(make_kit_segment):
