@@ -23,7 +23,7 @@ FACTORS = (2.0, 1.4, 1.0, 0.7, 0.5)
 def measure(factor: float) -> dict:
     """Force and voltage of the default press on a mesh scaled by a factor, of a quarter."""
     config = load_config(None, ["press.load_steps=3"])  # elastic and frictionless: the path does not matter
-    result = Case(config.model_copy(update={"mesh": config.mesh.scaled(factor)})).solve()
+    result = Case(config.model_copy(update={"mesh": config.mesh.scale_sizes(factor)})).solve()
     if not result.converged:
         raise SystemExit(result.failure)
     return {

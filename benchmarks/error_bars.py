@@ -76,7 +76,7 @@ def effector(shape: str, length: float, between: Any, material: str) -> dict[str
 def pressed(tables: dict[str, Any], factor: float) -> tuple[list[float], int]:
     """Force and the voltage of each electrode at full depth on elements larger by the factor, and the unknowns."""
     config = Case(**tables).config
-    case = Case(config.model_copy(update={"mesh": config.mesh.scaled(factor)}))
+    case = Case(config.model_copy(update={"mesh": config.mesh.scale_sizes(factor)}))
     result = case.solve()
     if not result.converged:
         raise SystemExit(f"{tables}: {result.failure}")

@@ -52,7 +52,7 @@ from softdot.sweeps import points
 paper.PARTS = ("analytical", "segments")
 solve = points.solve_points
 def coarse(configs, *others, **named):
-    larger = [one.model_copy(update={"mesh": one.mesh.scaled(4.0)}) for one in configs]
+    larger = [one.model_copy(update={"mesh": one.mesh.scale_sizes(4.0)}) for one in configs]
     return solve(larger, *others, **named)
 points.solve_points = coarse
 sys.exit(cli.main(sys.argv[1:]))

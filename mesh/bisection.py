@@ -17,11 +17,14 @@ class Triangulation:
     part: Ints
 
 
-ORIGIN = np.zeros((1, 2))
+CENTRE_AT_ORIGIN = np.zeros((1, 2))
 
 
 def refine(
-    start: Triangulation, size: Callable[[Floats], Floats], circle_radius: float | None, centres: Floats = ORIGIN
+    start: Triangulation,
+    size: Callable[[Floats], Floats],
+    circle_radius: float | None,
+    centres: Floats = CENTRE_AT_ORIGIN,
 ) -> Triangulation:
     """Bisect until the longest edge of each triangle is at most the size at its centroid.
 
@@ -39,7 +42,7 @@ def refine(
 
 def _bisect(old: Triangulation, marked: Bools, circle_radius: float | None, centres: Floats) -> Triangulation:
     """Cut every marked triangle at least once and close the triangulation (L. Chen, iFEM, 2009)."""
-    edges, of_triangle = _edges(old.triangles)
+    edges, of_triangle = _triangle_edges(old.triangles)
     cut = np.zeros(len(edges), dtype=bool)
     cut[of_triangle[marked, 0]] = True
     while True:
@@ -50,11 +53,11 @@ def _bisect(old: Triangulation, marked: Bools, circle_radius: float | None, cent
     points, middle = _cut_edges(old, edges, of_triangle, cut, circle_radius, centres)
     triangles, part = old.triangles, old.part
     for _ in range(2):  # the children's cut edges are edges of the old triangle, so twice is enough
-        triangles, part, of_triangle = _halve(triangles, part, of_triangle, middle)
+        triangles, part, of_triangle = _halve_triangles(triangles, part, of_triangle, middle)
     return Triangulation(points, triangles, part)
 
 
-def _edges(triangles: Ints) -> tuple[Ints, Ints]:
+def _triangle_edges(triangles: Ints) -> tuple[Ints, Ints]:
     """Unique edges (e, 2) and, per triangle, the edges opposite to its three vertices (m, 3)."""
     pairs = np.sort(triangles[:, [[1, 2], [2, 0], [0, 1]]], axis=2)
     edges, number = np.unique(pairs.reshape(-1, 2), axis=0, return_inverse=True)
@@ -85,7 +88,7 @@ def _onto_circle(points: Floats, radius: float, centres: Floats) -> Floats:
     return np.asarray(points + arm * (radius / np.linalg.norm(arm, axis=1, keepdims=True) - 1.0))
 
 
-def _halve(triangles: Ints, part: Ints, of_triangle: Ints, middle: Ints) -> tuple[Ints, Ints, Ints]:
+def _halve_triangles(triangles: Ints, part: Ints, of_triangle: Ints, middle: Ints) -> tuple[Ints, Ints, Ints]:
     """Cut triangles whose first edge is cut. Halves know the old edges they keep; new ones are not cut."""
     first = of_triangle[:, 0]
     new = np.where(first >= 0, middle[first], -1)

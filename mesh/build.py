@@ -27,29 +27,29 @@ def build(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes 
     Raises InputError when the mesher cannot mesh the shape or options.file is no mesh of it, MeshingError when the
     mesher fails or takes too long.
     """
-    from mesh.quadratic import finished
+    from mesh.quadratic import quadratic_mesh
 
     if options.file is not None:
-        from mesh.files.own import own_mesh
+        from mesh.files.user_mesh import user_mesh
 
-        return own_mesh(options.file, segment)
-    return finished(_linear(segment, dot, options, planes), segment, options, planes)
+        return user_mesh(options.file, segment)
+    return quadratic_mesh(_linear_mesh(segment, dot, options, planes), segment, options, planes)
 
 
-def _linear(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes) -> LinearMesh:
+def _linear_mesh(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes) -> LinearMesh:
     """Choose the mesher; what pytetwild makes is remembered."""
-    from mesh.layered import layered
+    from mesh.layered import layered_mesh
     from mesh.slice import layered_slice, tetwild_slice
-    from mesh.tetwild import tetwild
+    from mesh.tetwild import tetwild_mesh
 
     is_slice = segment.section == "plane-strain"
     if options.mesher == "layered":
-        return (layered_slice if is_slice else layered)(segment, dot, options, planes)
-    make = tetwild_slice if is_slice else tetwild
-    return remembered(key(segment, dot, options, planes), lambda: make(segment, dot, options, planes))
+        return (layered_slice if is_slice else layered_mesh)(segment, dot, options, planes)
+    make = tetwild_slice if is_slice else tetwild_mesh
+    return cached_mesh(mesh_key(segment, dot, options, planes), lambda: make(segment, dot, options, planes))
 
 
-def key(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes = ()) -> str:
+def mesh_key(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes = ()) -> str:
     """Hash of the geometry, of the dot's place and size, of the options and of the meshers."""
     from importlib.metadata import version
 
@@ -59,22 +59,22 @@ def key(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes = 
         "segment": [segment.length_mm, segment.width_mm, segment.section, segment.film.thickness_um],
         "layers": [segment.medium1.thickness_mm, segment.medium2.thickness_mm],
         "effector": effector and effector.model_dump(exclude={"material"}),
-        "dot": [dot.kind, dot.radius_mm, *(np.round(a, 9).tolist() for a in _places(dot))],
+        "dot": [dot.kind, dot.radius_mm, *(np.round(a, 9).tolist() for a in _dot_arrays(dot))],
         "options": options.model_dump(exclude={"timeout_s", "file", "symmetry", "accuracy_percent"}),
         "planes": planes,
     }
     return data_hash(content)
 
 
-def _places(dot: DotShape) -> tuple[Any, Any, Any]:
+def _dot_arrays(dot: DotShape) -> tuple[Any, Any, Any]:
     """The arrays of a dot."""
     return np.asarray(dot.tips_mm), np.asarray(dot.origin_mm), np.asarray(dot.rotation)
 
 
-def remembered(name: str, make: Callable[[], LinearMesh]) -> LinearMesh:
+def cached_mesh(name: str, make: Callable[[], LinearMesh]) -> LinearMesh:
     """The mesh kept under this name, or a new one that is then kept. A damaged file is a miss."""
     path = cache_folder() / f"mesh-{name}.npz"
-    found = read_arrays(path, _decoded)
+    found = read_arrays(path, _decode_mesh)
     if found is not None:
         return found
     made = make()
@@ -85,7 +85,7 @@ def remembered(name: str, make: Callable[[], LinearMesh]) -> LinearMesh:
     return made
 
 
-def _decoded(data: Mapping[str, Any]) -> LinearMesh:
+def _decode_mesh(data: Mapping[str, Any]) -> LinearMesh:
     """The mesh in a file; ValueError when its arrays do not fit together."""
     found = LinearMesh(data["points"], data["tets"], data["region"], tuple(str(name) for name in data["names"]))
     if found.points_mm.shape[1:] != (3,) or found.tets.shape != (len(found.region), 4):

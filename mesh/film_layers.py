@@ -5,29 +5,31 @@ from numpy.typing import NDArray
 
 from foundation.arrays import Floats, Ints
 from mesh.section import MeshedSection
-from mesh.types import TET_FACES, LinearMesh, face_neighbours, oriented, split_prisms
+from mesh.types import TET_FACES, LinearMesh, face_neighbours, orient_tets, split_prisms
 
-NAMES = ("medium2", "film", "medium1", "effector")
+PART_NAMES = ("medium2", "film", "medium1", "effector")
 
 
-def with_film(bare: LinearMesh, thickness_mm: float, film_layers: int) -> LinearMesh:
+def mesh_with_film(bare: LinearMesh, thickness_mm: float, film_layers: int) -> LinearMesh:
     """A mesh of medium2, medium1 (and effector) with the film's layers extruded from the interface."""
     neighbour = face_neighbours(bare.tets)
     lower = bare.region == 0
     owner, face = np.nonzero(lower[:, None] & (neighbour >= 0) & (bare.region[neighbour] == 1))
     facets = bare.tets[owner[:, None], TET_FACES[face, :3]]
-    points, levels, moved = _levels(bare.points_mm, bare.tets, lower, np.unique(facets), thickness_mm, film_layers)
+    points, levels, moved = _film_levels(bare.points_mm, bare.tets, lower, np.unique(facets), thickness_mm, film_layers)
     prisms = [split_prisms(levels[i][facets], levels[i + 1][facets]) for i in range(film_layers)]
     tets = np.concatenate([np.where(lower[:, None], bare.tets, moved[bare.tets]), *prisms])
-    region = _regions(bare.region, 3 * len(facets) * film_layers)
-    return LinearMesh(points, oriented(points, tets), region, _names(bare.region))
+    region = _regions_with_film(bare.region, 3 * len(facets) * film_layers)
+    return LinearMesh(points, orient_tets(points, tets), region, _part_names(bare.region))
 
 
 def section_with_film(bare: MeshedSection, thickness_mm: float, film_layers: int) -> MeshedSection:
     """Put a film into a slice: interface edges of the x-z section become rectangles, cut in two, mirrored at x = 0."""
     lower = bare.region == 0
     edges = _interface_edges(bare)
-    points, levels, moved = _levels(bare.points_mm, bare.triangles, lower, np.unique(edges), thickness_mm, film_layers)
+    points, levels, moved = _film_levels(
+        bare.points_mm, bare.triangles, lower, np.unique(edges), thickness_mm, film_layers
+    )
     cells = []
     for i in range(film_layers):
         (a, b), (d, c) = levels[i][edges].T, levels[i + 1][edges].T
@@ -36,11 +38,11 @@ def section_with_film(bare: MeshedSection, thickness_mm: float, film_layers: int
         other = np.stack([np.stack([a, b, d], axis=1), np.stack([b, c, d], axis=1)], axis=1)
         cells.append(np.where(rising, one, other).reshape(-1, 3))
     triangles = np.concatenate([np.where(lower[:, None], bare.triangles, moved[bare.triangles]), *cells])
-    region = _regions(bare.region, 2 * len(edges) * film_layers)
-    return MeshedSection(points, triangles, region, _names(bare.region))
+    region = _regions_with_film(bare.region, 2 * len(edges) * film_layers)
+    return MeshedSection(points, triangles, region, _part_names(bare.region))
 
 
-def _levels(
+def _film_levels(
     points: Floats, cells: Ints, lower: NDArray[np.bool_], interface: Ints, thickness: float, film_layers: int
 ) -> tuple[Floats, list[Ints], Ints]:
     """Raised points with the film's nodes added, node numbers on each level, and those above the film."""
@@ -70,11 +72,11 @@ def _interface_edges(bare: MeshedSection) -> Ints:
     return np.take_along_axis(edges, np.argsort(x, axis=1), axis=1)
 
 
-def _regions(bare: Ints, added: int) -> Ints:
+def _regions_with_film(bare: Ints, added: int) -> Ints:
     """Regions with the film as number 1."""
     return np.concatenate([np.where(bare > 0, bare + 1, 0), np.full(added, 1, dtype=np.int64)])
 
 
-def _names(bare: Ints) -> tuple[str, ...]:
+def _part_names(bare: Ints) -> tuple[str, ...]:
     """Names of the parts once the film is in."""
-    return NAMES[: int(bare.max()) + 2]
+    return PART_NAMES[: int(bare.max()) + 2]

@@ -14,25 +14,25 @@ def start_triangulation(outline: StackOutline, coarse_mm: float) -> Triangulatio
     Raises InputError when a cylinder leaves no room for triangles beside it.
     """
     round_foot = outline.shape == "cylinder"
-    patch = _patch(outline) if round_foot else (outline.effector_half_x, outline.effector_half_y)
-    x = _lines(outline.half_x, patch[0], coarse_mm, round_foot)
-    y = _lines(outline.half_y, patch[1], coarse_mm, round_foot)
+    patch = _foot_patch(outline) if round_foot else (outline.effector_half_x, outline.effector_half_y)
+    x = _grid_lines(outline.half_x, patch[0], coarse_mm, round_foot)
+    y = _grid_lines(outline.half_y, patch[1], coarse_mm, round_foot)
     cells = [(i, j) for j in range(len(y) - 1) for i in range(len(x) - 1)]
     if round_foot:
-        cells = [c for c in cells if not _within(x, c[0], patch[0]) or not _within(y, c[1], patch[1])]
+        cells = [c for c in cells if not _is_in_patch(x, c[0], patch[0]) or not _is_in_patch(y, c[1], patch[1])]
     around = ((0, 0), (1, 0), (1, 1), (0, 1))
     quads = np.array([[[x[i + di], y[j + dj]] for di, dj in around] for i, j in cells]).reshape(-1, 4, 2)
-    triangles = crossed(quads)
+    triangles = crossed_triangles(quads)
     part = outline.inside_effector(triangles.mean(axis=1)).astype(np.int64)
     if round_foot:
         rim, disc = round_patch(patch, outline.effector_half_x)
-        ring = crossed(rim)
+        ring = crossed_triangles(rim)
         triangles = np.concatenate([triangles, ring, disc])
         part = np.concatenate([part, np.zeros(len(ring), dtype=np.int64), np.ones(len(disc), dtype=np.int64)])
-    return joined(triangles, part)
+    return join_triangles(triangles, part)
 
 
-def _patch(outline: StackOutline) -> tuple[float, float]:
+def _foot_patch(outline: StackOutline) -> tuple[float, float]:
     """Half sizes of the rectangle around a round foot."""
     radius = outline.effector_half_x
     room = min(outline.half_x, outline.half_y)
@@ -46,7 +46,7 @@ def _patch(outline: StackOutline) -> tuple[float, float]:
     return half_x, half_y
 
 
-def _lines(half: float, patch: float, coarse: float, round_foot: bool) -> Floats:
+def _grid_lines(half: float, patch: float, coarse: float, round_foot: bool) -> Floats:
     """Symmetric grid lines through the edges of the patch; four cells over a patch around a round foot."""
     inner = 4 if round_foot else 2 * max(1, round(patch / coarse)) if 0 < patch < half else 0
     pieces = [np.linspace(-patch, patch, inner + 1)] if inner else []
@@ -58,12 +58,12 @@ def _lines(half: float, patch: float, coarse: float, round_foot: bool) -> Floats
     return np.concatenate(pieces)
 
 
-def _within(lines: Floats, cell: int, patch: float) -> bool:
+def _is_in_patch(lines: Floats, cell: int, patch: float) -> bool:
     """Whether a cell of the grid lies in the patch."""
     return bool(abs(lines[cell] + lines[cell + 1]) / 2 < patch)
 
 
-def crossed(quads: Floats) -> Floats:
+def crossed_triangles(quads: Floats) -> Floats:
     """Four triangles (4 k, 3, 2) of each quadrilateral (k, 4, 2), counter-clockwise, its centre first."""
     centre = quads.mean(axis=1)
     sides = [np.stack([centre, quads[:, i], quads[:, (i + 1) % 4]], axis=1) for i in range(4)]
@@ -83,10 +83,10 @@ def round_patch(patch: tuple[float, float], radius: float) -> tuple[Floats, Floa
     band = np.stack([inner, circle, next_circle, next_inner], axis=1)
     cell = 0.225 * radius * np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
     core = np.array([cell + 0.225 * radius * np.array([i, j]) for i in range(-2, 2) for j in range(-2, 2)])
-    return rim, crossed(np.concatenate([band, core]))
+    return rim, crossed_triangles(np.concatenate([band, core]))
 
 
-def joined(triangles: Floats, part: Ints) -> Triangulation:
+def join_triangles(triangles: Floats, part: Ints) -> Triangulation:
     """Number the corners of loose triangles (m, 3, 2); corners closer than a nanometre are one."""
     flat = triangles.reshape(-1, 2)
     _, first, number = np.unique(np.round(flat * 1e6), axis=0, return_index=True, return_inverse=True)

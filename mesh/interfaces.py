@@ -65,24 +65,24 @@ def split_interface(tet_mesh: TetMesh, name: str, joined: Bools | None = None) -
         tet_mesh,
         points_mm=np.concatenate([tet_mesh.points_mm, tet_mesh.points_mm[doubled]]),
         tets=tets,
-        facets={key: _follow(tet_mesh, key, above, new) for key in tet_mesh.facets},
+        facets={key: _split_facets(tet_mesh, key, above, new) for key in tet_mesh.facets},
         twin=np.concatenate([tet_mesh.twin, new[tet_mesh.twin[doubled]]]),
     )
     return split, facets, new[facets]
 
 
-def _follow(tet_mesh: TetMesh, name: str, above: str, new: Ints) -> Ints:
+def _split_facets(tet_mesh: TetMesh, name: str, above: str, new: Ints) -> Ints:
     """Named facets with the nodes of the part that they belong to; the film's faces belong to the film."""
     facets = tet_mesh.facets[name]
     if name.startswith("film-") and above != "film":
         return facets
     faces = tet_mesh.tets[tet_mesh.region_tets(above)][:, TET_FACES[:, :3]].reshape(-1, 3)
     count = len(tet_mesh.points_mm)
-    mine = np.isin(_keys(facets[:, :3], count), _keys(faces, count))
+    mine = np.isin(_triangle_keys(facets[:, :3], count), _triangle_keys(faces, count))
     return np.where(mine[:, None], new[facets], facets)
 
 
-def _keys(corners: Ints, count: int) -> Ints:
+def _triangle_keys(corners: Ints, count: int) -> Ints:
     """One number for each triangle (k, 3), whatever the order of its corners; count below two million nodes."""
     a, b, c = np.sort(corners, axis=1).T
     return np.asarray((a * count + b) * count + c)

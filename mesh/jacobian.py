@@ -4,33 +4,33 @@ import numpy as np
 
 from foundation.arrays import Floats
 
-_INNER = (5 - np.sqrt(5)) / 20
+_RULE_COORDINATE = (5 - np.sqrt(5)) / 20
 
 
 # Corners, mid-sides, centroid and the four points of the rule of degree 2, in barycentric coordinates.
-SAMPLES = np.vstack(
+SAMPLE_POINTS = np.vstack(
     [
         np.eye(4),
         [(np.eye(4)[a] + np.eye(4)[b]) / 2 for a, b in ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))],
         np.full((1, 4), 0.25),
-        np.full((4, 4), _INNER) + (1 - 4 * _INNER) * np.eye(4),
+        np.full((4, 4), _RULE_COORDINATE) + (1 - 4 * _RULE_COORDINATE) * np.eye(4),
     ]
 )
 
 
-_GRADIENTS = np.vstack([-np.ones((1, 3)), np.eye(3)])
+_BARYCENTRIC_GRADIENTS = np.vstack([-np.ones((1, 3)), np.eye(3)])
 
 
 def shape_gradients(barycentric: Floats) -> Floats:
     """Reference gradients (q, 10, 3) of the quadratic shape functions at points (q, 4)."""
-    lam, grad = barycentric[:, :, None], _GRADIENTS[None]
+    lam, grad = barycentric[:, :, None], _BARYCENTRIC_GRADIENTS[None]
     corner = (4 * lam - 1) * grad
     edges = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
     middle = np.stack([4 * (lam[:, a] * grad[:, b] + lam[:, b] * grad[:, a]) for a, b in edges], axis=1)
     return np.asarray(np.concatenate([corner, middle], axis=1))
 
 
-def jacobians(nodes: Floats, barycentric: Floats = SAMPLES) -> Floats:
+def jacobians(nodes: Floats, barycentric: Floats = SAMPLE_POINTS) -> Floats:
     """Jacobian matrices (m, q, 3, 3), columns dx/dxi, of elements with nodes (m, 10, 3)."""
     return np.asarray(np.einsum("mni,qnj->mqij", nodes, shape_gradients(barycentric), optimize=True))
 

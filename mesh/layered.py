@@ -11,21 +11,21 @@ from geometry.parameters import Segment
 from mesh.bisection import Triangulation, refine
 from mesh.footprint import start_triangulation
 from mesh.options import MeshOptions
-from mesh.outline import StackOutline, outline
-from mesh.sizing import Sizing, graded_through, sizing
-from mesh.types import LinearMesh, Planes, oriented, split_prisms, without_unused
+from mesh.outline import StackOutline, stack_outline
+from mesh.sizing import Sizing, graded_points_through, sizing_field
+from mesh.types import LinearMesh, Planes, orient_tets, split_prisms, without_unused
 
 SAME_HEIGHT_MM = 1e-9
 
 
-def layered(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes = ()) -> LinearMesh:
+def layered_mesh(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes = ()) -> LinearMesh:
     """Mesh a solid segment by extrusion, as far as its mirror planes. Raises InputError for a dome."""
     refuse_dome(segment)
-    stack = outline(segment, planes=planes)
-    field = sizing(stack, dot, options)
-    foot = _triangulate(stack, field)
-    heights, layer_region, names = levels(stack, field, options.film_layers)
-    return _extrude(foot, heights, layer_region, names)
+    stack = stack_outline(segment, planes=planes)
+    field = sizing_field(stack, dot, options)
+    foot = _triangulate_footprint(stack, field)
+    heights, layer_region, names = layer_heights(stack, field, options.film_layers)
+    return _extrude_footprint(foot, heights, layer_region, names)
 
 
 def refuse_dome(segment: Segment) -> None:
@@ -34,7 +34,7 @@ def refuse_dome(segment: Segment) -> None:
         raise InputError("mesh.mesher = layered cannot mesh segment.effector.shape = dome: use pytetwild")
 
 
-def levels(
+def layer_heights(
     stack: StackOutline, field: Sizing, film_layers: int, breaks: Iterable[float] = ()
 ) -> tuple[Floats, Ints, tuple[str, ...]]:
     """Heights (k + 1,), the part of each of the k layers, and the names of the parts; breaks : heights to go through
@@ -52,7 +52,7 @@ def levels(
 
     def through(bottom: float, top: float) -> Floats:
         inside = {z for z in breaks if bottom + SAME_HEIGHT_MM < z < top - SAME_HEIGHT_MM}
-        return graded_through([bottom, *sorted(inside), top], size)
+        return graded_points_through([bottom, *sorted(inside), top], size)
 
     pieces = [
         ("medium2", through(0.0, stack.film_bottom)),
@@ -66,18 +66,18 @@ def levels(
     return heights, part, tuple(name for name, _ in pieces)
 
 
-def _triangulate(stack: StackOutline, field: Sizing) -> Triangulation:
+def _triangulate_footprint(stack: StackOutline, field: Sizing) -> Triangulation:
     """The footprint, as fine at each place as the finest of skin and film above it."""
 
     def size(xy: Floats) -> Floats:
         at = [np.column_stack([xy, np.full(len(xy), z)]) for z in (stack.film_top, stack.top)]
         return 1.6 * np.minimum(field.at(at[0]), field.at(at[1]))  # right triangles: hypotenuse to mean edge
 
-    start = beside_planes(start_triangulation(stack, field.coarse_mm), stack.planes)
+    start = triangles_beside_planes(start_triangulation(stack, field.coarse_mm), stack.planes)
     return refine(start, size, stack.effector_half_x if stack.shape == "cylinder" else None)
 
 
-def beside_planes(start: Triangulation, planes: Planes) -> Triangulation:
+def triangles_beside_planes(start: Triangulation, planes: Planes) -> Triangulation:
     """The triangles on the positive side of every plane: the start and what bisection makes of it are symmetric."""
     middle = start.points[start.triangles].mean(axis=1)
     kept = (middle[:, list(planes)] > 0.0).all(axis=1)
@@ -85,7 +85,7 @@ def beside_planes(start: Triangulation, planes: Planes) -> Triangulation:
     return Triangulation(start.points[used], number.reshape(-1, 3).astype(np.int64), start.part[kept])
 
 
-def _extrude(foot: Triangulation, heights: Floats, layer_region: Ints, names: tuple[str, ...]) -> LinearMesh:
+def _extrude_footprint(foot: Triangulation, heights: Floats, layer_region: Ints, names: tuple[str, ...]) -> LinearMesh:
     """All prisms of all layers; the effector stands only on the triangles of its foot."""
     count = len(foot.points)
     points = np.column_stack([np.tile(foot.points, (len(heights), 1)), np.repeat(heights, count)])
@@ -95,4 +95,4 @@ def _extrude(foot: Triangulation, heights: Floats, layer_region: Ints, names: tu
         tets.append(split_prisms(base + layer * count, base + (layer + 1) * count))
         region.append(np.full(len(tets[-1]), part, dtype=np.int64))
     all_tets = np.concatenate(tets)
-    return without_unused(LinearMesh(points, oriented(points, all_tets), np.concatenate(region), names))
+    return without_unused(LinearMesh(points, orient_tets(points, all_tets), np.concatenate(region), names))

@@ -9,7 +9,7 @@ from geometry.stack import layers
 from mesh.types import TetMesh
 
 
-def morphed(tet_mesh: TetMesh, old: Segment, new: Segment) -> TetMesh:
+def morphed_mesh(tet_mesh: TetMesh, old: Segment, new: Segment) -> TetMesh:
     """Nodes moved linearly within each layer and with length and width; for small changes of the sizes.
 
     ValueError where the layers differ in number.

@@ -11,7 +11,7 @@ from foundation.arrays import Floats
 from geometry.parameters import Segment
 from mesh.types import Planes
 
-Shape = Literal["none", "layer", "block", "cylinder", "dome"]
+EffectorShape = Literal["none", "layer", "block", "cylinder", "dome"]
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class StackOutline:
     film_top: float
     medium1_top: float
     top: float
-    shape: Shape
+    shape: EffectorShape
     effector_half_x: float
     effector_half_y: float
     is_slice: bool
@@ -95,7 +95,7 @@ class StackOutline:
         return 4 * a * self.effector_half_y * height
 
 
-def outline(
+def stack_outline(
     segment: Segment, film_thickness_mm: float | None = None, slice_mm: float = 0.0, planes: Planes = ()
 ) -> StackOutline:
     """The outline of a segment.
@@ -108,12 +108,12 @@ def outline(
     half_x, half_y = segment.length_mm / 2, (slice_mm if is_slice else segment.width_mm) / 2
     bottom = segment.medium2.thickness_mm
     medium1_top = bottom + film + segment.medium1.thickness_mm
-    shape, foot_x, foot_y, height = _effector(segment, half_x, half_y)
+    shape, foot_x, foot_y, height = _effector_outline(segment, half_x, half_y)
     heights = (bottom, bottom + film, medium1_top, medium1_top + height)
     return StackOutline(half_x, half_y, *heights, shape, foot_x, foot_y, is_slice, planes)
 
 
-def _effector(segment: Segment, half_x: float, half_y: float) -> tuple[Shape, float, float, float]:
+def _effector_outline(segment: Segment, half_x: float, half_y: float) -> tuple[EffectorShape, float, float, float]:
     """Shape, half sizes of the foot and height of the effector."""
     effector = segment.effector
     if effector is None:

@@ -7,15 +7,15 @@ from foundation.arrays import Floats, Ints
 from geometry.parameters import Segment
 from mesh.jacobian import smallest_determinant_ratio
 from mesh.options import MeshOptions
-from mesh.outline import RoundSkin, StackOutline, curved_surface, outline
+from mesh.outline import RoundSkin, StackOutline, curved_surface, stack_outline
 from mesh.quality import refuse_inverted
-from mesh.slice import twins
+from mesh.slice import node_twins
 from mesh.types import TET_FACES, LinearMesh, Planes, TetMesh, boundary_faces, face_neighbours, unique_edges
 
-FLATTEST = 0.1  # a curved element keeps at least this share of its mean Jacobian everywhere
+LEAST_JACOBIAN_RATIO = 0.1  # a curved element keeps at least this share of its mean Jacobian everywhere
 
 
-def quadratic(linear: LinearMesh, surface: RoundSkin | None) -> tuple[Floats, Ints]:
+def quadratic_nodes_and_tets(linear: LinearMesh, surface: RoundSkin | None) -> tuple[Floats, Ints]:
     """Nodes (n, 3) and tetrahedra (m, 10) in VTK's order.
 
     The mid-side nodes of the skin's edges on the curved surface are projected onto it; where that would
@@ -53,7 +53,7 @@ def _straighten(points: Floats, tets: Ints, middle: Floats, straight: Floats, cu
     while True:
         nodes = np.vstack([points, middle])
         touched = np.flatnonzero(bent[tets[:, 4:] - len(points)].any(axis=1))
-        bad = touched[smallest_determinant_ratio(nodes[tets[touched]]) < FLATTEST]
+        bad = touched[smallest_determinant_ratio(nodes[tets[touched]]) < LEAST_JACOBIAN_RATIO]
         if not len(bad):
             return
         undo = np.unique(tets[bad, 4:] - len(points))
@@ -61,7 +61,7 @@ def _straighten(points: Floats, tets: Ints, middle: Floats, straight: Floats, cu
         middle[undo], bent[undo] = straight[undo], False
 
 
-TOLERANCE_MM = 1e-6
+PLANE_TOLERANCE_MM = 1e-6
 
 
 def named_facets(
@@ -72,8 +72,8 @@ def named_facets(
     facets = _outer_facets(points_mm, tets, region, names, stack, neighbour)
     if "film" in names:
         film = names.index("film")
-        facets["film-bottom"] = between_parts(tets, region, neighbour, names.index("medium2"), film)
-        facets["film-top"] = between_parts(tets, region, neighbour, film, names.index("medium1"))
+        facets["film-bottom"] = facets_between_parts(tets, region, neighbour, names.index("medium2"), film)
+        facets["film-top"] = facets_between_parts(tets, region, neighbour, film, names.index("medium1"))
     return facets
 
 
@@ -85,7 +85,7 @@ def _outer_facets(
     outer = tets[owner[:, None], TET_FACES[face]]
     corner = points[outer[:, :3]]
     on_base = _on_plane(corner[..., 2], 0.0)
-    on_x, on_y = _on_either(corner[..., 0], stack.half_x), _on_either(corner[..., 1], stack.half_y)
+    on_x, on_y = _on_either_plane(corner[..., 0], stack.half_x), _on_either_plane(corner[..., 1], stack.half_y)
     on_side = on_x if stack.is_slice else on_x | on_y
     cut = on_y & stack.is_slice
     for axis in stack.planes:
@@ -100,28 +100,28 @@ def _outer_facets(
 
 def _on_plane(coordinate: Floats, value: float) -> NDArray[np.bool_]:
     """Facets (k, 3) whose three corners have this coordinate."""
-    return np.asarray((np.abs(coordinate - value) < TOLERANCE_MM).all(axis=1))
+    return np.asarray((np.abs(coordinate - value) < PLANE_TOLERANCE_MM).all(axis=1))
 
 
-def _on_either(coordinate: Floats, half: float) -> NDArray[np.bool_]:
+def _on_either_plane(coordinate: Floats, half: float) -> NDArray[np.bool_]:
     """Facets (k, 3) in the plane at plus or at minus half."""
     return np.asarray(_on_plane(coordinate, half) | _on_plane(coordinate, -half))
 
 
-def between_parts(tets: Ints, region: Ints, neighbour: Ints, lower: int, upper: int) -> Ints:
+def facets_between_parts(tets: Ints, region: Ints, neighbour: Ints, lower: int, upper: int) -> Ints:
     """Facets from one part to the next above it, normal up."""
     other = np.where(neighbour >= 0, region[neighbour], -1)
     owner, face = np.nonzero((region[:, None] == lower) & (other == upper))
     return np.asarray(tets[owner[:, None], TET_FACES[face]])
 
 
-def finished(linear: LinearMesh, segment: Segment, options: MeshOptions, planes: Planes = ()) -> TetMesh:
+def quadratic_mesh(linear: LinearMesh, segment: Segment, options: MeshOptions, planes: Planes = ()) -> TetMesh:
     """Add mid-side nodes, facets and twins. Raises MeshingError when an element is inverted."""
     is_slice = segment.section == "plane-strain"
     thickness_mm = options.contact_element_size_mm if is_slice else segment.width_mm
-    stack = outline(segment, slice_mm=thickness_mm, planes=planes)
-    points, tets = quadratic(linear, curved_surface(stack))
-    twin = twins(points) if is_slice else np.arange(len(points), dtype=np.int64)
+    stack = stack_outline(segment, slice_mm=thickness_mm, planes=planes)
+    points, tets = quadratic_nodes_and_tets(linear, curved_surface(stack))
+    twin = node_twins(points) if is_slice else np.arange(len(points), dtype=np.int64)
     facets = named_facets(points, tets, linear.region, linear.region_names, stack)
     result = TetMesh(points, tets, linear.region, linear.region_names, facets, twin, thickness_mm, planes)
     refuse_inverted(result)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from foundation.arrays import Floats, Ints
 from geometry.parameters import Segment
 from mesh.jacobian import jacobians, scaled_jacobians, volumes
-from mesh.outline import curved_surface, outline
+from mesh.outline import curved_surface, stack_outline
 from mesh.symmetry import PLANE_NAMES
 from mesh.types import TET_EDGES, TET_FACES, MeshingError, TetMesh, boundary_faces
 
@@ -41,7 +41,7 @@ class Quality:
         return asdict(self)
 
 
-def measure(tet_mesh: TetMesh, segment: Segment) -> Quality:
+def measure_quality(tet_mesh: TetMesh, segment: Segment) -> Quality:
     """Measure a mesh of a segment."""
     nodes = tet_mesh.points_mm[tet_mesh.tets]
     film = tet_mesh.region == tet_mesh.region_names.index("film")
@@ -84,14 +84,14 @@ def dihedral_angles(corners: Floats) -> Floats:
 
 def _volume_errors(tet_mesh: TetMesh, nodes: Floats, segment: Segment) -> dict[str, float]:
     """Relative volume error of each part."""
-    exact = outline(segment, slice_mm=tet_mesh.thickness_mm, planes=tet_mesh.planes).volumes()
+    exact = stack_outline(segment, slice_mm=tet_mesh.thickness_mm, planes=tet_mesh.planes).volumes()
     meshed = np.bincount(tet_mesh.region, weights=volumes(nodes), minlength=len(tet_mesh.region_names))
     return {n: float(meshed[i] / exact[n] - 1) for i, n in enumerate(tet_mesh.region_names)}
 
 
 def _straight_edges(tet_mesh: TetMesh, segment: Segment) -> int:
     """Edges of skin facets on the curved surface whose mid-side node is off it."""
-    surface = curved_surface(outline(segment, slice_mm=tet_mesh.thickness_mm))
+    surface = curved_surface(stack_outline(segment, slice_mm=tet_mesh.thickness_mm))
     if surface is None:
         return 0
     facets = skin_facets(tet_mesh.points_mm, tet_mesh.tets, surface.holds(tet_mesh.points_mm))

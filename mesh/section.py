@@ -6,7 +6,7 @@ import numpy as np
 
 from foundation.arrays import Floats, Ints
 from mesh.outline import StackOutline
-from mesh.sizing import Sizing, graded_through
+from mesh.sizing import Sizing, graded_points_through
 
 
 @dataclass(frozen=True)
@@ -19,11 +19,11 @@ class MeshedSection:
     region_names: tuple[str, ...]
 
 
-def structured(
+def structured_section(
     stack: StackOutline, field: Sizing, heights: Floats, layer_region: Ints, names: tuple[str, ...]
 ) -> MeshedSection:
     """A graded grid of x columns and z layers, every rectangle cut by a diagonal that mirrors about x = 0."""
-    x = _columns(stack, field)
+    x = _column_lines(stack, field)
     points = np.column_stack([np.tile(x, len(heights)), np.repeat(heights, len(x))])
     layer, column = np.divmod(np.arange((len(x) - 1) * (len(heights) - 1)), len(x) - 1)
     middle = (x[column] + x[column + 1]) / 2
@@ -39,7 +39,7 @@ def structured(
     return MeshedSection(points, triangles, np.repeat(layer_region[layer], 2), names)
 
 
-def _columns(stack: StackOutline, field: Sizing) -> Floats:
+def _column_lines(stack: StackOutline, field: Sizing) -> Floats:
     """x lines through the sides of the effector, as fine as the finest of skin and film at each x."""
 
     def size(x: Floats) -> Floats:
@@ -50,4 +50,4 @@ def _columns(stack: StackOutline, field: Sizing) -> Floats:
     breaks = [-half, 0.0, half]
     if 0.0 < foot < half * (1 - 1e-9):
         breaks = [-half, -foot, 0.0, foot, half]
-    return graded_through(breaks, size)
+    return graded_points_through(breaks, size)

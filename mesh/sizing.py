@@ -12,10 +12,13 @@ from geometry.dot import DotShape
 from mesh.options import MeshOptions
 from mesh.outline import StackOutline
 
-GROWTH = 0.4  # mm of edge length per mm of distance: neighbouring edges differ by about a factor 1.4
-DEPTH_MM = 0.3  # the contact zone is refined for a press this deep
-RIM, RIM_GROWTH = 0.3, 0.5  # edge length along the film's rim against that of the film: its stress is singular there
-RIM_SLICE, RIM_GROWTH_SLICE = 0.2, GROWTH  # the same in a slice, where it costs next to nothing
+SIZE_GROWTH = 0.4  # mm of edge length per mm of distance: neighbouring edges differ by about a factor 1.4
+REFINED_DEPTH_MM = 0.3  # the contact zone is refined for a press this deep
+RIM_SIZE_SHARE, RIM_SIZE_GROWTH = (
+    0.3,
+    0.5,
+)  # edge length along the film's rim against that of the film: its stress is singular there
+SLICE_RIM_SIZE_SHARE, SLICE_RIM_SIZE_GROWTH = 0.2, SIZE_GROWTH  # the same in a slice, where it costs next to nothing
 
 
 @dataclass(frozen=True)
@@ -37,24 +40,28 @@ class Sizing:
 
     def at(self, points: Floats) -> Floats:
         """Edge lengths in mm at points (n, 3), shape (n,)."""
-        contact = self.contact_mm + GROWTH * self._to_contact(points)
+        contact = self.contact_mm + SIZE_GROWTH * self._distance_to_contact(points)
         z = points[:, 2]
         to_film = np.abs(z - np.clip(z, self.outline.film_bottom, self.outline.film_top))
-        film = self.film_mm + GROWTH * to_film
-        edge, growth = (RIM_SLICE, RIM_GROWTH_SLICE) if self.outline.is_slice else (RIM, RIM_GROWTH)
-        rim = edge * self.film_mm + growth * np.hypot(to_film, self._to_side(points))
+        film = self.film_mm + SIZE_GROWTH * to_film
+        edge, growth = (
+            (SLICE_RIM_SIZE_SHARE, SLICE_RIM_SIZE_GROWTH)
+            if self.outline.is_slice
+            else (RIM_SIZE_SHARE, RIM_SIZE_GROWTH)
+        )
+        rim = edge * self.film_mm + growth * np.hypot(to_film, self._distance_to_side(points))
         fine = np.minimum(np.minimum(contact, film), rim)
         return np.minimum(fine, self.coarse_mm)
 
-    def _to_side(self, points: Floats) -> Floats:
+    def _distance_to_side(self, points: Floats) -> Floats:
         """Distance to the nearest side that the case may hold."""
         to_x = self.outline.half_x - np.abs(points[:, 0])
         to_y = to_x if self.outline.is_slice else self.outline.half_y - np.abs(points[:, 1])
         return np.maximum(np.minimum(to_x, to_y), 0.0)
 
-    def _to_contact(self, points: Floats) -> Floats:
+    def _distance_to_contact(self, points: Floats) -> Floats:
         """Distance to the contact zone on the skin."""
-        depth = np.maximum(self._skin(points) - points[:, 2], 0.0)
+        depth = np.maximum(self._skin_height(points) - points[:, 2], 0.0)
         if self.kind == "plate":
             return depth
         away = points[:, None, :2] - self.centers_mm[None]
@@ -62,7 +69,7 @@ class Sizing:
         radial = np.abs(away[..., 0]) if flat else np.hypot(away[..., 0], away[..., 1])
         return np.asarray(np.hypot(np.maximum(radial.min(axis=1) - self.reach_mm, 0.0), depth))
 
-    def _skin(self, points: Floats) -> Floats:
+    def _skin_height(self, points: Floats) -> Floats:
         """Height of the skin within the contact zone: flat, or falling away from the pole of a dome."""
         if self.outline.shape != "dome":
             return np.full(len(points), self.outline.top)
@@ -71,7 +78,7 @@ class Sizing:
         return self.outline.dome_centre_z + np.sqrt(self.outline.dome_radius**2 - radial**2)
 
 
-def sizing(outline: StackOutline, dot: DotShape, options: MeshOptions) -> Sizing:
+def sizing_field(outline: StackOutline, dot: DotShape, options: MeshOptions) -> Sizing:
     """The sizing field for a dot at its rest position.
 
     The contact zone is where the undeformed skin and the dot overlap, sqrt(2 R u) at a depth u, with 1/R the
@@ -83,21 +90,23 @@ def sizing(outline: StackOutline, dot: DotShape, options: MeshOptions) -> Sizing
     if outline.shape == "dome":
         curvature += 1.0 / outline.dome_radius
     widest = 2 * max(outline.half_x, outline.half_y)
-    overlap = sqrt(2 * DEPTH_MM / curvature) if curvature else widest
+    overlap = sqrt(2 * REFINED_DEPTH_MM / curvature) if curvature else widest
     reach = min(overlap, widest) + options.contact_element_size_mm
     kind = "plate" if curvature == 0.0 else ("cap" if dot.kind == "plate" else dot.kind)
     return Sizing(outline, options.element_size_mm, options.contact_element_size_mm, film_mm, centers, reach, kind)
 
 
-STEP_MM = 0.12
-MOST_POINTS = 300_000
+BACKGROUND_STEP_MM = 0.12
+MOST_BACKGROUND_POINTS = 300_000
 
 
-def background(stack: StackOutline, field: Sizing) -> tuple[Floats, Ints, Floats]:
+def background_mesh(stack: StackOutline, field: Sizing) -> tuple[Floats, Ints, Floats]:
     """Vertices (n, 3), tetrahedra (m, 4) and edge lengths (n,) over the bounding box and a little beyond."""
     low, high = (*stack.low, 0.0), (stack.half_x, stack.half_y, stack.top)
     volume = float(np.prod(np.subtract(high, low)))
-    step = max(STEP_MM, (volume / MOST_POINTS) ** (1 / 3))  # a large segment has no more points than a small one
+    step = max(
+        BACKGROUND_STEP_MM, (volume / MOST_BACKGROUND_POINTS) ** (1 / 3)
+    )  # a large segment has no more points than a small one
     lines = []
     for a, b in zip(low, high, strict=True):  # lines on the outer faces, where the sizes are smallest
         lines.append(np.concatenate([[a - step], np.linspace(a, b, 2 + int((b - a) / step)), [b + step]]))
@@ -120,7 +129,7 @@ def _grid_tets(shape: tuple[int, ...]) -> Ints:
     return np.asarray(result, dtype=np.int64)
 
 
-def graded(start: float, end: float, size: Callable[[Floats], Floats]) -> Floats:
+def graded_points(start: float, end: float, size: Callable[[Floats], Floats]) -> Floats:
     """Points from start to end, both included, whose steps follow size at the points.
 
     The number of steps is the integral of 1/size, rounded up; the points cut that integral into equal parts.
@@ -134,7 +143,7 @@ def graded(start: float, end: float, size: Callable[[Floats], Floats]) -> Floats
     return np.asarray(points, dtype=np.float64)
 
 
-def graded_through(breaks: list[float], size: Callable[[Floats], Floats]) -> Floats:
+def graded_points_through(breaks: list[float], size: Callable[[Floats], Floats]) -> Floats:
     """Points through all breaks (rising), graded between them."""
-    pieces = [graded(a, b, size)[:-1] for a, b in pairwise(breaks)]
+    pieces = [graded_points(a, b, size)[:-1] for a, b in pairwise(breaks)]
     return np.concatenate([*pieces, [breaks[-1]]])

@@ -6,36 +6,40 @@ from foundation.arrays import Floats, Ints
 from geometry.dot import DotShape
 from geometry.parameters import Segment
 from mesh.film_layers import section_with_film
-from mesh.layered import levels, refuse_dome
+from mesh.layered import layer_heights, refuse_dome
 from mesh.options import MeshOptions
-from mesh.outline import StackOutline, outline
-from mesh.section import MeshedSection, structured
-from mesh.sizing import sizing
-from mesh.tetwild import bare_stack
-from mesh.types import TET_FACES, LinearMesh, Planes, boundary_faces, oriented, split_prisms, without_unused
+from mesh.outline import StackOutline, stack_outline
+from mesh.section import MeshedSection, structured_section
+from mesh.sizing import sizing_field
+from mesh.tetwild import mesh_without_film
+from mesh.types import TET_FACES, LinearMesh, Planes, boundary_faces, orient_tets, split_prisms, without_unused
 
-SLAB = 2.0  # thickness of the slab that pytetwild meshes against that of the slice
+SLAB_PER_SLICE_THICKNESS = 2.0  # thickness of the slab that pytetwild meshes against that of the slice
 
 
 def layered_slice(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes = ()) -> LinearMesh:
     """The slice from a structured graded section; its thickness is the contact element size."""
     refuse_dome(segment)
     thickness_mm = options.contact_element_size_mm
-    stack = outline(segment, slice_mm=thickness_mm, planes=planes)
-    field = sizing(stack, dot, options)
-    return extruded(structured(stack, field, *levels(stack, field, options.film_layers)), thickness_mm)
+    stack = stack_outline(segment, slice_mm=thickness_mm, planes=planes)
+    field = sizing_field(stack, dot, options)
+    return extrude_section(
+        structured_section(stack, field, *layer_heights(stack, field, options.film_layers)), thickness_mm
+    )
 
 
 def tetwild_slice(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes = ()) -> LinearMesh:
     """The slice from an unstructured section: the y face of a slab that pytetwild has meshed."""
     thickness_mm = options.contact_element_size_mm
-    stack = outline(segment, film_thickness_mm=0.0, slice_mm=SLAB * thickness_mm, planes=planes)
-    bare = y_face(bare_stack(segment, stack, dot, options), stack)
+    stack = stack_outline(
+        segment, film_thickness_mm=0.0, slice_mm=SLAB_PER_SLICE_THICKNESS * thickness_mm, planes=planes
+    )
+    bare = slab_face(mesh_without_film(segment, stack, dot, options), stack)
     section = section_with_film(bare, segment.film.thickness_um * 1e-3, options.film_layers)
-    return extruded(section, thickness_mm)
+    return extrude_section(section, thickness_mm)
 
 
-def y_face(slab: LinearMesh, stack: StackOutline) -> MeshedSection:
+def slab_face(slab: LinearMesh, stack: StackOutline) -> MeshedSection:
     """The triangulation of a slab's face at the smallest y."""
     owner, face = boundary_faces(slab.tets)
     facets = slab.tets[owner[:, None], TET_FACES[face, :3]]
@@ -46,17 +50,17 @@ def y_face(slab: LinearMesh, stack: StackOutline) -> MeshedSection:
     return MeshedSection(slab.points_mm[used][:, [0, 2]], triangles, region, slab.region_names)
 
 
-def extruded(section: MeshedSection, thickness_mm: float) -> LinearMesh:
+def extrude_section(section: MeshedSection, thickness_mm: float) -> LinearMesh:
     """One layer of prisms from y = -thickness/2 to +thickness/2, each split into three tetrahedra."""
     count = len(section.points_mm)
     x, z = np.tile(section.points_mm, (2, 1)).T
     points = np.column_stack([x, np.repeat([-thickness_mm / 2, thickness_mm / 2], count), z])
     tets = split_prisms(section.triangles, section.triangles + count)
     region = np.repeat(section.region, 3)
-    return without_unused(LinearMesh(points, oriented(points, tets), region, section.region_names))
+    return without_unused(LinearMesh(points, orient_tets(points, tets), region, section.region_names))
 
 
-def twins(points_mm: Floats) -> Ints:
+def node_twins(points_mm: Floats) -> Ints:
     """For each node (n, 3) the lowest node of equal x and z, shape (n,)."""
     _, first, number = np.unique(np.round(points_mm[:, [0, 2]] * 1e7), axis=0, return_index=True, return_inverse=True)
     return np.asarray(first[number.ravel()], dtype=np.int64)

@@ -13,7 +13,7 @@ from mesh.types import UPSIDE_DOWN, Planes, TetMesh
 
 PLANE_NAMES = ("x = 0", "y = 0")
 IN_PLANE_MM = 1e-7
-MIRRORED = [0, 2, 1, 3, 6, 5, 4, 7, 9, 8]
+MIRRORED_TET_NODES = [0, 2, 1, 3, 6, 5, 4, 7, 9, 8]
 """A reflected tetrahedron of ten nodes, numbered so that its volume is positive again."""
 
 
@@ -23,7 +23,7 @@ def in_plane(points_mm: Floats, axis: int) -> Bools:
 
 
 @dataclass(frozen=True)
-class Unfolded:
+class MirroredMesh:
     """A mesh, mirrored, and what of the part each piece of it is the image of.
 
     node (n,), tet (m,) : numbers in the part. node_sign (n, 3), tet_sign (m, 3) : -1 for reflected components of a
@@ -41,7 +41,7 @@ class Unfolded:
         return np.asarray(values[self.tet] * self.tet_sign[:, :, None] * self.tet_sign[:, None, :])
 
 
-def unfolded(part: TetMesh, axes: Planes | None = None) -> Unfolded:
+def mirrored_mesh(part: TetMesh, axes: Planes | None = None) -> MirroredMesh:
     """The mesh mirrored about the planes of some axes, by default about all of its own; ValueError for another one.
 
     Axis by axis the images of nodes, tetrahedra and facets follow what they are images of, in its order; the local
@@ -51,13 +51,13 @@ def unfolded(part: TetMesh, axes: Planes | None = None) -> Unfolded:
     if not set(axes) <= set(part.planes):
         raise ValueError(f"axes = {axes}: the mesh ends at the planes of {part.planes}")
     nodes, tets = len(part.points_mm), len(part.tets)
-    result = Unfolded(part, np.arange(nodes), np.ones((nodes, 3)), np.arange(tets), np.ones((tets, 3)))
+    result = MirroredMesh(part, np.arange(nodes), np.ones((nodes, 3)), np.arange(tets), np.ones((tets, 3)))
     for axis in axes:
-        result = _mirrored(result, axis)
+        result = _mirror_about(result, axis)
     return result
 
 
-def _mirrored(old: Unfolded, axis: int) -> Unfolded:
+def _mirror_about(old: MirroredMesh, axis: int) -> MirroredMesh:
     half, sign = old.tet_mesh, np.ones(3)
     sign[axis] = -1.0
     count, new = len(half.points_mm), np.flatnonzero(~in_plane(half.points_mm, axis))
@@ -67,13 +67,13 @@ def _mirrored(old: Unfolded, axis: int) -> Unfolded:
     whole = replace(
         half,
         points_mm=np.vstack([half.points_mm, half.points_mm[new] * sign]),
-        tets=np.vstack([half.tets, image[half.tets][:, MIRRORED]]),
+        tets=np.vstack([half.tets, image[half.tets][:, MIRRORED_TET_NODES]]),
         region=np.tile(half.region, 2),
         facets=facets,
         twin=np.concatenate([half.twin, image[half.twin[new]]]),
         planes=tuple(other for other in half.planes if other != axis),
     )
-    return Unfolded(
+    return MirroredMesh(
         whole,
         np.concatenate([old.node, old.node[new]]),
         np.vstack([old.node_sign, old.node_sign[new] * sign]),

@@ -10,16 +10,25 @@ from foundation.arrays import Floats, Ints
 from geometry.dot import DotShape
 from geometry.parameters import Segment
 from geometry.stack import layers
-from mesh.film_layers import with_film
+from mesh.film_layers import mesh_with_film
 from mesh.options import MeshOptions
-from mesh.outline import StackOutline, curved_surface, outline
-from mesh.sizing import background, sizing
+from mesh.outline import StackOutline, curved_surface, stack_outline
+from mesh.sizing import background_mesh, sizing_field
 from mesh.tetwild_process import tetrahedralize
-from mesh.types import TET_FACES, LinearMesh, MeshingError, Planes, face_neighbours, oriented, shape, without_unused
+from mesh.types import (
+    TET_FACES,
+    LinearMesh,
+    MeshingError,
+    Planes,
+    face_neighbours,
+    orient_tets,
+    shape_quality,
+    without_unused,
+)
 
-DEFLECTION_MM = 2e-3  # nodes are put on the exact surface afterwards
-DEFLECTION = 0.02  # of the smallest detail, where that is more
-TURN_RAD = 0.5  # of neighbouring facets
+LEAST_DEFLECTION_MM = 2e-3  # nodes are put on the exact surface afterwards
+DEFLECTION_SHARE = 0.02  # of the smallest detail, where that is more
+FACET_TURN_RAD = 0.5  # of neighbouring facets
 
 
 def merged_surface(segment: Segment, stack: StackOutline, detail_mm: float) -> tuple[Floats, Ints]:
@@ -27,17 +36,17 @@ def merged_surface(segment: Segment, stack: StackOutline, detail_mm: float) -> t
 
     detail_mm : size of the smallest elements or parts; round surfaces get facets that suit it.
     """
-    deflection = max(DEFLECTION_MM, DEFLECTION * detail_mm)
-    surfaces = _rounded(segment, stack, deflection) if stack.is_round else _boxes(stack)
+    deflection = max(LEAST_DEFLECTION_MM, DEFLECTION_SHARE * detail_mm)
+    surfaces = _solid_surfaces(segment, stack, deflection) if stack.is_round else _box_surfaces(stack)
     vertices, faces, count = [], [], 0
     for points, triangles in surfaces:
         vertices.append(points)
         faces.append(triangles + count)
         count += len(points)
-    return _merged(np.concatenate(vertices), np.concatenate(faces))
+    return _merge_vertices(np.concatenate(vertices), np.concatenate(faces))
 
 
-def _merged(vertices: Floats, faces: Ints) -> tuple[Floats, Ints]:
+def _merge_vertices(vertices: Floats, faces: Ints) -> tuple[Floats, Ints]:
     """Merge vertices closer than a nanometre; drop faces that are degenerate or repeated."""
     _, first, number = np.unique(np.round(vertices * 1e6), axis=0, return_index=True, return_inverse=True)
     points, triangles = vertices[first], number.ravel()[faces]
@@ -48,15 +57,15 @@ def _merged(vertices: Floats, faces: Ints) -> tuple[Floats, Ints]:
     return points, triangles[np.sort(kept)]
 
 
-CORNERS = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)])
-BOX = np.array(
+UNIT_BOX_CORNERS = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)])
+BOX_TRIANGLES = np.array(
     [[0, 3, 1], [0, 2, 3], [4, 5, 7], [4, 7, 6], [0, 1, 5], [0, 5, 4],
      [2, 7, 3], [2, 6, 7], [0, 6, 2], [0, 4, 6], [1, 3, 7], [1, 7, 5]]
 )  # fmt: skip
 """Its triangles; lid and base are cut along the same diagonal, so that those of two boxes coincide."""
 
 
-def _boxes(stack: StackOutline) -> Iterator[tuple[Floats, Ints]]:
+def _box_surfaces(stack: StackOutline) -> Iterator[tuple[Floats, Ints]]:
     """Corners (8, 3) and triangles (12, 3) of the parts of a stack without its film, none of which is round."""
     foot = stack.half_x, stack.half_y
     parts = [(*foot, 0.0, stack.film_bottom), (*foot, stack.film_top, stack.medium1_top)]
@@ -65,21 +74,21 @@ def _boxes(stack: StackOutline) -> Iterator[tuple[Floats, Ints]]:
         parts.append((stack.effector_half_x, half_y, stack.medium1_top, stack.top))
     for half_x, half_y, bottom, top in parts:
         low = np.array([max(-half_x, stack.low[0]), max(-half_y, stack.low[1]), bottom])
-        yield low + CORNERS * (np.array([half_x, half_y, top]) - low), BOX
+        yield low + UNIT_BOX_CORNERS * (np.array([half_x, half_y, top]) - low), BOX_TRIANGLES
 
 
-def _rounded(segment: Segment, stack: StackOutline, deflection_mm: float) -> Iterator[tuple[Floats, Ints]]:
+def _solid_surfaces(segment: Segment, stack: StackOutline, deflection_mm: float) -> Iterator[tuple[Floats, Ints]]:
     """Points and triangles of the parts of a stack without its film, by their exact solids."""
     from geometry.solids import layer_solids
 
     whole = _dome_slab(stack) if stack.is_slice else list(layer_solids(segment, film_thickness_mm=0.0).values())
     for solid in whole:
-        cut = _cut(solid, stack) if stack.planes else solid
-        points, triangles = cut.tessellate(deflection_mm, TURN_RAD)
+        cut = _cut_at_planes(solid, stack) if stack.planes else solid
+        points, triangles = cut.tessellate(deflection_mm, FACET_TURN_RAD)
         yield np.array([tuple(p) for p in points]), np.array(triangles, dtype=np.int64)
 
 
-def _cut(solid: Any, stack: StackOutline) -> Any:
+def _cut_at_planes(solid: Any, stack: StackOutline) -> Any:
     """What of a solid is on the positive sides of the mirror planes."""
     from build123d import Box, Pos
 
@@ -104,10 +113,10 @@ def _dome_slab(stack: StackOutline) -> list[Any]:
     ]
 
 
-EFFECTOR = 2  # its region in a stack without film
+EFFECTOR_REGION = 2  # its region in a stack without film
 
 
-def snapped(points: Floats, tets: Ints, region: Ints, stack: StackOutline) -> Floats:
+def snap_to_surfaces(points: Floats, tets: Ints, region: Ints, stack: StackOutline) -> Floats:
     """Points (n, 3) with those of facets between different regions (or outside) moved onto their surfaces.
 
     Each such facet belongs to the surface it lies nearest to; a node gets the surfaces of all its facets.
@@ -116,11 +125,11 @@ def snapped(points: Floats, tets: Ints, region: Ints, stack: StackOutline) -> Fl
     other = np.where(neighbour >= 0, region[neighbour], -1)
     owner, face = np.nonzero(other != region[:, None])
     facets = tets[owner[:, None], TET_FACES[face, :3]]
-    planes, curved = _planes(stack), curved_surface(stack)
+    planes, curved = _stack_planes(stack), curved_surface(stack)
     off = np.array([np.abs(points[facets, axis] - value).max(axis=1) for axis, value in planes])
     if curved is not None:
         # The skin of a round effector is its curved surface, its lid, a slice's cut or a mirror plane, never a side.
-        skin = (region[owner] == EFFECTOR) & (other[owner, face] < 0)
+        skin = (region[owner] == EFFECTOR_REGION) & (other[owner, face] < 0)
         own = [
             (axis, value) == (2, stack.top) or (axis == 1 and stack.is_slice) or (axis in stack.planes and value == 0.0)
             for axis, value in planes
@@ -140,7 +149,7 @@ def snapped(points: Floats, tets: Ints, region: Ints, stack: StackOutline) -> Fl
     return result
 
 
-def _planes(stack: StackOutline) -> list[tuple[int, float]]:
+def _stack_planes(stack: StackOutline) -> list[tuple[int, float]]:
     """Axis and position of every plane of the stack."""
     planes = [(0, stack.low[0]), (0, stack.half_x), (1, stack.low[1]), (1, stack.half_y)]
     planes += [(2, 0.0), (2, stack.film_bottom), (2, stack.medium1_top)]
@@ -155,32 +164,32 @@ def _planes(stack: StackOutline) -> list[tuple[int, float]]:
 
 STOP_ENERGY = 7.0
 WEDGE_ENERGY = 60.0
-SHALLOW = 0.7  # twice the height over the radius of a dome: it then meets medium 1 at less than 40 degrees
-FLAT = 2e-3  # a tetrahedron of this shape or less counts as flat
-ENVELOPE = 1e-3  # of the diagonal: how far pytetwild may leave the surface
-LOOSER = 0.04  # the same of an element under the dot or the thinnest part, where that is more
+SHALLOW_DOME_RATIO = 0.7  # twice the height over the radius of a dome: it then meets medium 1 at less than 40 degrees
+FLAT_TET_SHAPE = 2e-3  # a tetrahedron of this shape or less counts as flat
+ENVELOPE_SHARE = 1e-3  # of the diagonal: how far pytetwild may leave the surface
+DETAIL_ENVELOPE_SHARE = 0.04  # the same of an element under the dot or the thinnest part, where that is more
 LOG = logging.getLogger(__name__)
-ATTEMPTS = 6  # pytetwild is not repeatable: another attempt gives another mesh, one in ten flat elements
+MOST_ATTEMPTS = 6  # pytetwild is not repeatable: another attempt gives another mesh, one in ten flat elements
 
 
-def tetwild(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes = ()) -> LinearMesh:
+def tetwild_mesh(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes = ()) -> LinearMesh:
     """Mesh a solid segment, as far as its mirror planes.
 
     Raises MeshingError when pytetwild fails, hangs or leaves an inverted element.
     """
-    stack = outline(segment, film_thickness_mm=0.0, planes=planes)
-    bare = bare_stack(segment, stack, dot, options)
-    return with_film(bare, segment.film.thickness_um * 1e-3, options.film_layers)
+    stack = stack_outline(segment, film_thickness_mm=0.0, planes=planes)
+    bare = mesh_without_film(segment, stack, dot, options)
+    return mesh_with_film(bare, segment.film.thickness_um * 1e-3, options.film_layers)
 
 
-def bare_stack(segment: Segment, stack: StackOutline, dot: DotShape, options: MeshOptions) -> LinearMesh:
+def mesh_without_film(segment: Segment, stack: StackOutline, dot: DotShape, options: MeshOptions) -> LinearMesh:
     """The stack without its film: regions 0 medium2, 1 medium1, 2 effector."""
     thicknesses_mm = (layer.thickness_mm for layer in layers(segment) if layer.name != "film")
     detail_mm = min(options.contact_element_size_mm, *thicknesses_mm)
     vertices, faces = merged_surface(segment, stack, detail_mm)
     diagonal_mm = float(np.linalg.norm(np.ptp(vertices, axis=0)))
-    bg_vertices, bg_tets, bg_values = background(stack, sizing(stack, dot, options))
-    for attempt in range(ATTEMPTS):
+    bg_vertices, bg_tets, bg_values = background_mesh(stack, sizing_field(stack, dot, options))
+    for attempt in range(MOST_ATTEMPTS):
         points, tets = tetrahedralize(
             options.timeout_s,
             vertices=vertices,
@@ -189,17 +198,17 @@ def bare_stack(segment: Segment, stack: StackOutline, dot: DotShape, options: Me
             bg_tets=bg_tets,
             bg_values=bg_values,
             edge_length=options.element_size_mm,
-            epsilon=max(ENVELOPE, LOOSER * detail_mm / diagonal_mm),
+            epsilon=max(ENVELOPE_SHARE, DETAIL_ENVELOPE_SHARE * detail_mm / diagonal_mm),
             stop_energy=stop_energy(stack, options) * 1.5**attempt,
             coarsen=options.coarsen,
         )
-        bare = _labelled(points, oriented(points, tets), stack)
-        flat = int((shape(bare.points_mm, bare.tets) <= FLAT).sum())
+        bare = _label_tets(points, orient_tets(points, tets), stack)
+        flat = int((shape_quality(bare.points_mm, bare.tets) <= FLAT_TET_SHAPE).sum())
         LOG.debug("pytetwild, attempt %d: %d tetrahedra, %d of them flat", attempt + 1, len(tets), flat)
         if not flat:
             return bare
     raise MeshingError(
-        f"pytetwild left {flat} flat elements in each of {ATTEMPTS} attempts: change mesh.element_size_mm or "
+        f"pytetwild left {flat} flat elements in each of {MOST_ATTEMPTS} attempts: change mesh.element_size_mm or "
         "mesh.contact_element_size_mm a little"
     )
 
@@ -214,21 +223,21 @@ def stop_energy(stack: StackOutline, options: MeshOptions) -> float:
     if options.coarsen or stack.shape not in ("cylinder", "dome") or (stack.shape == "cylinder" and stack.is_slice):
         return STOP_ENERGY
     narrow = min(stack.half_x, stack.half_y) - stack.effector_half_x < options.contact_element_size_mm
-    shallow = stack.shape == "dome" and 2 * (stack.top - stack.medium1_top) < SHALLOW * stack.effector_half_x
+    shallow = stack.shape == "dome" and 2 * (stack.top - stack.medium1_top) < SHALLOW_DOME_RATIO * stack.effector_half_x
     return WEDGE_ENERGY if (narrow and not stack.is_slice) or shallow else STOP_ENERGY
 
 
-def _labelled(points: Floats, tets: Ints, stack: StackOutline) -> LinearMesh:
+def _label_tets(points: Floats, tets: Ints, stack: StackOutline) -> LinearMesh:
     """Keep the tetrahedra inside the parts, label them and put nodes onto exact surfaces."""
-    region = region_of(points[tets].mean(axis=1), stack)
+    region = point_regions(points[tets].mean(axis=1), stack)
     inside = region >= 0
     names = ("medium2", "medium1", "effector")[: 2 if stack.shape == "none" else 3]
     kept = without_unused(LinearMesh(points, tets[inside], region[inside], names))
-    exact = snapped(kept.points_mm, kept.tets, kept.region, stack)
+    exact = snap_to_surfaces(kept.points_mm, kept.tets, kept.region, stack)
     return LinearMesh(exact, kept.tets, kept.region, kept.region_names)
 
 
-def region_of(points: Floats, stack: StackOutline) -> Ints:
+def point_regions(points: Floats, stack: StackOutline) -> Ints:
     """Part of each point (n, 3): 0 medium2, 1 medium1, 2 effector, -1 outside."""
     x, y, z = np.abs(points[:, 0]), np.abs(points[:, 1]), points[:, 2]
     beside = (points[:, :2] > stack.low).all(axis=1)

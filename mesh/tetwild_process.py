@@ -26,12 +26,12 @@ def tetrahedralize(timeout_s: float, **arrays: object) -> tuple[Floats, Ints]:
     """
     with scratch_folder() as folder:
         np.savez(folder / "input.npz", timeout=timeout_s, **arrays)  # type: ignore[arg-type]
-        _run(python_command("-m", "mesh.tetwild_process", str(folder), str(os.getpid())), timeout_s)
+        _run_child(python_command("-m", "mesh.tetwild_process", str(folder), str(os.getpid())), timeout_s)
         with np.load(folder / "output.npz") as data:
             return data["points"].astype(np.float64), data["tets"].astype(np.int64)
 
 
-def _run(command: list[str], timeout_s: float) -> None:
+def _run_child(command: list[str], timeout_s: float) -> None:
     """Run to the end or kill."""
     # Its own session: Ctrl-C in the terminal reaches us alone, and we kill the child.
     child = subprocess.Popen(

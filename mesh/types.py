@@ -74,14 +74,14 @@ def signed_volumes(points: Floats, tets: Ints) -> Floats:
     return np.asarray(np.linalg.det(edges) / 6.0)
 
 
-def shape(points: Floats, tets: Ints) -> Floats:
+def shape_quality(points: Floats, tets: Ints) -> Floats:
     """Volume over that of the regular tetrahedron on the longest edge, 6 sqrt(2) V / l^3, shape (m,)."""
     corner = points[tets]
     longest = np.linalg.norm(corner[:, :, None] - corner[:, None], axis=3).max(axis=(1, 2))
     return np.asarray(6 * np.sqrt(2) * signed_volumes(points, tets) / longest**3)
 
 
-def oriented(points: Floats, tets: Ints) -> Ints:
+def orient_tets(points: Floats, tets: Ints) -> Ints:
     """The tetrahedra (m, 4) renumbered so that every volume is positive."""
     result = tets.copy()
     negative = signed_volumes(points, tets) < 0

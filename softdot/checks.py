@@ -30,8 +30,8 @@ from geometry.stack import layers
 from mesh.array.sizing import expected_elements
 from mesh.build import build
 from mesh.options import MeshOptions
-from mesh.outline import outline
-from mesh.sizing import sizing
+from mesh.outline import stack_outline
+from mesh.sizing import sizing_field
 from mesh.types import Planes
 from softdot.config.schema import Config
 from softdot.memory import needed_GB, refuse_too_little_memory
@@ -93,8 +93,8 @@ def expected_tetrahedra(
     if options.file is not None:
         return float(len(build(segment, dot_shape, options).tets))
     sliced = segment.section == "plane-strain"
-    shape = outline(segment, slice_mm=options.contact_element_size_mm) if sliced else outline(segment)
-    field = sizing(shape, dot_shape, options)
+    shape = stack_outline(segment, slice_mm=options.contact_element_size_mm) if sliced else stack_outline(segment)
+    field = sizing_field(shape, dot_shape, options)
     high = np.array([shape.half_x, shape.half_y, shape.top])
     low = np.array([-shape.half_x, -shape.half_y, 0.0])
     low[list(planes)] = 0.0

@@ -99,9 +99,9 @@ class PreparedPress:
     @cached_property
     def mesh(self) -> TetMesh:
         """The conforming mesh of all that is pressed. InputError, MeshingError."""
-        from mesh.symmetry import unfolded
+        from mesh.symmetry import mirrored_mesh
 
-        return unfolded(self.solved_mesh).tet_mesh
+        return mirrored_mesh(self.solved_mesh).tet_mesh
 
     @cached_property
     def solved_mesh(self) -> TetMesh:
@@ -130,10 +130,10 @@ class PreparedPress:
     @property
     def mesh_quality(self) -> dict[str, Any]:
         """Numbers about the mesh that is solved, as in summary.json."""
-        from mesh.quality import measure
+        from mesh.quality import measure_quality
 
         sizes = {} if self.config.mesh.file is not None else self.sized.mesh.sizes_mm
-        return {**measure(self.solved_mesh, self.model.segment).as_dict(), **sizes}
+        return {**measure_quality(self.solved_mesh, self.model.segment).as_dict(), **sizes}
 
     def press(self, on_step: OnStep | None = None) -> Pressed:
         """The press, as far as it converged: .converged says whether, .failure why not. InputError, MeshingError.

@@ -6,8 +6,8 @@ from foundation.arrays import Bools, Floats
 from foundation.errors import InputError
 from geometry.parameters import Segment
 from mesh.interfaces import inner_nodes, interface_facets
-from mesh.outline import outline
-from mesh.seams import with_columns_at
+from mesh.outline import stack_outline
+from mesh.seams import mesh_with_columns_at
 from mesh.types import TetMesh
 from solve.physics import Delamination
 
@@ -60,10 +60,10 @@ def with_rims_of_patches(tet_mesh: TetMesh, segment: Segment, delaminations: tup
     """
     if segment.section == "solid":
         return tet_mesh
-    foot = outline(segment).effector_half_x
+    foot = stack_outline(segment).effector_half_x
     kept = [-foot, foot]
     for patch in delaminations:
         rims = [patch.center_mm[0] + side * patch.diameter_mm / 2 for side in (-1, 1)]
-        tet_mesh = with_columns_at(tet_mesh, interface_facets(tet_mesh, patch.bond), rims, kept)
+        tet_mesh = mesh_with_columns_at(tet_mesh, interface_facets(tet_mesh, patch.bond), rims, kept)
         kept += rims
     return tet_mesh

@@ -3,7 +3,7 @@
 import numpy as np
 
 from foundation.arrays import Floats, Ints
-from mesh.symmetry import Unfolded, in_plane
+from mesh.symmetry import MirroredMesh, in_plane
 from mesh.types import TetMesh
 from solve.fem.kinematics import deformation_gradient
 from solve.fem.quadrature import tetrahedron
@@ -17,7 +17,7 @@ from solve.terms.film import FilmRegion
 from solve.terms.solid import SolidRegion
 
 
-def fields(system: System, tet_mesh: TetMesh, whole: Unfolded, state: State, before: State) -> Fields:
+def fields(system: System, tet_mesh: TetMesh, whole: MirroredMesh, state: State, before: State) -> Fields:
     """All fields of the whole segment in a converged state.
 
     tet_mesh : what is solved, whole : its images; before : the state that its step started from.

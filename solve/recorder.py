@@ -12,7 +12,7 @@ import numpy as np
 
 from foundation.arrays import Floats
 from geometry.parameters import Segment
-from mesh.symmetry import unfolded
+from mesh.symmetry import mirrored_mesh
 from mesh.types import TetMesh
 from solve.convergence_warnings import doubtful_results
 from solve.fields import fields
@@ -55,7 +55,7 @@ class Recorder:
     ) -> None:
         self.system, self.tet_mesh, self.physics = system, tet_mesh, physics
         self.segment, self.film = segment, materials["film"]
-        self.whole = unfolded(tet_mesh)
+        self.whole = mirrored_mesh(tet_mesh)
         self._copies, self._whole_force = 2 ** len(tet_mesh.planes), np.full(3, 1.0 / meshed_share(segment, tet_mesh))
         self._whole_force[list(tet_mesh.planes)] = 0.0  # both sides of a mirror plane pull against each other
         self._whole_charge = whole_charge(segment, tet_mesh)

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from geometry.dot import DotShape
 from geometry.dot_at_rest import resolve_dot
-from mesh.symmetry import unfolded
+from mesh.symmetry import mirrored_mesh
 from mesh.types import Planes, TetMesh
 from solve.delaminations import with_rims_of_patches
 from solve.model import Model
@@ -55,7 +55,7 @@ def discretise(model: Model, tet_mesh: TetMesh, dot: DotShape, others: Iterable[
         kept &= set(planes_of(other, resolve_dot(other.dot, other.segment)))
     lost = tuple(axis for axis in tet_mesh.planes if axis not in kept)
     physics, plane_strain = model.physics, model.segment.section == "plane-strain"
-    whole = with_rims_of_patches(unfolded(tet_mesh, lost).tet_mesh, model.segment, physics.delaminations)
+    whole = with_rims_of_patches(mirrored_mesh(tet_mesh, lost).tet_mesh, model.segment, physics.delaminations)
     opened = open_interfaces(whole, physics.bonds, physics.delaminations, plane_strain)
     return replace(set_up(model, dot, *opened), unfolded=lost)
 

@@ -14,13 +14,13 @@ from foundation.arrays import Bools, Floats, Ints
 from geometry.array.layout import ArrayLayout
 from geometry.dot import DotShape
 from geometry.stack import layers
-from mesh.array.footprint import footprint, from_middle, on_circles
+from mesh.array.footprint import distance_to_nearest_middle, footprint_triangulation, on_or_beyond_circles
 from mesh.array.sizing import array_sizing
 from mesh.bisection import Triangulation
-from mesh.layered import levels
+from mesh.layered import layer_heights
 from mesh.options import MeshOptions
-from mesh.outline import RoundSurface, curved_surface, outline
-from mesh.quadratic import between_parts, quadratic
+from mesh.outline import RoundSurface, curved_surface, stack_outline
+from mesh.quadratic import facets_between_parts, quadratic_nodes_and_tets
 from mesh.quality import refuse_inverted
 from mesh.types import (
     TET_FACES,
@@ -29,12 +29,12 @@ from mesh.types import (
     TetMesh,
     boundary_faces,
     face_neighbours,
-    oriented,
+    orient_tets,
     split_prisms,
     without_unused,
 )
 
-TOLERANCE_MM = 1e-6
+PLANE_TOLERANCE_MM = 1e-6
 
 
 @dataclass(frozen=True)
@@ -74,9 +74,9 @@ def array_mesh(layout: ArrayLayout, dot: DotShape, options: MeshOptions, planes:
     grooves = [
         layer.top_mm - groove.depth_mm for layer in layers(layout.segment) for groove in layout.grooves(layer.name)
     ]
-    heights, layer_region, names = levels(field.outline, field, options.film_layers, grooves)
-    linear = _extrude(layout, footprint(layout, field), heights, layer_region, names)
-    points, tets = quadratic(linear, _round_skin(layout))
+    heights, layer_region, names = layer_heights(field.outline, field, options.film_layers, grooves)
+    linear = _extrude(layout, footprint_triangulation(layout, field), heights, layer_region, names)
+    points, tets = quadratic_nodes_and_tets(linear, _round_surfaces(layout))
     facets = _facets(layout, points, tets, linear.region, linear.region_names, planes)
     twin = np.arange(len(points), dtype=np.int64)
     thickness = layout.whole.width_mm
@@ -85,8 +85,8 @@ def array_mesh(layout: ArrayLayout, dot: DotShape, options: MeshOptions, planes:
     return result
 
 
-def _round_skin(layout: ArrayLayout) -> RoundSurfaces | None:
-    one = curved_surface(outline(layout.segment))
+def _round_surfaces(layout: ArrayLayout) -> RoundSurfaces | None:
+    one = curved_surface(stack_outline(layout.segment))
     return None if one is None else RoundSurfaces(one, layout.middles)
 
 
@@ -107,7 +107,7 @@ def _extrude(
         tets.append(prisms[whole])
         region.append(np.full(len(tets[-1]), part, dtype=np.int64))
     all_tets = np.concatenate(tets)
-    return without_unused(LinearMesh(points, oriented(points, all_tets), np.concatenate(region), names))
+    return without_unused(LinearMesh(points, orient_tets(points, all_tets), np.concatenate(region), names))
 
 
 def _nodes(
@@ -121,13 +121,13 @@ def _nodes(
     if effector is None or radius is None or effector.shape != "dome":
         return points, node
     base = int(np.argmax(layer_region == names.index("effector")))
-    sphere = curved_surface(outline(layout.segment))
+    sphere = curved_surface(stack_outline(layout.segment))
     assert sphere is not None
-    away = np.minimum(from_middle(layout, foot.points), radius)
+    away = np.minimum(distance_to_nearest_middle(layout, foot.points), radius)
     rise = sphere.centre[2] + np.sqrt(sphere.radius**2 - away**2) - heights[base]
     share = (heights[base:] - heights[base]) / (heights[-1] - heights[base])
     points[base * count :, 2] = (heights[base] + share[:, None] * np.maximum(rise, 0.0)).ravel()
-    rim = on_circles(layout, foot.points, radius)
+    rim = on_or_beyond_circles(layout, foot.points, radius)
     node[base:, rim] = node[base, rim]
     return points, node
 
@@ -143,21 +143,21 @@ def _facets(
     owner, face = boundary_faces(tets)
     outer, part = tets[owner[:, None], TET_FACES[face]], region[owner]
     corner = points[outer[:, :3]]
-    flat = np.ptp(corner[..., 2], axis=1) < TOLERANCE_MM
-    on_base = flat & (np.abs(corner[..., 2]).max(axis=1) < TOLERANCE_MM)
+    flat = np.ptp(corner[..., 2], axis=1) < PLANE_TOLERANCE_MM
+    on_base = flat & (np.abs(corner[..., 2]).max(axis=1) < PLANE_TOLERANCE_MM)
     cut = np.zeros(len(outer), dtype=bool)
     for axis in planes:
-        cut |= (np.abs(corner[..., axis]) < TOLERANCE_MM).all(axis=1)
+        cut |= (np.abs(corner[..., axis]) < PLANE_TOLERANCE_MM).all(axis=1)
     result = {"contact": outer[_touchable(layout, corner, part, names, flat) & ~cut], "base": outer[on_base]}
-    at_rim = _in_any_plane(corner, layout.half_mm)
+    at_rim = _on_rim_planes(corner, layout.half_mm)
     for number, name in enumerate(names):
         held = ~flat & ~cut if name in layout.array.grid_layers else at_rim
         mine = outer[held & (part == number)]
         if len(mine):
             result[f"side-{name}"] = mine
     neighbour, film = face_neighbours(tets[:, :4]), names.index("film")
-    result["film-bottom"] = between_parts(tets, region, neighbour, names.index("medium2"), film)
-    result["film-top"] = between_parts(tets, region, neighbour, film, names.index("medium1"))
+    result["film-bottom"] = facets_between_parts(tets, region, neighbour, names.index("medium2"), film)
+    result["film-top"] = facets_between_parts(tets, region, neighbour, film, names.index("medium1"))
     return result
 
 
@@ -173,7 +173,7 @@ def _touchable(layout: ArrayLayout, corner: Floats, part: Ints, names: tuple[str
     return np.asarray(touchable)
 
 
-def _in_any_plane(corner: Floats, half_mm: tuple[float, float]) -> Bools:
+def _on_rim_planes(corner: Floats, half_mm: tuple[float, float]) -> Bools:
     """Facets (k, 3, 3) in a plane of the rim."""
     away = np.abs(np.abs(corner[..., :2]) - np.array(half_mm))
-    return np.asarray((away < TOLERANCE_MM).all(axis=1).any(axis=1))
+    return np.asarray((away < PLANE_TOLERANCE_MM).all(axis=1).any(axis=1))

@@ -8,16 +8,16 @@ from foundation.arrays import Floats
 from geometry.array.layout import ArrayLayout, Rectangle
 from geometry.dot import DotShape
 from mesh.options import MeshOptions
-from mesh.outline import outline
-from mesh.sizing import GROWTH, RIM, RIM_GROWTH, Sizing, sizing
+from mesh.outline import stack_outline
+from mesh.sizing import RIM_SIZE_GROWTH, RIM_SIZE_SHARE, SIZE_GROWTH, Sizing, sizing_field
 from mesh.types import Planes
 
-HYPOTENUSE = 1.6
+HYPOTENUSE_PER_MEAN_EDGE = 1.6
 """Longest edge of a right triangle against its mean edge, as in mesh.layered."""
 FAR_GROWTH = 0.25
 """mm of edge length on the film per mm beside the pressed segment: what reaches a neighbour is smooth."""
-SAMPLES = 20_000
-TRIANGLES = 4.0
+SIZE_SAMPLES = 20_000
+TRIANGLES_PER_SQUARE = 4.0
 """Triangles for a square of the edge length, as bisection leaves them: within a factor of 1.5 on arrays of six."""
 
 
@@ -36,27 +36,27 @@ class ArraySizing(Sizing):
         """Edge lengths in mm at points (n, 3), shape (n,)."""
         z = points[:, 2]
         to_film = np.abs(z - np.clip(z, self.outline.film_bottom, self.outline.film_top))
-        beside = FAR_GROWTH * _outside(points, self.pressed).min(axis=1)
-        film = self.film_mm + GROWTH * to_film + beside
-        to_end = np.abs(_inside(points, self.ends)).min(axis=1)
-        rim = RIM * self.film_mm + RIM_GROWTH * np.hypot(to_film, to_end) + beside
-        contact = self.contact_mm + GROWTH * self._to_contact(points)
+        beside = FAR_GROWTH * _distance_outside(points, self.pressed).min(axis=1)
+        film = self.film_mm + SIZE_GROWTH * to_film + beside
+        to_end = np.abs(_distance_inside(points, self.ends)).min(axis=1)
+        rim = RIM_SIZE_SHARE * self.film_mm + RIM_SIZE_GROWTH * np.hypot(to_film, to_end) + beside
+        contact = self.contact_mm + SIZE_GROWTH * self._distance_to_contact(points)
         return np.asarray(np.minimum(np.minimum(np.minimum(contact, film), rim), self.coarse_mm))
 
-    def over(self, xy_mm: Floats) -> Floats:
+    def at_footprint(self, xy_mm: Floats) -> Floats:
         """The finest of skin and film above points (n, 2) of the footprint."""
         at = [np.column_stack([xy_mm, np.full(len(xy_mm), z)]) for z in (self.outline.film_top, self.outline.top)]
         return np.asarray(np.minimum(self.at(at[0]), self.at(at[1])))
 
 
-def _inside(points: Floats, rectangles: Floats) -> Floats:
+def _distance_inside(points: Floats, rectangles: Floats) -> Floats:
     """Distance (n, k) of points from the nearest edge of each rectangle, negative outside."""
     x, y = points[:, :1], points[:, 1:2]
     x0, x1, y0, y1 = rectangles.T
     return np.asarray(np.minimum(np.minimum(x - x0, x1 - x), np.minimum(y - y0, y1 - y)), dtype=np.float64)
 
 
-def _outside(points: Floats, rectangles: Floats) -> Floats:
+def _distance_outside(points: Floats, rectangles: Floats) -> Floats:
     """Distance (n, k) of points from each rectangle, zero inside."""
     x, y = points[:, :1], points[:, 1:2]
     x0, x1, y0, y1 = rectangles.T
@@ -67,9 +67,9 @@ def _outside(points: Floats, rectangles: Floats) -> Floats:
 def array_sizing(layout: ArrayLayout, dot: DotShape, options: MeshOptions, planes: Planes) -> ArraySizing:
     """Sizes under a dot at rest; the segments that it presses are those within the reach of a dot."""
     half_x, half_y = layout.half_mm
-    base = sizing(outline(layout.whole, planes=planes), dot, options)
+    base = sizing_field(stack_outline(layout.whole, planes=planes), dot, options)
     segments = np.array(layout.rectangles("film"))
-    near = (_outside(base.centers_mm, segments) <= base.reach_mm).any(axis=0)
+    near = (_distance_outside(base.centers_mm, segments) <= base.reach_mm).any(axis=0)
     rim: list[Rectangle] = [(-half_x, half_x, -half_y, half_y)]
     ends = segments if layout.ends_at_walls("film") else np.array(rim)
     return ArraySizing(**vars(base), pressed=segments[near] if near.any() else segments, ends=ends)
@@ -80,9 +80,9 @@ def expected_elements(layout: ArrayLayout, dot: DotShape, options: MeshOptions, 
     field = array_sizing(layout, dot, options, planes)
     stack = field.outline
     low, high = np.array(stack.low), np.array([stack.half_x, stack.half_y])
-    xy = np.random.default_rng(0).uniform(low, high, (SAMPLES, 2))
-    triangles = float(np.prod(high - low) * np.mean(TRIANGLES / field.over(xy) ** 2))
+    xy = np.random.default_rng(0).uniform(low, high, (SIZE_SAMPLES, 2))
+    triangles = float(np.prod(high - low) * np.mean(TRIANGLES_PER_SQUARE / field.at_footprint(xy) ** 2))
     x, y = field.centers_mm.mean(axis=0)
-    z = np.linspace(0.0, stack.top, SAMPLES)
+    z = np.linspace(0.0, stack.top, SIZE_SAMPLES)
     through = stack.top * float(np.mean(1.0 / field.at(np.column_stack([np.full_like(z, x), np.full_like(z, y), z]))))
     return 3.0 * triangles * through

@@ -17,21 +17,23 @@ from foundation.arrays import Floats
 from foundation.errors import InputError
 from foundation.files import regular_file_size
 
-TETS = {"C3D4": 4, "C3D10": 10}
-"""Beginning of a type, such as C3D10MH, and its nodes; those of Abaqus are in VTK's order."""
-TRIANGLES = {"S3": 3, "CPS3": 3, "CPE3": 3, "M3D3": 3, "R3D3": 3, "SFM3D3": 3, "CPS6": 6, "CPE6": 6, "M3D6": 6,
-             "SFM3D6": 6, "STRI65": 6}  # fmt: skip
-"""Facets that may name a surface."""
-LINES = {"T3D2": 2, "T3D3": 3, "B31": 2, "B32": 3, "T2D2": 2, "T2D3": 3}
-"""What Gmsh writes of edges."""
-GENERATORS = (
+TET_NODE_COUNTS = {"C3D4": 4, "C3D10": 10}
+"""Beginning of the type of a tetrahedron, such as C3D10MH -> number of its nodes, which are in VTK's order."""
+TRIANGLE_NODE_COUNTS = {
+    "S3": 3, "CPS3": 3, "CPE3": 3, "M3D3": 3, "R3D3": 3, "SFM3D3": 3, "CPS6": 6, "CPE6": 6, "M3D6": 6, "SFM3D6": 6,
+    "STRI65": 6,
+}  # fmt: skip
+"""Type of a facet that may belong to a named surface -> number of its nodes."""
+LINE_NODE_COUNTS = {"T3D2": 2, "T3D3": 3, "B31": 2, "B32": 3, "T2D2": 2, "T2D3": 3}
+"""Type of an edge, as Gmsh writes them -> number of its nodes; edges are passed over."""
+GENERATOR_KEYWORDS = (
     "NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM", "SUBMODEL", "SYMMETRIC MODEL GENERATION",
     "IMPORT", "PARAMETER",
 )  # fmt: skip
-DEEPEST = 10  # files that include files
+DEEPEST_INCLUDE = 10  # files that include files
 MOST_IN_A_RANGE = 1_000_000
-LARGEST_MB = 500
-FIELD = re.compile(r'(?:"[^"]*"|[^,"])+')
+LARGEST_INPUT_MB = 500
+FIELD_PATTERN = re.compile(r'(?:"[^"]*"|[^,"])+')
 Member = tuple[str, int]
 """An element: name of the instance, empty where there is none, and number."""
 
@@ -45,7 +47,7 @@ class KeywordBlock:
     data: Sequence[str]
     place: str
 
-    def refused(self, reason: str) -> InputError:
+    def input_error(self, reason: str) -> InputError:
         """One sentence that names the keyword and its line."""
         return InputError(f"{self.place}: *{self.name}: {reason}")
 
@@ -67,7 +69,7 @@ class Instance:
     shift: Floats
     turn: Floats | None
 
-    def placed(self, points: Floats) -> Floats:
+    def points_in_assembly(self, points: Floats) -> Floats:
         """Points (n, 3) of the part, in the assembly."""
         moved = points + self.shift
         if self.turn is None:
@@ -96,93 +98,100 @@ class _Model:
         self.scope = self.root
         self.inside_instance = False
 
-    def take(self, block: KeywordBlock) -> None:
+    def read_block(self, block: KeywordBlock) -> None:
         """One keyword after the other."""
-        if block.name in GENERATORS:
-            raise block.refused("is not read; write all nodes and elements out")
+        if block.name in GENERATOR_KEYWORDS:
+            raise block.input_error("is not read; write all nodes and elements out")
         known = {
-            "NODE": self._nodes, "ELEMENT": self._elements, "ELSET": self._set, "PART": self._part,
-            "INSTANCE": self._instance,
-        }  # fmt: skip
+            "NODE": self._read_nodes,
+            "ELEMENT": self._read_elements,
+            "ELSET": self._read_element_set,
+            "PART": self._read_part,
+            "INSTANCE": self._read_instance,
+        }
         if block.name in known:
             if self.inside_instance and block.name != "INSTANCE":
-                raise block.refused("stands inside an *INSTANCE; only those that take all from their *PART are read")
+                raise block.input_error(
+                    "stands inside an *INSTANCE; only those that take all from their *PART are read"
+                )
             known[block.name](block)
         elif block.name == "END PART":
             self.scope = self.root
         elif block.name == "END INSTANCE":
             self.inside_instance = False
 
-    def _part(self, block: KeywordBlock) -> None:
-        name = _stated(block, "NAME")
+    def _read_part(self, block: KeywordBlock) -> None:
+        name = _required_parameter(block, "NAME")
         if name in self.parts:
-            raise block.refused(f"NAME = '{name}' appears twice")
+            raise block.input_error(f"NAME = '{name}' appears twice")
         self.scope = self.parts[name] = Scope()
 
-    def _instance(self, block: KeywordBlock) -> None:
-        name, part = _stated(block, "NAME"), _stated(block, "PART")
+    def _read_instance(self, block: KeywordBlock) -> None:
+        name, part = _required_parameter(block, "NAME"), _required_parameter(block, "PART")
         if name in self.instances:
-            raise block.refused(f"NAME = '{name}' appears twice")
+            raise block.input_error(f"NAME = '{name}' appears twice")
         if part not in self.parts:
-            raise block.refused(f"PART = '{part}' is not defined before it")
-        rows = [[_real(text, block) for text in _fields(line)] for line in block.data]
+            raise block.input_error(f"PART = '{part}' is not defined before it")
+        rows = [[_real_number(text, block) for text in _comma_fields(line)] for line in block.data]
         shift = np.array(rows[0] if rows else (0.0, 0.0, 0.0))
         turn = np.array(rows[1]) if len(rows) > 1 else None
         if len(shift) != 3 or (turn is not None and (len(turn) != 7 or np.array_equal(turn[:3], turn[3:6]))):
-            raise block.refused("needs three numbers of a shift, and then two points of an axis and an angle")
+            raise block.input_error("needs three numbers of a shift, and then two points of an axis and an angle")
         self.instances[name] = Instance(part, shift, turn)
         self.inside_instance, self.scope = True, self.root
 
-    def _nodes(self, block: KeywordBlock) -> None:
+    def _read_nodes(self, block: KeywordBlock) -> None:
         if block.parameters.get("SYSTEM", "R") != "R":
-            raise block.refused("SYSTEM must be R; cylindrical and spherical coordinates are not read")
+            raise block.input_error("SYSTEM must be R; cylindrical and spherical coordinates are not read")
         for line in block.data:
-            texts = _fields(line)
-            x, y, z = (_real(text, block) if text else 0.0 for text in [*texts[1:4], "", "", ""][:3])
-            number = _whole(texts[0], block)
+            texts = _comma_fields(line)
+            x, y, z = (_real_number(text, block) if text else 0.0 for text in [*texts[1:4], "", "", ""][:3])
+            number = _integer(texts[0], block)
             if self.scope.nodes.setdefault(number, (x, y, z)) != (x, y, z):
-                raise block.refused(f"node {number} is defined twice")
+                raise block.input_error(f"node {number} is defined twice")
 
-    def _elements(self, block: KeywordBlock) -> None:
-        kind = _stated(block, "TYPE")
+    def _read_elements(self, block: KeywordBlock) -> None:
+        kind = _required_parameter(block, "TYPE")
         count = _node_count(kind)
         if count is None:
-            raise block.refused(f"TYPE = {kind} is not read; all solids must be tetrahedra, C3D4 or C3D10")
+            raise block.input_error(f"TYPE = {kind} is not read; all solids must be tetrahedra, C3D4 or C3D10")
         numbers = []
-        for record in _records(block, count + 1):
+        for record in _integer_rows(block, count + 1):
             number, nodes = record[0], tuple(record[1:])
             if self.scope.elements.setdefault(number, (kind, nodes)) != (kind, nodes):
-                raise block.refused(f"element {number} is defined twice")
+                raise block.input_error(f"element {number} is defined twice")
             numbers.append(number)
         if "ELSET" in block.parameters:
             self.scope.sets.setdefault(block.parameters["ELSET"], set()).update(("", number) for number in numbers)
 
-    def _set(self, block: KeywordBlock) -> None:
-        name, instance = _stated(block, "ELSET"), block.parameters.get("INSTANCE", "")
+    def _read_element_set(self, block: KeywordBlock) -> None:
+        name, instance = _required_parameter(block, "ELSET"), block.parameters.get("INSTANCE", "")
         if instance and instance not in self.instances:
-            raise block.refused(f"INSTANCE = '{instance}' is not defined before it")
+            raise block.input_error(f"INSTANCE = '{instance}' is not defined before it")
         found = self.scope.sets.setdefault(name, set())
         for line in block.data:
-            texts = [text for text in _fields(line) if text]
+            texts = [text for text in _comma_fields(line) if text]
             if "GENERATE" in block.parameters:
-                found |= {(instance, number) for number in _range(texts, block)}
+                found |= {(instance, number) for number in _generated_numbers(texts, block)}
             else:
                 for text in texts:
-                    found |= self._members(text, instance, block)
+                    found |= self._set_members(text, instance, block)
 
-    def _members(self, text: str, instance: str, block: KeywordBlock) -> set[Member]:
+    def _set_members(self, text: str, instance: str, block: KeywordBlock) -> set[Member]:
         """What a number, the name of a set, or either behind the name of an instance, stands for."""
         place, _, rest = text.rpartition(".")
-        inside = _name(place) in self.instances
-        owner, own = (_name(place), _name(rest)) if inside else (instance, _name(text))
+        inside = _capital_name(place) in self.instances
+        owner, own = (_capital_name(place), _capital_name(rest)) if inside else (instance, _capital_name(text))
         if own.isascii() and own.isdigit():
             return {(owner, int(own))}
         sets = self.parts[self.instances[owner].part].sets if owner else self.scope.sets
         if own not in sets:
-            raise block.refused(f"holds '{text[:40]}', which is neither a number nor a set that was defined before it")
+            raise block.input_error(
+                f"holds '{text[:40]}', which is neither a number nor a set that was defined before it"
+            )
         return {(inner or owner, number) for inner, number in sets[own]}
 
-    def whole(self, where: str) -> AbaqusMesh:
+    def assembled_mesh(self, where: str) -> AbaqusMesh:
         """The assembly: every instance of a part, or every part once where there is no instance."""
         placed: dict[str, tuple[Scope, Instance | None]] = {
             name: (self.parts[one.part], one) for name, one in self.instances.items()
@@ -191,7 +200,7 @@ class _Model:
         mesh = AbaqusMesh(np.zeros((0, 3)), [], {})
         found: dict[Member, int] = {}
         for name, (scope, instance) in {"": (self.root, None), **placed}.items():
-            _add(mesh, found, name, scope, instance, where)
+            _add_body(mesh, found, name, scope, instance, where)
         bodies = {"": self.root, **{name: scope for name, (scope, _) in placed.items()}}
         for name, scope in bodies.items():
             for label, members in scope.sets.items():
@@ -203,7 +212,7 @@ class _Model:
         return mesh
 
 
-def _add(
+def _add_body(
     mesh: AbaqusMesh, found: dict[Member, int], name: str, scope: Scope, instance: Instance | None, where: str
 ) -> None:
     """The nodes and elements of one body behind those that are there."""
@@ -216,15 +225,17 @@ def _add(
             raise InputError(f"{where}: element {number} has node {error}, which is not there") from None
         found[name, number] = len(mesh.cells)
         mesh.cells.append((kind, cell))
-    mesh.points_mm = np.concatenate([mesh.points_mm, points if instance is None else instance.placed(points)])
+    mesh.points_mm = np.concatenate(
+        [mesh.points_mm, points if instance is None else instance.points_in_assembly(points)]
+    )
 
 
 def read_abaqus(path: Path, where: str) -> AbaqusMesh:
     """The mesh in a file and those that it includes. where : how a message calls it. InputError."""
     model = _Model()
-    for block in _blocks(path, where, ()):
-        model.take(block)
-    return model.whole(where)
+    for block in _keyword_blocks(path, where, ()):
+        model.read_block(block)
+    return model.assembled_mesh(where)
 
 
 def is_tet(kind: str) -> bool:
@@ -234,23 +245,23 @@ def is_tet(kind: str) -> bool:
 
 def is_triangle(kind: str) -> bool:
     """Whether a type of Abaqus is a facet."""
-    return not is_tet(kind) and any(kind.startswith(name) for name in TRIANGLES)
+    return not is_tet(kind) and any(kind.startswith(name) for name in TRIANGLE_NODE_COUNTS)
 
 
 def _node_count(kind: str) -> int | None:
     """Nodes of a type of element; none of one that is not read."""
     found = re.fullmatch(r"(C3D10|C3D4)[A-Z]*", kind)
     if found:
-        return TETS[found[1]]
-    return {**TRIANGLES, **LINES, "S3R": 3, "S3RS": 3, "B31H": 2, "B32H": 3}.get(kind)
+        return TET_NODE_COUNTS[found[1]]
+    return {**TRIANGLE_NODE_COUNTS, **LINE_NODE_COUNTS, "S3R": 3, "S3RS": 3, "B31H": 2, "B32H": 3}.get(kind)
 
 
-def _blocks(path: Path, where: str, outer: tuple[Path, ...]) -> Iterator[KeywordBlock]:
+def _keyword_blocks(path: Path, where: str, outer: tuple[Path, ...]) -> Iterator[KeywordBlock]:
     """The keywords of a file, those of included files at their place."""
-    if len(outer) == DEEPEST or path.resolve() in outer:
-        raise InputError(f"{where}: '{path.name}' is included in a circle or deeper than {DEEPEST} files")
+    if len(outer) == DEEPEST_INCLUDE or path.resolve() in outer:
+        raise InputError(f"{where}: '{path.name}' is included in a circle or deeper than {DEEPEST_INCLUDE} files")
     inside = (*outer, path.resolve())
-    lines = _text(path, where, bool(outer)).splitlines()
+    lines = _file_text(path, where, bool(outer)).splitlines()
     number = 0
     while number < len(lines):
         begun, line = number, lines[number].strip()
@@ -269,22 +280,22 @@ def _blocks(path: Path, where: str, outer: tuple[Path, ...]) -> Iterator[Keyword
             number += 1
         if line.startswith("**"):
             continue
-        block = _block(line, data, f"{where}: line {begun + 1} of '{path.name}'")
+        block = _parse_block(line, data, f"{where}: line {begun + 1} of '{path.name}'")
         if block.name == "INCLUDE":
-            yield from _blocks(path.parent / _file(block), where, inside)
+            yield from _keyword_blocks(path.parent / _input_file_name(block), where, inside)
         elif block.name in ("NODE", "ELEMENT", "ELSET") and "INPUT" in block.parameters:
-            rows = _text(path.parent / _file(block), where, True).splitlines()
+            rows = _file_text(path.parent / _input_file_name(block), where, True).splitlines()
             below = [row.strip() for row in rows if row.strip() and not row.startswith("**")]
             yield KeywordBlock(block.name, block.parameters, [*below, *data], block.place)
         else:
             yield block
 
 
-def _text(path: Path, where: str, named: bool) -> str:
+def _file_text(path: Path, where: str, named: bool) -> str:
     """Of a file; what is not UTF-8 in it can only be a remark or a name that is none of ours."""
     what = f"{where}: '{path.name}'" if named else where
-    if (size := regular_file_size(path, what)) > 1e6 * LARGEST_MB:
-        raise InputError(f"{what}: has {size / 1e6:.0f} MB, at most {LARGEST_MB} MB are read")
+    if (size := regular_file_size(path, what)) > 1e6 * LARGEST_INPUT_MB:
+        raise InputError(f"{what}: has {size / 1e6:.0f} MB, at most {LARGEST_INPUT_MB} MB are read")
     try:
         return path.read_bytes().decode("utf-8-sig", errors="replace")
     except OSError as error:
@@ -296,77 +307,81 @@ def _is_keyword(line: str) -> bool:
     return stripped.startswith("*") and not stripped.startswith("**")
 
 
-def _block(line: str, data: list[str], place: str) -> KeywordBlock:
+def _parse_block(line: str, data: list[str], place: str) -> KeywordBlock:
     """*ELSET, elset="Medium2", generate -> ELSET, {ELSET: MEDIUM2, GENERATE: ""}."""
-    first, *rest = [text.strip() for text in FIELD.findall(line)]
+    first, *rest = [text.strip() for text in FIELD_PATTERN.findall(line)]
     parameters = {}
     for text in rest:
         key, _, value = text.partition("=")
         if "".join(key.split()):
             parameters[" ".join(key.upper().split())] = (
-                value.strip() if key.strip().upper() == "INPUT" else _name(value)
+                value.strip() if key.strip().upper() == "INPUT" else _capital_name(value)
             )
     return KeywordBlock(" ".join(first.lstrip("*").upper().split()), parameters, data, place)
 
 
-def _file(block: KeywordBlock) -> str:
+def _input_file_name(block: KeywordBlock) -> str:
     """The file that a keyword names, as it is written."""
     file = block.parameters.get("INPUT", "").strip('"')
     if not file or "\0" in file:
-        raise block.refused("INPUT is missing, the name of a file")
+        raise block.input_error("INPUT is missing, the name of a file")
     return file
 
 
-def _name(text: str) -> str:
+def _capital_name(text: str) -> str:
     return text.strip().strip('"').strip().upper()
 
 
-def _stated(block: KeywordBlock, key: str) -> str:
+def _required_parameter(block: KeywordBlock, key: str) -> str:
     if not block.parameters.get(key):
-        raise block.refused(f"{key} is missing")
+        raise block.input_error(f"{key} is missing")
     return block.parameters[key]
 
 
-def _fields(line: str) -> list[str]:
+def _comma_fields(line: str) -> list[str]:
     """Between commas, those in quotes left out."""
     if '"' in line:
-        return [text.strip() for text in FIELD.findall(line)]
+        return [text.strip() for text in FIELD_PATTERN.findall(line)]
     return [text.strip() for text in line.split(",")]
 
 
-def _records(block: KeywordBlock, length: int) -> Iterator[list[int]]:
+def _integer_rows(block: KeywordBlock, length: int) -> Iterator[list[int]]:
     """Whole numbers in rows of this length, each of one line or several that end with a comma."""
     record: list[int] = []
     for line in block.data:
-        record += [_whole(text, block) for text in line.split(",") if text.strip()]
+        record += [_integer(text, block) for text in line.split(",") if text.strip()]
         if len(record) == length:
             yield record
             record = []
         elif len(record) > length or not line.endswith(","):
-            raise block.refused(f"'{line[:60]}' must be {length} numbers: that of the element and those of its nodes")
+            raise block.input_error(
+                f"'{line[:60]}' must be {length} numbers: that of the element and those of its nodes"
+            )
     if record:
-        raise block.refused(f"its last element must have {length} numbers")
+        raise block.input_error(f"its last element must have {length} numbers")
 
 
-def _range(texts: Sequence[str], block: KeywordBlock) -> range:
+def _generated_numbers(texts: Sequence[str], block: KeywordBlock) -> range:
     """first, last, step -> numbers; a step of 1 may be left out."""
-    numbers = [_whole(text, block) for text in texts]
+    numbers = [_integer(text, block) for text in texts]
     first, last, step = [*numbers, 1][:3] if len(numbers) == 2 else numbers if len(numbers) == 3 else (0, 0, 0)
     if step < 1 or last < first or (last - first) % step or (last - first) // step > MOST_IN_A_RANGE:
-        raise block.refused(f"'{', '.join(texts)[:60]}' must be the first number, the last, and the step between them")
+        raise block.input_error(
+            f"'{', '.join(texts)[:60]}' must be the first number, the last, and the step between them"
+        )
     return range(first, last + 1, step)
 
 
-def _whole(text: str, block: KeywordBlock) -> int:
+def _integer(text: str, block: KeywordBlock) -> int:
     own = text.strip()
     if not (own.isascii() and own.isdigit() and len(own) < 19):
-        raise block.refused(f"'{own[:40]}' must be a whole number")
+        raise block.input_error(f"'{own[:40]}' must be a whole number")
     return int(own)
 
 
-def _real(text: str, block: KeywordBlock) -> float:
+def _real_number(text: str, block: KeywordBlock) -> float:
     own = text.strip()
     try:
         return float(own.upper().replace("D", "E").replace("_", "?"))
     except ValueError:
-        raise block.refused(f"'{own[:40]}' must be a number") from None
+        raise block.input_error(f"'{own[:40]}' must be a number") from None

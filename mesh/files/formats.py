@@ -14,14 +14,14 @@ from foundation.errors import InputError
 from foundation.nearest_name import nearest_name_hint
 from mesh.types import TET_FACES, TetMesh
 
-REGIONS = {"medium2": 1, "film": 2, "medium1": 3, "effector": 4}
+REGION_NUMBERS = {"medium2": 1, "film": 2, "medium1": 3, "effector": 4}
 """Number of each part, the same in every file: of its physical group, and in the field "region" of XDMF."""
-SURFACES = {"contact": 11, "base": 12, "film-bottom": 13, "film-top": 14} | {
-    f"side-{name}": 20 + number for name, number in REGIONS.items()
+SURFACE_NUMBERS = {"contact": 11, "base": 12, "film-bottom": 13, "film-top": 14} | {
+    f"side-{name}": 20 + number for name, number in REGION_NUMBERS.items()
 }
 """Number of each named surface: of its physical group, and in the field "surface" of XDMF."""
-STEM = "segment"
-INP_NUMBER = ".14g"
+FILE_STEM = "segment"
+INP_NUMBER_FORMAT = ".14g"
 """At most 20 characters: neither Abaqus nor CalculiX reads longer numbers."""
 
 
@@ -35,7 +35,7 @@ def write_mesh(tet_mesh: TetMesh, formats: Sequence[str], folder: Path) -> list[
     folder.mkdir(parents=True, exist_ok=True)
     paths = []
     for name in dict.fromkeys(formats):
-        path = folder / f"{STEM}.{name}"
+        path = folder / f"{FILE_STEM}.{name}"
         WRITERS[name](tet_mesh, path)
         paths.append(path)
     return paths
@@ -48,7 +48,7 @@ def check_formats(formats: Sequence[str]) -> None:
             raise InputError(f"--mesh-format = '{name}': there is no such format; {nearest_name_hint(name, WRITERS)}")
 
 
-def _surfaces(tet_mesh: TetMesh) -> dict[str, Ints]:
+def _named_surfaces(tet_mesh: TetMesh) -> dict[str, Ints]:
     """The named facets that are there, each (k, 6)."""
     return {name: facets for name, facets in tet_mesh.facets.items() if len(facets)}
 
@@ -58,21 +58,23 @@ def _write_msh(tet_mesh: TetMesh, path: Path) -> None:
     import meshio
 
     regions = {name: tet_mesh.tets[tet_mesh.region_tets(name)] for name in tet_mesh.region_names}
-    blocks = [("tetra10", 3, REGIONS[name], tets) for name, tets in regions.items()]
-    blocks += [("triangle6", 2, SURFACES[name], facets) for name, facets in _surfaces(tet_mesh).items()]
+    blocks = [("tetra10", 3, REGION_NUMBERS[name], tets) for name, tets in regions.items()]
+    blocks += [("triangle6", 2, SURFACE_NUMBERS[name], facets) for name, facets in _named_surfaces(tet_mesh).items()]
     tags = [np.full(len(cells), tag) for _, _, tag, cells in blocks]
-    names = {name: (REGIONS[name], 3) for name in regions} | {name: (SURFACES[name], 2) for name in _surfaces(tet_mesh)}
+    names = {name: (REGION_NUMBERS[name], 3) for name in regions} | {
+        name: (SURFACE_NUMBERS[name], 2) for name in _named_surfaces(tet_mesh)
+    }
     whole = meshio.Mesh(
         tet_mesh.points_mm,
         [(kind, cells) for kind, _, _, cells in blocks],
         cell_data={"gmsh:physical": tags, "gmsh:geometrical": tags},
-        point_data={"gmsh:dim_tags": _entities(len(tet_mesh.points_mm), blocks)},
+        point_data={"gmsh:dim_tags": _node_entities(len(tet_mesh.points_mm), blocks)},
         field_data={name: np.array(value) for name, value in names.items()},
     )
     meshio.gmsh.write(path, whole, "4.1", binary=False)
 
 
-def _entities(count: int, blocks: Sequence[tuple[str, int, int, Ints]]) -> Ints:
+def _node_entities(count: int, blocks: Sequence[tuple[str, int, int, Ints]]) -> Ints:
     """Dimension and tag of the entity of each node (count, 2): a surface before a part.
 
     meshio lists an entity, and with it its physical group, only where a node belongs to it. So one that all its nodes
@@ -96,14 +98,16 @@ def _write_inp(tet_mesh: TetMesh, path: Path) -> None:
     import meshio
 
     sets = {name: [tet_mesh.region_tets(name)] for name in tet_mesh.region_names}
-    nodes = {name: np.unique(facets) for name, facets in _surfaces(tet_mesh).items()}
+    nodes = {name: np.unique(facets) for name, facets in _named_surfaces(tet_mesh).items()}
     nodes["all"] = np.arange(len(tet_mesh.points_mm))
     whole = meshio.Mesh(tet_mesh.points_mm, [("tetra10", tet_mesh.tets)], cell_sets=sets, point_sets=nodes)
     text = StringIO()
-    meshio.abaqus.write(text, whole, float_fmt=INP_NUMBER)
+    meshio.abaqus.write(text, whole, float_fmt=INP_NUMBER_FORMAT)
     mesh_text = re.sub(r"(\*ELEMENT, TYPE=)\w+", r"\1C3D10", text.getvalue())  # meshio takes the hybrid C3D10MH
     head = ["** softdot: lengths in mm; with forces in N, stresses are in MPa.", *_slice_note(tet_mesh)]
-    surfaces = [line for name, facets in _surfaces(tet_mesh).items() for line in _surface(tet_mesh, name, facets)]
+    surfaces = [
+        line for name, facets in _named_surfaces(tet_mesh).items() for line in _surface_keyword(tet_mesh, name, facets)
+    ]
     path.write_text("\n".join([*head, mesh_text.rstrip("\n"), *surfaces]) + "\n", "utf-8")
 
 
@@ -113,28 +117,30 @@ def _slice_note(tet_mesh: TetMesh) -> list[str]:
     return ["** A plane-strain slice: hold direction 2 of the node set all; nodes of equal x and z move alike."]
 
 
-def _surface(tet_mesh: TetMesh, name: str, facets: Ints) -> list[str]:
+def _surface_keyword(tet_mesh: TetMesh, name: str, facets: Ints) -> list[str]:
     """The keyword block of one surface: element and face whose outward normal is that of the facet."""
-    tet, face = owners(tet_mesh.tets, facets)
+    tet, face = facet_owners(tet_mesh.tets, facets)
     rows = [f"{element}, S{number}" for element, number in zip(tet + 1, face + 1, strict=True)]
     return [f"*SURFACE, NAME={name}, TYPE=ELEMENT", *rows]
 
 
-def owners(tets: Ints, facets: Ints) -> tuple[Ints, Ints]:
+def facet_owners(tets: Ints, facets: Ints) -> tuple[Ints, Ints]:
     """Tetrahedra (k,) and their faces (k,), numbered as TET_FACES, that facets (k, 3 or 6) are outward faces of.
 
     ValueError where a facet is none, or looks into its element.
     """
-    faces = _turned(tets[:, TET_FACES[:, :3]].reshape(-1, 3))
+    faces = _smallest_corner_first(tets[:, TET_FACES[:, :3]].reshape(-1, 3))
     number = {tuple(corners): place for place, corners in enumerate(faces.tolist())}
     try:
-        place = np.array([number[tuple(corners)] for corners in _turned(facets[:, :3]).tolist()], dtype=np.int64)
+        place = np.array(
+            [number[tuple(corners)] for corners in _smallest_corner_first(facets[:, :3]).tolist()], dtype=np.int64
+        )
     except KeyError:
         raise ValueError("a facet is no outward face of an element") from None
     return place // 4, place % 4
 
 
-def _turned(corners: Ints) -> Ints:
+def _smallest_corner_first(corners: Ints) -> Ints:
     """Triangles (k, 3) of the same normal whose smallest node comes first."""
     first = np.argmin(corners, axis=1)[:, None]
     return np.asarray(np.take_along_axis(corners, (first + np.arange(3)) % 3, axis=1))
@@ -145,11 +151,11 @@ def _write_xdmf(tet_mesh: TetMesh, path: Path) -> None:
 
     meshio cannot read a file that holds quadratic tetrahedra and triangles together, and XDMF has no names.
     """
-    region = np.array([REGIONS[name] for name in tet_mesh.region_names])[tet_mesh.region]
+    region = np.array([REGION_NUMBERS[name] for name in tet_mesh.region_names])[tet_mesh.region]
     _write_grid(path, tet_mesh, "tetra10", tet_mesh.tets, "region", region)
-    surfaces = _surfaces(tet_mesh)
+    surfaces = _named_surfaces(tet_mesh)
     if surfaces:
-        surface = np.concatenate([np.full(len(facets), SURFACES[name]) for name, facets in surfaces.items()])
+        surface = np.concatenate([np.full(len(facets), SURFACE_NUMBERS[name]) for name, facets in surfaces.items()])
         beside = path.with_name(f"{path.stem}_surfaces.xdmf")
         _write_grid(beside, tet_mesh, "triangle6", np.concatenate(list(surfaces.values())), "surface", surface)
 

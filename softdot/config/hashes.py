@@ -44,7 +44,7 @@ def input_hash(config: Config) -> str:
     file = Path(waveform.file) if waveform is not None and waveform.file is not None else None
     content = file.read_bytes() if file is not None and file.is_file() else b""
     if config.mesh.file is not None:
-        from mesh.files.own import contents
+        from mesh.files.user_mesh import file_contents
 
-        content += contents(config.mesh.file)
+        content += file_contents(config.mesh.file)
     return hashlib.sha256(config_hash(config).encode() + content).hexdigest()

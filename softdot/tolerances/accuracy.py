@@ -38,7 +38,7 @@ def sized(config: Config) -> Config:
         return config
     what = f"sizes for an accuracy, as {source_hash(__name__)} finds them"
     factor: float = remembered(config, what, lambda: _factor(_elastic(config), asked))
-    return config.model_copy(update={"mesh": config.mesh.scaled(factor)})
+    return config.model_copy(update={"mesh": config.mesh.scale_sizes(factor)})
 
 
 def _elastic(config: Config) -> Config:
@@ -70,7 +70,7 @@ def _factor(config: Config, asked: float) -> float:
 
 def _error_percent(config: Config, factor: float) -> float:
     """The largest of the force, unless it is given, and of the voltages, on sizes times a factor. InputError."""
-    options = config.mesh.scaled(factor)
+    options = config.mesh.scale_sizes(factor)
     _refuse_too_many(config, options)
     own = config.model_copy(update={"mesh": options})
     try:

@@ -12,7 +12,7 @@ from foundation.arrays import Floats
 from foundation.cache import data_hash, recall, remember
 from foundation.errors import InputError
 from foundation.source_hash import source_hash
-from mesh.morphing import morphed
+from mesh.morphing import morphed_mesh
 from mesh.types import TetMesh
 from softdot.config.hashes import config_hash, input_hash
 from softdot.config.model import model_of
@@ -44,7 +44,7 @@ def coarser(config: Config, factor: float) -> Config:
 
 def on_larger_elements(config: Config, factor: float) -> Config:
     """The same on elements that are larger by the factor; never on the mesh of a file."""
-    options = config.mesh.scaled(factor).model_copy(update={"file": None})
+    options = config.mesh.scale_sizes(factor).model_copy(update={"file": None})
     return config.model_copy(update={"mesh": options})
 
 
@@ -118,7 +118,7 @@ class KitPress:
 
     def _value(self, moved: Config) -> Response:
         if path_matters(moved):
-            return value_along(moved, morphed(self._mesh, self.config.segment, moved.segment))
+            return value_along(moved, morphed_mesh(self._mesh, self.config.segment, moved.segment))
         return Response(*self._full_load.beside(model_of(moved)))
 
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from foundation.arrays import Floats
 from geometry.dot_at_rest import resolve_dot
-from mesh.morphing import morphed
+from mesh.morphing import morphed_mesh
 from mesh.types import TetMesh
 from solve.model import Model
 from solve.recorder import Recorder
@@ -80,11 +80,11 @@ class FullLoad:
             raise ValueError("the path of this press matters")
         dot, base = resolve_dot(model.dot, model.segment), self._base
         if set(base.tet_mesh.planes) <= set(planes_of(model, dot)):
-            moved = morphed(base.tet_mesh, base.model.segment, model.segment)
+            moved = morphed_mesh(base.tet_mesh, base.model.segment, model.segment)
             setup = set_up(model, dot, moved, base.opened, base.system.units)
             guess = self._state.x if setup.system.count == base.system.count else None
         else:
-            setup = discretise(model, morphed(self._tet_mesh, base.model.segment, model.segment), dot)
+            setup = discretise(model, morphed_mesh(self._tet_mesh, base.model.segment, model.segment), dot)
             found = Equilibria.of(base.system, base.tet_mesh, [(1.0, self._state.x)])
             course = found.unfolded(setup.unfolded).course(setup.system, setup.tet_mesh)
             guess = None if course is None else course.unknowns[0]

@@ -16,7 +16,7 @@ import numpy as np
 
 from foundation.arrays import Floats
 from geometry.dot_at_rest import resolve_dot
-from mesh.morphing import morphed
+from mesh.morphing import morphed_mesh
 from mesh.types import TetMesh
 from solve.fem.tangent import Tangent
 from solve.model import Model, Press
@@ -127,7 +127,7 @@ def twins_of(name: str, variation: Variation, base: Setup) -> tuple[Twin, Twin]:
     """Below and above, on the base's mesh moved to their sizes; ValueError as press_with_sensitivities."""
     pair = []
     for changed in (variation.below, variation.above):
-        moved = morphed(base.tet_mesh, base.model.segment, changed.segment)
+        moved = morphed_mesh(base.tet_mesh, base.model.segment, changed.segment)
         setup = set_up(changed, resolve_dot(changed.dot, changed.segment), moved, base.opened, base.system.units)
         if setup.system.count != base.system.count:
             raise ValueError(f"{name}: this parameter switches something on or off at its present value")

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from foundation.arrays import Floats, Ints
-from mesh.symmetry import MIRRORED
+from mesh.symmetry import MIRRORED_TET_NODES
 from mesh.types import UPSIDE_DOWN, Planes, TetMesh
 from solve.solution.crushing import crushes
 from solve.solution.errors import NoEquilibriumError
@@ -49,13 +49,13 @@ class Equilibria:
                    known[:, contact] * units.stress)  # fmt: skip
 
     def unfolded(self, axes: Planes) -> "Equilibria":
-        """On the elements of mesh.symmetry.unfolded about these planes."""
+        """On the elements of mesh.symmetry.mirrored_mesh about these planes."""
         moved, pressure, contact = self.displacement_m, self.pressure_Pa, self.contact_Pa
         for axis in axes:
             sign = np.ones(3)
             sign[axis] = -1.0
-            moved = np.concatenate([moved, moved[:, :, MIRRORED] * sign], axis=1)
-            pressure = np.concatenate([pressure, pressure[:, :, MIRRORED[:4]]], axis=1)
+            moved = np.concatenate([moved, moved[:, :, MIRRORED_TET_NODES] * sign], axis=1)
+            pressure = np.concatenate([pressure, pressure[:, :, MIRRORED_TET_NODES[:4]]], axis=1)
             contact = np.concatenate([contact, contact[:, :, UPSIDE_DOWN]], axis=1)
         return Equilibria(self.places, moved, pressure, contact)
 

@@ -8,11 +8,11 @@ import numpy as np
 from geometry.dot import DotShape
 from geometry.dot_at_rest import resolve_dot
 from mesh.build import build
-from mesh.crowding import crowded
-from mesh.morphing import morphed
+from mesh.crowding import crowded_mesh
+from mesh.morphing import morphed_mesh
 from mesh.options import MeshOptions
-from mesh.outline import outline
-from mesh.symmetry import unfolded
+from mesh.outline import stack_outline
+from mesh.symmetry import mirrored_mesh
 from mesh.types import MeshingError, TetMesh
 from solve.model import Model
 from solve.symmetry import meshed_planes
@@ -45,14 +45,14 @@ def rig_mesh(
         made, count = _made(model, options)
         if count <= largest or options.contact_element_size_mm > model.segment.length_mm:
             return made, options
-        options = options.scaled(max(COARSER, 0.7 * (count / largest) ** (1.0 / 3.0)))
+        options = options.scale_sizes(max(COARSER, 0.7 * (count / largest) ** (1.0 / 3.0)))
 
 
 def _under_a_dome(model: Model, options: MeshOptions, largest: int) -> tuple[TetMesh, MeshOptions]:
     """A mesh of a dome by the user's mesher: coarser in few attempts, as each takes seconds."""
     made, count = _made(model, options)
     while count > largest:
-        coarser = options.scaled(max(COARSER, (count / largest) ** 0.6))  # nodes grow with size to about -1.7
+        coarser = options.scale_sizes(max(COARSER, (count / largest) ** 0.6))  # nodes grow with size to about -1.7
         other, fewer = _made(model, coarser)
         if fewer > SAVES * count:
             break
@@ -72,7 +72,7 @@ def _made(model: Model, options: MeshOptions) -> tuple[TetMesh, int]:
         if not options.coarsen:
             raise
         return _made(model, options.model_copy(update={"coarsen": False}))  # coarsening may leave flat elements
-    return made, len(np.unique(unfolded(made).tet_mesh.twin))
+    return made, len(np.unique(mirrored_mesh(made).tet_mesh.twin))
 
 
 def finer_mesh(model: Model, options: MeshOptions, factor: float, largest: int) -> tuple[TetMesh, MeshOptions]:
@@ -80,8 +80,8 @@ def finer_mesh(model: Model, options: MeshOptions, factor: float, largest: int) 
 
     Not coarsened, which saves little there and costs shape.
     """
-    made, options = rig_mesh(model, options.scaled(factor), largest, coarsen=False)
-    return (crowded(made, model.segment) if options.mesher == "layered" else made), options
+    made, options = rig_mesh(model, options.scale_sizes(factor), largest, coarsen=False)
+    return (crowded_mesh(made, model.segment) if options.mesher == "layered" else made), options
 
 
 def mesh_of(model: Model, known: Model, tet_mesh: TetMesh, options: MeshOptions, largest: int = LARGEST) -> TetMesh:
@@ -90,10 +90,10 @@ def mesh_of(model: Model, known: Model, tet_mesh: TetMesh, options: MeshOptions,
     That has at most largest nodes, crowded towards held sides: nothing is subtracted from it on a mesh of its own.
     """
     if model.segment.section != known.segment.section:  # the sizes of a slice would make half a million nodes
-        volume_mm3 = sum(outline(model.segment).volumes().values())
+        volume_mm3 = sum(stack_outline(model.segment).volumes().values())
         even_mm = (NODES_PER_CUBE * volume_mm3 / largest) ** (1.0 / 3.0)
         return finer_mesh(model, options, max(1.0, even_mm / options.element_size_mm), largest)[0]
-    return morphed(tet_mesh, known.segment, model.segment)
+    return morphed_mesh(tet_mesh, known.segment, model.segment)
 
 
 def _resting(model: Model) -> DotShape:

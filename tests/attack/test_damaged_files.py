@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from foundation.cache import recall, remember
-from mesh.build import remembered
+from mesh.build import cached_mesh
 from mesh.types import LinearMesh
 from softdot.config.loading import config_from
 from softdot.sweeps import folder as sweep_folder
@@ -32,7 +32,7 @@ def mesh_answer() -> object:
         anew.append(1)
         return a_mesh()
 
-    found = remembered("attack", make)
+    found = cached_mesh("attack", make)
     return None if anew else (found.points_mm.tolist(), found.tets.tolist(), found.region_names)
 
 

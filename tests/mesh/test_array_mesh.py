@@ -12,7 +12,7 @@ from geometry.parameters import Dot, Effector
 from mesh.array.mesh import array_mesh
 from mesh.array.sizing import expected_elements
 from mesh.options import MeshOptions
-from mesh.symmetry import unfolded
+from mesh.symmetry import mirrored_mesh
 from mesh.types import face_neighbours, signed_volumes
 from solve.fem.quadrature import tetrahedron
 from solve.fem.shape_functions import physical_gradients, quadratic
@@ -97,7 +97,7 @@ def test_a_quarter_unfolds_to_the_whole(name):
     """As many elements in each part, and facets of the same names and areas."""
     _, whole = mesh_of(name)
     _, quarter = mesh_of(name, (0, 1))
-    images = unfolded(quarter).tet_mesh
+    images = mirrored_mesh(quarter).tet_mesh
     assert len(images.tets) == len(whole.tets)
     assert {key: len(facets) for key, facets in images.facets.items()} == {
         key: len(facets) for key, facets in whole.facets.items()

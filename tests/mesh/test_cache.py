@@ -7,7 +7,7 @@ import pytest
 from mesh_samples import dot, options, segment
 
 from geometry.parameters import Medium
-from mesh.build import key, remembered
+from mesh.build import cached_mesh, mesh_key
 from mesh.types import LinearMesh
 from tests.cases import for_each
 
@@ -25,8 +25,8 @@ def never() -> LinearMesh:
 
 
 def test_a_mesh_is_made_once(store: Path) -> None:
-    remembered("abc", lambda: ONE)
-    again = remembered("abc", never)
+    cached_mesh("abc", lambda: ONE)
+    again = cached_mesh("abc", never)
     np.testing.assert_array_equal(again.points_mm, ONE.points_mm)
     np.testing.assert_array_equal(again.tets, ONE.tets)
     assert again.region_names == ("medium2",)
@@ -35,35 +35,35 @@ def test_a_mesh_is_made_once(store: Path) -> None:
 
 @for_each("damage", [b"", b"not a mesh", None])
 def test_a_damaged_file_is_a_miss_and_is_replaced(store: Path, damage: bytes | None) -> None:
-    remembered("abc", lambda: ONE)
+    cached_mesh("abc", lambda: ONE)
     file = store / "mesh-abc.npz"
     file.write_bytes(file.read_bytes()[:-200] if damage is None else damage)
-    assert remembered("abc", lambda: ONE) is ONE
-    remembered("abc", never)
+    assert cached_mesh("abc", lambda: ONE) is ONE
+    cached_mesh("abc", never)
 
 
 @pytest.mark.usefixtures("store")
 def test_node_numbers_out_of_range_are_a_miss() -> None:
     wrong = LinearMesh(ONE.points_mm, ONE.tets + 1, ONE.region, ONE.region_names)
-    remembered("abc", lambda: wrong)
-    assert remembered("abc", lambda: ONE) is ONE
+    cached_mesh("abc", lambda: wrong)
+    assert cached_mesh("abc", lambda: ONE) is ONE
 
 
 def test_an_unwritable_cache_does_no_harm(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("", "utf-8")
     monkeypatch.setenv("SOFTDOT_CACHE", str(tmp_path / "file"))
-    assert remembered("abc", lambda: ONE) is ONE
+    assert cached_mesh("abc", lambda: ONE) is ONE
 
 
 def test_key_follows_what_shapes_the_mesh_and_nothing_else() -> None:
     of = segment()
-    name = key(of, dot(of), options("pytetwild"))
+    name = mesh_key(of, dot(of), options("pytetwild"))
     same = of.model_copy(update={"boundary": "free", "side_stiffness_N_per_mm3": 1.0})
-    assert key(same, dot(of), options("pytetwild", timeout_s=1.0)) == name
+    assert mesh_key(same, dot(of), options("pytetwild", timeout_s=1.0)) == name
     others = [
-        key(of.model_copy(update={"medium2": Medium(thickness_mm=1.6)}), dot(of), options("pytetwild")),
-        key(of, dot(of, x_mm=0.1), options("pytetwild")),
-        key(of, dot(of), options("pytetwild", element_size_mm=0.4)),
-        key(segment("dome"), dot(of), options("pytetwild")),
+        mesh_key(of.model_copy(update={"medium2": Medium(thickness_mm=1.6)}), dot(of), options("pytetwild")),
+        mesh_key(of, dot(of, x_mm=0.1), options("pytetwild")),
+        mesh_key(of, dot(of), options("pytetwild", element_size_mm=0.4)),
+        mesh_key(segment("dome"), dot(of), options("pytetwild")),
     ]
     assert len({name, *others}) == 5

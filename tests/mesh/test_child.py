@@ -51,17 +51,17 @@ def test_interrupt_kills_the_child(monkeypatch: pytest.MonkeyPatch) -> None:
     before = children()
     monkeypatch.setattr(subprocess.Popen, "communicate", interrupted)
     with pytest.raises(KeyboardInterrupt):
-        child._run([sys.executable, "-c", "import time; time.sleep(60)"], 30.0)
+        child._run_child([sys.executable, "-c", "import time; time.sleep(60)"], 30.0)
     assert children() == before
 
 
 def test_a_failing_child_reports_its_last_line() -> None:
     with pytest.raises(MeshingError, match=r"exit code 3: no room$"):
-        child._run([sys.executable, "-c", "print('a'); print('no room'); raise SystemExit(3)"], 30.0)
+        child._run_child([sys.executable, "-c", "print('a'); print('no room'); raise SystemExit(3)"], 30.0)
 
 
 def test_output_of_the_child_is_not_shown(capfd: pytest.CaptureFixture[str]) -> None:
-    child._run([sys.executable, "-c", "print('chatter')"], 30.0)
+    child._run_child([sys.executable, "-c", "print('chatter')"], 30.0)
     said = capfd.readouterr()
     assert said.out + said.err == ""
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from mesh_samples import SAMPLES, corner_faces, facet_area, segment_of
 
-from mesh.quality import measure
+from mesh.quality import measure_quality
 from mesh.types import TetMesh
 
 Sample = tuple[str, TetMesh]
@@ -47,7 +47,7 @@ def test_every_face_belongs_to_two_tetrahedra_or_to_the_outside(sample: Sample) 
 
 def test_each_part_has_its_closed_form_volume(sample: Sample) -> None:
     name, tet_mesh = sample
-    quality = measure(tet_mesh, segment_of(name))
+    quality = measure_quality(tet_mesh, segment_of(name))
     for part, error in quality.region_volume_error.items():
         tolerance = 2e-4 if part == "effector" and ("dome" in name or "cylinder" in name) else 1e-10
         assert abs(error) < tolerance, (part, error)
@@ -65,7 +65,7 @@ def test_volumes_of_the_flat_parts_by_hand(sample: Sample) -> None:
 
 def test_nothing_is_inverted(sample: Sample) -> None:
     name, tet_mesh = sample
-    quality = measure(tet_mesh, segment_of(name))
+    quality = measure_quality(tet_mesh, segment_of(name))
     assert quality.inverted == 0
     assert quality.min_scaled_jacobian > 0
 
@@ -139,7 +139,7 @@ def test_round_skin_is_exact_but_for_the_counted_straight_edges(sample: Sample) 
         radius = np.hypot(across, z - (2.528 - DOME_RADIUS))
         off = np.abs(radius[above] - DOME_RADIUS) > 1e-9
     corners = np.isin(skin, tet_mesh.tets[:, :4])[side if shape == "cylinder" else above]
-    straight = measure(tet_mesh, segment_of(name)).straight_edges
+    straight = measure_quality(tet_mesh, segment_of(name)).straight_edges
     assert off.sum() <= straight
     assert not off[corners].any()
     assert len(off) > 50

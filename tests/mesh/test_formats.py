@@ -9,8 +9,8 @@ import pytest
 from mesh_samples import built, segment_of
 from scipy.spatial import cKDTree
 
-from mesh.files.formats import REGIONS, SURFACES, owners, write_mesh
-from mesh.files.own import own_mesh
+from mesh.files.formats import REGION_NUMBERS, SURFACE_NUMBERS, facet_owners, write_mesh
+from mesh.files.user_mesh import user_mesh
 from mesh.types import TET_FACES, TetMesh
 
 ALL = ("msh", "inp", "xdmf")
@@ -23,7 +23,7 @@ NAMES = ("none solid layered", "cylinder solid layered", SLICE, "dome solid pyte
 def test_a_file_gives_the_same_mesh_back(name: str, extension: str, tmp_path: Path) -> None:
     before = built(name)
     (path,) = write_mesh(before, [extension], tmp_path)
-    after = own_mesh(str(path), segment_of(name))
+    after = user_mesh(str(path), segment_of(name))
     away, old = cKDTree(before.points_mm).query(after.points_mm)
     assert away.max() <= (1e-13 if extension == "inp" else 0.0)  # its numbers have 14 digits
     assert np.array_equal(np.sort(old), np.arange(len(before.points_mm)))
@@ -54,13 +54,15 @@ def test_every_gmsh_group_has_its_entity_and_its_elements(name: str, tmp_path: P
     assert part["MeshFormat"] == ["4.1 0 8"]
     stated = {line.split()[2].strip('"'): tuple(map(int, line.split()[:2])) for line in part["PhysicalNames"][1:]}
     surfaces = {key: facets for key, facets in mesh.facets.items() if len(facets)}
-    assert stated == {n: (3, REGIONS[n]) for n in mesh.region_names} | {n: (2, SURFACES[n]) for n in surfaces}
+    assert stated == {n: (3, REGION_NUMBERS[n]) for n in mesh.region_names} | {
+        n: (2, SURFACE_NUMBERS[n]) for n in surfaces
+    }
     assert list(map(int, part["Entities"][0].split())) == [0, 0, len(surfaces), len(mesh.region_names)]
     entities = [line.split() for line in part["Entities"][1:]]
     assert [(row[0], row[7:9]) for row in entities] == [(row[0], ["1", row[0]]) for row in entities]
     heads = [tuple(map(int, line.split())) for line in part["Elements"][1:] if len(line.split()) == 4]
-    sizes = {REGIONS[n]: (3, 11, len(mesh.region_tets(n))) for n in mesh.region_names}
-    sizes |= {SURFACES[n]: (2, 9, len(facets)) for n, facets in surfaces.items()}
+    sizes = {REGION_NUMBERS[n]: (3, 11, len(mesh.region_tets(n))) for n in mesh.region_names}
+    sizes |= {SURFACE_NUMBERS[n]: (2, 9, len(facets)) for n, facets in surfaces.items()}
     assert {tag: (dimension, kind, count) for dimension, tag, kind, count in heads} == sizes
 
 
@@ -107,7 +109,7 @@ def test_abaqus_surfaces_name_the_faces_that_look_outward(tmp_path: Path) -> Non
 def test_a_facet_that_looks_inward_has_no_owner() -> None:
     mesh = built("none solid layered")
     with pytest.raises(ValueError, match="no outward face"):
-        owners(mesh.tets, mesh.facets["base"][:, [0, 2, 1]])
+        facet_owners(mesh.tets, mesh.facets["base"][:, [0, 2, 1]])
 
 
 def test_xdmf_has_the_surfaces_in_a_file_of_their_own(tmp_path: Path) -> None:
@@ -116,4 +118,4 @@ def test_xdmf_has_the_surfaces_in_a_file_of_their_own(tmp_path: Path) -> None:
     found = meshio.xdmf.read(tmp_path / "segment_surfaces.xdmf")
     (number,) = found.cell_data["surface"]
     for name, facets in mesh.facets.items():
-        assert np.array_equal(found.cells[0].data[number == SURFACES[name]], facets)
+        assert np.array_equal(found.cells[0].data[number == SURFACE_NUMBERS[name]], facets)

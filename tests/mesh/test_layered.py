@@ -8,8 +8,8 @@ import mesh
 from foundation.errors import InputError
 from mesh.bisection import refine
 from mesh.footprint import start_triangulation
-from mesh.outline import outline
-from mesh.sizing import graded, graded_through
+from mesh.outline import stack_outline
+from mesh.sizing import graded_points, graded_points_through
 from mesh.types import split_prisms
 from tests.cases import for_each
 
@@ -42,7 +42,7 @@ def test_prisms_that_share_a_side_agree_on_its_diagonal() -> None:
 
 @for_each("effector", ["none", "block", "cylinder"])
 def test_bisection_keeps_the_area_conforms_and_reaches_the_size(effector: str) -> None:
-    stack = outline(segment(effector))
+    stack = stack_outline(segment(effector))
     radius = stack.effector_half_x if effector == "cylinder" else None
     fine = refine(start_triangulation(stack, 0.5), lambda xy: 0.1 + 0.3 * np.hypot(*xy.T), radius)
     corner = fine.points[fine.triangles]
@@ -66,12 +66,12 @@ def _areas(corner: np.ndarray) -> np.ndarray:
 
 
 def test_graded_steps_follow_the_size() -> None:
-    points = graded(0.0, 2.0, lambda z: 0.1 + 0.4 * z)
+    points = graded_points(0.0, 2.0, lambda z: 0.1 + 0.4 * z)
     steps, middle = np.diff(points), (points[1:] + points[:-1]) / 2
     assert points[0] == 0.0
     assert points[-1] == 2.0
     assert (steps <= 1.05 * (0.1 + 0.4 * middle)).all()
     assert (steps[1:] / steps[:-1] < 1.6).all()
-    through = graded_through([-1.0, 0.3, 1.0], lambda z: np.full_like(z, 0.25))
+    through = graded_points_through([-1.0, 0.3, 1.0], lambda z: np.full_like(z, 0.25))
     assert 0.3 in through
     assert np.diff(through).max() <= 0.25 + 1e-12

@@ -11,8 +11,8 @@ from own_files import linear, written
 
 from foundation.errors import InputError
 from mesh.files.formats import write_mesh
-from mesh.files.own import own_mesh
-from mesh.outline import curved_surface, outline
+from mesh.files.user_mesh import user_mesh
+from mesh.outline import curved_surface, stack_outline
 from mesh.types import TetMesh
 
 BLOCK, SLICE = "block solid layered", "block plane-strain layered"
@@ -88,7 +88,7 @@ def test_a_mesh_that_is_not_of_the_segment_is_refused(change: Change, said: str,
     file = change(built(BLOCK), tmp_path / "mine.inp")
     said = said.format(tets=len(built(BLOCK).tets))
     with pytest.raises(InputError) as caught:
-        own_mesh(file, segment_of(BLOCK))
+        user_mesh(file, segment_of(BLOCK))
     assert str(caught.value).startswith(f"mesh.file = '{file}': ")
     assert said in str(caught.value)
     assert "\n" not in str(caught.value)
@@ -97,29 +97,29 @@ def test_a_mesh_that_is_not_of_the_segment_is_refused(change: Change, said: str,
 def test_parts_of_a_slice_with_nodes_of_their_own_are_refused(tmp_path: Path) -> None:
     """All corners of a slice lie on one of its two faces, which makes none of its inner faces a side."""
     with pytest.raises(InputError, match="belong to one element only; neighbouring parts must share the nodes"):
-        own_mesh(doubled(built(SLICE), tmp_path / "mine.inp"), segment_of(SLICE))
+        user_mesh(doubled(built(SLICE), tmp_path / "mine.inp"), segment_of(SLICE))
 
 
 def test_a_crack_that_reaches_the_skin_is_refused(tmp_path: Path) -> None:
     """Elements on one side of a plane have nodes of their own on the top of medium 1, beside the effector."""
-    of, stack = built(SLICE), outline(segment_of(SLICE), slice_mm=built(SLICE).thickness_mm)
+    of, stack = built(SLICE), stack_outline(segment_of(SLICE), slice_mm=built(SLICE).thickness_mm)
     tets, points = of.tets[:, :4], of.points_mm
     apart = (np.abs(points[:, 2] - stack.medium1_top) < 1e-9) & (points[:, 0] > stack.effector_half_x + 1e-9)
     beyond = points[tets].mean(axis=1)[:, 0] > np.median(points[apart, 0])
     own = np.where(apart[tets] & beyond[:, None], tets + len(points), tets)
     file = written(np.vstack([points] * 2), own, of.region, of.region_names, tmp_path / "mine.inp")
     with pytest.raises(InputError, match="faces inside the segment, such as one of medium1"):
-        own_mesh(file, segment_of(SLICE))
+        user_mesh(file, segment_of(SLICE))
 
 
 def test_a_part_that_the_segment_does_not_have_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="has effector, which the segment has not; its parts must be medium2, film, "):
-        own_mesh(linear(built(BLOCK), tmp_path / "mine.inp"), segment("none"))
+        user_mesh(linear(built(BLOCK), tmp_path / "mine.inp"), segment("none"))
 
 
 @pytest.mark.press
 def test_a_bulging_skin_and_a_thick_slice_are_refused(tmp_path: Path) -> None:
-    of, stack = built("cylinder solid layered"), outline(segment("cylinder"))
+    of, stack = built("cylinder solid layered"), stack_outline(segment("cylinder"))
     surface = curved_surface(stack)
     assert surface is not None
     points = of.points_mm.copy()
@@ -127,9 +127,9 @@ def test_a_bulging_skin_and_a_thick_slice_are_refused(tmp_path: Path) -> None:
     points[on_skin, :2] *= 1.01
     file = written(points, of.tets[:, :4], of.region, of.region_names, tmp_path / "bulge.inp")
     with pytest.raises(InputError, match="outside the round skin of the configuration"):
-        own_mesh(file, segment("cylinder"))
+        user_mesh(file, segment("cylinder"))
     with pytest.raises(InputError, match="needs one layer of elements in y"):
-        own_mesh(linear(built(BLOCK), tmp_path / "solid.inp"), segment("block", "plane-strain"))
+        user_mesh(linear(built(BLOCK), tmp_path / "solid.inp"), segment("block", "plane-strain"))
 
 
 @pytest.mark.parametrize(
@@ -149,7 +149,7 @@ def test_what_is_no_mesh_is_refused(name: str, text: str | None, said: str, tmp_
     if text is not None:
         (tmp_path / name).write_text(text, "utf-8")
     with pytest.raises(InputError, match=rf"^mesh\.file = '.*{name}': .*({said})"):
-        own_mesh(str(tmp_path / name), segment())
+        user_mesh(str(tmp_path / name), segment())
 
 
 def test_a_gmsh_file_with_elements_of_no_group_says_how_to_save_it(tmp_path: Path) -> None:
@@ -158,4 +158,4 @@ def test_a_gmsh_file_with_elements_of_no_group_says_how_to_save_it(tmp_path: Pat
         path.read_text(encoding="utf-8").replace("\n11 0 0 0 0 0 0 1 11 0\n", "\n11 0 0 0 0 0 0 0 0\n"), "utf-8"
     )
     with pytest.raises(InputError, match="elements of no physical group; save only those of physical groups"):
-        own_mesh(str(path), segment_of(SLICE))
+        user_mesh(str(path), segment_of(SLICE))

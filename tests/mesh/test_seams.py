@@ -5,7 +5,7 @@ import pytest
 
 from mesh.interfaces import interface_facets
 from mesh.jacobian import volumes
-from mesh.seams import with_columns_at
+from mesh.seams import mesh_with_columns_at
 from mesh.types import TET_EDGES, signed_volumes
 from tests.solve.term_body import layers
 
@@ -22,7 +22,7 @@ def columns(tet_mesh):
 
 
 def moved(plain, places, kept=()):
-    return with_columns_at(plain, interface_facets(plain, "bond-film-medium2"), places, kept)
+    return mesh_with_columns_at(plain, interface_facets(plain, "bond-film-medium2"), places, kept)
 
 
 def test_columns_stand_at_the_places_and_no_element_is_turned_inside_out(plain):

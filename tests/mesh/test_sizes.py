@@ -5,8 +5,8 @@ import pytest
 from mesh_samples import dot, options, segment
 
 import mesh
-from mesh.outline import outline
-from mesh.sizing import sizing
+from mesh.outline import stack_outline
+from mesh.sizing import sizing_field
 from mesh.types import TetMesh
 from tests.cases import for_each
 
@@ -38,8 +38,8 @@ def test_sizes_are_those_asked_for(mesher: str) -> None:
 
 def test_the_field_grows_smoothly_from_contact_and_film() -> None:
     of = segment()
-    stack = outline(of)
-    field = sizing(stack, dot(of), options("layered", **SIZES))
+    stack = stack_outline(of)
+    field = sizing_field(stack, dot(of), options("layered", **SIZES))
     rng = np.random.default_rng(2)
     low, high = [-1.25, -1.0, 0.0], [1.25, 1.0, stack.top]
     one = rng.uniform(low, high, (500, 3))
@@ -54,8 +54,8 @@ def test_the_field_grows_smoothly_from_contact_and_film() -> None:
 
 def test_the_fine_spot_follows_the_dot() -> None:
     of = segment()
-    stack = outline(of)
-    field = sizing(stack, dot(of, x_mm=0.9), options("layered", **SIZES))
+    stack = stack_outline(of)
+    field = sizing_field(stack, dot(of, x_mm=0.9), options("layered", **SIZES))
     left, right = field.at(np.array([[-0.9, 0.0, stack.top], [0.9, 0.0, stack.top]]))
     assert right == pytest.approx(0.12)
     assert left > 2 * right

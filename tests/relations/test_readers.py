@@ -345,7 +345,7 @@ def test_the_table_of_a_run_is_read_as_it_was_told(tmp_path):
 
 def test_a_reader_that_takes_its_interpreter_with_it_is_told(tmp_path, monkeypatch):
     (tmp_path / "a.mat").write_bytes(b"")
-    monkeypatch.setattr(apart, "own_python", lambda *_: [sys.executable, "-c", "import os; os.abort()"])
+    monkeypatch.setattr(apart, "python_command", lambda *_: [sys.executable, "-c", "import os; os.abort()"])
     with pytest.raises(InputError, match="its reader broke down; is it damaged"):
         read_mat(tmp_path / "a.mat", {"time_s": "t"})
 

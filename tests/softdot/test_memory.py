@@ -26,8 +26,8 @@ def test_more_than_the_limit_is_refused_by_name(monkeypatch):
 def test_a_segment_of_metres_is_meshed_or_refused_but_never_fills_the_memory(factor):
     """All lengths times a factor, element sizes too: as many points as the segment of millimetres."""
     from geometry.dot_at_rest import resolve_dot
-    from mesh.outline import outline
-    from mesh.sizing import background, sizing
+    from mesh.outline import stack_outline
+    from mesh.sizing import background_mesh, sizing_field
     from softdot.config.loading import config_from
 
     tables = {
@@ -39,8 +39,8 @@ def test_a_segment_of_metres_is_meshed_or_refused_but_never_fills_the_memory(fac
         "mesh": {"element_size_mm": 0.3 * factor, "contact_element_size_mm": 0.1 * factor},
     }  # fmt: skip
     config = config_from(tables)
-    stack = outline(config.segment, film_thickness_mm=0.0)
-    points, _, _ = background(stack, sizing(stack, resolve_dot(config.dot, config.segment), config.mesh))
+    stack = stack_outline(config.segment, film_thickness_mm=0.0)
+    points, _, _ = background_mesh(stack, sizing_field(stack, resolve_dot(config.dot, config.segment), config.mesh))
     assert len(points) < 400_000
     assert np.ptp(points, axis=0) == pytest.approx([2.5 * factor, 2.5 * factor, 2.5 * factor], rel=0.2)
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from foundation import source_hash as hashes
-from mesh.build import key as mesh_key
+from mesh.build import mesh_key as mesh_key
 from mesh.options import MeshOptions
 from softdot.case import Case
 from softdot.outcome import outcome_key

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.sparse.linalg import spsolve
 
 from foundation.arrays import Bools, Floats, Ints
-from mesh.slice import twins
+from mesh.slice import node_twins
 from mesh.types import TetMesh
 from softdot.verify.lattice import grid
 from solve.fem.assembly import scatter
@@ -36,7 +36,7 @@ def layers(x, y, heights, jitter: float = 0.0, is_slice: bool = False) -> TetMes
 
     lattice = grid((x, y, z), flat, jitter=jitter)
     region = np.searchsorted(breaks, lattice.centres[:, 2])
-    twin = twins(lattice.points) if is_slice else np.arange(len(lattice.points))
+    twin = node_twins(lattice.points) if is_slice else np.arange(len(lattice.points))
     facets = {"base": lattice.facets(lambda p: p[:, 2] == z[0]), "top": lattice.facets(lambda p: p[:, 2] == z[-1])}
     return TetMesh(lattice.points, lattice.tets, region, NAMES[: len(heights)], facets, twin, float(np.ptp(y)))
 

@@ -110,7 +110,7 @@ def test_sensitivity_is_the_difference_of_two_presses(case, monkeypatch):
 
 def whole_press(changed, base, tet_mesh):
     """The trace of a press of its own at the same times, on the moved mesh."""
-    from mesh.morphing import morphed
+    from mesh.morphing import morphed_mesh
 
-    moved = morphed(tet_mesh, base.segment, changed.segment)
+    moved = morphed_mesh(tet_mesh, base.segment, changed.segment)
     return press_with_sensitivities(changed, {}, moved)[0].trace

@@ -11,15 +11,15 @@ import numpy as np
 from foundation.arrays import Floats, Ints
 from geometry.dot import DotShape
 from geometry.parameters import Segment
-from mesh.layered import layered
+from mesh.layered import layered_mesh
 from mesh.options import MeshOptions
-from mesh.quadratic import finished
-from mesh.types import TET_FACES, LinearMesh, TetMesh, boundary_faces, oriented, signed_volumes, without_unused
+from mesh.quadratic import quadratic_mesh
+from mesh.types import TET_FACES, LinearMesh, TetMesh, boundary_faces, orient_tets, signed_volumes, without_unused
 
 
 def quarter(stack: Segment, dot: DotShape, options: MeshOptions) -> LinearMesh:
     """The part of the layered mesh at x >= 0, y >= 0."""
-    whole = layered(stack, dot, options)
+    whole = layered_mesh(stack, dot, options)
     inside = (whole.points_mm[whole.tets][..., :2] > -1e-9).all(axis=(1, 2))
     part = without_unused(LinearMesh(whole.points_mm, whole.tets[inside], whole.region[inside], whole.region_names))
     volumes = (signed_volumes(mesh.points_mm, mesh.tets).sum() for mesh in (part, whole))
@@ -36,8 +36,8 @@ def mirrored(part: LinearMesh, stack: Segment, options: MeshOptions) -> TetMesh:
         region = np.tile(region, 2)
     _, first, number = np.unique(np.round(points * 1e7), axis=0, return_index=True, return_inverse=True)
     tets = number.ravel()[tets]
-    whole = LinearMesh(points[first], oriented(points[first], tets), region, part.region_names)
-    return finished(whole, stack, options)
+    whole = LinearMesh(points[first], orient_tets(points[first], tets), region, part.region_names)
+    return quadratic_mesh(whole, stack, options)
 
 
 def save_case(path: Path, part: LinearMesh, stack: Segment, **constants: object) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mesh.array.mesh import array_mesh
-from mesh.symmetry import unfolded
+from mesh.symmetry import mirrored_mesh
 from softdot.case import Case
 from solve.setup import discretise
 from tests.cases import for_each
@@ -58,7 +58,7 @@ def test_a_press_and_its_mirror_image():
     """On a mesh that is its own image, the press of the last segment is the image of that of the first."""
     case = array()
     first, last = (case.press_over(place) for place in case.layout.places)
-    mesh = unfolded(array_mesh(case.layout, first.dot, case.config.mesh, (0, 1))).tet_mesh
+    mesh = mirrored_mesh(array_mesh(case.layout, first.dot, case.config.mesh, (0, 1))).tet_mesh
     one, other = (solved(press, mesh).steps[-1] for press in (first, last))
     np.testing.assert_allclose(other.film_charge_C[::-1], one.film_charge_C, rtol=1e-6)
     assert other.reaction_force_N == pytest.approx(one.reaction_force_N, rel=1e-6)

@@ -103,7 +103,8 @@ class StudioDesign:
         case = self._case
         if case.layout is not None:
             return array_solids(case, case.layout)
-        from geometry.assembly import case_solid, layer_solids
+        from geometry.assembly import case_solid
+        from geometry.solids import layer_solids
 
         segment = case.model.segment
         check_segment(segment)

@@ -50,7 +50,7 @@ def tolerances_of_making(text: str, tell: Tell) -> dict[str, Any]:
     case, progress = case_of(text), TaskProgress(tell)
     progress.stage("tolerances")
     config = case.config
-    half = config.mesh.scaled(COARSE / 2).model_copy(update={"mesher": _quick(config).mesh.mesher})
+    half = config.mesh.scale_sizes(COARSE / 2).model_copy(update={"mesher": _quick(config).mesh.mesher})
     budget = plain(budget_of(config.model_copy(update={"mesh": half}), progress.step).as_dict())
     rows = [{**row, "label": f"{row['label']} ±{row['plus_minus']:.3g} {row['unit']}"} for row in budget["rows"]]
     return {"rows": rows, "total": budget["root_sum_square"]}

@@ -92,7 +92,7 @@ def test_a_mechanism_acts_as_in_the_3d_model(rig, mechanism, component, values, 
 @pytest.mark.evidence
 def test_far_from_all_presses_a_refinement_brings_the_tables_to_the_3d_model(rig):
     """A foam is pressed at few exponents; where a fit leads, once more. The reference has elements a third as large."""
-    fine = segment_engine(model(), COARSE.scaled(0.35), Recording((run(),)), silent)
+    fine = segment_engine(model(), COARSE.scale_sizes(0.35), Recording((run(),)), silent)
     foam = switched(rig, "foam-densification", "effector", (0.3, 2.0))
 
     def change(of, signals):

@@ -16,16 +16,16 @@ from foundation.files import regular_file_size
 from geometry.parameters import Segment
 from geometry.stack import layers
 from mesh.files.abaqus import AbaqusMesh, is_tet, is_triangle, read_abaqus
-from mesh.files.formats import REGIONS, SURFACES
+from mesh.files.formats import REGION_NUMBERS, SURFACE_NUMBERS
 from mesh.jacobian import jacobians, volumes
-from mesh.outline import StackOutline, curved_surface, outline
-from mesh.quadratic import TOLERANCE_MM, named_facets, quadratic
-from mesh.slice import twins
+from mesh.outline import StackOutline, curved_surface, stack_outline
+from mesh.quadratic import PLANE_TOLERANCE_MM, named_facets, quadratic_nodes_and_tets
+from mesh.slice import node_twins
 from mesh.types import TET_FACES, LinearMesh, MeshingError, TetMesh, face_neighbours, signed_volumes, unique_edges
 
-FLAT_PARTS, ROUND = 1e-4, 0.05
+FLAT_PART_TOLERANCE, ROUND_PART_TOLERANCE = 1e-4, 0.05
 """Relative error allowed of the volume of a part with plane faces, and of volume and size of a round effector."""
-AXES = "xyz"
+AXIS_NAMES = "xyz"
 
 
 def refuse_inverted_elements(points: Floats, tets: Ints, where: str) -> None:
@@ -52,15 +52,17 @@ def refuse_other_outline(
     for number, name in enumerate(names):
         corners = points[np.unique(tets[region == number, :4])]
         is_round = name == "effector" and curved_surface(stack) is not None
-        for axis, (low, high) in enumerate(_box(name, stack)):
-            allowed = ROUND * (high - low) if is_round else TOLERANCE_MM
+        for axis, (low, high) in enumerate(_part_box(name, stack)):
+            allowed = ROUND_PART_TOLERANCE * (high - low) if is_round else PLANE_TOLERANCE_MM
             is_low, is_high = corners[:, axis].min(), corners[:, axis].max()
-            if not (-TOLERANCE_MM <= is_low - low <= allowed and -TOLERANCE_MM <= high - is_high <= allowed):
+            if not (
+                -PLANE_TOLERANCE_MM <= is_low - low <= allowed and -PLANE_TOLERANCE_MM <= high - is_high <= allowed
+            ):
                 raise InputError(
-                    f"{where}: {name} reaches from {is_low:.6g} to {is_high:.6g} mm in {AXES[axis]}, it must as in the "
-                    f"configuration reach from {low:.6g} to {high:.6g} mm"
+                    f"{where}: {name} reaches from {is_low:.6g} to {is_high:.6g} mm in {AXIS_NAMES[axis]}, it must as "
+                    f"in the configuration reach from {low:.6g} to {high:.6g} mm"
                 )
-        if abs(found[number] / exact[name] - 1.0) > (ROUND if is_round else FLAT_PARTS):
+        if abs(found[number] / exact[name] - 1.0) > (ROUND_PART_TOLERANCE if is_round else FLAT_PART_TOLERANCE):
             raise InputError(
                 f"{where}: {name} has a volume of {found[number]:.6g} mm³, it must as in the configuration have "
                 f"{exact[name]:.6g} mm³"
@@ -68,7 +70,7 @@ def refuse_other_outline(
     _refuse_beyond_skin(points, tets, stack, where)
 
 
-def _box(name: str, stack: StackOutline) -> list[tuple[float, float]]:
+def _part_box(name: str, stack: StackOutline) -> list[tuple[float, float]]:
     """Lowest and highest x, y and z of a part."""
     heights = {
         "medium2": (0.0, stack.film_bottom),
@@ -86,8 +88,8 @@ def _refuse_beyond_skin(points: Floats, tets: Ints, stack: StackOutline, where: 
     if surface is None:
         return
     corners = points[np.unique(tets[:, :4])]
-    beyond = surface.distance(corners[corners[:, 2] > stack.medium1_top + TOLERANCE_MM])
-    if len(beyond) and beyond.max() > TOLERANCE_MM:
+    beyond = surface.distance(corners[corners[:, 2] > stack.medium1_top + PLANE_TOLERANCE_MM])
+    if len(beyond) and beyond.max() > PLANE_TOLERANCE_MM:
         raise InputError(
             f"{where}: a node of effector lies {beyond.max():.3g} mm outside the round skin of the configuration; "
             "it must lie on it or inside"
@@ -107,11 +109,11 @@ def refuse_open_interfaces(
     ends = np.array([stack.half_x, stack.half_y])
     on_sides = np.zeros(len(corner), dtype=bool)
     for plane in (-ends, ends):  # a slice has corners on both of its faces alone: one plane at a time
-        on_sides |= (np.abs(corner[..., :2] - plane) < TOLERANCE_MM).all(axis=1).any(axis=1)
-    is_skin = z.min(axis=1) > stack.medium1_top - TOLERANCE_MM
+        on_sides |= (np.abs(corner[..., :2] - plane) < PLANE_TOLERANCE_MM).all(axis=1).any(axis=1)
+    is_skin = z.min(axis=1) > stack.medium1_top - PLANE_TOLERANCE_MM
     if "effector" in names:
-        is_skin &= (region[owner] != names.index("effector")) | (z.max(axis=1) > stack.medium1_top + TOLERANCE_MM)
-    inside = ~(on_sides | is_skin | (np.abs(z) < TOLERANCE_MM).all(axis=1))
+        is_skin &= (region[owner] != names.index("effector")) | (z.max(axis=1) > stack.medium1_top + PLANE_TOLERANCE_MM)
+    inside = ~(on_sides | is_skin | (np.abs(z) < PLANE_TOLERANCE_MM).all(axis=1))
     if inside.any():
         first = np.flatnonzero(inside)[0]
         raise InputError(
@@ -138,8 +140,8 @@ def refuse_unshared_middles(tets: Ints, where: str) -> None:
 def refuse_other_slice(points: Floats, tets: Ints, stack: StackOutline, where: str) -> None:
     """InputError unless a plane-strain slice is one layer of elements with the same x and z on both of its faces."""
     corners = points[np.unique(tets[:, :4])]
-    low, high = (np.abs(corners[:, 1] - y) < TOLERANCE_MM for y in (-stack.half_y, stack.half_y))
-    one, other = (np.unique(np.round(corners[on][:, [0, 2]] / TOLERANCE_MM), axis=0) for on in (low, high))
+    low, high = (np.abs(corners[:, 1] - y) < PLANE_TOLERANCE_MM for y in (-stack.half_y, stack.half_y))
+    one, other = (np.unique(np.round(corners[on][:, [0, 2]] / PLANE_TOLERANCE_MM), axis=0) for on in (low, high))
     if not (low | high).all() or not np.array_equal(one, other):
         raise InputError(
             f"{where}: segment.section = 'plane-strain' needs one layer of elements in y, centred at y = 0, with "
@@ -147,9 +149,9 @@ def refuse_other_slice(points: Floats, tets: Ints, stack: StackOutline, where: s
         )
 
 
-READERS = {".msh": "gmsh", ".xdmf": "xdmf"}
-TETS, TRIANGLES = ("tetra", "tetra10"), ("triangle", "triangle6")
-OTHER_FILES = re.compile(
+MESHIO_READERS = {".msh": "gmsh", ".xdmf": "xdmf"}
+TET_CELLS, TRIANGLE_CELLS = ("tetra", "tetra10"), ("triangle", "triangle6")
+NAMED_FILES_PATTERN = re.compile(
     rb"([^\s<>\"']+\.h5):|^\s*\*[^*\r\n][^\r\n]*\binput\s*=\s*([^\r\n,]+)", re.IGNORECASE | re.MULTILINE
 )
 
@@ -167,12 +169,12 @@ class FileMesh:
     surfaces: dict[str, Ints]
 
 
-def told(file: str) -> str:
+def message_name(file: str) -> str:
     """How a message calls the file."""
     return f"mesh.file = '{file}'"
 
 
-def contents(file: str) -> bytes:
+def file_contents(file: str) -> bytes:
     """All bytes of a mesh file and of the files that it names, and those name; of those that are missing, none."""
     found: dict[Path, bytes] = {}
     waiting = [Path(file)]
@@ -181,22 +183,28 @@ def contents(file: str) -> bytes:
             continue
         found[path] = path.read_bytes()
         if path.suffix.lower() not in (".msh", ".h5"):
-            names = ((match[1] or match[2]).decode("utf-8", "replace") for match in OTHER_FILES.finditer(found[path]))
+            names = (
+                (match[1] or match[2]).decode("utf-8", "replace") for match in NAMED_FILES_PATTERN.finditer(found[path])
+            )
             waiting += [path.parent / name.strip().strip('"') for name in names]
     return b"".join(found.values())
 
 
 def read_file(file: str) -> FileMesh:
     """Read a mesh of tetrahedra. InputError, naming mesh.file, for a file that is missing, no mesh, or has others."""
-    path, where = Path(file), told(file)
-    kind = READERS.get(path.suffix.lower())
+    path, where = Path(file), message_name(file)
+    kind = MESHIO_READERS.get(path.suffix.lower())
     if kind is None and path.suffix.lower() != ".inp":
         raise InputError(f"{where}: must end with .msh (Gmsh), .inp (Abaqus, CalculiX) or .xdmf")
     regular_file_size(path, where)
-    return _of_abaqus(read_abaqus(path, where), where) if kind is None else _by_meshio(path, kind, where)
+    return (
+        _file_mesh_from_abaqus(read_abaqus(path, where), where)
+        if kind is None
+        else _file_mesh_by_meshio(path, kind, where)
+    )
 
 
-def _by_meshio(path: Path, kind: str, where: str) -> FileMesh:
+def _file_mesh_by_meshio(path: Path, kind: str, where: str) -> FileMesh:
     import meshio
 
     try:
@@ -206,21 +214,21 @@ def _by_meshio(path: Path, kind: str, where: str) -> FileMesh:
         if "gmsh:physical" in said:
             said = "it holds elements of no physical group; save only those of physical groups"
         raise InputError(f"{where}: meshio cannot read it as a mesh of this format ({said})") from None
-    return _file_mesh(found, where)
+    return _file_mesh_from_meshio(found, where)
 
 
-def _of_abaqus(found: AbaqusMesh, where: str) -> FileMesh:
+def _file_mesh_from_abaqus(found: AbaqusMesh, where: str) -> FileMesh:
     """The tetrahedra, the sets that hold any of them as regions, and facets of sets that are named as a surface."""
     number = [place for place, (kind, _) in enumerate(found.cells) if is_tet(kind)]
     nodes = {len(found.cells[place][1]) for place in number}
     if len(nodes) != 1:
         held = "tetrahedra with 4 nodes and with 10" if nodes else "no solid elements"
         raise InputError(f"{where}: holds {held}; all must be tetrahedra with 4 nodes, or all with 10")
-    masks = {name: np.isin(number, cells) for name, cells in found.sets.items() if name not in SURFACES}
+    masks = {name: np.isin(number, cells) for name, cells in found.sets.items() if name not in SURFACE_NUMBERS}
     facets = {
         name: np.array([found.cells[cell][1][:3] for cell in cells if is_triangle(found.cells[cell][0])])
         for name, cells in found.sets.items()
-        if name in SURFACES
+        if name in SURFACE_NUMBERS
     }
     tets = np.array([found.cells[place][1] for place in number], dtype=np.int64)
     return FileMesh(
@@ -231,18 +239,18 @@ def _of_abaqus(found: AbaqusMesh, where: str) -> FileMesh:
     )
 
 
-def _file_mesh(found: Any, where: str) -> FileMesh:
+def _file_mesh_from_meshio(found: Any, where: str) -> FileMesh:
     """The tetrahedra of all blocks together. InputError for other solid elements and for a mixture."""
     kinds = {block.type for block in found.cells if block.dim == 3}
-    if not kinds or not kinds <= set(TETS) or len(kinds) > 1:
+    if not kinds or not kinds <= set(TET_CELLS) or len(kinds) > 1:
         names = ", ".join(sorted(kinds)) or "no solid elements"
         raise InputError(f"{where}: holds {names}; all must be tetrahedra with 4 nodes, or all with 10")
-    sets = _sets(found)
-    tets = np.concatenate([block.data for block in found.cells if block.type in TETS]).astype(np.int64)
+    sets = _cell_sets(found)
+    tets = np.concatenate([block.data for block in found.cells if block.type in TET_CELLS]).astype(np.int64)
     if found.points.ndim != 2 or found.points.shape[1] != 3 or tets.min() < 0 or tets.max() >= len(found.points):
         raise InputError(f"{where}: an element has a node without three coordinates")
-    regions = {name: _mask(found, blocks) for name, blocks in sets.items() if name not in SURFACES}
-    surfaces = {name: _triangles(found, blocks) for name, blocks in sets.items() if name in SURFACES}
+    regions = {name: _tet_mask(found, blocks) for name, blocks in sets.items() if name not in SURFACE_NUMBERS}
+    surfaces = {name: _triangle_corners(found, blocks) for name, blocks in sets.items() if name in SURFACE_NUMBERS}
     return FileMesh(
         np.asarray(found.points, dtype=np.float64),
         tets,
@@ -251,7 +259,7 @@ def _file_mesh(found: Any, where: str) -> FileMesh:
     )
 
 
-def _sets(found: Any) -> dict[str, list[Ints]]:
+def _cell_sets(found: Any) -> dict[str, list[Ints]]:
     """For each name its cells in each block: from sets, physical groups, or the numbers that softdot writes."""
     count = len(found.cells)
     sets = {}
@@ -259,70 +267,70 @@ def _sets(found: Any) -> dict[str, list[Ints]]:
         if not name.startswith("gmsh:") and len(parts) == count:
             sets[name.lower()] = [np.asarray(part, dtype=np.int64) for part in parts]
     marks = found.cell_data.get("gmsh:physical", found.cell_data.get("region"))
-    for name, number, dimension in _numbered(found) if marks is not None else ():
+    for name, number, dimension in _physical_groups(found) if marks is not None else ():
         numbers = (mark if block.dim == dimension else [] for block, mark in zip(found.cells, marks, strict=True))
         sets.setdefault(name.lower(), [np.flatnonzero(np.asarray(one) == number) for one in numbers])
     return sets
 
 
-def _numbered(found: Any) -> Iterator[tuple[str, int, int]]:
+def _physical_groups(found: Any) -> Iterator[tuple[str, int, int]]:
     """Name, number and dimension of each physical group; a file without any names uses the numbers of softdot."""
     if found.field_data:
         for name, (number, dimension) in found.field_data.items():
             yield name, int(number), int(dimension)
     elif not found.cell_sets:
-        for name, number in REGIONS.items():
+        for name, number in REGION_NUMBERS.items():
             yield name, number, 3
 
 
-def _mask(found: Any, parts: list[Ints]) -> Bools:
+def _tet_mask(found: Any, parts: list[Ints]) -> Bools:
     """Which of all tetrahedra (m,) are in a set."""
     masks = []
     for block, part in zip(found.cells, parts, strict=True):
-        if block.type in TETS:
+        if block.type in TET_CELLS:
             masks.append(np.isin(np.arange(len(block.data)), part))
     return np.concatenate(masks)
 
 
-def _triangles(found: Any, parts: list[Ints]) -> Ints:
+def _triangle_corners(found: Any, parts: list[Ints]) -> Ints:
     """Corners (k, 3) of the triangles in a set."""
     chosen = [np.zeros((0, 3), dtype=np.int64)]
     for block, part in zip(found.cells, parts, strict=True):
-        if block.type in TRIANGLES:
+        if block.type in TRIANGLE_CELLS:
             chosen.append(block.data[part, :3].astype(np.int64))
     return np.concatenate(chosen)
 
 
-def own_mesh(file: str, segment: Segment) -> TetMesh:
+def user_mesh(file: str, segment: Segment) -> TetMesh:
     """The mesh in a file, .msh, .inp or .xdmf in mm, as that of the segment; its base is centred at the origin.
 
     Mid-side nodes that the file has stay where they are; those of four-node tetrahedra are put on round skins. Named
     surfaces are found by their place; of contact, base and sides the file may name a part, which then counts alone.
     InputError with one sentence, naming mesh.file, for what cannot be read or is no mesh of this segment.
     """
-    return _own_mesh(file, sha256(contents(file)).hexdigest(), segment)
+    return _checked_mesh(file, sha256(file_contents(file)).hexdigest(), segment)
 
 
 @lru_cache(maxsize=2)
-def _own_mesh(file: str, _content: str, segment: Segment) -> TetMesh:
+def _checked_mesh(file: str, _content: str, segment: Segment) -> TetMesh:
     """Read and checked once for each content of the file."""
-    where, read = told(file), read_file(file)
+    where, read = message_name(file), read_file(file)
     if not np.isfinite(read.points_mm[read.tets]).all():
         raise InputError(f"{where}: an element has a node without three finite coordinates")
     names = tuple(layer.name for layer in layers(segment))
-    region = _regions(read, names, where)
+    region = _tet_regions(read, names, where)
     points, tets, number = _corners_first(read)
     thickness_mm = float(np.ptp(points[:, 1]))
-    stack = outline(segment, slice_mm=thickness_mm)
+    stack = stack_outline(segment, slice_mm=thickness_mm)
     if tets.shape[1] == 4:
         refuse_inverted_elements(points, tets, where)
-        points, tets = quadratic(LinearMesh(points, tets, region, names), curved_surface(stack))
+        points, tets = quadratic_nodes_and_tets(LinearMesh(points, tets, region, names), curved_surface(stack))
     refuse_unshared_middles(tets, where)
     refuse_inverted_elements(points, tets, where)
     if stack.is_slice:
         refuse_other_slice(points, tets, stack, where)
     refuse_other_outline(points, tets, region, names, stack, where)
-    twin = twins(points) if stack.is_slice else np.arange(len(points), dtype=np.int64)
+    twin = node_twins(points) if stack.is_slice else np.arange(len(points), dtype=np.int64)
     try:
         refuse_open_interfaces(points, tets, region, names, stack, where)
         facets = named_facets(points, tets, region, names, stack)
@@ -330,14 +338,14 @@ def _own_mesh(file: str, _content: str, segment: Segment) -> TetMesh:
         raise InputError(f"{where}: more than two tetrahedra share a face; they must not overlap") from None
     for name, corners in read.surfaces.items():
         if not name.startswith("film-"):
-            facets[name] = _named_part(facets.get(name), number[corners], f"{where}: surface '{name}'")
+            facets[name] = _named_facets(facets.get(name), number[corners], f"{where}: surface '{name}'")
     size_mm = thickness_mm if stack.is_slice else segment.width_mm
     return TetMesh(points, tets, region, names, facets, twin, size_mm)
 
 
-def _regions(read: FileMesh, names: tuple[str, ...], where: str) -> Ints:
+def _tet_regions(read: FileMesh, names: tuple[str, ...], where: str) -> Ints:
     """Index into names of each tetrahedron (m,). InputError unless each is of one part that the segment has."""
-    foreign = sorted(set(read.regions) & (set(REGIONS) - set(names)))
+    foreign = sorted(set(read.regions) & (set(REGION_NUMBERS) - set(names)))
     missing = [name for name in names if name not in read.regions]
     if missing or foreign:
         wrong = f"has no {missing[0]}" if missing else f"has {foreign[0]}, which the segment has not"
@@ -362,7 +370,7 @@ def _corners_first(read: FileMesh) -> tuple[Floats, Ints, Ints]:
     return read.points_mm[order], number[read.tets], number
 
 
-def _named_part(derived: Ints | None, corners: Ints, what: str) -> Ints:
+def _named_facets(derived: Ints | None, corners: Ints, what: str) -> Ints:
     """Those of the facets found by place (k, 6) that the file names by their corners (j, 3). InputError for others."""
     there = np.zeros((0, 6), dtype=np.int64) if derived is None else derived
     named = {tuple(nodes) for nodes in np.sort(corners, axis=1).tolist()}
