@@ -43,7 +43,7 @@ def write_3mf(parts: Sequence[Part], path: Path, angular_deflection: float = ANG
 
     mesher = Mesher()
     for part in parts:
-        mesher.add_shape(_without_facets(part.solid), RELATIVE_DEFLECTION, angular_deflection, part_number=part.label)
+        mesher.add_shape(_clear_facets(part.solid), RELATIVE_DEFLECTION, angular_deflection, part_number=part.label)
     mesher.write(str(path))
 
 
@@ -56,7 +56,7 @@ def write_stl(
     """
     import trimesh
 
-    solid = _without_facets(part.solid)
+    solid = _clear_facets(part.solid)
     deflection = RELATIVE_DEFLECTION * _longest_side(part) if deflection_mm is None else deflection_mm
     points, triangles = solid.tessellate(deflection, angular_deflection)
     surface = trimesh.Trimesh(np.array([tuple(p) for p in points]), np.array(triangles), process=True)
@@ -70,7 +70,7 @@ def _longest_side(part: Part) -> float:
     return float(max(part.solid.bounding_box().size))
 
 
-def _without_facets(solid: Any) -> Any:
+def _clear_facets(solid: Any) -> Any:
     """The solid without facets that an earlier, perhaps finer, triangulation left on it."""
     from OCP.BRepTools import BRepTools  # type: ignore[import-untyped]
 

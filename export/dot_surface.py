@@ -29,16 +29,18 @@ def dot_parts(dot_shape: DotShape, half_size_mm: tuple[float, float], facets: in
     """
     half = np.asarray(half_size_mm)
     if dot_shape.kind == "plate":
-        return [_box(-half, half, 0.0)]
+        return [_plate_box(-half, half, 0.0)]
     reach = 1.1 * np.array([1.0, 0.0 if dot_shape.kind == "ridge" else 1.0]) * dot_shape.base_diameter_mm / 2
     centers = dot_shape.tips_mm[:, :2]
     low, high = np.minimum(-half, centers.min(axis=0) - reach), np.maximum(half, centers.max(axis=0) + reach)
-    profiles = [_profile(dot_shape, tip[2], facets // 2) for tip in dot_shape.tips_mm]
+    profiles = [_meridian(dot_shape, tip[2], facets // 2) for tip in dot_shape.tips_mm]
     if dot_shape.kind == "ridge":
-        dots = [_ridge(profile, x, low[1], high[1]) for profile, (x, _) in zip(profiles, centers, strict=True)]
+        dots = [
+            _extrude_profile(profile, x, low[1], high[1]) for profile, (x, _) in zip(profiles, centers, strict=True)
+        ]
     else:
-        dots = [_revolved(profile, center, facets) for profile, center in zip(profiles, centers, strict=True)]
-    return [*dots, _box(low, high, dot_shape.height_mm)]
+        dots = [_revolve_profile(profile, center, facets) for profile, center in zip(profiles, centers, strict=True)]
+    return [*dots, _plate_box(low, high, dot_shape.height_mm)]
 
 
 def placed_dot(dot_shape: DotShape, tet_mesh: TetMesh, origin_mm: Floats, facets: int = 48) -> list[Any]:
@@ -62,7 +64,7 @@ def in_segment_frame(dot_shape: DotShape, points_mm: Floats, origin_mm: Floats) 
     return np.asarray(origin_mm + points_mm @ dot_shape.rotation.T)
 
 
-def _profile(dot_shape: DotShape, tip_mm: float, count: int) -> Floats:
+def _meridian(dot_shape: DotShape, tip_mm: float, count: int) -> Floats:
     """Meridian from a tip at z = tip_mm to the plate, (p, 2) radius and z in mm."""
     radius, height = dot_shape.radius_mm, dot_shape.height_mm - tip_mm
     opening = np.arccos(1 - min(height, radius) / radius)
@@ -73,7 +75,7 @@ def _profile(dot_shape: DotShape, tip_mm: float, count: int) -> Floats:
     return np.vstack([arc, [radius, dot_shape.height_mm]])
 
 
-def _revolved(profile: Floats, center: Floats, facets: int) -> DotPart:
+def _revolve_profile(profile: Floats, center: Floats, facets: int) -> DotPart:
     """The profile turned about the z axis through center and closed by a disc at its end."""
     angle = np.arange(facets) * 2 * np.pi / facets
     ring = np.column_stack([np.cos(angle), np.sin(angle)])
@@ -93,7 +95,7 @@ def _revolved(profile: Floats, center: Floats, facets: int) -> DotPart:
     return DotPart(np.vstack([tip, *rings, lid]), np.vstack(triangles).astype(np.int64))
 
 
-def _ridge(profile: Floats, center_x: float, front_y: float, back_y: float) -> DotPart:
+def _extrude_profile(profile: Floats, center_x: float, front_y: float, back_y: float) -> DotPart:
     """The profile, mirrored in x, drawn out along y over the plate's width and closed at both ends."""
     outline = np.vstack([profile[:0:-1] * [-1, 1], profile])
     count = len(outline)
@@ -111,7 +113,7 @@ def _ridge(profile: Floats, center_x: float, front_y: float, back_y: float) -> D
     return DotPart(np.vstack([front, back]), np.vstack([*sides, *ends]).astype(np.int64))
 
 
-def _box(low: Floats, high: Floats, bottom: float) -> DotPart:
+def _plate_box(low: Floats, high: Floats, bottom: float) -> DotPart:
     """The plate: its face at z = bottom."""
     foot = np.where([[0, 0], [1, 0], [1, 1], [0, 1]], high, low)
     points = np.vstack([np.column_stack([foot, np.full(4, bottom + z)]) for z in (0.0, PLATE_THICKNESS_MM)])

@@ -99,7 +99,7 @@ def film_figure(tet_mesh: TetMesh, step: Step, peak: FilmPeak) -> "Figure":
     title = f"Film at {step.indentation_m * MM_PER_M:.3g} mm"
     figure.suptitle(title, x=0.04, ha="left", fontsize=15, fontweight="bold", color=INK)
     left, right = figure.subplots(1, 2)
-    draw = _line if is_slice(tet_mesh) else _map
+    draw = _draw_line if is_slice(tet_mesh) else _draw_map
     strain = Scale("largest principal strain (%)", 0.0, 100 * peak.strain, COLOUR_MAP)
     draw(figure, left, shown, shown.strain_percent, strain)
     low, high = (PC_PER_MM2_PER_C_PER_M2 * density for density in peak.charge_density_C_per_m2)
@@ -108,7 +108,7 @@ def film_figure(tet_mesh: TetMesh, step: Step, peak: FilmPeak) -> "Figure":
     return figure
 
 
-def _map(figure: Any, axes: Any, shown: FilmMap, values: Floats, scale: Scale) -> None:
+def _draw_map(figure: Any, axes: Any, shown: FilmMap, values: Floats, scale: Scale) -> None:
     """Colours on the deformed film, with lines of equal deflection."""
     drawn = axes.tripcolor(
         shown.x_mm,
@@ -144,7 +144,7 @@ def _map(figure: Any, axes: Any, shown: FilmMap, values: Floats, scale: Scale) -
     axes.tick_params(labelsize=11)
 
 
-def _line(_figure: Any, axes: Any, shown: FilmMap, values: Floats, scale: Scale) -> None:
+def _draw_line(_figure: Any, axes: Any, shown: FilmMap, values: Floats, scale: Scale) -> None:
     """A slice has nothing across: the value along x."""
     x, group = np.unique(np.round(shown.undeformed_x_mm, 6), return_inverse=True)
     mean = np.bincount(group, values) / np.bincount(group)

@@ -29,9 +29,9 @@ def split_nodes(tet_mesh: TetMesh) -> SplitNodes:
     return SplitNodes(keys // parts, keys % parts, inverse.reshape(tet_mesh.tets.shape), _volumes(tet_mesh))
 
 
-def spread(split: SplitNodes, values: Floats) -> Floats:
+def nodal_means(split: SplitNodes, values: Floats) -> Floats:
     """Volume-weighted mean (s,) or (s, c) of the element values (m,) or (m, c) around each split node."""
-    return _at_nodes(split.tets, split.weight, values, len(split.node))
+    return _weighted_means(split.tets, split.weight, values, len(split.node))
 
 
 def largest_principal(tensor: Floats) -> Floats:
@@ -53,7 +53,7 @@ def _volumes(tet_mesh: TetMesh) -> Floats:
     return np.asarray(np.abs(np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a)) / 6)
 
 
-def _at_nodes(tets: Ints, weight: Floats, values: Floats, count: int) -> Floats:
+def _weighted_means(tets: Ints, weight: Floats, values: Floats, count: int) -> Floats:
     """Weighted mean at each of count nodes of values (m,) or (m, c) of the elements around it; zero without any."""
     flat, around = tets.ravel(), np.repeat(weight, tets.shape[1])
     total = np.bincount(flat, around, count)

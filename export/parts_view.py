@@ -6,13 +6,13 @@ from typing import Any
 import numpy as np
 
 from export.dot_surface import dot_parts, in_segment_frame, triangle_surface
-from export.viewer_data import colour_maps, packed, rgb
+from export.viewer_data import base64_array, colour_maps, rgb
 from foundation.arrays import Floats, Ints
 from geometry.dot import DotShape
 from geometry.solids import PART_COLOURS
 
-CHORD_MM, ANGLE_RAD = 0.02, 0.3
-INSIDE = 1e-3
+TESSELLATION_CHORD_MM, TESSELLATION_ANGLE_RAD = 0.02, 0.3
+PLANE_INSET_SHARE = 1e-3
 """The cut lies a thousandth of the width behind the middle: an exact one would run along edges of the triangles."""
 
 
@@ -22,16 +22,18 @@ def parts_view(solids: Mapping[str, Any], dot_shape: DotShape) -> dict[str, Any]
     solids : build123d solids of the layers and the case by their labels. The cut runs through the middle of the dot,
     or beside it where it lies outside.
     """
-    surfaces = {label: _surface(solid) for label, solid in solids.items()}
-    low, high = _corners(surfaces.values())
-    plane = float(np.clip(dot_shape.origin_mm[1] + INSIDE * (high - low)[1], *(0.99 * np.array([low[1], high[1]]))))
+    surfaces = {label: _triangulated_surface(solid) for label, solid in solids.items()}
+    low, high = _lowest_and_highest(surfaces.values())
+    plane = float(
+        np.clip(dot_shape.origin_mm[1] + PLANE_INSET_SHARE * (high - low)[1], *(0.99 * np.array([low[1], high[1]])))
+    )
     half = 0.5 * (high - low)
     dot = [
         (in_segment_frame(dot_shape, part.points_mm, dot_shape.origin_mm), part.triangles)
         for part in dot_parts(dot_shape, (float(half[0]), float(half[1])))
     ]
     outer = [points[triangles].reshape(-1, 3) for points, triangles in surfaces.values()]
-    cut = [_cap(*surface, plane) for surface in surfaces.values()]
+    cut = [_cut_face(*surface, plane) for surface in surfaces.values()]
     corners = np.concatenate([*outer, *cut])
     part = [np.full(len(piece), number) for pieces in (outer, cut) for number, piece in enumerate(pieces)]
     whole = np.arange(len(corners))
@@ -44,41 +46,41 @@ def parts_view(solids: Mapping[str, Any], dot_shape: DotShape) -> dict[str, Any]
         **colour_maps(),
         "plane": plane,
         "slice": False,
-        "points": packed(corners, np.float32),
-        "displacement": packed(np.zeros(corners.size), np.int16),
+        "points": base64_array(corners, np.float32),
+        "displacement": base64_array(np.zeros(corners.size), np.int16),
         "displacementUnit": 1.0,
-        "region": packed(np.concatenate(part), np.uint8),
-        "outer": packed(whole[:at], np.uint32),
-        "section": packed(whole[at:], np.uint32),
-        "film": packed(np.empty(0), np.uint32),
-        "dotPoints": packed(facets, np.float32),
-        "dotCut": packed(np.concatenate([_behind(*surface, plane) for surface in dot]), np.float32),
+        "region": base64_array(np.concatenate(part), np.uint8),
+        "outer": base64_array(whole[:at], np.uint32),
+        "section": base64_array(whole[at:], np.uint32),
+        "film": base64_array(np.empty(0), np.uint32),
+        "dotPoints": base64_array(facets, np.float32),
+        "dotCut": base64_array(np.concatenate([_half_behind_plane(*surface, plane) for surface in dot]), np.float32),
         "dotShift": [[0.0, 0.0, 0.0]],
         "dotColour": rgb(PART_COLOURS["dot"]),
     }
 
 
-def _corners(surfaces: Iterable[tuple[Floats, Ints]]) -> tuple[Floats, Floats]:
+def _lowest_and_highest(surfaces: Iterable[tuple[Floats, Ints]]) -> tuple[Floats, Floats]:
     """Lowest and highest corner (3,) of all surfaces."""
     points = np.concatenate([found for found, _ in surfaces])
     return points.min(axis=0), points.max(axis=0)
 
 
-def _surface(solid: Any) -> tuple[Floats, Ints]:
+def _triangulated_surface(solid: Any) -> tuple[Floats, Ints]:
     """Points (v, 3) in mm and triangles (t, 3) of a build123d solid."""
-    points, triangles = solid.tessellate(CHORD_MM, ANGLE_RAD)
+    points, triangles = solid.tessellate(TESSELLATION_CHORD_MM, TESSELLATION_ANGLE_RAD)
     return np.array([tuple(point) for point in points]), np.array(triangles, dtype=np.int64)
 
 
-def _behind(points: Floats, triangles: Ints, plane: float) -> Floats:
+def _half_behind_plane(points: Floats, triangles: Ints, plane: float) -> Floats:
     """Corners (3 t, 3) of what lies behind the plane y, closed there."""
     surface = triangle_surface(points, triangles).clean()
     kept = surface.clip_closed_surface("y", origin=(0.0, plane, 0.0)).triangulate()
     return np.asarray(kept.points[kept.regular_faces], np.float64).reshape(-1, 3)
 
 
-def _cap(points: Floats, triangles: Ints, plane: float) -> Floats:
+def _cut_face(points: Floats, triangles: Ints, plane: float) -> Floats:
     """Corners (3 t, 3) of the face in which the plane y cuts a body."""
-    kept = _behind(points, triangles, plane).reshape(-1, 3, 3)
+    kept = _half_behind_plane(points, triangles, plane).reshape(-1, 3, 3)
     flat = np.abs(kept[:, :, 1] - plane).max(axis=1) < 1e-6
     return np.asarray(kept[flat].reshape(-1, 3))

@@ -10,7 +10,7 @@ from export.course_figure import course_figure
 from export.cutaway import draw_parts, draw_von_mises, open_scene
 from export.film_maps import film_figure
 from export.skin import MM_PER_M
-from export.view import DPI, HEIGHT_IN, INK, WIDTH_IN, DrawnBody, View, page, render, save
+from export.view import DPI, HEIGHT_IN, INK, WIDTH_IN, DrawnBody, View, picture_page, render, save_png
 from foundation.arrays import Floats
 from foundation.files import whole_folder
 from geometry.dot import DotShape
@@ -18,7 +18,7 @@ from mesh.types import TetMesh
 from solve.readout.course import PressCourse
 from solve.result import PressResult, Step
 
-RED, GREEN = "#b5263b", "#3f7a4d"
+OPEN_CIRCUIT_COLOUR, READOUT_COLOUR = "#b5263b", "#3f7a4d"
 
 
 def draw_curves(
@@ -41,14 +41,16 @@ def draw_curves(
     )
     force, voltage = figure.subplots(1, 2)
     force.plot(x, reaction_force_N, "o-", color="#33658a", lw=1.8, ms=4)
-    _label(force, below, "reaction force (N)")
+    _label_axes(force, below, "reaction force (N)")
     scale, unit = _voltage_unit(open_circuit_voltage_V)
-    lines = voltage.plot(x, scale * open_circuit_voltage_V, "o-", color=RED, lw=1.8, ms=4, label="open circuit")
-    _label(voltage, below, f"voltage ({unit})")
+    lines = voltage.plot(
+        x, scale * open_circuit_voltage_V, "o-", color=OPEN_CIRCUIT_COLOUR, lw=1.8, ms=4, label="open circuit"
+    )
+    _label_axes(voltage, below, f"voltage ({unit})")
     if readout_voltage_V is not None:
         lines += _plot_readout(voltage, x, open_circuit_voltage_V, readout_voltage_V)
     voltage.legend(handles=lines, frameon=False, fontsize=11, loc="lower left", bbox_to_anchor=(0, 1), ncols=2)
-    save(figure, path)
+    save_png(figure, path)
 
 
 def _plot_readout(axes: Any, x: Floats, open_V: Floats, readout_V: Floats) -> list[Any]:
@@ -58,18 +60,18 @@ def _plot_readout(axes: Any, x: Floats, open_V: Floats, readout_V: Floats) -> li
     if np.abs(readout_V).max() < 0.1 * np.abs(open_V).max():
         axes = axes.twinx()
         scale, unit = _voltage_unit(readout_V)
-        axes.set_ylabel(f"read-out voltage ({unit})", fontsize=12, color=GREEN)
-        axes.tick_params(labelsize=11, colors=GREEN)
+        axes.set_ylabel(f"read-out voltage ({unit})", fontsize=12, color=READOUT_COLOUR)
+        axes.tick_params(labelsize=11, colors=READOUT_COLOUR)
         axes.spines["top"].set_visible(False)
         label += " (right)"
-    return list(axes.plot(x, scale * readout_V, "s--", color=GREEN, lw=1.6, ms=4, label=label))
+    return list(axes.plot(x, scale * readout_V, "s--", color=READOUT_COLOUR, lw=1.6, ms=4, label=label))
 
 
 def _voltage_unit(voltage_V: Floats) -> tuple[float, str]:
     return (1e3, "mV") if np.abs(voltage_V).max() < 1.0 else (1.0, "V")
 
 
-def _label(axes: Any, below: str, label: str) -> None:
+def _label_axes(axes: Any, below: str, label: str) -> None:
     axes.set_xlabel(below, fontsize=12, color=INK)
     axes.set_ylabel(label, fontsize=12, color=INK)
     axes.grid(alpha=0.3)
@@ -78,7 +80,7 @@ def _label(axes: Any, below: str, label: str) -> None:
     axes.tick_params(labelsize=11)
 
 
-FILES = ("undeformed", "deformed", "von_mises", "film", "force_voltage", "course")
+PICTURE_NAMES = ("undeformed", "deformed", "von_mises", "film", "force_voltage", "course")
 
 
 def write_pictures(
@@ -97,16 +99,16 @@ def write_pictures(
     depth, force = last.indentation_m * MM_PER_M, last.reaction_force_N
     pressed = f"Pressed {depth:.3g} mm deep with {force:.3g} N"
     with whole_folder(folder) as scratch:
-        files = {name: scratch / f"{name}.png" for name in FILES}
+        files = {name: scratch / f"{name}.png" for name in PICTURE_NAMES}
         draw_parts(open_scene(tet_mesh, first, dot_shape), "At rest, the dot just touching", files["undeformed"])
         scene = open_scene(tet_mesh, last, dot_shape)
         draw_parts(scene, pressed, files["deformed"])
         draw_von_mises(scene, pressed, files["von_mises"])
-        save(film_figure(tet_mesh, last, result.film_peak), files["film"])
+        save_png(film_figure(tet_mesh, last, result.film_peak), files["film"])
         read = None if along.together_V is None else along.together_V[along.solved]
-        draw_curves(abscissa(result), *_history(result), read, files["force_voltage"])
-        save(course_figure(along, result.electrode_names), files["course"])
-    return {name: folder / f"{name}.png" for name in FILES}
+        draw_curves(abscissa(result), *_force_and_voltage(result), read, files["force_voltage"])
+        save_png(course_figure(along, result.electrode_names), files["course"])
+    return {name: folder / f"{name}.png" for name in PICTURE_NAMES}
 
 
 def draw_sample() -> None:
@@ -116,10 +118,10 @@ def draw_sample() -> None:
     import pyvista
 
     box = (-1.0, 1.0, -1.0, 1.0)
-    figure, axes, _ = page(box, "sample")
+    figure, axes, _ = picture_page(box, "sample")
     sphere = DrawnBody(pyvista.Sphere().clip_closed_surface("y"), INK)
     axes.imshow(render([sphere], View(28.0, 18.0), box, 50.0), extent=box)
-    save(figure, BytesIO())
+    save_png(figure, BytesIO())
     draw_curves((np.arange(2.0), "sample"), np.arange(2.0), np.arange(2.0), None, BytesIO())
 
 
@@ -139,7 +141,7 @@ def abscissa(result: PressResult) -> tuple[Floats, str]:
     return np.arange(len(depth), dtype=np.float64), "step"
 
 
-def _history(result: PressResult) -> tuple[Floats, Floats]:
+def _force_and_voltage(result: PressResult) -> tuple[Floats, Floats]:
     """Force (N) and open-circuit voltage (V) of the electrodes in parallel, each (s,)."""
     share = result.capacitance_F / result.capacitance_F.sum()
     return (

@@ -16,8 +16,8 @@ from foundation.arrays import Bools, Floats, Ints
 from mesh.types import TetMesh
 from solve.film_means import film_columns
 
-SMALLEST = 1e-8  # relative eigenvalue below which a patch says nothing of that direction
-TINY = 1e-7  # mm
+SMALLEST_EIGENVALUE_RATIO = 1e-8  # relative eigenvalue below which a patch says nothing of that direction
+SAME_PLACE_MM = 1e-7  # mm
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ def film_patches(tet_mesh: TetMesh) -> FilmPatches:
     axes = 1 if bool(np.any(tet_mesh.twin != np.arange(len(tet_mesh.twin)))) else 2
     tets = tet_mesh.tets[tet_mesh.region_tets("film")]
     points = tet_mesh.points_mm[tets[:, :4], :axes]
-    grid = np.round(points / TINY).astype(np.int64).reshape(-1, axes)
+    grid = np.round(points / SAME_PLACE_MM).astype(np.int64).reshape(-1, axes)
     _, first, place_of = np.unique(grid, axis=0, return_index=True, return_inverse=True)
     where, place_of = points.reshape(-1, axes)[first], place_of.reshape(-1, 4)
     columns = film_columns(tet_mesh)
@@ -58,24 +58,26 @@ def film_patches(tet_mesh: TetMesh) -> FilmPatches:
         (np.ones(place_of.size), (place_of.ravel(), np.repeat(columns.column, 4))), (len(where), gather.shape[0])
     )
     weight = np.bincount(columns.column, columns.volume).astype(np.float64)
-    patches = _patches(touch, _on_rim(where))
-    fit = _fitted(patches, where, gather @ points.mean(axis=1), weight)
+    patches = _columns_of_places(touch, _on_rim(where))
+    fit = _fit_weights(patches, where, gather @ points.mean(axis=1), weight)
     node, place = _places_of_nodes(tets, place_of)
     return FilmPatches(sp.csr_matrix(fit @ gather), node, place)
 
 
 def _on_rim(where: Floats) -> Bools:
     """Whether places (p, axes) lie on the outline of the rectangular film."""
-    return np.asarray(((where < where.min(axis=0) + TINY) | (where > where.max(axis=0) - TINY)).any(axis=1))
+    return np.asarray(
+        ((where < where.min(axis=0) + SAME_PLACE_MM) | (where > where.max(axis=0) - SAME_PLACE_MM)).any(axis=1)
+    )
 
 
-def _patches(touch: sp.csr_matrix, rim: Bools) -> sp.coo_matrix:
+def _columns_of_places(touch: sp.csr_matrix, rim: Bools) -> sp.coo_matrix:
     """Pairs of place and column: the columns that touch a place; at the rim those too that touch one of these."""
     wider = sp.diags_array(rim.astype(float)) @ touch @ (touch.T @ touch)
     return sp.coo_matrix(touch + wider)
 
 
-def _fitted(patches: sp.coo_matrix, where: Floats, centre: Floats, weight: Floats) -> sp.csr_matrix:
+def _fit_weights(patches: sp.coo_matrix, where: Floats, centre: Floats, weight: Floats) -> sp.csr_matrix:
     """Weights (p, c) with which the values of the columns make up those at the places, by weighted least squares.
 
     where : (p, axes), centre : (c, axes), weight : (c,). Where a patch does not tell a slope there is none.
@@ -87,7 +89,7 @@ def _fitted(patches: sp.coo_matrix, where: Floats, centre: Floats, weight: Float
     weighted = weight[column, None] * basis
     normal = np.zeros((len(where), basis.shape[1], basis.shape[1]))
     np.add.at(normal, place, weighted[:, :, None] * basis[:, None, :])
-    first = np.linalg.pinv(normal, rcond=SMALLEST, hermitian=True)[:, 0]
+    first = np.linalg.pinv(normal, rcond=SMALLEST_EIGENVALUE_RATIO, hermitian=True)[:, 0]
     return sp.csr_matrix(((first[place] * weighted).sum(axis=1), (place, column)), (len(where), len(centre)))
 
 

@@ -76,7 +76,7 @@ def write_report(
         headline=headline(summary),
         steps=step_rows(summary),
         mesh_errors=_mesh_errors(summary),
-        pictures=[_picture(name, file, _captions(summary)) for name, file in _in_order(pictures)],
+        pictures=[_picture_entry(name, file, _captions(summary)) for name, file in _ordered_pictures(pictures)],
         view=script_safe(json.dumps(view)) if view else None,
         viewer="\n".join((HERE / name).read_text(encoding="utf-8") for name in ("webgl.js", "viewer.js")),
         config=json.dumps(summary.get("config", {}), indent=2, ensure_ascii=False),
@@ -98,10 +98,10 @@ def number(value: Any, digits: int = 4) -> str:
         return str(value)
     if value and not 1e-4 <= abs(value) < 1e6:
         return f"{value:.{digits - 1}e}"
-    return _plain(value, digits)
+    return _plain_text(value, digits)
 
 
-def _plain(value: float, digits: int) -> str:
+def _plain_text(value: float, digits: int) -> str:
     """Significant digits without an exponent."""
     text = f"{float(f'{value:.{digits}g}'):.10f}".rstrip("0").rstrip(".")
     return text.replace("-", "\u2212") if text not in ("", "-0") else "0"
@@ -117,19 +117,24 @@ def headline(summary: Mapping[str, Any]) -> list[dict[str, str]]:
     at_noise = f"for a noise of {number(1e3 * noise)} mV" if noise else "for the stated noise"
     at = f", at {number(sensitivity['at_time_s'])} s" if sensitivity.get("at_time_s") is not None else ""
     rows = [
-        ("Depth reached", _last(summary, "indentation_mm"), "mm", "travel of the dot"),
-        ("Reaction force", _last(summary, "reaction_force_N"), "N", "on the dot at that depth" + of_force),
-        ("Open-circuit voltage", _last(summary, "open_circuit_voltage_V"), "V", "charge over capacitance" + of_voltage),
-        ("Read-out voltage", _last(summary, "readout_voltage_V"), "V", "after the given amplifier"),
+        ("Depth reached", _last_value(summary, "indentation_mm"), "mm", "travel of the dot"),
+        ("Reaction force", _last_value(summary, "reaction_force_N"), "N", "on the dot at that depth" + of_force),
+        (
+            "Open-circuit voltage",
+            _last_value(summary, "open_circuit_voltage_V"),
+            "V",
+            "charge over capacitance" + of_voltage,
+        ),
+        ("Read-out voltage", _last_value(summary, "readout_voltage_V"), "V", "after the given amplifier"),
         *_peak_readout(summary),
-        ("Charge", _last(summary, "film_charge_pC"), "pC", "freed by the film at short circuit"),
+        ("Charge", _last_value(summary, "film_charge_pC"), "pC", "freed by the film at short circuit"),
         ("Capacitance", film.get("capacitance_pF"), "pF", "of the film at rest"),
         ("Voltage per depth", sensitivity.get("voltage_per_mm"), "V/mm", "at the deepest step" + at),
         ("Charge per force", sensitivity.get("charge_pC_per_N"), "pC/N", "at the deepest step"),
         ("Least detectable press", sensitivity.get("least_detectable_indentation_um"), "µm", at_noise),
         ("Largest film strain", _percent(film.get("max_principal_strain")), "%", f"principal, {where}"),
         ("Largest film stress", film.get("max_principal_stress_MPa"), "MPa", f"principal, {where}"),
-        *_at_the_rim(film),
+        *_rim_rows(film),
     ]
     return [
         {"label": label, "value": number(value), "unit": unit, "note": note}
@@ -162,7 +167,7 @@ def _mesh_errors(summary: Mapping[str, Any]) -> dict[str, float]:
     return {one["name"]: one["voltage_percent"] for one in each}
 
 
-def _at_the_rim(film: Mapping[str, Any]) -> list[tuple[str, Any, str, str]]:
+def _rim_rows(film: Mapping[str, Any]) -> list[tuple[str, Any, str, str]]:
     """The strain where held sides count too, where there are such sides."""
     if not film.get("rim_distance_mm"):
         return []
@@ -184,7 +189,7 @@ def step_rows(summary: Mapping[str, Any]) -> tuple[list[str], list[list[str]]]:
     return [head for head, _ in present], rows
 
 
-def _last(summary: Mapping[str, Any], key: str) -> Any:
+def _last_value(summary: Mapping[str, Any], key: str) -> Any:
     """The value at the last step, None where there is no history."""
     history = summary.get(key)
     return history[-1] if history else None
@@ -194,7 +199,7 @@ def _percent(share: float | None) -> float | None:
     return None if share is None else 100 * share
 
 
-def _in_order(pictures: Mapping[str, Path]) -> list[tuple[str, Path]]:
+def _ordered_pictures(pictures: Mapping[str, Path]) -> list[tuple[str, Path]]:
     """Known pictures first and in their order."""
     names = [name for name in CAPTIONS if name in pictures]
     return [(name, pictures[name]) for name in [*names, *(n for n in pictures if n not in CAPTIONS)]]
@@ -206,6 +211,6 @@ def _captions(summary: Mapping[str, Any]) -> dict[str, tuple[str, str]]:
     return CAPTIONS | (SLICE_CAPTIONS if section == "plane-strain" else {})
 
 
-def _picture(name: str, path: Path, captions: Mapping[str, tuple[str, str]]) -> dict[str, str]:
+def _picture_entry(name: str, path: Path, captions: Mapping[str, tuple[str, str]]) -> dict[str, str]:
     title, text = captions.get(name, (name.replace("_", " "), ""))
     return {"title": title, "text": text, "data": base64.b64encode(path.read_bytes()).decode("ascii")}

@@ -7,20 +7,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from export.nodal_values import SplitNodes, film_values, largest_principal, split_nodes, spread
+from export.nodal_values import SplitNodes, film_values, largest_principal, nodal_means, split_nodes
 from export.subdivision import tetra_pattern, triangle_pattern
 from foundation.arrays import Floats, Ints
-from mesh.types import TetMesh
+from mesh.types import TET_FACES, TetMesh
 from solve.result import Step
 
 MM_PER_M = 1e3
 MPA_PER_PA = 1e-6
 PC_PER_MM2_PER_C_PER_M2 = 1e6
 """1 C/m^2 = 1e12 pC / 1e6 mm^2."""
-
-
-FACES = np.array([[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 3, 2, 7, 9, 6]])
-"""The four faces of a quadratic tetrahedron, seen from outside: corners, then mid-sides 01, 12, 20."""
 
 
 @dataclass(frozen=True)
@@ -77,25 +73,25 @@ def nodal_steps(tet_mesh: TetMesh, steps: Sequence[Step]) -> NodalSteps:
         split,
         tet_mesh.points_mm[split.node],
         np.stack([f.displacement_m[split.node] for f in every]) * MM_PER_M,
-        np.stack([spread(split, f.von_mises_Pa) for f in every]) * MPA_PER_PA,
-        np.stack([spread(split, values) for values in strain]),
-        np.stack([spread(split, values) for values in charge]) * PC_PER_MM2_PER_C_PER_M2,
+        np.stack([nodal_means(split, f.von_mises_Pa) for f in every]) * MPA_PER_PA,
+        np.stack([nodal_means(split, values) for values in strain]),
+        np.stack([nodal_means(split, values) for values in charge]) * PC_PER_MM2_PER_C_PER_M2,
         pressure[:, split.node] * MPA_PER_PA,
     )
 
 
 def outer_skin(nodes: NodalSteps, level: int = 1) -> Skin:
     """The skin of every part that is open to the outside, each quadratic face cut into 4^level triangles."""
-    return _from_facets(nodes, outer_facets(nodes.split), level)
+    return _skin_of_facets(nodes, outer_facets(nodes.split), level)
 
 
 def outer_facets(split: SplitNodes) -> Ints:
     """Quadratic facets (k, 6) in split nodes that belong to one tetrahedron only."""
-    corners = np.sort(split.node[split.tets[:, FACES[:, :3]]].reshape(-1, 3), axis=1)
+    corners = np.sort(split.node[split.tets[:, TET_FACES[:, :3]]].reshape(-1, 3), axis=1)
     # three numbers in one, which sort many times faster than rows
     keys = np.ravel_multi_index(tuple(corners.T), (int(split.node.max()) + 1,) * 3)
     _, first, count = np.unique(keys, return_index=True, return_counts=True)
-    return np.asarray(split.tets[:, FACES].reshape(-1, 6)[first[count == 1]])
+    return np.asarray(split.tets[:, TET_FACES].reshape(-1, 6)[first[count == 1]])
 
 
 def film_top(nodes: NodalSteps, tet_mesh: TetMesh, level: int = 1) -> Skin:
@@ -104,10 +100,10 @@ def film_top(nodes: NodalSteps, tet_mesh: TetMesh, level: int = 1) -> Skin:
     place = np.full(len(tet_mesh.points_mm), -1)
     own = np.flatnonzero(nodes.split.region == film)
     place[nodes.split.node[own]] = own
-    return _from_facets(nodes, place[tet_mesh.facets["film-top"]], level)
+    return _skin_of_facets(nodes, place[tet_mesh.facets["film-top"]], level)
 
 
-def section(nodes: NodalSteps, y_mm: float, level: int = 1) -> Skin:
+def cut_section(nodes: NodalSteps, y_mm: float, level: int = 1) -> Skin:
     """The cut through all parts along the undeformed plane y = y_mm, as a surface that faces -y."""
     import pyvista
 
@@ -115,14 +111,14 @@ def section(nodes: NodalSteps, y_mm: float, level: int = 1) -> Skin:
     crossed = nodes.split.tets[(y.min(axis=1) < y_mm) & (y.max(axis=1) > y_mm)]
     weights, small = tetra_pattern(level)
     cells = (np.arange(len(crossed))[:, None, None] * len(weights) + small).reshape(-1, 4)
-    points, *fields = (_interpolate(weights, array, crossed) for array in _arrays(nodes))
+    points, *fields = (_interpolate(weights, array, crossed) for array in _points_and_fields(nodes))
     grid = pyvista.UnstructuredGrid({pyvista.CellType.TETRA: cells}, points)
     for number, values in enumerate(fields):
         grid.point_data[f"f{number}"] = values
     grid.cell_data["region"] = np.repeat(nodes.split.region[crossed[:, 0]], len(small))
     cut = grid.slice(normal="y", origin=(0.0, y_mm, 0.0)).triangulate()
     triangles = cut.regular_faces.astype(np.int64)
-    return _facing_front(_welded(nodes, triangles, np.asarray(cut.cell_data["region"]), cut))
+    return _turn_to_front(_skin_of_cut(nodes, triangles, np.asarray(cut.cell_data["region"]), cut))
 
 
 def nearby_plane(tet_mesh: TetMesh, y_mm: float) -> float:
@@ -132,7 +128,7 @@ def nearby_plane(tet_mesh: TetMesh, y_mm: float) -> float:
     return float(np.clip(y_mm + inset, low + inset, high - inset))
 
 
-def _arrays(nodes: NodalSteps) -> list[Floats]:
+def _points_and_fields(nodes: NodalSteps) -> list[Floats]:
     """Points first, then the fields of each step."""
     return [nodes.points_mm, *(field[s] for s in range(len(nodes.displacement_mm)) for field in nodes.fields)]
 
@@ -143,24 +139,26 @@ def _interpolate(weights: Floats, values: Floats, cells: Ints) -> Floats:
     return np.asarray(result.reshape(-1, *values.shape[1:]))
 
 
-def _from_facets(nodes: NodalSteps, facets: Ints, level: int) -> Skin:
+def _skin_of_facets(nodes: NodalSteps, facets: Ints, level: int) -> Skin:
     """Quadratic triangles (k, 6) in split nodes, subdivided; equal corners of one part are shared."""
     weights, small = triangle_pattern(level)
     triangles = (np.arange(len(facets))[:, None, None] * len(weights) + small).reshape(-1, 3)
-    points, *fields = (_interpolate(weights, array, facets) for array in _arrays(nodes))
+    points, *fields = (_interpolate(weights, array, facets) for array in _points_and_fields(nodes))
     region = np.repeat(nodes.split.region[facets[:, 0]], len(weights))
-    return _shared(points, triangles, region, fields, len(nodes.fields))
+    return _merge_corners(points, triangles, region, fields, len(nodes.fields))
 
 
-def _welded(nodes: NodalSteps, triangles: Ints, region: Ints, cut: "object") -> Skin:
+def _skin_of_cut(nodes: NodalSteps, triangles: Ints, region: Ints, cut: "object") -> Skin:
     """A cut whose corners are given to one part each (parts meet at equal corners)."""
     points = np.asarray(cut.points, np.float64)[triangles].reshape(-1, 3)  # type: ignore[attr-defined]
     count = len(nodes.fields) * len(nodes.displacement_mm)
     fields = [np.asarray(cut.point_data[f"f{k}"])[triangles.ravel()] for k in range(count)]  # type: ignore[attr-defined]
-    return _shared(points, np.arange(len(points)).reshape(-1, 3), np.repeat(region, 3), fields, len(nodes.fields))
+    return _merge_corners(
+        points, np.arange(len(points)).reshape(-1, 3), np.repeat(region, 3), fields, len(nodes.fields)
+    )
 
 
-def _shared(points: Floats, triangles: Ints, region: Ints, fields: Sequence[Floats], each: int) -> Skin:
+def _merge_corners(points: Floats, triangles: Ints, region: Ints, fields: Sequence[Floats], each: int) -> Skin:
     """Merge corners of equal place (to 0.1 um) and part, drop triangles that vanish by it. each : fields of a step."""
     keys = np.column_stack([np.round(points * 1e4).astype(np.int64), region])
     _, first, inverse = np.unique(keys, axis=0, return_index=True, return_inverse=True)
@@ -171,7 +169,7 @@ def _shared(points: Floats, triangles: Ints, region: Ints, fields: Sequence[Floa
     return Skin(points[first], triangles, region[first], *(np.stack(fields[k::each]) for k in range(each)))
 
 
-def _facing_front(skin: Skin) -> Skin:
+def _turn_to_front(skin: Skin) -> Skin:
     """Turn triangles so that their normals point to -y."""
     a, b, c = (skin.points_mm[skin.triangles[:, i]] for i in range(3))
     turned = np.cross(b - a, c - a)[:, 1] > 0

@@ -19,16 +19,16 @@ _TETRA_CHILDREN = (
 @functools.cache
 def triangle_pattern(level: int) -> tuple[Floats, Ints]:
     """Weights (p, 6) of the quadratic triangle's nodes at small corners, and small triangles (4^level, 3)."""
-    return _pattern(level, 3, TRIANGLE_EDGES, _TRIANGLE_CHILDREN)
+    return _subdivision_pattern(level, 3, TRIANGLE_EDGES, _TRIANGLE_CHILDREN)
 
 
 @functools.cache
 def tetra_pattern(level: int) -> tuple[Floats, Ints]:
     """Weights (p, 10) of the quadratic tetrahedron's nodes, and small tetrahedra (8^level, 4)."""
-    return _pattern(level, 4, TETRA_EDGES, _TETRA_CHILDREN)
+    return _subdivision_pattern(level, 4, TETRA_EDGES, _TETRA_CHILDREN)
 
 
-def _pattern(
+def _subdivision_pattern(
     level: int, corners: int, edges: Sequence[tuple[int, int]], children: Sequence[tuple[int, ...]]
 ) -> tuple[Floats, Ints]:
     """Halve each edge ``level`` times in barycentric coordinates and evaluate the shape functions there."""

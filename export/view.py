@@ -10,9 +10,9 @@ from export.rendering import ensure_rendering
 from foundation.arrays import Floats
 
 WIDTH_IN, HEIGHT_IN, DPI = 8.0, 6.0, 200
-PICTURE_SIZE = (int(WIDTH_IN * DPI), int(HEIGHT_IN * DPI))
+PICTURE_SIZE_PX = (int(WIDTH_IN * DPI), int(HEIGHT_IN * DPI))
 """Pixels of every picture, width and height."""
-MARGIN = {"left": 0.12, "right": 0.28, "bottom": 0.13, "top": 0.11}
+MARGIN_SHARES = {"left": 0.12, "right": 0.28, "bottom": 0.13, "top": 0.11}
 INK = "#26303a"
 
 
@@ -46,7 +46,7 @@ class DrawnBody:
     line_width: float = 0.0
 
 
-def frame(flat_mm: Floats, pad: float = 0.02) -> tuple[float, float, float, float]:
+def picture_box(flat_mm: Floats, pad: float = 0.02) -> tuple[float, float, float, float]:
     """Left, right, bottom, top in mm around flat points (n, 2)."""
     low, high = flat_mm.min(axis=0), flat_mm.max(axis=0)
     extra = pad * (high - low).max()
@@ -76,15 +76,15 @@ def render(
     plotter.background_color = pyvista.Color("white")
     flat_light = view.elevation_deg == 0
     for body in bodies:
-        _add(plotter, body, flat_light)
-    _look(plotter.camera, view, box)
+        _add_body(plotter, body, flat_light)
+    _aim_camera(plotter.camera, view, box)
     plotter.reset_camera_clipping_range()
     image = plotter.screenshot(None, return_img=True)
     plotter.close()
     return image
 
 
-def _add(plotter: Any, body: DrawnBody, flat_light: bool) -> None:
+def _add_body(plotter: Any, body: DrawnBody, flat_light: bool) -> None:
     """Filled surfaces in soft light (none at all in a straight front view), lines in ink."""
     if body.surface.n_points == 0:
         return
@@ -98,7 +98,7 @@ def _add(plotter: Any, body: DrawnBody, flat_light: bool) -> None:
         plotter.add_mesh(body.surface, color=body.colour, **light)
 
 
-def _look(camera: Any, view: View, box: tuple[float, float, float, float]) -> None:
+def _aim_camera(camera: Any, view: View, box: tuple[float, float, float, float]) -> None:
     """Aim a parallel camera so that the window is exactly the box."""
     right, up, toward = view.axes
     left, right_end, bottom, top = box
@@ -110,7 +110,7 @@ def _look(camera: Any, view: View, box: tuple[float, float, float, float]) -> No
     camera.parallel_scale = (top - bottom) / 2
 
 
-def page(box: tuple[float, float, float, float], title: str) -> tuple[Any, Any, float]:
+def picture_page(box: tuple[float, float, float, float], title: str) -> tuple[Any, Any, float]:
     """A white page of PICTURE_SIZE whose coordinates are mm on the picture, with room for writing around box.
 
     Returns figure, axes and pixels per mm.
@@ -122,25 +122,25 @@ def page(box: tuple[float, float, float, float], title: str) -> tuple[Any, Any, 
     axes.set_axis_off()
     left, right, bottom, top = box
     room = (
-        (1 - MARGIN["left"] - MARGIN["right"]) * WIDTH_IN,
-        (1 - MARGIN["bottom"] - MARGIN["top"]) * HEIGHT_IN,
+        (1 - MARGIN_SHARES["left"] - MARGIN_SHARES["right"]) * WIDTH_IN,
+        (1 - MARGIN_SHARES["bottom"] - MARGIN_SHARES["top"]) * HEIGHT_IN,
     )
     inch_per_mm = min(room[0] / (right - left), room[1] / (top - bottom))
     span = np.array([WIDTH_IN, HEIGHT_IN]) / inch_per_mm
-    x0 = (left + right) / 2 - span[0] * (MARGIN["left"] + (1 - MARGIN["right"])) / 2
-    y0 = (bottom + top) / 2 - span[1] * (MARGIN["bottom"] + (1 - MARGIN["top"])) / 2
+    x0 = (left + right) / 2 - span[0] * (MARGIN_SHARES["left"] + (1 - MARGIN_SHARES["right"])) / 2
+    y0 = (bottom + top) / 2 - span[1] * (MARGIN_SHARES["bottom"] + (1 - MARGIN_SHARES["top"])) / 2
     axes.set_xlim(x0, x0 + span[0])
     axes.set_ylim(y0, y0 + span[1])
     figure.text(0.04, 0.955, title, fontsize=15, fontweight="bold", color=INK, va="center")
     return figure, axes, inch_per_mm * DPI
 
 
-def save(figure: Any, path: Any) -> None:
+def save_png(figure: Any, path: Any) -> None:
     """Write a PNG of the figure's full size."""
     figure.savefig(path, dpi=DPI, facecolor="white", pil_kwargs={"compress_level": 3})  # half the time of the usual 6
 
 
-def ruler(axes: Any, view: View, start_mm: Floats, end_mm: Floats, name: str, away: Floats) -> None:
+def draw_ruler(axes: Any, view: View, start_mm: Floats, end_mm: Floats, name: str, away: Floats) -> None:
     """Ticks in mm along the edge from start to end (3,), which run along one coordinate axis.
 
     away : (2,) direction on the picture in which ticks and numbers lie.
@@ -198,7 +198,7 @@ def _spread_out(heights: Floats, gap: float) -> Floats:
     return result
 
 
-def colour_bar(figure: Any, low: float, high: float, label: str, extend: str = "neither") -> None:
+def draw_colour_bar(figure: Any, low: float, high: float, label: str, extend: str = "neither") -> None:
     """A colour bar of the common colour map at the right of the page."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize

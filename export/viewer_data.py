@@ -13,12 +13,12 @@ from export.skin import (
     MM_PER_M,
     NodalSteps,
     Skin,
+    cut_section,
     film_top,
     nearby_plane,
     nodal_steps,
     outer_facets,
     outer_skin,
-    section,
 )
 from export.view import COLOUR_MAP, DIVERGING
 from geometry.dot import DotShape
@@ -52,9 +52,9 @@ def viewer_data(tet_mesh: TetMesh, result: PressResult, dot_shape: DotShape) -> 
         **colour_maps(),
         "plane": plane,
         "slice": is_slice(tet_mesh),
-        **_geometry(skins),
-        **_fields(skins, tet_mesh, result.film_peak),
-        **_dot(tet_mesh, chosen, dot_shape, plane),
+        **_geometry_arrays(skins),
+        **_field_arrays(skins, tet_mesh, result.film_peak),
+        **_dot_arrays(tet_mesh, chosen, dot_shape, plane),
     }
 
 
@@ -70,14 +70,14 @@ def _caption(step: Step) -> dict[str, float]:
 def _skins(nodes: NodalSteps, tet_mesh: TetMesh, plane: float) -> list[Skin]:
     """Outer skin, section and film, curved where the page can bear it."""
     level = 1 if 4 * len(outer_facets(nodes.split)) <= MOST_TRIANGLES else 0
-    return [outer_skin(nodes, level), section(nodes, plane, level), film_top(nodes, tet_mesh, level)]
+    return [outer_skin(nodes, level), cut_section(nodes, plane, level), film_top(nodes, tet_mesh, level)]
 
 
-def _geometry(skins: list[Skin]) -> dict[str, Any]:
+def _geometry_arrays(skins: list[Skin]) -> dict[str, Any]:
     """Corners of all skins in one array and the triangles of each."""
     offsets = np.cumsum([0, *(len(skin.points_mm) for skin in skins[:-1])])
     triangles = {
-        name: packed(skin.triangles + offset, np.uint32)
+        name: base64_array(skin.triangles + offset, np.uint32)
         for name, skin, offset in zip(("outer", "section", "film"), skins, offsets, strict=True)
     }
     points = np.concatenate([skin.points_mm for skin in skins])
@@ -85,15 +85,15 @@ def _geometry(skins: list[Skin]) -> dict[str, Any]:
     region = np.concatenate([skin.region for skin in skins])
     unit = (float(np.abs(displacement).max()) or 1.0) / 32767
     return {
-        "points": packed(points, np.float32),
-        "displacement": packed(np.round(displacement / unit), np.int16),
+        "points": base64_array(points, np.float32),
+        "displacement": base64_array(np.round(displacement / unit), np.int16),
         "displacementUnit": unit,
-        "region": packed(region, np.uint8),
+        "region": base64_array(region, np.uint8),
         **triangles,
     }
 
 
-def _fields(skins: list[Skin], tet_mesh: TetMesh, peak: FilmPeak) -> dict[str, Any]:
+def _field_arrays(skins: list[Skin], tet_mesh: TetMesh, peak: FilmPeak) -> dict[str, Any]:
     """Stress up to the 99th percentile of the soft parts (the film is far stiffer), strain and charge up to the stated
     largest.
     """
@@ -107,10 +107,10 @@ def _fields(skins: list[Skin], tet_mesh: TetMesh, peak: FilmPeak) -> dict[str, A
     charge_top = 1e6 * float(np.abs(peak.charge_density_C_per_m2).max()) or 1.0
     pressure_top = float(pressure.max()) or 1.0
     return {
-        "stress": packed(_share(stress, stress_top), np.uint8),
-        "strain": packed(_share(strain, strain_top), np.uint8),
-        "charge": packed(_share(charge + charge_top, 2 * charge_top), np.uint8),
-        "pressure": packed(_share(pressure, pressure_top), np.uint8),
+        "stress": base64_array(_byte_shares(stress, stress_top), np.uint8),
+        "strain": base64_array(_byte_shares(strain, strain_top), np.uint8),
+        "charge": base64_array(_byte_shares(charge + charge_top, 2 * charge_top), np.uint8),
+        "pressure": base64_array(_byte_shares(pressure, pressure_top), np.uint8),
         "stressTop": stress_top,
         "strainTop": strain_top,
         "chargeTop": charge_top,
@@ -118,7 +118,7 @@ def _fields(skins: list[Skin], tet_mesh: TetMesh, peak: FilmPeak) -> dict[str, A
     }
 
 
-def _dot(tet_mesh: TetMesh, steps: Sequence[Step], dot_shape: DotShape, plane: float) -> dict[str, Any]:
+def _dot_arrays(tet_mesh: TetMesh, steps: Sequence[Step], dot_shape: DotShape, plane: float) -> dict[str, Any]:
     """The dot's triangles at its first place, and how far each step moves it."""
     first = steps[0].dot_position_m * MM_PER_M
     whole = placed_dot(dot_shape, tet_mesh, first)
@@ -127,23 +127,23 @@ def _dot(tet_mesh: TetMesh, steps: Sequence[Step], dot_shape: DotShape, plane: f
     cut = [part.clip_closed_surface("y", origin=(0.0, plane - slide, 0.0)) for part in whole]
     shift = np.stack([step.dot_position_m * MM_PER_M - first for step in steps])
     return {
-        "dotPoints": packed(_corners(whole), np.float32),
-        "dotCut": packed(_corners(cut), np.float32),
+        "dotPoints": base64_array(_triangle_corners(whole), np.float32),
+        "dotCut": base64_array(_triangle_corners(cut), np.float32),
         "dotShift": shift.tolist(),
         "dotColour": rgb(PART_COLOURS["dot"]),
     }
 
 
-def _corners(surfaces: Sequence[Any]) -> NDArray[np.float64]:
+def _triangle_corners(surfaces: Sequence[Any]) -> NDArray[np.float64]:
     """Corners (3 t, 3) of all triangles."""
     return np.concatenate([s.triangulate().points[s.triangulate().regular_faces].reshape(-1, 3) for s in surfaces])
 
 
-def _share(values: NDArray[np.float64], top: float) -> NDArray[np.float64]:
+def _byte_shares(values: NDArray[np.float64], top: float) -> NDArray[np.float64]:
     return np.asarray(np.round(255 * np.clip(values / top, 0, 1)))
 
 
-def packed(values: NDArray[Any], kind: type[np.generic]) -> str:
+def base64_array(values: NDArray[Any], kind: type[np.generic]) -> str:
     """Base64 of an array of this kind, little-endian."""
     kind_little = np.dtype(kind).newbyteorder("<")
     return base64.b64encode(np.ascontiguousarray(values, kind_little).tobytes()).decode("ascii")
@@ -162,5 +162,6 @@ def colour_maps() -> dict[str, str]:
 
     maps = {"colourMap": COLOUR_MAP, "diverging": DIVERGING}
     return {
-        name: packed(255 * matplotlib.colormaps[found](np.arange(256))[:, :3], np.uint8) for name, found in maps.items()
+        name: base64_array(255 * matplotlib.colormaps[found](np.arange(256))[:, :3], np.uint8)
+        for name, found in maps.items()
     }

@@ -16,38 +16,40 @@ from numpy.typing import NDArray
 
 from foundation.arrays import Floats, Ints
 
-BLOCK, SAMPLE = 1 << 17, 1 << 12  # bytes
-WORTH = 0.8  # of its size, to which a sample must shrink
-FASTEST = 1
-TYPES = {"f8": "Float64", "i8": "Int64", "i4": "Int32", "u1": "UInt8"}
+BLOCK_BYTES, SAMPLE_BYTES = 1 << 17, 1 << 12  # bytes
+WORTHWHILE_RATIO = 0.8  # of its size, to which a sample must shrink
+FASTEST_LEVEL = 1
+VTK_TYPES = {"f8": "Float64", "i8": "Int64", "i4": "Int32", "u1": "UInt8"}
 
 Arrays = Mapping[str, tuple[NDArray[Any], Sequence[str]]]
 """By name: values (n,) or (n, c), and what their components are called."""
 
 
-def encoded(values: NDArray[Any]) -> bytes:
+def encode_blocks(values: NDArray[Any]) -> bytes:
     """Base64 of the sizes of all blocks, then of the blocks: count, size, size of a last one that is shorter, sizes as
     compressed.
     """
     raw = np.ascontiguousarray(values, values.dtype.newbyteorder("<")).tobytes()
-    blocks = [_deflated(raw[start : start + BLOCK]) for start in range(0, len(raw), BLOCK)]
-    sizes = np.array([len(blocks), BLOCK, len(raw) % BLOCK, *map(len, blocks)], "<u4")
+    blocks = [_compress_block(raw[start : start + BLOCK_BYTES]) for start in range(0, len(raw), BLOCK_BYTES)]
+    sizes = np.array([len(blocks), BLOCK_BYTES, len(raw) % BLOCK_BYTES, *map(len, blocks)], "<u4")
     return b64encode(sizes.tobytes()) + b64encode(b"".join(blocks))
 
 
-def _deflated(block: bytes) -> bytes:
-    sample = block[:SAMPLE]
-    return zlib.compress(block, FASTEST if len(zlib.compress(sample, FASTEST)) < WORTH * len(sample) else 0)
+def _compress_block(block: bytes) -> bytes:
+    sample = block[:SAMPLE_BYTES]
+    return zlib.compress(
+        block, FASTEST_LEVEL if len(zlib.compress(sample, FASTEST_LEVEL)) < WORTHWHILE_RATIO * len(sample) else 0
+    )
 
 
 def data_array(name: str, values: NDArray[Any], components: Sequence[str] = (), tuples: bool = False) -> bytes:
     """One array as an element; components : their names. tuples : whether their number is told, as field data need."""
-    told = f'<DataArray type="{TYPES[values.dtype.str[1:]]}" Name={quoteattr(name)}'
+    told = f'<DataArray type="{VTK_TYPES[values.dtype.str[1:]]}" Name={quoteattr(name)}'
     if values.ndim > 1:
         told += f' NumberOfComponents="{values.shape[1]}"'
     told += "".join(f" ComponentName{k}={quoteattr(one)}" for k, one in enumerate(components))
     told += f' NumberOfTuples="{len(values)}"' if tuples else ""
-    return told.encode() + b' format="binary">\n' + encoded(values) + b"\n</DataArray>\n"
+    return told.encode() + b' format="binary">\n' + encode_blocks(values) + b"\n</DataArray>\n"
 
 
 class VtkGrid:
@@ -69,14 +71,14 @@ class VtkGrid:
             b'<?xml version="1.0"?>\n<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian" ',
             b'header_type="UInt32" compressor="vtkZLibDataCompressor">\n<UnstructuredGrid>\n<FieldData>\n',
             *(data_array(name, *array, tuples=True) for name, array in (field_data or {}).items()),
-            b"</FieldData>\n", piece.encode(), *_section("PointData", point_data, self._points),
-            *_section("CellData", cell_data, self._cells), *self._geometry,
+            b"</FieldData>\n", piece.encode(), *_data_section("PointData", point_data, self._points),
+            *_data_section("CellData", cell_data, self._cells), *self._geometry,
             b"</Piece>\n</UnstructuredGrid>\n</VTKFile>\n",
         ]  # fmt: skip
         path.write_bytes(b"".join(content))
 
 
-def _section(kind: str, arrays: Arrays, count: int) -> list[bytes]:
+def _data_section(kind: str, arrays: Arrays, count: int) -> list[bytes]:
     """All arrays of points or of cells; the first is what is shown at first."""
     for name, (values, _) in arrays.items():
         if len(values) != count:

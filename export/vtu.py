@@ -9,7 +9,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from export.dot_surface import placed_dot
-from export.nodal_values import split_nodes, spread
+from export.nodal_values import nodal_means, split_nodes
 from export.recovery import film_patches
 from export.skin import MM_PER_M, MPA_PER_PA, PC_PER_MM2_PER_C_PER_M2
 from export.vtk_xml import Arrays, VtkGrid
@@ -22,25 +22,25 @@ from solve.result import PressResult, Step
 TEMPLATE = Path(__file__).with_name("paraview_script.txt")
 
 
-def collection(files: Sequence[str], times: Sequence[float]) -> str:
+def pvd_text(files: Sequence[str], times: Sequence[float]) -> str:
     """The text of a PVD file: one data file for each time."""
     rows = [
         f'    <DataSet timestep="{time:.9g}" group="" part="0" file={quoteattr(file)}/>'
         for time, file in zip(times, files, strict=True)
     ]
-    return _index("Collection", "0.1", rows)
+    return _index_text("Collection", "0.1", rows)
 
 
-def multi_block(files: Mapping[str, str]) -> str:
+def vtm_text(files: Mapping[str, str]) -> str:
     """The text of a VTM file: block name -> data file."""
     rows = [
         f'    <DataSet index="{index}" name={quoteattr(name)} file={quoteattr(file)}/>'
         for index, (name, file) in enumerate(files.items())
     ]
-    return _index("vtkMultiBlockDataSet", "1.0", rows)
+    return _index_text("vtkMultiBlockDataSet", "1.0", rows)
 
 
-def _index(kind: str, version: str, rows: Sequence[str]) -> str:
+def _index_text(kind: str, version: str, rows: Sequence[str]) -> str:
     head = f'<?xml version="1.0"?>\n<VTKFile type="{kind}" version="{version}" byte_order="LittleEndian">'
     return "\n".join([head, f"  <{kind}>", *rows, f"  </{kind}>", "</VTKFile>", ""])
 
@@ -81,11 +81,11 @@ def write_results(tet_mesh: TetMesh, result: PressResult, dot_shape: DotShape, f
     stress and strain at nodes; show_in_paraview.py shows it all. The folder appears whole or not at all.
     """
     grids: dict[str, WriteStep] = {
-        "segment": _segment(tet_mesh),
-        "film": _film(tet_mesh),
-        "contact": _contact(tet_mesh),
+        "segment": _segment_writer(tet_mesh),
+        "film": _film_writer(tet_mesh),
+        "contact": _contact_writer(tet_mesh),
         "dot": lambda step, path: _write_dot(tet_mesh, dot_shape, step, path),
-        "parts": _parts(tet_mesh),
+        "parts": _parts_writer(tet_mesh),
     }
     suffixes, times = {"dot": "vtp", "parts": "vtm"}, step_times(result)
     with whole_folder(folder) as scratch:
@@ -93,7 +93,7 @@ def write_results(tet_mesh: TetMesh, result: PressResult, dot_shape: DotShape, f
             files = [f"{name}_{index:04d}.{suffixes.get(name, 'vtu')}" for index in range(len(result.steps))]
             for file, step in zip(files, result.steps, strict=True):
                 write(step, scratch / file)
-            (scratch / f"{name}.pvd").write_text(collection(files, times), encoding="utf-8")
+            (scratch / f"{name}.pvd").write_text(pvd_text(files, times), encoding="utf-8")
         (scratch / "show_in_paraview.py").write_text(paraview_script(tet_mesh, result), encoding="utf-8")
     return [folder / f"{name}.pvd" for name in grids]
 
@@ -108,7 +108,7 @@ def step_times(result: PressResult) -> list[float]:
     return [float(index) for index in range(len(depths))]
 
 
-def _segment(tet_mesh: TetMesh) -> WriteStep:
+def _segment_writer(tet_mesh: TetMesh) -> WriteStep:
     """The whole segment as quadratic tetrahedra."""
     grid, region = VtkGrid(tet_mesh.points_mm, tet_mesh.tets, QUADRATIC_TETRA), tet_mesh.region.astype(np.int32)
     names = {f"region_{name}": (np.array([number], np.int32), ()) for number, name in enumerate(tet_mesh.region_names)}
@@ -128,34 +128,34 @@ def _segment(tet_mesh: TetMesh) -> WriteStep:
     return write
 
 
-def _parts(tet_mesh: TetMesh) -> WriteStep:
+def _parts_writer(tet_mesh: TetMesh) -> WriteStep:
     """A block for each part, in a file of its own in the folder of their name; fields at nodes jump between parts."""
     split = split_nodes(tet_mesh)
-    own = [_compact(split.tets[tet_mesh.region == number]) for number in range(len(tet_mesh.region_names))]
+    own = [_compact_cells(split.tets[tet_mesh.region == number]) for number in range(len(tet_mesh.region_names))]
     grids = [VtkGrid(tet_mesh.points_mm[split.node[nodes]], tets, QUADRATIC_TETRA) for nodes, tets in own]
 
     def write(step: Step, path: Path) -> None:
         fields, folder = step.fields, path.with_suffix("")
         everywhere: Arrays = {
             "displacement_mm": (fields.displacement_m[split.node] * MM_PER_M, ()),
-            "nodal_von_mises_MPa": (spread(split, fields.von_mises_Pa) * MPA_PER_PA, ()),
-            "nodal_cauchy_stress_MPa": (spread(split, fields.cauchy_stress_Pa) * MPA_PER_PA, GLOBAL_AXES),
-            "nodal_green_lagrange_strain": (spread(split, fields.green_lagrange_strain), GLOBAL_AXES),
+            "nodal_von_mises_MPa": (nodal_means(split, fields.von_mises_Pa) * MPA_PER_PA, ()),
+            "nodal_cauchy_stress_MPa": (nodal_means(split, fields.cauchy_stress_Pa) * MPA_PER_PA, GLOBAL_AXES),
+            "nodal_green_lagrange_strain": (nodal_means(split, fields.green_lagrange_strain), GLOBAL_AXES),
         }
         files = [f"{folder.name}/{folder.name}_{index}.vtu" for index in range(len(grids))]
         folder.mkdir()
         for file, grid, (nodes, _) in zip(files, grids, own, strict=True):
             here = {name: (values[nodes], components) for name, (values, components) in everywhere.items()}
             grid.write(path.parent / file, here, {})
-        path.write_text(multi_block(dict(zip(tet_mesh.region_names, files, strict=True))), encoding="utf-8")
+        path.write_text(vtm_text(dict(zip(tet_mesh.region_names, files, strict=True))), encoding="utf-8")
 
     return write
 
 
-def _film(tet_mesh: TetMesh) -> WriteStep:
+def _film_writer(tet_mesh: TetMesh) -> WriteStep:
     """The film's tetrahedra alone, in the film's own axes."""
     patches, count = film_patches(tet_mesh), len(tet_mesh.points_mm)
-    nodes, tets = _compact(tet_mesh.tets[tet_mesh.region_tets("film")])
+    nodes, tets = _compact_cells(tet_mesh.tets[tet_mesh.region_tets("film")])
     grid = VtkGrid(tet_mesh.points_mm[nodes], tets, QUADRATIC_TETRA)
 
     def write(step: Step, path: Path) -> None:
@@ -175,9 +175,9 @@ def _film(tet_mesh: TetMesh) -> WriteStep:
     return write
 
 
-def _contact(tet_mesh: TetMesh) -> WriteStep:
+def _contact_writer(tet_mesh: TetMesh) -> WriteStep:
     """The skin that the dot can touch, as quadratic triangles."""
-    nodes, triangles = _compact(tet_mesh.facets["contact"])
+    nodes, triangles = _compact_cells(tet_mesh.facets["contact"])
     grid = VtkGrid(tet_mesh.points_mm[nodes], triangles, QUADRATIC_TRIANGLE)
 
     def write(step: Step, path: Path) -> None:
@@ -209,7 +209,7 @@ def _write_dot(tet_mesh: TetMesh, dot_shape: DotShape, step: Step, path: Path) -
     path.write_text(writer.GetOutputString(), encoding="utf-8")
 
 
-def _compact(cells: Ints) -> tuple[Ints, Ints]:
+def _compact_cells(cells: Ints) -> tuple[Ints, Ints]:
     """The nodes that the cells use, and the cells renumbered onto them."""
     nodes, renumbered = np.unique(cells, return_inverse=True)
     return nodes, renumbered.reshape(cells.shape)

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
-from export.view import DPI, INK, save
+from export.view import DPI, INK, save_png
 
-COLUMNS = 3
-UNITS = {"mm_per_s": "mm/s", "mm": "mm", "mV": "mV", "deg": "°", "N": "N", "um": "µm", "Hz": "Hz", "s": "s"}
+MOST_COLUMNS = 3
+UNIT_TEXTS = {"mm_per_s": "mm/s", "mm": "mm", "mV": "mV", "deg": "°", "N": "N", "um": "µm", "Hz": "Hz", "s": "s"}
 
 
 def draw_conditions(
@@ -20,9 +20,9 @@ def draw_conditions(
     """Of each condition its values with share of characters read, low and high. Writes a PNG."""
     from matplotlib.figure import Figure
 
-    lines = -(-len(curves) // COLUMNS)
+    lines = -(-len(curves) // MOST_COLUMNS)
     figure = Figure(figsize=(12.0, 3.2 * lines), dpi=DPI, facecolor="white", layout="constrained")
-    cells = figure.subplots(lines, COLUMNS, squeeze=False).flat
+    cells = figure.subplots(lines, MOST_COLUMNS, squeeze=False).flat
     for axes, (name, rows) in zip(cells, curves.items(), strict=False):
         value, share, low, high = np.array(rows).reshape(-1, 4).T
         error = 100.0 * (1.0 - share)
@@ -31,7 +31,7 @@ def draw_conditions(
         axes.axhline(100.0 * (1.0 - accuracy), color="#c0392b", lw=1.0, ls="--")
         if limits.get(name) is not None:
             axes.axvline(limits[name], color="#2a7f62", lw=1.2)
-        axes.set_xlabel(_named(name), fontsize=11, color=INK)
+        axes.set_xlabel(_axis_label(name), fontsize=11, color=INK)
         axes.set_ylabel("characters not read (%)", fontsize=10, color=INK)
         axes.grid(alpha=0.3)
         axes.spines[["top", "right"]].set_visible(False)
@@ -39,12 +39,12 @@ def draw_conditions(
         axes.set_ylim(-0.03 * top, top)
     for axes in list(figure.axes)[len(curves) :]:
         axes.set_axis_off()
-    save(figure, path)
+    save_png(figure, path)
 
 
-def _named(name: str) -> str:
+def _axis_label(name: str) -> str:
     """speed_mm_per_s -> speed (mm/s)."""
-    for ending, unit in UNITS.items():
+    for ending, unit in UNIT_TEXTS.items():
         if name.endswith(f"_{ending}"):
             return f"{name.removesuffix(f'_{ending}').replace('_', ' ')} ({unit})"
     return name.replace("_", " ")

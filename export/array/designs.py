@@ -9,13 +9,13 @@ import numpy as np
 
 from export.page import page_environment
 from export.report import number
-from export.view import DPI, INK, save
+from export.view import DPI, INK, save_png
 from foundation.files import write_whole_text
 
 HERE = Path(__file__).parent
-TRIED, FRONT, BEST = "#9aa5b1", "#2a7f62", "#c0392b"
-NAMED = ("#2b62a8", "#c98a1b", "#7a4fa3", "#3f8f9c", "#8c5a3c")
-MARKERS = ("s", "^", "v", "P", "X")
+TRIED_COLOUR, FRONT_COLOUR, BEST_COLOUR = "#9aa5b1", "#2a7f62", "#c0392b"
+COMPARED_COLOURS = ("#2b62a8", "#c98a1b", "#7a4fa3", "#3f8f9c", "#8c5a3c")
+COMPARED_MARKERS = ("s", "^", "v", "P", "X")
 LINEAR_PERCENT = 0.3
 """Below this the axis of errors is linear, so that none at all can be drawn."""
 
@@ -31,14 +31,14 @@ def draw_designs(designs: Sequence[Mapping[str, Any]], accuracy: float, path: Pa
     errors, trade = figure.subplots(1, 2)
     styles = _styles(designs)
     for design in sorted(designs, key=lambda one: styles[one["name"]]["zorder"]):
-        _curve(errors, design, styles[design["name"]])
-        _point(trade, design, styles[design["name"]])
+        _draw_curve(errors, design, styles[design["name"]])
+        _draw_least_force(trade, design, styles[design["name"]])
     errors.axhline(100.0 * (1.0 - accuracy), color=INK, lw=1.0, ls="--")
     errors.set_yscale("symlog", linthresh=LINEAR_PERCENT, linscale=0.4)
     errors.set_yticks([0.0, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0], ["0", "0.3", "1", "3", "10", "30", "100"])
     errors.set_ylim(-0.05, 130.0)
     errors.set_ylabel("characters not read (%)", fontsize=11, color=INK)
-    _front(trade, designs)
+    _draw_front(trade, designs)
     trade.set_yscale("log")
     trade.set_ylabel("largest crosstalk (%)", fontsize=11, color=INK)
     for axes, title in ((errors, "Each design at several depths"), (trade, "At the least force that is enough")):
@@ -47,13 +47,13 @@ def draw_designs(designs: Sequence[Mapping[str, Any]], accuracy: float, path: Pa
         axes.set_title(title, fontsize=12, color=INK)
         axes.grid(alpha=0.3, which="both")
         axes.spines[["top", "right"]].set_visible(False)
-        _plain(axes.xaxis)
-    _plain(trade.yaxis)
+        _set_plain_ticks(axes.xaxis)
+    _set_plain_ticks(trade.yaxis)
     figure.legend(*trade.get_legend_handles_labels(), fontsize=9.5, frameon=False, loc="outside lower center", ncols=3)
-    save(figure, path)
+    save_png(figure, path)
 
 
-def _plain(axis: Any) -> None:
+def _set_plain_ticks(axis: Any) -> None:
     """Plain numbers, three to a power of ten."""
     from matplotlib.ticker import LogLocator, NullFormatter
 
@@ -64,19 +64,24 @@ def _plain(axis: Any) -> None:
 
 def _styles(designs: Sequence[Mapping[str, Any]]) -> dict[str, dict[str, Any]]:
     """By name of the design: colour, marker, label, and what lies above what."""
-    compared = iter([(NAMED[k % len(NAMED)], MARKERS[k % len(MARKERS)]) for k in range(len(designs))])
+    compared = iter(
+        [
+            (COMPARED_COLOURS[k % len(COMPARED_COLOURS)], COMPARED_MARKERS[k % len(COMPARED_MARKERS)])
+            for k in range(len(designs))
+        ]
+    )
     found: dict[str, dict[str, Any]] = {}
     for design in designs:
-        colour, marker, label, zorder = TRIED, "o", None, 2
+        colour, marker, label, zorder = TRIED_COLOUR, "o", None, 2
         if design["compared"]:
             (colour, marker), label, zorder = next(compared), design["name"], 4
         if design["best"]:
-            colour, label, zorder = BEST, f"least force: {design['name']}", 5
+            colour, label, zorder = BEST_COLOUR, f"least force: {design['name']}", 5
         found[design["name"]] = {"color": colour, "marker": marker, "label": label, "zorder": zorder}
     return found
 
 
-def _curve(axes: Any, design: Mapping[str, Any], style: Mapping[str, Any]) -> None:
+def _draw_curve(axes: Any, design: Mapping[str, Any], style: Mapping[str, Any]) -> None:
     points = [
         (1e3 * one["mean_force_N"], 100.0 * (1.0 - one["accuracy"]))
         for one in design["readings"]
@@ -87,23 +92,23 @@ def _curve(axes: Any, design: Mapping[str, Any], style: Mapping[str, Any]) -> No
         axes.plot(*np.array(points).T, "-", lw=wide, ms=3.5, alpha=0.85, **{**style, "label": None})
 
 
-def _point(axes: Any, design: Mapping[str, Any], style: Mapping[str, Any]) -> None:
+def _draw_least_force(axes: Any, design: Mapping[str, Any], style: Mapping[str, Any]) -> None:
     least = design["least"]
     if least is not None:
         axes.plot(1e3 * least["mean_force_N"], least["crosstalk_percent"], ls="none", ms=8, **style)
 
 
-def _front(axes: Any, designs: Sequence[Mapping[str, Any]]) -> None:
+def _draw_front(axes: Any, designs: Sequence[Mapping[str, Any]]) -> None:
     """Designs of which no other has less of both, joined by steps."""
     front = sorted(
         (1e3 * one["least"]["mean_force_N"], one["least"]["crosstalk_percent"]) for one in designs if one["front"]
     )
     if front:
         force, crosstalk = np.array(front).T
-        axes.step(force, crosstalk, where="post", color=FRONT, lw=1.4, zorder=1, label="Pareto front")
+        axes.step(force, crosstalk, where="post", color=FRONT_COLOUR, lw=1.4, zorder=1, label="Pareto front")
 
 
-COLUMNS = (
+TABLE_COLUMNS = (
     ("depth_mm", "depth (mm)", 1.0),
     ("mean_force_N", "mean force (mN)", 1e3),
     ("peak_force_N", "peak force (mN)", 1e3),
@@ -121,34 +126,37 @@ def write_designs_page(path: Path, summary: Mapping[str, Any], picture: Path) ->
     """
     page = page_environment(HERE).get_template("designs.html").render(
         s=summary,
-        heads=[head for _, head, _ in COLUMNS],
-        read=[(one, _cells(one["least"])) for one in _by_force(summary["designs"])],
+        heads=[head for _, head, _ in TABLE_COLUMNS],
+        read=[(one, _row_texts(one["least"])) for one in _sorted_by_force(summary["designs"])],
         silent=[one for one in summary["designs"] if one["status"] == "solved" and one["least"] is None],
         failed=[one for one in summary["designs"] if one["status"] != "solved"],
-        worded=worded,
+        value_text=value_text,
         picture=base64.b64encode(picture.read_bytes()).decode("ascii"),
     )  # fmt: skip
     write_whole_text(path, page)
 
 
-def _by_force(designs: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+def _sorted_by_force(designs: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
     read = [one for one in designs if one["least"] is not None]
     return sorted(read, key=lambda one: float(one["least"]["mean_force_N"]))
 
 
-def _cells(least: Mapping[str, Any]) -> list[str]:
-    numbers = [(scale * least[key], scale == 100.0) for key, _, scale in COLUMNS]
+def _row_texts(least: Mapping[str, Any]) -> list[str]:
+    numbers = [(scale * least[key], scale == 100.0) for key, _, scale in TABLE_COLUMNS]
     return [f"{value:.2f}" if share else number(value, 3) for value, share in numbers]
 
 
-def worded(value: Any) -> str:
+def value_text(value: Any) -> str:
     """A value of an axis for people: tables and lists without brackets.
 
-    >>> worded({"shape": "layer", "height_mm": 0.4})
+    >>> value_text({"shape": "layer", "height_mm": 0.4})
     'shape layer, height_mm 0.4'
     """
     if isinstance(value, Mapping):
-        return ", ".join(f"{key} {worded(inner)}" for key, inner in value.items())
+        return ", ".join(f"{key} {value_text(inner)}" for key, inner in value.items())
     if isinstance(value, list | tuple):
-        return " + ".join(f"({worded(one)})" if isinstance(one, Mapping) else worded(one) for one in value) or "none"
+        return (
+            " + ".join(f"({value_text(one)})" if isinstance(one, Mapping) else value_text(one) for one in value)
+            or "none"
+        )
     return str(number(value)) if isinstance(value, int | float) else str(value)

@@ -9,20 +9,20 @@ from typing import Any
 
 import numpy as np
 
-from export.view import DIVERGING, DPI, INK, save
+from export.view import DIVERGING, DPI, INK, save_png
 from foundation.arrays import Floats
 from geometry.array.layout import ArrayLayout
 
-MOST_NAMED = 20
+MOST_LABELLED = 20
 """Of more segments the matrix has no room for numbers and labels."""
-COLUMNS, WIDE, MAP_IN = 3, 1.5, 4.0
+MOST_COLUMNS, WIDE_RATIO, MAP_SIZE_IN = 3, 1.5, 4.0
 """Maps side by side at most, arrays that are so much longer than wide one below the other, and the size of one."""
-FULL, TICKS = 100.0, (-100, -10, -1, 0, 1, 10, 100)
+FULL_SCALE_PERCENT, TICKS_PERCENT = 100.0, (-100, -10, -1, 0, 1, 10, 100)
 DARK_PERCENT = 7.0
 """Colours of more are so dark that numbers on them are white."""
 LINEAR_PERCENT = 1.0
 """Below this colours are linear, above logarithmic: a neighbour's tenth and a far segment's hundredth both show."""
-LEVELS = 21
+KERNEL_LEVELS = 21
 """Of the colours of a kernel."""
 
 
@@ -34,20 +34,20 @@ def draw_matrix(labels: Sequence[str], crosstalk_percent: Floats, path: Path) ->
     side = min(12.0, 3.2 + 0.62 * count)
     figure = Figure(figsize=(side + 1.2, side), dpi=DPI, facecolor="white", layout="constrained")
     axes = figure.subplots()
-    image = axes.imshow(crosstalk_percent, cmap=DIVERGING, norm=_norm())
-    if count <= MOST_NAMED:
+    image = axes.imshow(crosstalk_percent, cmap=DIVERGING, norm=_colour_norm())
+    if count <= MOST_LABELLED:
         short = [label.removeprefix("segment-") for label in labels]
         axes.set_xticks(range(count), short, fontsize=10, rotation=90 if count > 8 else 0)
         axes.set_yticks(range(count), short, fontsize=10)
         size = 9 if count < 9 else 7
         for (i, j), share in np.ndenumerate(crosstalk_percent):
             colour = "white" if abs(share) > DARK_PERCENT else INK
-            axes.text(j, i, _percent(share), ha="center", va="center", fontsize=size, color=colour)
+            axes.text(j, i, _percent_text(share), ha="center", va="center", fontsize=size, color=colour)
     axes.set_xlabel("segment that is read", fontsize=12, color=INK)
     axes.set_ylabel("segment that is pressed", fontsize=12, color=INK)
     axes.set_title("Crosstalk in % of the pressed segment's voltage", fontsize=13, color=INK)
-    _bar(figure, image, axes, shrink=0.8)
-    save(figure, path)
+    _draw_colour_bar(figure, image, axes, shrink=0.8)
+    save_png(figure, path)
 
 
 def draw_maps(layout: ArrayLayout, pressed: Sequence[int], crosstalk_percent: Floats, path: Path) -> None:
@@ -56,13 +56,13 @@ def draw_maps(layout: ArrayLayout, pressed: Sequence[int], crosstalk_percent: Fl
     from matplotlib.patches import Circle, Rectangle
 
     half_x, half_y = layout.half_mm
-    columns = 1 if half_x > WIDE * half_y else min(COLUMNS, ceil(sqrt(len(pressed))))
+    columns = 1 if half_x > WIDE_RATIO * half_y else min(MOST_COLUMNS, ceil(sqrt(len(pressed))))
     lines = -(-len(pressed) // columns)
-    wide = MAP_IN * min(1.0, half_x / half_y) if columns > 1 else 2 * MAP_IN
-    size = (max(columns * wide + 1.0, MAP_IN + 1.0), lines * (wide * half_y / half_x + 0.75) + 1.2)
+    wide = MAP_SIZE_IN * min(1.0, half_x / half_y) if columns > 1 else 2 * MAP_SIZE_IN
+    size = (max(columns * wide + 1.0, MAP_SIZE_IN + 1.0), lines * (wide * half_y / half_x + 0.75) + 1.2)
     figure = Figure(figsize=size, dpi=DPI, facecolor="white", layout="constrained")
     cells = figure.subplots(lines, columns, squeeze=False)
-    norm, x_size, y_size = _norm(), *layout.size_mm
+    norm, x_size, y_size = _colour_norm(), *layout.size_mm
     for cell in cells.flat:
         cell.set_axis_off()
     image: Any = None
@@ -71,9 +71,9 @@ def draw_maps(layout: ArrayLayout, pressed: Sequence[int], crosstalk_percent: Fl
         cell.set_facecolor("#eef1f4")
         for place, share in zip(layout.places, crosstalk_percent[number], strict=True):
             corner = (place.x_mm - x_size / 2, place.y_mm - y_size / 2)
-            image = _colours(norm)
+            image = _colour_mapping(norm)
             cell.add_patch(Rectangle(corner, x_size, y_size, facecolor=image.to_rgba(share), edgecolor=INK, lw=0.7))
-            cell.text(place.x_mm, place.y_mm + 0.3 * y_size, f"{_percent(share)} %", ha="center", va="center",
+            cell.text(place.x_mm, place.y_mm + 0.3 * y_size, f"{_percent_text(share)} %", ha="center", va="center",
                       fontsize=9, color="white" if abs(share) > DARK_PERCENT else INK)  # fmt: skip
         at = layout.places[number]
         cell.add_patch(Circle((at.x_mm, at.y_mm), 0.13 * min(x_size, y_size), facecolor=INK))
@@ -84,8 +84,8 @@ def draw_maps(layout: ArrayLayout, pressed: Sequence[int], crosstalk_percent: Fl
         cell.set_xlabel("x (mm)", fontsize=10, color=INK)
     for line in cells:
         line[0].set_ylabel("y (mm)", fontsize=10, color=INK)
-    _bar(figure, image, list(cells.flat), location="bottom", aspect=30)
-    save(figure, path)
+    _draw_colour_bar(figure, image, list(cells.flat), location="bottom", aspect=30)
+    save_png(figure, path)
 
 
 def draw_growth(
@@ -110,7 +110,7 @@ def draw_growth(
         axes.grid(alpha=0.3)
         axes.spines[["top", "right"]].set_visible(False)
         axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]), top=axes.get_ylim()[1] * 1.05)
-    save(figure, path)
+    save_png(figure, path)
 
 
 def draw_kernel(
@@ -123,8 +123,8 @@ def draw_kernel(
     figure = Figure(figsize=(9.0, 5.6), dpi=DPI, facecolor="white", layout="constrained")
     largest = float(np.abs(charge_pC).max())
     maps = (
-        (f"Charge of {title}, pC", charge_pC, DIVERGING, np.linspace(-largest, largest, LEVELS)),
-        ("Force, N", force_N, "viridis", np.linspace(0.0, float(force_N.max()), LEVELS)),
+        (f"Charge of {title}, pC", charge_pC, DIVERGING, np.linspace(-largest, largest, KERNEL_LEVELS)),
+        ("Force, N", force_N, "viridis", np.linspace(0.0, float(force_N.max()), KERNEL_LEVELS)),
     )
     for axes, (name, values, colours, levels) in zip(figure.subplots(1, 2), maps, strict=True):
         image = axes.contourf(x_mm, y_mm, values.T, levels=levels, cmap=colours)
@@ -134,28 +134,28 @@ def draw_kernel(
         axes.set(aspect="equal", xlabel="x of the dot (mm)", ylabel="y of the dot (mm)")
         axes.set_title(name, fontsize=11, color=INK)
         figure.colorbar(image, ax=axes, shrink=0.85)
-    save(figure, path)
+    save_png(figure, path)
 
 
-def _norm() -> Any:
+def _colour_norm() -> Any:
     from matplotlib.colors import SymLogNorm
 
-    return SymLogNorm(LINEAR_PERCENT, linscale=0.6, vmin=-FULL, vmax=FULL, base=10)
+    return SymLogNorm(LINEAR_PERCENT, linscale=0.6, vmin=-FULL_SCALE_PERCENT, vmax=FULL_SCALE_PERCENT, base=10)
 
 
-def _colours(norm: Any) -> Any:
+def _colour_mapping(norm: Any) -> Any:
     from matplotlib.cm import ScalarMappable
 
     return ScalarMappable(norm, DIVERGING)
 
 
-def _bar(figure: Any, image: Any, axes: Any, **how: Any) -> None:
-    bar = figure.colorbar(image, ax=axes, ticks=list(TICKS), **how)
-    bar.set_ticklabels([f"{tick}".replace("-", "−") for tick in TICKS])
+def _draw_colour_bar(figure: Any, image: Any, axes: Any, **how: Any) -> None:
+    bar = figure.colorbar(image, ax=axes, ticks=list(TICKS_PERCENT), **how)
+    bar.set_ticklabels([f"{tick}".replace("-", "−") for tick in TICKS_PERCENT])
     bar.set_label("% of the pressed segment's voltage", fontsize=10, color=INK)
 
 
-def _percent(value: float) -> str:
+def _percent_text(value: float) -> str:
     """Three digits at most: 100, 13.1, -0.40."""
     if not np.isfinite(value):
         return "–"

@@ -29,7 +29,7 @@ MOST_BINS = 80_000
 """Times and positions, 32-bit numbers in base64: 0.9 MB."""
 FULL_SCALE = 32767
 MOST_CONFUSED = 24
-LENGTHS = {
+SIGNALS_OF_EQUAL_LENGTH = {
     "t": ("time_s", "position_mm"),
     "c": ("cell_x_mm", "cell_true", "cell_read", "read_time_s"),
     "m": ("dot_x_mm", "dot_y_mm", "dot_height_mm"),
@@ -47,16 +47,16 @@ def write_reading_page(path: Path, reading: Mapping[str, Any], signals: Mapping[
     (m,) of all dots, y counting down the rows from the middle of the array, as the rows of the array do.
     InputError for signals that are missing, not finite, or of another shape.
     """
-    _check(reading, signals)
+    _check_signals(reading, signals)
     environment = page_environment(HERE)
-    environment.filters.update(worded=worded, number=number, visible=_visible)
+    environment.filters.update(key_text=key_text, number=number, visible_text=_visible_text)
     script = (HERE / "reading.js").read_text("utf-8")
     page = environment.get_template("reading.html").render(
         r=reading,
-        confused=_confused(reading),
+        confused=_frequent_confusions(reading),
         most=MOST_CONFUSED,
-        cells=_cells(signals),
-        texts=differing(str(reading["text_true"]), str(reading["text_read"])),
+        cells=_cell_texts(signals),
+        texts=text_differences(str(reading["text_true"]), str(reading["text_read"])),
         data=script_safe(json.dumps(player_data(reading, signals), allow_nan=False)),
         script=script,
         script_hash=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode("ascii"),
@@ -64,14 +64,14 @@ def write_reading_page(path: Path, reading: Mapping[str, Any], signals: Mapping[
     write_whole_text(path, page)
 
 
-def _check(reading: Mapping[str, Any], signals: Mapping[str, NDArray[Any]]) -> None:
-    for name in ["voltage_V", *(name for names in LENGTHS.values() for name in names)]:
+def _check_signals(reading: Mapping[str, Any], signals: Mapping[str, NDArray[Any]]) -> None:
+    for name in ["voltage_V", *(name for names in SIGNALS_OF_EQUAL_LENGTH.values() for name in names)]:
         if name not in signals:
             raise InputError(f"signals of a reading: {name} is missing")
         numbers = np.asarray(signals[name])
         if numbers.dtype.kind == "f" and not np.isfinite(numbers).all():
             raise InputError(f"signals of a reading: {name} must be finite")
-    for first, *others in LENGTHS.values():
+    for first, *others in SIGNALS_OF_EQUAL_LENGTH.values():
         expected = np.shape(signals[first])
         for name in others:
             if np.shape(signals[name]) != expected or len(expected) != 1:
@@ -95,7 +95,7 @@ class BinnedVoltages:
     high_V: Floats | None
 
 
-def binned(time_s: Floats, position_mm: Floats, voltage_V: Floats) -> BinnedVoltages:
+def bin_voltages(time_s: Floats, position_mm: Floats, voltage_V: Floats) -> BinnedVoltages:
     """Bins of equally many samples, of the last one fewer, so few that they fit into the page."""
     count, channels = voltage_V.shape
     if count <= MOST_BINS and count * channels <= MOST_VALUES:
@@ -114,64 +114,64 @@ def player_data(reading: Mapping[str, Any], signals: Mapping[str, NDArray[Any]])
     32767ths. Dots are sorted by x.
     """
     kernel = reading["kernel"]
-    bins = binned(*(np.asarray(signals[name], np.float64) for name in ("time_s", "position_mm", "voltage_V")))
+    bins = bin_voltages(*(np.asarray(signals[name], np.float64) for name in ("time_s", "position_mm", "voltage_V")))
     top = float(np.abs(signals["voltage_V"]).max()) or 1.0
     order = np.argsort(signals["dot_x_mm"], kind="stable")
     size = np.broadcast_to(np.asarray(kernel["size_mm"], np.float64), 2)
     return {
-        "time": _packed(bins.time_s, "<f4"),
-        "position": _packed(bins.position_mm, "<f4"),
-        "low": _packed(np.rint(FULL_SCALE * bins.low_V.T / top), "<i2"),
-        "high": None if bins.high_V is None else _packed(np.rint(FULL_SCALE * bins.high_V.T / top), "<i2"),
+        "time": _base64_text(bins.time_s, "<f4"),
+        "position": _base64_text(bins.position_mm, "<f4"),
+        "low": _base64_text(np.rint(FULL_SCALE * bins.low_V.T / top), "<i2"),
+        "high": None if bins.high_V is None else _base64_text(np.rint(FULL_SCALE * bins.high_V.T / top), "<i2"),
         "top": top,
         "labels": [short_label(label) for label in kernel["labels"]],
-        "centres": _rounded(kernel["centres_mm"]),
-        "size": _rounded(size),
+        "centres": _rounded_list(kernel["centres_mm"]),
+        "size": _rounded_list(size),
         "dot": {"base": kernel["dot"]["base_diameter_mm"], "height": kernel["dot"]["height_mm"]},
-        "dots": [_rounded(np.asarray(signals[name])[order]) for name in LENGTHS["m"]],
-        "cellX": _rounded(signals["cell_x_mm"]),
-        "readTime": _rounded(signals["read_time_s"]),
+        "dots": [_rounded_list(np.asarray(signals[name])[order]) for name in SIGNALS_OF_EQUAL_LENGTH["m"]],
+        "cellX": _rounded_list(signals["cell_x_mm"]),
+        "readTime": _rounded_list(signals["read_time_s"]),
     }
 
 
-def _packed(values: Floats, kind: str) -> str:
+def _base64_text(values: Floats, kind: str) -> str:
     return base64.b64encode(np.ascontiguousarray(values, dtype=kind).tobytes()).decode("ascii")
 
 
-def _rounded(values: Any) -> Any:
+def _rounded_list(values: Any) -> Any:
     return np.round(np.asarray(values, np.float64), 4).tolist()
 
 
-def _cells(signals: Mapping[str, NDArray[Any]]) -> list[tuple[str, str]]:
+def _cell_texts(signals: Mapping[str, NDArray[Any]]) -> list[tuple[str, str]]:
     """What each cell is and what was read; a blank cell as one that can be seen."""
     pairs = zip(signals["cell_true"], signals["cell_read"], strict=True)
-    return [(_visible(str(true)), _visible(str(read))) for true, read in pairs]
+    return [(_visible_text(str(true)), _visible_text(str(read))) for true, read in pairs]
 
 
-def _confused(reading: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+def _frequent_confusions(reading: Mapping[str, Any]) -> list[Mapping[str, Any]]:
     """What was taken for what, most frequent first."""
     wrong = [one for one in reading["confusion"] if one["true"] != one["read"] and one["count"]]
     return sorted(wrong, key=lambda one: -one["count"])
 
 
-def _visible(character: str) -> str:
+def _visible_text(character: str) -> str:
     return {" ": "\u2423", "\u2800": "\u2423", "": "\u2013"}.get(character, character)
 
 
-def differing(true: str, read: str) -> list[tuple[str, str]]:
+def text_differences(true: str, read: str) -> list[tuple[str, str]]:
     """The text that was read in pieces (true, read); the two are equal in a piece that was read correctly.
 
-    >>> differing("one dot", "one bot")
+    >>> text_differences("one dot", "one bot")
     [('one ', 'one '), ('d', 'b'), ('ot', 'ot')]
     """
     pieces = SequenceMatcher(None, true, read, autojunk=False).get_opcodes()
     return [(true[a:b], read[c:d]) for _, a, b, c, d in pieces]
 
 
-def worded(key: str) -> str:
+def key_text(key: str) -> str:
     """A key for people.
 
-    >>> worded("speed_mm_per_s")
+    >>> key_text("speed_mm_per_s")
     'speed mm/s'
     """
     return key.replace("_per_", "/").replace("_", " ")

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from export.view import DPI, INK, save
+from export.view import DPI, INK, save_png
 from geometry.braille_cells import COLUMN_AND_ROW
 
 CELLS_SHOWN = 16
-RIGHT, WRONG = "#1f77b4", "#c0392b"
+RIGHT_COLOUR, WRONG_COLOUR = "#1f77b4", "#c0392b"
 
 
 def draw_signals(signals: Mapping[str, Any], labels: Sequence[str], path: Path) -> None:
@@ -39,7 +39,7 @@ def draw_signals(signals: Mapping[str, Any], labels: Sequence[str], path: Path) 
     rows[-1].set_xlabel("time (s)", fontsize=11, color=INK)
     rows[-1].set_xlim(low, high)
     figure.supylabel("voltage (mV)", fontsize=11, color=INK)
-    save(figure, path)
+    save_png(figure, path)
 
 
 def _draw_cells(axes: Any, signals: Mapping[str, Any], shown: slice, pitch_s: float) -> None:
@@ -54,6 +54,6 @@ def _draw_cells(axes: Any, signals: Mapping[str, Any], shown: slice, pitch_s: fl
             found = read >= 0 and bool(read >> (dot - 1) & 1)
             if not found and (true < 0 or not written):
                 continue
-            colour = RIGHT if written else WRONG
+            colour = RIGHT_COLOUR if written else WRONG_COLOUR
             place = time + 0.3 * pitch_s * (column - 0.5)
-            axes.plot([place], [row], "o", ms=6, mfc=colour if found else "none", mec=colour if found else WRONG)
+            axes.plot([place], [row], "o", ms=6, mfc=colour if found else "none", mec=colour if found else WRONG_COLOUR)

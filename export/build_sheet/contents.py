@@ -18,7 +18,7 @@ from geometry.flat.spacers import spaced_layers
 from geometry.parameters import Segment
 from geometry.stack import Box, Disc, Dome, Layer, bodies, layers
 
-NAMES = {"medium1": "medium 1", "medium2": "medium 2"}
+MEDIUM_NAMES = {"medium1": "medium 1", "medium2": "medium 2"}
 RESIN_G_CM3 = 1.15
 """Density of a printed part, about: resins 1.1 to 1.2, PLA 1.24."""
 
@@ -71,17 +71,17 @@ class Contents:
         return [self.frame.frame.point_in_device(place) for place in self.frame.centers]
 
     @property
-    def stacked(self) -> dict[str, float]:
+    def stacked_tops_mm(self) -> dict[str, float]:
         """Name -> height over the floor of the jig of the layers that are stacked in it."""
         return stacked_tops(self.device, self.fabrication)
 
     @property
-    def in_jig(self) -> Device:
+    def jig_device(self) -> Device:
         """What is stacked in the jig at once."""
         return jig_device(self.device, self.fabrication)
 
     @property
-    def spaced(self) -> list[str]:
+    def spaced_layers(self) -> list[str]:
         """Layers of islands that strips keep apart while they are bonded."""
         return spaced_layers(self.device)
 
@@ -95,14 +95,14 @@ class Contents:
         return next((part for part in self.solid.parts if part.label == label), None)
 
 
-def spoken(name: str) -> str:
+def layer_title(name: str) -> str:
     """A layer as people say it, in a table."""
-    return NAMES.get(name, name)
+    return MEDIUM_NAMES.get(name, name)
 
 
-def in_words(name: str) -> str:
+def layer_in_sentence(name: str) -> str:
     """A layer as people say it, in a sentence."""
-    return NAMES.get(name, f"the {name}")
+    return MEDIUM_NAMES.get(name, f"the {name}")
 
 
 @dataclass(frozen=True)
@@ -128,9 +128,9 @@ class Component:
     mass_mg: float
 
 
-def bill(contents: Contents) -> list[Item]:
+def bill_of_materials(contents: Contents) -> list[Item]:
     """All that has to be there before the work begins."""
-    return [*_cast(contents), *_flat(contents), *_printed(contents), *_small(contents)]
+    return [*_casting_items(contents), *_sheet_items(contents), *_printing_items(contents), *_small_items(contents)]
 
 
 def components(contents: Contents) -> list[Component]:
@@ -149,19 +149,21 @@ def components(contents: Contents) -> list[Component]:
         effector = contents.segment.effector
         around = layer.name == "effector" and effector is not None and effector.shape in ("cylinder", "dome")
         wide = f"{size.X:.4g} mm across" if around else f"{size.X:.4g} × {size.Y:.4g} mm"
-        size_text = f"{wide}, {thick}{' high' if around else ''}{_grooved(contents, layer.name)}"
+        size_text = f"{wide}, {thick}{' high' if around else ''}{_grooves_text(contents, layer.name)}"
         pieces = contents.device.piece_count(layer.name)
-        found.append(Component(spoken(layer.name), pieces, layer.material, made, size_text, volume, density * volume))
+        found.append(
+            Component(layer_title(layer.name), pieces, layer.material, made, size_text, volume, density * volume)
+        )
     return found
 
 
-def _grooved(contents: Contents, name: str) -> str:
+def _grooves_text(contents: Contents, name: str) -> str:
     """The grooves of a layer, to follow its size."""
     grooves = contents.device.layout.grooves(name)
     return "".join(f", grooves {one.width_mm:g} mm wide and {one.depth_mm:g} mm deep" for one in grooves)
 
 
-def _cast(contents: Contents) -> list[Item]:
+def _casting_items(contents: Contents) -> list[Item]:
     """Both components of every mix; a material that is poured twice stands once."""
     masses: dict[tuple[str, str], float] = {}
     for pour in contents.solid.pours:
@@ -169,12 +171,12 @@ def _cast(contents: Contents) -> list[Item]:
             masses[pour.recipe, name] = masses.get((pour.recipe, name), 0.0) + mass
     pours = {recipe: [p.component for p in contents.solid.pours if p.recipe == recipe] for recipe, _ in masses}
     return [
-        Item(f"{recipe}, component {name}", "", mass, f"to cast {', '.join(map(spoken, pours[recipe]))}")
+        Item(f"{recipe}, component {name}", "", mass, f"to cast {', '.join(map(layer_title, pours[recipe]))}")
         for (recipe, name), mass in masses.items()
     ]
 
 
-def _flat(contents: Contents) -> list[Item]:
+def _sheet_items(contents: Contents) -> list[Item]:
     """Sheets with the size of the panel of each."""
     sheets: dict[tuple[str, float], list[FlatPattern]] = {}
     for pattern in contents.flat.patterns:
@@ -183,11 +185,11 @@ def _flat(contents: Contents) -> list[Item]:
     for (material, thickness), patterns in sheets.items():
         thick = f"{1e3 * thickness:.3g} µm" if thickness < 0.2 else f"{thickness:.4g} mm"
         used = ", ".join(pattern.name for pattern in patterns)
-        found.append(Item(f"{material}, {thick}", _pieces(patterns), None, f"cut/: {used}"))
+        found.append(Item(f"{material}, {thick}", _pieces_text(patterns), None, f"cut/: {used}"))
     return found
 
 
-def _pieces(patterns: list[FlatPattern]) -> str:
+def _pieces_text(patterns: list[FlatPattern]) -> str:
     """How many of which size, in mm."""
     counts: dict[str, int] = {}
     for pattern in patterns:
@@ -196,14 +198,14 @@ def _pieces(patterns: list[FlatPattern]) -> str:
     return ", ".join(f"{count} of {size}" for size, count in counts.items())
 
 
-def _printed(contents: Contents) -> list[Item]:
+def _printing_items(contents: Contents) -> list[Item]:
     volume = sum(part.copies * part.volume_mm3 for part in contents.solid.parts) / 1e3
     count = sum(part.copies for part in contents.solid.parts)
     kind = "SLA resin" if contents.fabrication.printer == "sla" else "filament"
     return [Item(kind, f"{volume:.1f} cm³", RESIN_G_CM3 * volume, f"{count} printed parts, supports not counted")]
 
 
-def _small(contents: Contents) -> list[Item]:
+def _small_items(contents: Contents) -> list[Item]:
     """Screws, pins, contacts and what the moulds need."""
     made, found = contents.fabrication, []
     if contents.part("frame-ring") is not None:
@@ -214,7 +216,7 @@ def _small(contents: Contents) -> list[Item]:
         found.append(Item(f"screws for {hole:g} mm holes, each with a nut", length, None, "close the frame"))
     found += [
         Item(f"dowel pins of {made.pin_diameter_mm:g} mm", "2", None, "registration holes of film, masks and rings"),
-        _contacts(contents),
+        _contact_item(contents),
         Item("cable tie, at most 1.5 × 3 mm", "1", None, "holds the tab on the shelf"),
     ]
     if contents.solid.pours:
@@ -235,19 +237,21 @@ def _small(contents: Contents) -> list[Item]:
     return found
 
 
-FINEST_CRIMP_MM = 2.0
+FINEST_CRIMP_PITCH_MM = 2.0
 
 
-def _contacts(contents: Contents) -> Item:
+def _contact_item(contents: Contents) -> Item:
     """Of the pads: a common electrode lies on the other face, so a connector needs contacts on both."""
     count, pitch = len(contents.flat.metals), contents.fabrication.pad_pitch_mm
-    if pitch >= FINEST_CRIMP_MM:
+    if pitch >= FINEST_CRIMP_PITCH_MM:
         return Item("crimp contacts, or copper tape with conductive glue", f"{count}", None, "pads")
     what = f"ZIF connector, {pitch:g} mm pitch, contacts on both faces, and a stiffener for the head"
     return Item(what, f"1 of {count} contacts", None, "pads")
 
 
-GAUGE = "Use a thickness gauge that barely presses, or a microscope with a scale: a calliper squeezes soft rubber."
+GAUGE_ADVICE = (
+    "Use a thickness gauge that barely presses, or a microscope with a scale: a calliper squeezes soft rubber."
+)
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from export.build_sheet.contents import RESIN_G_CM3, Contents, bill, components, gauging, in_words, spoken
+from export.build_sheet.contents import (
+    RESIN_G_CM3,
+    Contents,
+    bill_of_materials,
+    components,
+    gauging,
+    layer_in_sentence,
+    layer_title,
+)
 from export.build_sheet.steps import steps
 from export.cut_files.style import STYLES
 from export.page import page_environment
@@ -15,7 +23,7 @@ from foundation.files import write_whole_text
 from geometry.flat.electrodes import Metal, stray_area_mm2, stray_areas_mm2
 from solve.materials.parameters import VACUUM_PERMITTIVITY
 
-SHEET_OHM = {"NiAl": 3.0, "silver ink": 0.1}
+SHEET_RESISTANCE_OHM = {"NiAl": 3.0, "silver ink": 0.1}
 """Ohm per square, the most: MSI Piezo Film Sensors Technical Manual, p. 3."""
 
 
@@ -31,11 +39,11 @@ class Check:
 def checks(contents: Contents) -> list[Check]:
     """In the order of the work."""
     return [
-        *_printed(contents),
-        *_thicknesses(contents),
-        *_electrical(contents),
-        *_stack(contents),
-        *_press(contents),
+        *_printed_part_checks(contents),
+        *_thickness_checks(contents),
+        *_electrical_checks(contents),
+        *_height_checks(contents),
+        *_press_checks(contents),
     ]
 
 
@@ -81,7 +89,7 @@ def traces(contents: Contents) -> list[RoutedTrace]:
             face=metal.face,
             length_mm=metal.length,
             squares=metal.squares,
-            resistance_ohm={name: metal.squares * ohm for name, ohm in SHEET_OHM.items()},
+            resistance_ohm={name: metal.squares * ohm for name, ohm in SHEET_RESISTANCE_OHM.items()},
             parasitic_area_mm2=stray.get(metal.name, 0.0),
             parasitic_capacitance_pF=per_mm2 * stray.get(metal.name, 0.0),
         )
@@ -90,7 +98,7 @@ def traces(contents: Contents) -> list[RoutedTrace]:
     return sorted(found, key=lambda trace: trace.pad)
 
 
-def _printed(contents: Contents) -> list[Check]:
+def _printed_part_checks(contents: Contents) -> list[Check]:
     """Sizes of printed parts on which others depend."""
     found = []
     for pour in contents.solid.pours:
@@ -98,7 +106,7 @@ def _printed(contents: Contents) -> list[Check]:
         depth = gauge.size_mm / (1.0 - pour.shrinkage_percent / 100)
         again = "print the mould again, its cavity deeper or shallower by the difference"
         where = ", at its deepest point" if gauge.shape == "dome" else ""
-        what = f"depth of each cavity in the mould of {in_words(pour.component)}{where}"
+        what = f"depth of each cavity in the mould of {layer_in_sentence(pour.component)}{where}"
         found.append(Check(what, f"{depth:.3f} mm", again))
     frame = contents.frame
     for label, run in (("frame-body", frame.body), ("frame-ring", frame.ring[-1] if frame.ring else None)):
@@ -112,13 +120,13 @@ def _printed(contents: Contents) -> list[Check]:
     return found
 
 
-def _thicknesses(contents: Contents) -> list[Check]:
+def _thickness_checks(contents: Contents) -> list[Check]:
     rows = {row["label"]: row for row in contents.budget["rows"]} if contents.budget else {}
     found, again = [], "write the measured value into the configuration and run it again"
     for layer in reversed(contents.layers):
         if layer.name == "film":
             continue
-        name, gauge = in_words(layer.name), gauging(contents, layer.name)
+        name, gauge = layer_in_sentence(layer.name), gauging(contents, layer.name)
         row = rows.get(f"thickness of {name}")
         within = f" ± {row['plus_minus']:.2g}" if row else ""
         expect = f"{gauge.size_mm:.4g}{within} mm"
@@ -128,7 +136,7 @@ def _thicknesses(contents: Contents) -> list[Check]:
     return found
 
 
-def _electrical(contents: Contents) -> list[Check]:
+def _electrical_checks(contents: Contents) -> list[Check]:
     stray = stray_area_mm2(contents.flat.metals)
     area = sum(_area_mm2(metal) for metal in contents.flat.metals if metal.face == "top")
     more = f", and {100 * stray / area:.2g} % more where leads cross the common electrode" if stray > 1e-9 else ""
@@ -141,7 +149,7 @@ def _electrical(contents: Contents) -> list[Check]:
         what = [(f"capacitance of electrode '{name}' {against}", value) for name, value in expected]
     found = [Check(words, f"{value:.3g} pF{more}", otherwise) for words, value in what]
     squares = max(metal.squares for metal in contents.flat.metals)
-    most = ", ".join(f"{number(squares * ohm, 2)} Ω for {metal}" for metal, ohm in SHEET_OHM.items())
+    most = ", ".join(f"{number(squares * ohm, 2)} Ω for {metal}" for metal, ohm in SHEET_RESISTANCE_OHM.items())
     found += [
         Check(f"resistance from pad to electrode, {squares:.0f} squares", f"at most {most}", "a lead is scratched"),
         Check("resistance between the pads", "no reading (above 100 MΩ)", "metal bridges the cut edge: trim it"),
@@ -149,7 +157,7 @@ def _electrical(contents: Contents) -> list[Check]:
     return found
 
 
-def _stack(contents: Contents) -> list[Check]:
+def _height_checks(contents: Contents) -> list[Check]:
     segment_top, floor = contents.layers[-1].top_mm, contents.fabrication.floor_mm
     carrier = "base" if contents.part("base") is not None else "frame"
     effector = contents.segment.effector
@@ -164,7 +172,7 @@ def _stack(contents: Contents) -> list[Check]:
     ]
 
 
-def _press(contents: Contents) -> list[Check]:
+def _press_checks(contents: Contents) -> list[Check]:
     budget = contents.budget
     if contents.device.is_array:
         return [
@@ -197,11 +205,11 @@ def write_page(contents: Contents, heading: Mapping[str, Any], pictures: Path, p
     """
     environment = page_environment(HERE)
     environment.filters["number"] = number
-    environment.filters["spoken"] = spoken
+    environment.filters["layer_title"] = layer_title
     page = environment.get_template("page.html").render(
         c=contents,
         heading=heading,
-        bill=bill(contents),
+        bill=bill_of_materials(contents),
         components=components(contents),
         checks=checks(contents),
         steps=steps(contents),

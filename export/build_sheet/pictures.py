@@ -7,16 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from export.build_sheet.contents import Contents, spoken
+from export.build_sheet.contents import Contents, layer_title
 from export.cut_files.dxf import draw_cut_file
 from export.printability import draw_findings
 from export.printability.surface import surface_of
-from export.view import DPI, INK, DrawnBody, View, frame, name_parts, page, render
+from export.view import DPI, INK, DrawnBody, View, name_parts, picture_box, picture_page, render
 from geometry.fabrication.device import Device
 from geometry.flat.pattern import Outline
 from geometry.solids import PART_COLOURS
 
-ABOVE = View(28.0, 32.0)
+VIEW_FROM_ABOVE = View(28.0, 32.0)
 FACET_DEG, SHARPNESS, MARGIN_PX = 25.0, 1.5, 30
 
 
@@ -28,11 +28,11 @@ class Thing:
     colour: str
     name: str = ""
 
-    def lifted(self, by_mm: float) -> "Thing":
+    def lift(self, by_mm: float) -> "Thing":
         """The thing moved up."""
         return replace(self, surface=self.surface.translate((0.0, 0.0, by_mm), inplace=False))
 
-    def moved(self, x_mm: float, y_mm: float) -> "Thing":
+    def move(self, x_mm: float, y_mm: float) -> "Thing":
         """The thing moved sideways."""
         return replace(self, surface=self.surface.translate((x_mm, y_mm, 0.0), inplace=False))
 
@@ -59,13 +59,13 @@ def sheet_thing(outline: Outline, bottom_mm: float, thickness_mm: float, colour:
     return Thing(flat.extrude((0.0, 0.0, thickness_mm), capping=True), colour, name)
 
 
-def draw_things(things: Sequence[Thing], title: str, path: Path, view: View = ABOVE) -> None:
+def draw_things(things: Sequence[Thing], title: str, path: Path, view: View = VIEW_FROM_ABOVE) -> None:
     """Write a PNG. InputError without OpenGL."""
     shown = [thing for thing in things if thing.surface.n_points]
-    box = frame(np.vstack([view.flat(np.asarray(thing.surface.points)) for thing in shown]))
-    figure, axes, pixels_per_mm = page(box, title)
-    bodies = [DrawnBody(_shaded(thing.surface), thing.colour) for thing in shown]
-    bodies += [DrawnBody(_edges(thing.surface, view), INK, 2.0) for thing in shown]
+    box = picture_box(np.vstack([view.flat(np.asarray(thing.surface.points)) for thing in shown]))
+    figure, axes, pixels_per_mm = picture_page(box, title)
+    bodies = [DrawnBody(_with_sharp_normals(thing.surface), thing.colour) for thing in shown]
+    bodies += [DrawnBody(_sharp_edges(thing.surface, view), INK, 2.0) for thing in shown]
     limits = axes.get_xlim(), axes.get_ylim()
     image = render(bodies, view, box, SHARPNESS * pixels_per_mm)
     axes.imshow(image, extent=box, interpolation="antialiased", aspect="auto")
@@ -91,12 +91,12 @@ def _save_cropped(figure: Any, path: Path) -> None:
     imsave(path, pixels[max(rows[0] - MARGIN_PX, 0) : rows[-1] + MARGIN_PX], dpi=DPI)
 
 
-def _shaded(surface: Any) -> Any:
+def _with_sharp_normals(surface: Any) -> Any:
     """Normals that keep sharp edges."""
     return surface.compute_normals(split_vertices=True, feature_angle=FACET_DEG, cell_normals=False)
 
 
-def _edges(surface: Any, view: View) -> Any:
+def _sharp_edges(surface: Any, view: View) -> Any:
     """Sharp edges, a little towards the viewer."""
     edges = surface.clean().extract_feature_edges(
         feature_angle=FACET_DEG, manifold_edges=False, non_manifold_edges=False, boundary_edges=False
@@ -113,11 +113,11 @@ def _anchor(surface: Any, view: View) -> Any:
     return flat[int(np.argmax(flat[:, 0]))]
 
 
-APART = 1.1
+APART_PER_WIDTH = 1.1
 """Between things that are drawn apart, in widths of the segment."""
-MOST_APART = 1.0
+MOST_APART_PER_HEIGHT = 1.0
 """In heights of the device, for wide ones."""
-MOULD_APART = 0.6
+MOULD_APART_PER_WIDTH = 0.6
 """In widths of the mould."""
 METAL_COLOUR, METAL_MM = "#e3a93c", 0.004
 
@@ -127,10 +127,10 @@ Group = list[Thing]
 def draw_all(contents: Contents, cut: Path, folder: Path) -> None:
     """Write every picture into a folder; cut : folder of the DXF files. InputError without OpenGL."""
     drawer = Drawer(contents, folder)
-    drawer.whole()
-    drawer.moulds()
-    drawer.jig()
-    drawer.assembly()
+    drawer.draw_device()
+    drawer.draw_moulds()
+    drawer.draw_jig()
+    drawer.draw_assembly()
     for pattern in contents.flat.patterns:
         draw_cut_file(cut / f"{pattern.name}.dxf", folder / f"cut-{pattern.name}.png")
     for part, answer in zip(contents.solid.parts, contents.printability, strict=True):
@@ -143,28 +143,28 @@ class Drawer:
 
     def __init__(self, contents: Contents, folder: Path) -> None:
         self.contents, self.folder = contents, folder
-        self.single = self._soft(contents.device)
-        self.single["film"] = self._film()
+        self.single = self._layer_groups(contents.device)
+        self.single["film"] = self._film_group()
         self.places = contents.centers
-        self.layers = {name: self._everywhere(group) for name, group in self.single.items()}
+        self.layers = {name: self._at_each_place(group) for name, group in self.single.items()}
         self.printed = {part.label: solid_thing(part.solid, part.colour, part.label) for part in contents.solid.parts}
         sizes = contents.device.stack.length_mm, contents.device.stack.width_mm
-        self.space = APART * min(max(sizes), MOST_APART * contents.layers[-1].top_mm)
+        self.space = APART_PER_WIDTH * min(max(sizes), MOST_APART_PER_HEIGHT * contents.layers[-1].top_mm)
 
-    def _soft(self, device: Device) -> dict[str, Group]:
+    def _layer_groups(self, device: Device) -> dict[str, Group]:
         """The pieces of each layer, the first one with its name."""
         return {
             layer.name: [
-                solid_thing(solid, PART_COLOURS[layer.name], "" if number else spoken(layer.name))
+                solid_thing(solid, PART_COLOURS[layer.name], "" if number else layer_title(layer.name))
                 for number, solid in enumerate(device.solids(layer.name))
             ]
             for layer in self.contents.layers
         }
 
-    def whole(self) -> None:
+    def draw_device(self) -> None:
         """All that stays in the finished segment: pulled apart upwards, and with its front half cut away."""
-        stack = self._stack()
-        self._draw(_apart(stack, self.space), "What you build, taken apart", "exploded")
+        stack = self._assembly_groups()
+        self._draw(_pull_apart(stack, self.space), "What you build, taken apart", "exploded")
         opened = [[thing.cut_open(self.cut_y) for thing in group] for group in stack]
         self._draw(opened, f"Cut through the {self.contents.what}", "section")
 
@@ -173,53 +173,53 @@ class Drawer:
         """Where it is cut: through the middle of a row of segments."""
         return self.places[0][1] + float(self.contents.device.layout.centres(1)[0])
 
-    def moulds(self) -> None:
+    def draw_moulds(self) -> None:
         """One picture for each cast component."""
         for pour in self.contents.solid.pours:
             own = [[thing] for label, thing in self.printed.items() if label.startswith(f"mould-{pour.component}-")]
-            space = MOULD_APART * max(thing.surface.length for group in own for thing in group)
+            space = MOULD_APART_PER_WIDTH * max(thing.surface.length for group in own for thing in group)
             floor, *bars = own[:-1]
-            opened = _apart([floor, [thing for group in bars for thing in group], own[-1]], space)
-            self._draw(opened, f"Mould of {spoken(pour.component)}, opened", f"mould-{pour.component}")
+            opened = _pull_apart([floor, [thing for group in bars for thing in group], own[-1]], space)
+            self._draw(opened, f"Mould of {layer_title(pour.component)}, opened", f"mould-{pour.component}")
 
-    def jig(self) -> None:
+    def draw_jig(self) -> None:
         """What is stacked in the corner of the jig, each thing over the one below."""
-        tops, single = self.contents.stacked, self.single
-        if self.contents.in_jig is not self.contents.device:
-            single = self._soft(self.contents.in_jig)
+        tops, single = self.contents.stacked_tops_mm, self.single
+        if self.contents.jig_device is not self.contents.device:
+            single = self._layer_groups(self.contents.jig_device)
         base = next(layer.bottom_mm for layer in self.contents.layers if layer.name == next(iter(tops)))
-        stack = [_lifted(single[name], -base) for name in tops]
+        stack = [_lift_group(single[name], -base) for name in tops]
         locator = [[thing] for label, thing in self.printed.items() if label == "jig-locator"]
         stack[-1:-1] = locator
-        raised = [_lifted(group, (number + 1) * self.space) for number, group in enumerate(stack)]
+        raised = [_lift_group(group, (number + 1) * self.space) for number, group in enumerate(stack)]
         self._draw([[self.printed["jig"]], *raised], "Stack in the corner of the jig", "jig")
 
-    def assembly(self) -> None:
+    def draw_assembly(self) -> None:
         """One picture for each thing that is added; the newest hovers over its place."""
-        order = self._stack()
+        order = self._assembly_groups()
         for number in range(1, len(order)):
             new = order[number]
             name = new[0].name
-            shown = [order[0], *map(_unnamed, order[1:number]), _lifted(new, self.space)]
+            shown = [order[0], *map(_without_names, order[1:number]), _lift_group(new, self.space)]
             self._draw(shown, f"{name[:1].upper()}{name[1:]} goes on", f"assembly-{number}")
 
     def _draw(self, groups: Sequence[Group], title: str, name: str) -> None:
         draw_things([thing for group in groups for thing in group], title, self.folder / f"{name}.png")
 
-    def _stack(self) -> list[Group]:
+    def _assembly_groups(self) -> list[Group]:
         """Frame and layers from the base up, in the order in which they are put together."""
         parts = [[self.printed[label]] for label in ("base", "frame-body") if label in self.printed]
         ring = [[self.printed["frame-ring"]]] if "frame-ring" in self.printed else []
         upper = [self.layers[layer.name] for layer in self.contents.layers if layer.name in ("medium1", "effector")]
         return [*parts, self.layers["medium2"], self.layers["film"], *ring, *upper]
 
-    def _everywhere(self, group: Group) -> Group:
+    def _at_each_place(self, group: Group) -> Group:
         """A copy at each place of the array, the first one with its name."""
         first, *others = self.places
-        copies = [thing.moved(*place) for place in others for thing in _unnamed(group)]
-        return [thing.moved(*first) for thing in group] + copies
+        copies = [thing.move(*place) for place in others for thing in _without_names(group)]
+        return [thing.move(*first) for thing in group] + copies
 
-    def _film(self) -> Group:
+    def _film_group(self) -> Group:
         """The film and the metal on its top, which shows which way it lies."""
         pattern, frame = self.contents.flat.patterns[0], self.contents.frame
         outline = pattern.cuts[-1]
@@ -232,15 +232,15 @@ class Drawer:
         ]
 
 
-def _lifted(group: Group, by_mm: float) -> Group:
-    return [thing.lifted(by_mm) for thing in group]
+def _lift_group(group: Group, by_mm: float) -> Group:
+    return [thing.lift(by_mm) for thing in group]
 
 
-def _unnamed(group: Group) -> Group:
+def _without_names(group: Group) -> Group:
     return [replace(thing, name="") for thing in group]
 
 
-def _apart(groups: Sequence[Group], space: float) -> list[Group]:
+def _pull_apart(groups: Sequence[Group], space: float) -> list[Group]:
     """Each lifted until it is clear of what is below."""
     found: list[Group] = []
     top = -float("inf")
@@ -249,6 +249,6 @@ def _apart(groups: Sequence[Group], space: float) -> list[Group]:
             continue
         low, high = (pick(thing.surface.bounds[k] for thing in group) for k, pick in ((4, min), (5, max)))
         lift = max(top + space - low, 0.0)
-        found.append(_lifted(group, lift))
+        found.append(_lift_group(group, lift))
         top = high + lift
     return found

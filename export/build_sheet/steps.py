@@ -1,7 +1,7 @@
 """The work step by step, in the order in which it is done."""
 
 from export.build_sheet.assembly import WorkStep, assembly_steps, jig_step
-from export.build_sheet.contents import FINEST_CRIMP_MM, GAUGE, Contents, gauging, in_words
+from export.build_sheet.contents import FINEST_CRIMP_PITCH_MM, GAUGE_ADVICE, Contents, gauging, layer_in_sentence
 from geometry.fabrication.casting import Pour
 from geometry.flat.film import METAL_EDGE_MM, PAD_LENGTH_MM
 
@@ -9,17 +9,17 @@ from geometry.flat.film import METAL_EDGE_MM, PAD_LENGTH_MM
 def steps(contents: Contents) -> list[WorkStep]:
     """From printing to the first press."""
     return [
-        _print(contents),
-        *(_cast(pour, contents) for pour in contents.solid.pours),
-        *_sheets(contents),
-        _film(contents),
+        _print_step(contents),
+        *(_cast_step(pour, contents) for pour in contents.solid.pours),
+        *_sheet_steps(contents),
+        _film_step(contents),
         jig_step(contents),
         *assembly_steps(contents),
-        _connect(contents),
+        _connect_step(contents),
     ]
 
 
-def _print(contents: Contents) -> WorkStep:
+def _print_step(contents: Contents) -> WorkStep:
     actions = ["Print each part of the table above as often as it says there. The unit of all files is the millimetre."]
     if contents.solid.pours:
         actions.append("Print the moulds with their cavities up; no support may touch a cavity.")
@@ -32,21 +32,22 @@ def _print(contents: Contents) -> WorkStep:
     return WorkStep("Print the parts", tuple(actions))
 
 
-def _cast(pour: Pour, contents: Contents) -> WorkStep:
-    gauge, name = gauging(contents, pour.component), in_words(pour.component)
+def _cast_step(pour: Pour, contents: Contents) -> WorkStep:
+    gauge, name = gauging(contents, pour.component), layer_in_sentence(pour.component)
     mix = " and ".join(f"{mass:.2f} g of component {one}" for one, mass in pour.mixed_masses_g)
     used = (
         ""
         if pour.mixed_mass_g <= pour.poured_mass_g * 1.001
         else (
-            f" Only {_plain(1e3 * pour.poured_mass_g)} mg of it are needed, but less cannot be weighed and mixed well."
+            f" Only {_plain_number(1e3 * pour.poured_mass_g)} mg of it are needed, but less cannot be weighed and "
+            "mixed well."
         )
     )
     pot = f" You have {pour.pot_life_min:g} minutes to pour." if pour.pot_life_min else ""
     cure = f"Let it cure for {pour.cure_time_h:g} h" if pour.cure_time_h else "Let it cure as its maker says"
     cavities = "the cavity" if pour.cavities == 1 else f"each of the {pour.cavities} cavities"
     lifted = "the part" if pour.cavities == 1 else "each part"
-    bars = [] if not _split(pour, contents) else ["Set the bars onto the pins of the floor and push them together."]
+    bars = [] if not _is_split(pour, contents) else ["Set the bars onto the pins of the floor and push them together."]
     opened = "take off the lid" if not bars else "take off the lid, draw the bars off sideways"
     return WorkStep(
         f"Cast {name}",
@@ -54,41 +55,41 @@ def _cast(pour: Pour, contents: Contents) -> WorkStep:
             f"Prepare the mould. {pour.release}",
             *bars,
             f"Weigh {mix}, stir, and draw the air out under vacuum for 5 minutes.{used}{pot}",
-            f"Fill {cavities} a little above the rim, {_plain(pour.poured_volume_mm3)} mm³ in all, and break bubbles "
-            "with a needle.",
+            f"Fill {cavities} a little above the rim, {_plain_number(pour.poured_volume_mm3)} mm³ in all, and break "
+            "bubbles with a needle.",
             "Lay acetate film on the underside of the lid. Lower the lid onto its pins from one side, so that it traps "
             "no air, and put 200 g on it.",
             f"{cure}, then {opened}, lift {lifted} out {gauge.grip} and trim off what has set in the vents.",
-            f"Keep the parts {gauge.keep}, and write down what you measure. {GAUGE}",
-            *_spares(pour, contents),
+            f"Keep the parts {gauge.keep}, and write down what you measure. {GAUGE_ADVICE}",
+            *_spare_actions(pour, contents),
         ),
         (f"mould-{pour.component}",),
     )
 
 
-def _spares(pour: Pour, contents: Contents) -> list[str]:
+def _spare_actions(pour: Pour, contents: Contents) -> list[str]:
     """A mould of islands makes as many as one array has."""
     if contents.device.piece_count(pour.component) == 1:
         return []
     return [f"The array needs all {pour.cavities} of them: pour again for spares."]
 
 
-def _plain(value: float) -> str:
+def _plain_number(value: float) -> str:
     """Two digits or all before the point."""
     return f"{value:.0f}" if value >= 10.0 else f"{value:.2g}"
 
 
-def _split(pour: Pour, contents: Contents) -> bool:
+def _is_split(pour: Pour, contents: Contents) -> bool:
     return any(one.component == pour.component and one.style == "split" for one in contents.solid.cavity_checks)
 
 
-def _sheets(contents: Contents) -> list[WorkStep]:
+def _sheet_steps(contents: Contents) -> list[WorkStep]:
     """Components that are cut from sheet."""
     return [
         WorkStep(
-            f"Cut {in_words(name)} from sheet",
+            f"Cut {layer_in_sentence(name)} from sheet",
             (
-                f"Measure the sheet: it should be {pattern.thickness_mm:.4g} mm thick. {GAUGE}",
+                f"Measure the sheet: it should be {pattern.thickness_mm:.4g} mm thick. {GAUGE_ADVICE}",
                 f"{pattern.instruction} The file is cut/{pattern.name}.",
             ),
         )
@@ -98,7 +99,7 @@ def _sheets(contents: Contents) -> list[WorkStep]:
     ]
 
 
-def _film(contents: Contents) -> WorkStep:
+def _film_step(contents: Contents) -> WorkStep:
     patterns = {pattern.name: pattern for pattern in contents.flat.patterns}
     angle, layout = contents.segment.film.draw_angle_deg, contents.flat.layout
     common = "the lowest"
@@ -117,15 +118,15 @@ def _film(contents: Contents) -> WorkStep:
             "mask-bottom fits.",
             "Remove the metal with resist and etchant, or with a laser that spares the film. Use no solvent and stay "
             "below 70 °C.",
-            f"Cut the adhesive sheets {_list(contents, 'adhesive')}. Leave the liners on.",
-            *_cut_spacers(contents),
+            f"Cut the adhesive sheets {_pattern_names(contents, 'adhesive')}. Leave the liners on.",
+            *_spacer_actions(contents),
             "Hold the film only by its panel or its head, because a crease ruins it. Measure its capacitance and the "
             "resistance of its leads now.",
         ),
     )
 
 
-def _cut_spacers(contents: Contents) -> list[str]:
+def _spacer_actions(contents: Contents) -> list[str]:
     strips = [pattern for pattern in contents.flat.patterns if pattern.name.startswith("spacer")]
     if not strips:
         return []
@@ -133,17 +134,17 @@ def _cut_spacers(contents: Contents) -> list[str]:
     return [f"Cut the spacers: {cut}. Put the strips of both directions together at their notches."]
 
 
-def _list(contents: Contents, start: str) -> str:
+def _pattern_names(contents: Contents, start: str) -> str:
     return ", ".join(pattern.name for pattern in contents.flat.patterns if pattern.name.startswith(start))
 
 
-def _contact(pitch: float) -> str:
-    if pitch >= FINEST_CRIMP_MM:
+def _contact_action(pitch: float) -> str:
+    if pitch >= FINEST_CRIMP_PITCH_MM:
         return "Crimp or glue one contact to each"
     return "Glue the stiffener under the head, beside the pad on that face, and close the connector on it"
 
 
-def _connect(contents: Contents) -> WorkStep:
+def _connect_step(contents: Contents) -> WorkStep:
     tops = [metal.name for metal in contents.flat.metals if metal.face == "top"]
     pitch = contents.flat.layout.pad_pitch
     pads = ", ".join(f"'{name}' on the top face" for name in tops) + ", and the common electrode on the other face"
@@ -156,7 +157,7 @@ def _connect(contents: Contents) -> WorkStep:
     return WorkStep(
         "Connect and test",
         (
-            f"The pads lie at the end of the tab, {pitch:g} mm apart: {pads}. {_contact(pitch)}; do not solder.",
+            f"The pads lie at the end of the tab, {pitch:g} mm apart: {pads}. {_contact_action(pitch)}; do not solder.",
             f"{wire}Tie the tab loosely down on the shelf.",
             press,
         ),

@@ -4,13 +4,10 @@ from pathlib import Path
 from typing import Any
 
 from export.cut_files.style import STYLES, size_text
-from export.cut_files.svg import TEXT_MM
-from foundation.files import write_whole_text as write_whole_text
+from export.cut_files.svg import TEXT_HEIGHT_MM
 from geometry.flat.pattern import Circle, Dimension, FlatPattern, Label, Outline, Stroke
-from geometry.flat.pattern import LayerName as LayerName
-from geometry.flat.pattern import Point as Point
 
-ARROW_MM = 0.5
+ARROW_SIZE_MM = 0.5
 
 
 def write_dxf(pattern: FlatPattern, path: Path) -> None:
@@ -23,16 +20,16 @@ def write_dxf(pattern: FlatPattern, path: Path) -> None:
         layer.rgb = style.colour
         layer.description = style.purpose
         layer.dxf.lineweight = style.weight
-    _dimension_style(document)
+    _add_dimension_style(document)
     space = document.modelspace()
     for one in (*pattern.cuts, *pattern.marks):
-        _add(space, one)
+        _add_entity(space, one)
     for size in pattern.dimensions:
         _add_dimension(space, size)
     document.saveas(path)
 
 
-def _add(space: Any, one: Outline | Circle | Stroke | Label) -> None:
+def _add_entity(space: Any, one: Outline | Circle | Stroke | Label) -> None:
     attributes = {"layer": one.layer}
     if isinstance(one, Circle):
         space.add_circle(one.center, one.radius, dxfattribs=attributes)
@@ -45,10 +42,10 @@ def _add(space: Any, one: Outline | Circle | Stroke | Label) -> None:
         space.add_lwpolyline(one.points, close=isinstance(one, Outline), dxfattribs=attributes)
 
 
-def _dimension_style(document: Any) -> None:
+def _add_dimension_style(document: Any) -> None:
     style = document.dimstyles.new("KIT")
     style.set_arrows(blk="", ldrblk="")
-    style.dxf.dimtxt, style.dxf.dimasz = TEXT_MM, ARROW_MM
+    style.dxf.dimtxt, style.dxf.dimasz = TEXT_HEIGHT_MM, ARROW_SIZE_MM
     style.dxf.dimexo, style.dxf.dimexe, style.dxf.dimgap = 0.2, 0.3, 0.2
     style.dxf.dimtad, style.dxf.dimdec, style.dxf.dimzin = 1, 2, 8
     style.dxf.dimtih, style.dxf.dimtoh = 0, 0

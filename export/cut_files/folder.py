@@ -4,20 +4,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from export.cut_files.dxf import write_dxf
-from export.cut_files.style import STYLES as STYLES
-from export.cut_files.style import size_text as size_text
-from export.cut_files.svg import TEXT_MM as TEXT_MM
 from export.cut_files.svg import write_svg
 from foundation.files import whole_folder
-from foundation.files import write_whole_text as write_whole_text
-from geometry.flat.pattern import Circle as Circle
-from geometry.flat.pattern import Dimension as Dimension
 from geometry.flat.pattern import FlatPattern, kerf_compensated_pattern
-from geometry.flat.pattern import Label as Label
-from geometry.flat.pattern import LayerName as LayerName
-from geometry.flat.pattern import Outline as Outline
-from geometry.flat.pattern import Point as Point
-from geometry.flat.pattern import Stroke as Stroke
 
 
 def write_cut_files(patterns: Sequence[FlatPattern], folder: Path) -> None:

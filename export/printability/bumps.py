@@ -7,10 +7,10 @@ import numpy as np
 
 from export.printability.surface import Floats, connected_labels
 
-SMOOTH = np.radians(18.0)
+SMOOTH_ANGLE_RAD = np.radians(18.0)
 """Facets that meet at less belong to one face: more than inside a curved face (export/printability/measure.py),
 less than at the rim of the flattest dots, 28 degrees for 0.2 mm on 1.6 mm."""
-ROUND = np.radians(1.0)
+ROUND_SPREAD_RAD = np.radians(1.0)
 """A face whose normals spread by less is flat."""
 
 
@@ -29,23 +29,23 @@ class Bump:
 
 def bumps(surface: Any) -> list[Bump]:
     """All bumps and dents of a trimesh.Trimesh."""
-    found = (_bump(surface, faces) for faces in _smooth_faces(surface))
+    found = (_bump_of_face(surface, faces) for faces in _smooth_faces(surface))
     return [bump for bump in found if bump is not None]
 
 
 def _smooth_faces(surface: Any) -> list[Any]:
     """Index arrays of the triangles of each face: what sharp edges separate."""
-    smooth = surface.face_adjacency[surface.face_adjacency_angles < SMOOTH]
+    smooth = surface.face_adjacency[surface.face_adjacency_angles < SMOOTH_ANGLE_RAD]
     labels = connected_labels(smooth, len(surface.faces))
     order = np.argsort(labels, kind="stable")
     return np.split(order, np.flatnonzero(np.diff(labels[order])) + 1)
 
 
-def _bump(surface: Any, faces: Any) -> Bump | None:
+def _bump_of_face(surface: Any, faces: Any) -> Bump | None:
     """The bump of one face; None where the face is flat or its rim does not lie in a plane."""
     normals = surface.face_normals[faces]
     mean = normals.mean(axis=0)
-    if np.linalg.norm(mean) < 1e-6 or (normals @ normals[0]).min() > np.cos(ROUND):
+    if np.linalg.norm(mean) < 1e-6 or (normals @ normals[0]).min() > np.cos(ROUND_SPREAD_RAD):
         return None
     points, rim = _points_and_rim(surface, faces)
     if len(rim) < 3:

@@ -23,7 +23,7 @@ def advise(
     findings : of the profile; others : every printer of the table with its findings. The profile's own process
     where it does at least as well as the others.
     """
-    name, worst = profile.process.upper(), [_in_words(finding) for finding in findings[:1]]
+    name, worst = profile.process.upper(), [_problem_and_advice(finding) for finding in findings[:1]]
     rules = {finding.rule for finding in errors(findings)}
     if "manifold" in rules:
         return "repair", f"repair this: {worst[0]}"
@@ -40,7 +40,7 @@ def advise(
     return "cast", f"cast or machine this: {findings[0].problem}"
 
 
-def _in_words(finding: Finding) -> str:
+def _problem_and_advice(finding: Finding) -> str:
     return f"{finding.problem}; {finding.advice}"
 
 

@@ -8,16 +8,16 @@ import numpy as np
 
 from export.printability.findings import Finding, Printability
 from export.printability.surface import Floats, Rays, surface_of
-from export.view import INK, WIDTH_IN, DrawnBody, View, frame, page, render, save
+from export.view import INK, WIDTH_IN, DrawnBody, View, picture_box, picture_page, render, save_png
 
 VIEWS = tuple(View(azimuth, elevation) for elevation in (40.0, -30.0) for azimuth in (20.0, 110.0, 200.0, 290.0))
-HIDDEN = 0.03
+HIDDEN_DEPTH_SHARE = 0.03
 """A place that lies deeper than this, against the longest side of the part, is marked by a broken ring."""
-COLOURS = {"error": "#b5263b", "warning": "#d07a00", "note": "#2f6f9f"}
-PART = "#d9d3c6"
-RING_IN, NUMBER_PT = 0.19, 22.0
+SEVERITY_COLOURS = {"error": "#b5263b", "warning": "#d07a00", "note": "#2f6f9f"}
+PART_COLOUR = "#d9d3c6"
+RING_DIAMETER_IN, NUMBER_OFFSET_PT = 0.19, 22.0
 LINE_CHARACTERS, FONT_PT = 36, 7.5
-LINE, BETWEEN = 0.0235, 0.02
+LINE_SHARE, PARAGRAPH_GAP_SHARE = 0.0235, 0.02
 """Height of a line and of the space between paragraphs, in parts of the page."""
 
 
@@ -32,15 +32,17 @@ def draw_findings(body: Any, printability: Printability, path: Path) -> Path:
     surface, findings = surface_of(body), printability.findings
     places = np.array([finding.place_mm for finding in findings]).reshape(-1, 3)
     view = clearest_view(surface, places)
-    box = frame(view.flat(np.asarray(surface.vertices)))
+    box = picture_box(view.flat(np.asarray(surface.vertices)))
     result = "cannot be printed" if not printability.printable else "needs care" if findings else "can be printed"
-    figure, axes, pixels_per_mm = page(box, f"{printability.label} by {printability.process.upper()}: {result}")
-    axes.imshow(render([DrawnBody(pyvista.wrap(surface), PART)], view, box, pixels_per_mm), extent=box, aspect="equal")
-    hidden = buried_mm(surface, places, view) > HIDDEN * max(surface.extents)
+    figure, axes, pixels_per_mm = picture_page(box, f"{printability.label} by {printability.process.upper()}: {result}")
+    axes.imshow(
+        render([DrawnBody(pyvista.wrap(surface), PART_COLOUR)], view, box, pixels_per_mm), extent=box, aspect="equal"
+    )
+    hidden = buried_mm(surface, places, view) > HIDDEN_DEPTH_SHARE * max(surface.extents)
     for number, finding in enumerate(findings, 1):
-        _mark(axes, view, finding, number, "--" if hidden[number - 1] else "-")
+        _mark_finding(axes, view, finding, number, "--" if hidden[number - 1] else "-")
     _write_list(figure, printability, bool(hidden.any()))
-    save(figure, path)
+    save_png(figure, path)
     return path
 
 
@@ -61,13 +63,13 @@ def buried_mm(surface: Any, places_mm: Floats, view: View) -> Floats:
     return np.maximum(np.where(np.isfinite(distance), away - distance, 0.0), 0.0)
 
 
-def _mark(axes: Any, view: View, finding: Finding, number: int, line: str) -> None:
+def _mark_finding(axes: Any, view: View, finding: Finding, number: int, line: str) -> None:
     """A ring at the place and its number beside it."""
     place = view.flat(np.array([finding.place_mm]))[0]
-    colour = COLOURS[finding.severity]
+    colour = SEVERITY_COLOURS[finding.severity]
     axes.add_patch(_ring(axes, place, colour, line))
     turn = np.radians(36.0 * (2 - number))  # so that findings at one place keep their numbers apart
-    offset = (NUMBER_PT * np.cos(turn), NUMBER_PT * np.sin(turn))
+    offset = (NUMBER_OFFSET_PT * np.cos(turn), NUMBER_OFFSET_PT * np.sin(turn))
     label = {"boxstyle": "circle,pad=0.25", "facecolor": colour, "edgecolor": "none"}
     axes.annotate(
         str(number), place, xytext=offset, textcoords="offset points", color="white", fontsize=8,
@@ -79,23 +81,23 @@ def _ring(axes: Any, place: Floats, colour: str, line: str) -> Any:
     """A circle of RING_IN across."""
     from matplotlib.patches import Circle
 
-    radius = RING_IN / 2 / WIDTH_IN * float(np.diff(axes.get_xlim())[0])
+    radius = RING_DIAMETER_IN / 2 / WIDTH_IN * float(np.diff(axes.get_xlim())[0])
     return Circle((place[0], place[1]), radius, fill=False, edgecolor=colour, linewidth=1.8, linestyle=line)
 
 
 def _write_list(figure: Any, printability: Printability, some_hidden: bool) -> None:
     """The findings with their numbers, and the advice, at the right; smaller where there are many."""
     texts = [
-        (f"{number}  {finding.rule}: {finding.problem}; {finding.advice}", COLOURS[finding.severity])
+        (f"{number}  {finding.rule}: {finding.problem}; {finding.advice}", SEVERITY_COLOURS[finding.severity])
         for number, finding in enumerate(printability.findings, 1)
     ]
     texts.append((f"Advice: {printability.advice if texts else 'no findings'}", INK))
     if some_hidden:
         texts.append(("Dashed ring: hidden behind the part", INK))
     paragraphs = [(wrap(text, LINE_CHARACTERS), colour) for text, colour in texts]
-    scale = min(1.0, 0.82 / sum(LINE * len(lines) + BETWEEN for lines, _ in paragraphs))
+    scale = min(1.0, 0.82 / sum(LINE_SHARE * len(lines) + PARAGRAPH_GAP_SHARE for lines, _ in paragraphs))
     top = 0.87
     for lines, colour in paragraphs:
         text = "\n".join(lines)
         figure.text(0.735, top, text, fontsize=FONT_PT * scale, color=colour, va="top", linespacing=1.3)
-        top -= scale * (LINE * len(lines) + BETWEEN)
+        top -= scale * (LINE_SHARE * len(lines) + PARAGRAPH_GAP_SHARE)

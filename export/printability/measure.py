@@ -10,7 +10,7 @@ from export.printability.findings import Point
 from export.printability.surface import Chords, Floats, inner_chords, outer_chords, surface_of
 from geometry.fabrication.part import LimitName, printer_names, printer_profile
 
-THICKNESSES: tuple[LimitName, ...] = ("wall_mm", "feature_mm", "gap_mm", "hole_mm")
+THICKNESS_LIMITS: tuple[LimitName, ...] = ("wall_mm", "feature_mm", "gap_mm", "hole_mm")
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ def measure(body: Any, up: Point) -> Measured:
     broken = _broken_edges(surface)
     if len(broken) or not surface.is_volume:
         return Measured(surface, upward, broken, None, None, None)
-    reach = max(printer_profile(name)[limit] for name in printer_names() for limit in THICKNESSES)
+    reach = max(printer_profile(name)[limit] for name in printer_names() for limit in THICKNESS_LIMITS)
     walls, gaps = inner_chords(surface, reach), outer_chords(surface, reach)
     return Measured(surface, upward, broken, walls, gaps, bumps(surface))
 

@@ -11,7 +11,7 @@ from export.printability.measure import Measured
 from export.printability.surface import Chords, Floats, connected_labels
 from geometry.fabrication.part import PrinterProfile
 
-ON_THE_BED_MM = 0.02
+BED_TOLERANCE_MM = 0.02
 """An underside this near to the lowest point rests on the printer."""
 
 
@@ -20,10 +20,10 @@ def manifold(measured: Measured) -> Iterator[Finding]:
     edges = measured.broken_edges
     if len(edges):
         words = ("the surface is not closed", "repair it, or export it again from the solid")
-        yield Finding("manifold", len(edges), 0.0, "edges", point(edges[0].mean(axis=0)), "error", *words)
+        yield Finding("manifold", len(edges), 0.0, "edges", plain_point(edges[0].mean(axis=0)), "error", *words)
     elif measured.walls is None:
         words = ("the surface faces inwards or both ways", "turn its triangles round, or export it again")
-        place = point(measured.surface.triangles_center[0])
+        place = plain_point(measured.surface.triangles_center[0])
         yield Finding("manifold", float(measured.surface.volume), 0.0, "mm3", place, "error", *words)
 
 
@@ -35,7 +35,7 @@ def size(measured: Measured, profile: PrinterProfile) -> Iterator[Finding]:
     room = np.array([*sides, profile["build_z_mm"]])
     axis = int(np.argmax(extents / room))
     if extents[axis] > room[axis]:
-        place = point(measured.surface.vertices[np.argmax(placed[:, axis])])
+        place = plain_point(measured.surface.vertices[np.argmax(placed[:, axis])])
         problem = f"{extents[axis]:.0f} mm is larger than the printer"
         advice = f"split it into pieces of at most {room[axis]:g} mm"
         yield Finding("size", float(extents[axis]), float(room[axis]), "mm", place, "error", problem, advice)
@@ -51,7 +51,7 @@ def overhang(measured: Measured, profile: PrinterProfile) -> Iterator[Finding]:
         yield Finding("overhang", area, limit, "mm2", place, "warning", problem, advice)
 
 
-def point(xyz: Any) -> Point:
+def plain_point(xyz: Any) -> Point:
     """Three plain numbers."""
     return float(xyz[0]), float(xyz[1]), float(xyz[2])
 
@@ -60,7 +60,7 @@ def _largest_overhang(measured: Measured, steepest_deg: float) -> tuple[float, P
     """Area (mm2) and a point of the largest connected underside flatter than this, off the bed."""
     surface, up = measured.surface, measured.up
     heights = surface.vertices @ up
-    off_the_bed = heights[surface.faces].max(axis=1) > heights.min() + ON_THE_BED_MM
+    off_the_bed = heights[surface.faces].max(axis=1) > heights.min() + BED_TOLERANCE_MM
     hanging = (surface.face_normals @ up < -np.cos(np.radians(steepest_deg))) & off_the_bed
     pairs = surface.face_adjacency[hanging[surface.face_adjacency].all(axis=1)]
     labels = connected_labels(pairs, len(surface.faces))
@@ -70,7 +70,7 @@ def _largest_overhang(measured: Measured, steepest_deg: float) -> tuple[float, P
         return 0.0, (0.0, 0.0, 0.0)
     middles = surface.triangles_center[largest]
     mean = np.average(middles, axis=0, weights=surface.area_faces[largest])
-    return float(areas.max()), point(middles[np.argmin(np.linalg.norm(middles - mean, axis=1))])
+    return float(areas.max()), plain_point(middles[np.argmin(np.linalg.norm(middles - mean, axis=1))])
 
 
 def _printer_frame(up: Floats) -> Floats:
@@ -91,14 +91,14 @@ def wall(measured: Measured, profile: PrinterProfile) -> Iterator[Finding]:
         return
     chords, name = measured.walls, profile.process.upper()
     held, free = profile["supported_wall_mm"], profile["wall_mm"]
-    thickness, place = _shortest(chords, chords.cross_mm >= profile["feature_mm"])
+    thickness, place = _shortest_chord(chords, chords.cross_mm >= profile["feature_mm"])
     if thickness < held - SLACK_MM:
-        problem = f"a wall of {_mm(thickness)} cannot be printed by {name}"
-        advice = f"make it at least {_mm(held)} thick, or cast it"
+        problem = f"a wall of {_mm_text(thickness)} cannot be printed by {name}"
+        advice = f"make it at least {_mm_text(held)} thick, or cast it"
         yield Finding("wall", thickness, held, "mm", place, "error", problem, advice)
     elif thickness < free - SLACK_MM:
-        problem = f"a wall of {_mm(thickness)} prints by {name} only where it is held on two sides"
-        advice = f"make it {_mm(free)} thick where it stands free"
+        problem = f"a wall of {_mm_text(thickness)} prints by {name} only where it is held on two sides"
+        advice = f"make it {_mm_text(free)} thick where it stands free"
         yield Finding("wall", thickness, free, "mm", place, "warning", problem, advice)
 
 
@@ -107,14 +107,14 @@ def feature(measured: Measured, profile: PrinterProfile) -> Iterator[Finding]:
     if measured.walls is None or measured.bumps is None:
         return
     chords, limit, name = measured.walls, profile["feature_mm"], profile.process.upper()
-    pins = _shortest(chords, chords.cross_mm < limit - SLACK_MM)
+    pins = _shortest_chord(chords, chords.cross_mm < limit - SLACK_MM)
     width, place = min([pins, *((bump.width_mm, bump.top_mm) for bump in measured.bumps)])
-    advice = f"make it at least {_mm(limit)} wide, or use a finer printer"
+    advice = f"make it at least {_mm_text(limit)} wide, or use a finer printer"
     if width < profile["supported_wall_mm"] - SLACK_MM:
-        problem = f"a detail of {_mm(width)} cannot be printed by {name}"
+        problem = f"a detail of {_mm_text(width)} cannot be printed by {name}"
         yield Finding("feature", width, limit, "mm", place, "error", problem, advice)
     elif width < limit - SLACK_MM:
-        problem = f"a detail of {_mm(width)} will be rough with {name}"
+        problem = f"a detail of {_mm_text(width)} will be rough with {name}"
         yield Finding("feature", width, limit, "mm", place, "warning", problem, advice)
 
 
@@ -126,7 +126,9 @@ def relief(measured: Measured, profile: PrinterProfile) -> Iterator[Finding]:
         return
     layers = lowest.height_mm / layer
     severity: Severity = "error" if layers < 1 else "warning"
-    problem = f"a height of {_mm(lowest.height_mm)} is {layers:.1f} layers of {_mm(layer)}: a dome becomes steps"
+    problem = (
+        f"a height of {_mm_text(lowest.height_mm)} is {layers:.1f} layers of {_mm_text(layer)}: a dome becomes steps"
+    )
     advice = "use a printer with thinner layers"
     yield Finding("relief", lowest.height_mm, limit, "mm", lowest.top_mm, severity, problem, advice)
 
@@ -139,13 +141,13 @@ def gap(measured: Measured, profile: PrinterProfile) -> Iterator[Finding]:
     found = [
         (width / limit, width, limit, place, kind)
         for kind, limit, chosen in (("slot", profile["gap_mm"], ~hole), ("hole", profile["hole_mm"], hole))
-        for width, place in [_shortest(chords, chosen)]
+        for width, place in [_shortest_chord(chords, chosen)]
         if width < limit - SLACK_MM
     ]
     if found:
         _, width, limit, place, kind = min(found)
-        advice = f"make it at least {_mm(limit)}, or open it with a drill or a blade"
-        yield Finding("gap", width, limit, "mm", place, "warning", f"a {kind} of {_mm(width)} may close", advice)
+        advice = f"make it at least {_mm_text(limit)}, or open it with a drill or a blade"
+        yield Finding("gap", width, limit, "mm", place, "warning", f"a {kind} of {_mm_text(width)} may close", advice)
 
 
 def tolerance(sizes: Sequence[CriticalSize], profile: PrinterProfile) -> Iterator[Finding]:
@@ -154,20 +156,20 @@ def tolerance(sizes: Sequence[CriticalSize], profile: PrinterProfile) -> Iterato
     for size in sizes:
         if size.deviation_mm < off:
             problem = (
-                f"{size.name} of {_mm(size.nominal_mm)} may be off by {_mm(size.deviation_mm)}, "
-                f"{profile.process.upper()} is off by up to {_mm(off)}"
+                f"{size.name} of {_mm_text(size.nominal_mm)} may be off by {_mm_text(size.deviation_mm)}, "
+                f"{profile.process.upper()} is off by up to {_mm_text(off)}"
             )
             advice = "measure the print and correct the size that is asked for"
             yield Finding("tolerance", size.deviation_mm, off, "mm", size.place_mm, "warning", problem, advice)
 
 
-def _shortest(chords: Chords, chosen: NDArray[np.bool_]) -> tuple[float, Point]:
+def _shortest_chord(chords: Chords, chosen: NDArray[np.bool_]) -> tuple[float, Point]:
     """Length and middle of the first, which is the shortest, of the chosen chords; infinite where none is."""
     where = np.flatnonzero(chosen)
     if len(where) == 0:
         return np.inf, (0.0, 0.0, 0.0)
-    return float(chords.length_mm[where[0]]), point(chords.middle_mm[where[0]])
+    return float(chords.length_mm[where[0]]), plain_point(chords.middle_mm[where[0]])
 
 
-def _mm(value: float) -> str:
+def _mm_text(value: float) -> str:
     return f"{value:.2g} mm"

@@ -30,7 +30,7 @@ def surface_of(body: Any) -> Any:
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-OFF_THE_SURFACE_MM = 1e-4
+RAY_START_MM = 1e-4
 """Rays start this far from their point, so that they do not meet the facet that they leave."""
 
 
@@ -60,18 +60,18 @@ class Rays:
         cell: Any = mutable(0)
         sub: Any = mutable(0)
         at, local = [0.0] * 3, [0.0] * 3
-        starts = points + OFF_THE_SURFACE_MM * directions
+        starts = points + RAY_START_MM * directions
         ends = points + reach_mm * directions
         for k, (start, end) in enumerate(zip(starts.tolist(), ends.tolist(), strict=True)):
             if self._locator.IntersectWithLine(start, end, 1e-9, where, at, local, sub, cell):
-                distance[k] = OFF_THE_SURFACE_MM + float(where) * (reach_mm - OFF_THE_SURFACE_MM)
+                distance[k] = RAY_START_MM + float(where) * (reach_mm - RAY_START_MM)
                 face[k] = int(cell)
         return distance, face
 
 
-SAMPLES = 3000
+SURFACE_SAMPLES = 3000
 """Points spread evenly by area; the middles of as many facets join them, for places of small area."""
-OPPOSITE = -np.cos(np.radians(30.0))
+OPPOSITE_COSINE = -np.cos(np.radians(30.0))
 """Two faces are the two sides of a wall when their normals are opposite within 30 degrees; else it is an edge."""
 CROSS_DIRECTIONS = 8
 """Tried across a chord, 22.5 degrees apart: a width is found within 1 / cos(11.25 degrees) = 1.02."""
@@ -94,43 +94,43 @@ class Chords:
 
 def inner_chords(surface: Any, reach_mm: float) -> Chords:
     """Chords through the material, up to reach_mm long."""
-    return _chords(surface, -1.0, reach_mm)
+    return _surface_chords(surface, -1.0, reach_mm)
 
 
 def outer_chords(surface: Any, reach_mm: float) -> Chords:
     """Chords through the air between faces of the part, up to reach_mm long."""
-    return _chords(surface, 1.0, reach_mm)
+    return _surface_chords(surface, 1.0, reach_mm)
 
 
-def _chords(surface: Any, side: float, reach_mm: float) -> Chords:
-    points, faces = _samples(surface)
+def _surface_chords(surface: Any, side: float, reach_mm: float) -> Chords:
+    points, faces = _sample_points(surface)
     directions = side * surface.face_normals[faces]
     rays = Rays(surface)
     length, met = rays.first_hits(points, directions, reach_mm)
-    kept = np.flatnonzero(_opposite(surface, faces, met))
+    kept = np.flatnonzero(_are_opposite(surface, faces, met))
     kept = kept[np.argsort(length[kept], kind="stable")]
     middle = points[kept] + directions[kept] * length[kept, None] / 2
-    return Chords(middle, length[kept], _cross(surface, rays, middle, directions[kept], reach_mm))
+    return Chords(middle, length[kept], _cross_widths(surface, rays, middle, directions[kept], reach_mm))
 
 
-def _opposite(surface: Any, faces: Ints, others: Ints) -> NDArray[np.bool_]:
+def _are_opposite(surface: Any, faces: Ints, others: Ints) -> NDArray[np.bool_]:
     """Whether two faces (n,) are opposite; never where one of them is missing, -1."""
     normals = surface.face_normals
     facing = np.einsum("ij,ij->i", normals[faces], normals[others])
-    return np.asarray((faces >= 0) & (others >= 0) & (facing < OPPOSITE))
+    return np.asarray((faces >= 0) & (others >= 0) & (facing < OPPOSITE_COSINE))
 
 
-def _samples(surface: Any) -> tuple[Floats, Ints]:
+def _sample_points(surface: Any) -> tuple[Floats, Ints]:
     """Points (n, 3) of the surface and their faces (n,)."""
     import trimesh
 
-    points, faces = trimesh.sample.sample_surface(surface, SAMPLES, seed=0)
-    step = max(1, len(surface.faces) // SAMPLES)
+    points, faces = trimesh.sample.sample_surface(surface, SURFACE_SAMPLES, seed=0)
+    step = max(1, len(surface.faces) // SURFACE_SAMPLES)
     middles = np.arange(0, len(surface.faces), step)
     return np.vstack([points, surface.triangles_center[middles]]), np.concatenate([faces, middles])
 
 
-def _cross(surface: Any, rays: Rays, middle: Floats, along: Floats, reach_mm: float) -> Floats:
+def _cross_widths(surface: Any, rays: Rays, middle: Floats, along: Floats, reach_mm: float) -> Floats:
     """See Chords.cross_mm; through each middle (n, 3) across its unit direction (n, 3)."""
     first = np.cross(along, np.eye(3)[np.argmin(np.abs(along), axis=1)])
     first /= np.linalg.norm(first, axis=1, keepdims=True)
@@ -140,16 +140,16 @@ def _cross(surface: Any, rays: Rays, middle: Floats, along: Floats, reach_mm: fl
         across = np.cos(angle) * first + np.sin(angle) * second
         ahead, one = rays.first_hits(middle, across, reach_mm)
         behind, other = rays.first_hits(middle, -across, reach_mm)
-        width = np.where(_opposite(surface, one, other), ahead + behind, np.inf)
+        width = np.where(_are_opposite(surface, one, other), ahead + behind, np.inf)
         best[width < smallest] = across[width < smallest]
         smallest = np.minimum(smallest, width)
     narrow = np.flatnonzero(np.isfinite(smallest))
-    open_ = ~_closed(rays, middle[narrow], along[narrow], best[narrow], reach_mm)
+    open_ = ~_is_closed(rays, middle[narrow], along[narrow], best[narrow], reach_mm)
     smallest[narrow[open_]] = np.inf
     return smallest
 
 
-def _closed(rays: Rays, middle: Floats, along: Floats, across: Floats, reach_mm: float) -> NDArray[np.bool_]:
+def _is_closed(rays: Rays, middle: Floats, along: Floats, across: Floats, reach_mm: float) -> NDArray[np.bool_]:
     """Whether all four diagonals between two unit directions (n, 3) meet the surface."""
     diagonals = [(a * along + b * across) / np.sqrt(2.0) for a in (1, -1) for b in (1, -1)]
     hits = [rays.first_hits(middle, diagonal, reach_mm)[1] >= 0 for diagonal in diagonals]

@@ -3,7 +3,7 @@
 from dataclasses import asdict
 from typing import Any
 
-from export.build_sheet.contents import Contents, bill, components
+from export.build_sheet.contents import Contents, bill_of_materials, components
 from export.build_sheet.page import capacitance_pF, checks, traces
 from export.build_sheet.steps import steps
 from geometry.flat.pattern import FlatPattern, kerf_compensated_pattern
@@ -41,7 +41,7 @@ def summary_of(contents: Contents, state: str, failure: str | None) -> dict[str,
         "warnings": contents.warnings,
         "tolerance_budget_state": state,
         "components": [asdict(one) for one in components(contents)],
-        "bill_of_materials": [asdict(item) for item in bill(contents)],
+        "bill_of_materials": [asdict(item) for item in bill_of_materials(contents)],
         "parts": [
             {
                 "label": part.label, "file": f"parts/{part.label}.stl", "copies": part.copies, "process": part.process,

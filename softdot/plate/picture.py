@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from export.printability.surface import surface_of
-from export.view import INK, DrawnBody, View, frame, page, render, save
+from export.view import INK, DrawnBody, View, picture_box, picture_page, render, save_png
 from softdot.plate.build import BuiltPlate
 
 VIEW = View(0.0, 50.0)
@@ -19,17 +19,17 @@ def draw_plate(built: BuiltPlate, path: Path) -> None:
     import pyvista
 
     surface = surface_of(built.plate.part.solid)
-    box = frame(VIEW.flat(np.asarray(surface.vertices)))
+    box = picture_box(VIEW.flat(np.asarray(surface.vertices)))
     red, green, blue = (round(255 * value) for value in built.plate.part.colour)
     body = DrawnBody(pyvista.wrap(surface), f"#{red:02x}{green:02x}{blue:02x}")
-    figure, axes, pixels_per_mm = page(box, _title(built))
+    figure, axes, pixels_per_mm = picture_page(box, _title(built))
     axes.imshow(render([body], VIEW, box, pixels_per_mm), extent=box, aspect="equal")
     if built.translation is not None:
         cells = "\n".join(built.translation.lines[:4])
         middle, below = (box[0] + box[1]) / 2, box[2] - 0.03 * (box[1] - box[0])
         axes.text(middle, below, cells, fontsize=14, color=INK, ha="center", va="top", multialignment="left")
     _write_sizes(figure, built)
-    save(figure, path)
+    save_png(figure, path)
 
 
 def _title(built: BuiltPlate) -> str:

@@ -8,7 +8,7 @@ import pyvista
 
 from export.build_sheet.contents import gauging
 from export.build_sheet.page import checks, traces
-from export.build_sheet.pictures import ABOVE, _anchor
+from export.build_sheet.pictures import VIEW_FROM_ABOVE, _anchor
 from export.build_sheet.steps import steps
 from foundation.errors import InputError
 from softdot.config.loading import config_from
@@ -210,4 +210,4 @@ def test_other_sizes_and_other_frames(name):
 def test_a_name_finds_its_part_however_high_the_part_is_drawn():
     box = pyvista.Box((0.0, 1.0, 0.0, 1.0, 40.0, 41.0))
     box.points = box.points.astype(np.float32)
-    assert np.isfinite(_anchor(box, ABOVE)).all()
+    assert np.isfinite(_anchor(box, VIEW_FROM_ABOVE)).all()

@@ -12,9 +12,9 @@ from pressed_box import box_dot, box_mesh, made_up_press
 
 from export.cutaway import draw_von_mises, open_scene
 from export.film_maps import film_map
-from export.pictures import FILES, write_pictures
-from export.rendering import ADVICE
-from export.view import PICTURE_SIZE, View
+from export.pictures import PICTURE_NAMES, write_pictures
+from export.rendering import OPENGL_ADVICE
+from export.view import PICTURE_SIZE_PX, View
 from geometry.dot import DotShape
 from geometry.solids import PART_COLOURS
 from mesh.types import TetMesh
@@ -59,12 +59,12 @@ def share_of(image: np.ndarray, colour: str, tolerance: int = 12) -> float:
 
 
 @pytest.mark.press
-@for_each("name", FILES)
+@for_each("name", PICTURE_NAMES)
 def test_pictures_are_png_not_blank_and_not_clipped(pictures: dict[str, Path], name: str) -> None:
     with Image.open(pictures[name]) as image:
         assert image.format == "PNG"
-        assert image.size[0] == PICTURE_SIZE[0]
-        assert name in ("film", "force_voltage", "course") or image.size == PICTURE_SIZE
+        assert image.size[0] == PICTURE_SIZE_PX[0]
+        assert name in ("film", "force_voltage", "course") or image.size == PICTURE_SIZE_PX
     shown = pixels(pictures[name])
     assert shown.std() > 20
     border = np.concatenate([shown[:4].reshape(-1, 3), shown[-4:].reshape(-1, 3), shown[:, :4].reshape(-1, 3), shown[:, -4:].reshape(-1, 3)])  # noqa: E501  # fmt: skip
@@ -120,7 +120,7 @@ def test_missing_opengl_is_one_sentence_not_a_crash() -> None:
         "headless.ensure_rendering()"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, encoding="utf-8", timeout=60, check=False)
-    assert run.stderr.strip().splitlines()[-1] == f"foundation.errors.InputError: {ADVICE}"
+    assert run.stderr.strip().splitlines()[-1] == f"foundation.errors.InputError: {OPENGL_ADVICE}"
 
 
 def test_parts_whose_stresses_are_far_apart_have_scales_of_their_own(

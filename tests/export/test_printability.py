@@ -12,10 +12,10 @@ from matplotlib.image import imread
 
 from export.printability import CriticalSize, check_part, draw_findings, printer_names, printer_profile
 from export.printability.check import check_on_printers
-from export.printability.drawing import RING_IN, VIEWS, buried_mm, clearest_view
+from export.printability.drawing import RING_DIAMETER_IN, VIEWS, buried_mm, clearest_view
 from export.printability.measure import measure
 from export.printability.surface import surface_of
-from export.view import frame, page
+from export.view import picture_box, picture_page
 from foundation.errors import InputError
 from geometry.fabrication.part import LimitName
 from tests.cases import for_each
@@ -265,13 +265,15 @@ def test_the_picture_marks_the_place(tmp_path):
     answer = check_part("fin", body, FDM)
     surface, places = surface_of(body), np.array([answer.findings[0].place_mm])
     view = clearest_view(surface, places)
-    _, axes, _ = page(frame(view.flat(surface.vertices)), "")
+    _, axes, _ = picture_page(picture_box(view.flat(surface.vertices)), "")
     x, y = axes.transData.transform(view.flat(places)[0])
     pixels = imread(draw_findings(body, answer, tmp_path / "fin.png"))[:, :1100, :3]  # the list is at the right
     red = np.abs(pixels - np.array([0xB5, 0x26, 0x3B]) / 255).max(axis=2) < 0.02
     rows, columns = np.nonzero(red)
     distance = np.hypot(columns - x, pixels.shape[0] - rows - y)
-    ring = (distance > 0.5 * RING_IN * 200 - 4) & (distance < 0.5 * RING_IN * 200 + 4)  # 200 pixels an inch
+    ring = (distance > 0.5 * RING_DIAMETER_IN * 200 - 4) & (
+        distance < 0.5 * RING_DIAMETER_IN * 200 + 4
+    )  # 200 pixels an inch
     assert ring.sum() > 300
     assert distance.max() < 90  # the number stands beside it
 

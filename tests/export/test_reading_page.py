@@ -6,7 +6,14 @@ import re
 import numpy as np
 import pytest
 
-from export.array.reading_page import MOST_BINS, MOST_VALUES, binned, differing, player_data, write_reading_page
+from export.array.reading_page import (
+    MOST_BINS,
+    MOST_VALUES,
+    bin_voltages,
+    player_data,
+    text_differences,
+    write_reading_page,
+)
 from foundation.errors import InputError
 from geometry.braille_cells import dot_offset_mm, raised_dots
 from tests.cases import for_each
@@ -130,7 +137,7 @@ def test_a_long_reading_stays_small_and_keeps_its_peaks(tmp_path):
     assert len(signals["time_s"]) > 300_000
     page_of(tmp_path, reading_of(true, true), signals)
     assert (tmp_path / "report.html").stat().st_size < 5e6
-    bins = binned(signals["time_s"], signals["position_mm"], signals["voltage_V"])
+    bins = bin_voltages(signals["time_s"], signals["position_mm"], signals["voltage_V"])
     assert bins.high_V.size + bins.low_V.size <= MOST_VALUES
     assert len(bins.time_s) <= MOST_BINS
     assert bins.high_V[:, 2].max() == 7.5
@@ -150,7 +157,7 @@ def test_numbers_of_the_player_are_the_signals():
 
 
 def test_texts_of_different_length_are_compared():
-    assert differing("Dot 12", "dot 2") == [("D", "d"), ("ot ", "ot "), ("1", ""), ("2", "2")]
+    assert text_differences("Dot 12", "dot 2") == [("D", "d"), ("ot ", "ot "), ("1", ""), ("2", "2")]
 
 
 @pytest.mark.parametrize(

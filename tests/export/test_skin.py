@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from pressed_box import HEIGHT_MM, LENGTH_MM
 
-from export.nodal_values import largest_principal, split_nodes, spread
-from export.skin import NodalSteps, Skin, film_top, nearby_plane, nodal_steps, outer_skin, section
+from export.nodal_values import largest_principal, nodal_means, split_nodes
+from export.skin import NodalSteps, Skin, cut_section, film_top, nearby_plane, nodal_steps, outer_skin
 from export.subdivision import tetra_pattern, triangle_pattern
 from mesh.types import TetMesh
 from solve.result import PressResult
@@ -51,7 +51,7 @@ def test_outer_skin_is_closed_and_faces_out(nodes: NodalSteps) -> None:
 
 
 def test_section_has_each_layers_area_and_faces_the_viewer(nodes: NodalSteps, segment: TetMesh) -> None:
-    skin = section(nodes, nearby_plane(segment, 0.0))
+    skin = cut_section(nodes, nearby_plane(segment, 0.0))
     area = normals(skin)
     assert (area[:, 1] <= 0).all()
     region = skin.region[skin.triangles[:, 0]]
@@ -79,7 +79,7 @@ def test_a_curved_face_is_drawn_curved() -> None:
 def test_spread_keeps_constants_within_a_part(segment: TetMesh) -> None:
     split = split_nodes(segment)
     values = 10.0**segment.region
-    np.testing.assert_allclose(spread(split, values), 10.0**split.region)
+    np.testing.assert_allclose(nodal_means(split, values), 10.0**split.region)
 
 
 def test_largest_principal_of_a_rotated_tensor() -> None:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import pyvista
 
-from export.vtk_xml import BLOCK, VtkGrid, encoded
+from export.vtk_xml import BLOCK_BYTES, VtkGrid, encode_blocks
 
 QUADRATIC_TRIANGLE = 22
 
@@ -17,7 +17,7 @@ def grid_of(cells):
     return VtkGrid(points, np.arange(6 * cells).reshape(-1, 6), QUADRATIC_TRIANGLE), points
 
 
-@pytest.mark.parametrize("cells", [1, BLOCK // 8, BLOCK // 8 + 1])  # one block, just a block, a little more
+@pytest.mark.parametrize("cells", [1, BLOCK_BYTES // 8, BLOCK_BYTES // 8 + 1])  # one block, just a block, a little more
 def test_noise_and_zeros_are_read_as_they_were_written(tmp_path, cells):
     grid, points = grid_of(cells)
     noise, zeros = np.random.default_rng(1).standard_normal(cells), np.zeros(cells)
@@ -34,8 +34,8 @@ def test_noise_and_zeros_are_read_as_they_were_written(tmp_path, cells):
 
 def test_what_shrinks_is_compressed_and_noise_hardly_grows():
     noise = np.random.default_rng(2).standard_normal(100_000)
-    assert len(encoded(np.zeros(100_000))) < 0.01 * noise.nbytes
-    assert len(encoded(noise)) < 4 / 3 * 1.001 * noise.nbytes  # base64 writes three bytes as four
+    assert len(encode_blocks(np.zeros(100_000))) < 0.01 * noise.nbytes
+    assert len(encode_blocks(noise)) < 4 / 3 * 1.001 * noise.nbytes  # base64 writes three bytes as four
     assert len(zlib.compress(noise.tobytes(), 1)) > 0.9 * noise.nbytes  # why it is stored as it is
 
 
