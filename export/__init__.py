@@ -1,1 +1,1 @@
-"""What leaves softdot: CAD files, ParaView results, pictures and the report."""
+"""Files and pictures of results: CAD files, ParaView results, pictures and the report."""

@@ -1,4 +1,5 @@
 """STEP, 3MF and STL files of the parts, in millimetres.
+
 In the STEP file of an array what belongs to a segment is an assembly of its own, labelled segment-r1c2.
 """
 
@@ -30,7 +31,7 @@ def write_cad(parts: Sequence[Part], folder: Path) -> None:
 
 
 def write_step(parts: Sequence[Part], path: Path) -> None:
-    """Write one assembly, labelled as the file is named, STEP AP214."""
+    """Write one assembly, labelled as the file is named, as STEP AP214."""
     from build123d import Compound, export_step
 
     # copies, because an assembly takes its children from other assemblies
@@ -50,7 +51,7 @@ def write_3mf(parts: Sequence[Part], path: Path, angular_deflection: float = ANG
 def write_stl(
     part: Part, path: Path, deflection_mm: float | None = None, angular_deflection: float = ANGULAR_DEFLECTION
 ) -> None:
-    """Write a binary STL with merged vertices, without flat facets.
+    """Write a binary STL with merged vertices and without flat facets. RuntimeError for an open surface.
 
     deflection_mm : largest distance of a facet from the true surface, if other than RELATIVE_DEFLECTION says.
     """

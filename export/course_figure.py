@@ -1,4 +1,4 @@
-"""The course of a press over time: depth, force, charge of each electrode, and what is read."""
+"""Figure of a press over time: depth, force, charge of each electrode, and what is read."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -14,8 +14,9 @@ SINGLE_CURVE_COLOUR = "#33658a"
 
 
 def course_figure(along: PressCourse, electrodes: Sequence[str]) -> "Figure":
-    """Four panels over time; dots are the solved states. Voltages are those behind the amplifiers where there are any,
-    of the open circuit else.
+    """Four panels over time; dots are the solved states.
+
+    Voltages are those behind the amplifiers where there are any, else those of the open circuit.
     """
     from matplotlib.figure import Figure
 

@@ -62,7 +62,7 @@ def is_slice(tet_mesh: TetMesh) -> bool:
 
 
 def open_scene(tet_mesh: TetMesh, step: Step, dot_shape: DotShape) -> CutawayScene:
-    """Cut a solid segment along the dot; a plane-strain slice is seen whole from the front."""
+    """The scene of a solid segment cut along the dot, or of a plane-strain slice seen whole from the front."""
     nodes = nodal_steps(tet_mesh, [step])
     origin = step.dot_position_m * MM_PER_M
     dots = placed_dot(dot_shape, tet_mesh, origin, facets=96)
@@ -78,7 +78,7 @@ def open_scene(tet_mesh: TetMesh, step: Step, dot_shape: DotShape) -> CutawaySce
 
 
 def draw_parts(scene: CutawayScene, title: str, path: Path) -> None:
-    """The parts in their colours, named, with rulers in mm."""
+    """Draw the parts in their colours, named, with rulers in mm, and write a PNG."""
     bodies = [DrawnBody(_deformed_surface(part), PART_COLOURS[name]) for name, part in scene.parts.items()]
     figure, axes = _draw_scene(scene, bodies, title)
     anchors, names = _name_anchors(scene)
@@ -89,9 +89,9 @@ def draw_parts(scene: CutawayScene, title: str, path: Path) -> None:
 
 
 def draw_von_mises(scene: CutawayScene, title: str, path: Path) -> None:
-    """The soft parts by von Mises stress; the film, a thousand times stiffer, in its own colour.
+    """Draw the soft parts by von Mises stress, and the film, a thousand times stiffer, in its own colour.
 
-    On one scale, or each part on its own where the stresses of the parts are far apart.
+    On one scale, or each part on its own where the stresses of the parts are far apart. Writes a PNG.
     """
     stresses = {name: part["von_mises_MPa"] for name, part in scene.parts.items() if name != "film"}
     own = {name: float(np.percentile(stress, 99)) or 1e-9 for name, stress in stresses.items()}
@@ -112,7 +112,7 @@ def draw_von_mises(scene: CutawayScene, title: str, path: Path) -> None:
 
 
 def _stress_body(part: Any, top: float) -> DrawnBody:
-    """Colours straight into the surface, so that the light shades them like the parts' own."""
+    """A part with colours in its surface itself, so that the light shades them like the parts' own."""
     import matplotlib
 
     surface = _deformed_surface(part)
@@ -122,7 +122,7 @@ def _stress_body(part: Any, top: float) -> DrawnBody:
 
 
 def _draw_scene(scene: CutawayScene, bodies: list[DrawnBody], title: str) -> tuple[Any, Any]:
-    """Bodies, outlines, dot and rulers on a page."""
+    """Figure and axes with bodies, edges, dot and rulers."""
     bodies += [_edge_lines(part, scene.view) for part in scene.parts.values()]
     bodies += [DrawnBody(_with_smooth_normals(dot), PART_COLOURS["dot"]) for dot in scene.dots]
     flat = np.vstack([scene.view.flat(np.asarray(b.surface.points)) for b in bodies if b.surface.n_points])
@@ -138,7 +138,7 @@ def _draw_scene(scene: CutawayScene, bodies: list[DrawnBody], title: str) -> tup
 
 
 def _draw_rulers(axes: Any, scene: CutawayScene) -> None:
-    """x along the foot of the section, z up its left edge and, where it shows, y along the right foot."""
+    """Draw rulers: x along the foot of the section, z up its left edge and, where it shows, y along the right foot."""
     points = np.vstack([part.points for part in scene.parts.values()])
     (x0, y0, z0), (x1, y1, z1) = points.min(axis=0), points.max(axis=0)
     corner = np.array([x1, y0, z0])
@@ -150,7 +150,7 @@ def _draw_rulers(axes: Any, scene: CutawayScene) -> None:
 
 
 def _name_anchors(scene: CutawayScene) -> tuple[list[Floats], list[str]]:
-    """Where the naming lines start (on the right flank at half height), and the names with thicknesses."""
+    """Places (2,) where the naming lines start, on the right flank at half height, and the names with thicknesses."""
     anchors, names = [], []
     for name, part in scene.parts.items():
         z = part.points[:, 2]
@@ -170,7 +170,7 @@ def _name_anchors(scene: CutawayScene) -> tuple[list[Floats], list[str]]:
 def _surfaces_by_part(
     tet_mesh: TetMesh, skins: list[Skin], shape: Callable[[Any], Any] = lambda s: s
 ) -> dict[str, Any]:
-    """One surface per part, named from the base upwards."""
+    """Name -> one surface, from the base upwards."""
     result = {}
     for number, name in enumerate(tet_mesh.region_names):
         for skin in skins:
@@ -201,5 +201,5 @@ def _edge_lines(part: Any, view: View) -> DrawnBody:
 
 
 def _with_smooth_normals(surface: Any) -> Any:
-    """Normals that make round faces look round and keep sharp edges."""
+    """The surface with normals that make round faces look round and keep sharp edges."""
     return surface.compute_normals(split_vertices=True, feature_angle=30, cell_normals=False)

@@ -10,7 +10,7 @@ from geometry.dot import DotShape
 from mesh.types import TetMesh
 
 PLATE_THICKNESS_MM = 0.2
-"""Drawn only: the real plate is of no consequence behind its face."""
+"""Thickness of the drawn plate; that of the real one is of no consequence."""
 
 
 @dataclass(frozen=True)
@@ -60,12 +60,12 @@ def triangle_surface(points_mm: Floats, triangles: Ints) -> Any:
 
 
 def in_segment_frame(dot_shape: DotShape, points_mm: Floats, origin_mm: Floats) -> Floats:
-    """Points (v, 3) of the dot frame, in mm, seen in the segment frame with the dot's origin at origin_mm."""
+    """Points (v, 3) of the dot frame in the segment frame, the dot's origin at origin_mm; in mm."""
     return np.asarray(origin_mm + points_mm @ dot_shape.rotation.T)
 
 
 def _meridian(dot_shape: DotShape, tip_mm: float, count: int) -> Floats:
-    """Meridian from a tip at z = tip_mm to the plate, (p, 2) radius and z in mm."""
+    """Meridian (p, 2) from a tip at z = tip_mm to the plate, radius and z in mm."""
     radius, height = dot_shape.radius_mm, dot_shape.height_mm - tip_mm
     opening = np.arccos(1 - min(height, radius) / radius)
     angle = np.linspace(0.0, opening, count)
@@ -114,7 +114,7 @@ def _extrude_profile(profile: Floats, center_x: float, front_y: float, back_y: f
 
 
 def _plate_box(low: Floats, high: Floats, bottom: float) -> DotPart:
-    """The plate: its face at z = bottom."""
+    """The plate as a box with its face at z = bottom."""
     foot = np.where([[0, 0], [1, 0], [1, 1], [0, 1]], high, low)
     points = np.vstack([np.column_stack([foot, np.full(4, bottom + z)]) for z in (0.0, PLATE_THICKNESS_MM)])
     quads = np.array([[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]])

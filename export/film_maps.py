@@ -1,4 +1,4 @@
-"""Maps of the film: where it is stretched and where the charge comes from."""
+"""Maps of the film: its strain, and where its charge arises."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -44,7 +44,7 @@ class FilmMap:
 
 @dataclass(frozen=True)
 class Scale:
-    """What a colour or a height means: label with unit, ends, name of the colour map."""
+    """The meaning of a colour or a height: label with unit, ends, name of the colour map."""
 
     label: str
     low: float
@@ -63,7 +63,7 @@ class Scale:
 
 
 def film_map(tet_mesh: TetMesh, step: Step) -> FilmMap:
-    """The film's values at the nodes of its upper face, as every picture and file has them."""
+    """Values of the film at the nodes of its upper face, as every picture and file has them."""
     facets = tet_mesh.facets["film-top"]
     nodes, local = np.unique(facets, return_inverse=True)
     local = local.reshape(facets.shape)
@@ -109,7 +109,7 @@ def film_figure(tet_mesh: TetMesh, step: Step, peak: FilmPeak) -> "Figure":
 
 
 def _draw_map(figure: Any, axes: Any, shown: FilmMap, values: Floats, scale: Scale) -> None:
-    """Colours on the deformed film, with lines of equal deflection."""
+    """Draw colours on the deformed film, with lines of equal deflection."""
     drawn = axes.tripcolor(
         shown.x_mm,
         shown.y_mm,
@@ -145,7 +145,7 @@ def _draw_map(figure: Any, axes: Any, shown: FilmMap, values: Floats, scale: Sca
 
 
 def _draw_line(_figure: Any, axes: Any, shown: FilmMap, values: Floats, scale: Scale) -> None:
-    """A slice has nothing across: the value along x."""
+    """Draw the value along x, for a slice, in which nothing varies across."""
     x, group = np.unique(np.round(shown.undeformed_x_mm, 6), return_inverse=True)
     mean = np.bincount(group, values) / np.bincount(group)
     axes.plot(x, mean, color="#b5263b", lw=1.6)

@@ -1,4 +1,4 @@
-"""Element values spread to nodes part by part: smooth inside a part, with jumps between parts."""
+"""Element values averaged at nodes part by part: smooth inside a part, with jumps between parts."""
 
 from dataclasses import dataclass
 
@@ -23,7 +23,7 @@ class SplitNodes:
 
 
 def split_nodes(tet_mesh: TetMesh) -> SplitNodes:
-    """Give each part its own copy of the nodes it shares with others."""
+    """The nodes of a mesh, those that parts share doubled for each of them."""
     parts = len(tet_mesh.region_names)
     keys, inverse = np.unique(tet_mesh.tets * parts + tet_mesh.region[:, None], return_inverse=True)
     return SplitNodes(keys // parts, keys % parts, inverse.reshape(tet_mesh.tets.shape), _volumes(tet_mesh))

@@ -1,4 +1,4 @@
-"""The parts at rest for the 3D view, before anything is meshed: their surfaces and the cut through them."""
+"""Data of the 3D view of the parts at rest, before anything is meshed: their surfaces and the cut through them."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -13,7 +13,7 @@ from geometry.solids import PART_COLOURS
 
 TESSELLATION_CHORD_MM, TESSELLATION_ANGLE_RAD = 0.02, 0.3
 PLANE_INSET_SHARE = 1e-3
-"""The cut lies a thousandth of the width behind the middle: an exact one would run along edges of the triangles."""
+"""Share of the width by which the cut lies behind the middle: an exact one would run along edges of the triangles."""
 
 
 def parts_view(solids: Mapping[str, Any], dot_shape: DotShape) -> dict[str, Any]:
@@ -73,7 +73,7 @@ def _triangulated_surface(solid: Any) -> tuple[Floats, Ints]:
 
 
 def _half_behind_plane(points: Floats, triangles: Ints, plane: float) -> Floats:
-    """Corners (3 t, 3) of what lies behind the plane y, closed there."""
+    """Corners (3 t, 3) of the half of a surface behind the plane y, closed there."""
     surface = triangle_surface(points, triangles).clean()
     kept = surface.clip_closed_surface("y", origin=(0.0, plane, 0.0)).triangulate()
     return np.asarray(kept.points[kept.regular_faces], np.float64).reshape(-1, 3)

@@ -28,7 +28,10 @@ def draw_curves(
     readout_voltage_V: Floats | None,
     path: Path | BytesIO,
 ) -> None:
-    """Two panels over the abscissa, its values (s,) and label. Arrays of shape (s,)."""
+    """Draw force and voltages, each (s,), in two panels over the abscissa, and write a PNG.
+
+    abscissa : its values (s,) and its label.
+    """
     from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine
 
@@ -54,7 +57,10 @@ def draw_curves(
 
 
 def _plot_readout(axes: Any, x: Floats, open_V: Floats, readout_V: Floats) -> list[Any]:
-    """Beside the open-circuit voltage, or on a scale of its own where it would look like nothing."""
+    """Plot the read-out beside the open-circuit voltage; return its line.
+
+    It has a scale of its own where it would else look like zero.
+    """
     scale, unit = _voltage_unit(open_V)
     label = "read-out"
     if np.abs(readout_V).max() < 0.1 * np.abs(open_V).max():
@@ -90,7 +96,7 @@ def write_pictures(
     folder: Path,
     along: PressCourse,
 ) -> dict[str, Path]:
-    """Write <name>.png for every name in FILES; return them by name. The folder appears whole or not at all.
+    """Write <name>.png for every name in PICTURE_NAMES; return paths by name. The folder appears whole or not at all.
 
     along : its course in time.
     Raises InputError when this machine lacks the system libraries to draw.
@@ -112,8 +118,9 @@ def write_pictures(
 
 
 def draw_sample() -> None:
-    """A surface and curves, drawn into memory; the next pictures of this process then take less time. InputError as
-    write_pictures.
+    """Draw a surface and curves into memory, so that the next pictures of this process take less time.
+
+    InputError as of write_pictures.
     """
     import pyvista
 
@@ -132,7 +139,10 @@ def deepest(result: PressResult) -> Step:
 
 
 def abscissa(result: PressResult) -> tuple[Floats, str]:
-    """What the curves are drawn over (s,), and its name: time where it matters, else depth, on a slide the step."""
+    """Values (s,) over which the curves are drawn, and their label.
+
+    Time where the press follows it, else the depth, or on a slide the number of the step.
+    """
     if result.follows_time:
         return np.array([step.time_s for step in result.steps]), "time (s)"
     depth = np.array([step.indentation_m * MM_PER_M for step in result.steps])
@@ -142,7 +152,7 @@ def abscissa(result: PressResult) -> tuple[Floats, str]:
 
 
 def _force_and_voltage(result: PressResult) -> tuple[Floats, Floats]:
-    """Force (N) and open-circuit voltage (V) of the electrodes in parallel, each (s,)."""
+    """Force in N and open-circuit voltage in V of the electrodes in parallel, each (s,)."""
     share = result.capacitance_F / result.capacitance_F.sum()
     return (
         np.array([step.reaction_force_N for step in result.steps]),

@@ -44,7 +44,7 @@ class FilmPatches:
 
 
 def film_patches(tet_mesh: TetMesh) -> FilmPatches:
-    """The patches of a mesh; a slice has them along x only, since nothing varies across."""
+    """The patches of a mesh's film; a slice has them along x only, since nothing varies across."""
     axes = 1 if bool(np.any(tet_mesh.twin != np.arange(len(tet_mesh.twin)))) else 2
     tets = tet_mesh.tets[tet_mesh.region_tets("film")]
     points = tet_mesh.points_mm[tets[:, :4], :axes]
@@ -78,7 +78,7 @@ def _columns_of_places(touch: sp.csr_matrix, rim: Bools) -> sp.coo_matrix:
 
 
 def _fit_weights(patches: sp.coo_matrix, where: Floats, centre: Floats, weight: Floats) -> sp.csr_matrix:
-    """Weights (p, c) with which the values of the columns make up those at the places, by weighted least squares.
+    """Weights (p, c) with which values of the c columns add up to those at p places, by weighted least squares.
 
     where : (p, axes), centre : (c, axes), weight : (c,). Where a patch does not tell a slope there is none.
     """

@@ -1,4 +1,4 @@
-"""Make VTK draw without a display, or say plainly why it cannot."""
+"""VTK without a display: choose a window that draws, or say plainly why none does."""
 
 import os
 import subprocess
@@ -24,7 +24,7 @@ OPENGL_ADVICE = (
     "install libegl1 and libgl1-mesa-dri (apt-get install libegl1 libgl1 libgl1-mesa-dri) or libosmesa6."
 )
 TRIAL_TIMEOUTS_S = 60.0, 240.0
-"""How long a trial picture may take, and how long where none was drawn in that time."""
+"""Longest time of a trial picture, and of a second trial where none was drawn in that time."""
 _CHOSEN_WINDOW: list[str] = []
 _TRIAL_LOCK = Lock()
 
@@ -45,7 +45,10 @@ def ensure_rendering(known: str | None = None) -> str:
 
 
 def _working_window() -> str:
-    """Name of VTK's window class; empty for VTK's own choice. A window that only was slow is tried once more."""
+    """Name of VTK's window class, empty for VTK's own choice. InputError where none draws.
+
+    A window that was only slow is tried once more.
+    """
     slow = _candidate_windows()
     for seconds in TRIAL_TIMEOUTS_S:
         waiting, slow = slow, []
@@ -64,7 +67,7 @@ def _working_window() -> str:
 
 
 def _draws(window: str, seconds: float) -> bool:
-    """Whether a process that draws with this window comes to its end. TimeoutExpired."""
+    """Whether a process that draws with this window ends well. TimeoutExpired after the seconds given."""
     environment = {**os.environ, **child_python_path(), **({_WINDOW_VARIABLE: window} if window else {})}
     run = subprocess.run(
         python_command("-c", _PROBE), env=environment, capture_output=True, timeout=seconds, check=False
@@ -73,7 +76,10 @@ def _draws(window: str, seconds: float) -> bool:
 
 
 def _candidate_windows() -> list[str]:
-    """Without a display naming EGL spares VTK's warning about the missing X server."""
+    """Names of the windows to try.
+
+    Without a display, to name EGL spares VTK's warning about the missing X server.
+    """
     if os.environ.get(_WINDOW_VARIABLE):
         return [os.environ[_WINDOW_VARIABLE]]
     if sys.platform != "linux" or os.environ.get("DISPLAY"):

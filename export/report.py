@@ -85,7 +85,7 @@ def write_report(
 
 
 def number(value: Any, digits: int = 4) -> str:
-    """A number for people: significant digits, no exponent between 1e-4 and 1e6; other values as they are."""
+    """A number as text for people: significant digits, no exponent between 1e-4 and 1e6; other values as they are."""
     if value is None:
         return "\u2013"
     if isinstance(value, bool):
@@ -144,7 +144,10 @@ def headline(summary: Mapping[str, Any]) -> list[dict[str, str]]:
 
 
 def _peak_readout(summary: Mapping[str, Any]) -> list[tuple[str, Any, str, str]]:
-    """The largest voltage behind an amplifier along the course, with its sign, when, and how far it may be off."""
+    """A row with the largest voltage behind an amplifier along the course, or none.
+
+    With its sign, its time, and how far it may be off.
+    """
     course = summary.get("course", {})
     peaks = [(max(curve, key=abs), curve, name) for name, curve in course.get("readout_V", {}).items()]
     if not peaks:
@@ -156,7 +159,10 @@ def _peak_readout(summary: Mapping[str, Any]) -> list[tuple[str, Any, str, str]]
 
 
 def plus_minus(summary: Mapping[str, Any], name: str, before: str = " ") -> str:
-    """' ± 12 %' where an uncertainty is stated, '' for a given force; two digits, as more would claim too much."""
+    """Text ' ± 12 %' where an uncertainty is stated, '' for a given force.
+
+    It has two digits, as more would claim too much.
+    """
     stated = summary.get("uncertainty", {}).get(name)
     return "" if not stated else f"{before}±\u00a0{number(float(stated), 2)}\u00a0%"
 
@@ -168,7 +174,7 @@ def _mesh_errors(summary: Mapping[str, Any]) -> dict[str, float]:
 
 
 def _rim_rows(film: Mapping[str, Any]) -> list[tuple[str, Any, str, str]]:
-    """The strain where held sides count too, where there are such sides."""
+    """A row with the strain where held sides count too, where there are such sides."""
     if not film.get("rim_distance_mm"):
         return []
     about = "the mesh does not resolve the film there, so do not compare it with a material constant"
@@ -176,7 +182,7 @@ def _rim_rows(film: Mapping[str, Any]) -> list[tuple[str, Any, str, str]]:
 
 
 def step_rows(summary: Mapping[str, Any]) -> tuple[list[str], list[list[str]]]:
-    """Column heads and one row for each load step."""
+    """Column heads, and one row for each load step."""
     columns = [
         ("indentation (mm)", "indentation_mm"),
         ("force (N)", "reaction_force_N"),
@@ -200,13 +206,13 @@ def _percent(share: float | None) -> float | None:
 
 
 def _ordered_pictures(pictures: Mapping[str, Path]) -> list[tuple[str, Path]]:
-    """Known pictures first and in their order."""
+    """Name and path of the pictures, known ones first and in their order."""
     names = [name for name in CAPTIONS if name in pictures]
     return [(name, pictures[name]) for name in [*names, *(n for n in pictures if n not in CAPTIONS)]]
 
 
 def _captions(summary: Mapping[str, Any]) -> dict[str, tuple[str, str]]:
-    """Captions for what was computed."""
+    """Captions of the pictures of a solid or of a slice."""
     section = summary.get("config", {}).get("segment", {}).get("section")
     return CAPTIONS | (SLICE_CAPTIONS if section == "plane-strain" else {})
 

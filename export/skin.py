@@ -1,4 +1,5 @@
 """Surfaces of the segment as small triangles that carry every shown step: outer skin, section and film.
+
 Units are those that results are shown in: millimetres, megapascals and picocoulombs per square millimetre.
 """
 
@@ -51,7 +52,7 @@ class NodalSteps:
 
     @property
     def fields(self) -> tuple[Floats, ...]:
-        """In the order in which a Skin has them."""
+        """Fields in the order in which a Skin has them."""
         return (
             self.displacement_mm,
             self.von_mises_MPa,
@@ -62,7 +63,7 @@ class NodalSteps:
 
 
 def nodal_steps(tet_mesh: TetMesh, steps: Sequence[Step]) -> NodalSteps:
-    """Gather what the skins show of the given steps, at nodes that belong to one part each."""
+    """Fields of the given steps that the skins show, at nodes that belong to one part each."""
     split, every = split_nodes(tet_mesh), [step.fields for step in steps]
     strain = [film_values(tet_mesh, f.film_tets, largest_principal(f.film_strain)) for f in every]
     charge = [film_values(tet_mesh, f.film_tets, f.charge_density_C_per_m2) for f in every]
@@ -95,7 +96,7 @@ def outer_facets(split: SplitNodes) -> Ints:
 
 
 def film_top(nodes: NodalSteps, tet_mesh: TetMesh, level: int = 1) -> Skin:
-    """The upper face of the film."""
+    """The upper face of the film, each quadratic face cut into 4^level triangles."""
     film = tet_mesh.region_names.index("film")
     place = np.full(len(tet_mesh.points_mm), -1)
     own = np.flatnonzero(nodes.split.region == film)
@@ -122,7 +123,7 @@ def cut_section(nodes: NodalSteps, y_mm: float, level: int = 1) -> Skin:
 
 
 def nearby_plane(tet_mesh: TetMesh, y_mm: float) -> float:
-    """A y just behind y_mm and inside the segment: a cut exactly through mesh faces would find no cells."""
+    """A y in mm just behind y_mm and inside the segment: a cut exactly through mesh faces would find no cells."""
     low, high = tet_mesh.points_mm[:, 1].min(), tet_mesh.points_mm[:, 1].max()
     inset = 1e-4 * (high - low)
     return float(np.clip(y_mm + inset, low + inset, high - inset))
@@ -140,7 +141,7 @@ def _interpolate(weights: Floats, values: Floats, cells: Ints) -> Floats:
 
 
 def _skin_of_facets(nodes: NodalSteps, facets: Ints, level: int) -> Skin:
-    """Quadratic triangles (k, 6) in split nodes, subdivided; equal corners of one part are shared."""
+    """The skin of quadratic triangles (k, 6) in split nodes, subdivided; equal corners of one part are shared."""
     weights, small = triangle_pattern(level)
     triangles = (np.arange(len(facets))[:, None, None] * len(weights) + small).reshape(-1, 3)
     points, *fields = (_interpolate(weights, array, facets) for array in _points_and_fields(nodes))
@@ -149,7 +150,7 @@ def _skin_of_facets(nodes: NodalSteps, facets: Ints, level: int) -> Skin:
 
 
 def _skin_of_cut(nodes: NodalSteps, triangles: Ints, region: Ints, cut: "object") -> Skin:
-    """A cut whose corners are given to one part each (parts meet at equal corners)."""
+    """The skin of a cut whose corners are given to one part each (parts meet at equal corners)."""
     points = np.asarray(cut.points, np.float64)[triangles].reshape(-1, 3)  # type: ignore[attr-defined]
     count = len(nodes.fields) * len(nodes.displacement_mm)
     fields = [np.asarray(cut.point_data[f"f{k}"])[triangles.ravel()] for k in range(count)]  # type: ignore[attr-defined]
@@ -159,7 +160,10 @@ def _skin_of_cut(nodes: NodalSteps, triangles: Ints, region: Ints, cut: "object"
 
 
 def _merge_corners(points: Floats, triangles: Ints, region: Ints, fields: Sequence[Floats], each: int) -> Skin:
-    """Merge corners of equal place (to 0.1 um) and part, drop triangles that vanish by it. each : fields of a step."""
+    """The skin with corners of equal place (to 0.1 um) and part merged, without triangles that vanish by it.
+
+    each : number of fields of a step.
+    """
     keys = np.column_stack([np.round(points * 1e4).astype(np.int64), region])
     _, first, inverse = np.unique(keys, axis=0, return_index=True, return_inverse=True)
     triangles = inverse.ravel()[triangles]
@@ -170,7 +174,7 @@ def _merge_corners(points: Floats, triangles: Ints, region: Ints, fields: Sequen
 
 
 def _turn_to_front(skin: Skin) -> Skin:
-    """Turn triangles so that their normals point to -y."""
+    """The skin with triangles turned so that their normals point to -y."""
     a, b, c = (skin.points_mm[skin.triangles[:, i]] for i in range(3))
     turned = np.cross(b - a, c - a)[:, 1] > 0
     return replace(skin, triangles=np.where(turned[:, None], skin.triangles[:, ::-1], skin.triangles))

@@ -24,7 +24,7 @@ def triangle_pattern(level: int) -> tuple[Floats, Ints]:
 
 @functools.cache
 def tetra_pattern(level: int) -> tuple[Floats, Ints]:
-    """Weights (p, 10) of the quadratic tetrahedron's nodes, and small tetrahedra (8^level, 4)."""
+    """Weights (p, 10) of the quadratic tetrahedron's nodes at small corners, and small tetrahedra (8^level, 4)."""
     return _subdivision_pattern(level, 4, TETRA_EDGES, _TETRA_CHILDREN)
 
 

@@ -18,7 +18,7 @@ INK = "#26303a"
 
 @dataclass(frozen=True)
 class View:
-    """Where the viewer stands: turned by azimuth_deg from -y towards +x, lifted by elevation_deg."""
+    """Direction of the view: turned by azimuth_deg from -y towards +x, lifted by elevation_deg."""
 
     azimuth_deg: float
     elevation_deg: float
@@ -32,14 +32,14 @@ class View:
         return right, np.cross(toward, right), toward
 
     def flat(self, points_mm: Floats) -> Floats:
-        """Points (n, 3) as they lie on the picture, (n, 2) mm."""
+        """Points (n, 3) projected onto the picture, (n, 2) mm."""
         right, up, _ = self.axes
         return np.asarray(points_mm @ np.column_stack([right, up]))
 
 
 @dataclass(frozen=True)
 class DrawnBody:
-    """Something to draw: a pyvista surface, its colour (None: its "rgb" array), line width (0: filled)."""
+    """A body to draw: a pyvista surface, its colour (None: its "rgb" array), line width (0: filled)."""
 
     surface: Any
     colour: str | None
@@ -47,7 +47,7 @@ class DrawnBody:
 
 
 def picture_box(flat_mm: Floats, pad: float = 0.02) -> tuple[float, float, float, float]:
-    """Left, right, bottom, top in mm around flat points (n, 2)."""
+    """Left, right, bottom and top in mm around flat points (n, 2), with a margin of pad of the longer side."""
     low, high = flat_mm.min(axis=0), flat_mm.max(axis=0)
     extra = pad * (high - low).max()
     return low[0] - extra, high[0] + extra, low[1] - extra, high[1] + extra
@@ -85,7 +85,7 @@ def render(
 
 
 def _add_body(plotter: Any, body: DrawnBody, flat_light: bool) -> None:
-    """Filled surfaces in soft light (none at all in a straight front view), lines in ink."""
+    """Add filled surfaces in soft light (none at all in a straight front view), lines in ink."""
     if body.surface.n_points == 0:
         return
     flat = flat_light or body.line_width > 0
@@ -111,7 +111,7 @@ def _aim_camera(camera: Any, view: View, box: tuple[float, float, float, float])
 
 
 def picture_page(box: tuple[float, float, float, float], title: str) -> tuple[Any, Any, float]:
-    """A white page of PICTURE_SIZE whose coordinates are mm on the picture, with room for writing around box.
+    """A white page of PICTURE_SIZE_PX whose coordinates are mm on the picture, with room for writing around box.
 
     Returns figure, axes and pixels per mm.
     """
@@ -141,7 +141,7 @@ def save_png(figure: Any, path: Any) -> None:
 
 
 def draw_ruler(axes: Any, view: View, start_mm: Floats, end_mm: Floats, name: str, away: Floats) -> None:
-    """Ticks in mm along the edge from start to end (3,), which run along one coordinate axis.
+    """Draw ticks in mm along the edge from start to end (3,), which run along one coordinate axis.
 
     away : (2,) direction on the picture in which ticks and numbers lie.
     """
@@ -171,7 +171,7 @@ def _round_values(low: float, high: float, most: float) -> list[float]:
 
 
 def name_parts(axes: Any, names: Sequence[str], anchors: Floats, colours: Sequence[str], column_mm: float) -> None:
-    """Names in a column at column_mm, joined by thin lines to their anchors (n, 2)."""
+    """Write names in a column at column_mm, joined by thin lines to their anchors (n, 2)."""
     order = np.argsort(anchors[:, 1])
     low, high = axes.get_ylim()
     heights = _spread_out(anchors[order, 1], 0.06 * (high - low))
@@ -199,7 +199,7 @@ def _spread_out(heights: Floats, gap: float) -> Floats:
 
 
 def draw_colour_bar(figure: Any, low: float, high: float, label: str, extend: str = "neither") -> None:
-    """A colour bar of the common colour map at the right of the page."""
+    """Draw a colour bar of the common colour map at the right of the page."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 

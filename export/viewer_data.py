@@ -1,4 +1,4 @@
-"""What the report's 3D view needs, packed as base64 arrays."""
+"""Data of the report's 3D view, packed as base64 arrays."""
 
 import base64
 from collections.abc import Sequence
@@ -74,7 +74,7 @@ def _skins(nodes: NodalSteps, tet_mesh: TetMesh, plane: float) -> list[Skin]:
 
 
 def _geometry_arrays(skins: list[Skin]) -> dict[str, Any]:
-    """Corners of all skins in one array and the triangles of each."""
+    """Corners of all skins in one array, and the triangles of each."""
     offsets = np.cumsum([0, *(len(skin.points_mm) for skin in skins[:-1])])
     triangles = {
         name: base64_array(skin.triangles + offset, np.uint32)
@@ -94,7 +94,9 @@ def _geometry_arrays(skins: list[Skin]) -> dict[str, Any]:
 
 
 def _field_arrays(skins: list[Skin], tet_mesh: TetMesh, peak: FilmPeak) -> dict[str, Any]:
-    """Stress up to the 99th percentile of the soft parts (the film is far stiffer), strain and charge up to the stated
+    """Fields of all skins as shares of their largest shown values.
+
+    Stress up to the 99th percentile of the soft parts (the film is far stiffer), strain and charge up to the stated
     largest.
     """
     stress = np.concatenate([skin.von_mises_MPa for skin in skins], axis=1)
@@ -157,7 +159,7 @@ def rgb(colour: str) -> list[float]:
 
 
 def colour_maps() -> dict[str, str]:
-    """256 RGB triples of each of the maps of the pictures."""
+    """256 RGB triples, as base64, of each of the colour maps of the pictures."""
     import matplotlib
 
     maps = {"colourMap": COLOUR_MAP, "diverging": DIVERGING}

@@ -16,18 +16,21 @@ from numpy.typing import NDArray
 
 from foundation.arrays import Floats, Ints
 
-BLOCK_BYTES, SAMPLE_BYTES = 1 << 17, 1 << 12  # bytes
+BLOCK_BYTES, SAMPLE_BYTES = 1 << 17, 1 << 12
 WORTHWHILE_RATIO = 0.8  # of its size, to which a sample must shrink
 FASTEST_LEVEL = 1
 VTK_TYPES = {"f8": "Float64", "i8": "Int64", "i4": "Int32", "u1": "UInt8"}
 
 Arrays = Mapping[str, tuple[NDArray[Any], Sequence[str]]]
-"""By name: values (n,) or (n, c), and what their components are called."""
+"""Name -> values (n,) or (n, c), and the names of their components."""
 
 
 def encode_blocks(values: NDArray[Any]) -> bytes:
-    """Base64 of the sizes of all blocks, then of the blocks: count, size, size of a last one that is shorter, sizes as
-    compressed.
+    """Base64 of an array in compressed blocks, as VTK reads it.
+
+    The head states the number of blocks, their size, that of a last one that is shorter, and their compressed sizes;
+    the
+    blocks follow.
     """
     raw = np.ascontiguousarray(values, values.dtype.newbyteorder("<")).tobytes()
     blocks = [_compress_block(raw[start : start + BLOCK_BYTES]) for start in range(0, len(raw), BLOCK_BYTES)]
@@ -43,7 +46,10 @@ def _compress_block(block: bytes) -> bytes:
 
 
 def data_array(name: str, values: NDArray[Any], components: Sequence[str] = (), tuples: bool = False) -> bytes:
-    """One array as an element; components : their names. tuples : whether their number is told, as field data need."""
+    """One array as an XML element. components : their names.
+
+    tuples : whether the number of tuples is stated, as field data need.
+    """
     told = f'<DataArray type="{VTK_TYPES[values.dtype.str[1:]]}" Name={quoteattr(name)}'
     if values.ndim > 1:
         told += f' NumberOfComponents="{values.shape[1]}"'
@@ -53,7 +59,7 @@ def data_array(name: str, values: NDArray[Any], components: Sequence[str] = (), 
 
 
 class VtkGrid:
-    """Cells of one type and their points, encoded; points (n, 3) in mm, cells (m, nodes per cell) of a VTK type."""
+    """Points (n, 3) in mm and cells of one VTK type (m, nodes per cell), encoded once for all steps."""
 
     def __init__(self, points_mm: Floats, cells: Ints, cell_type: int) -> None:
         self._points, self._cells = len(points_mm), len(cells)
@@ -65,7 +71,7 @@ class VtkGrid:
         ]  # fmt: skip
 
     def write(self, path: Path, point_data: Arrays, cell_data: Arrays, field_data: Arrays | None = None) -> None:
-        """One file with these arrays. ValueError for an array of another length."""
+        """Write a file with these arrays. ValueError for an array of another length."""
         piece = f'<Piece NumberOfPoints="{self._points}" NumberOfCells="{self._cells}">\n'
         content = [
             b'<?xml version="1.0"?>\n<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian" ',
@@ -79,7 +85,7 @@ class VtkGrid:
 
 
 def _data_section(kind: str, arrays: Arrays, count: int) -> list[bytes]:
-    """All arrays of points or of cells; the first is what is shown at first."""
+    """Element of all arrays of points or of cells; the first is what ParaView shows at first."""
     for name, (values, _) in arrays.items():
         if len(values) != count:
             raise ValueError(f"{name} has the length {len(values)}, not {count}")

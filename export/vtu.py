@@ -1,4 +1,5 @@
 """ParaView files: one VTU per load step, PVD collections over the indentation, and a script to open them.
+
 In a shell: paraview --script=show_in_paraview.py, or pvpython show_in_paraview.py.
 """
 
@@ -23,7 +24,7 @@ TEMPLATE = Path(__file__).with_name("paraview_script.txt")
 
 
 def pvd_text(files: Sequence[str], times: Sequence[float]) -> str:
-    """The text of a PVD file: one data file for each time."""
+    """Text of a PVD file: one data file for each time."""
     rows = [
         f'    <DataSet timestep="{time:.9g}" group="" part="0" file={quoteattr(file)}/>'
         for time, file in zip(times, files, strict=True)
@@ -32,7 +33,7 @@ def pvd_text(files: Sequence[str], times: Sequence[float]) -> str:
 
 
 def vtm_text(files: Mapping[str, str]) -> str:
-    """The text of a VTM file: block name -> data file."""
+    """Text of a VTM file. files : name of the block -> data file."""
     rows = [
         f'    <DataSet index="{index}" name={quoteattr(name)} file={quoteattr(file)}/>'
         for index, (name, file) in enumerate(files.items())
@@ -109,7 +110,7 @@ def step_times(result: PressResult) -> list[float]:
 
 
 def _segment_writer(tet_mesh: TetMesh) -> WriteStep:
-    """The whole segment as quadratic tetrahedra."""
+    """Writer of the whole segment as quadratic tetrahedra."""
     grid, region = VtkGrid(tet_mesh.points_mm, tet_mesh.tets, QUADRATIC_TETRA), tet_mesh.region.astype(np.int32)
     names = {f"region_{name}": (np.array([number], np.int32), ()) for number, name in enumerate(tet_mesh.region_names)}
 
@@ -129,7 +130,10 @@ def _segment_writer(tet_mesh: TetMesh) -> WriteStep:
 
 
 def _parts_writer(tet_mesh: TetMesh) -> WriteStep:
-    """A block for each part, in a file of its own in the folder of their name; fields at nodes jump between parts."""
+    """Writer of a block for each part, in a file of its own in the folder of their name.
+
+    Fields at nodes jump between parts.
+    """
     split = split_nodes(tet_mesh)
     own = [_compact_cells(split.tets[tet_mesh.region == number]) for number in range(len(tet_mesh.region_names))]
     grids = [VtkGrid(tet_mesh.points_mm[split.node[nodes]], tets, QUADRATIC_TETRA) for nodes, tets in own]
@@ -153,7 +157,7 @@ def _parts_writer(tet_mesh: TetMesh) -> WriteStep:
 
 
 def _film_writer(tet_mesh: TetMesh) -> WriteStep:
-    """The film's tetrahedra alone, in the film's own axes."""
+    """Writer of the film's tetrahedra alone, in the film's own axes."""
     patches, count = film_patches(tet_mesh), len(tet_mesh.points_mm)
     nodes, tets = _compact_cells(tet_mesh.tets[tet_mesh.region_tets("film")])
     grid = VtkGrid(tet_mesh.points_mm[nodes], tets, QUADRATIC_TETRA)
@@ -176,7 +180,7 @@ def _film_writer(tet_mesh: TetMesh) -> WriteStep:
 
 
 def _contact_writer(tet_mesh: TetMesh) -> WriteStep:
-    """The skin that the dot can touch, as quadratic triangles."""
+    """Writer of the skin that the dot can touch, as quadratic triangles."""
     nodes, triangles = _compact_cells(tet_mesh.facets["contact"])
     grid = VtkGrid(tet_mesh.points_mm[nodes], triangles, QUADRATIC_TRIANGLE)
 
@@ -195,7 +199,7 @@ def _contact_writer(tet_mesh: TetMesh) -> WriteStep:
 
 
 def _write_dot(tet_mesh: TetMesh, dot_shape: DotShape, step: Step, path: Path) -> None:
-    """The rigid dot and its plate where they stand at this step."""
+    """Write the rigid dot and its plate where they stand at this step."""
     import pyvista
     from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 

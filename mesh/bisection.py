@@ -10,7 +10,7 @@ from foundation.arrays import Bools, Floats, Ints
 
 @dataclass(frozen=True)
 class Triangulation:
-    """points : (n, 2); triangles : (m, 3), newest vertex first (its opposite edge is next); part : (m,)."""
+    """A labelled triangulation. points : (n, 2) mm; triangles : (m, 3), newest vertex first; part : (m,) label."""
 
     points: Floats
     triangles: Ints
@@ -58,7 +58,7 @@ def _bisect(old: Triangulation, marked: Bools, circle_radius: float | None, cent
 
 
 def _triangle_edges(triangles: Ints) -> tuple[Ints, Ints]:
-    """Unique edges (e, 2) and, per triangle, the edges opposite to its three vertices (m, 3)."""
+    """Unique edges (e, 2) and, for each triangle, the edges opposite to its three vertices (m, 3)."""
     pairs = np.sort(triangles[:, [[1, 2], [2, 0], [0, 1]]], axis=2)
     edges, number = np.unique(pairs.reshape(-1, 2), axis=0, return_inverse=True)
     return edges, number.reshape(-1, 3)
@@ -67,7 +67,7 @@ def _triangle_edges(triangles: Ints) -> tuple[Ints, Ints]:
 def _cut_edges(
     old: Triangulation, edges: Ints, of_triangle: Ints, cut: Bools, circle_radius: float | None, centres: Floats
 ) -> tuple[Floats, Ints]:
-    """All points with the new mid-points, and the number of each edge's mid-point (-1: not cut)."""
+    """All points with the new mid-points, and the number (e,) of each edge's mid-point, -1 where it is not cut."""
     middle = np.full(len(edges), -1, dtype=np.int64)
     middle[cut] = len(old.points) + np.arange(cut.sum())
     new = old.points[edges[cut]].mean(axis=1)
@@ -82,14 +82,17 @@ def _cut_edges(
 
 
 def _onto_circle(points: Floats, radius: float, centres: Floats) -> Floats:
-    """Points (m, 2) moved onto the circle about the nearest centre."""
+    """Points (m, 2) moved onto the circle of this radius about the nearest centre."""
     away = points[:, None] - centres
     arm = away[np.arange(len(points)), np.linalg.norm(away, axis=2).argmin(axis=1)]
     return np.asarray(points + arm * (radius / np.linalg.norm(arm, axis=1, keepdims=True) - 1.0))
 
 
 def _halve_triangles(triangles: Ints, part: Ints, of_triangle: Ints, middle: Ints) -> tuple[Ints, Ints, Ints]:
-    """Cut triangles whose first edge is cut. Halves know the old edges they keep; new ones are not cut."""
+    """Cut triangles whose first edge is cut; return triangles, parts and edges of triangles.
+
+    Halves know the old edges that they keep; their new edges have the number -1 and are not cut.
+    """
     first = of_triangle[:, 0]
     new = np.where(first >= 0, middle[first], -1)
     keep, cut = new < 0, new >= 0

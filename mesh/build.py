@@ -1,4 +1,4 @@
-"""The front door of the mesher; what pytetwild makes is kept on disk."""
+"""Entry of the mesher: a mesher is chosen, and what pytetwild makes is kept on disk."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def build(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes 
 
 
 def _linear_mesh(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes) -> LinearMesh:
-    """Choose the mesher; what pytetwild makes is remembered."""
+    """The linear mesh by the mesher that the options name; meshes of pytetwild are kept on disk."""
     from mesh.layered import layered_mesh
     from mesh.slice import layered_slice, tetwild_slice
     from mesh.tetwild import tetwild_mesh
@@ -50,7 +50,7 @@ def _linear_mesh(segment: Segment, dot: DotShape, options: MeshOptions, planes: 
 
 
 def mesh_key(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes = ()) -> str:
-    """Hash of the geometry, of the dot's place and size, of the options and of the meshers."""
+    """SHA-256 of the geometry, of the dot's place and size, of the options and of the meshers' sources."""
     from importlib.metadata import version
 
     effector = segment.effector
@@ -67,12 +67,12 @@ def mesh_key(segment: Segment, dot: DotShape, options: MeshOptions, planes: Plan
 
 
 def _dot_arrays(dot: DotShape) -> tuple[Any, Any, Any]:
-    """The arrays of a dot."""
+    """Tips, origin and rotation of a dot as arrays."""
     return np.asarray(dot.tips_mm), np.asarray(dot.origin_mm), np.asarray(dot.rotation)
 
 
 def cached_mesh(name: str, make: Callable[[], LinearMesh]) -> LinearMesh:
-    """The mesh kept under this name, or a new one that is then kept. A damaged file is a miss."""
+    """The mesh kept under this name, or that which make returns, which is then kept. A damaged file is made again."""
     path = cache_folder() / f"mesh-{name}.npz"
     found = read_arrays(path, _decode_mesh)
     if found is not None:
@@ -86,7 +86,7 @@ def cached_mesh(name: str, make: Callable[[], LinearMesh]) -> LinearMesh:
 
 
 def _decode_mesh(data: Mapping[str, Any]) -> LinearMesh:
-    """The mesh in a file; ValueError when its arrays do not fit together."""
+    """The mesh in the arrays of a file. ValueError when they do not fit together."""
     found = LinearMesh(data["points"], data["tets"], data["region"], tuple(str(name) for name in data["names"]))
     if found.points_mm.shape[1:] != (3,) or found.tets.shape != (len(found.region), 4):
         raise ValueError("array shapes")

@@ -16,7 +16,7 @@ CROWDING_POWER = 3.0
 
 
 def crowded_mesh(tet_mesh: TetMesh, segment: Segment) -> TetMesh:
-    """The mesh of an extruded solid with its nodes moved towards x and y sides, of a slice towards x sides.
+    """The mesh of an extruded solid with its nodes moved towards the sides in x and y, of a slice in x.
 
     It stays as it was where no side is held. A block, cylinder or dome keeps its foot, and nothing moves where it
     leaves no room.
@@ -36,6 +36,6 @@ def crowded_mesh(tet_mesh: TetMesh, segment: Segment) -> TetMesh:
 
 
 def _towards_one(place: Floats, first: float) -> Floats:
-    """Places (n,) from -1 to 1; between first and 1 nearer to 1, and alike on the other side."""
+    """Places (n,) from -1 to 1; those between first and 1 are moved towards 1, and likewise on the other side."""
     left = np.clip((1.0 - np.abs(place)) / (1.0 - first), 0.0, 1.0)
     return np.asarray(np.where(left < 1.0, np.sign(place) * (1.0 - (1.0 - first) * left**CROWDING_POWER), place))

@@ -11,7 +11,7 @@ PART_NAMES = ("medium2", "film", "medium1", "effector")
 
 
 def mesh_with_film(bare: LinearMesh, thickness_mm: float, film_layers: int) -> LinearMesh:
-    """A mesh of medium2, medium1 (and effector) with the film's layers extruded from the interface."""
+    """The mesh of medium2, medium1 (and effector) with the film's layers extruded from the interface."""
     neighbour = face_neighbours(bare.tets)
     lower = bare.region == 0
     owner, face = np.nonzero(lower[:, None] & (neighbour >= 0) & (bare.region[neighbour] == 1))
@@ -24,7 +24,10 @@ def mesh_with_film(bare: LinearMesh, thickness_mm: float, film_layers: int) -> L
 
 
 def section_with_film(bare: MeshedSection, thickness_mm: float, film_layers: int) -> MeshedSection:
-    """Put a film into a slice: interface edges of the x-z section become rectangles, cut in two, mirrored at x = 0."""
+    """The section of a slice with the film between medium 2 and medium 1.
+
+    Interface edges of the x-z section become rectangles, cut in two, mirrored at x = 0.
+    """
     lower = bare.region == 0
     edges = _interface_edges(bare)
     points, levels, moved = _film_levels(
@@ -45,7 +48,7 @@ def section_with_film(bare: MeshedSection, thickness_mm: float, film_layers: int
 def _film_levels(
     points: Floats, cells: Ints, lower: NDArray[np.bool_], interface: Ints, thickness: float, film_layers: int
 ) -> tuple[Floats, list[Ints], Ints]:
-    """Raised points with the film's nodes added, node numbers on each level, and those above the film."""
+    """Points with the film's nodes, node numbers (n,) on each of its levels, and those above the film (n,)."""
     above = np.setdiff1d(np.unique(cells[~lower]), interface)
     result = points.copy()
     result[above, -1] += thickness

@@ -33,7 +33,7 @@ def start_triangulation(outline: StackOutline, coarse_mm: float) -> Triangulatio
 
 
 def _foot_patch(outline: StackOutline) -> tuple[float, float]:
-    """Half sizes of the rectangle around a round foot."""
+    """Half sizes in mm of the rectangle around a round foot. InputError where it leaves no rim."""
     radius = outline.effector_half_x
     room = min(outline.half_x, outline.half_y)
     if radius > 0.97 * room:
@@ -47,7 +47,7 @@ def _foot_patch(outline: StackOutline) -> tuple[float, float]:
 
 
 def _grid_lines(half: float, patch: float, coarse: float, round_foot: bool) -> Floats:
-    """Symmetric grid lines through the edges of the patch; four cells over a patch around a round foot."""
+    """Symmetric grid lines (n,) through the edges of the patch; four cells over a patch around a round foot."""
     inner = 4 if round_foot else 2 * max(1, round(patch / coarse)) if 0 < patch < half else 0
     pieces = [np.linspace(-patch, patch, inner + 1)] if inner else []
     if inner and patch < half:
@@ -71,7 +71,7 @@ def crossed_triangles(quads: Floats) -> Floats:
 
 
 def round_patch(patch: tuple[float, float], radius: float) -> tuple[Floats, Floats]:
-    """Quadrilaterals between circle and rectangle, and the triangles of the disc around a square core."""
+    """Quadrilaterals (k, 4, 2) between circle and rectangle, and triangles (m, 3, 2) of the disc with a square core."""
     t = np.array([-1.0, -0.5, 0.0, 0.5])
     one = np.ones(4)
     unit = np.concatenate([np.stack(s, axis=1) for s in ((t, -one), (one, t), (-t, one), (-one, -t))])
@@ -87,7 +87,7 @@ def round_patch(patch: tuple[float, float], radius: float) -> tuple[Floats, Floa
 
 
 def join_triangles(triangles: Floats, part: Ints) -> Triangulation:
-    """Number the corners of loose triangles (m, 3, 2); corners closer than a nanometre are one."""
+    """Number the corners of loose triangles (m, 3, 2); corners closer than a nanometre become one."""
     flat = triangles.reshape(-1, 2)
     _, first, number = np.unique(np.round(flat * 1e6), axis=0, return_index=True, return_inverse=True)
     return Triangulation(flat[first], number.reshape(-1, 3).astype(np.int64), part)

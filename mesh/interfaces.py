@@ -18,7 +18,7 @@ INTERFACES = {
 
 
 def interface_facets(tet_mesh: TetMesh, name: str) -> Ints:
-    """Quadratic facets (k, 6) of the part below the bond, normal up; of the base those of medium 2.
+    """Quadratic facets (k, 6) of the part below the bond, normal up; those of medium 2 for the base.
 
     An interface that is split already has none left. InputError when the stack lacks the part above.
     """
@@ -72,7 +72,7 @@ def split_interface(tet_mesh: TetMesh, name: str, joined: Bools | None = None) -
 
 
 def _split_facets(tet_mesh: TetMesh, name: str, above: str, new: Ints) -> Ints:
-    """Named facets with the nodes of the part that they belong to; the film's faces belong to the film."""
+    """Named facets (k, 6) with the new nodes of the part that they belong to; the film's faces belong to the film."""
     facets = tet_mesh.facets[name]
     if name.startswith("film-") and above != "film":
         return facets
@@ -83,6 +83,6 @@ def _split_facets(tet_mesh: TetMesh, name: str, above: str, new: Ints) -> Ints:
 
 
 def _triangle_keys(corners: Ints, count: int) -> Ints:
-    """One number for each triangle (k, 3), whatever the order of its corners; count below two million nodes."""
+    """One number (k,) for each triangle (k, 3), whatever the order of its corners; for less than two million nodes."""
     a, b, c = np.sort(corners, axis=1).T
     return np.asarray((a * count + b) * count + c)

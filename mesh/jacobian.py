@@ -22,7 +22,7 @@ _BARYCENTRIC_GRADIENTS = np.vstack([-np.ones((1, 3)), np.eye(3)])
 
 
 def shape_gradients(barycentric: Floats) -> Floats:
-    """Reference gradients (q, 10, 3) of the quadratic shape functions at points (q, 4)."""
+    """Gradients (q, 10, 3) of the quadratic shape functions in the reference element at barycentric points (q, 4)."""
     lam, grad = barycentric[:, :, None], _BARYCENTRIC_GRADIENTS[None]
     corner = (4 * lam - 1) * grad
     edges = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
@@ -36,7 +36,7 @@ def jacobians(nodes: Floats, barycentric: Floats = SAMPLE_POINTS) -> Floats:
 
 
 def determinants(matrices: Floats) -> Floats:
-    """Of 3 x 3 matrices (..., 3, 3), by expansion: less than half the time of numpy.linalg.det, which factorises."""
+    """Determinants (...) of 3 x 3 matrices (..., 3, 3) by expansion, in less than half the time of numpy.linalg.det."""
     (a, b, c), (d, e, f), (g, h, i) = np.moveaxis(matrices, (-2, -1), (0, 1))
     return np.asarray(a * (e * i - f * h) + b * (f * g - d * i) + c * (d * h - e * g))
 
@@ -64,7 +64,7 @@ def scaled_jacobians(nodes: Floats) -> Floats:
 
 
 def volumes(nodes: Floats) -> Floats:
-    """Volumes (m,) of curved elements: the determinant is cubic, the rule (Keast, 5 points) of degree 3."""
+    """Volumes (m,) of curved elements with nodes (m, 10, 3), exact by a rule of degree 3 (Keast, 5 points)."""
     points = np.vstack([np.full((1, 4), 0.25), np.full((4, 4), 1 / 6) + np.eye(4) / 3])
     weights = np.array([-4 / 5, *([9 / 20] * 4)]) / 6
     return np.asarray(np.linalg.det(jacobians(nodes, points)) @ weights)

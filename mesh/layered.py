@@ -19,7 +19,7 @@ SAME_HEIGHT_MM = 1e-9
 
 
 def layered_mesh(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes = ()) -> LinearMesh:
-    """Mesh a solid segment by extrusion, as far as its mirror planes. Raises InputError for a dome."""
+    """Mesh a solid segment by extrusion, as far as its mirror planes. InputError for a dome."""
     refuse_dome(segment)
     stack = stack_outline(segment, planes=planes)
     field = sizing_field(stack, dot, options)
@@ -37,8 +37,9 @@ def refuse_dome(segment: Segment) -> None:
 def layer_heights(
     stack: StackOutline, field: Sizing, film_layers: int, breaks: Iterable[float] = ()
 ) -> tuple[Floats, Ints, tuple[str, ...]]:
-    """Heights (k + 1,), the part of each of the k layers, and the names of the parts; breaks : heights to go through
-    in the media and the effector.
+    """Heights (k + 1,) in mm of the layers of elements, the part (k,) of each layer, and the names of the parts.
+
+    breaks : heights in the media and the effector at which a layer of elements must end.
     """
     x, y = field.centers_mm[0] if len(field.centers_mm) else (0.0, 0.0)
     x, y = np.clip(x, -stack.half_x, stack.half_x), np.clip(y, -stack.half_y, stack.half_y)
@@ -67,7 +68,7 @@ def layer_heights(
 
 
 def _triangulate_footprint(stack: StackOutline, field: Sizing) -> Triangulation:
-    """The footprint, as fine at each place as the finest of skin and film above it."""
+    """The triangulation of the footprint, as fine at each place as the finest of skin and film above it."""
 
     def size(xy: Floats) -> Floats:
         at = [np.column_stack([xy, np.full(len(xy), z)]) for z in (stack.film_top, stack.top)]
@@ -78,7 +79,7 @@ def _triangulate_footprint(stack: StackOutline, field: Sizing) -> Triangulation:
 
 
 def triangles_beside_planes(start: Triangulation, planes: Planes) -> Triangulation:
-    """The triangles on the positive side of every plane: the start and what bisection makes of it are symmetric."""
+    """Triangles on the positive side of every mirror plane; the start is symmetric, and so is its bisection."""
     middle = start.points[start.triangles].mean(axis=1)
     kept = (middle[:, list(planes)] > 0.0).all(axis=1)
     used, number = np.unique(start.triangles[kept], return_inverse=True)
@@ -86,7 +87,7 @@ def triangles_beside_planes(start: Triangulation, planes: Planes) -> Triangulati
 
 
 def _extrude_footprint(foot: Triangulation, heights: Floats, layer_region: Ints, names: tuple[str, ...]) -> LinearMesh:
-    """All prisms of all layers; the effector stands only on the triangles of its foot."""
+    """Tetrahedra of all prisms of all layers; the effector stands only on the triangles of its foot."""
     count = len(foot.points)
     points = np.column_stack([np.tile(foot.points, (len(heights), 1)), np.repeat(heights, count)])
     tets, region = [], []

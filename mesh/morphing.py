@@ -10,7 +10,7 @@ from mesh.types import TetMesh
 
 
 def morphed_mesh(tet_mesh: TetMesh, old: Segment, new: Segment) -> TetMesh:
-    """Nodes moved linearly within each layer and with length and width; for small changes of the sizes.
+    """The mesh with nodes moved linearly within each layer and with length and width; for small changes of the sizes.
 
     ValueError where the layers differ in number.
     """

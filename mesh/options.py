@@ -1,4 +1,4 @@
-"""What the configuration says of the mesh: element sizes and the mesher."""
+"""The [mesh] table of the configuration: element sizes and the mesher."""
 
 from __future__ import annotations
 
@@ -45,12 +45,12 @@ class MeshOptions(Table):
     )
 
     def scale_sizes(self, factor: float) -> Self:
-        """All sizes times a factor, now as stated."""
+        """The options with all sizes times a factor and no accuracy that would scale them again."""
         sizes = {name: factor * size for name, size in self.sizes_mm.items()}
         return self.model_copy(update={**sizes, "accuracy_percent": None})
 
     @property
     def sizes_mm(self) -> dict[str, float]:
-        """The edge lengths that are stated, by their keys."""
+        """Key -> edge length in mm, of those that are stated."""
         names = ("element_size_mm", "contact_element_size_mm", "film_element_size_mm")
         return {name: size for name in names if (size := getattr(self, name)) is not None}

@@ -1,4 +1,4 @@
-"""The heights, sizes and curved surfaces of a segment that every part of the mesher needs, with closed-form volumes."""
+"""Heights, sizes and curved surfaces of a segment that every part of the mesher needs, with closed-form volumes."""
 
 from dataclasses import dataclass
 from math import acos, pi, sqrt
@@ -16,7 +16,7 @@ EffectorShape = Literal["none", "layer", "block", "cylinder", "dome"]
 
 @dataclass(frozen=True)
 class StackOutline:
-    """The stack in mm; the film may be given another (also zero) thickness than the segment's.
+    """Sizes of the stack in mm; the film may be given another (also zero) thickness than the segment's.
 
     half_x, half_y : half the footprint (half_y of a slice: half the slice's thickness).
     film_bottom, film_top, medium1_top, top : heights.
@@ -39,23 +39,23 @@ class StackOutline:
 
     @property
     def low(self) -> tuple[float, float]:
-        """Least x and y of what is meshed."""
+        """Least x and y, in mm, of what is meshed."""
         return (0.0 if 0 in self.planes else -self.half_x, 0.0 if 1 in self.planes else -self.half_y)
 
     @property
     def is_round(self) -> bool:
-        """Whether a part is no box; a cylinder is one in a slice."""
+        """Whether a part is no box; in a slice a cylinder is one."""
         return self.shape == "dome" or (self.shape == "cylinder" and not self.is_slice)
 
     @property
     def dome_radius(self) -> float:
-        """Radius of the dome's sphere: (a^2 + h^2) / 2h with the foot's radius a and the height h."""
+        """Radius in mm of the dome's sphere: (a^2 + h^2) / 2h with the foot's radius a and the height h."""
         height = self.top - self.medium1_top
         return (self.effector_half_x**2 + height**2) / (2 * height)
 
     @property
     def dome_centre_z(self) -> float:
-        """Height of the centre of the dome's sphere."""
+        """Height in mm of the centre of the dome's sphere."""
         return self.top - self.dome_radius
 
     def inside_effector(self, points: Floats) -> NDArray[np.bool_]:
@@ -66,7 +66,7 @@ class StackOutline:
         return (x < self.effector_half_x) & (y < self.effector_half_y)
 
     def volumes(self) -> dict[str, float]:
-        """Exact volume of each part in mm^3, as far as it is meshed."""
+        """Exact volume in mm^3 of each part, as far as it is meshed."""
         share = 0.5 ** len(self.planes)
         return {name: share * volume for name, volume in self._whole_volumes().items()}
 
@@ -82,7 +82,7 @@ class StackOutline:
         return result
 
     def _effector_volume(self) -> float:
-        """Box, cylinder, spherical cap pi h (3a^2 + h^2) / 6 or, sliced, the circular segment."""
+        """Volume of a box, a cylinder, a spherical cap pi h (3a^2 + h^2) / 6 or, sliced, a circular segment."""
         a, height = self.effector_half_x, self.top - self.medium1_top
         if self.shape == "dome" and self.is_slice:
             radius = self.dome_radius
@@ -100,8 +100,9 @@ def stack_outline(
 ) -> StackOutline:
     """The outline of a segment.
 
-    film_thickness_mm : overrides the film's thickness; slice_mm : size in y of a plane-strain slice; planes : mirror
-    planes at which it is cut.
+    film_thickness_mm : thickness of the film, if other than the segment's; slice_mm : size in y of a plane-strain
+    slice;
+    planes : mirror planes at which it is cut.
     """
     film = segment.film.thickness_um * 1e-3 if film_thickness_mm is None else film_thickness_mm
     is_slice = segment.section == "plane-strain"
@@ -114,7 +115,7 @@ def stack_outline(
 
 
 def _effector_outline(segment: Segment, half_x: float, half_y: float) -> tuple[EffectorShape, float, float, float]:
-    """Shape, half sizes of the foot and height of the effector."""
+    """Shape, half sizes of the foot and height of the effector, in mm."""
     effector = segment.effector
     if effector is None:
         return "none", 0.0, 0.0, 0.0
@@ -131,21 +132,21 @@ def _effector_outline(segment: Segment, half_x: float, half_y: float) -> tuple[E
 
 
 class RoundSkin(Protocol):
-    """One round surface, or several."""
+    """A skin of one round surface, or of several."""
 
     def holds(self, points: Floats, tolerance: float = 1e-7) -> NDArray[np.bool_]:
-        """Whether points (n, 3) lie on it within tolerance in mm."""
+        """Whether points (n, 3) lie on the skin within a tolerance in mm; shape (n,)."""
 
     def project(self, points: Floats) -> Floats:
-        """The nearest points (n, 3) of it; points in the plane of the foot stay in it."""
+        """Nearest points (n, 3) of the skin; points in the plane of the foot stay in it."""
 
     def normals(self, points: Floats) -> Floats:
-        """Unit normals (n, 3), outward."""
+        """Outward unit normals (n, 3)."""
 
 
 @dataclass(frozen=True)
 class RoundSurface:
-    """A sphere, or a circular cylinder along one axis.
+    """The surface of a sphere, or of a circular cylinder along one axis.
 
     centre : (3,) mm; radius : mm; axes : (3,) 1.0 for coordinates that count, 0.0 along a cylinder's axis.
     low_mm : only what lies above this height belongs to the surface.
@@ -158,19 +159,19 @@ class RoundSurface:
 
     @property
     def foot_radius(self) -> float:
-        """Radius of the circle in which the surface meets the plane of the foot."""
+        """Radius in mm of the circle in which the surface meets the plane of the foot."""
         return float(np.sqrt(self.radius**2 - (self.axes[2] * (self.low_mm - self.centre[2])) ** 2))
 
     def distance(self, points: Floats) -> Floats:
-        """Signed distance (n,) of points (n, 3), positive outside."""
+        """Signed distance (n,) in mm of points (n, 3) from the surface, positive outside."""
         return np.asarray(np.linalg.norm((points - self.centre) * self.axes, axis=1) - self.radius)
 
     def holds(self, points: Floats, tolerance: float = 1e-7) -> NDArray[np.bool_]:
-        """Whether points (n, 3) lie on the surface within tolerance in mm."""
+        """Whether points (n, 3) lie on the surface within a tolerance in mm; shape (n,)."""
         return (np.abs(self.distance(points)) < tolerance) & (points[:, 2] > self.low_mm - tolerance)
 
     def project(self, points: Floats) -> Floats:
-        """The nearest points (n, 3) of the surface; points in the plane of the foot stay in it."""
+        """Nearest points (n, 3) of the surface; points in the plane of the foot stay in it."""
         at_foot = np.abs(points[:, 2] - self.low_mm) < 1e-9
         axes = np.where(at_foot[:, None], self.axes * [1.0, 1.0, 0.0], self.axes)
         radius = np.where(at_foot, self.foot_radius, self.radius)
@@ -178,13 +179,13 @@ class RoundSurface:
         return np.asarray(points + away * (radius / np.linalg.norm(away, axis=1) - 1.0)[:, None])
 
     def normals(self, points: Floats) -> Floats:
-        """Unit normals (n, 3), outward."""
+        """Outward unit normals (n, 3)."""
         away = (points - self.centre) * self.axes
         return np.asarray(away / np.linalg.norm(away, axis=1, keepdims=True))
 
 
 def curved_surface(stack: StackOutline) -> RoundSurface | None:
-    """The curved part of the effector's skin, or None."""
+    """The curved part of the effector's skin, or None where it has none."""
     if stack.shape == "cylinder" and not stack.is_slice:
         return RoundSurface(np.zeros(3), stack.effector_half_x, np.array([1.0, 1.0, 0.0]), stack.medium1_top)
     if stack.shape == "dome":

@@ -16,7 +16,7 @@ LEAST_JACOBIAN_RATIO = 0.1  # a curved element keeps at least this share of its 
 
 
 def quadratic_nodes_and_tets(linear: LinearMesh, surface: RoundSkin | None) -> tuple[Floats, Ints]:
-    """Nodes (n, 3) and tetrahedra (m, 10) in VTK's order.
+    """Nodes (n, 3) and ten-node tetrahedra (m, 10), in VTK's order, of a linear mesh.
 
     The mid-side nodes of the skin's edges on the curved surface are projected onto it; where that would
     nearly invert an element its edges stay straight (mesh.quality counts them).
@@ -35,7 +35,7 @@ def quadratic_nodes_and_tets(linear: LinearMesh, surface: RoundSkin | None) -> t
 
 
 def _skin_edges(linear: LinearMesh, tets: Ints, surface: RoundSkin) -> Ints:
-    """Mid-side nodes of the edges of outer facets that lie on the surface."""
+    """Numbers of the mid-side nodes of outer facets that lie on the surface."""
     owner, face = boundary_faces(linear.tets)
     facets = tets[owner[:, None], TET_FACES[face]]
     corner = linear.points_mm[facets[:, :3]]
@@ -47,7 +47,7 @@ def _skin_edges(linear: LinearMesh, tets: Ints, surface: RoundSkin) -> Ints:
 
 
 def _straighten(points: Floats, tets: Ints, middle: Floats, straight: Floats, curved: Ints) -> None:
-    """Undo, in place, the curving of edges whose elements come near to inversion."""
+    """Straighten, in place, curved edges whose elements come near to inversion."""
     bent = np.zeros(len(middle), dtype=bool)
     bent[curved] = True
     while True:
@@ -67,7 +67,7 @@ PLANE_TOLERANCE_MM = 1e-6
 def named_facets(
     points_mm: Floats, tets: Ints, region: Ints, names: tuple[str, ...], stack: StackOutline
 ) -> dict[str, Ints]:
-    """The facets of mesh.types.TetMesh by name, each (k, 6)."""
+    """Facets (k, 6) by name, as in mesh.types.TetMesh."""
     neighbour = face_neighbours(tets[:, :4])
     facets = _outer_facets(points_mm, tets, region, names, stack, neighbour)
     if "film" in names:
@@ -80,7 +80,7 @@ def named_facets(
 def _outer_facets(
     points: Floats, tets: Ints, region: Ints, names: tuple[str, ...], stack: StackOutline, neighbour: Ints
 ) -> dict[str, Ints]:
-    """Base, sides of each region and the contact skin."""
+    """Facets of the base, of the sides of each region and of the contact skin, by name."""
     owner, face = np.nonzero(neighbour < 0)
     outer = tets[owner[:, None], TET_FACES[face]]
     corner = points[outer[:, :3]]
@@ -99,24 +99,24 @@ def _outer_facets(
 
 
 def _on_plane(coordinate: Floats, value: float) -> NDArray[np.bool_]:
-    """Facets (k, 3) whose three corners have this coordinate."""
+    """Whether the three corners of facets have this coordinate (k, 3); shape (k,)."""
     return np.asarray((np.abs(coordinate - value) < PLANE_TOLERANCE_MM).all(axis=1))
 
 
 def _on_either_plane(coordinate: Floats, half: float) -> NDArray[np.bool_]:
-    """Facets (k, 3) in the plane at plus or at minus half."""
+    """Whether facets lie in the plane at plus or at minus half, from the coordinates of their corners (k, 3)."""
     return np.asarray(_on_plane(coordinate, half) | _on_plane(coordinate, -half))
 
 
 def facets_between_parts(tets: Ints, region: Ints, neighbour: Ints, lower: int, upper: int) -> Ints:
-    """Facets from one part to the next above it, normal up."""
+    """Facets (k, 6) between a part and the next above it, normal up."""
     other = np.where(neighbour >= 0, region[neighbour], -1)
     owner, face = np.nonzero((region[:, None] == lower) & (other == upper))
     return np.asarray(tets[owner[:, None], TET_FACES[face]])
 
 
 def quadratic_mesh(linear: LinearMesh, segment: Segment, options: MeshOptions, planes: Planes = ()) -> TetMesh:
-    """Add mid-side nodes, facets and twins. Raises MeshingError when an element is inverted."""
+    """The mesh with mid-side nodes, facets and twins. MeshingError when an element is inverted."""
     is_slice = segment.section == "plane-strain"
     thickness_mm = options.contact_element_size_mm if is_slice else segment.width_mm
     stack = stack_outline(segment, slice_mm=thickness_mm, planes=planes)

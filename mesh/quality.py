@@ -1,4 +1,4 @@
-"""How good a mesh is: angles, volumes and Jacobians."""
+"""Quality of a mesh: angles, volumes and Jacobians."""
 
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -16,7 +16,7 @@ from mesh.types import TET_EDGES, TET_FACES, MeshingError, TetMesh, boundary_fac
 
 @dataclass(frozen=True)
 class Quality:
-    """Quality of a mesh.
+    """Quality of a mesh. tetrahedra, nodes : their numbers.
 
     min_dihedral_deg : over all tetrahedra but the film's; film_min_dihedral_deg : over the film's.
     region_volume_error : relative error of each part's volume against the exact one.
@@ -42,7 +42,7 @@ class Quality:
 
 
 def measure_quality(tet_mesh: TetMesh, segment: Segment) -> Quality:
-    """Measure a mesh of a segment."""
+    """Measure the quality of a mesh of a segment."""
     nodes = tet_mesh.points_mm[tet_mesh.tets]
     film = tet_mesh.region == tet_mesh.region_names.index("film")
     angle = dihedral_angles(nodes[:, :4]).min(axis=1)
@@ -83,14 +83,14 @@ def dihedral_angles(corners: Floats) -> Floats:
 
 
 def _volume_errors(tet_mesh: TetMesh, nodes: Floats, segment: Segment) -> dict[str, float]:
-    """Relative volume error of each part."""
+    """Part -> relative error of its volume."""
     exact = stack_outline(segment, slice_mm=tet_mesh.thickness_mm, planes=tet_mesh.planes).volumes()
     meshed = np.bincount(tet_mesh.region, weights=volumes(nodes), minlength=len(tet_mesh.region_names))
     return {n: float(meshed[i] / exact[n] - 1) for i, n in enumerate(tet_mesh.region_names)}
 
 
 def _straight_edges(tet_mesh: TetMesh, segment: Segment) -> int:
-    """Edges of skin facets on the curved surface whose mid-side node is off it."""
+    """Number of edges of skin facets on the curved surface whose mid-side node is off it."""
     surface = curved_surface(stack_outline(segment, slice_mm=tet_mesh.thickness_mm))
     if surface is None:
         return 0

@@ -9,7 +9,7 @@ from foundation.arrays import Floats, Ints
 from mesh.types import TET_EDGES, TetMesh
 
 LEAST_COLUMN_SHARE = 0.1
-"""Of the distance between two columns, what must stay between a column that moves and one that does not."""
+"""Least distance between a moved column and one that stays, as a share of the distance between two columns."""
 
 
 def mesh_with_columns_at(
@@ -32,7 +32,7 @@ def mesh_with_columns_at(
 
 
 def _column_moves(columns: Floats, places: Sequence[float], kept: Sequence[float]) -> tuple[Floats, Floats]:
-    """Places and columns that stay or move, ascending, and where they go."""
+    """Columns in x that stay or move, ascending, and their new places, in mm."""
     goes = {place: place for place in np.round(kept, 9).tolist() if _is_between_ends(columns, place)}
     for place in places:
         width = float(np.diff(columns)[np.clip(np.searchsorted(columns, place) - 1, 0, len(columns) - 2)])

@@ -11,7 +11,7 @@ from mesh.sizing import Sizing, graded_points_through
 
 @dataclass(frozen=True)
 class MeshedSection:
-    """points_mm : (n, 2) x and z; triangles : (m, 3); region : (m,) index into region_names."""
+    """A triangulated x-z section. points_mm : (n, 2); triangles : (m, 3); region : (m,) index into region_names."""
 
     points_mm: Floats
     triangles: Ints
@@ -22,7 +22,7 @@ class MeshedSection:
 def structured_section(
     stack: StackOutline, field: Sizing, heights: Floats, layer_region: Ints, names: tuple[str, ...]
 ) -> MeshedSection:
-    """A graded grid of x columns and z layers, every rectangle cut by a diagonal that mirrors about x = 0."""
+    """A grid of graded x columns and z layers, every rectangle cut by a diagonal that mirrors about x = 0."""
     x = _column_lines(stack, field)
     points = np.column_stack([np.tile(x, len(heights)), np.repeat(heights, len(x))])
     layer, column = np.divmod(np.arange((len(x) - 1) * (len(heights) - 1)), len(x) - 1)
@@ -40,7 +40,7 @@ def structured_section(
 
 
 def _column_lines(stack: StackOutline, field: Sizing) -> Floats:
-    """x lines through the sides of the effector, as fine as the finest of skin and film at each x."""
+    """x of the columns, through the sides of the effector, as fine as the finest of skin and film at each x."""
 
     def size(x: Floats) -> Floats:
         at = [np.column_stack([x, np.zeros_like(x), np.full_like(x, z)]) for z in (stack.film_top, stack.top)]

@@ -23,7 +23,7 @@ SLICE_RIM_SIZE_SHARE, SLICE_RIM_SIZE_GROWTH = 0.2, SIZE_GROWTH  # the same in a 
 
 @dataclass(frozen=True)
 class Sizing:
-    """The sizing field.
+    """The sizing field: target edge lengths in mm.
 
     outline : the stack the points lie in; coarse_mm, contact_mm, film_mm : edge lengths.
     centers_mm : (k, 2) axes of the dots in x, y; reach_mm : radius of the contact zone.
@@ -39,7 +39,7 @@ class Sizing:
     kind: str
 
     def at(self, points: Floats) -> Floats:
-        """Edge lengths in mm at points (n, 3), shape (n,)."""
+        """Edge lengths (n,) in mm at points (n, 3)."""
         contact = self.contact_mm + SIZE_GROWTH * self._distance_to_contact(points)
         z = points[:, 2]
         to_film = np.abs(z - np.clip(z, self.outline.film_bottom, self.outline.film_top))
@@ -54,13 +54,13 @@ class Sizing:
         return np.minimum(fine, self.coarse_mm)
 
     def _distance_to_side(self, points: Floats) -> Floats:
-        """Distance to the nearest side that the case may hold."""
+        """Distance (n,) in mm to the nearest side that the case may hold."""
         to_x = self.outline.half_x - np.abs(points[:, 0])
         to_y = to_x if self.outline.is_slice else self.outline.half_y - np.abs(points[:, 1])
         return np.maximum(np.minimum(to_x, to_y), 0.0)
 
     def _distance_to_contact(self, points: Floats) -> Floats:
-        """Distance to the contact zone on the skin."""
+        """Distance (n,) in mm to the contact zone on the skin."""
         depth = np.maximum(self._skin_height(points) - points[:, 2], 0.0)
         if self.kind == "plate":
             return depth
@@ -70,7 +70,7 @@ class Sizing:
         return np.asarray(np.hypot(np.maximum(radial.min(axis=1) - self.reach_mm, 0.0), depth))
 
     def _skin_height(self, points: Floats) -> Floats:
-        """Height of the skin within the contact zone: flat, or falling away from the pole of a dome."""
+        """Height (n,) in mm of the skin within the contact zone: flat, or falling away from the pole of a dome."""
         if self.outline.shape != "dome":
             return np.full(len(points), self.outline.top)
         y = 0.0 if self.outline.is_slice else points[:, 1]
@@ -117,7 +117,7 @@ def background_mesh(stack: StackOutline, field: Sizing) -> tuple[Floats, Ints, F
 
 
 def _grid_tets(shape: tuple[int, ...]) -> Ints:
-    """Six tetrahedra around the main diagonal of every cell of a grid."""
+    """Six tetrahedra around the main diagonal of every cell of a grid with this many points along each axis."""
     _, ny, nz = shape
     i, j, k = (a.ravel() for a in np.meshgrid(*(np.arange(n - 1) for n in shape), indexing="ij"))
     corner = (i * ny + j) * nz + k
@@ -130,7 +130,7 @@ def _grid_tets(shape: tuple[int, ...]) -> Ints:
 
 
 def graded_points(start: float, end: float, size: Callable[[Floats], Floats]) -> Floats:
-    """Points from start to end, both included, whose steps follow size at the points.
+    """Points (n,) from start to end, both included, whose steps follow the size at the points.
 
     The number of steps is the integral of 1/size, rounded up; the points cut that integral into equal parts.
     """
@@ -144,6 +144,6 @@ def graded_points(start: float, end: float, size: Callable[[Floats], Floats]) ->
 
 
 def graded_points_through(breaks: list[float], size: Callable[[Floats], Floats]) -> Floats:
-    """Points through all breaks (rising), graded between them."""
+    """Graded points (n,) that go through all breaks, which rise."""
     pieces = [graded_points(a, b, size)[:-1] for a, b in pairwise(breaks)]
     return np.concatenate([*pieces, [breaks[-1]]])

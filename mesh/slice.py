@@ -18,7 +18,7 @@ SLAB_PER_SLICE_THICKNESS = 2.0  # thickness of the slab that pytetwild meshes ag
 
 
 def layered_slice(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes = ()) -> LinearMesh:
-    """The slice from a structured graded section; its thickness is the contact element size."""
+    """The slice of a structured graded section, as thick as the contact element size. InputError for a dome."""
     refuse_dome(segment)
     thickness_mm = options.contact_element_size_mm
     stack = stack_outline(segment, slice_mm=thickness_mm, planes=planes)
@@ -29,7 +29,7 @@ def layered_slice(segment: Segment, dot: DotShape, options: MeshOptions, planes:
 
 
 def tetwild_slice(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes = ()) -> LinearMesh:
-    """The slice from an unstructured section: the y face of a slab that pytetwild has meshed."""
+    """The slice of an unstructured section: the y face of a slab that pytetwild has meshed. MeshingError."""
     thickness_mm = options.contact_element_size_mm
     stack = stack_outline(
         segment, film_thickness_mm=0.0, slice_mm=SLAB_PER_SLICE_THICKNESS * thickness_mm, planes=planes
@@ -51,7 +51,7 @@ def slab_face(slab: LinearMesh, stack: StackOutline) -> MeshedSection:
 
 
 def extrude_section(section: MeshedSection, thickness_mm: float) -> LinearMesh:
-    """One layer of prisms from y = -thickness/2 to +thickness/2, each split into three tetrahedra."""
+    """Extrude a section into one layer of prisms, y = -thickness/2 to +thickness/2, of three tetrahedra each."""
     count = len(section.points_mm)
     x, z = np.tile(section.points_mm, (2, 1)).T
     points = np.column_stack([x, np.repeat([-thickness_mm / 2, thickness_mm / 2], count), z])
@@ -61,6 +61,6 @@ def extrude_section(section: MeshedSection, thickness_mm: float) -> LinearMesh:
 
 
 def node_twins(points_mm: Floats) -> Ints:
-    """For each node (n, 3) the lowest node of equal x and z, shape (n,)."""
+    """For each node (n, 3) the lowest number of a node of equal x and z, shape (n,)."""
     _, first, number = np.unique(np.round(points_mm[:, [0, 2]] * 1e7), axis=0, return_index=True, return_inverse=True)
     return np.asarray(first[number.ravel()], dtype=np.int64)

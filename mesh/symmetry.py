@@ -1,7 +1,7 @@
 """Mirror symmetry: a half or a quarter of a segment is meshed and stands for the whole.
 
-Planes are named by their axis: 0 is the plane x = 0, 1 the plane y = 0. Meshed is the side where that coordinate is
-positive. Nodes in a plane belong to both sides.
+Planes are named by their axis: 0 is the plane x = 0, 1 the plane y = 0. The side where that coordinate is positive is
+meshed. Nodes in a plane belong to both sides.
 """
 
 from dataclasses import dataclass, replace
@@ -14,17 +14,17 @@ from mesh.types import UPSIDE_DOWN, Planes, TetMesh
 PLANE_NAMES = ("x = 0", "y = 0")
 IN_PLANE_MM = 1e-7
 MIRRORED_TET_NODES = [0, 2, 1, 3, 6, 5, 4, 7, 9, 8]
-"""A reflected tetrahedron of ten nodes, numbered so that its volume is positive again."""
+"""Order of the ten nodes of a reflected tetrahedron in which its volume is positive again."""
 
 
 def in_plane(points_mm: Floats, axis: int) -> Bools:
-    """Which points (n, 3) lie in the plane of an axis."""
+    """Whether points (n, 3) lie in the mirror plane of an axis; shape (n,)."""
     return np.asarray(np.abs(points_mm[:, axis]) < IN_PLANE_MM)
 
 
 @dataclass(frozen=True)
 class MirroredMesh:
-    """A mesh, mirrored, and what of the part each piece of it is the image of.
+    """A meshed part with its mirror images, and for each node and tetrahedron that of which it is the image.
 
     node (n,), tet (m,) : numbers in the part. node_sign (n, 3), tet_sign (m, 3) : -1 for reflected components of a
     vector there.
@@ -37,12 +37,12 @@ class MirroredMesh:
     tet_sign: Floats
 
     def tensors(self, values: Floats) -> Floats:
-        """Symmetric tensors (m, 3, 3) of the tetrahedra from those of the part."""
+        """Symmetric tensors (m, 3, 3) of all tetrahedra from those of the tetrahedra of the part."""
         return np.asarray(values[self.tet] * self.tet_sign[:, :, None] * self.tet_sign[:, None, :])
 
 
 def mirrored_mesh(part: TetMesh, axes: Planes | None = None) -> MirroredMesh:
-    """The mesh mirrored about the planes of some axes, by default about all of its own; ValueError for another one.
+    """The mesh mirrored about the planes of some axes, by default about all of its own. ValueError for another axis.
 
     Axis by axis the images of nodes, tetrahedra and facets follow what they are images of, in its order; the local
     nodes of a tetrahedron are in the order MIRRORED, those of a facet UPSIDE_DOWN.

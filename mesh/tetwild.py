@@ -32,7 +32,7 @@ FACET_TURN_RAD = 0.5  # of neighbouring facets
 
 
 def merged_surface(segment: Segment, stack: StackOutline, detail_mm: float) -> tuple[Floats, Ints]:
-    """Vertices (n, 3) and faces (m, 3) of the parts; vertices merged, double and flat faces dropped.
+    """Vertices (n, 3) and faces (m, 3) of all parts; equal vertices are merged, double and flat faces dropped.
 
     detail_mm : size of the smallest elements or parts; round surfaces get facets that suit it.
     """
@@ -62,7 +62,7 @@ BOX_TRIANGLES = np.array(
     [[0, 3, 1], [0, 2, 3], [4, 5, 7], [4, 7, 6], [0, 1, 5], [0, 5, 4],
      [2, 7, 3], [2, 6, 7], [0, 6, 2], [0, 4, 6], [1, 3, 7], [1, 7, 5]]
 )  # fmt: skip
-"""Its triangles; lid and base are cut along the same diagonal, so that those of two boxes coincide."""
+"""Triangles of a box; lid and base are cut along the same diagonal, so that those of two boxes coincide."""
 
 
 def _box_surfaces(stack: StackOutline) -> Iterator[tuple[Floats, Ints]]:
@@ -78,7 +78,7 @@ def _box_surfaces(stack: StackOutline) -> Iterator[tuple[Floats, Ints]]:
 
 
 def _solid_surfaces(segment: Segment, stack: StackOutline, deflection_mm: float) -> Iterator[tuple[Floats, Ints]]:
-    """Points and triangles of the parts of a stack without its film, by their exact solids."""
+    """Points and triangles of the exact solids of a stack without its film."""
     from geometry.solids import layer_solids
 
     whole = _dome_slab(stack) if stack.is_slice else list(layer_solids(segment, film_thickness_mm=0.0).values())
@@ -89,7 +89,7 @@ def _solid_surfaces(segment: Segment, stack: StackOutline, deflection_mm: float)
 
 
 def _cut_at_planes(solid: Any, stack: StackOutline) -> Any:
-    """What of a solid is on the positive sides of the mirror planes."""
+    """The part of a solid on the positive sides of the mirror planes."""
     from build123d import Box, Pos
 
     (x, y), beyond = stack.low, 1.0
@@ -117,7 +117,7 @@ EFFECTOR_REGION = 2  # its region in a stack without film
 
 
 def snap_to_surfaces(points: Floats, tets: Ints, region: Ints, stack: StackOutline) -> Floats:
-    """Points (n, 3) with those of facets between different regions (or outside) moved onto their surfaces.
+    """Points (n, 3) in which those of facets between different regions (or outside) lie on the exact surfaces.
 
     Each such facet belongs to the surface it lies nearest to; a node gets the surfaces of all its facets.
     """
@@ -150,7 +150,7 @@ def snap_to_surfaces(points: Floats, tets: Ints, region: Ints, stack: StackOutli
 
 
 def _stack_planes(stack: StackOutline) -> list[tuple[int, float]]:
-    """Axis and position of every plane of the stack."""
+    """Axis and coordinate in mm of every plane of the stack."""
     planes = [(0, stack.low[0]), (0, stack.half_x), (1, stack.low[1]), (1, stack.half_y)]
     planes += [(2, 0.0), (2, stack.film_bottom), (2, stack.medium1_top)]
     if stack.shape in ("layer", "block", "cylinder"):
@@ -173,7 +173,7 @@ MOST_ATTEMPTS = 6  # pytetwild is not repeatable: another attempt gives another 
 
 
 def tetwild_mesh(segment: Segment, dot: DotShape, options: MeshOptions, planes: Planes = ()) -> LinearMesh:
-    """Mesh a solid segment, as far as its mirror planes.
+    """Mesh a solid segment, film included, as far as its mirror planes.
 
     Raises MeshingError when pytetwild fails, hangs or leaves an inverted element.
     """
@@ -183,7 +183,7 @@ def tetwild_mesh(segment: Segment, dot: DotShape, options: MeshOptions, planes: 
 
 
 def mesh_without_film(segment: Segment, stack: StackOutline, dot: DotShape, options: MeshOptions) -> LinearMesh:
-    """The stack without its film: regions 0 medium2, 1 medium1, 2 effector."""
+    """The mesh of the stack without its film: regions 0 medium2, 1 medium1, 2 effector. MeshingError."""
     thicknesses_mm = (layer.thickness_mm for layer in layers(segment) if layer.name != "film")
     detail_mm = min(options.contact_element_size_mm, *thicknesses_mm)
     vertices, faces = merged_surface(segment, stack, detail_mm)
@@ -214,7 +214,7 @@ def mesh_without_film(segment: Segment, stack: StackOutline, dot: DotShape, opti
 
 
 def stop_energy(stack: StackOutline, options: MeshOptions) -> float:
-    """The distortion at which pytetwild stops: low, but not where the shape itself has a narrow wedge.
+    """The distortion energy at which pytetwild stops: low, but not where the shape itself has a narrow wedge.
 
     A flat dome meets medium 1 at a small angle, and a round foot may touch the side of the segment: there no
     element can be good, and the mesher would refine without end. Coarsening makes every element as distorted as
@@ -228,7 +228,7 @@ def stop_energy(stack: StackOutline, options: MeshOptions) -> float:
 
 
 def _label_tets(points: Floats, tets: Ints, stack: StackOutline) -> LinearMesh:
-    """Keep the tetrahedra inside the parts, label them and put nodes onto exact surfaces."""
+    """The mesh of the tetrahedra inside the parts, labelled, with nodes on the exact surfaces."""
     region = point_regions(points[tets].mean(axis=1), stack)
     inside = region >= 0
     names = ("medium2", "medium1", "effector")[: 2 if stack.shape == "none" else 3]
@@ -238,7 +238,7 @@ def _label_tets(points: Floats, tets: Ints, stack: StackOutline) -> LinearMesh:
 
 
 def point_regions(points: Floats, stack: StackOutline) -> Ints:
-    """Part of each point (n, 3): 0 medium2, 1 medium1, 2 effector, -1 outside."""
+    """Number of the part of each point (n, 3): 0 medium2, 1 medium1, 2 effector, -1 outside."""
     x, y, z = np.abs(points[:, 0]), np.abs(points[:, 1]), points[:, 2]
     beside = (points[:, :2] > stack.low).all(axis=1)
     foot = beside & (x < stack.half_x) & (y < stack.half_y)

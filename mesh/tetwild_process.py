@@ -19,10 +19,10 @@ from mesh.types import MeshingError
 
 
 def tetrahedralize(timeout_s: float, **arrays: object) -> tuple[Floats, Ints]:
-    """Points (n, 3) and tetrahedra (m, 4) that fill the bounding box of a surface.
+    """Points (n, 3) and tetrahedra (m, 4) that fill the bounding box of a surface, meshed in a child process.
 
-    arrays : what mesh.tetwild_process reads. Raises MeshingError when the child fails or takes longer than
-    timeout_s; the child never outlives the call, whatever interrupts it.
+    arrays : what main of this module reads. MeshingError when the child fails or takes longer than timeout_s; the child
+    never outlives the call, whatever interrupts it.
     """
     with scratch_folder() as folder:
         np.savez(folder / "input.npz", timeout=timeout_s, **arrays)  # type: ignore[arg-type]
@@ -32,7 +32,7 @@ def tetrahedralize(timeout_s: float, **arrays: object) -> tuple[Floats, Ints]:
 
 
 def _run_child(command: list[str], timeout_s: float) -> None:
-    """Run to the end or kill."""
+    """Run a command to its end, or kill it after the timeout. MeshingError."""
     # Its own session: Ctrl-C in the terminal reaches us alone, and we kill the child.
     child = subprocess.Popen(
         command,
@@ -64,7 +64,7 @@ def _run_child(command: list[str], timeout_s: float) -> None:
 
 
 def main(folder: Path) -> None:
-    """Tetrahedralize the surface in folder/input.npz with its background sizes."""
+    """Tetrahedralize the surface in folder/input.npz with its background sizes, into folder/output.npz."""
     with np.load(folder / "input.npz") as data:
         given = {name: data[name] for name in data.files}
     load_alone("pytetwild", "pytetwild")  # the whole package loads VTK

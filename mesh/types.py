@@ -11,7 +11,7 @@ from foundation.arrays import Floats, Ints
 Planes = tuple[int, ...]
 """Axes of mirror planes: 0 is the plane x = 0, 1 the plane y = 0."""
 UPSIDE_DOWN = [0, 2, 1, 5, 4, 3]
-"""The same quadratic facet with the opposite normal."""
+"""Order of the six nodes of a quadratic facet in which its normal is opposite."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class MeshingError(RuntimeError):
 
 @dataclass(frozen=True)
 class LinearMesh:
-    """Corner nodes only.
+    """A labelled mesh of four-node tetrahedra.
 
     points_mm : (n, 3); tets : (m, 4), positive volume; region : (m,) index into region_names.
     """
@@ -117,7 +117,7 @@ TET_FACES = np.array([(0, 2, 1, 6, 5, 4), (0, 1, 3, 4, 8, 7), (1, 2, 3, 5, 9, 8)
 
 
 def unique_edges(tets: Ints) -> tuple[Ints, Ints]:
-    """Edges (e, 2), smaller node first, and the number of each tetrahedron's six edges (m, 6)."""
+    """Edges (e, 2), smaller node first, and the numbers (m, 6) of each tetrahedron's edges."""
     pairs = np.sort(tets[:, TET_EDGES], axis=2).reshape(-1, 2)
     edges, number = np.unique(pairs, axis=0, return_inverse=True)
     return edges.astype(np.int64), number.reshape(-1, 6).astype(np.int64)
@@ -145,7 +145,7 @@ def face_neighbours(tets: Ints) -> Ints:
 
 
 def boundary_faces(tets: Ints) -> tuple[Ints, Ints]:
-    """Tetrahedra (k,) and local faces (k,) on the outer boundary."""
+    """Numbers (k,) of the tetrahedra on the outer boundary, and of their faces there (k,), as in TET_FACES."""
     owner, face = np.nonzero(face_neighbours(tets[:, :4]) < 0)
     return owner.astype(np.int64), face.astype(np.int64)
 
@@ -158,7 +158,7 @@ def node_mask(count: int, nodes: Ints) -> NDArray[np.bool_]:
 
 
 def mesh_hash(tet_mesh: TetMesh) -> str:
-    """Of all that a mesh holds."""
+    """SHA-256, in hexadecimal, of all that a mesh holds."""
     facets = sorted(tet_mesh.facets)
     told = (tet_mesh.thickness_mm, tet_mesh.region_names, tet_mesh.planes, facets)
     digest = hashlib.sha256(repr(told).encode())

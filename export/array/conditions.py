@@ -17,7 +17,11 @@ def draw_conditions(
     limits: Mapping[str, float | None],
     path: Path,
 ) -> None:
-    """Of each condition its values with share of characters read, low and high. Writes a PNG."""
+    """Draw the characters not read, in %, over each condition, and write a PNG.
+
+    curves : name of the condition -> rows of its value, the share of characters read, and both ends of its interval.
+    accuracy : the share that is asked for. limits : name -> the value up to which it is reached, or None.
+    """
     from matplotlib.figure import Figure
 
     lines = -(-len(curves) // MOST_COLUMNS)
@@ -43,7 +47,7 @@ def draw_conditions(
 
 
 def _axis_label(name: str) -> str:
-    """speed_mm_per_s -> speed (mm/s)."""
+    """Label of an axis, such as speed (mm/s) for speed_mm_per_s."""
     for ending, unit in UNIT_TEXTS.items():
         if name.endswith(f"_{ending}"):
             return f"{name.removesuffix(f'_{ending}').replace('_', ' ')} ({unit})"

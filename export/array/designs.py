@@ -17,11 +17,11 @@ TRIED_COLOUR, FRONT_COLOUR, BEST_COLOUR = "#9aa5b1", "#2a7f62", "#c0392b"
 COMPARED_COLOURS = ("#2b62a8", "#c98a1b", "#7a4fa3", "#3f8f9c", "#8c5a3c")
 COMPARED_MARKERS = ("s", "^", "v", "P", "X")
 LINEAR_PERCENT = 0.3
-"""Below this the axis of errors is linear, so that none at all can be drawn."""
+"""Error below which its axis is linear, so that zero can be drawn."""
 
 
 def draw_designs(designs: Sequence[Mapping[str, Any]], accuracy: float, path: Path) -> None:
-    """Errors against force of every design, and crosstalk against the least force. Writes a PNG.
+    """Draw the errors over the force of every design, and crosstalk over the least force, and write a PNG.
 
     designs : each with its name, readings and least as of design.json, whether it is compared, best, and on the front.
     """
@@ -54,7 +54,7 @@ def draw_designs(designs: Sequence[Mapping[str, Any]], accuracy: float, path: Pa
 
 
 def _set_plain_ticks(axis: Any) -> None:
-    """Plain numbers, three to a power of ten."""
+    """Give an axis plain numbers, three to a power of ten."""
     from matplotlib.ticker import LogLocator, NullFormatter
 
     axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
@@ -63,7 +63,7 @@ def _set_plain_ticks(axis: Any) -> None:
 
 
 def _styles(designs: Sequence[Mapping[str, Any]]) -> dict[str, dict[str, Any]]:
-    """By name of the design: colour, marker, label, and what lies above what."""
+    """Name of the design -> keywords of matplotlib: colour, marker, label and order of drawing."""
     compared = iter(
         [
             (COMPARED_COLOURS[k % len(COMPARED_COLOURS)], COMPARED_MARKERS[k % len(COMPARED_MARKERS)])
@@ -99,7 +99,7 @@ def _draw_least_force(axes: Any, design: Mapping[str, Any], style: Mapping[str, 
 
 
 def _draw_front(axes: Any, designs: Sequence[Mapping[str, Any]]) -> None:
-    """Designs of which no other has less of both, joined by steps."""
+    """Draw the designs of which no other has less of both, joined by steps."""
     front = sorted(
         (1e3 * one["least"]["mean_force_N"], one["least"]["crosstalk_percent"]) for one in designs if one["front"]
     )
@@ -120,7 +120,7 @@ TABLE_COLUMNS = (
 
 
 def write_designs_page(path: Path, summary: Mapping[str, Any], picture: Path) -> None:
-    """A page that opens offline: the picture, every design with the least force at which it reads, and its values.
+    """Write a page that opens offline: the picture, every design, and the least force at which it reads.
 
     summary : the content of design.json.
     """
@@ -147,7 +147,7 @@ def _row_texts(least: Mapping[str, Any]) -> list[str]:
 
 
 def value_text(value: Any) -> str:
-    """A value of an axis for people: tables and lists without brackets.
+    """A value of an axis as text for people: tables and lists without brackets.
 
     >>> value_text({"shape": "layer", "height_mm": 0.4})
     'shape layer, height_mm 0.4'

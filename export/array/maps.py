@@ -1,6 +1,4 @@
-"""Pictures of an array's answer: the matrix of crosstalk, the array from above for each pressed segment, growth with
-depth, and the kernel.
-"""
+"""Pictures of an array's answer: matrix of crosstalk, maps for each pressed segment, growth with depth, kernel."""
 
 from collections.abc import Sequence
 from math import ceil, sqrt
@@ -14,20 +12,20 @@ from foundation.arrays import Floats
 from geometry.array.layout import ArrayLayout
 
 MOST_LABELLED = 20
-"""Of more segments the matrix has no room for numbers and labels."""
+"""Most segments for which the matrix has room for numbers and labels."""
 MOST_COLUMNS, WIDE_RATIO, MAP_SIZE_IN = 3, 1.5, 4.0
-"""Maps side by side at most, arrays that are so much longer than wide one below the other, and the size of one."""
+"""Most maps side by side; length over width of an array above which maps lie one below the other; size of a map."""
 FULL_SCALE_PERCENT, TICKS_PERCENT = 100.0, (-100, -10, -1, 0, 1, 10, 100)
 DARK_PERCENT = 7.0
-"""Colours of more are so dark that numbers on them are white."""
+"""Crosstalk above which colours are so dark that numbers on them are white."""
 LINEAR_PERCENT = 1.0
 """Below this colours are linear, above logarithmic: a neighbour's tenth and a far segment's hundredth both show."""
 KERNEL_LEVELS = 21
-"""Of the colours of a kernel."""
+"""Number of levels between the colours of a kernel."""
 
 
 def draw_matrix(labels: Sequence[str], crosstalk_percent: Floats, path: Path) -> None:
-    """Crosstalk (n, n) in % of the pressed segment's voltage, row by row. Writes a PNG."""
+    """Draw the crosstalk (n, n) in % of the pressed segment's voltage, one row for each, and write a PNG."""
     from matplotlib.figure import Figure
 
     count = len(labels)
@@ -51,7 +49,10 @@ def draw_matrix(labels: Sequence[str], crosstalk_percent: Floats, path: Path) ->
 
 
 def draw_maps(layout: ArrayLayout, pressed: Sequence[int], crosstalk_percent: Floats, path: Path) -> None:
-    """The array from above, once for each pressed segment: its electrodes coloured by what they read. Writes a PNG."""
+    """Draw the array from above, once for each pressed segment, and write a PNG.
+
+    Electrodes are coloured by what they read, crosstalk_percent (n, n).
+    """
     from matplotlib.figure import Figure
     from matplotlib.patches import Circle, Rectangle
 
@@ -91,8 +92,9 @@ def draw_maps(layout: ArrayLayout, pressed: Sequence[int], crosstalk_percent: Fl
 def draw_growth(
     names: Sequence[str], depth_mm: Floats, force_N: Floats, own_V: Floats, neighbour_percent: Floats, path: Path
 ) -> None:
-    """Of some pressed segments (n,): their voltage over depth and force, and the strongest neighbour's share of it, all
-    (n, s). Writes a PNG.
+    """Draw the voltage of pressed segments over depth and force, and their strongest neighbour's, and write a PNG.
+
+    names (n,); depth_mm, force_N, own_V and neighbour_percent, the neighbour's share of that voltage, (n, s).
     """
     from matplotlib.figure import Figure
 
@@ -116,7 +118,7 @@ def draw_growth(
 def draw_kernel(
     layout: ArrayLayout, x_mm: Floats, y_mm: Floats, charge_pC: Floats, force_N: Floats, title: str, path: Path
 ) -> None:
-    """Charge of one segment (a, b) and force (a, b) over the place of the dot, with the segments. Writes a PNG."""
+    """Draw the charge of one segment and the force, each (a, b) over the place of the dot, and write a PNG."""
     from matplotlib.figure import Figure
     from matplotlib.patches import Rectangle
 
@@ -156,7 +158,7 @@ def _draw_colour_bar(figure: Any, image: Any, axes: Any, **how: Any) -> None:
 
 
 def _percent_text(value: float) -> str:
-    """Three digits at most: 100, 13.1, -0.40."""
+    """A percentage of at most three digits: 100, 13.1, -0.40."""
     if not np.isfinite(value):
         return "–"
     digits = 0 if abs(value) >= 99.95 else 1 if abs(value) >= 9.95 else 2

@@ -1,4 +1,4 @@
-"""A Braille reading as one HTML file that opens offline: the line under the array, its voltages, the text, the tables.
+"""Page of a Braille reading that opens offline: the line under the array, its voltages, the text, the tables.
 
 The voltages of a long reading are too many for a page. They are cut into bins of equally many samples, of which the
 smallest and the largest voltage are kept: no peak is lost.
@@ -65,6 +65,7 @@ def write_reading_page(path: Path, reading: Mapping[str, Any], signals: Mapping[
 
 
 def _check_signals(reading: Mapping[str, Any], signals: Mapping[str, NDArray[Any]]) -> None:
+    """Raise InputError for signals that are missing, not finite, or of another shape."""
     for name in ["voltage_V", *(name for names in SIGNALS_OF_EQUAL_LENGTH.values() for name in names)]:
         if name not in signals:
             raise InputError(f"signals of a reading: {name} is missing")
@@ -85,7 +86,9 @@ def _check_signals(reading: Mapping[str, Any], signals: Mapping[str, NDArray[Any
 
 @dataclass(frozen=True)
 class BinnedVoltages:
-    """time_s (b,) and position_mm (b,) at the middle of each bin; low_V and high_V (b, n); high_V is None where every
+    """Voltages of n segments in b bins.
+
+    time_s (b,) and position_mm (b,) at the middle of each bin; low_V and high_V (b, n); high_V is None where every
     sample is kept.
     """
 
@@ -96,7 +99,10 @@ class BinnedVoltages:
 
 
 def bin_voltages(time_s: Floats, position_mm: Floats, voltage_V: Floats) -> BinnedVoltages:
-    """Bins of equally many samples, of the last one fewer, so few that they fit into the page."""
+    """Bin samples (t,) and voltages (t, n) so that they fit into the page.
+
+    All bins have equally many samples, but for the last one, which may have fewer.
+    """
     count, channels = voltage_V.shape
     if count <= MOST_BINS and count * channels <= MOST_VALUES:
         return BinnedVoltages(time_s, position_mm, voltage_V, None)
@@ -143,13 +149,13 @@ def _rounded_list(values: Any) -> Any:
 
 
 def _cell_texts(signals: Mapping[str, NDArray[Any]]) -> list[tuple[str, str]]:
-    """What each cell is and what was read; a blank cell as one that can be seen."""
+    """True and read character of each cell; a blank cell as a character that can be seen."""
     pairs = zip(signals["cell_true"], signals["cell_read"], strict=True)
     return [(_visible_text(str(true)), _visible_text(str(read))) for true, read in pairs]
 
 
 def _frequent_confusions(reading: Mapping[str, Any]) -> list[Mapping[str, Any]]:
-    """What was taken for what, most frequent first."""
+    """Rows of the confusion matrix off its diagonal, most frequent first."""
     wrong = [one for one in reading["confusion"] if one["true"] != one["read"] and one["count"]]
     return sorted(wrong, key=lambda one: -one["count"])
 
@@ -159,7 +165,7 @@ def _visible_text(character: str) -> str:
 
 
 def text_differences(true: str, read: str) -> list[tuple[str, str]]:
-    """The text that was read in pieces (true, read); the two are equal in a piece that was read correctly.
+    """Pieces (true, read) of the text that was read; the two are equal in a piece that was read correctly.
 
     >>> text_differences("one dot", "one bot")
     [('one ', 'one '), ('d', 'b'), ('ot', 'ot')]
@@ -169,7 +175,7 @@ def text_differences(true: str, read: str) -> list[tuple[str, str]]:
 
 
 def key_text(key: str) -> str:
-    """A key for people.
+    """A key as text for people.
 
     >>> key_text("speed_mm_per_s")
     'speed mm/s'

@@ -14,7 +14,10 @@ RIGHT_COLOUR, WRONG_COLOUR = "#1f77b4", "#c0392b"
 
 
 def draw_signals(signals: Mapping[str, Any], labels: Sequence[str], path: Path) -> None:
-    """time_s (t,), voltage_V (t, n), x_mm, cell_true, cell_read and read_time_s (c,) of a reading. Writes a PNG."""
+    """Draw the voltages of a reading and the cells that were read, and write a PNG.
+
+    signals : time_s (t,), voltage_V (t, n), x_mm, cell_true, cell_read and read_time_s (c,).
+    """
     from matplotlib.figure import Figure
 
     shown = slice(0, CELLS_SHOWN)
@@ -43,7 +46,7 @@ def draw_signals(signals: Mapping[str, Any], labels: Sequence[str], path: Path) 
 
 
 def _draw_cells(axes: Any, signals: Mapping[str, Any], shown: slice, pitch_s: float) -> None:
-    """Discs where the read cells have dots; red where the true cell has none, a ring for one that was missed."""
+    """Draw discs where the read cells have dots; red where the true cell has none, a ring for one that was missed."""
     axes.set_axis_off()
     axes.set(ylim=(2.6, -0.6))
     rows = zip(signals["read_time_s"][shown], signals["cell_true"][shown], signals["cell_read"][shown], strict=True)

@@ -1,4 +1,4 @@
-"""The steps in which the layers are put together: in the jig, then onto the base or into the clamp frame."""
+"""Steps in which the layers are put together: in the jig, then onto the base or into the clamp frame."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ from geometry.flat.pattern import FlatPattern
 
 @dataclass(frozen=True)
 class WorkStep:
-    """title; actions : sentences in order; pictures : names without their ending."""
+    """One step of the work. actions : sentences in order; pictures : names without their ending."""
 
     title: str
     actions: tuple[str, ...]
@@ -17,7 +17,10 @@ class WorkStep:
 
 
 def jig_step(contents: Contents) -> WorkStep:
-    """What is bonded in the corner of the jig; narrow effectors go on through the locator, islands between spacers."""
+    """The step that bonds layers in the corner of the jig.
+
+    Narrow effectors go on through the locator, islands between spacers.
+    """
     tops, locator = contents.stacked_tops_mm, contents.part("jig-locator") is not None
     actions = ["Clean the layers with isopropanol and let them dry.", *_push_actions(contents)]
     if "film" in tops:
@@ -42,7 +45,7 @@ def jig_step(contents: Contents) -> WorkStep:
 
 
 def _push_actions(contents: Contents) -> list[str]:
-    """What goes against the stops of the jig, in order; islands of an array between their spacers."""
+    """Actions that push layers against the stops of the jig, in order; islands of an array between their spacers."""
     located = {"effector"} if contents.part("jig-locator") is not None else set()
     whole = contents.jig_device is contents.device
     spaced = [name for name in contents.stacked_tops_mm if whole and name in contents.spaced_layers]
@@ -60,7 +63,7 @@ def _push_actions(contents: Contents) -> list[str]:
 
 
 def _spacer_action(contents: Contents, name: str, where: str, outer: str) -> str:
-    """How islands are set down; where : the strips stand; outer : how the outer islands lie."""
+    """Action that sets islands between strips. where : the strips stand; outer : how the outer islands lie."""
     count = contents.device.piece_count(name)
     return (
         f"For {layer_in_sentence(name)}, stand the {_strips_text(contents)} {where}, set its {count} pieces between "
@@ -74,7 +77,7 @@ def _strips_text(contents: Contents) -> str:
 
 
 def _adhesive_text(contents: Contents, joint: str) -> str:
-    """The adhesive of a joint, of one piece or several."""
+    """The adhesive of a joint in words, of one piece or several."""
     count = next(one.count for one in contents.flat.patterns if one.name == f"adhesive-{joint}") // contents.copies
     return f"adhesive-{joint}" if count == 1 else f"the {count} pieces of adhesive-{joint}"
 
@@ -84,7 +87,7 @@ def _liner_text(contents: Contents, joint: str) -> str:
 
 
 def _centre_actions(contents: Contents) -> list[str]:
-    """How effectors that are narrower than their segments are set onto medium 1."""
+    """Actions that set effectors narrower than their segments onto medium 1."""
     if contents.jig_device.is_array:
         return [
             "Lay jig-locator over its pins. Through each of its holes rub a piece of adhesive-medium1-effector onto "
@@ -96,7 +99,10 @@ def _centre_actions(contents: Contents) -> list[str]:
 
 
 def assembly_steps(contents: Contents) -> list[WorkStep]:
-    """Onto the base, or into the clamp frame: at once where all was stacked in the jig, else piece by piece."""
+    """Steps onto the base or into the clamp frame.
+
+    The stack goes there at once where all was stacked in the jig, else piece by piece.
+    """
     whole = "film" in contents.stacked_tops_mm
     if contents.part("base") is not None:
         return [_base_step(contents)] if whole else _base_steps(contents)
@@ -115,7 +121,10 @@ def _base_step(contents: Contents) -> WorkStep:
 
 
 def _base_steps(contents: Contents) -> list[WorkStep]:
-    """The film of a free array stands out beyond the layers, with traces that go around the array."""
+    """Steps that set the layers of a free array onto the base one by one.
+
+    Its film stands out beyond the layers, with traces that go around the array.
+    """
     layout = contents.flat.layout
     back, side = layout.back_end - layout.frame.along / 2, layout.half_body - layout.frame.across / 2
     front = layout.body_end - layout.frame.along / 2
@@ -167,7 +176,10 @@ def _frame_step(contents: Contents) -> WorkStep:
 
 
 def _frame_steps(contents: Contents) -> list[WorkStep]:
-    """The flange of the film is clamped between body and ring, so that the upper layers come last."""
+    """Steps that set the layers into the frame one by one.
+
+    The flange of the film is clamped between body and ring, so that the upper layers come last.
+    """
     rings = {one.name.rpartition("-")[2] for one in _ring_patterns(contents)}
     lower, upper, body, ring = "", "", contents.frame.body, contents.frame.ring
     if "lower" in rings:
@@ -228,7 +240,7 @@ def _medium2_actions(contents: Contents) -> tuple[str, ...]:
 
 
 def _glue_actions(contents: Contents) -> list[str]:
-    """Where the body of the frame holds it."""
+    """Action that glues medium 2 to the walls of the opening, where the body of the frame holds it."""
     if "medium2" not in held_layer_names(contents.device.stack):
         return []
     fills = f"it fills the gap of {contents.fabrication.glue_gap_mm:g} mm to medium 2"
@@ -236,7 +248,7 @@ def _glue_actions(contents: Contents) -> list[str]:
 
 
 def _upper_layers_step(contents: Contents, title: str) -> WorkStep:
-    """Onto the film, and to the walls of the ring where these hold them."""
+    """The step that sets the upper layers onto the film, and glues them to the walls of the ring that hold them."""
     stacked, held = contents.stacked_tops_mm, _held_text(contents)
     what = "the stack from the jig" if len(stacked) > 1 else layer_in_sentence(next(iter(stacked)))
     first = ", medium 1 first" if len(stacked) > 1 else ""
@@ -273,7 +285,7 @@ def _upper_layers_step(contents: Contents, title: str) -> WorkStep:
 
 
 def _held_text(contents: Contents) -> str:
-    """Layers that are glued to the ring."""
+    """Names of the layers that are glued to the ring."""
     names = held_layer_names(contents.device.stack) - {"film", "medium2"}
     return " and ".join(layer_in_sentence(layer.name) for layer in contents.layers if layer.name in names)
 

@@ -1,4 +1,4 @@
-"""Everything that the build sheet tells of: the kit, its bill of materials, where and how a layer is measured."""
+"""Contents of the build sheet: the kit, its bill of materials, where and how a layer is measured."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -20,14 +20,14 @@ from geometry.stack import Box, Disc, Dome, Layer, bodies, layers
 
 MEDIUM_NAMES = {"medium1": "medium 1", "medium2": "medium 2"}
 RESIN_G_CM3 = 1.15
-"""Density of a printed part, about: resins 1.1 to 1.2, PLA 1.24."""
+"""Approximate density of a printed part: resins 1.1 to 1.2, PLA 1.24."""
 
 
 @dataclass(frozen=True)
 class Contents:
-    """device : what is made. densities_g_cm3 : by layer.
-    permittivity : relative, of the film. printability : one for each printed part.
+    """All that the build sheet shows. device : what is made. densities_g_cm3 : by layer.
 
+    permittivity : relative, of the film. printability : one for each printed part.
     budget : the tolerance budget as it stands in kit.json, None where there is none, and budget_note says why;
     press : what is pressed, in words. pressed : what the budget is of, in words.
     """
@@ -47,67 +47,70 @@ class Contents:
 
     @property
     def segment(self) -> Segment:
-        """One of its segments."""
+        """One of the segments of the device."""
         return self.device.segment
 
     @property
     def copies(self) -> int:
-        """Devices of one clamp frame."""
+        """Number of devices in one clamp frame."""
         return self.fabrication.array[0] * self.fabrication.array[1]
 
     @property
     def frame(self) -> FrameLayout:
-        """Sizes of the clamp frame."""
+        """Layout of the clamp frame."""
         return frame_layout(self.device, self.fabrication)
 
     @property
     def layers(self) -> tuple[Layer, ...]:
-        """From the base upwards."""
+        """Layers of a segment from the base upwards."""
         return layers(self.segment)
 
     @property
     def centers(self) -> list[tuple[float, float]]:
-        """Places of the devices of one frame, x and y."""
+        """Centres (x, y) of the devices of one frame, in mm."""
         return [self.frame.frame.point_in_device(place) for place in self.frame.centers]
 
     @property
     def stacked_tops_mm(self) -> dict[str, float]:
-        """Name -> height over the floor of the jig of the layers that are stacked in it."""
+        """Name -> height in mm over the floor of the jig of the layers that are stacked in it."""
         return stacked_tops(self.device, self.fabrication)
 
     @property
     def jig_device(self) -> Device:
-        """What is stacked in the jig at once."""
+        """The device that is stacked in the jig at once."""
         return jig_device(self.device, self.fabrication)
 
     @property
     def spaced_layers(self) -> list[str]:
-        """Layers of islands that strips keep apart while they are bonded."""
+        """Names of the layers of islands that strips keep apart while they are bonded."""
         return spaced_layers(self.device)
 
     @property
     def what(self) -> str:
-        """The device in a word."""
+        """The word for the device, "array" or "segment"."""
         return "array" if self.device.is_array else "segment"
 
     def part(self, label: str) -> FabricationPart | None:
-        """A printed part by its label."""
+        """The printed part of a label, or None."""
         return next((part for part in self.solid.parts if part.label == label), None)
 
 
 def layer_title(name: str) -> str:
-    """A layer as people say it, in a table."""
+    """Name of a layer in a table."""
     return MEDIUM_NAMES.get(name, name)
 
 
 def layer_in_sentence(name: str) -> str:
-    """A layer as people say it, in a sentence."""
+    """Name of a layer in a sentence."""
     return MEDIUM_NAMES.get(name, f"the {name}")
 
 
 @dataclass(frozen=True)
 class Item:
-    """what : to get; amount : how much of it; mass_g : None where it does not matter; used : for what, which file."""
+    """One row of the bill of materials.
+
+    what : to get; amount : how much of it; mass_g : None where it does not matter; used : for what, which file.
+    """
 
     what: str
     amount: str
@@ -134,7 +137,7 @@ def bill_of_materials(contents: Contents) -> list[Item]:
 
 
 def components(contents: Contents) -> list[Component]:
-    """The layers from the top down."""
+    """The layers of the finished device, from the top down."""
     cast = {pour.component: pour for pour in contents.solid.pours}
     found = []
     for layer in reversed(contents.layers):
@@ -158,13 +161,13 @@ def components(contents: Contents) -> list[Component]:
 
 
 def _grooves_text(contents: Contents, name: str) -> str:
-    """The grooves of a layer, to follow its size."""
+    """Words on the grooves of a layer, to follow its size."""
     grooves = contents.device.layout.grooves(name)
     return "".join(f", grooves {one.width_mm:g} mm wide and {one.depth_mm:g} mm deep" for one in grooves)
 
 
 def _casting_items(contents: Contents) -> list[Item]:
-    """Both components of every mix; a material that is poured twice stands once."""
+    """Components of every mix; a material that is poured twice stands once."""
     masses: dict[tuple[str, str], float] = {}
     for pour in contents.solid.pours:
         for name, mass in pour.mixed_masses_g:
@@ -177,7 +180,7 @@ def _casting_items(contents: Contents) -> list[Item]:
 
 
 def _sheet_items(contents: Contents) -> list[Item]:
-    """Sheets with the size of the panel of each."""
+    """Sheets to cut, with the sizes that are needed of each."""
     sheets: dict[tuple[str, float], list[FlatPattern]] = {}
     for pattern in contents.flat.patterns:
         sheets.setdefault((pattern.material, pattern.thickness_mm), []).append(pattern)
@@ -190,7 +193,7 @@ def _sheet_items(contents: Contents) -> list[Item]:
 
 
 def _pieces_text(patterns: list[FlatPattern]) -> str:
-    """How many of which size, in mm."""
+    """Number of pieces of each size, in mm, in words."""
     counts: dict[str, int] = {}
     for pattern in patterns:
         size = "{:.1f} × {:.1f} mm".format(*pattern.size_mm)
@@ -206,7 +209,7 @@ def _printing_items(contents: Contents) -> list[Item]:
 
 
 def _small_items(contents: Contents) -> list[Item]:
-    """Screws, pins, contacts and what the moulds need."""
+    """Screws, pins, contacts, tools and what the moulds need."""
     made, found = contents.fabrication, []
     if contents.part("frame-ring") is not None:
         frame = contents.frame
@@ -241,7 +244,7 @@ FINEST_CRIMP_PITCH_MM = 2.0
 
 
 def _contact_item(contents: Contents) -> Item:
-    """Of the pads: a common electrode lies on the other face, so a connector needs contacts on both."""
+    """Contacts of the pads; as the common electrode lies on the other face, a connector needs them on both."""
     count, pitch = len(contents.flat.metals), contents.fabrication.pad_pitch_mm
     if pitch >= FINEST_CRIMP_PITCH_MM:
         return Item("crimp contacts, or copper tape with conductive glue", f"{count}", None, "pads")
@@ -256,8 +259,9 @@ GAUGE_ADVICE = (
 
 @dataclass(frozen=True)
 class Gauging:
-    """shape : "box", "cylinder" or "dome". quantity : "thickness" or "height", of size_mm. where : the points.
+    """Where and how the thickness of a layer is measured.
 
+    shape : "box", "cylinder" or "dome". quantity : "thickness" or "height", of size_mm. where : the points.
     foot : what to measure across and its sizes as text, None for a layer as wide as the segment. grip : where to hold
     it. keep : which of the cast parts are good, to follow "Keep the parts".
     """
@@ -272,7 +276,7 @@ class Gauging:
 
 
 def gauging(contents: Contents, name: str) -> Gauging:
-    """A layer other than the film."""
+    """How a layer other than the film is measured."""
     layer = next(one for one in contents.layers if one.name == name)
     source, size = contents.device.stated_segment(name), layer.thickness_mm
     body = bodies(source)[-1]

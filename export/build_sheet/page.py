@@ -24,12 +24,12 @@ from geometry.flat.electrodes import Metal, stray_area_mm2, stray_areas_mm2
 from solve.materials.parameters import VACUUM_PERMITTIVITY
 
 SHEET_RESISTANCE_OHM = {"NiAl": 3.0, "silver ink": 0.1}
-"""Ohm per square, the most: MSI Piezo Film Sensors Technical Manual, p. 3."""
+"""Largest resistance in ohm per square: MSI Piezo Film Sensors Technical Manual, p. 3."""
 
 
 @dataclass(frozen=True)
 class Check:
-    """what : to measure; expect : the number; otherwise : what a wrong number tells."""
+    """One measurement on the way. what : to measure; expect : the number; otherwise : what a wrong number tells."""
 
     what: str
     expect: str
@@ -37,7 +37,7 @@ class Check:
 
 
 def checks(contents: Contents) -> list[Check]:
-    """In the order of the work."""
+    """All checks in the order of the work."""
     return [
         *_printed_part_checks(contents),
         *_thickness_checks(contents),
@@ -48,7 +48,10 @@ def checks(contents: Contents) -> list[Check]:
 
 
 def capacitance_pF(contents: Contents) -> list[tuple[str, float]]:
-    """Of every top electrode against the common one: relative permittivity times area over thickness."""
+    """Name and capacitance in pF of every top electrode against the common one.
+
+    It is the relative permittivity times area over thickness.
+    """
     per_mm2 = _capacitance_pF_per_mm2(contents)
     return [(metal.name, per_mm2 * _area_mm2(metal)) for metal in contents.flat.metals if metal.face == "top"]
 
@@ -63,7 +66,7 @@ def _area_mm2(metal: Metal) -> float:
 
 @dataclass(frozen=True)
 class RoutedTrace:
-    """From an electrode to its pad. face : "top" or "bottom".
+    """The trace from an electrode to its pad. face : "top" or "bottom".
 
     length_mm, squares : of the lead without its pad; resistance_ohm : by metal, at most.
     parasitic_area_mm2, parasitic_capacitance_pF : where it lies over metal of the other face.
@@ -80,7 +83,7 @@ class RoutedTrace:
 
 
 def traces(contents: Contents) -> list[RoutedTrace]:
-    """In the order of the pads."""
+    """The traces of all electrodes, in the order of the pads."""
     stray, per_mm2 = stray_areas_mm2(contents.flat.metals), _capacitance_pF_per_mm2(contents)
     found = [
         RoutedTrace(
@@ -99,7 +102,7 @@ def traces(contents: Contents) -> list[RoutedTrace]:
 
 
 def _printed_part_checks(contents: Contents) -> list[Check]:
-    """Sizes of printed parts on which others depend."""
+    """Checks of sizes of printed parts on which others depend."""
     found = []
     for pour in contents.solid.pours:
         gauge = gauging(contents, pour.component)
@@ -199,7 +202,7 @@ HERE = Path(__file__).parent
 
 
 def write_page(contents: Contents, heading: Mapping[str, Any], pictures: Path, path: Path) -> None:
-    """Write the page; heading : what names this kit; pictures : folder of the PNG files, which go into the page.
+    """Write the page. heading : what names this kit; pictures : folder of the PNG files, which go into the page.
 
     The file appears whole or not at all.
     """
@@ -223,7 +226,7 @@ def write_page(contents: Contents, heading: Mapping[str, Any], pictures: Path, p
 
 
 class _Pictures:
-    """Pictures of a folder as data URIs."""
+    """Pictures of a folder as data URIs, by their names."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder

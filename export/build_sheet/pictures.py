@@ -37,12 +37,12 @@ class Thing:
         return replace(self, surface=self.surface.translate((x_mm, y_mm, 0.0), inplace=False))
 
     def cut_open(self, y_mm: float) -> "Thing":
-        """Its half behind a plane of constant y, closed."""
+        """Half of the thing behind a plane of constant y, closed."""
         return replace(self, surface=self.surface.clip_closed_surface("y", origin=(0.0, y_mm, 0.0)))
 
 
 def solid_thing(solid: Any, colour: str | tuple[float, float, float], name: str = "") -> Thing:
-    """A build123d solid."""
+    """The thing of a build123d solid."""
     import pyvista
 
     if not isinstance(colour, str):
@@ -51,7 +51,7 @@ def solid_thing(solid: Any, colour: str | tuple[float, float, float], name: str 
 
 
 def sheet_thing(outline: Outline, bottom_mm: float, thickness_mm: float, colour: str, name: str = "") -> Thing:
-    """A flat outline with a thickness."""
+    """The thing of a flat outline with a thickness."""
     import pyvista
 
     points = np.array([(x, y, bottom_mm) for x, y in outline.points])
@@ -60,7 +60,7 @@ def sheet_thing(outline: Outline, bottom_mm: float, thickness_mm: float, colour:
 
 
 def draw_things(things: Sequence[Thing], title: str, path: Path, view: View = VIEW_FROM_ABOVE) -> None:
-    """Write a PNG. InputError without OpenGL."""
+    """Draw things with their names and write a PNG. InputError without OpenGL."""
     shown = [thing for thing in things if thing.surface.n_points]
     box = picture_box(np.vstack([view.flat(np.asarray(thing.surface.points)) for thing in shown]))
     figure, axes, pixels_per_mm = picture_page(box, title)
@@ -92,12 +92,12 @@ def _save_cropped(figure: Any, path: Path) -> None:
 
 
 def _with_sharp_normals(surface: Any) -> Any:
-    """Normals that keep sharp edges."""
+    """The surface with normals that keep sharp edges."""
     return surface.compute_normals(split_vertices=True, feature_angle=FACET_DEG, cell_normals=False)
 
 
 def _sharp_edges(surface: Any, view: View) -> Any:
-    """Sharp edges, a little towards the viewer."""
+    """Sharp edges of a surface, moved a little towards the viewer."""
     edges = surface.clean().extract_feature_edges(
         feature_angle=FACET_DEG, manifold_edges=False, non_manifold_edges=False, boundary_edges=False
     )
@@ -107,25 +107,25 @@ def _sharp_edges(surface: Any, view: View) -> Any:
 
 
 def _anchor(surface: Any, view: View) -> Any:
-    """The rightmost corner of its top, which is seldom hidden."""
+    """Place on the picture (2,) of the rightmost corner of a surface's top, which is seldom hidden."""
     points = np.asarray(surface.points, np.float64)  # in single precision, the step below vanishes above 16 mm
     flat = view.flat(points[points[:, 2] > points[:, 2].max() - 1e-6])
     return flat[int(np.argmax(flat[:, 0]))]
 
 
 APART_PER_WIDTH = 1.1
-"""Between things that are drawn apart, in widths of the segment."""
+"""Distance between things that are drawn apart, in widths of the device."""
 MOST_APART_PER_HEIGHT = 1.0
-"""In heights of the device, for wide ones."""
+"""Largest such distance of a wide device, in heights of it."""
 MOULD_APART_PER_WIDTH = 0.6
-"""In widths of the mould."""
+"""Distance between the parts of an opened mould, in sizes of its largest part."""
 METAL_COLOUR, METAL_MM = "#e3a93c", 0.004
 
 Group = list[Thing]
 
 
 def draw_all(contents: Contents, cut: Path, folder: Path) -> None:
-    """Write every picture into a folder; cut : folder of the DXF files. InputError without OpenGL."""
+    """Write every picture into a folder. cut : folder of the DXF files. InputError without OpenGL."""
     drawer = Drawer(contents, folder)
     drawer.draw_device()
     drawer.draw_moulds()
@@ -139,7 +139,10 @@ def draw_all(contents: Contents, cut: Path, folder: Path) -> None:
 
 
 class Drawer:
-    """Things of a kit where they belong, made once; those that move together form a group."""
+    """Draws the things of a kit where they belong.
+
+    Each thing is made once; those that move together form a group.
+    """
 
     def __init__(self, contents: Contents, folder: Path) -> None:
         self.contents, self.folder = contents, folder
@@ -152,7 +155,7 @@ class Drawer:
         self.space = APART_PER_WIDTH * min(max(sizes), MOST_APART_PER_HEIGHT * contents.layers[-1].top_mm)
 
     def _layer_groups(self, device: Device) -> dict[str, Group]:
-        """The pieces of each layer, the first one with its name."""
+        """Name of each layer -> its pieces, the first one with its name."""
         return {
             layer.name: [
                 solid_thing(solid, PART_COLOURS[layer.name], "" if number else layer_title(layer.name))
@@ -162,7 +165,7 @@ class Drawer:
         }
 
     def draw_device(self) -> None:
-        """All that stays in the finished segment: pulled apart upwards, and with its front half cut away."""
+        """Draw all that stays in the finished device: pulled apart upwards, and with its front half cut away."""
         stack = self._assembly_groups()
         self._draw(_pull_apart(stack, self.space), "What you build, taken apart", "exploded")
         opened = [[thing.cut_open(self.cut_y) for thing in group] for group in stack]
@@ -170,11 +173,11 @@ class Drawer:
 
     @property
     def cut_y(self) -> float:
-        """Where it is cut: through the middle of a row of segments."""
+        """y of the cut, through the middle of a row of segments."""
         return self.places[0][1] + float(self.contents.device.layout.centres(1)[0])
 
     def draw_moulds(self) -> None:
-        """One picture for each cast component."""
+        """Draw the mould of each cast component, opened."""
         for pour in self.contents.solid.pours:
             own = [[thing] for label, thing in self.printed.items() if label.startswith(f"mould-{pour.component}-")]
             space = MOULD_APART_PER_WIDTH * max(thing.surface.length for group in own for thing in group)
@@ -183,7 +186,7 @@ class Drawer:
             self._draw(opened, f"Mould of {layer_title(pour.component)}, opened", f"mould-{pour.component}")
 
     def draw_jig(self) -> None:
-        """What is stacked in the corner of the jig, each thing over the one below."""
+        """Draw the stack in the corner of the jig, each thing over the one below."""
         tops, single = self.contents.stacked_tops_mm, self.single
         if self.contents.jig_device is not self.contents.device:
             single = self._layer_groups(self.contents.jig_device)
@@ -195,7 +198,7 @@ class Drawer:
         self._draw([[self.printed["jig"]], *raised], "Stack in the corner of the jig", "jig")
 
     def draw_assembly(self) -> None:
-        """One picture for each thing that is added; the newest hovers over its place."""
+        """Draw a picture for each thing that is added; the newest hovers over its place."""
         order = self._assembly_groups()
         for number in range(1, len(order)):
             new = order[number]
@@ -214,7 +217,7 @@ class Drawer:
         return [*parts, self.layers["medium2"], self.layers["film"], *ring, *upper]
 
     def _at_each_place(self, group: Group) -> Group:
-        """A copy at each place of the array, the first one with its name."""
+        """Copies of a group at each place of the array, the first one with its name."""
         first, *others = self.places
         copies = [thing.move(*place) for place in others for thing in _without_names(group)]
         return [thing.move(*first) for thing in group] + copies
@@ -241,7 +244,7 @@ def _without_names(group: Group) -> Group:
 
 
 def _pull_apart(groups: Sequence[Group], space: float) -> list[Group]:
-    """Each lifted until it is clear of what is below."""
+    """Groups lifted until each is clear, by the space in mm, of what is below."""
     found: list[Group] = []
     top = -float("inf")
     for group in groups:

@@ -7,7 +7,7 @@ from geometry.flat.film import METAL_EDGE_MM, PAD_LENGTH_MM
 
 
 def steps(contents: Contents) -> list[WorkStep]:
-    """From printing to the first press."""
+    """All steps from printing to the first press."""
     return [
         _print_step(contents),
         *(_cast_step(pour, contents) for pour in contents.solid.pours),
@@ -68,14 +68,14 @@ def _cast_step(pour: Pour, contents: Contents) -> WorkStep:
 
 
 def _spare_actions(pour: Pour, contents: Contents) -> list[str]:
-    """A mould of islands makes as many as one array has."""
+    """A reminder where a mould of islands makes just as many as one array has."""
     if contents.device.piece_count(pour.component) == 1:
         return []
     return [f"The array needs all {pour.cavities} of them: pour again for spares."]
 
 
 def _plain_number(value: float) -> str:
-    """Two digits or all before the point."""
+    """A number with two digits, or with all before the point."""
     return f"{value:.0f}" if value >= 10.0 else f"{value:.2g}"
 
 
@@ -84,7 +84,7 @@ def _is_split(pour: Pour, contents: Contents) -> bool:
 
 
 def _sheet_steps(contents: Contents) -> list[WorkStep]:
-    """Components that are cut from sheet."""
+    """Steps for the components that are cut from sheet."""
     return [
         WorkStep(
             f"Cut {layer_in_sentence(name)} from sheet",

@@ -1,1 +1,1 @@
-"""All cut files of a kit and their pictures: DXF (R2010) and SVG in millimetres, with named layers."""
+"""Cut files of a kit and their pictures: DXF (R2010) and SVG in millimetres, with named layers."""

@@ -1,4 +1,4 @@
-"""DXF files (R2010) of flat patterns in millimetres, with named layers, and what a CAD program shows of them."""
+"""DXF files (R2010) of flat patterns in millimetres, with named layers, and pictures of them."""
 
 from pathlib import Path
 from typing import Any
@@ -11,7 +11,7 @@ ARROW_SIZE_MM = 0.5
 
 
 def write_dxf(pattern: FlatPattern, path: Path) -> None:
-    """Write a pattern as it is, in millimetres; the file says so in $INSUNITS."""
+    """Write a pattern at its size, in millimetres; the file says so in $INSUNITS."""
     from ezdxf.filemanagement import new
 
     document = new("R2010", setup=["linetypes", "styles"], units=4)  # 4: millimetres
@@ -68,7 +68,7 @@ def _add_dimension(space: Any, size: Dimension) -> None:
 
 
 def draw_cut_file(dxf: Path, picture: Path) -> None:
-    """A PNG of what a DXF file holds, as a CAD program would show it."""
+    """Draw a DXF file as a CAD program would show it, and write a PNG."""
     from ezdxf.addons.drawing.config import BackgroundPolicy, ColorPolicy, Configuration
     from ezdxf.addons.drawing.frontend import Frontend
     from ezdxf.addons.drawing.matplotlib import MatplotlibBackend

@@ -1,4 +1,4 @@
-"""What each layer of a cut file is for and looks like, and how a size is written."""
+"""Purpose and look of each layer of a cut file, and how a size is written."""
 
 from typing import NamedTuple
 
@@ -6,7 +6,7 @@ from geometry.flat.pattern import LayerName
 
 
 class Style(NamedTuple):
-    """purpose : one phrase. colour : red, green, blue from 0 to 255. weight : of its lines, 0.01 mm."""
+    """Look of a layer. purpose : one phrase. colour : red, green, blue, 0 to 255. weight : of its lines, 0.01 mm."""
 
     purpose: str
     colour: tuple[int, int, int]

@@ -8,13 +8,13 @@ from foundation.files import write_whole_text
 from geometry.flat.pattern import Circle, Dimension, FlatPattern, Label, LayerName, Outline, Point, Stroke
 
 DIMENSION_ROOM_MM = 8.0
-"""Around the pattern, for dimensions."""
+"""Room around the pattern, for dimensions."""
 TEXT_HEIGHT_MM = 0.8
 INKSCAPE = "http://www.inkscape.org/namespaces/inkscape"
 
 
 class SvgSheet:
-    """The page; y of the pattern runs up, y of the file down."""
+    """The page of an SVG file; y of the pattern runs up, y of the file down."""
 
     def __init__(self, pattern: FlatPattern) -> None:
         xs, ys = zip(*pattern.points, strict=True)
@@ -39,21 +39,21 @@ class SvgSheet:
         return Xml.SubElement(self.root, "g", attributes)
 
     def at(self, point: Point) -> Point:
-        """A point of the pattern on the page."""
+        """A point of the pattern in the axes of the page."""
         return point[0] - self.left, self.top - point[1]
 
     def path(self, layer: LayerName, points: tuple[Point, ...], close: bool) -> None:
-        """A polygon or an open line."""
+        """Add a polygon or an open line."""
         corners = " L ".join("{} {}".format(*map(_number_text, self.at(p))) for p in points)
         Xml.SubElement(self.groups[layer], "path", {"d": f"M {corners}{' Z' if close else ''}"})
 
     def circle(self, circle: Circle) -> None:
-        """A circle."""
+        """Add a circle."""
         x, y = map(_number_text, self.at(circle.center))
         Xml.SubElement(self.groups[circle.layer], "circle", {"cx": x, "cy": y, "r": _number_text(circle.radius)})
 
     def words(self, layer: LayerName, place: Point, text: str, height: float, upright: bool = False) -> None:
-        """Text centred at a place; upright: read from the right."""
+        """Add text centred at a place; upright: read from the right."""
         x, y = map(_number_text, self.at(place))
         attributes = {
             "x": x, "y": y, "font-size": _number_text(1.35 * height), "font-family": "sans-serif",
@@ -66,7 +66,7 @@ class SvgSheet:
 
 
 def write_svg(pattern: FlatPattern, path: Path) -> None:
-    """Write a pattern as it is, in millimetres."""
+    """Write a pattern at its size, in millimetres."""
     sheet = SvgSheet(pattern)
     for one in (*pattern.cuts, *pattern.marks):
         if isinstance(one, Circle):
@@ -82,7 +82,7 @@ def write_svg(pattern: FlatPattern, path: Path) -> None:
 
 
 def _draw_dimension(sheet: SvgSheet, size: Dimension) -> None:
-    """Two extension lines, the dimension line with oblique strokes, and the size."""
+    """Add two extension lines, the dimension line with oblique strokes, and the size."""
     up = (0.0, 1.0) if size.along == "x" else (1.0, 0.0)
     line = [_moved_point(size.start, up, size.shift)]
     line.append((size.end[0], line[0][1]) if size.along == "x" else (line[0][0], size.end[1]))

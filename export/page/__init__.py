@@ -1,4 +1,4 @@
-"""What the HTML pages share: frame, style and the filling of templates."""
+"""Shared parts of the HTML pages: frame, style and the filling of templates."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,7 +10,10 @@ HERE = Path(__file__).parent
 
 
 def page_environment(folder: Path) -> "jinja2.Environment":
-    """Of the templates in a folder, which may extend base.html and include article.css. Values are escaped."""
+    """Environment of the Jinja templates in a folder, which may extend base.html and include article.css.
+
+    Values are escaped.
+    """
     import jinja2
 
     loader = jinja2.FileSystemLoader([folder, HERE])
@@ -18,5 +21,5 @@ def page_environment(folder: Path) -> "jinja2.Environment":
 
 
 def script_safe(text: str) -> str:
-    """JSON that cannot end the script element that holds it."""
+    """The JSON text with "<" escaped, so that it cannot end the script element that holds it."""
     return text.replace("<", "\\u003c")

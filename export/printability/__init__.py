@@ -1,4 +1,4 @@
-"""Can this part be printed? Measured against the limits of a printer, with the place and advice in words."""
+"""Check whether a part can be printed, against the limits of a printer, with the place and advice in words."""
 
 from export.printability.check import check_part
 from export.printability.drawing import draw_findings

@@ -34,7 +34,7 @@ def bumps(surface: Any) -> list[Bump]:
 
 
 def _smooth_faces(surface: Any) -> list[Any]:
-    """Index arrays of the triangles of each face: what sharp edges separate."""
+    """Numbers of the triangles of each face, as sharp edges separate faces."""
     smooth = surface.face_adjacency[surface.face_adjacency_angles < SMOOTH_ANGLE_RAD]
     labels = connected_labels(smooth, len(surface.faces))
     order = np.argsort(labels, kind="stable")

@@ -1,4 +1,4 @@
-"""The check of one part against one printer, with one sentence of advice."""
+"""Check of one part against one printer, with one sentence of advice."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -18,7 +18,7 @@ def advise(
     findings: Findings,
     others: Sequence[tuple[PrinterProfile, Findings]],
 ) -> tuple[Process, str]:
-    """The process to make the part by, and why.
+    """The process by which to make the part, and a sentence of advice.
 
     findings : of the profile; others : every printer of the table with its findings. The profile's own process
     where it does at least as well as the others.
@@ -45,7 +45,7 @@ def _problem_and_advice(finding: Finding) -> str:
 
 
 def errors(findings: Findings) -> list[Finding]:
-    """Those that keep the part from being printed."""
+    """Findings that keep the part from being printed."""
     return [finding for finding in findings if finding.severity == "error"]
 
 
@@ -74,7 +74,7 @@ def check_part(
     sizes: Sequence[CriticalSize] = (),
     up: Point = (0.0, 0.0, 1.0),
 ) -> Printability:
-    """Check one part. body : build123d Solid or trimesh.Trimesh, in mm.
+    """Check one part on one printer. body : build123d Solid or trimesh.Trimesh, in mm.
 
     sizes : what must come out right, for the rule "tolerance".
     up : direction of the part that points up on the printer.
@@ -89,7 +89,10 @@ def check_on_printers(
     sizes: Sequence[CriticalSize] = (),
     up: Point = (0.0, 0.0, 1.0),
 ) -> tuple[Printability, ...]:
-    """As check_part, for several printers; the part is measured once."""
+    """Check one part on several printers; it is measured once.
+
+    Parameters as of check_part; one answer for each profile.
+    """
     measured = measure(body, up)
     known = [printer_profile(name) for name in printer_names()]
     others = {other.name: _findings(measured, other, sizes) for other in known}
@@ -102,7 +105,7 @@ def check_on_printers(
 
 
 def _findings(measured: Measured, profile: PrinterProfile, sizes: Sequence[CriticalSize]) -> tuple[Finding, ...]:
-    """Errors first, then in the order of the rules."""
+    """Findings of all rules: errors first, then in the order of the rules."""
     found = list(rules.manifold(measured))
     found += [finding for rule in RULES_WITH_LIMITS for finding in rule(measured, profile)]
     found += rules.tolerance(sizes, profile)

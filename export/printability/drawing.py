@@ -47,7 +47,7 @@ def draw_findings(body: Any, printability: Printability, path: Path) -> Path:
 
 
 def clearest_view(surface: Any, places_mm: Floats) -> View:
-    """The view in which the places (n, 3) lie least deep behind what is seen.
+    """The view in which the places (n, 3) lie least deep behind the visible surface.
 
     Of views that differ by less than a tenth of the longest side, the first: from above where that will do.
     """
@@ -56,7 +56,7 @@ def clearest_view(surface: Any, places_mm: Floats) -> View:
 
 
 def buried_mm(surface: Any, places_mm: Floats, view: View) -> Floats:
-    """How far (n,) each place lies behind the surface that the viewer sees there; 0 in front of it."""
+    """Depth (n,) in mm of each place behind the surface that the viewer sees there; 0 in front of it."""
     toward = np.broadcast_to(view.axes[2], places_mm.shape)
     away = 2 * float(np.linalg.norm(surface.extents))
     distance, _ = Rays(surface).first_hits(places_mm + away * toward, -toward, 2 * away)
@@ -64,7 +64,7 @@ def buried_mm(surface: Any, places_mm: Floats, view: View) -> Floats:
 
 
 def _mark_finding(axes: Any, view: View, finding: Finding, number: int, line: str) -> None:
-    """A ring at the place and its number beside it."""
+    """Draw a ring at the place of a finding and its number beside it."""
     place = view.flat(np.array([finding.place_mm]))[0]
     colour = SEVERITY_COLOURS[finding.severity]
     axes.add_patch(_ring(axes, place, colour, line))
@@ -78,7 +78,7 @@ def _mark_finding(axes: Any, view: View, finding: Finding, number: int, line: st
 
 
 def _ring(axes: Any, place: Floats, colour: str, line: str) -> Any:
-    """A circle of RING_IN across."""
+    """A circle of RING_DIAMETER_IN across."""
     from matplotlib.patches import Circle
 
     radius = RING_DIAMETER_IN / 2 / WIDTH_IN * float(np.diff(axes.get_xlim())[0])
@@ -86,7 +86,7 @@ def _ring(axes: Any, place: Floats, colour: str, line: str) -> Any:
 
 
 def _write_list(figure: Any, printability: Printability, some_hidden: bool) -> None:
-    """The findings with their numbers, and the advice, at the right; smaller where there are many."""
+    """Write the findings with their numbers, and the advice, at the right; smaller where there are many."""
     texts = [
         (f"{number}  {finding.rule}: {finding.problem}; {finding.advice}", SEVERITY_COLOURS[finding.severity])
         for number, finding in enumerate(printability.findings, 1)

@@ -1,4 +1,4 @@
-"""What the check says: findings with their place, and the process that is advised."""
+"""Answer of the check: findings with their place, and the process that is advised."""
 
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
@@ -28,7 +28,7 @@ class CriticalSize:
 
 @dataclass(frozen=True)
 class Finding:
-    """One rule that the part does not keep.
+    """One rule that the part violates.
 
     value, limit : what was measured and what the printer asks for, in unit ("mm", "mm2", "mm3" or "edges").
     place_mm : (x, y, z) of the worst place, in the frame of the part.
@@ -47,7 +47,7 @@ class Finding:
     advice: str
 
     def as_dict(self) -> dict[str, Any]:
-        """For a JSON summary."""
+        """Plain values for a JSON summary."""
         return {
             "rule": self.rule,
             "value": self.value,
@@ -79,11 +79,11 @@ class Printability:
 
     @property
     def printable(self) -> bool:
-        """No finding is an error."""
+        """Whether no finding is an error."""
         return all(finding.severity != "error" for finding in self.findings)
 
     def as_dict(self) -> dict[str, Any]:
-        """For a JSON summary."""
+        """Plain values for a JSON summary."""
         return {
             "label": self.label,
             "profile": self.profile,

@@ -1,4 +1,4 @@
-"""All that is measured on a part, once for all printers."""
+"""Measurements of a part, taken once for all printers."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -15,7 +15,7 @@ THICKNESS_LIMITS: tuple[LimitName, ...] = ("wall_mm", "feature_mm", "gap_mm", "h
 
 @dataclass(frozen=True)
 class Measured:
-    """surface : trimesh.Trimesh; up : unit vector (3,) that points up on the printer.
+    """Measurements of a part. surface : trimesh.Trimesh; up : unit vector (3,) that points up on the printer.
 
     broken_edges : (n, 2, 3) ends of the edges that do not join exactly two triangles; with any, there is no
         inside, and walls, gaps and bumps are None.

@@ -1,4 +1,4 @@
-"""The rules: for the part as a whole (closed, within the printer, standing) and for walls, pins, bumps, gaps, sizes."""
+"""Rules for the part as a whole (closed, within the printer, standing) and for walls, pins, bumps, gaps, sizes."""
 
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -16,7 +16,7 @@ BED_TOLERANCE_MM = 0.02
 
 
 def manifold(measured: Measured) -> Iterator[Finding]:
-    """Every edge joins exactly two triangles, and the triangles face outwards."""
+    """Report edges that do not join exactly two triangles, and triangles that face inwards."""
     edges = measured.broken_edges
     if len(edges):
         words = ("the surface is not closed", "repair it, or export it again from the solid")
@@ -28,7 +28,7 @@ def manifold(measured: Measured) -> Iterator[Finding]:
 
 
 def size(measured: Measured, profile: PrinterProfile) -> Iterator[Finding]:
-    """The part stands within the build volume, its longer side along the longer side of the printer."""
+    """Report a part larger than the build volume, its longer side along the longer side of the printer."""
     placed = measured.surface.vertices @ _printer_frame(measured.up).T
     extents = np.ptp(placed, axis=0)
     sides = sorted((profile["build_x_mm"], profile["build_y_mm"]), reverse=bool(extents[0] > extents[1]))
@@ -42,7 +42,7 @@ def size(measured: Measured, profile: PrinterProfile) -> Iterator[Finding]:
 
 
 def overhang(measured: Measured, profile: PrinterProfile) -> Iterator[Finding]:
-    """Undersides flatter than the printer can build on air; the largest connected one is reported."""
+    """Report undersides flatter than the printer can build on air, by the largest connected one."""
     area, place = _largest_overhang(measured, profile["overhang_deg"])
     limit = profile["overhang_area_mm2"]
     if area > limit:
@@ -52,12 +52,12 @@ def overhang(measured: Measured, profile: PrinterProfile) -> Iterator[Finding]:
 
 
 def plain_point(xyz: Any) -> Point:
-    """Three plain numbers."""
+    """Three plain numbers of an array (3,)."""
     return float(xyz[0]), float(xyz[1]), float(xyz[2])
 
 
 def _largest_overhang(measured: Measured, steepest_deg: float) -> tuple[float, Point]:
-    """Area (mm2) and a point of the largest connected underside flatter than this, off the bed."""
+    """Area in mm2 and a point of the largest connected underside flatter than this, off the bed."""
     surface, up = measured.surface, measured.up
     heights = surface.vertices @ up
     off_the_bed = heights[surface.faces].max(axis=1) > heights.min() + BED_TOLERANCE_MM
@@ -86,7 +86,7 @@ SLACK_MM = 1e-3
 
 
 def wall(measured: Measured, profile: PrinterProfile) -> Iterator[Finding]:
-    """Walls at least as thick as a wall that stands free; thinner than a held one cannot be printed."""
+    """Report walls thinner than a wall that stands free; a wall thinner than a held one cannot be printed."""
     if measured.walls is None:
         return
     chords, name = measured.walls, profile.process.upper()
@@ -103,7 +103,7 @@ def wall(measured: Measured, profile: PrinterProfile) -> Iterator[Finding]:
 
 
 def feature(measured: Measured, profile: PrinterProfile) -> Iterator[Finding]:
-    """Pins, ribs and bumps at least as wide as the smallest feature."""
+    """Report pins, ribs and bumps narrower than the smallest feature."""
     if measured.walls is None or measured.bumps is None:
         return
     chords, limit, name = measured.walls, profile["feature_mm"], profile.process.upper()
@@ -119,7 +119,7 @@ def feature(measured: Measured, profile: PrinterProfile) -> Iterator[Finding]:
 
 
 def relief(measured: Measured, profile: PrinterProfile) -> Iterator[Finding]:
-    """Bumps and dents high enough to be built of several layers."""
+    """Report bumps and dents lower than several layers."""
     lowest = min(measured.bumps or [], key=lambda bump: bump.height_mm, default=None)
     limit, layer = profile["relief_mm"], profile["layer_mm"]
     if lowest is None or lowest.height_mm >= limit - SLACK_MM:
@@ -134,7 +134,7 @@ def relief(measured: Measured, profile: PrinterProfile) -> Iterator[Finding]:
 
 
 def gap(measured: Measured, profile: PrinterProfile) -> Iterator[Finding]:
-    """Slots and holes wide enough to stay open; the one that misses its limit by most is reported."""
+    """Report the slot or hole that misses the width at which it stays open by most."""
     if measured.gaps is None:
         return
     chords, hole = measured.gaps, measured.gaps.cross_mm < profile["hole_mm"]
@@ -151,7 +151,7 @@ def gap(measured: Measured, profile: PrinterProfile) -> Iterator[Finding]:
 
 
 def tolerance(sizes: Sequence[CriticalSize], profile: PrinterProfile) -> Iterator[Finding]:
-    """Sizes that may be off by less than the printer is off."""
+    """Report sizes that may be off by less than the printer is off."""
     off = profile["deviation_mm"]
     for size in sizes:
         if size.deviation_mm < off:
@@ -164,7 +164,7 @@ def tolerance(sizes: Sequence[CriticalSize], profile: PrinterProfile) -> Iterato
 
 
 def _shortest_chord(chords: Chords, chosen: NDArray[np.bool_]) -> tuple[float, Point]:
-    """Length and middle of the first, which is the shortest, of the chosen chords; infinite where none is."""
+    """Length and middle of the shortest of the chosen chords, which are sorted; infinite where none is chosen."""
     where = np.flatnonzero(chosen)
     if len(where) == 0:
         return np.inf, (0.0, 0.0, 0.0)

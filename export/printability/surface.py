@@ -15,7 +15,7 @@ ANGULAR_DEFLECTION = 0.15
 
 
 def surface_of(body: Any) -> Any:
-    """A trimesh.Trimesh, in mm, of a build123d shape; a Trimesh is taken as it is, with merged vertices."""
+    """Surface of a build123d shape as trimesh.Trimesh, in mm; a Trimesh is copied with merged vertices."""
     import trimesh
 
     if isinstance(body, trimesh.Trimesh):
@@ -35,7 +35,7 @@ RAY_START_MM = 1e-4
 
 
 class Rays:
-    """VTK's static cell locator over the triangles of a trimesh.Trimesh."""
+    """Rays through the triangles of a trimesh.Trimesh, by VTK's static cell locator."""
 
     def __init__(self, surface: Any) -> None:
         import pyvista
@@ -74,7 +74,7 @@ SURFACE_SAMPLES = 3000
 OPPOSITE_COSINE = -np.cos(np.radians(30.0))
 """Two faces are the two sides of a wall when their normals are opposite within 30 degrees; else it is an edge."""
 CROSS_DIRECTIONS = 8
-"""Tried across a chord, 22.5 degrees apart: a width is found within 1 / cos(11.25 degrees) = 1.02."""
+"""Directions across a chord, 22.5 degrees apart: a width is found within 1 / cos(11.25 degrees) = 1.02."""
 
 
 @dataclass(frozen=True)
@@ -131,7 +131,7 @@ def _sample_points(surface: Any) -> tuple[Floats, Ints]:
 
 
 def _cross_widths(surface: Any, rays: Rays, middle: Floats, along: Floats, reach_mm: float) -> Floats:
-    """See Chords.cross_mm; through each middle (n, 3) across its unit direction (n, 3)."""
+    """Smallest width (n,) through each middle (n, 3) across its unit direction (n, 3), as of Chords.cross_mm."""
     first = np.cross(along, np.eye(3)[np.argmin(np.abs(along), axis=1)])
     first /= np.linalg.norm(first, axis=1, keepdims=True)
     second = np.cross(along, first)
@@ -150,7 +150,7 @@ def _cross_widths(surface: Any, rays: Rays, middle: Floats, along: Floats, reach
 
 
 def _is_closed(rays: Rays, middle: Floats, along: Floats, across: Floats, reach_mm: float) -> NDArray[np.bool_]:
-    """Whether all four diagonals between two unit directions (n, 3) meet the surface."""
+    """Whether all four diagonals between two unit directions (n, 3) meet the surface, for each middle (n, 3)."""
     diagonals = [(a * along + b * across) / np.sqrt(2.0) for a in (1, -1) for b in (1, -1)]
     hits = [rays.first_hits(middle, diagonal, reach_mm)[1] >= 0 for diagonal in diagonals]
     return np.asarray(np.all(hits, axis=0))

@@ -25,9 +25,8 @@ Side = Literal["ahead", "beside", "behind"]
 class WayOut:
     """How a trace leaves its electrode.
 
-    side : of the electrode at which it leaves. channel : number of the channel, which runs below file `channel` and
-    above
-    file `channel - 1`.
+    side : of the electrode at which it leaves. channel : number of the channel, above file channel - 1 and below file
+    channel.
     """
 
     side: Side

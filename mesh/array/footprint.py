@@ -1,4 +1,4 @@
-"""The footprint of an array as triangles, with lines at all edges of layers and circles around round effectors."""
+"""Triangulation of an array's footprint, with lines at all edges of layers and circles around round effectors."""
 
 from itertools import pairwise
 
@@ -15,7 +15,10 @@ PATCH_TOLERANCE_MM = 1e-6
 
 
 def footprint_triangulation(layout: ArrayLayout, field: ArraySizing) -> Triangulation:
-    """Triangles as small as the sizes ask for, as far as the mirror planes; part 1 inside a round effector's foot."""
+    """Triangulation of an array's footprint as fine as the sizes ask for, as far as the mirror planes.
+
+    Part 1 lies inside the foot of a round effector, part 0 elsewhere.
+    """
     radius = layout.foot_radius_mm
     x, y = (_subdivide_lines(layout.lines(axis), field.coarse_mm) for axis in (0, 1))
     if radius is not None:
@@ -35,13 +38,13 @@ def _one_part(triangles: Floats) -> Triangulation:
 
 
 def _subdivide_lines(lines: Floats, coarse_mm: float) -> Floats:
-    """Lines with others between them, as far apart as elements are long at most."""
+    """Lines (n,) with others between them, at most as far apart as elements are long."""
     pieces = [np.linspace(a, b, 1 + max(1, round((b - a) / coarse_mm)))[:-1] for a, b in pairwise(lines)]
     return np.concatenate([*pieces, lines[-1:]])
 
 
 def _lines_with_patches(lines: Floats, layout: ArrayLayout, axis: int) -> Floats:
-    """Lines with those of the patches in place of others within them: four cells over each patch."""
+    """Lines (n,) in which those within patches are replaced by five over each patch, which make four cells."""
     centres, half = layout.centres(axis), layout.patch_mm
     outside = (np.abs(lines[:, None] - centres) > half + PATCH_TOLERANCE_MM).all(axis=1)
     inside = (centres[:, None] + half * np.array([-1.0, -0.5, 0.0, 0.5, 1.0])).ravel()
@@ -49,7 +52,7 @@ def _lines_with_patches(lines: Floats, layout: ArrayLayout, axis: int) -> Floats
 
 
 def _triangulation_with_patches(layout: ArrayLayout, quads: Floats, radius: float) -> Triangulation:
-    """The quadrilaterals outside the patches, and in each patch a disc with what lies around it."""
+    """Triangles of the quadrilaterals outside the patches, and in each patch a disc and the ring around it."""
     centres = layout.middles
     away = np.abs(quads.mean(axis=1)[:, None] - centres).max(axis=2)
     outside = crossed_triangles(quads[(away > layout.patch_mm).all(axis=1)])
@@ -61,10 +64,10 @@ def _triangulation_with_patches(layout: ArrayLayout, quads: Floats, radius: floa
 
 
 def on_or_beyond_circles(layout: ArrayLayout, points: Floats, radius: float) -> Bools:
-    """Which points (n, 2) lie on a circle around a segment's middle, or outside all of them."""
+    """Whether points (n, 2) lie on a circle around a segment's middle, or outside all circles; shape (n,)."""
     return np.asarray(distance_to_nearest_middle(layout, points) > radius - PATCH_TOLERANCE_MM)
 
 
 def distance_to_nearest_middle(layout: ArrayLayout, points: Floats) -> Floats:
-    """Distance (n,) of points (n, 2) from the middle of the nearest segment."""
+    """Distance (n,) in mm of points (n, 2) from the middle of the nearest segment."""
     return np.asarray(np.linalg.norm(points[:, None] - layout.middles, axis=2).min(axis=1))

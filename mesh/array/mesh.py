@@ -39,28 +39,28 @@ PLANE_TOLERANCE_MM = 1e-6
 
 @dataclass(frozen=True)
 class RoundSurfaces:
-    """The round skins of all effectors: that of one, one above the middle of each segment (n, 2)."""
+    """Round skins of all effectors: one surface, repeated above the middle of each segment (n, 2)."""
 
     one: RoundSurface
     centres: Floats
 
     def _local(self, points: Floats) -> tuple[Floats, Floats]:
-        """Points (n, 3) as seen from the nearest segment, and its middle (n, 3)."""
+        """Points (n, 3) relative to the middle of the nearest segment, and that middle (n, 3)."""
         nearest = np.linalg.norm(points[:, None, :2] - self.centres, axis=2).argmin(axis=1)
         middle = np.column_stack([self.centres[nearest], np.zeros(len(points))])
         return points - middle, middle
 
     def holds(self, points: Floats, tolerance: float = 1e-7) -> Bools:
-        """As RoundSurface."""
+        """Whether points (n, 3) lie on the skin of the nearest segment within a tolerance in mm."""
         return self.one.holds(self._local(points)[0], tolerance)
 
     def project(self, points: Floats) -> Floats:
-        """As RoundSurface."""
+        """Nearest points (n, 3) of the skin of the nearest segment; points in the plane of the foot stay in it."""
         local, middle = self._local(points)
         return np.asarray(self.one.project(local) + middle)
 
     def normals(self, points: Floats) -> Floats:
-        """As RoundSurface."""
+        """Outward unit normals (n, 3) of the skin of the nearest segment."""
         return self.one.normals(self._local(points)[0])
 
 
@@ -93,7 +93,7 @@ def _round_surfaces(layout: ArrayLayout) -> RoundSurfaces | None:
 def _extrude(
     layout: ArrayLayout, foot: Triangulation, heights: Floats, layer_region: Ints, names: tuple[str, ...]
 ) -> LinearMesh:
-    """The prisms of all layers where each has material."""
+    """Tetrahedra of the prisms of all layers where each has material."""
     points, node = _nodes(layout, foot, heights, layer_region, names)
     middle = foot.points[foot.triangles].mean(axis=1)
     tets, region = [], []
@@ -135,10 +135,10 @@ def _nodes(
 def _facets(
     layout: ArrayLayout, points: Floats, tets: Ints, region: Ints, names: tuple[str, ...], planes: Planes
 ) -> dict[str, Ints]:
-    """The facets of mesh.types.TetMesh by name.
+    """Facets of the mesh by name, as in mesh.types.TetMesh.
 
     The dot can touch what faces up of medium 1 and of effectors that are layers, and the whole skin of other effectors.
-    Walls in gaps are sides where the grid holds the layer, else bear no name.
+    Walls in gaps are sides where the grid holds the layer, else they bear no name.
     """
     owner, face = boundary_faces(tets)
     outer, part = tets[owner[:, None], TET_FACES[face]], region[owner]
@@ -162,7 +162,7 @@ def _facets(
 
 
 def _touchable(layout: ArrayLayout, corner: Floats, part: Ints, names: tuple[str, ...], flat: Bools) -> Bools:
-    """Outer facets (k, 3, 3) that the dot can touch."""
+    """Whether the dot can touch outer facets with these corners (k, 3, 3); shape (k,)."""
     normal_z = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])[:, 2]
     faces_up = flat & (normal_z > 0.0)
     skin = [number for number, name in enumerate(names) if name in ("medium1", "effector")]
@@ -174,6 +174,6 @@ def _touchable(layout: ArrayLayout, corner: Floats, part: Ints, names: tuple[str
 
 
 def _on_rim_planes(corner: Floats, half_mm: tuple[float, float]) -> Bools:
-    """Facets (k, 3, 3) in a plane of the rim."""
+    """Whether facets with these corners (k, 3, 3) lie in a plane of the rim; shape (k,)."""
     away = np.abs(np.abs(corner[..., :2]) - np.array(half_mm))
     return np.asarray((away < PLANE_TOLERANCE_MM).all(axis=1).any(axis=1))

@@ -15,7 +15,7 @@ from mesh.types import Planes
 HYPOTENUSE_PER_MEAN_EDGE = 1.6
 """Longest edge of a right triangle against its mean edge, as in mesh.layered."""
 FAR_GROWTH = 0.25
-"""mm of edge length on the film per mm beside the pressed segment: what reaches a neighbour is smooth."""
+"""Growth of the edge length on the film, mm per mm beside the pressed segment: what reaches a neighbour is smooth."""
 SIZE_SAMPLES = 20_000
 TRIANGLES_PER_SQUARE = 4.0
 """Triangles for a square of the edge length, as bisection leaves them: within a factor of 1.5 on arrays of six."""
@@ -23,7 +23,7 @@ TRIANGLES_PER_SQUARE = 4.0
 
 @dataclass(frozen=True)
 class ArraySizing(Sizing):
-    """Fine under the dots and on the film of the segments they press, growing away from these.
+    """Sizing field of an array: fine under the dots and on the film of pressed segments, growing away from these.
 
     pressed : (k, 4) rectangles x0, x1, y0, y1 of the segments under the dots; ends : (n, 4) the same, of the film,
     where it ends at walls, else of the whole array.
@@ -44,7 +44,7 @@ class ArraySizing(Sizing):
         return np.asarray(np.minimum(np.minimum(np.minimum(contact, film), rim), self.coarse_mm))
 
     def at_footprint(self, xy_mm: Floats) -> Floats:
-        """The finest of skin and film above points (n, 2) of the footprint."""
+        """Smallest edge lengths (n,) in mm of skin and film above points (n, 2) of the footprint."""
         at = [np.column_stack([xy_mm, np.full(len(xy_mm), z)]) for z in (self.outline.film_top, self.outline.top)]
         return np.asarray(np.minimum(self.at(at[0]), self.at(at[1])))
 
@@ -65,7 +65,7 @@ def _distance_outside(points: Floats, rectangles: Floats) -> Floats:
 
 
 def array_sizing(layout: ArrayLayout, dot: DotShape, options: MeshOptions, planes: Planes) -> ArraySizing:
-    """Sizes under a dot at rest; the segments that it presses are those within the reach of a dot."""
+    """The sizing field of an array under a dot at rest; it presses the segments within its reach."""
     half_x, half_y = layout.half_mm
     base = sizing_field(stack_outline(layout.whole, planes=planes), dot, options)
     segments = np.array(layout.rectangles("film"))
@@ -76,7 +76,7 @@ def array_sizing(layout: ArrayLayout, dot: DotShape, options: MeshOptions, plane
 
 
 def expected_elements(layout: ArrayLayout, dot: DotShape, options: MeshOptions, planes: Planes = ()) -> float:
-    """Rough number of elements: the triangles that the sizes ask for, times the layers, times three."""
+    """Rough number of tetrahedra: triangles that the sizes ask for, times the layers, times three."""
     field = array_sizing(layout, dot, options, planes)
     stack = field.outline
     low, high = np.array(stack.low), np.array([stack.half_x, stack.half_y])

@@ -1,1 +1,1 @@
-"""Meshes in files: for other codes, and from them."""
+"""Files of meshes: written for other codes, and read from them."""

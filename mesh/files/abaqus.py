@@ -1,8 +1,8 @@
 """Input files of Abaqus and CalculiX: nodes, tetrahedra and element sets of parts and their instances.
 
 As the Abaqus keyword reference has them: names are alike in capitals and small letters, in quotes or not; a line that
-ends with a comma goes on; sets hold numbers, other sets and, with GENERATE, ranges. What would make nodes or elements
-in another way is refused, and what says nothing of the mesh is passed over.
+ends with a comma goes on; sets hold numbers, other sets and, with GENERATE, ranges. Keywords that would make nodes or
+elements in another way are refused, and those that say nothing of the mesh are passed over.
 """
 
 import re
@@ -40,7 +40,7 @@ Member = tuple[str, int]
 
 @dataclass(frozen=True)
 class KeywordBlock:
-    """A keyword with its parameters, all names in capitals, and the data lines below it. place : where it stands."""
+    """A keyword with its parameters, all names in capitals, its data lines, and its place in the file for messages."""
 
     name: str
     parameters: Mapping[str, str]
@@ -48,13 +48,13 @@ class KeywordBlock:
     place: str
 
     def input_error(self, reason: str) -> InputError:
-        """One sentence that names the keyword and its line."""
+        """The InputError for a reason, which names the keyword and its line."""
         return InputError(f"{self.place}: *{self.name}: {reason}")
 
 
 @dataclass
 class Scope:
-    """What is numbered together: a part, or all of a file without parts."""
+    """Nodes, elements and sets that are numbered together: those of a part, or of a file without parts."""
 
     nodes: dict[int, tuple[float, float, float]] = field(default_factory=dict)
     elements: dict[int, tuple[str, tuple[int, ...]]] = field(default_factory=dict)
@@ -63,14 +63,17 @@ class Scope:
 
 @dataclass(frozen=True)
 class Instance:
-    """A part where it stands in the assembly. shift : (3,); turn : none, or two points of an axis and degrees (7,)."""
+    """A part where it stands in the assembly.
+
+    shift : (3,); turn : None, or two points of an axis and degrees (7,).
+    """
 
     part: str
     shift: Floats
     turn: Floats | None
 
     def points_in_assembly(self, points: Floats) -> Floats:
-        """Points (n, 3) of the part, in the assembly."""
+        """Points (n, 3) of the part, shifted and turned into the assembly."""
         moved = points + self.shift
         if self.turn is None:
             return np.asarray(moved)
@@ -81,7 +84,11 @@ class Instance:
 
 @dataclass
 class AbaqusMesh:
-    """points_mm (n, 3); cells : type of Abaqus and numbers of its nodes; sets : name in small letters -> cells."""
+    """The mesh in an input file.
+
+    points_mm : (n, 3); cells : type of Abaqus and numbers of its nodes; sets : name in small letters -> numbers of
+    cells.
+    """
 
     points_mm: Floats
     cells: list[tuple[str, tuple[int, ...]]]
@@ -89,7 +96,7 @@ class AbaqusMesh:
 
 
 class _Model:
-    """What the keywords of a file have said so far."""
+    """Parts, instances and sets that the keywords of a file have defined so far."""
 
     def __init__(self) -> None:
         self.root = Scope()
@@ -99,7 +106,7 @@ class _Model:
         self.inside_instance = False
 
     def read_block(self, block: KeywordBlock) -> None:
-        """One keyword after the other."""
+        """Read one keyword with its data. InputError for one that is not supported or contradicts others."""
         if block.name in GENERATOR_KEYWORDS:
             raise block.input_error("is not read; write all nodes and elements out")
         known = {
@@ -178,7 +185,7 @@ class _Model:
                     found |= self._set_members(text, instance, block)
 
     def _set_members(self, text: str, instance: str, block: KeywordBlock) -> set[Member]:
-        """What a number, the name of a set, or either behind the name of an instance, stands for."""
+        """Elements that a number or the name of a set stands for, either behind the name of an instance."""
         place, _, rest = text.rpartition(".")
         inside = _capital_name(place) in self.instances
         owner, own = (_capital_name(place), _capital_name(rest)) if inside else (instance, _capital_name(text))
@@ -192,7 +199,7 @@ class _Model:
         return {(inner or owner, number) for inner, number in sets[own]}
 
     def assembled_mesh(self, where: str) -> AbaqusMesh:
-        """The assembly: every instance of a part, or every part once where there is no instance."""
+        """The mesh of every instance of a part, or of every part once where there is no instance. InputError."""
         placed: dict[str, tuple[Scope, Instance | None]] = {
             name: (self.parts[one.part], one) for name, one in self.instances.items()
         }
@@ -215,7 +222,7 @@ class _Model:
 def _add_body(
     mesh: AbaqusMesh, found: dict[Member, int], name: str, scope: Scope, instance: Instance | None, where: str
 ) -> None:
-    """The nodes and elements of one body behind those that are there."""
+    """Add the nodes and elements of one body behind those of the mesh. InputError for an unknown node."""
     points = np.array(list(scope.nodes.values()), dtype=np.float64).reshape(-1, 3)
     places = {number: len(mesh.points_mm) + place for place, number in enumerate(scope.nodes)}
     for number, (kind, nodes) in scope.elements.items():
@@ -231,7 +238,7 @@ def _add_body(
 
 
 def read_abaqus(path: Path, where: str) -> AbaqusMesh:
-    """The mesh in a file and those that it includes. where : how a message calls it. InputError."""
+    """The mesh in a file and those that it includes. where : how a message calls it. InputError for other content."""
     model = _Model()
     for block in _keyword_blocks(path, where, ()):
         model.read_block(block)
@@ -249,7 +256,7 @@ def is_triangle(kind: str) -> bool:
 
 
 def _node_count(kind: str) -> int | None:
-    """Nodes of a type of element; none of one that is not read."""
+    """Number of nodes of a type of element; None for a type that is not read."""
     found = re.fullmatch(r"(C3D10|C3D4)[A-Z]*", kind)
     if found:
         return TET_NODE_COUNTS[found[1]]
@@ -257,7 +264,7 @@ def _node_count(kind: str) -> int | None:
 
 
 def _keyword_blocks(path: Path, where: str, outer: tuple[Path, ...]) -> Iterator[KeywordBlock]:
-    """The keywords of a file, those of included files at their place."""
+    """Keywords of a file with their data, those of included files at their place. InputError."""
     if len(outer) == DEEPEST_INCLUDE or path.resolve() in outer:
         raise InputError(f"{where}: '{path.name}' is included in a circle or deeper than {DEEPEST_INCLUDE} files")
     inside = (*outer, path.resolve())
@@ -292,7 +299,10 @@ def _keyword_blocks(path: Path, where: str, outer: tuple[Path, ...]) -> Iterator
 
 
 def _file_text(path: Path, where: str, named: bool) -> str:
-    """Of a file; what is not UTF-8 in it can only be a remark or a name that is none of ours."""
+    """Text of a file. InputError where it cannot be read or is too large.
+
+    Bytes that are not UTF-8 can only be in a remark or a foreign name, and are replaced.
+    """
     what = f"{where}: '{path.name}'" if named else where
     if (size := regular_file_size(path, what)) > 1e6 * LARGEST_INPUT_MB:
         raise InputError(f"{what}: has {size / 1e6:.0f} MB, at most {LARGEST_INPUT_MB} MB are read")
@@ -308,7 +318,10 @@ def _is_keyword(line: str) -> bool:
 
 
 def _parse_block(line: str, data: list[str], place: str) -> KeywordBlock:
-    """*ELSET, elset="Medium2", generate -> ELSET, {ELSET: MEDIUM2, GENERATE: ""}."""
+    """Keyword of a line and its data.
+
+    *ELSET, elset="Medium2", generate -> ELSET, {ELSET: MEDIUM2, GENERATE: ""}.
+    """
     first, *rest = [text.strip() for text in FIELD_PATTERN.findall(line)]
     parameters = {}
     for text in rest:
@@ -321,7 +334,7 @@ def _parse_block(line: str, data: list[str], place: str) -> KeywordBlock:
 
 
 def _input_file_name(block: KeywordBlock) -> str:
-    """The file that a keyword names, as it is written."""
+    """Name of the file that a keyword names, as it is written. InputError where it is missing."""
     file = block.parameters.get("INPUT", "").strip('"')
     if not file or "\0" in file:
         raise block.input_error("INPUT is missing, the name of a file")
@@ -339,14 +352,14 @@ def _required_parameter(block: KeywordBlock, key: str) -> str:
 
 
 def _comma_fields(line: str) -> list[str]:
-    """Between commas, those in quotes left out."""
+    """Texts between commas, commas within quotes not counted."""
     if '"' in line:
         return [text.strip() for text in FIELD_PATTERN.findall(line)]
     return [text.strip() for text in line.split(",")]
 
 
 def _integer_rows(block: KeywordBlock, length: int) -> Iterator[list[int]]:
-    """Whole numbers in rows of this length, each of one line or several that end with a comma."""
+    """Rows of this many whole numbers, each on one line or on several that end with a comma. InputError."""
     record: list[int] = []
     for line in block.data:
         record += [_integer(text, block) for text in line.split(",") if text.strip()]
@@ -362,7 +375,7 @@ def _integer_rows(block: KeywordBlock, length: int) -> Iterator[list[int]]:
 
 
 def _generated_numbers(texts: Sequence[str], block: KeywordBlock) -> range:
-    """first, last, step -> numbers; a step of 1 may be left out."""
+    """Numbers from the first to the last by a step, which may be left out where it is 1. InputError."""
     numbers = [_integer(text, block) for text in texts]
     first, last, step = [*numbers, 1][:3] if len(numbers) == 2 else numbers if len(numbers) == 3 else (0, 0, 0)
     if step < 1 or last < first or (last - first) % step or (last - first) // step > MOST_IN_A_RANGE:

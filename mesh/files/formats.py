@@ -1,4 +1,5 @@
-"""The mesh in files that other codes read: Gmsh 4.1, Abaqus or CalculiX, XDMF. Lengths in mm.
+"""Files of the mesh that other codes read: Gmsh 4.1, Abaqus or CalculiX, XDMF. Lengths in mm.
+
 meshio writes the nodes and elements. What it leaves out, or would write for no solver to read, is put right here.
 """
 
@@ -22,11 +23,11 @@ SURFACE_NUMBERS = {"contact": 11, "base": 12, "film-bottom": 13, "film-top": 14}
 """Number of each named surface: of its physical group, and in the field "surface" of XDMF."""
 FILE_STEM = "segment"
 INP_NUMBER_FORMAT = ".14g"
-"""At most 20 characters: neither Abaqus nor CalculiX reads longer numbers."""
+"""Numbers of at most 20 characters: neither Abaqus nor CalculiX reads longer ones."""
 
 
 def write_mesh(tet_mesh: TetMesh, formats: Sequence[str], folder: Path) -> list[Path]:
-    """Write segment.msh, segment.inp or segment.xdmf into the folder, which is made; returns the named files.
+    """Write segment.msh, segment.inp or segment.xdmf into the folder, which is made; return the paths.
 
     formats : keys of WRITERS; InputError for another. XDMF has a second file segment_surfaces.xdmf, and the
     numbers of both stand beside them in .h5. OSError where the folder cannot be written.
@@ -42,19 +43,19 @@ def write_mesh(tet_mesh: TetMesh, formats: Sequence[str], folder: Path) -> list[
 
 
 def check_formats(formats: Sequence[str]) -> None:
-    """InputError for a format that has no writer."""
+    """Raise InputError for a format that has no writer."""
     for name in formats:
         if name not in WRITERS:
             raise InputError(f"--mesh-format = '{name}': there is no such format; {nearest_name_hint(name, WRITERS)}")
 
 
 def _named_surfaces(tet_mesh: TetMesh) -> dict[str, Ints]:
-    """The named facets that are there, each (k, 6)."""
+    """Name -> facets (k, 6) of the named surfaces that have any."""
     return {name: facets for name, facets in tet_mesh.facets.items() if len(facets)}
 
 
 def _write_msh(tet_mesh: TetMesh, path: Path) -> None:
-    """One entity and one physical group for each part and each named surface; Gmsh 4.1, text."""
+    """Write Gmsh 4.1 as text: one entity and one physical group for each part and each named surface."""
     import meshio
 
     regions = {name: tet_mesh.tets[tet_mesh.region_tets(name)] for name in tet_mesh.region_names}
@@ -75,10 +76,10 @@ def _write_msh(tet_mesh: TetMesh, path: Path) -> None:
 
 
 def _node_entities(count: int, blocks: Sequence[tuple[str, int, int, Ints]]) -> Ints:
-    """Dimension and tag of the entity of each node (count, 2): a surface before a part.
+    """Dimension and tag (count, 2) of the entity of each node: that of a surface before that of a part.
 
-    meshio lists an entity, and with it its physical group, only where a node belongs to it. So one that all its nodes
-    are shared with others gets one of them.
+    meshio lists an entity, and with it its physical group, only where a node belongs to it. An entity without a node of
+    its own therefore gets one of its shared nodes.
     """
     owner = np.full(count, -1)
     for number, (_, _, _, cells) in enumerate(blocks):
@@ -91,7 +92,7 @@ def _node_entities(count: int, blocks: Sequence[tuple[str, int, int, Ints]]) -> 
 
 
 def _write_inp(tet_mesh: TetMesh, path: Path) -> None:
-    """C3D10 elements, an ELSET for each part, an NSET and a SURFACE of element faces for each named surface.
+    """Write C3D10 elements, an ELSET for each part, an NSET and a SURFACE of element faces for each named surface.
 
     Both codes number the nodes of an element as VTK does, and its faces S1 to S4 in the order of TET_FACES.
     """
@@ -118,16 +119,16 @@ def _slice_note(tet_mesh: TetMesh) -> list[str]:
 
 
 def _surface_keyword(tet_mesh: TetMesh, name: str, facets: Ints) -> list[str]:
-    """The keyword block of one surface: element and face whose outward normal is that of the facet."""
+    """Lines of the keyword of one surface: element and face whose outward normal is that of the facet."""
     tet, face = facet_owners(tet_mesh.tets, facets)
     rows = [f"{element}, S{number}" for element, number in zip(tet + 1, face + 1, strict=True)]
     return [f"*SURFACE, NAME={name}, TYPE=ELEMENT", *rows]
 
 
 def facet_owners(tets: Ints, facets: Ints) -> tuple[Ints, Ints]:
-    """Tetrahedra (k,) and their faces (k,), numbered as TET_FACES, that facets (k, 3 or 6) are outward faces of.
+    """Tetrahedra (k,) of which facets (k, 3 or 6) are outward faces, and the numbers (k,) of these faces in TET_FACES.
 
-    ValueError where a facet is none, or looks into its element.
+    ValueError where a facet is no face of an element, or looks into its element.
     """
     faces = _smallest_corner_first(tets[:, TET_FACES[:, :3]].reshape(-1, 3))
     number = {tuple(corners): place for place, corners in enumerate(faces.tolist())}
@@ -147,7 +148,7 @@ def _smallest_corner_first(corners: Ints) -> Ints:
 
 
 def _write_xdmf(tet_mesh: TetMesh, path: Path) -> None:
-    """The elements with the field "region"; the facets, with the field "surface", in a file of their own.
+    """Write the elements with the field "region", and the facets with the field "surface" in a file of their own.
 
     meshio cannot read a file that holds quadratic tetrahedra and triangles together, and XDMF has no names.
     """
@@ -168,4 +169,4 @@ def _write_grid(path: Path, tet_mesh: TetMesh, kind: str, cells: Ints, field: st
 
 
 WRITERS: dict[str, Callable[[TetMesh, Path], None]] = {"msh": _write_msh, "inp": _write_inp, "xdmf": _write_xdmf}
-"""Ending of the file -> what writes it."""
+"""Ending of the file -> its writer."""

@@ -29,7 +29,7 @@ AXIS_NAMES = "xyz"
 
 
 def refuse_inverted_elements(points: Floats, tets: Ints, where: str) -> None:
-    """InputError where an element, of four nodes or ten, has no positive volume at each of its sample points."""
+    """Raise InputError where an element, of four nodes or ten, has no positive volume at a sample point."""
     if tets.shape[1] == 4:
         bad = signed_volumes(points, tets) <= 0
     else:
@@ -44,7 +44,7 @@ def refuse_inverted_elements(points: Floats, tets: Ints, where: str) -> None:
 def refuse_other_outline(
     points: Floats, tets: Ints, region: Ints, names: tuple[str, ...], stack: StackOutline, where: str
 ) -> None:
-    """InputError where a part is not where the configured segment has it, or not of its volume.
+    """Raise InputError where a part is not where the configured segment has it, or not of its volume.
 
     points (n, 3) in mm, tets (m, 10), region (m,) index into names.
     """
@@ -71,7 +71,7 @@ def refuse_other_outline(
 
 
 def _part_box(name: str, stack: StackOutline) -> list[tuple[float, float]]:
-    """Lowest and highest x, y and z of a part."""
+    """Lowest and highest x, y and z of a part, in mm."""
     heights = {
         "medium2": (0.0, stack.film_bottom),
         "film": (stack.film_bottom, stack.film_top),
@@ -83,7 +83,10 @@ def _part_box(name: str, stack: StackOutline) -> list[tuple[float, float]]:
 
 
 def _refuse_beyond_skin(points: Floats, tets: Ints, stack: StackOutline, where: str) -> None:
-    """A round effector must not bulge; its corners may lie inside the round skin, as those of flat facets do."""
+    """Refuse a round effector that bulges.
+
+    Its corners may lie inside the round skin, as those of flat facets do.
+    """
     surface = curved_surface(stack)
     if surface is None:
         return
@@ -99,7 +102,7 @@ def _refuse_beyond_skin(points: Floats, tets: Ints, stack: StackOutline, where: 
 def refuse_open_interfaces(
     points: Floats, tets: Ints, region: Ints, names: tuple[str, ...], stack: StackOutline, where: str
 ) -> None:
-    """InputError where elements do not share their nodes: an outer face that is neither base, side, cut nor skin.
+    """Raise InputError where elements do not share nodes: an outer face is neither base, side, cut nor skin.
 
     MeshingError where more than two elements share a face.
     """
@@ -124,7 +127,7 @@ def refuse_open_interfaces(
 
 
 def refuse_unshared_middles(tets: Ints, where: str) -> None:
-    """InputError unless all elements (m, 10) of an edge have the same node in its middle, and no other edge has it."""
+    """Raise InputError unless each edge of elements (m, 10) has one mid-side node that no other edge has."""
     edges, number = unique_edges(tets[:, :4])
     pairs = np.unique(np.column_stack([number.ravel(), tets[:, 4:].ravel()]), axis=0)
     torn = len(pairs) - len(edges)
@@ -138,7 +141,7 @@ def refuse_unshared_middles(tets: Ints, where: str) -> None:
 
 
 def refuse_other_slice(points: Floats, tets: Ints, stack: StackOutline, where: str) -> None:
-    """InputError unless a plane-strain slice is one layer of elements with the same x and z on both of its faces."""
+    """Raise InputError unless a slice is one layer of elements with the same x and z on both of its faces."""
     corners = points[np.unique(tets[:, :4])]
     low, high = (np.abs(corners[:, 1] - y) < PLANE_TOLERANCE_MM for y in (-stack.half_y, stack.half_y))
     one, other = (np.unique(np.round(corners[on][:, [0, 2]] / PLANE_TOLERANCE_MM), axis=0) for on in (low, high))
@@ -158,8 +161,9 @@ NAMED_FILES_PATTERN = re.compile(
 
 @dataclass(frozen=True)
 class FileMesh:
-    """points_mm (n, 3); tets (m, 4) or (m, 10) in VTK's order; regions : name -> (m,) which tetrahedra it has.
+    """The tetrahedra, regions and surfaces in a file.
 
+    points_mm (n, 3); tets (m, 4) or (m, 10) in VTK's order; regions : name -> (m,) whether it has a tetrahedron.
     surfaces : name -> (k, 3) corners of triangles, of either orientation. Names are in lower case.
     """
 
@@ -170,12 +174,12 @@ class FileMesh:
 
 
 def message_name(file: str) -> str:
-    """How a message calls the file."""
+    """Name of the mesh file in messages."""
     return f"mesh.file = '{file}'"
 
 
 def file_contents(file: str) -> bytes:
-    """All bytes of a mesh file and of the files that it names, and those name; of those that are missing, none."""
+    """All bytes of a mesh file and of the files that it names, and so on; missing files have none."""
     found: dict[Path, bytes] = {}
     waiting = [Path(file)]
     for path in waiting:
@@ -191,7 +195,7 @@ def file_contents(file: str) -> bytes:
 
 
 def read_file(file: str) -> FileMesh:
-    """Read a mesh of tetrahedra. InputError, naming mesh.file, for a file that is missing, no mesh, or has others."""
+    """Read a mesh of tetrahedra. InputError, naming mesh.file, for a missing file, no mesh, or other elements."""
     path, where = Path(file), message_name(file)
     kind = MESHIO_READERS.get(path.suffix.lower())
     if kind is None and path.suffix.lower() != ".inp":
@@ -218,7 +222,7 @@ def _file_mesh_by_meshio(path: Path, kind: str, where: str) -> FileMesh:
 
 
 def _file_mesh_from_abaqus(found: AbaqusMesh, where: str) -> FileMesh:
-    """The tetrahedra, the sets that hold any of them as regions, and facets of sets that are named as a surface."""
+    """Tetrahedra, sets that hold any of them as regions, and facets of sets named as a surface. InputError."""
     number = [place for place, (kind, _) in enumerate(found.cells) if is_tet(kind)]
     nodes = {len(found.cells[place][1]) for place in number}
     if len(nodes) != 1:
@@ -240,7 +244,7 @@ def _file_mesh_from_abaqus(found: AbaqusMesh, where: str) -> FileMesh:
 
 
 def _file_mesh_from_meshio(found: Any, where: str) -> FileMesh:
-    """The tetrahedra of all blocks together. InputError for other solid elements and for a mixture."""
+    """Tetrahedra of all blocks, regions and surfaces. InputError for other solid elements and for a mixture."""
     kinds = {block.type for block in found.cells if block.dim == 3}
     if not kinds or not kinds <= set(TET_CELLS) or len(kinds) > 1:
         names = ", ".join(sorted(kinds)) or "no solid elements"
@@ -260,7 +264,7 @@ def _file_mesh_from_meshio(found: Any, where: str) -> FileMesh:
 
 
 def _cell_sets(found: Any) -> dict[str, list[Ints]]:
-    """For each name its cells in each block: from sets, physical groups, or the numbers that softdot writes."""
+    """Name -> its cells in each block, from sets, physical groups, or the region numbers that softdot writes."""
     count = len(found.cells)
     sets = {}
     for name, parts in found.cell_sets.items():
@@ -274,7 +278,7 @@ def _cell_sets(found: Any) -> dict[str, list[Ints]]:
 
 
 def _physical_groups(found: Any) -> Iterator[tuple[str, int, int]]:
-    """Name, number and dimension of each physical group; a file without any names uses the numbers of softdot."""
+    """Name, number and dimension of each physical group; those of softdot for a file without any names."""
     if found.field_data:
         for name, (number, dimension) in found.field_data.items():
             yield name, int(number), int(dimension)
@@ -284,7 +288,7 @@ def _physical_groups(found: Any) -> Iterator[tuple[str, int, int]]:
 
 
 def _tet_mask(found: Any, parts: list[Ints]) -> Bools:
-    """Which of all tetrahedra (m,) are in a set."""
+    """Whether each of all tetrahedra (m,) is in a set."""
     masks = []
     for block, part in zip(found.cells, parts, strict=True):
         if block.type in TET_CELLS:
@@ -313,7 +317,7 @@ def user_mesh(file: str, segment: Segment) -> TetMesh:
 
 @lru_cache(maxsize=2)
 def _checked_mesh(file: str, _content: str, segment: Segment) -> TetMesh:
-    """Read and checked once for each content of the file."""
+    """The mesh of the segment, read and checked once for each content of the file."""
     where, read = message_name(file), read_file(file)
     if not np.isfinite(read.points_mm[read.tets]).all():
         raise InputError(f"{where}: an element has a node without three finite coordinates")
@@ -362,7 +366,10 @@ def _tet_regions(read: FileMesh, names: tuple[str, ...], where: str) -> Ints:
 
 
 def _corners_first(read: FileMesh) -> tuple[Floats, Ints, Ints]:
-    """Points and tetrahedra with the corners before the mid-side nodes, and the new number of each old node (or -1)."""
+    """Points and tetrahedra with corners before mid-side nodes, and the new number of each old node.
+
+    The number is -1 for a node that no tetrahedron has.
+    """
     corners = np.unique(read.tets[:, :4])
     order = np.concatenate([corners, np.setdiff1d(read.tets, corners)])
     number = np.full(len(read.points_mm), -1, dtype=np.int64)
@@ -371,7 +378,10 @@ def _corners_first(read: FileMesh) -> tuple[Floats, Ints, Ints]:
 
 
 def _named_facets(derived: Ints | None, corners: Ints, what: str) -> Ints:
-    """Those of the facets found by place (k, 6) that the file names by their corners (j, 3). InputError for others."""
+    """Facets (j, 6), of those found by place (k, 6), that a file names by their corners (j, 3).
+
+    InputError for triangles that are not among them.
+    """
     there = np.zeros((0, 6), dtype=np.int64) if derived is None else derived
     named = {tuple(nodes) for nodes in np.sort(corners, axis=1).tolist()}
     chosen = np.array([tuple(nodes) in named for nodes in np.sort(there[:, :3], axis=1).tolist()], dtype=bool)
