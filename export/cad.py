@@ -1,5 +1,4 @@
 """STEP, 3MF and STL files of the parts, in millimetres.
-
 In the STEP file of an array what belongs to a segment is an assembly of its own, labelled segment-r1c2.
 """
 

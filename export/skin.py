@@ -1,5 +1,4 @@
 """Surfaces of the segment as small triangles that carry every shown step: outer skin, section and film.
-
 Units are those that results are shown in: millimetres, megapascals and picocoulombs per square millimetre.
 """
 

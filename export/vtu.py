@@ -1,5 +1,4 @@
 """ParaView files: one VTU per load step, PVD collections over the indentation, and a script to open them.
-
 In a shell: paraview --script=show_in_paraview.py, or pvpython show_in_paraview.py.
 """
 

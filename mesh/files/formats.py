@@ -1,5 +1,4 @@
 """Files of the mesh that other codes read: Gmsh 4.1, Abaqus or CalculiX, XDMF. Lengths in mm.
-
 meshio writes the nodes and elements. What it leaves out, or would write for no solver to read, is put right here.
 """
 
