@@ -107,7 +107,7 @@ def _press(draw: Draw, segment: dict[str, Any], dot: dict[str, Any], rise_s: flo
     else:
         table["force_N"] = draw.log(0.05, 0.5)
     times = {"rise_s": rise_s, "hold_s": rise_s * draw.log(0.1, 10.0), "fall_s": rise_s * draw.log(0.3, 3.0)}
-    return {**table, "waveform": Waveform.overridden({"shape": draw.among(*SHAPES), **times}, {})}
+    return {**table, "waveform": Waveform.override_keys({"shape": draw.among(*SHAPES), **times}, {})}
 
 
 def _readout(draw: Draw, rise_s: float) -> dict[str, Any]:

@@ -88,7 +88,7 @@ def _checksum_trailer(content: bytes) -> bytes:
 
 
 def _delete(path: Path) -> None:
-    """Remove the file; where that is not allowed, its checksum still keeps it from being believed."""
+    """Remove a file where that is allowed; elsewhere its wrong checksum still keeps it from being believed."""
     try:
         path.unlink(missing_ok=True)
     except OSError:

@@ -12,7 +12,7 @@ SAFE_PATH_VARIABLE = "PYTHONSAFEPATH"
 
 
 def python_command(*arguments: str) -> list[str]:
-    """Return a command that runs this Python without modules of its working folder, with child_python_path."""
+    """Return a command that runs this Python without the working folder on its path; see child_python_path."""
     return [sys.executable, "-P", *arguments]
 
 

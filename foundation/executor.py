@@ -104,13 +104,14 @@ class LocalProcesses:
         sweep_scratch()
 
     def submit(self, function: Callable[..., Any], /, *arguments: Any) -> "Future[Any]":
-        """See Executor."""
+        """Return the future of a call, which the next free worker does. See Executor."""
         if self._prepare is not None:
             prepare, self._prepare = self._prepare, None
             prepare(self)
         return self._threads.submit(self._call_worker, function, arguments)
 
     def _call_worker(self, function: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
+        """Do a call in a worker, and once more in another one where the first dies. LostError."""
         for _ in range(1 + MOST_DEATHS):
             process = self._idle_process()
             try:
@@ -134,6 +135,7 @@ class LocalProcesses:
             return process
 
     def _discard(self, process: WorkerProcess) -> None:
+        """Forget a worker process that died, after its end."""
         with self._lock:
             process.kill()
             self._alive.remove(process)

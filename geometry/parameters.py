@@ -105,17 +105,17 @@ class Table(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, strict=False)
 
     @classmethod
-    def acting(cls) -> list[tuple[str, ActsWith]]:
+    def conditional_keys(cls) -> list[tuple[str, ActsWith]]:
         """Name and condition of the keys that act beside some others only, once for each condition."""
         fields = cls.model_fields.items()
         return [(name, one) for name, field in fields for one in field.metadata if isinstance(one, ActsWith)]
 
     @classmethod
-    def overridden(cls, inherited: Mapping[str, Any], stated: Mapping[str, Any]) -> dict[str, Any]:
+    def override_keys(cls, inherited: Mapping[str, Any], stated: Mapping[str, Any]) -> dict[str, Any]:
         """Inherited keys with the stated ones in their place, without inherited keys that no longer act."""
         merged = {**inherited, **stated}
         values = {**{name: field.default for name, field in cls.model_fields.items()}, **merged}
-        idle = {name for name, acts in cls.acting() if name not in stated and not acts.holds(values)}
+        idle = {name for name, acts in cls.conditional_keys() if name not in stated and not acts.holds(values)}
         return {name: value for name, value in merged.items() if name not in idle}
 
     def lacks(self, name: str) -> bool:
@@ -124,7 +124,7 @@ class Table(BaseModel):
 
     @model_validator(mode="after")
     def _refuse_idle_keys(self) -> Self:
-        for name, acts in self.acting():
+        for name, acts in self.conditional_keys():
             value = getattr(self, name)
             if acts.needed and self.lacks(name) and acts.holds(self.__dict__):
                 raise ValueError(f"{name} is missing: {acts.stated_tags(self)} needs it")
@@ -137,7 +137,7 @@ class Table(BaseModel):
 
     @model_serializer(mode="wrap")
     def _write_acting_keys(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        idle = {name for name, acts in self.acting() if not acts.holds(self.__dict__)}
+        idle = {name for name, acts in self.conditional_keys() if not acts.holds(self.__dict__)}
         return {name: value for name, value in write(self).items() if name not in idle}
 
     @classmethod
@@ -146,7 +146,7 @@ class Table(BaseModel):
         made = handler(core)
         table = handler.resolve_ref_schema(made)
         defaults = {name: field.default for name, field in cls.model_fields.items()}
-        for name, acts in cls.acting():
+        for name, acts in cls.conditional_keys():
             condition = acts.condition(defaults)
             conditions = table.setdefault("dependentSchemas", {}).setdefault(name, {"allOf": []})
             conditions["allOf"].append(condition)

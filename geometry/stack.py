@@ -21,7 +21,7 @@ class Layer:
 
     @property
     def thickness_mm(self) -> float:
-        """Thickness in mm."""
+        """Thickness of the layer in mm."""
         return self.top_mm - self.bottom_mm
 
 

@@ -17,8 +17,8 @@ def take_out_idle(tables: Any, way: Sequence[str | int]) -> None:
         for part in way[:-1]:
             tables = tables[part]
         for kind in tables_at(way[:-1], Config):
-            if any(way[-1] in acts.tags for _, acts in kind.acting()):
-                kept = kind.overridden(tables, {str(way[-1]): tables[way[-1]]} if way[-1] in tables else {})
+            if any(way[-1] in acts.tags for _, acts in kind.conditional_keys()):
+                kept = kind.override_keys(tables, {str(way[-1]): tables[way[-1]]} if way[-1] in tables else {})
                 for name in [name for name in tables if name not in kept]:
                     del tables[name]
 

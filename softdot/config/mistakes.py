@@ -99,8 +99,8 @@ class _Rest:
 
     def _remove_tags_of(self, way: Way) -> bool:
         """A key is missing that others ask for: those are what can be set aside."""
-        tags = {tag for table in tables_at(way[:-1], Config) for name, acts in table.acting() if name == way[-1]
-                for tag in acts.tags}  # fmt: skip
+        keys = [key for table in tables_at(way[:-1], Config) for key in table.conditional_keys()]
+        tags = {tag for name, acts in keys if name == way[-1] for tag in acts.tags}
         removed = [self._remove((*way[:-1], tag)) for tag in sorted(tags)]
         return any(removed)
 
@@ -132,7 +132,7 @@ class _Rest:
     def _dependent(self, way: Way, removed: Any) -> Iterator[Way]:
         """What can only be judged together with what stood there, the last element of a list first."""
         for table in tables_at(way[:-1], Config):
-            yield from ((*way[:-1], name) for name, acts in table.acting() if way[-1] in acts.tags)
+            yield from ((*way[:-1], name) for name, acts in table.conditional_keys() if way[-1] in acts.tags)
         if way[0] == "materials":
             layers = self._at(["segment"])
             named = layers.items() if isinstance(layers, dict) else ()

@@ -106,7 +106,7 @@ def _readout(run: RunTable, number: int, rest: Mapping[str, Any], bench: Bench) 
         return bench.readout
     given = rest.get("readout", {})
     try:
-        return _checked(Bench, {"readout": Readout.overridden(given, run.readout)}).readout
+        return _checked(Bench, {"readout": Readout.override_keys(given, run.readout)}).readout
     except InputError as error:
         raise InputError(f"runs[{number}].{error}") from None
 

@@ -129,7 +129,7 @@ def _segment(draw, solid, round_one, reducible, halves):
                 "shear_stiffness_N_per_mm3": draw.log(5.0, 1e6),
             }
         ]
-    return Segment.overridden(table, {})
+    return Segment.override_keys(table, {})
 
 
 def _one_of_several(table):
@@ -218,7 +218,7 @@ def _press(draw, segment, softest_MPa, clear_mm, by_depth):
     shapes = ("ramp", "raised-cosine", "trapezoid") if slide else ("ramp", "half-sine", "raised-cosine", "trapezoid")
     if draw.perhaps(0.6):
         times = {key: draw.log(0.02, 1.0) for key in ("rise_s", "hold_s", "fall_s")}
-        table["waveform"] = Waveform.overridden({"shape": draw.among(shapes), **times}, {})
+        table["waveform"] = Waveform.override_keys({"shape": draw.among(shapes), **times}, {})
     return table
 
 
@@ -232,7 +232,7 @@ def _mesh(draw, solid, round_one):
         table["film_layers"] = 2
     if round_one:
         table["coarsen"] = True
-    return MeshOptions.overridden(table, {})
+    return MeshOptions.override_keys(table, {})
 
 
 def _readout(draw):

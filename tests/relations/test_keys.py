@@ -59,7 +59,7 @@ def conditions():
     """Way of a table, key, a table in which one condition of the key holds, and whether it does."""
     for way, kind in TABLES.items():
         properties = SCHEMA["$defs"][kind.__name__]["properties"]
-        for name, acts in kind.acting():
+        for name, acts in kind.conditional_keys():
             for holds in (True, False):
                 for tag, wanted in acts.tags.items():
                     for tags in beside(tag, wanted, properties[tag], holds):
@@ -104,7 +104,8 @@ def test_a_key_that_does_not_act_is_refused_by_name_and_said_once(way, name, tab
 @for_each(("way", "name", "table"), [one[:3] for one in CONDITIONS if one[3]], ids=str)
 def test_where_it_acts_nothing_is_said_of_it_and_what_is_written_can_be_read(way, name, table):
     kind = TABLES[way]
-    needed = {one: example(one, SCHEMA["$defs"][kind.__name__]["properties"][one]) for one, acts in kind.acting()
+    keys, properties = kind.conditional_keys(), SCHEMA["$defs"][kind.__name__]["properties"]
+    needed = {one: example(one, properties[one]) for one, acts in keys
               if acts.needed and all(table.get(tag) in wanted for tag, wanted in acts.tags.items())}  # fmt: skip
     try:
         written = config_from(completed(put(way, {**needed, **table}))).model_dump(mode="json", exclude_none=True)
@@ -121,9 +122,9 @@ def test_an_inherited_key_is_no_statement(boundary):
 
 def test_an_overridden_table_keeps_what_still_acts():
     inherited = {"mode": "voltage", "input_capacitance_pF": 9.0, "low_pass_Hz": 60.0, "filter_order": 2}
-    found = Readout.overridden(inherited, {"mode": "charge", "feedback_pF": 100.0})
+    found = Readout.override_keys(inherited, {"mode": "charge", "feedback_pF": 100.0})
     assert found == {"mode": "charge", "feedback_pF": 100.0, "low_pass_Hz": 60.0, "filter_order": 2}
-    stated = Readout.overridden(inherited, {"mode": "charge", "input_capacitance_pF": 1.0})
+    stated = Readout.override_keys(inherited, {"mode": "charge", "input_capacitance_pF": 1.0})
     assert stated["input_capacitance_pF"] == 1.0  # and so it is refused
 
 

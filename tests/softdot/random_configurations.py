@@ -80,7 +80,7 @@ def segments(draw, section, shapes):
         for key in ("normal_stiffness_N_per_mm3", "shear_stiffness_N_per_mm3"):
             bond[key] = draw(log_between(1.0, 1e6))
         table["bonds"] = [bond]
-    return Segment.overridden(table, {})
+    return Segment.override_keys(table, {})
 
 
 @st.composite
@@ -178,7 +178,7 @@ def presses(draw, segment, softest_MPa):
         table["waveform"] = {"shape": draw(st.sampled_from(shapes))}
         for key in ("rise_s", "hold_s", "fall_s"):
             table["waveform"][key] = draw(log_between(0.01, 1.0))
-        table["waveform"] = Waveform.overridden(table["waveform"], {})
+        table["waveform"] = Waveform.override_keys(table["waveform"], {})
     return table
 
 
