@@ -7,11 +7,11 @@ from foundation.cache import data_hash, recall, remember
 from foundation.source_hash import source_hash
 from mesh.types import MeshingError
 from softdot.case import Case
-from softdot.checks import course_warnings, result_warnings
 from softdot.config.hashes import input_hash
 from softdot.config.schema import Config
 from softdot.json_files import plain
 from softdot.prepared_press import OnStep
+from softdot.pressed import Pressed
 from softdot.summary import mesh_part, press_part, stopped_solver
 
 
@@ -54,14 +54,13 @@ def _name(config: Config) -> str:
 def solved(config: Config, on_step: OnStep | None = None) -> dict[str, Any]:
     """Check, mesh and press one configuration, numbers only. InputError for what cannot be built."""
     case = Case(config)
-    model = case.model
     numbers: dict[str, Any] = {"warnings": case.warnings}
     try:
         quality = case.mesh_quality
     except MeshingError as error:
         return {**numbers, "solver": stopped_solver(f"meshing: {error}")}
-    result = case.solve(on_step)
-    along = case.course(result)
-    numbers |= {"mesh": mesh_part(quality, result.unknowns), **press_part(model, result, along)}
-    numbers["warnings"] += [*result_warnings(model, case.dot, result), *course_warnings(model, result, along)]
+    pressed = Pressed(case, case.solve(on_step))
+    result = pressed.result
+    numbers |= {"mesh": mesh_part(quality, result.unknowns), **press_part(case.model, result, pressed.course)}
+    numbers["warnings"] += pressed.doubts
     return dict(plain(numbers))

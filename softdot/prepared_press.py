@@ -129,11 +129,13 @@ class PreparedPress:
 
     @property
     def mesh_quality(self) -> dict[str, Any]:
-        """Numbers about the mesh that is solved, as in summary.json."""
+        """Numbers about the mesh that is solved, as in summary.json; of an array without what its gaps change."""
         from mesh.quality import measure_quality
 
         sizes = {} if self.config.mesh.file is not None else self.sized.mesh.sizes_mm
-        return {**measure_quality(self.solved_mesh, self.model.segment).as_dict(), **sizes}
+        found = {**measure_quality(self.solved_mesh, self.model.segment).as_dict(), **sizes}
+        unknown = () if self.layout is None else ("region_volume_error", "straight_edges")
+        return {name: value for name, value in found.items() if name not in unknown}
 
     def press(self, on_step: OnStep | None = None) -> Pressed:
         """The press, as far as it converged: .converged says whether, .failure why not. InputError, MeshingError.

@@ -31,7 +31,7 @@ class Signals:
 
     charge_pC : (s, n) short-circuit charge of each segment's electrode; voltage_V : (s, n) of its open circuit, Q / C.
     readout_voltage_V : (s, n), each electrode behind an amplifier of its own; None without one.
-    capacitance_pF : (n,). planes : mirror planes at which the solved mesh ends. failure : None where it converged.
+    capacitance_pF : (n,). failure : None where it converged.
     """
 
     depth_mm: Floats
@@ -40,8 +40,6 @@ class Signals:
     voltage_V: Floats
     readout_voltage_V: Floats | None
     capacitance_pF: Floats
-    film_strain: float
-    planes: tuple[int, ...]
     unknowns: int
     newton_iterations: int
     max_relative_residual: float
@@ -53,9 +51,6 @@ class Signals:
     def signal_V(self) -> Floats:
         """What is read (s, n): behind the amplifiers where there are some, else at open circuit."""
         return self.voltage_V if self.readout_voltage_V is None else self.readout_voltage_V
-
-
-TUPLES = ("planes", "warnings")
 
 
 class StoppedPressError(RuntimeError):
@@ -158,8 +153,6 @@ def signals_of(press: PreparedPress, result: PressResult, solve_s: float) -> Sig
         voltage_V=np.column_stack(list(pressed.voltages_V.values())),
         readout_voltage_V=None if readout is None else readout.T,
         capacitance_pF=1e12 * result.capacitance_F,
-        film_strain=pressed.max_film_strain,
-        planes=tuple(result.planes),
         unknowns=result.unknowns,
         newton_iterations=sum(step.newton_iterations for step in steps),
         max_relative_residual=result.max_relative_residual,
@@ -178,7 +171,5 @@ def _keep(path: Path, found: Signals) -> None:
 
 
 def _decoded(tree: dict[str, Any]) -> Signals:
-    lists = {
-        key: (tuple if key in TUPLES else np.array)(value) for key, value in tree.items() if isinstance(value, list)
-    }
-    return Signals(**{**tree, **lists})
+    arrays = {key: np.array(value) for key, value in tree.items() if isinstance(value, list)}
+    return Signals(**{**tree, **arrays, "warnings": tuple(tree["warnings"])})

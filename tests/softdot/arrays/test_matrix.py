@@ -22,9 +22,9 @@ def made_up(charges_pC, failure=None) -> Signals:
     """A press of one step whose charges are given."""
     charge = np.array([np.zeros(len(charges_pC)), charges_pC], dtype=float)
     numbers = {"depth_mm": np.array([0.0, 0.2]), "force_N": np.array([0.0, 0.1]), "readout_voltage_V": None}
-    about = {"planes": (), "unknowns": 1, "newton_iterations": 1, "max_relative_residual": 0.0, "solve_s": 0.0}
+    about = {"unknowns": 1, "newton_iterations": 1, "max_relative_residual": 0.0, "solve_s": 0.0}
     return Signals(
-        charge_pC=charge, voltage_V=0.05 * charge, capacitance_pF=np.full(len(charges_pC), 20.0), film_strain=0.0,
+        charge_pC=charge, voltage_V=0.05 * charge, capacitance_pF=np.full(len(charges_pC), 20.0),
         warnings=(), failure=failure, **numbers, **about,
     )  # fmt: skip
 
@@ -87,6 +87,7 @@ def test_a_solved_press_is_kept(monkeypatch, tmp_path):
 
     pressed = press.press()  # on the mesh that is there
     assert list(pressed.charges_pC) == ["segment-r1c1", "segment-r1c2"]
+    assert "region_volume_error" not in press.mesh_quality  # of a segment without gaps
     np.testing.assert_allclose(np.column_stack(list(pressed.signals_V.values())), first.signal_V, rtol=1e-9)
 
     def never(*_given, **_named):
