@@ -22,6 +22,7 @@ from foundation.files import regular_file_size
 from foundation.nearest_name import nearest_name_hint
 from foundation.scratch_folders import scratch_folder
 from softdot.convert.text_table import decoded
+from softdot.convert.units import known_unit
 
 LONGEST_S = 600.0
 HDF5 = 2
@@ -108,11 +109,26 @@ def tdms_log(file: Path, _asked: Mapping[str, str]) -> Arrays:
         timed = [channel for channel in found if "wf_increment" in channel.properties]
         if not timed or len(timed) < len(found):
             raise InputError(f"'{file}': a channel has no increment of time (wf_increment); save waveforms")
-        times = [np.asarray(channel.time_track(), dtype=np.float64) for channel in timed]
+        starts = [channel.properties.get("wf_start_time") for channel in timed]
+        late = [0.0 if None in (start, starts[0]) else _seconds_between(starts[0], start) for start in starts]
+        scales = [_second(channel.properties.get("wf_xunit_string", ""), file) for channel in timed]
+        times = [by + scale * channel.time_track() for by, scale, channel in zip(late, scales, timed, strict=True)]
         units = [str(channel.properties.get("unit_string", channel.properties.get("NI_UnitDescription", "")))
                  for channel in timed]  # fmt: skip
         values = [np.asarray(channel[:], dtype=np.float64) for channel in timed]
         return _logged(file, times, [channel.name for channel in timed], units, values)
+
+
+def _seconds_between(first: Any, other: Any) -> float:
+    return float(np.timedelta64(other - first) / np.timedelta64(1, "s"))
+
+
+def _second(unit: str, file: Path) -> float:
+    """What one of a unit is in seconds. InputError for none of time."""
+    known = known_unit(unit or "s")
+    if known is None or known.base != "s":
+        raise InputError(f"'{file}': its samples are along '{unit}', which is no unit of time")
+    return known.factor
 
 
 def lvm_log(file: Path, _asked: Mapping[str, str]) -> Arrays:
@@ -127,6 +143,11 @@ def lvm_log(file: Path, _asked: Mapping[str, str]) -> Arrays:
     if found.get("Time_Pref", "Relative") not in ("Relative", "Absolute"):
         raise InputError(f"'{file}': Time_Pref = '{found['Time_Pref']}' must be Relative or Absolute")
     segment = found[0]
+    along = {text for text in segment.get("X_Dimension", []) if text} - {"Time"}
+    if along:
+        raise InputError(f"'{file}': its samples are along {along.pop()}, not along time")
+    if len({text for text in segment.get("Time", []) if text}) > 1:
+        raise InputError(f"'{file}': its channels began at different times; save them apart")
     count = int(segment["Channels"])
     table = np.asarray(segment["data"], dtype=np.float64)
     if found.get("X_Columns", "One") == "No":
@@ -134,6 +155,10 @@ def lvm_log(file: Path, _asked: Mapping[str, str]) -> Arrays:
         values, names = table, list(segment["Channel names"])
     else:
         times, values, names = [table[:, 0]] * count, table[:, 1:], list(segment["Channel names"])[1:]
+    scales = {_second(text.strip(), file) for text in segment.get("X_Unit_Label", []) if text.strip()} or {1.0}
+    if len(scales) > 1:
+        raise InputError(f"'{file}': its times are in several units; save its channels apart")
+    times = [scales.copy().pop() * time for time in times]
     units = [text.strip() for text in segment.get("Y_Unit_Label", [""] * count)]
     return _logged(file, times[:count], names[:count], units[:count], list(values.T[:count]))
 
@@ -155,7 +180,7 @@ def _logged(
     if not times or len({len(names), len(units), len(values), len(times)}) != 1:
         raise InputError(f"'{file}': holds no channel, or channels without name or unit")
     for name, time, column in zip(names, times, values, strict=True):
-        if len(time) != len(times[0]) or len(column) != len(time) or not np.allclose(time, times[0]):
+        if len(time) != len(times[0]) or len(column) != len(time) or not _alike(time, times[0]):
             raise InputError(f"'{file}': '{name}' was sampled at other times than '{names[0]}'; save them apart")
     return {
         "time_s": np.asarray(times[0]),
@@ -163,6 +188,12 @@ def _logged(
         "units": np.array(units),
         "values": np.array(values),
     }
+
+
+def _alike(time_s: Floats, other_s: Floats) -> bool:
+    """Within a hundredth of a step, which at a million seconds may be the last digit."""
+    step = float(np.median(np.diff(time_s))) if len(time_s) > 1 else 1.0
+    return bool((np.abs(time_s - other_s) <= 0.01 * step + 4.0 * np.spacing(np.abs(time_s).max())).all())
 
 
 READERS: dict[str, Callable[[Path, Mapping[str, str]], Arrays]] = {

@@ -25,7 +25,7 @@ from softdot.convert.units import Unit, known_unit, split_name, unit_of, usual_u
 HEADER_ROWS = 200
 TIME = re.compile(
     r"#?(?:(?:elapsed|test|running|total|run|rel(?:ative)?|abs(?:olute)?)[ _]*)?"
-    r"(?:\w*time|\w*zeit|temps|tiempo|elapsed|t|s|x|x[- ]?axis|seconds?|secs?|timestamp|time[ _]?stamp)"
+    r"(?:\w*time|\w*zeit|temps|tiempo|elapsed|t|s|x|x[- ]?axis|seconds?|secs?|millis|micros|in|timestamp|time[ _]?stamp)"
     r"(?:[ _]*(?:elapsed|axis|base))?",
     re.IGNORECASE,
 )
@@ -33,10 +33,14 @@ INDEX = re.compile(r"#|nr|no\.?|n|index|idx|sample|samples|point|points|row|scan
 """Columns that count samples."""
 DIGITAL = re.compile(r"D\d+(?:-D\d+)?", re.IGNORECASE)
 """Logic channels, whose cells are words of bits."""
+START_STEP = re.compile(r"(?:t0|tInc)\s*=", re.IGNORECASE)
+"""What Rigol writes behind the names of columns, t0 = -0.03."""
 NAMELESS = {"value", "volt", "volts", "ampl", "amplitude"}
 """Names of a channel that says its own in the settings, as source."""
 LONGEST_S = 1e10
 """Three centuries: what is later counts no seconds."""
+DAYS, DAY_STEP = (2e4, 8e4), 1e-4
+"""Days of a spreadsheet from 1954 to 2119, whose samples are less than nine seconds apart."""
 OTHER_STEP = 0.1  # relative, of the times and of what the settings say
 
 
@@ -140,11 +144,22 @@ def _refuse_no_seconds(time_s: Floats, layout: Layout, table: TextTable) -> None
         )
     stated = layout.settings.interval_s
     step = float(np.median(np.diff(time_s))) if len(time_s) > 1 else 0.0
+    if DAYS[0] < time_s[0] < DAYS[1] and 0.0 < step < DAY_STEP:
+        raise InputError(f"{where}, and {time_s[0]:.12g} may count days, as in a spreadsheet; write it behind the name")
+    if _is_clock(time_s, step):
+        raise InputError(f"{where}, and reads as a clock, 59 being followed by 100; write seconds")
     if stated is not None and step > 0.0 and abs(step / stated[1] - 1.0) > OTHER_STEP:
         raise InputError(
             f"{where}: its samples are {step:g} apart, and '{stated[0]}' above is {stated[1]:g} s; write the unit "
             "behind the name"
         )
+
+
+def _is_clock(time_s: Floats, step: float) -> bool:
+    """Whether times are HHMMSS: none has more than 59 seconds or minutes, and one jumps from 59 to 100."""
+    seconds, minutes = time_s % 100.0, time_s // 100.0 % 100.0
+    jumps = (seconds[:-1] >= 60.0 - 2.0 * step) & (seconds[1:] < 2.0 * step) & (np.diff(time_s) >= 40.0)
+    return bool((seconds < 60.0).all() and (minutes < 60.0).all() and jumps.any())
 
 
 def _refuse_nameless(table: TextTable, rows: Sequence[int], layout: Layout) -> None:
@@ -250,16 +265,20 @@ def _united(
         names = [source if name.lower() in NAMELESS else name for name, source in zip(names, sources, strict=True)]
     names = [f"CH{name}" if name.isdecimal() else name for name in names]
     channels: dict[str, tuple[int, Unit]] = {}
+    assumed = []
     for n, ((place, cell, _, unit), name) in enumerate(zip(found, names, strict=True)):
         if name in channels:
             raise InputError(f"{where}: two columns are called '{name[:40]}'; give each its own name")
         beside = [row[place] if place < len(row) else "" for row in (units, settings.units)]
         beside.append(settings.unit_of_channel(n, names, where))
         channels[name] = (place, _agreed(unit or known_unit(cell), beside, name, where))
+        assumed += [] if unit or known_unit(cell) or any(map(bare, beside)) else [name]
         if channels[name][1].base == "s":
             raise InputError(f"{where}: column '{name[:40]}' is a second time; leave it out")
     if not channels:
         raise InputError(f"{where}: has no column beside the time")
+    if assumed and any(unit.base == "V" and unit.factor != 1.0 for _, unit in channels.values()):
+        raise InputError(f"{where}: column '{assumed[0][:40]}' has no unit, and another voltage is not in V; write it")
     return channels
 
 
@@ -269,7 +288,7 @@ def _channels(table: TextTable, row: int, column: int, without: set[int]) -> lis
     for n, cell in enumerate(table.rows[row]):
         if n == column or n in without or not cell or DIGITAL.fullmatch(cell):
             continue
-        if n < column and INDEX.fullmatch(cell):
+        if (n < column and INDEX.fullmatch(cell)) or START_STEP.match(cell):
             continue
         if _is_time(cell):
             raise InputError(
@@ -300,8 +319,10 @@ def _time(
     named = known_unit(name) if unit is None else None  # second as a name
     if named is not None and named.base == "s":
         unit = named
-    beside.append(settings.time_unit)
+    beside += settings.time_units
     told = unit is not None or any(beside) or bool(steps)
+    if not told and not TIME.fullmatch(name):
+        raise InputError(f"{where}: column '{name[:40]}' is a time, and what is behind its name is not a known unit")
     if not told and any(units):
         raise InputError(f"{where}: column '{name[:40]}' has no unit, and others have one in the row below")
     agreed = _agreed(unit if told else Unit("s", 1.0), beside, name, where)

@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from diagnose.signals.align import lag_between
-from foundation.arrays import Floats
+from diagnose.signals.align import Lag, lag_between
+from foundation.arrays import Bools, Floats
 from foundation.errors import InputError
 from foundation.nearest_name import nearest_name_hint
 from softdot.convert.instruments import InstrumentLog, LogChannel
@@ -23,6 +23,8 @@ COLUMNS = {"V": "voltage_V", "N": "force_N", "mm": "displacement_mm", "C": "temp
 COARSE = 1.5
 """Steps of the drive, in steps of the recording, above which its interpolation is judged."""
 FEWEST = 8
+GAP = 4.0
+"""Steps without a sample above which what is between is missing."""
 ALIKE = 0.8
 """Correlation of two channels that record the same, once they are aligned."""
 
@@ -80,7 +82,15 @@ def joined(logs: Sequence[NamedLog], named: Mapping[str, str], offsets_s: Sequen
     for column, (number, name) in places.items():
         one = logs[number]
         values = one.log.channels[name].values
+        if np.isfinite(values).sum() < FEWEST:
+            raise InputError(f"'{one.file}': '{name}' was measured in less than {FEWEST} samples")
         columns[column] = _at(time, one.log.time_s, values) if number != main else values[np.isin(one.log.time_s, time)]
+        if number != main and (far := _is_far(time, one.log.time_s[np.isfinite(values)], GAP * one.step_s)).any():
+            columns[column][far] = np.nan
+            warnings.append(
+                f"{column}: '{name}' of '{one.file.name}' has gaps, so {100.0 * far.mean():.2g} % of its samples are "
+                "missing"
+            )
         said.append(f"{column} is '{name}' of '{one.file.name}', a sample every {one.step_s:.3g} s")
         if column in ("displacement_mm", "force_N") and one.step_s > COARSE * logs[main].step_s:
             warnings.append(_cost(column, one, values, logs[main].step_s, time))
@@ -190,6 +200,7 @@ def _lag(first: NamedLog, other: NamedLog, channel: str) -> tuple[float, str]:
         raise InputError(
             f"--align: '{own}' and '{channel}' do not run alike (correlation {found.correlation:.2f}); state --offset"
         )
+    _refuse_drift(even, found, step, f"--align: '{own}' and '{channel}'")
     by = float(first.log.time_s[0] - other.log.time_s[0]) - found.lag_s
     told = (
         f"'{other.file.name}' is moved by {by:.6g} s, standard error {found.sigma_s:.2g} s, by '{channel}' and '{own}'"
@@ -197,13 +208,42 @@ def _lag(first: NamedLog, other: NamedLog, channel: str) -> tuple[float, str]:
     return by, told
 
 
+def _refuse_drift(even: Sequence[Floats], found: Lag, step_s: float, where: str) -> None:
+    """InputError where the second half of two signals (t,), once aligned, asks for another lag than the first."""
+    late = round(found.lag_s / step_s)
+    first, other = even[0][max(-late, 0) :], even[1][max(late, 0) :]
+    count = min(len(first), len(other))
+    try:
+        halves = [lag_between(first[at], other[at], step_s) for at in (slice(0, count // 2), slice(count // 2, count))]
+    except (ValueError, np.linalg.LinAlgError):
+        return
+    apart = halves[1].lag_s - halves[0].lag_s
+    if all(half.correlation > ALIKE for half in halves) and (
+        abs(apart) > max(5.0 * np.hypot(halves[0].sigma_s, halves[1].sigma_s), step_s)
+    ):
+        raise InputError(
+            f"{where} drift apart by {apart:.3g} s from the first half to the second: one clock runs faster; log both "
+            "by one clock"
+        )
+
+
 def _at(time_s: Floats, given_s: Floats, values: Floats) -> Floats:
     """Values at other times; those that were not measured are bridged."""
     there = np.isfinite(values)
-    if there.sum() < 2:
-        raise InputError("a channel holds less than two samples that were measured")
+    if there.sum() < FEWEST:
+        raise InputError(f"a channel was measured in less than {FEWEST} samples")
     curve = PchipInterpolator(given_s[there], values[there], extrapolate=False)
     return np.asarray(curve(np.clip(time_s, given_s[there][0], given_s[there][-1])))
+
+
+def _is_far(time_s: Floats, measured_s: Floats, widest_s: float) -> Bools:
+    """Which times (t,) lie before or behind the samples (m,) by more than a gap, or between two so far apart."""
+    after = np.searchsorted(measured_s, time_s)
+    known = np.concatenate(([-np.inf], measured_s, [np.inf]))
+    wide = known[after + 1] - known[after] > widest_s
+    inside = (time_s > measured_s[0]) & (time_s < measured_s[-1])
+    beside = np.minimum(np.abs(time_s - measured_s[0]), np.abs(time_s - measured_s[-1]))
+    return np.asarray(np.where(inside, wide & (known[after + 1] != time_s), beside > widest_s))
 
 
 def _cost(column: str, one: NamedLog, values: Floats, step_s: float, time_s: Floats) -> str:

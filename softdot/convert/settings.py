@@ -6,15 +6,20 @@ from dataclasses import dataclass
 
 from foundation.errors import InputError
 from softdot.convert.text_table import NUMBER, TextTable
-from softdot.convert.units import known_unit
+from softdot.convert.units import QUANTITIES, known_unit
 
 INTERVAL = re.compile(
     r"(?:sampl\w*[ _]*|time[ _]*|[xht][ _]*)?(?:interval|period|incr\w*|resolution)|"
-    r"(?:sampl\w*|data)[ _]*(?:rate|freq\w*)|clock|(?:delta|d)[ _]?[xt]|tinc",
+    r"(?:sampl\w*|data)[ _]*(?:rate|freq\w*)|fs|clock|(?:delta|d)[ _]?[xt]|tinc",
     re.IGNORECASE,
 )
 """Settings that say how far apart samples are, or how many there are in a second."""
-RATE = re.compile(r"([kMG]?)(?:Hz|Sa/s|S/s|samples/s)", re.IGNORECASE)
+RATE = re.compile(r"([kMG]?)(?:Hz|Sa/s|S/s|samples(?:/s| per second)|sps)", re.IGNORECASE)
+UNIT_KEY = re.compile(
+    r"(?:(?P<time>horizontal|time|zeit|[xht])|vertical|channel|kanal|signal|data|amplitude|[yv])?[ _-]*(?:axis[ _-]*)?"
+    r"(?:units?|einheit(?:en)?)"
+)
+"""Settings that say the unit of the time, or of any channel."""
 PER_SECOND = {"": 1.0, "k": 1e3, "m": 1e6, "g": 1e9}
 
 
@@ -30,20 +35,25 @@ class Settings:
         return next(iter(self.values.get(key, [])), "1")
 
     @property
-    def time_unit(self) -> str:
-        """Of the time, empty where none is told."""
-        return next((text for key, text in self._told() if _is_of_time(key, text)), "")
+    def time_units(self) -> list[str]:
+        """Of the time."""
+        return [text for key, text in self._told() if _is_of_time(key, text)]
 
     def unit_of_channel(self, number: int, names: Sequence[str], where: str) -> str:
         """Of the channel with this number, by its name or place; empty where none is told. InputError."""
-        told = [text for key, text in self._told() if not _is_of_time(key, text)]
+        stated = [(key, text) for key, text in self._told() if not _is_of_time(key, text)]
+        own = [(key, text) for key, text in self._of_quantities() if _is_of(names[number], text)]
+        told = [text for _, text in own or stated]
         each = {text.rpartition(":")[2].strip() for text in told}
         if len(each) < 2:
             return next(iter(each), "")
         by_name = {one.rpartition(":")[0].strip().lower(): one.rpartition(":")[2].strip() for one in told if ":" in one}
         if names[number].lower() in by_name:
             return by_name[names[number].lower()]
-        if by_name or len(told) != len(names):
+        sources = list(self.values.get("source", []))
+        if names[number] in sources and len(told) == len(sources):
+            return told[sources.index(names[number])]
+        if by_name or len(told) != len(names) or len({key for key, _ in stated}) != 1:
             raise InputError(
                 f"{where}: the settings above tell {len(told)} units, {', '.join(told)}, and not which of them is that "
                 f"of '{names[number][:40]}'; write it behind the name"
@@ -51,22 +61,34 @@ class Settings:
         return told[number]
 
     def _told(self) -> list[tuple[str, str]]:
-        """Key and text of every unit that a setting states."""
+        """Key and text of every unit that a setting states, known or not; a unit with a number is a device."""
         return [
             (key, text)
             for key, texts in self.values.items()
-            if "unit" in key or "einheit" in key
+            if (found := UNIT_KEY.fullmatch(key))
             for text in texts
-            if key in ("horizontal units", "vertical units") or known_unit(text.rpartition(":")[2])
+            if found[0] not in ("unit", "units") or "/" in text or not re.search(r"\d", text.rpartition(":")[2])
+        ]
+
+    def _of_quantities(self) -> list[tuple[str, str]]:
+        """The same of settings that name what they are of, such as Force unit."""
+        return [
+            (key, text)
+            for key, texts in self.values.items()
+            if ("unit" in key or "einheit" in key) and not UNIT_KEY.fullmatch(key)
+            for text in texts
+            if _is_of(key, text)
         ]
 
     @property
     def interval_s(self) -> tuple[str, float] | None:
         """The key that says how far apart samples are, and seconds; None where none does."""
-        for key, texts in self.values.items():
+        for full_key, texts in self.values.items():
+            key, _, key_unit = re.sub(r"[)\]]$", "", full_key).partition("(" if "(" in full_key else "[")
+            key = key.strip()
             if INTERVAL.fullmatch(key):
-                text = " ".join(texts[:2]).rpartition(":")[2].strip()
-                found = re.match(rf"({NUMBER.pattern})\s*(\S*)", text, re.ASCII)
+                text = " ".join([*texts[:1], key_unit, *texts[1:2]]).rpartition(":")[2].strip()
+                found = re.match(rf"({NUMBER.pattern})\s*(samples per second|\S*)", text, re.ASCII)
                 seconds = _seconds(key, found[1], found[2]) if found else None
                 if seconds is not None:
                     return key, seconds
@@ -75,14 +97,21 @@ class Settings:
 
 def _is_of_time(key: str, text: str) -> bool:
     unit = known_unit(text.rpartition(":")[2])
-    return key == "horizontal units" or (unit is not None and unit.base == "s")
+    found = UNIT_KEY.fullmatch(key)
+    return bool(found and found["time"]) or (unit is not None and unit.base == "s")
+
+
+def _is_of(name: str, text: str) -> bool:
+    """Whether a name says the quantity that this is a unit of."""
+    unit = known_unit(text.rpartition(":")[2], name)
+    return unit is not None and QUANTITIES[unit.base].search(name) is not None
 
 
 def _seconds(key: str, number: str, unit: str) -> float | None:
     """Between two samples."""
     value = float(number.upper().replace("D", "E").replace(",", "."))
     rate = RATE.fullmatch(unit)
-    if rate or ("rate" in key or "freq" in key):
+    if rate or ("rate" in key or "freq" in key or key == "fs"):
         value *= PER_SECOND[rate[1].lower()] if rate else 1.0
         return 1.0 / value if value > 0.0 and (rate or not unit) else None
     known = known_unit(unit or "s")

@@ -48,22 +48,29 @@ WORDS = {
     **{name: EXACT[short] for name, short in {
         "sec": "s", "msec": "ms", "usec": "us", "nsec": "ns", "minute": "min", "hour": "h", "micron": "um",
         "inch": "in", "gram-force": "gf", "pound-force": "lbf", "kilogram-force": "kgf", "min": "min",
-        "gf": "gf", "kgf": "kgf", "lbf": "lbf", "ozf": "ozf", "degc": "degC"}.items()},
+        "milli": "ms", "micro": "us", "gf": "gf", "kgf": "kgf", "lbf": "lbf", "ozf": "ozf", "degc": "degC"}.items()},
 }  # fmt: skip
 """In capitals or small letters, in the singular or the plural."""
 WEIGHTS = {"g": "gf", "kg": "kgf", "mg": "mgf", "lb": "lbf", "lbs": "lbf", "oz": "ozf"}
 """Of a load cell, whose scale counts masses: their weight is meant."""
-LOAD = re.compile(r"load|force|cell|weight|scale|kraft|last", re.IGNORECASE)
+LOAD = re.compile(r"^(?!.*(?:accel|g[- ]?force)).*(?:load|force|cell|weight|scale|kraft|last)", re.IGNORECASE)
 TEMPERATURE = re.compile(r"temp|t_?room", re.IGNORECASE)
 CURRENT = re.compile(r"(?:[nu\u00b5\u03bcmk]?A|amps?|amperes?|milliamps?)", re.IGNORECASE)
 NAMED_CURRENT = re.compile(r"\b(?:current|strom|amperage)\b", re.IGNORECASE)
+TEN = r"(?:10+|0[.,]0*1|1[eE][-+]?\d+)"
+FACTOR = re.compile(
+    rf"(?:(?<=[\s\[])x|[×*·/])\s*{TEN}(?!\d)|(?<![\w.]){TEN}\s*[x×*·]|(?<!\w)(?:1[eE][-+]?\d+|1:10+|10+:1)(?!\w)|"
+    r"[\^²³]|\bper\b|/\s*(?:s|mm|N|V)$",
+    re.IGNORECASE,
+)
+"""What would change the unit that stands beside it: x10, /1000, 10:1, per mm."""
 QUANTITIES = {
     base: re.compile(rf"(?:{words})", re.IGNORECASE)
     for base, words in {
         "s": r"time|zeit|temps|elapsed|(?<![a-z])t(?![a-z])",
         "N": r"load|force|weight|kraft|last(?![a-z])",
         "V": r"volt|spannung|(?<![a-z])ch(?:an|annel)?[ _-]*(?:\d|[a-h]?(?![a-z]))|(?<![a-z])[uv](?![a-z])",
-        "mm": r"(?<![a-z])pos|displ|travel|stroke|extension|height|depth|distance|weg(?![a-z])",
+        "mm": r"(?<![a-z])pos|displ|travel|stroke|extension|length|height|depth|distance|weg(?![a-z])",
         "C": r"temp(?!s)",
     }.items()
 }
@@ -100,6 +107,16 @@ def known_unit(text: str, name: str = "") -> Unit | None:
 def split_name(cell: str, where: str) -> tuple[str, Unit | None]:
     """CH1(mV) -> CH1 and the unit; without a unit None. InputError for one that is not known."""
     text = cell.strip()
+    name, unit = _split(text, where)
+    if FACTOR.search(name):
+        raise InputError(
+            f"{where}: column '{text[:40]}' has a factor or a quotient in its name; scale its values, and leave it out"
+        )
+    return name, unit
+
+
+def _split(text: str, where: str) -> tuple[str, Unit | None]:
+    """Name and unit."""
     bracket = re.fullmatch(r"(.*?)\s*[(\[{]\s*([^()\[\]{}]*?)\s*[)\]}]\s*(.*)", text)
     if bracket:
         name = " ".join(f"{bracket[1]} {bracket[3]}".split())
@@ -111,6 +128,9 @@ def split_name(cell: str, where: str) -> tuple[str, Unit | None]:
     head, _, tail = (part.strip() for part in text.rpartition(","))
     if head and tail:
         return head, unit_of(tail, head, where)
+    inside = re.fullmatch(r"(?:(.+)\s)?in (\S+)", text)  # of Rohde & Schwarz: in s,C1 in V
+    if inside and (unit := known_unit(inside[2], inside[1] or "")):
+        return inside[1] or "Time", unit
     for mark in "/_ ":
         head, _, tail = (part.strip() for part in text.rpartition(mark))
         if head and tail and (_is_meant(head, tail, mark) or (mark != " " and _is_current(head, tail))):
@@ -128,8 +148,15 @@ def _is_meant(head: str, tail: str, mark: str) -> bool:
     unit = known_unit(tail, head)
     said = {base for base, words in QUANTITIES.items() if words.search(head)}
     if unit is None or mark == "/":
-        return unit is not None
+        return unit is not None and not _is_quotient(head, unit)
     return unit.base in said if said else mark == "_" and tail not in ALSO_WORDS
+
+
+def _is_quotient(head: str, unit: Unit) -> bool:
+    """Whether a slash behind this divides two units: Stiffness N/mm, and not h/mm."""
+    last = re.split(r"[\s_]", head)[-1]
+    over = None if last in ("in", "min") else known_unit(last)
+    return over is not None and over.base != unit.base and (last != head or over.base in ("N", "V"))
 
 
 def _is_current(head: str, tail: str) -> bool:
@@ -138,7 +165,7 @@ def _is_current(head: str, tail: str) -> bool:
 
 
 SCOPE_CHANNEL = re.compile(
-    r"(?:ch|chan|channel|c|math|ref|trace|wfm|waveform|m|r|f)?[ _-]*\d{1,2}|(?:ch|chan|channel)?[ _-]*[A-H]|"
+    r"(?:ch|chan|channel|c|math|ref|trace|wfm|waveform|m|r|f)?[ _-]*\d{1,2}|(?:ch|chan|channel)[ _-]*[A-H]|[A-D]|"
     r"ampl|amplitude|value|y|volts?|(?:.*[ _])?voltage(?:[ _].*)?|spannung",
     re.IGNORECASE,
 )

@@ -112,6 +112,37 @@ def test_what_cannot_be_joined_is_one_sentence(more, said, bench, tmp_path, caps
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.parametrize("missing", ["rows", "cells", "beginning"])
+def test_a_gap_in_a_drive_is_missing_and_said(missing, bench, tmp_path, capsys):
+    slow = np.arange(0.0, 2.5, 5e-3)
+    hidden = slow < 0.5 if missing == "beginning" else (slow > 1.1) & (slow < 1.4)
+    place = np.where(hidden & (missing != "rows"), np.nan, depth_mm(slow))
+    kept = slice(None) if missing != "rows" else ~hidden
+    write(tmp_path / "stage.csv", "Time (s),Position (mm)", slow[kept], place[kept])
+    assert main(["convert", *bench]) == 0
+    assert "'Position' of 'stage.csv' has gaps, so" in capsys.readouterr().err
+    (run,) = load_rig(tmp_path / "out").recording.runs
+    there = run.valid["displacement_mm"]
+    assert run.channels["displacement_mm"][there] == pytest.approx(depth_mm(run.time_s[there]), abs=2e-3)
+    assert 1.0 - there.mean() == pytest.approx(hidden.mean(), abs=0.02)
+
+
+def test_clocks_that_run_apart_are_not_aligned(bench, tmp_path, capsys):
+    """By three percent, over one press."""
+    slow = np.arange(0.0, 2.5, 5e-3)
+    force = np.clip(depth_mm(slow), 0.0, None) + 1e-4 * np.random.default_rng(1).standard_normal(len(slow))
+    write(tmp_path / "stage.csv", "Time (s),Position (mm),Force (N)", 1.03 * slow, depth_mm(slow), force)
+    assert main(["convert", *bench, "--align"]) == 2
+    assert "one clock runs faster" in capsys.readouterr().err
+
+
+def test_a_drive_of_a_few_samples_is_refused(bench, tmp_path, capsys):
+    slow = np.arange(0.0, 2.5, 5e-3)
+    write(tmp_path / "stage.csv", "Time (s),Position (mm)", slow, np.where(slow > 0.01, np.nan, -0.1))
+    assert main(["convert", *bench]) == 2
+    assert "'Position' was measured in less than 8 samples" in capsys.readouterr().err
+
+
 def test_logs_that_share_no_channel_are_not_aligned(bench, tmp_path, capsys):
     fast = np.arange(0.0, 2.5, 1e-3)
     write(tmp_path / "stage.csv", "Time (s),Position (um)", fast, 1e3 * depth_mm(fast))

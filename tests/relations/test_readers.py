@@ -257,6 +257,14 @@ def test_sequence_numbers_count_from_the_start(start, step, skipped, tmp_path):
         ("timestamp,CH1\n1700000000000,1\n1700000000001,2\n", "1.7e+12 can be no seconds"),
         ("XINCREMENT,1e-3\nX,CH1\n0,1\n1,2\n", "its samples are 1 apart, and 'xincrement' above is 0.001 s"),
         ("# Sampling rate: 2 kHz\nTime,CH1\n0,1\n1,2\n", "and 'sampling rate' above is 0.0005 s"),
+        ("Time,CH1 (V)\n45990.5,1\n45990.500001,2\n", "45990.5 may count days"),
+        ("Time,CH1 (V)\n101558,1\n101559,2\n101600,3\n", "reads as a clock"),
+        ("Time (s),CH1 (mV),CH2\n0,1,2\n", "column 'CH2' has no unit, and another voltage is not in V"),
+        ("Length unit,mm\nTime,Load\n0,1\n", "column 'Load' has no unit"),
+        ("XUnit,Hz\nYUnit,V\nX,CH1\n0,1\n", "column 'X' is in 'Hz', which is not a known unit"),
+        ("Y Units,counts\nTime,CH1\n0,1\n", "column 'CH1' is in 'counts', which is not a known unit"),
+        ("Horizontal Units,s\nTime unit,ms\nTime,CH1\n0,1\n", "column 'Time' has two units"),
+        ("Sampling rate (Hz),1000\nTime,CH1\n0,1\n1,2\n", "and 'sampling rate' above is 0.001 s"),
         ("Vertical Units,V,mV\nTime,A,B,C\n0,1,2,3\n", "tell 2 units, V, mV, and not which of them is that of 'A'"),
     ],
 )
@@ -266,6 +274,54 @@ def test_what_is_not_understood_is_refused_by_name(text, said, tmp_path):
         read_oscilloscope(tmp_path / "scope.csv")
     assert said in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("by", ["x10", "x1e-3", "*10", "/1000", "× 0.1", "per mm", "/ s", "²", "1e-3", "10:1"])
+@pytest.mark.parametrize("name", ["Force (N) {}", "Force {} (N)", "Time [ms] {}"])
+def test_a_factor_beside_a_unit_is_refused(name, by, tmp_path):
+    if by in ("/ s", "per mm") and name.endswith("(N)"):
+        return  # Force/s (N) is a name
+    cells = [name.format(by), "Time (s)" if name.startswith("F") else "CH1"]
+    (tmp_path / "log.csv").write_text(f"{','.join(cells)}\n1,2\n2,3\n", "utf-8")
+    with pytest.raises(InputError, match="has a factor or a quotient in its name"):
+        read_log(tmp_path / "log.csv")
+
+
+@pytest.mark.parametrize(
+    "head", ["Stiffness N/mm", "Field V/mm", "Sensitivity_mV/N", "Speed mm/min", "N/mm", "Rate V/s"]
+)
+def test_a_quotient_of_units_is_not_the_unit_behind_its_slash(head, tmp_path):
+    (tmp_path / "log.csv").write_text(f"Time (s),{head}\n0,1\n1,2\n", "utf-8")
+    with pytest.raises(InputError, match=f"column '{head}' has (no unit|a factor or a quotient)"):
+        read_log(tmp_path / "log.csv")
+
+
+@pytest.mark.parametrize("unit", ["ticks", "samples", "days", "ps", "0.1ms", "counts", "HH:MM:SS", "centiseconds"])
+@pytest.mark.parametrize("mark", ["_", " ", "/"])
+def test_a_time_in_what_is_not_known_is_not_in_seconds(mark, unit, tmp_path):
+    (tmp_path / "log.csv").write_text(f"Time{mark}{unit},CH1 (V)\n0,1\n1,2\n", "utf-8")
+    with pytest.raises(InputError, match="what is behind its name is not a known unit|has a factor"):
+        read_log(tmp_path / "log.csv")
+
+
+@pytest.mark.parametrize(
+    ("head", "unit", "first", "second"),
+    [
+        ("in ms,C1 in mV,C2 in V", "V", 1e-3, 2.0),
+        ("millis,CH1 (mV),CH2 (V)", "V", 1e-3, 2.0),
+        ("Time(ms),CH1(mV),CH2(V),t0 =-1e-2, tInc = 1e-3,", "V", 1e-3, 2.0),
+        ("Time unit,ms\nLength unit,um\nForce unit,kN\nTime,Force,Position", "N", 1e3, 2e-3),
+        ("Time unit,ms\nTemperature unit,degC\nTrigger level unit,mV\nTime,CH1,CH2", "V", 1.0, 2.0),
+        ("Delay unit,us\nTime unit,ms\nUnit under test,m\nTime,CH1,CH2", "V", 1.0, 2.0),
+        ("Time unit,ms\nSource,CH2,CH1\nVertical Units,mV,V\nTime,CH1,CH2", "V", 1.0, 2e-3),
+    ],
+)
+def test_a_setting_is_of_what_it_names(head, unit, first, second, tmp_path):
+    (tmp_path / "log.csv").write_text(f"{head}\n0,1,2\n1,1,2\n2,1,2\n", "utf-8")
+    log = read_log(tmp_path / "log.csv")
+    one, two = log.channels.values()
+    assert log.time_s == pytest.approx([0.0, 1e-3, 2e-3])
+    assert (one.unit, one.values[0], two.values[0]) == (unit, pytest.approx(first), pytest.approx(second))
 
 
 VALID = (
@@ -367,6 +423,28 @@ def test_labview_files(tmp_path):
         assert found.time_s == pytest.approx([1.0, 1.5, 2.0])
         assert found.channels["film"].values == pytest.approx([1e-3, 2e-3, 4e-3])
         assert found.channels["Load cell"].values == pytest.approx([0.00980665, 0.0196133, 0.0392266])
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        ({"wf_increment": 1e-9}, {"wf_increment": 2e-9}),
+        ({"wf_start_offset": 1e6}, {"wf_start_offset": 1e6 + 5.0}),
+        (
+            {"wf_start_time": np.datetime64("2026-01-01T10:00:00")},
+            {"wf_start_time": np.datetime64("2026-01-01T10:00:01")},
+        ),
+        ({"wf_xunit_string": "Hz"}, {"wf_xunit_string": "Hz"}),
+    ],
+)
+def test_channels_of_labview_that_share_no_time_are_refused(first, second, tmp_path):
+    nptdms = pytest.importorskip("nptdms")
+    base = {"wf_increment": 0.5, "wf_start_offset": 0.0, "wf_samples": 3, "unit_string": "V"}
+    with nptdms.TdmsWriter(tmp_path / "a.tdms") as file:
+        for name, own in (("a", first), ("b", second)):
+            file.write_segment([nptdms.ChannelObject("daq", name, np.array([1.0, 2.0, 4.0]), base | own)])
+    with pytest.raises(InputError, match="sampled at other times|no unit of time"):
+        read_log(tmp_path / "a.tdms")
 
 
 def test_a_spreadsheet_is_read_as_its_text(tmp_path):
