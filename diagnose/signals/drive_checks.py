@@ -19,6 +19,10 @@ LOWEST, FLAT = 0.15, 0.1
 """Where the drive is lowest, in shares of its range, a force that rises less than this part of the whole rise has not
 begun to: of a sphere's it is two fifths (Hertz), of a flat punch's all.
 """
+SHALLOWEST_MM = 0.002
+"""By which a moulded surface gives way before it bears."""
+FASTEST_MM_PER_S = 3e3
+"""The range of a drive over the time of its whole run: faster is an impact, and no press."""
 DRIFT = 0.1  # of the range of a force, between the samples before a press and behind it
 
 
@@ -39,6 +43,7 @@ def refuse_unlike_drive(run: Run, path: Path, specimen: Specimen | None, height_
             "counts positive in compression, turn its sign"
         )
     if run.drive == "displacement_mm":
+        _refuse_too_fast(run, where)
         _refuse_off_zero(run, where, height_mm)
 
 
@@ -47,6 +52,11 @@ def drive_suspicions(run: Run, path: Path) -> list[str]:
     if run.drive != "displacement_mm":
         return []
     level, noise = rest_of(run.drive_values)
+    if (deepest := float(run.drive_values.max())) < SHALLOWEST_MM:
+        return [
+            f"recording '{path}', column displacement_mm: reaches {deepest:.3g} mm only, less than a surface gives way "
+            "before it bears; is it in millimetres?"
+        ]
     said = _drifts(run, path) if "force_N" in run.channels else []
     if level > max(5.0 * noise, 0.05 * float(np.ptp(run.drive_values))):
         said.append(
@@ -57,7 +67,7 @@ def drive_suspicions(run: Run, path: Path) -> list[str]:
 
 
 def _drifts(run: Run, path: Path) -> list[str]:
-    """A sentence where the force is another one after the presses than before them, both clear of the dot."""
+    """A sentence where the force is beyond its range while the dot is clear, or another one after the presses."""
     clear = run.usable("force_N") & (run.drive_values < 0.0)
     touching = np.flatnonzero(run.drive_values > 0.0)
     if not len(touching):
@@ -68,7 +78,10 @@ def _drifts(run: Run, path: Path) -> list[str]:
         return []
     force = run.channels["force_N"]
     first, last = float(np.mean(force[before])), float(np.mean(force[after]))
-    if abs(last - first) < DRIFT * float(np.ptp(force[run.usable("force_N")])):
+    whole = float(np.ptp(force[run.usable("force_N")]))
+    if min(abs(first), abs(last)) > max(whole, 3.0 * run.nuisance.get("offset_N", 0.0)):
+        return [f"recording '{path}', column force_N: is {first:.3g} N while nothing touches; is its zero off?"]
+    if abs(last - first) < DRIFT * whole:
         return []
     return [
         f"recording '{path}', column force_N: drifts from {first:.3g} to {last:.3g} N while nothing touches, which is "
@@ -99,6 +112,15 @@ def _refuse_opposed(run: Run, where: str) -> None:
         raise InputError(
             f"{where} displacement_mm: runs against force_N (correlation {correlation:.2f}): displacement counts "
             "positive into the segment or along the test, force positive in it; turn the sign of one of them"
+        )
+
+
+def _refuse_too_fast(run: Run, where: str) -> None:
+    speed = float(np.ptp(run.drive_values)) / float(run.time_s[-1] - run.time_s[0])
+    if speed > FASTEST_MM_PER_S:
+        raise InputError(
+            f"{where} time_s: displacement_mm goes {np.ptp(run.drive_values):.3g} mm in "
+            f"{run.time_s[-1] - run.time_s[0]:.3g} s by it, which is no press; is it in seconds?"
         )
 
 

@@ -124,6 +124,11 @@ def _refuse_unknown_noise(table: RunTable, columns: Mapping[str, Floats], folder
                 f"recording '{folder / 'rig.toml'}': noise.{name} of the run '{table.name}' names no column of "
                 f"'{table.file}'"
             )
+        if (whole := float(np.ptp(columns[name][np.isfinite(columns[name])]))) < table.noise[name]:
+            raise InputError(
+                f"recording '{folder / 'rig.toml'}': noise.{name} = {table.noise[name]:g} of the run '{table.name}' is "
+                f"more than its whole range, {whole:.3g}; is it in another unit?"
+            )
 
 
 ENOUGH = 15_000

@@ -22,8 +22,10 @@ from solve.reduced.recording import second_differences
 
 FORMAT = "softdot-recording/1"
 PARTS = ("effector", "medium1", "film", "medium2", "specimen")
+ABSOLUTE = frozenset({"lag_s", "offset_V", "offset_N", "offset_mm"})
 NUISANCES = frozenset(
-    {"gain", "force_gain", "lag_s", "clock_ratio", "offset_V", "offset_N", "offset_mm", "d31"}
+    ABSOLUTE
+    | {"gain", "force_gain", "clock_ratio", "d31"}
     | {f"{quantity}.{part}" for quantity in ("modulus", "thickness") for part in PARTS}
 )
 Drive = Literal["displacement_mm", "force_N"]
@@ -39,7 +41,7 @@ class RunTable(Table):
     over: tuple[int, int] | None = Field(
         None, description="row and column, from 1, of the segment of [array] that the dot stands over"
     )
-    temperature_C: Annotated[float, Field(ge=-273.15, allow_inf_nan=False)] | None = Field(
+    temperature_C: Annotated[float, Field(ge=-100.0, le=150.0, allow_inf_nan=False)] | None = Field(
         None, description="room temperature during this run"
     )
     virgin: bool | None = Field(
@@ -72,6 +74,8 @@ class RunTable(Table):
         for name in flat if isinstance(flat, Mapping) else ():
             if name not in NUISANCES:
                 raise ValueError(f"'{name}' is not a nuisance parameter; {nearest_name_hint(name, NUISANCES)}")
+            if name not in ABSOLUTE and isinstance(flat[name], int | float) and flat[name] > 1.0:
+                raise ValueError(f"{name} = {flat[name]:g} is relative, and must be at most 1; 0.05 is five percent")
         return flat
 
     @property

@@ -74,6 +74,7 @@ def load_rig(folder: Path | str) -> Rig:
     if config is not None:
         for run in recording.runs:
             _refuse_other_channels(run, config, folder)
+            _refuse_dot_beside(run, config, folder)
     return Rig(folder, tables, config, bench, recording)
 
 
@@ -129,4 +130,20 @@ def _refuse_other_channels(run: Run, config: Config, folder: Path) -> None:
         raise InputError(
             f"recording '{folder / run.file}' row 1: has {columns} columns of voltage, but segment.film.electrodes of "
             f"{RIG_FILE} makes {electrodes} of them"
+        )
+    numbered = [f"voltage_{number}_V" for number in range(1, columns + 1)]
+    if run.voltages not in (("voltage_V",), tuple(numbered)):
+        raise InputError(
+            f"recording '{folder / run.file}' row 1: has {', '.join(run.voltages)}; electrodes are numbered from 1, so "
+            f"{', '.join(numbered)}"
+        )
+
+
+def _refuse_dot_beside(run: Run, config: Config, folder: Path) -> None:
+    """InputError where the middle of the dot is not over the segment."""
+    sizes = np.array([config.segment.length_mm, config.segment.width_mm])
+    if (np.abs(run.dot_offset_mm) > 0.5 * sizes).any():
+        raise InputError(
+            f"recording '{folder / RIG_FILE}': dot_offset_mm = {[float(f'{x:g}') for x in run.dot_offset_mm]} of the "
+            f"run '{run.label}' is beside the segment of {sizes[0]:g} mm x {sizes[1]:g} mm"
         )

@@ -25,7 +25,7 @@ from softdot.convert.units import Unit, known_unit, split_name, unit_of, usual_u
 HEADER_ROWS = 200
 TIME = re.compile(
     r"#?(?:(?:elapsed|test|running|total|run|rel(?:ative)?|abs(?:olute)?)[ _]*)?"
-    r"(?:\w*time|\w*zeit|temps|tiempo|elapsed|t|s|x|x[- ]?axis|seconds?|secs?|millis|micros|in|timestamp|time[ _]?stamp)"
+    r"(?:\w*time|\w*zeit|temps|tiempo|elapsed|t|s|x|x[- ]?axis|seconds?|secs?|millis|micros|in|time[ _]?stamp)"
     r"(?:[ _]*(?:elapsed|axis|base))?",
     re.IGNORECASE,
 )

@@ -30,6 +30,16 @@ RIGS = {
         "runs[0].nuisance: 'modulus.medium3' is not a nuisance parameter; did you mean 'modulus.medium2'?"
     ),
     GOOD + "[runs.nuisance]\ngain = 0.0": "runs[0].nuisance.gain = 0: must be above 0",
+    GOOD + "[runs.nuisance]\ngain = 5": (
+        "runs[0].nuisance: gain = 5 is relative, and must be at most 1; 0.05 is five percent"
+    ),
+    GOOD + "[runs.noise]\nvoltage_V = 2.0": (
+        "noise.voltage_V = 2 of the run 'press' is more than its whole range, 0.306; is it in another unit?"
+    ),
+    GOOD + "temperature_C = 296.0": "runs[0].temperature_C = 296: must be at most 150",
+    GOOD + "dot_offset_mm = [0.0, -9.0]": (
+        "dot_offset_mm = [0.0, -9.0] of the run 'press' is beside the segment of 2.5 mm x 2.5 mm"
+    ),
     GOOD + "[runs.noise]\nvolts = 0.1": "noise.volts of the run 'press' names no column of 'press.csv'",
     GOOD + "[runs.readout]\ninput_resistance_MOhm = -1.0": (
         "runs[0].readout.input_resistance_MOhm = -1: must be above 0"
@@ -141,6 +151,13 @@ def test_columns_and_electrodes_agree(tmp_path):
     assert refusal(folder).endswith(
         "press.csv' row 1: has 2 columns of voltage, but segment.film.electrodes of rig.toml makes 1 of them"
     )
+
+
+def test_a_column_of_an_electrode_that_is_not_there_is_refused(tmp_path):
+    columns = samples()
+    columns["voltage_2_V"] = columns.pop("voltage_V")
+    folder = write_rig(tmp_path / "rig", press=columns)
+    assert refusal(folder).endswith("has voltage_2_V; electrodes are numbered from 1, so voltage_1_V")
 
 
 def test_a_file_of_ten_gigabytes_is_refused_unread(tmp_path):

@@ -1,5 +1,6 @@
 """A drive of the wrong sign, zero or size is told in one sentence, before noise is asked for."""
 
+import re
 from types import SimpleNamespace
 
 import numpy as np
@@ -29,6 +30,10 @@ BAD = {
     "both signs": (pressed(factor=-1.0, turn=-1.0), r"force_N: goes down to -0\.16\d N and up to 0"),
     "another zero": (pressed(shift_mm=12.3), r"reaches 12\.6 mm, the segment is \d"),
     "a zero within the stack": (pressed(shift_mm=0.6), r"is 0\.4 mm where force_N has not begun to rise"),
+    "nanoseconds": (
+        pressed() | {"time_s": 1e-9 * samples()["time_s"]},
+        "time_s: displacement_mm goes 0.5 mm in .* s by it, which is no press",
+    ),
     "micrometres": (pressed(factor=1e3), r"its zero or its unit is off"),
 }
 
@@ -45,6 +50,19 @@ def test_a_good_drive_and_a_preload_are_read(tmp_path):
     loaded = {name: values[115:180] for name, values in pressed().items()}  # never clear, and its force follows at once
     warnings = load_rig(write_rig(tmp_path / "loaded", press=loaded)).recording.warnings
     assert all("noise" not in sentence for sentence in warnings)
+
+
+@pytest.mark.parametrize(
+    ("columns", "said"),
+    [
+        (pressed(factor=1e-3), "column displacement_mm: reaches 0.0003 mm only, .*is it in millimetres"),
+        (pressed() | {"force_N": pressed()["force_N"] + 5.0}, "column force_N: is 5 N while nothing touches"),
+        (pressed() | {"force_N": pressed()["force_N"] - 5.0}, "column force_N: is -5 N while nothing touches"),
+    ],
+)
+def test_another_unit_or_zero_is_told(columns, said, tmp_path):
+    (sentence,) = load_rig(write_rig(tmp_path / "rig", press=columns)).recording.warnings
+    assert re.search(said, sentence)
 
 
 def test_a_dot_that_sticks_as_it_is_let_go_is_no_wrong_sign(tmp_path):
