@@ -40,10 +40,11 @@ from solve.model import Model
 from solve.physics import declared_bonds
 from solve.readout.course import PressCourse
 from solve.result import PressResult
-from solve.solution.schedule import duration_s
+from solve.solution.schedule import corners_s, duration_s, fraction
 from solve.symmetry import meshed_planes
 from solve.terms.rigid_dot import RigidDot
 from solve.validity import doubts
+from solve.waveform import Waveform
 
 TOO_MANY = 1_000_000
 POINTS = 100_000
@@ -279,6 +280,19 @@ def _rim(segment: Segment, top_mm: float) -> Floats:
     return np.column_stack([np.concatenate(sides), np.full(4 * SAMPLES, top_mm)])
 
 
+def _shallow_waveform(waveform: Waveform | None) -> list[str]:
+    """A warning for a file that never reaches the whole depth or force, as one of millimetres does not."""
+    if waveform is None or waveform.shape != "file":
+        return []
+    largest = float(fraction(waveform, corners_s(waveform)).max())
+    if largest >= 1.0:
+        return []
+    return [
+        f"press.waveform.file = '{waveform.file}': the largest fraction is {largest:.3g}, so the press goes to "
+        f"{100.0 * largest:.3g} % of what [press] states"
+    ]
+
+
 def check_case(model: Model, options: MeshOptions, layout: ArrayLayout | None = None) -> tuple[DotShape, list[str]]:
     """The dot at rest and what a user should know about this design; layout : of an array. InputError."""
     check_cache_folder()
@@ -286,6 +300,7 @@ def check_case(model: Model, options: MeshOptions, layout: ArrayLayout | None = 
     if press.waveform is not None:
         duration_s(press.waveform)  # reads the file of shape = "file"
     warnings = check_segment(segment) if layout is None else [*check_segment(layout.segment), *check_array(layout)]
+    warnings += _shallow_waveform(press.waveform)
     warnings += check_slide(model.dot, segment, press.path_xy_mm)
     depth = press.indentation_mm
     if depth is not None:

@@ -57,6 +57,9 @@ class _Rest:
 
     def was_told(self, sentence: str) -> bool:
         """Whether a sentence asks for a key that is missing only because another sentence was about it."""
+        key = KEY.match(sentence)
+        if key and key[0].endswith("]") and key[0].rpartition("[")[0] in self.gone and "] is missing" in sentence:
+            return True
         return any("." in key and key in self.told for key in KEY.findall(sentence))
 
     def as_in_the_file(self, sentence: str) -> str:

@@ -131,3 +131,16 @@ def test_completion_knows_commands_and_options(shell, capfd):
     assert end.value.code == 0
     script = capfd.readouterr().out
     assert all(word in script for word in ("diagnose", "--hold-out", "--template", "mechanisms"))
+
+
+def test_an_element_of_a_pair_that_is_wrong_is_told_once(checked):
+    path = "[segment]\nsection = 'plane-strain'\n[dot]\nshape = 'ridge'\noffset_mm = [0.0, 0.5]\n"
+    assert str(checked(path)).count("offset_mm[") == 1
+
+
+def test_a_waveform_that_never_reaches_its_end_is_told(checked, tmp_path):
+    """As one whose fractions are millimetres."""
+    for largest in (0.2, 1.0):
+        (tmp_path / "way.csv").write_text(f"time_s,fraction\n0,0\n1,{largest}\n", "utf-8")
+        text = f"[press.waveform]\nshape = 'file'\nfile = '{tmp_path / 'way.csv'}'\n"
+        assert ("the largest fraction is 0.2" in str(checked(text))) == (largest < 1.0)
