@@ -62,6 +62,8 @@ def read_mat(
     variables : column -> variable, 'name.field' for a field of a structure. factors : column -> number by which its
     values are multiplied to be in the unit of the column. InputError for a file, variable or shape that does not fit.
     """
+    if unknown := (factors or {}).keys() - variables.keys():
+        raise InputError(f"factors: '{min(unknown)}' is none of the columns {', '.join(variables)}")
     found = read_apart(".mat", Path(file), variables)
     return {column: (factors or {}).get(column, 1.0) * found[column] for column in variables}
 

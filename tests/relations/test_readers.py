@@ -457,3 +457,8 @@ def test_a_spreadsheet_is_read_as_its_text(tmp_path):
     assert found.time_s == pytest.approx([0.0, 1e-3])
     assert found.channels["Force"].values == pytest.approx([1.5e-3, 2e-3])
     assert found.channels["Force"].unit == "N"
+
+
+def test_a_factor_of_a_column_that_is_not_read_is_refused(tmp_path):
+    with pytest.raises(InputError, match="factors: 'voltage' is none of the columns voltage_V"):
+        read_mat(tmp_path / "a.mat", {"voltage_V": "v"}, {"voltage": 1e-3})
