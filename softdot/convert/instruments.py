@@ -31,6 +31,8 @@ TIME = re.compile(
 )
 INDEX = re.compile(r"#|nr|no\.?|n|index|idx|sample|samples|point|points|row|scan|segment", re.IGNORECASE)
 """Columns that count samples."""
+CLOCK = re.compile(r"\d+[:./-]\d+[:./-]\d+")
+"""2026-11-29T10:00:00, 29.11.2026, 10:00:00."""
 DIGITAL = re.compile(r"D\d+(?:-D\d+)?", re.IGNORECASE)
 """Logic channels, whose cells are words of bits."""
 START_STEP = re.compile(r"(?:t0|tInc)\s*=", re.IGNORECASE)
@@ -183,10 +185,25 @@ def _layout(table: TextTable) -> Layout:
         column = _time_column(table, row)
         if column is not None:
             return _below_header(table, row, column)
+    _refuse_clock(table)
     raise InputError(
         f"'{table.file}' row 1: no header of an oscilloscope or another instrument; known are those of Tektronix, "
         "Rigol, Keysight, Siglent, PicoScope and LeCroy, and a row with names and units such as Time(s),CH1(V)"
     )
+
+
+def _refuse_clock(table: TextTable) -> None:
+    """InputError for a time, in the row below its name or its unit, that is a date or a clock."""
+    for row in range(min(HEADER_ROWS, len(table.rows) - 1)):
+        for column, cell in enumerate(table.rows[row]):
+            below = next((text for n in (row + 1, row + 2) if CLOCK.match(text := _cell(table, n, column))), None)
+            if below is not None and _is_time(cell):
+                where = f"{table.place(row)}: column '{cell[:40]}'"
+                raise InputError(f"{where} is a date or a clock, such as '{below[:40]}'; write seconds")
+
+
+def _cell(table: TextTable, row: int, column: int) -> str:
+    return table.cell(row, column) if row < len(table.rows) else ""
 
 
 def _time_column(table: TextTable, row: int) -> int | None:

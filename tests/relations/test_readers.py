@@ -258,6 +258,8 @@ def test_sequence_numbers_count_from_the_start(start, step, skipped, tmp_path):
         ("XINCREMENT,1e-3\nX,CH1\n0,1\n1,2\n", "its samples are 1 apart, and 'xincrement' above is 0.001 s"),
         ("# Sampling rate: 2 kHz\nTime,CH1\n0,1\n1,2\n", "and 'sampling rate' above is 0.0005 s"),
         ("Time,CH1 (V)\n45990.5,1\n45990.500001,2\n", "45990.5 may count days"),
+        ("Time,CH1 (V)\n2026-10-25T02:59:59.1+02:00,1\n", "column 'Time' is a date or a clock, such as '2026-10-25T02"),
+        ("Time;CH1\nhh:mm:ss;V\n23:59:59;1\n0:00:00;2\n", "column 'Time' is a date or a clock, such as '23:59:59'"),
         ("Time,CH1 (V)\n101558,1\n101559,2\n101600,3\n", "reads as a clock"),
         ("Time (s),CH1 (mV),CH2\n0,1,2\n", "column 'CH2' has no unit, and another voltage is not in V"),
         ("Length unit,mm\nTime,Load\n0,1\n", "column 'Load' has no unit"),
