@@ -123,6 +123,12 @@ def _seconds_between(first: Any, other: Any) -> float:
     return float(np.timedelta64(other - first) / np.timedelta64(1, "s"))
 
 
+def _clock_s(text: str) -> float:
+    """Of 10:15:30,5."""
+    hours, minutes, seconds = (float(part) for part in text.replace(",", ".").split(":"))
+    return 3600.0 * hours + 60.0 * minutes + seconds
+
+
 def _second(unit: str, file: Path) -> float:
     """What one of a unit is in seconds. InputError for none of time."""
     known = known_unit(unit or "s")
@@ -146,12 +152,12 @@ def lvm_log(file: Path, _asked: Mapping[str, str]) -> Arrays:
     along = {text for text in segment.get("X_Dimension", []) if text} - {"Time"}
     if along:
         raise InputError(f"'{file}': its samples are along {along.pop()}, not along time")
-    if len({text for text in segment.get("Time", []) if text}) > 1:
-        raise InputError(f"'{file}': its channels began at different times; save them apart")
     count = int(segment["Channels"])
     table = np.asarray(segment["data"], dtype=np.float64)
     if found.get("X_Columns", "One") == "No":
-        times = [x0 + step * np.arange(len(table)) for x0, step in zip(segment["X0"], segment["Delta_X"], strict=False)]
+        late = [_clock_s(text) for text in segment.get("Time", []) if text] or [0.0] * count
+        steps = zip(segment["X0"], segment["Delta_X"], late, strict=False)
+        times = [x0 + by - late[0] + step * np.arange(len(table)) for x0, step, by in steps]
         values, names = table, list(segment["Channel names"])
     else:
         times, values, names = [table[:, 0]] * count, table[:, 1:], list(segment["Channel names"])[1:]
@@ -191,9 +197,9 @@ def _logged(
 
 
 def _alike(time_s: Floats, other_s: Floats) -> bool:
-    """Within a hundredth of a step, which at a million seconds may be the last digit."""
+    """Within a tenth of a step, or what is left of digits at late times."""
     step = float(np.median(np.diff(time_s))) if len(time_s) > 1 else 1.0
-    return bool((np.abs(time_s - other_s) <= 0.01 * step + 4.0 * np.spacing(np.abs(time_s).max())).all())
+    return bool((np.abs(time_s - other_s) <= 0.1 * step + 4.0 * np.spacing(np.abs(time_s).max())).all())
 
 
 READERS: dict[str, Callable[[Path, Mapping[str, str]], Arrays]] = {

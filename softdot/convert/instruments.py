@@ -228,11 +228,11 @@ def _is_header(cells: Sequence[str], column: int, table: TextTable) -> bool:
 
 
 def _is_time(cell: str) -> bool:
-    """Whether a name, without its unit, is that of a time; a letter alone only where the unit is none of another."""
+    """Whether a name, without its unit, is that of a time; a letter alone, or in, only with a unit of time or none."""
     bare = re.sub(r"\s*[(\[{].*", "", cell.strip())
     parts = [bare, bare.rpartition("_")[0], bare.rpartition(",")[0], bare.rpartition("/")[0], bare.rpartition(" ")[0]]
     found = {part.strip() for part in parts if part.strip() and TIME.fullmatch(part.strip())}
-    if not found or max(map(len, found)) > 1:
+    if not found or max(map(len, found)) > 2:
         return bool(found)
     try:
         unit = split_name(cell, "")[1]

@@ -42,7 +42,9 @@ class Settings:
     def unit_of_channel(self, number: int, names: Sequence[str], where: str) -> str:
         """Of the channel with this number, by its name or place; empty where none is told. InputError."""
         stated = [(key, text) for key, text in self._told() if not _is_of_time(key, text)]
-        own = [(key, text) for key, text in self._of_quantities() if _is_of(names[number], text)]
+        others = self._of_quantities()
+        own = [one for one in others if names[number].lower() in one[0]]  # CH1 unit, Force unit
+        own = own or [one for one in others if _is_of(names[number], one[1])]
         told = [text for _, text in own or stated]
         each = {text.rpartition(":")[2].strip() for text in told}
         if len(each) < 2:

@@ -129,8 +129,8 @@ def _split(text: str, where: str) -> tuple[str, Unit | None]:
     if head and tail:
         return head, unit_of(tail, head, where)
     inside = re.fullmatch(r"(?:(.+)\s)?in (\S+)", text)  # of Rohde & Schwarz: in s,C1 in V
-    if inside and (unit := known_unit(inside[2], inside[1] or "")):
-        return inside[1] or "Time", unit
+    if inside and known_unit(inside[2], inside[1] or ""):
+        return inside[1] or text, known_unit(inside[2], inside[1] or "")
     for mark in "/_ ":
         head, _, tail = (part.strip() for part in text.rpartition(mark))
         if head and tail and (_is_meant(head, tail, mark) or (mark != " " and _is_current(head, tail))):

@@ -22,7 +22,7 @@ def recorded_voltages(path: Path, segments: int) -> Voltages:
         table = pd.read_csv(StringIO(read_text(path, "recording")), comment="#", skipinitialspace=True)
         columns = [str(name).strip() for name in table.columns]
         table.columns = columns
-        channels = [name for name in columns if name.startswith("voltage_") and name.endswith("_V")]
+        channels = [name for name in columns if name.startswith("voltage_")]  # voltage_1_V.1 is one that is there twice
         wanted = [f"voltage_{number}_V" for number in range(1, segments + 1)]
         if "time_s" not in columns:
             raise InputError(f"{where}: the column time_s is missing")
@@ -31,6 +31,8 @@ def recorded_voltages(path: Path, segments: int) -> Voltages:
             raise InputError(
                 f"{where}: has {len(channels)} channels, the kernel has {segments} segments; {lacking[0]} is missing"
             )
+        if len(channels) > segments:
+            raise InputError(f"{where}: has {len(channels)} channels, the kernel has {segments} segments")
         numbers = table[["time_s", *wanted]].to_numpy(dtype=np.float64)
     except (ValueError, pd.errors.ParserError) as error:
         raise InputError(f"{where}: cannot be read ({error})") from None

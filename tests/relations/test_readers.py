@@ -311,6 +311,8 @@ def test_a_time_in_what_is_not_known_is_not_in_seconds(mark, unit, tmp_path):
     [
         ("in ms,C1 in mV,C2 in V", "V", 1e-3, 2.0),
         ("millis,CH1 (mV),CH2 (V)", "V", 1e-3, 2.0),
+        ("Time (ms),in (mV),out (V)", "V", 1e-3, 2.0),
+        ("Time unit,ms\nCH1 unit,mV\nCH2 unit,V\nTime,CH2,CH1", "V", 1.0, 2e-3),
         ("Time(ms),CH1(mV),CH2(V),t0 =-1e-2, tInc = 1e-3,", "V", 1e-3, 2.0),
         ("Time unit,ms\nLength unit,um\nForce unit,kN\nTime,Force,Position", "N", 1e3, 2e-3),
         ("Time unit,ms\nTemperature unit,degC\nTrigger level unit,mV\nTime,CH1,CH2", "V", 1.0, 2.0),
