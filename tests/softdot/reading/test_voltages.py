@@ -9,6 +9,7 @@ from foundation.errors import InputError
 from geometry.braille_standards import standard
 from softdot.reading.decoders.templates import Posture, templates
 from softdot.reading.kernels import electronics_of
+from softdot.reading.recorded_file import recorded_voltages
 from softdot.reading.voltages import Reader, Voltages, behind_readout, charge_again_pC
 from solve.model import Readout
 from tests.cases import for_each
@@ -95,3 +96,12 @@ def test_voltages_are_the_sum_of_templates_where_dots_are_far_apart(kernel):
     assert np.abs(heard.voltage_V).max() == pytest.approx(np.abs(known.voltage_V).max(), rel=0.05)
     energy = float((heard.voltage_V**2).sum())
     assert energy == pytest.approx(float((known.voltage_V[:, [0, 2]] ** 2).sum()), rel=0.02)
+
+
+@for_each("beside", ["voltage_3_V", "voltage_1_V", "voltage_2_mV"])
+def test_a_recording_of_more_channels_than_segments_is_refused(beside, tmp_path):
+    """Of another array, of one column twice, or in two units."""
+    rows = "".join(f"{n},0,0,0\n" for n in range(60))
+    (tmp_path / "a.csv").write_text(f"time_s,voltage_1_V,voltage_2_V,{beside}\n{rows}", "utf-8")
+    with pytest.raises(InputError, match="has 3 channels, the kernel has 2 segments"):
+        recorded_voltages(tmp_path / "a.csv", 2)
