@@ -40,7 +40,7 @@ from solve.model import Model
 from solve.physics import declared_bonds
 from solve.readout.course import PressCourse
 from solve.result import PressResult
-from solve.solution.schedule import corners_s, duration_s, fraction
+from solve.solution.schedule import duration_s, largest_fraction
 from solve.symmetry import meshed_planes
 from solve.terms.rigid_dot import RigidDot
 from solve.validity import doubts
@@ -284,7 +284,7 @@ def _shallow_waveform(waveform: Waveform | None) -> list[str]:
     """A warning for a file that never reaches the whole depth or force, as one of millimetres does not."""
     if waveform is None or waveform.shape != "file":
         return []
-    largest = float(fraction(waveform, corners_s(waveform)).max())
+    largest = largest_fraction(waveform)
     if largest >= 1.0:
         return []
     return [

@@ -42,6 +42,11 @@ def read_recording(
 
     height_mm : of the segment, beyond which no dot goes in.
     """
+    files = [run.file for run in runs]
+    for number, file in enumerate(files):
+        if file in files[:number]:
+            where = f"recording '{folder / 'rig.toml'}': runs[{number}].file = '{file}'"
+            raise InputError(f"{where}: is that of runs[{files.index(file)}] too; samples that count twice hide noise")
     refuse_by_size(folder / run.file for run in runs)
     pairs = []
     for table, label, readout in zip(runs, distinct([run.name for run in runs]), readouts, strict=True):
@@ -52,12 +57,25 @@ def read_recording(
         pairs.append((run, path))
     travel_mm = np.inf if specimen is None else LARGEST_STRAIN * specimen.gauge_mm
     warnings = [sentence for run, path in pairs for sentence in suspicions(run, path, travel_mm)]
+    warnings += _copies(pairs)
     if specimen is None:
         warnings += [sentence for run, path in pairs for sentence in drive_suspicions(run, path)]
     new = [specimen is not None or number == 0 for number in range(len(runs))]
     told = [table.virgin if table.virgin is not None else usual for table, usual in zip(runs, new, strict=True)]
     ordered = one_after_the_other(replace(run, virgin=virgin) for (run, _), virgin in zip(pairs, told, strict=True))
     return Recording(tuple(ordered), specimen, tuple(warnings))
+
+
+def _copies(pairs: Sequence[tuple[Run, Path]]) -> list[str]:
+    """A sentence for each run whose samples are those of one before it."""
+    found: dict[bytes, Path] = {}
+    said = []
+    for run, path in pairs:
+        samples = b"".join(run.channels[name].tobytes() for name in sorted(run.channels))
+        if samples in found:
+            said.append(f"recording '{path}': has the samples of '{found[samples]}'; a copy is no repeat")
+        found.setdefault(samples, path)
+    return said
 
 
 def distinct(labels: Sequence[str]) -> list[str]:

@@ -386,6 +386,11 @@ def _beside_settings(table: TextTable) -> Layout:
     rows = (table.rows[n] for n in range(min(HEADER_ROWS, len(table.rows))))
     first = {cells[0].lower(): cells[1] for cells in rows if len(cells) > 1}
     where = table.place(0)
+    wide = next((n for n, cells in enumerate(table.rows) if any(cells[5:])), None)
+    if wide is not None:
+        raise InputError(
+            f"{table.place(wide)}, column 6 and beyond: several channels side by side; save each in a file"
+        )
     name = first.get("source", "") or "CH1"
     time = unit_of(first.get("horizontal units", "") or "s", "time", where)
     if time.base != "s":

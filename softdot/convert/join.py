@@ -92,7 +92,7 @@ def joined(logs: Sequence[NamedLog], named: Mapping[str, str], offsets_s: Sequen
                 "missing"
             )
         said.append(f"{column} is '{name}' of '{one.file.name}', a sample every {one.step_s:.3g} s")
-        if column in ("displacement_mm", "force_N") and one.step_s > COARSE * logs[main].step_s:
+        if column != "temperature_C" and one.step_s > COARSE * logs[main].step_s:
             warnings.append(_cost(column, one, values, logs[main].step_s, time))
     return JoinedRun(columns, said, warnings)
 
@@ -247,7 +247,7 @@ def _is_far(time_s: Floats, measured_s: Floats, widest_s: float) -> Bools:
 
 
 def _cost(column: str, one: NamedLog, values: Floats, step_s: float, time_s: Floats) -> str:
-    """What a coarse drive costs, by the same drive with half of its samples.
+    """What a coarse log costs, by the same log with half of its samples.
 
     The error of such a curve falls at least with the square of the step, that of its rate with the step; so what is
     seen at twice the step is four times, and twice, what the whole drive has. Its noise is counted in.
@@ -261,8 +261,8 @@ def _cost(column: str, one: NamedLog, values: Floats, step_s: float, time_s: Flo
     return (
         f"{column} has a sample every {one.step_s:.3g} s, {one.step_s / step_s:.3g} times as far apart as those of the "
         f"recording: between them it is off by about {100.0 * depth:.2g} % of its range and {100.0 * rate:.2g} % of "
-        "its rate, which the voltage follows; a diagnosis may take that for missing physics. Log the drive faster, or "
-        "press more slowly"
+        f"its rate{'' if column.startswith('voltage') else ', which the voltage follows'}; a diagnosis may take that "
+        "for missing physics. Log it faster, or press more slowly"
     )
 
 

@@ -36,6 +36,7 @@ RIGS = {
     GOOD + "[runs.noise]\nvoltage_V = 2.0": (
         "noise.voltage_V = 2 of the run 'press' is more than its whole range, 0.306; is it in another unit?"
     ),
+    GOOD + RUN: "runs[1].file = 'press.csv': is that of runs[0] too; samples that count twice hide noise",
     GOOD + "temperature_C = 296.0": "runs[0].temperature_C = 296: must be at most 150",
     GOOD + "dot_offset_mm = [0.0, -9.0]": (
         "dot_offset_mm = [0.0, -9.0] of the run 'press' is beside the segment of 2.5 mm x 2.5 mm"
@@ -158,6 +159,13 @@ def test_a_column_of_an_electrode_that_is_not_there_is_refused(tmp_path):
     columns["voltage_2_V"] = columns.pop("voltage_V")
     folder = write_rig(tmp_path / "rig", press=columns)
     assert refusal(folder).endswith("has voltage_2_V; electrodes are numbered from 1, so voltage_1_V")
+
+
+def test_a_copy_of_a_run_is_told(tmp_path):
+    rig = GOOD + RUN.replace("press", "b")
+    (said,) = load_rig(write_rig(tmp_path / "copy", rig, press=samples(), b=samples())).recording.warnings
+    assert said.endswith("a copy is no repeat")
+    assert load_rig(write_rig(tmp_path / "repeat", rig, press=samples(), b=samples(seed=1))).recording.warnings == ()
 
 
 def test_a_file_of_ten_gigabytes_is_refused_unread(tmp_path):

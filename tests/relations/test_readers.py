@@ -172,6 +172,16 @@ def test_units_of_an_oscilloscope_change_no_column(make, time, unit, tmp_path):
         assert found[name] == pytest.approx(values, rel=1e-9)
 
 
+def test_channels_side_by_side_are_not_lost(tmp_path):
+    rows = [f"{word},,{n},{n}" for n, word in enumerate(("Record Length,3", "Source,CH1", "Vertical Units,V"))]
+    for beside in ("", ","):  # a trailing comma is none
+        (tmp_path / "tek.csv").write_text("".join(f"{row}{beside}\n" for row in rows), "utf-8")
+        assert list(read_oscilloscope(tmp_path / "tek.csv")) == ["time_s", "CH1"]
+    (tmp_path / "tek.csv").write_text("".join(f"{row},,{row}\n" for row in rows), "utf-8")
+    with pytest.raises(InputError, match="row 1, column 6 and beyond: several channels side by side"):
+        read_oscilloscope(tmp_path / "tek.csv")
+
+
 @ON_DISK
 @given(time=st.sampled_from(list(TIMES)), unit=st.sampled_from(list(VOLTS)))
 def test_units_beside_samples_change_no_column(time, unit, tmp_path):
