@@ -65,7 +65,7 @@ def joined(logs: Sequence[NamedLog], named: Mapping[str, str], offsets_s: Sequen
         if len(one.log.time_s) < FEWEST:
             raise InputError(f"'{one.file}': has {len(one.log.time_s)} samples, at least {FEWEST} are needed")
     places, shared = _columns(logs, named, align)
-    logs, said = _on_one_clock(logs, offsets_s, align, shared)
+    logs, said, warnings = _on_one_clock(logs, offsets_s, align, shared)
     main = min(range(len(logs)), key=lambda n: (not _has_voltage(n, places), logs[n].step_s))
     start = max(float(one.log.time_s[0]) for one in logs)
     end = min(float(one.log.time_s[-1]) for one in logs)
@@ -78,7 +78,6 @@ def joined(logs: Sequence[NamedLog], named: Mapping[str, str], offsets_s: Sequen
             "samples; state by --offset how much later each clock began"
         )
     columns = {"time_s": time}
-    warnings = []
     for column, (number, name) in places.items():
         one = logs[number]
         values = one.log.channels[name].values
@@ -159,8 +158,8 @@ def _has_voltage(number: int, places: Mapping[str, tuple[int, str]]) -> bool:
 
 def _on_one_clock(
     logs: Sequence[NamedLog], offsets_s: Sequence[float], align: bool, shared: Mapping[int, str]
-) -> tuple[list[NamedLog], list[str]]:
-    """The logs by the clock of the first, and how that is known. InputError."""
+) -> tuple[list[NamedLog], list[str], list[str]]:
+    """The logs by the clock of the first, how that is known, and warnings. InputError."""
     first, *others = logs
     if align and offsets_s:
         raise InputError("--offset: is found by --align; give one of them")
@@ -170,19 +169,24 @@ def _on_one_clock(
         )
     if offsets_s:
         moved = [one.shifted(by) for one, by in zip(others, offsets_s, strict=True)]
-        return [first, *moved], [f"'{one.file.name}' begins at {one.log.time_s[0]:.6g} s, as stated" for one in moved]
+        told = [f"'{one.file.name}' begins at {one.log.time_s[0]:.6g} s, as stated" for one in moved]
+        return [first, *moved], told, []
     if not align:
-        return list(logs), ["all clocks are taken as started by one trigger"] if others else []
-    moved, said = [], []
+        return list(logs), ["all clocks are taken as started by one trigger"] if others else [], []
+    moved, said, warnings = [], [], []
     for number, one in enumerate(others, 1):
-        by, told = _lag(first, one, shared[number])
+        by, found, drift = _lag(first, one, shared[number])
         moved.append(one.shifted(by))
-        said.append(told)
-    return [first, *moved], said
+        said.append(found)
+        warnings += drift
+    return [first, *moved], said, warnings
 
 
-def _lag(first: NamedLog, other: NamedLog, channel: str) -> tuple[float, str]:
-    """What is added to the times of another log, by the channel that it shares with the first. InputError."""
+def _lag(first: NamedLog, other: NamedLog, channel: str) -> tuple[float, str, list[str]]:
+    """What is added to the times of another log, by the channel that it shares with the first; how, and warnings.
+
+    InputError where the two do not run alike.
+    """
     unit = other.log.channels[channel].unit
     own = _of_unit(first, unit)
     assert own is not None
@@ -200,31 +204,30 @@ def _lag(first: NamedLog, other: NamedLog, channel: str) -> tuple[float, str]:
         raise InputError(
             f"--align: '{own}' and '{channel}' do not run alike (correlation {found.correlation:.2f}); state --offset"
         )
-    _refuse_drift(even, found, step, f"--align: '{own}' and '{channel}'")
     by = float(first.log.time_s[0] - other.log.time_s[0]) - found.lag_s
     told = (
         f"'{other.file.name}' is moved by {by:.6g} s, standard error {found.sigma_s:.2g} s, by '{channel}' and '{own}'"
     )
-    return by, told
+    return by, told, _drift(even, found, step, f"'{other.file.name}': ")
 
 
-def _refuse_drift(even: Sequence[Floats], found: Lag, step_s: float, where: str) -> None:
-    """InputError where the second half of two signals (t,), once aligned, asks for another lag than the first."""
+def _drift(even: Sequence[Floats], found: Lag, step_s: float, where: str) -> list[str]:
+    """A warning where the second half of two signals (t,), once aligned, asks for another lag than the first."""
     late = round(found.lag_s / step_s)
     first, other = even[0][max(-late, 0) :], even[1][max(late, 0) :]
     count = min(len(first), len(other))
     try:
         halves = [lag_between(first[at], other[at], step_s) for at in (slice(0, count // 2), slice(count // 2, count))]
     except (ValueError, np.linalg.LinAlgError):
-        return
+        return []
     apart = halves[1].lag_s - halves[0].lag_s
-    if all(half.correlation > ALIKE for half in halves) and (
-        abs(apart) > max(5.0 * np.hypot(halves[0].sigma_s, halves[1].sigma_s), step_s)
-    ):
-        raise InputError(
-            f"{where} drift apart by {apart:.3g} s from the first half to the second: one clock runs faster; log both "
-            "by one clock"
-        )
+    sure = max(5.0 * np.hypot(halves[0].sigma_s, halves[1].sigma_s), step_s)
+    if abs(apart) < sure or not all(half.correlation > ALIKE for half in halves):
+        return []
+    return [
+        f"{where}its lag changes by {apart:.3g} s from the first half to the second, so one clock runs faster by about "
+        f"{abs(apart) / (0.5 * count * step_s):.2g}; log both by one clock, or state clock_ratio under [runs.nuisance]"
+    ]
 
 
 def _at(time_s: Floats, given_s: Floats, values: Floats) -> Floats:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from foundation.errors import InputError
 from softdot.convert.text_table import NUMBER, TextTable
-from softdot.convert.units import QUANTITIES, known_unit
+from softdot.convert.units import CURRENT, QUANTITIES, known_unit
 
 INTERVAL = re.compile(
     r"(?:sampl\w*[ _]*|time[ _]*|[xht][ _]*)?(?:interval|period|incr\w*|resolution)|"
@@ -63,13 +63,13 @@ class Settings:
         return told[number]
 
     def _told(self) -> list[tuple[str, str]]:
-        """Key and text of every unit that a setting states, known or not; a unit with a number is a device."""
+        """Key and text of every unit that a setting states, known or not."""
         return [
             (key, text)
             for key, texts in self.values.items()
             if (found := UNIT_KEY.fullmatch(key))
             for text in texts
-            if found[0] not in ("unit", "units") or "/" in text or not re.search(r"\d", text.rpartition(":")[2])
+            if found[0] not in ("unit", "units") or _is_unit(text, texts)
         ]
 
     def _of_quantities(self) -> list[tuple[str, str]]:
@@ -95,6 +95,13 @@ class Settings:
                 if seconds is not None:
                     return key, seconds
         return None
+
+
+def _is_unit(text: str, texts: Sequence[str]) -> bool:
+    """Whether a text behind Unit is one, and no device or system of units."""
+    if any(known_unit(one.rpartition(":")[2]) for one in texts):
+        return not re.search(r"\d", text.rpartition(":")[2])
+    return "/" in text or CURRENT.fullmatch(text) is not None
 
 
 def _is_of_time(key: str, text: str) -> bool:

@@ -274,6 +274,8 @@ def test_sequence_numbers_count_from_the_start(start, step, skipped, tmp_path):
         ("Time (s),CH1 (mV),CH2\n0,1,2\n", "column 'CH2' has no unit, and another voltage is not in V"),
         ("Length unit,mm\nTime,Load\n0,1\n", "column 'Load' has no unit"),
         ("XUnit,Hz\nYUnit,V\nX,CH1\n0,1\n", "column 'X' is in 'Hz', which is not a known unit"),
+        ("Units,s,counts\nTime,CH1\n0,1\n", "column 'CH1' is in 'counts', which is not a known unit"),
+        ("Unit,A\nTime,CH1\n0,1\n", "column 'CH1' is in 'A', a current"),
         ("Y Units,counts\nTime,CH1\n0,1\n", "column 'CH1' is in 'counts', which is not a known unit"),
         ("Horizontal Units,s\nTime unit,ms\nTime,CH1\n0,1\n", "column 'Time' has two units"),
         ("Sampling rate (Hz),1000\nTime,CH1\n0,1\n1,2\n", "and 'sampling rate' above is 0.001 s"),
@@ -327,6 +329,7 @@ def test_a_time_in_what_is_not_known_is_not_in_seconds(mark, unit, tmp_path):
         ("Time unit,ms\nLength unit,um\nForce unit,kN\nTime,Force,Position", "N", 1e3, 2e-3),
         ("Time unit,ms\nTemperature unit,degC\nTrigger level unit,mV\nTime,CH1,CH2", "V", 1.0, 2.0),
         ("Delay unit,us\nTime unit,ms\nUnit under test,m\nTime,CH1,CH2", "V", 1.0, 2.0),
+        ("Units,SI\nUnit,MSO24\nTime (ms),CH1 (V),CH2 (V)", "V", 1.0, 2.0),
         ("Time unit,ms\nSource,CH2,CH1\nVertical Units,mV,V\nTime,CH1,CH2", "V", 1.0, 2e-3),
     ],
 )
