@@ -20,6 +20,7 @@ UNIT_KEY = re.compile(
     r"(?:units?|einheit(?:en)?)"
 )
 """Settings that say the unit of the time, or of any channel."""
+OF_NO_SAMPLES = re.compile(r"trigger|offset|delay|level|limit|range|scale|display")
 PER_SECOND = {"": 1.0, "k": 1e3, "m": 1e6, "g": 1e9}
 
 
@@ -43,7 +44,8 @@ class Settings:
         """Of the channel with this number, by its name or place; empty where none is told. InputError."""
         stated = [(key, text) for key, text in self._told() if not _is_of_time(key, text)]
         others = self._of_quantities()
-        own = [one for one in others if names[number].lower() in one[0]]  # CH1 unit, Force unit
+        named = re.compile(rf"(?<!\w){re.escape(names[number].lower())}(?!\w)")  # CH1 unit, Force unit
+        own = [one for one in others if named.search(one[0])]
         own = own or [one for one in others if _is_of(names[number], one[1])]
         told = [text for _, text in own or stated]
         each = {text.rpartition(":")[2].strip() for text in told}
@@ -77,7 +79,7 @@ class Settings:
         return [
             (key, text)
             for key, texts in self.values.items()
-            if ("unit" in key or "einheit" in key) and not UNIT_KEY.fullmatch(key)
+            if ("unit" in key or "einheit" in key) and not UNIT_KEY.fullmatch(key) and not OF_NO_SAMPLES.search(key)
             for text in texts
             if _is_of(key, text)
         ]
