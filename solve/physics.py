@@ -1,17 +1,14 @@
 """Physics beyond the baseline, as the solver needs it. Every default is off and restores the baseline exactly."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TypeVar
 
 from geometry.parameters import Segment
+from solve.added import Added
 from solve.materials.mullins import Softening
 from solve.materials.prony import Prony
 from solve.readout.stages import Stage
-from solve.terms.guide import GuideFriction
-
-if TYPE_CHECKING:
-    pass
 
 
 @dataclass(frozen=True)
@@ -41,24 +38,15 @@ class Yield:
 
 
 @dataclass(frozen=True)
-class Pyroelectric:
-    """A temperature of the film that approaches temperature_step_K with time_constant_s."""
-
-    temperature_step_K: float = 0.0
-    time_constant_s: float = 1.0
-
-
-@dataclass(frozen=True)
 class Physics:
     """What acts on the segment besides the baseline.
 
     viscosity : layer or bond -> Prony series; softening : medium -> law (stress scale in MPa).
     bonds : bond -> stiffness. friction : Coulomb coefficient between dot and surface.
     rig_compliance_mm_per_N lies between the displacement sensor and the dot, moving_mass_g between the force sensor
-    and the dot; guide rubs where the displacement sensor is, and the force sensor carries it. prestretch : nominal
-    strain of the film in x and y. contact_charge_pC : charge that the dot leaves on the electrodes, all of it at the
-    largest contact area, before that by a power of the area. electronics : stages of the amplifier beside those of the
-    read-out. crosstalk : channel (from 1) -> share of the other channels' voltage.
+    and the dot. prestretch : nominal strain of the film in x and y. added : what is added to a trace afterwards.
+    electronics : stages of the amplifier beside those of the read-out. crosstalk : channel (from 1) -> share of the
+    other channels' voltage.
     mutual_pF : two channels -> capacitance between their inputs; channel_leak_uS : channel -> conductance parallel to
     its input; channel_electronics : channel -> stages beside those of all. They need an amplifier for each electrode.
     separate_channels : each electrode is on an amplifier of its own, against a common ground, where voltages act back
@@ -73,11 +61,8 @@ class Physics:
     friction: float = 0.0
     rig_compliance_mm_per_N: float = 0.0
     moving_mass_g: float = 0.0
-    guide: GuideFriction = field(default_factory=GuideFriction)
     prestretch: tuple[float, float] = (0.0, 0.0)
-    pyroelectric: Pyroelectric = Pyroelectric()
-    contact_charge_pC: float = 0.0
-    contact_charge_exponent: float = 1.0
+    added: tuple[Added, ...] = ()
     electronics: tuple[Stage, ...] = ()
     crosstalk: Mapping[int, float] = field(default_factory=dict)
     mutual_pF: Mapping[tuple[int, int], float] = field(default_factory=dict)
@@ -104,9 +89,16 @@ class Physics:
             or self.film_yield
             or self.friction > 0.0
             or self.moving_mass_g > 0.0
-            or self.guide.forces_N
-            or self.pyroelectric.temperature_step_K != 0.0
+            or any(one.follows_time for one in self.added)
         )
+
+
+Part = TypeVar("Part")
+
+
+def like(parts: Iterable[object], default: Part) -> Part:
+    """The first of the parts that is of the same kind as the default, which it is where there is none."""
+    return next((one for one in parts if type(one) is type(default)), default)
 
 
 def declared_bonds(segment: Segment) -> dict[str, BondLine]:

@@ -14,13 +14,13 @@ from foundation.arrays import Floats
 from geometry.parameters import Segment
 from mesh.symmetry import mirrored_mesh
 from mesh.types import TetMesh
+from solve.added import Motion, added_charge_C, added_force_N
 from solve.convergence_warnings import doubtful_results
 from solve.fields import fields
 from solve.film_means import film_peak
 from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.model import Press
 from solve.physics import Physics
-from solve.readout.amplifier import other_charge_C
 from solve.result import PressResult, Record, Step, Trace
 from solve.solution.schedule import first_reached_s, fraction
 from solve.system import State, System
@@ -40,6 +40,16 @@ def prescribed_acceleration(press: Press, trace: Trace) -> Floats:
     depth = 1e-3 * press.depth_mm
     before, now, after = (fraction(waveform, time + shift) for shift in (-h, 0.0, h))
     return np.asarray(depth * (after - 2.0 * now + before) / h**2)
+
+
+def prescribed_velocity(press: Press, trace: Trace) -> Floats:
+    """First derivative (t,) of the prescribed path in m/s, by central differences as of prescribed_acceleration."""
+    waveform, time = press.waveform or Waveform(), trace.time_s
+    if len(time) < 2:
+        return np.zeros_like(time)
+    h = float(np.diff(time).min())
+    before, after = (fraction(waveform, time + shift) for shift in (-h, h))
+    return np.asarray(1e-3 * press.depth_mm * (after - before) / (2.0 * h))
 
 
 class Recorder:
@@ -188,9 +198,19 @@ class Recorder:
         return -float(self.system.dot_force(trial)[2]) if rig is None else rig.drive_force(trial)
 
     def trace(self, press: Press) -> Trace:
-        """All that was recorded, with the forces of moving mass and guide and the charge of heat and touch."""
-        trace = self._with_guide(self._with_inertia(self._trace(), press))
-        return replace(trace, film_charge_C=trace.film_charge_C + self._other_charge(trace))
+        """All that was recorded, with the force of a moving mass and all that the physics adds."""
+        trace = self._with_inertia(self._trace(), press)
+        motion = Motion(
+            1e3 * trace.indentation_m,
+            lambda: 1e3 * prescribed_velocity(press, trace),
+            lambda: 1e3 * prescribed_acceleration(press, trace),
+        )
+        added_N = added_force_N(self.physics.added, motion, dot_is_free=self.system.rig is not None)
+        return replace(
+            trace,
+            reaction_force_N=trace.reaction_force_N + added_N,
+            film_charge_C=trace.film_charge_C + self._added_charge(trace),
+        )
 
     def _trace(self) -> Trace:
         return Trace(
@@ -211,13 +231,8 @@ class Recorder:
         force = trace.reaction_force_N + 1e-3 * self.physics.moving_mass_g * acceleration
         return replace(trace, reaction_force_N=force)
 
-    def _with_guide(self, trace: Trace) -> Trace:
-        """The force sensor also carries what rubs beside the segment; its displacement sensor tells the path."""
-        rubbing_N = self.physics.guide.felt_N(1e3 * trace.indentation_m)
-        return replace(trace, reaction_force_N=trace.reaction_force_N + rubbing_N)
-
-    def _other_charge(self, trace: Trace) -> Floats:
-        """Charge of heat and of the touch, (t, e) in C."""
+    def _added_charge(self, trace: Trace) -> Floats:
+        """Charge that is not of the strain, (t, e) in C."""
         assert isinstance(self.film, PiezoelectricFilm)
         constant = self.film.pyroelectric_uC_per_m2_K
-        return other_charge_C(trace.time_s, trace.contact_area_m2, self.electrode_area_m2, constant, self.physics)
+        return added_charge_C(self.physics.added, trace.time_s, trace.contact_area_m2, self.electrode_area_m2, constant)

@@ -1,4 +1,4 @@
-"""Acceleration of a measured path: in second differences the noise of its column would drown it.
+"""Speed and acceleration of a measured path: in differences the noise of its column would drown them.
 
 A quintic smoothing spline with as few knots as leave a residual of the root mean square of that noise (Dierckx, Curve
 and Surface Fitting with Splines, 1993, chapter 5).
@@ -16,25 +16,34 @@ from foundation.arrays import Floats
 from solve.reduced.recording import second_differences
 
 DEGREE = 5  # its second derivative is smooth
-NEGLIGIBLE = 0.01  # of the root mean square of second differences, what noise makes of them
+NEGLIGIBLE = 0.01  # of the root mean square of differences, what noise makes of them
 ORDER = 6  # of differences in which a smooth motion hardly shows
 FEWEST = 4 * ORDER
 
 
 def acceleration_mm_per_s2(time_s: Floats, path_mm: Floats) -> Floats:
     """Second derivative (t,) of a path (t,) in mm: by differences where their noise is too small to matter."""
-    raw = second_differences(time_s, path_mm)
+    return _derivative(time_s, path_mm, 2, second_differences(time_s, path_mm), np.sqrt(comb(4, 2)))
+
+
+def velocity_mm_per_s(time_s: Floats, path_mm: Floats) -> Floats:
+    """First derivative (t,) of a path (t,) in mm, in the same way."""
+    return _derivative(time_s, path_mm, 1, np.gradient(path_mm, time_s), np.sqrt(0.5))
+
+
+def _derivative(time_s: Floats, path_mm: Floats, order: int, raw: Floats, grown: float) -> Floats:
+    """raw : by differences, which make of a noise of 1 that of grown over the step to the power of the order."""
     if len(path_mm) < FEWEST:
         return raw
     noise = noise_mm(path_mm)
-    of_raw = np.sqrt(comb(4, 2)) * noise / float(np.median(np.diff(time_s))) ** 2
+    of_raw = grown * noise / float(np.median(np.diff(time_s))) ** order
     if of_raw <= NEGLIGIBLE * float(np.sqrt(np.mean(raw**2))):
         return raw
     largest = len(path_mm) + np.sqrt(2.0 * len(path_mm))  # of its range by chance: noise is no motion
     with catch_warnings():
         simplefilter("ignore")  # where no knots meet that residual exactly, it gives those that come near
         spline = UnivariateSpline(time_s, path_mm, k=DEGREE, s=largest * noise**2)
-    return np.asarray(spline.derivative(2)(time_s))
+    return np.asarray(spline.derivative(order)(time_s))
 
 
 def noise_mm(path_mm: Floats) -> float:

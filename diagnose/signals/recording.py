@@ -12,7 +12,7 @@ import numpy as np
 from pydantic import Field, field_validator
 from scipy.ndimage import median_filter
 
-from diagnose.signals.acceleration import acceleration_mm_per_s2
+from diagnose.signals.acceleration import acceleration_mm_per_s2, velocity_mm_per_s
 from diagnose.signals.phases import Segmentation, segmented
 from foundation.arrays import Bools, Floats
 from foundation.nearest_name import nearest_name_hint
@@ -185,7 +185,8 @@ class Run:
     readout : the amplifier of this run as rig.toml states it; None for open circuit.
     nuisance : what may float without counting as physics -> one-sigma width.
     noise : channel -> one sigma of its white noise, where the experimenter states it.
-    accelerated : acceleration of the drive in mm/s2, where it is known better than from a path that was measured.
+    moving, accelerated : velocity (mm/s) and acceleration (mm/s2) of the drive, where they are known better than from
+    a path that was measured.
     virgin : whether a new specimen begins with it.
     largest_before : drive -> its largest value in earlier runs of the same specimen at this place, which stress
     softening and yield remember.
@@ -204,15 +205,19 @@ class Run:
     readout: Readout | None = None
     nuisance: Mapping[str, float] = field(default_factory=dict)
     noise: Mapping[str, float] = field(default_factory=dict)
+    moving: Floats | None = None
     accelerated: Floats | None = None
     virgin: bool = True
     largest_before: Mapping[Drive, float] = field(default_factory=dict)
 
     def along(self, drive: Floats) -> "Run":
         """The same run along another drive (t,); what was added to the one that was measured has no noise."""
-        more = second_differences(self.time_s, drive - self.drive_values)
-        accelerated = self.acceleration_mm_per_s2 + more if self.drive == "displacement_mm" else None
-        return replace(self, channels={**self.channels, self.drive: drive}, accelerated=accelerated)
+        channels, more = {**self.channels, self.drive: drive}, drive - self.drive_values
+        if self.drive != "displacement_mm":
+            return replace(self, channels=channels, moving=None, accelerated=None)
+        moving = self.velocity_mm_per_s + np.gradient(more, self.time_s)
+        accelerated = self.acceleration_mm_per_s2 + second_differences(self.time_s, more)
+        return replace(self, channels=channels, moving=moving, accelerated=accelerated)
 
     @property
     def drive_values(self) -> Floats:
@@ -237,6 +242,11 @@ class Run:
     def pieces(self) -> tuple[slice, ...]:
         """Stretches of even sampling: a gap in time or another rate begins a new one."""
         return even_pieces(self.time_s)
+
+    @cached_property
+    def velocity_mm_per_s(self) -> Floats:
+        """Of the drive, (t,), where it is a displacement."""
+        return velocity_mm_per_s(self.time_s, self.drive_values) if self.moving is None else self.moving
 
     @cached_property
     def acceleration_mm_per_s2(self) -> Floats:

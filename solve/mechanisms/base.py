@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations
 from re import findall
-from typing import Annotated, Any
+from typing import Annotated, Any, Protocol, TypeVar
 
 from pydantic import Field, field_validator
 from pydantic_core import PydanticCustomError
@@ -20,6 +20,17 @@ CHANNEL_PAIRS = tuple(f"{one}-{other}" for one, other in combinations(CHANNELS, 
 Strain = Annotated[float, Field(gt=-0.2, lt=0.2, allow_inf_nan=False)]
 Moduli = tuple[Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False)], ...]
 Terms = tuple[Finite, ...]
+
+
+class CanBeOff(Protocol):
+    """A part of the physics that knows its own off value."""
+
+    @property
+    def is_off(self) -> bool:
+        """Whether its values change nothing."""
+
+
+Part = TypeVar("Part", bound=CanBeOff)
 
 
 def channels_of(component: str) -> tuple[int, ...]:
@@ -121,6 +132,12 @@ def register(mechanism: MechanismType) -> MechanismType:
 def with_physics(model: Model, **changes: Any) -> Model:
     """The model with other physics beyond the baseline."""
     return replace(model, physics=replace(model.physics, **changes))
+
+
+def in_place(parts: tuple[Part, ...], new: Part) -> tuple[Part, ...]:
+    """The parts with a new one in place of another of its kind, without any where the new one is off."""
+    others = tuple(one for one in parts if type(one) is not type(new))
+    return others if new.is_off else (*others, new)
 
 
 def with_readout(model: Model, **changes: Any) -> Model:

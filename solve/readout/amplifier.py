@@ -1,4 +1,4 @@
-"""From the charge of the film, the press's own and that of heat and touch, to the voltage that is recorded.
+"""From the charge of the film to the voltage that is recorded.
 
 Voltage mode: the film, a charge source with capacitance C_f, drives R parallel to C_f + C_in:
     (C_f + C_in) V' = Q' - V / R
@@ -12,7 +12,7 @@ import numpy as np
 from foundation.arrays import Floats
 from solve.decay import mean_decay
 from solve.model import Readout
-from solve.physics import Physics, Pyroelectric
+from solve.physics import Physics
 from solve.readout.filters import Filter
 from solve.readout.stages import Saturation, Stage
 
@@ -83,25 +83,6 @@ def curved_integral(time: Floats, charge: Floats, capacitance: float, resistance
             gained = rise * steps * first + 2.0 * bend * steps**2 * second
             voltage[n + steps] = np.exp(-decay) * voltage[n] + gained / capacitance
     return voltage
-
-
-def warming_K(time_s: Floats, heat: Pyroelectric) -> Floats:
-    """Change of the film's temperature (t,) since the first touch at time zero: dT (1 - exp(-t / tau)), none before."""
-    return np.asarray(-heat.temperature_step_K * np.expm1(-np.maximum(time_s, 0.0) / heat.time_constant_s))
-
-
-def other_charge_C(
-    time_s: Floats, contact_area: Floats, electrode_area_m2: Floats, pyroelectric_uC_per_m2_K: float, physics: Physics
-) -> Floats:
-    """Charge (t, e) in C of heat, p A dT, and of the touch, by a power of the contact area (t,) so far.
-
-    The touch leaves contact_charge_pC at the largest contact area, shared by the electrodes (e,) as their areas are.
-    """
-    share = electrode_area_m2 / electrode_area_m2.sum()
-    heat = 1e-6 * pyroelectric_uC_per_m2_K * warming_K(time_s, physics.pyroelectric)[:, None] * electrode_area_m2
-    touched = contact_area / max(float(contact_area.max()), 1e-300)
-    touch = 1e-12 * physics.contact_charge_pC * touched**physics.contact_charge_exponent
-    return np.asarray(heat + touch[:, None] * share)
 
 
 def mixed_channels(alone: Floats, physics: Physics) -> Floats:

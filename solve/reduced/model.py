@@ -7,9 +7,10 @@ from functools import partial
 import numpy as np
 
 from foundation.arrays import Floats
+from solve.added import Motion, added_charge_C
 from solve.model import Readout
 from solve.physics import Physics
-from solve.readout.amplifier import amplify, input_of, other_charge_C, stages
+from solve.readout.amplifier import amplify, input_of, stages
 from solve.reduced.fit import CELLS, ResponseTable
 from solve.reduced.recording import branches, given, second_differences, sensed
 from solve.reduced.response import Accuracy, ErrorBound, Raw, ReducedResponse
@@ -55,10 +56,10 @@ class ReducedModel:
         self._refuse(physics)
         time, drive, kind = given(time_s, depth_mm, force_N, gap_mm)
         path, outputs = self._follow(time, drive, kind, physics)
-        accelerated = partial(second_differences, time, drive)
-        force = sensed(drive, kind, path, outputs[:, 0], physics, accelerated)
+        motion = Motion(drive, partial(np.gradient, drive, time), partial(second_differences, time, drive))
+        force = sensed(drive, kind, path, outputs[:, 0], physics, motion)
         area, constant = self.film[:, 1], self.pyroelectric_uC_per_m2_K
-        each = outputs[:, 2:] + other_charge_C(time, outputs[:, 1], area, constant, physics)
+        each = outputs[:, 2:] + added_charge_C(physics.added, time, outputs[:, 1], area, constant)
         wired = np.ones(len(self.film)) if wired is None else np.asarray(wired, dtype=np.float64)
         charge, capacitance = each @ wired, float(self.film[:, 0] @ wired)
         voltage = amplify(time, charge, capacitance, readout, physics)

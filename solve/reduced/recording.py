@@ -1,10 +1,11 @@
 """A recording as the reduced model's kernel takes it, and what the force sensor reads in the end."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
 from foundation.arrays import Floats, Ints
+from solve.added import Motion, added_force_N
 from solve.materials.prony import Prony
 from solve.physics import Physics
 from solve.reduced.time_stepping import BY_DEPTH, BY_FORCE
@@ -35,28 +36,23 @@ def branches(viscosity: Mapping[str, Prony], layers: tuple[str, ...]) -> tuple[F
     return table[:, 0].copy(), table[:, 1].copy(), table[:, 2].astype(np.int64)
 
 
-Accelerated = Callable[[], Floats]
-"""Acceleration (t,) of a path in mm/s2, calculated where a mass feels it."""
+def sensed(drive: Floats, kind: int, path: Floats, contact: Floats, physics: Physics, motion: Motion) -> Floats:
+    """What the force sensor reads (t,): the force that drives, that of the rig's spring, or as felt.
 
-
-def sensed(
-    drive: Floats, kind: int, path: Floats, contact: Floats, physics: Physics, accelerated: Accelerated
-) -> Floats:
-    """What the force sensor reads (t,): the force that drives, that of the rig's spring, or F_contact + m a''.
-
-    A guide adds its friction to either of the latter. accelerated : the drive.
+    To the force of the spring comes what the physics adds. motion : the drive.
     """
     if kind == BY_FORCE:
         return drive.copy()
     if physics.rig_compliance_mm_per_N > 0.0:
-        return np.asarray((drive - path) / physics.rig_compliance_mm_per_N + physics.guide.felt_N(drive))
-    return felt(drive, contact, physics, accelerated)
+        spring = (drive - path) / physics.rig_compliance_mm_per_N
+        return np.asarray(spring + added_force_N(physics.added, motion, dot_is_free=True))
+    return felt(contact, physics, motion)
 
 
-def felt(depth: Floats, force: Floats, physics: Physics, accelerated: Accelerated) -> Floats:
-    """Force (t,) with those of a mass and a guide which move along a path (t,) in mm: F + m a'' + f."""
-    total = force + physics.guide.felt_N(depth)
-    return total + 1e-6 * physics.moving_mass_g * accelerated() if physics.moving_mass_g > 0.0 else total
+def felt(force: Floats, physics: Physics, motion: Motion) -> Floats:
+    """Force (t,) with that of a moving mass and all that the physics adds along a path: F + m a'' + f."""
+    total = np.asarray(force + added_force_N(physics.added, motion, dot_is_free=False))
+    return total + 1e-6 * physics.moving_mass_g * motion.acceleration() if physics.moving_mass_g > 0.0 else total
 
 
 def second_differences(time: Floats, path: Floats) -> Floats:

@@ -12,14 +12,25 @@ import numba as nb
 import numpy as np
 
 from foundation.arrays import Floats
+from solve.added import Added, Motion
 
 
 @dataclass(frozen=True)
-class GuideFriction:
+class GuideFriction(Added):
     """Coulomb's forces of sliders side by side, and the travel at which each slips after it was at rest."""
 
     forces_N: tuple[float, ...] = ()
     presliding_mm: tuple[float, ...] = ()
+    follows_time = True
+
+    @property
+    def is_off(self) -> bool:
+        """No slider has a force."""
+        return not any(self.forces_N)
+
+    def force_N(self, motion: Motion) -> Floats:
+        """What its sliders rub."""
+        return self.felt_N(motion.path_mm)
 
     def felt_N(self, path_mm: Floats) -> Floats:
         """Force (t,) in N against motion along a path (t,) in mm, none at its first point."""

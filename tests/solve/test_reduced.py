@@ -5,14 +5,13 @@ dot first touches, and its elastic amplitude is s = max(u, M). Closed forms of t
 and Onaran, Creep and Relaxation of Nonlinear Viscoelastic Materials, 1976, ch. 5.
 """
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from solve.materials.prony import Prony
 from solve.model import Readout
 from solve.physics import Physics
+from solve.readout.heat_and_touch import ContactCharge, Pyroelectric
 from solve.reduced import cache
 from solve.reduced.fit import CELLS, ResponseTable
 from solve.reduced.model import ReducedModel, structure
@@ -126,8 +125,8 @@ def test_a_prescribed_path_adds_the_force_of_the_mass():
 def test_a_guide_rubs_where_the_rig_travels_and_the_dot_feels_nothing(compliance):
     """0.3 N more on the way in and less on the way out, once it has slipped after 0.02 mm."""
     depth = 0.2 * (1.0 - np.abs(np.linspace(-1.0, 1.0, 401)))
-    rubs, smooth = GuideFriction((0.3,), (0.02,)), GuideFriction()
-    rigs = (Physics(rig_compliance_mm_per_N=compliance, guide=guide) for guide in (rubs, smooth))
+    rubs = GuideFriction((0.3,), (0.02,))
+    rigs = (Physics(rig_compliance_mm_per_N=compliance, added=added) for added in ((rubs,), ()))
     rubbing, plain = (solid().respond(np.linspace(0.0, 2.0, 401), depth, rig) for rig in rigs)
     extra = rubbing.force_N - plain.force_N
     np.testing.assert_allclose(extra[21:201], 0.3, rtol=1e-9)
@@ -138,8 +137,7 @@ def test_a_guide_rubs_where_the_rig_travels_and_the_dot_feels_nothing(compliance
 def test_heat_and_touch_add_their_charge():
     """p A dT (1 - exp(-t / tau)) and the touch's charge."""
     time = np.linspace(0.0, 1.0, 101)
-    heat = replace(Physics().pyroelectric, temperature_step_K=0.05, time_constant_s=0.4)
-    answer = solid().respond(time, 0.4 * time, Physics(pyroelectric=heat, contact_charge_pC=5.0))
+    answer = solid().respond(time, 0.4 * time, Physics(added=(Pyroelectric(0.05, 0.4), ContactCharge(5.0))))
     expected = 0.4e-9 * time + 30e-6 * 1e-4 * 0.05 * -np.expm1(-time / 0.4) + 5e-12 * (time > 0.0)
     np.testing.assert_allclose(answer.charge_C[2:], expected[2:], rtol=1e-9)
 
@@ -147,7 +145,7 @@ def test_heat_and_touch_add_their_charge():
 def test_heat_begins_with_the_touch_and_not_with_the_first_sample():
     """The film cannot know that it will be touched: time zero is the first touch, as in the solver."""
     time = np.linspace(-1.0, 1.0, 201)
-    heat = Physics(pyroelectric=replace(Physics().pyroelectric, temperature_step_K=0.05, time_constant_s=0.4))
+    heat = Physics(added=(Pyroelectric(0.05, 0.4),))
     depth = 0.4 * time  # clear of the segment before
     added = solid().respond(time, depth, heat).charge_C - solid().respond(time, depth, Physics()).charge_C
     assert (added[time <= 0.0] == 0.0).all()

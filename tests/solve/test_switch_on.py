@@ -74,7 +74,7 @@ def test_a_guide_does_not_rub_where_a_force_drives(model):
 def test_sliders_of_two_guides_rub_side_by_side(model):
     once = switched(model, "guide-friction", "rig", friction_force_N=[0.3], presliding_mm=[0.02])
     twice = switched(once, "guide-friction", "rig", friction_force_N=[0.1], presliding_mm=[0.2])
-    assert twice.physics.guide == GuideFriction((0.3, 0.1), (0.02, 0.2))
+    assert twice.physics.added == (GuideFriction((0.3,), (0.02,)), GuideFriction((0.1,), (0.2,)))
 
 
 def test_offsets_and_gaps_add(model):

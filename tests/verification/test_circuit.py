@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from solve.model import Readout
-from solve.physics import Physics, Pyroelectric
+from solve.physics import Physics
 from solve.readout.course import course
+from solve.readout.heat_and_touch import ContactCharge, Pyroelectric
 from tests.cases import for_each
 from tests.verification.slices import charge, force, pressed, waved
 
@@ -75,7 +76,7 @@ def plain():
 
 def test_one_kelvin_is_seven_point_six_volts():
     """V = p t / eps: 30 uC/m2K x 28 um / (12 x 8.854 pF/m) = 7.9 V/K; 7.6 with the data sheet's 110 pF/m."""
-    heat = pressed(PRESS, Physics(pyroelectric=Pyroelectric(1.0, 1e-4)))
+    heat = pressed(PRESS, Physics(added=(Pyroelectric(1.0, 1e-4),)))
     per_kelvin = 30e-6 * 28e-6 / (12.0 * 8.8541878128e-12)
     extra = heat.steps[-1].open_circuit_voltage_V[0] - pressed(PRESS).steps[-1].open_circuit_voltage_V[0]
     assert extra == pytest.approx(per_kelvin, rel=1e-9)
@@ -84,7 +85,7 @@ def test_one_kelvin_is_seven_point_six_volts():
 
 
 def test_heat_comes_with_its_time_constant(plain):
-    heat = pressed(PRESS, Physics(pyroelectric=Pyroelectric(0.5, 0.04)))
+    heat = pressed(PRESS, Physics(added=(Pyroelectric(0.5, 0.04),)))
     share = (charge(heat) - charge(plain)) / (charge(heat) - charge(plain))[-1]
     time = heat.trace.time_s
     np.testing.assert_allclose(share, np.expm1(-time / 0.04) / np.expm1(-time[-1] / 0.04), atol=1e-9)
@@ -93,7 +94,7 @@ def test_heat_comes_with_its_time_constant(plain):
 @pytest.mark.press
 @for_each("exponent", [1.0, 0.5, 2.0])
 def test_touch_leaves_its_charge_by_a_power_of_the_area(plain, exponent):
-    touched = pressed(PRESS, Physics(contact_charge_pC=5.0, contact_charge_exponent=exponent))
+    touched = pressed(PRESS, Physics(added=(ContactCharge(5.0, exponent),)))
     area = plain.trace.contact_area_m2
     np.testing.assert_allclose(charge(touched) - charge(plain), 5e-12 * (area / area.max()) ** exponent, atol=1e-20)
 

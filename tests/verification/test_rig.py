@@ -80,7 +80,7 @@ def test_a_loop_loses_coulombs_force_times_the_way_that_slips(forces_N, preslidi
 def test_a_guide_rubs_beside_the_segment():
     """The sensor reads F_c more on the way in and less on the way out; the segment itself feels nothing."""
     press = waved("trapezoid", 8, rise_s=0.1, fall_s=0.2)
-    result, plain = pressed(press, Physics(guide=GuideFriction((0.4,), (0.05,)))), pressed(press)
+    result, plain = pressed(press, Physics(added=(GuideFriction((0.4,), (0.05,)),))), pressed(press)
     extra = force(result) - np.abs(result.trace.contact_force_N[:, 2])
     depth_mm = 1e3 * result.trace.indentation_m
     deepest = int(np.argmax(depth_mm))

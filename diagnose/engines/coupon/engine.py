@@ -26,6 +26,7 @@ from diagnose.vocabulary.scene import CouponScene
 from foundation.arrays import Floats
 from foundation.errors import InputError
 from foundation.progress import Report
+from solve.added import Motion
 from solve.materials.parameters import Material, PiezoelectricFilm, find_material
 from solve.mechanisms import Mechanism
 from solve.model import Model
@@ -104,7 +105,8 @@ class CouponEngine(SolvedOutright):
         if kind == "force_N":
             return {"displacement_mm": found.values}
         held = np.maximum(found.values, -buckling_load_N(self.specimen, model.materials[LAYER]))
-        return {"force_N": felt(drive, held, model.physics, lambda: run.acceleration_mm_per_s2)}
+        motion = Motion(drive, lambda: run.velocity_mm_per_s, lambda: run.acceleration_mm_per_s2)
+        return {"force_N": felt(held, model.physics, motion)}
 
 
 def buckling_load_N(specimen: Specimen, material: Material) -> float:

@@ -20,12 +20,13 @@ from diagnose.engines.coupon.tested_layer import LAYER
 from diagnose.engines.proportional.medium import LARGEST_STRAIN, MEDIUM
 from diagnose.vocabulary.scene import film_capacitance_pF
 from foundation.arrays import Floats
+from solve.added import TouchedFilm
 from solve.materials.laws import MediumLaw
 from solve.materials.mullins import Softening
 from solve.materials.parameters import PiezoelectricFilm
 from solve.materials.prony import Prony
 from solve.model import Model, Readout
-from solve.readout.amplifier import amplify, warming_K
+from solve.readout.amplifier import amplify
 
 HERTZ = 2.0 / 3.0
 
@@ -71,14 +72,13 @@ def film_charge(model: Model, loading: Loading) -> Floats:
 
 
 def other_charge(model: Model, loading: Loading) -> Floats:
-    """Charge (t,) in C of the touch and of heat."""
-    physics, film = model.physics, model.materials["film"]
+    """Charge (t,) in C that is not of the strain."""
+    film = model.materials["film"]
     assert isinstance(film, PiezoelectricFilm)
     area = np.maximum(loading.force, 0.0) ** HERTZ
-    touch = 1e-12 * physics.contact_charge_pC * area**physics.contact_charge_exponent
-    area_m2 = 1e-6 * model.segment.length_mm * model.segment.width_mm
-    warming = warming_K(loading.time_s - loading.touch_s, physics.pyroelectric)
-    return np.asarray(touch + 1e-6 * film.pyroelectric_uC_per_m2_K * area_m2 * warming)
+    area_m2 = np.array([1e-6 * model.segment.length_mm * model.segment.width_mm])
+    under = TouchedFilm(loading.time_s - loading.touch_s, area, area_m2, film.pyroelectric_uC_per_m2_K)
+    return np.asarray(sum((one.charge_C(under)[:, 0] for one in model.physics.added), np.zeros(len(area))))
 
 
 def voltage(model: Model, loading: Loading, charge_C: Floats) -> Floats:

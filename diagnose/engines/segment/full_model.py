@@ -126,6 +126,6 @@ def _of(found: Mechanics) -> Floats:
 
 
 def _columns(trace: Trace, task: Task) -> Floats:
-    """Path in mm, force, area and charges (s, 3 + e) of a press, without the recorder's charge of heat and touch."""
-    charge = trace.film_charge_C - task.film.other_charge_C(trace.time_s, trace.contact_area_m2, task.model.physics)
+    """Path in mm, force, area and charges (s, 3 + e) of a press, without the charge that the recorder adds."""
+    charge = trace.film_charge_C - task.film.added_charge_C(trace.time_s, trace.contact_area_m2, task.model.physics)
     return np.column_stack([1e3 * trace.dot_path_m, trace.contact_force_N[:, 2], trace.contact_area_m2, charge])

@@ -8,9 +8,10 @@ import numpy as np
 from diagnose.engines.segment.drive import Drive
 from diagnose.signals.recording import Run
 from foundation.arrays import Floats
+from solve.added import Motion, added_charge_C
 from solve.model import Model, Readout
 from solve.physics import Physics
-from solve.readout.amplifier import amplify, other_charge_C
+from solve.readout.amplifier import amplify
 from solve.readout.channels import amplify_channels
 from solve.reduced.fit import ResponseTable
 from solve.reduced.recording import branches, sensed
@@ -28,9 +29,9 @@ class FilmPlate:
         """A film whose capacitance is larger by a factor."""
         return replace(self, electrodes=self.electrodes * [factor, 1.0])
 
-    def other_charge_C(self, time_s: Floats, area_m2: Floats, physics: Physics) -> Floats:
-        """Charge (t, e) of heat and of the touch; time (t,) from the first touch, contact area (t,)."""
-        return other_charge_C(time_s, area_m2, self.electrodes[:, 1], self.pyroelectric_uC_per_m2_K, physics)
+    def added_charge_C(self, time_s: Floats, area_m2: Floats, physics: Physics) -> Floats:
+        """Charge (t, e) that is not of the strain; time (t,) from the first touch, contact area (t,)."""
+        return added_charge_C(physics.added, time_s, area_m2, self.electrodes[:, 1], self.pyroelectric_uC_per_m2_K)
 
 
 @dataclass(frozen=True)
@@ -76,7 +77,8 @@ def shown(
         signals |= amplified(voltages, drive.time_s, found, film, on, ahead_s)
     if "force_N" in names:
         told = (values, drive.kind, found.path_mm, found.force_N, on.physics)
-        signals["force_N"] = sensed(*told, lambda: run.acceleration_mm_per_s2)
+        motion = Motion(values, lambda: run.velocity_mm_per_s, lambda: run.acceleration_mm_per_s2)
+        signals["force_N"] = sensed(*told, motion)
     if "displacement_mm" in names:
         path = found.path_mm + on.dot.gap_mm
         signals["displacement_mm"] = np.where(drive.touching, path, run.channels.get("displacement_mm", path))
@@ -95,7 +97,7 @@ def amplified(
 
     names : in the order of the electrodes.
     """
-    charge = found.charge_C + film.other_charge_C(time_s, found.area_m2, on.physics)
+    charge = found.charge_C + film.added_charge_C(time_s, found.area_m2, on.physics)
     time_s = time_s + ahead_s  # the amplifier itself knows differences of time only
     readout = on.readout or Readout()
     if len(names) == 1:

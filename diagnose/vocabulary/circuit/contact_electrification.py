@@ -9,6 +9,8 @@ from diagnose.signals.recording import Recording
 from diagnose.vocabulary.base import OTHER_CHARGE, Vocabulary, register
 from diagnose.vocabulary.scene import Scene
 from solve.mechanisms.circuit.contact_electrification import CONTACT_ELECTRIFICATION
+from solve.physics import like
+from solve.readout.heat_and_touch import ContactCharge
 
 TOUCH_CHARGE = 10.0  # of the largest charge that was recorded
 LARGEST_EXPONENT = log(3.0)  # of the area: charge that grows with the pressure too
@@ -27,7 +29,7 @@ def of_unknown_geometry(scene: Scene, recording: Recording) -> Iterator[Candidat
 def _touch(scene: Scene) -> Candidate:
     """In terms of the charge that makes the largest voltage recorded."""
     scale = scene.capacitance_pF * (scene.voltage_V or 1.0)
-    declared = scene.model.physics.contact_charge_pC
+    declared = like(scene.model.physics.added, ContactCharge()).charge_pC
     coordinates = (
         Coordinate("charge", -TOUCH_CHARGE, TOUCH_CHARGE, (0.1, -0.1)),
         Coordinate("log_exponent", -LARGEST_EXPONENT, LARGEST_EXPONENT, (0.4, -0.4)),

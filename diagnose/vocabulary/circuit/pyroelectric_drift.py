@@ -9,6 +9,8 @@ from diagnose.signals.recording import Recording
 from diagnose.vocabulary.base import OTHER_CHARGE, Vocabulary, register
 from diagnose.vocabulary.scene import Scene
 from solve.mechanisms.circuit.pyroelectric_drift import PYROELECTRIC_DRIFT
+from solve.physics import like
+from solve.readout.heat_and_touch import Pyroelectric
 
 UNDONE_BY = ("with the dot as warm as the film", {"dot_temperature": "of the film"})
 HOTTEST_K = 30.0  # a finger is about 10 K warmer than the room
@@ -26,7 +28,7 @@ def of_unknown_geometry(scene: Scene, recording: Recording) -> Iterator[Candidat
 
 def _heat(scene: Scene) -> Candidate:
     """A step of either sign; its time from a few samples to a few runs."""
-    declared = scene.model.physics.pyroelectric
+    declared = like(scene.model.physics.added, Pyroelectric())
     base = declared.time_constant_s if declared.temperature_step_K != 0.0 else min(1.0, 0.3 * scene.duration_s)
     step = Coordinate("temperature_step_K", -HOTTEST_K, HOTTEST_K, (0.1, -0.1))
     fastest, slowest = log(5.0 * scene.step_s / base), log(5.0 * scene.duration_s / base)

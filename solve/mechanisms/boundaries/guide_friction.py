@@ -31,9 +31,8 @@ def switch_on(model: Model, component: str, values: RubbingGuide) -> Model:
         return model
     if model.press.force_N is not None:
         raise ValueError("name = 'guide-friction': a force drives (press.force_N); it needs press.indentation_mm")
-    have = model.physics.guide
-    forces_N = (*have.forces_N, *values.friction_force_N)
-    return with_physics(model, guide=GuideFriction(forces_N, (*have.presliding_mm, *values.presliding_mm)))
+    guide = GuideFriction(values.friction_force_N, values.presliding_mm)
+    return with_physics(model, added=(*model.physics.added, guide))
 
 
 GUIDE_FRICTION = register(

@@ -6,8 +6,9 @@ Equation, source and typical values: docs/mechanisms.md#contact-electrification.
 from pydantic import Field
 
 from geometry.parameters import Finite, Positive
-from solve.mechanisms.base import MechanismType, Parameters, Traits, register, with_physics
+from solve.mechanisms.base import MechanismType, Parameters, Traits, in_place, register, with_physics
 from solve.model import Model
+from solve.readout.heat_and_touch import ContactCharge
 
 
 class ContactElectrification(Parameters):
@@ -19,7 +20,8 @@ class ContactElectrification(Parameters):
 
 def switch_on(model: Model, component: str, values: ContactElectrification) -> Model:
     """The model with this physics at a component."""
-    return with_physics(model, contact_charge_pC=values.charge_pC, contact_charge_exponent=values.area_exponent)
+    touch = ContactCharge(values.charge_pC, values.area_exponent)
+    return with_physics(model, added=in_place(model.physics.added, touch))
 
 
 CONTACT_ELECTRIFICATION = register(

@@ -6,9 +6,9 @@ Equation, source and typical values: docs/mechanisms.md#pyroelectric-drift.
 from pydantic import Field
 
 from geometry.parameters import Finite, Positive
-from solve.mechanisms.base import MechanismType, Parameters, Traits, register, with_physics
+from solve.mechanisms.base import MechanismType, Parameters, Traits, in_place, register, with_physics
 from solve.model import Model
-from solve.physics import Pyroelectric
+from solve.readout.heat_and_touch import Pyroelectric
 
 
 class PyroelectricDrift(Parameters):
@@ -20,7 +20,8 @@ class PyroelectricDrift(Parameters):
 
 def switch_on(model: Model, component: str, values: PyroelectricDrift) -> Model:
     """The model with this physics at a component."""
-    return with_physics(model, pyroelectric=Pyroelectric(values.temperature_step_K, values.time_constant_s))
+    heat = Pyroelectric(values.temperature_step_K, values.time_constant_s)
+    return with_physics(model, added=in_place(model.physics.added, heat))
 
 
 PYROELECTRIC_DRIFT = register(
