@@ -185,7 +185,7 @@ def array_model(model: Model, stated: Config) -> Model:
             f"mechanisms: {names}: one of them changes the segment, the dot or a bond, which an array does not take; "
             "leave it out"
         )
-    return replace(model, physics=replace(model.physics, separate_channels=True))
+    return replace(model, separate_channels=True)
 
 
 def press_key(prepared: PreparedPress, tet_mesh: TetMesh) -> str:

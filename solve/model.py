@@ -89,7 +89,11 @@ class Readout(Table):
 
 @dataclass(frozen=True)
 class Model:
-    """Everything the solver is told. materials : layer -> material. mechanisms : those that were switched on."""
+    """Everything the solver is told. materials : layer -> material. mechanisms : those that were switched on.
+
+    separate_channels : each electrode is on an amplifier of its own, against a common ground, where voltages act back
+    on the film; else all electrodes are in parallel on one.
+    """
 
     segment: Segment
     materials: Mapping[str, Material]
@@ -98,13 +102,14 @@ class Model:
     readout: Readout | None = None
     physics: Physics = field(default_factory=Physics)
     mechanisms: tuple["Mechanism", ...] = ()
+    separate_channels: bool = False
 
     @property
     def amplifier(self) -> Readout | None:
         """What stands between the film and what is read: the read-out as stated, an ideal one where only mechanisms of
         the amplifier are, None where nothing is.
         """
-        if self.readout is None and (self.physics.electronics or self.physics.of_channels):
+        if self.readout is None and (self.physics.stages or self.physics.channels):
             return Readout()
         return self.readout
 

@@ -8,6 +8,7 @@ from geometry.parameters import Segment
 from solve.added import Added
 from solve.materials.mullins import Softening
 from solve.materials.prony import Prony
+from solve.readout.channel_parts import ChannelPart
 from solve.readout.stages import Stage
 
 
@@ -45,12 +46,8 @@ class Physics:
     bonds : bond -> stiffness. friction : Coulomb coefficient between dot and surface.
     rig_compliance_mm_per_N lies between the displacement sensor and the dot, moving_mass_g between the force sensor
     and the dot. prestretch : nominal strain of the film in x and y. added : what is added to a trace afterwards.
-    electronics : stages of the amplifier beside those of the read-out. crosstalk : channel (from 1) -> share of the
-    other channels' voltage.
-    mutual_pF : two channels -> capacitance between their inputs; channel_leak_uS : channel -> conductance parallel to
-    its input; channel_electronics : channel -> stages beside those of all. They need an amplifier for each electrode.
-    separate_channels : each electrode is on an amplifier of its own, against a common ground, where voltages act back
-    on the film; else all electrodes are in parallel on one.
+    stages : of every amplifier, beside those of the read-out. channels : what is of single channels, which need an
+    amplifier for each electrode.
     """
 
     viscosity: Mapping[str, Prony] = field(default_factory=dict)
@@ -63,22 +60,8 @@ class Physics:
     moving_mass_g: float = 0.0
     prestretch: tuple[float, float] = (0.0, 0.0)
     added: tuple[Added, ...] = ()
-    electronics: tuple[Stage, ...] = ()
-    crosstalk: Mapping[int, float] = field(default_factory=dict)
-    mutual_pF: Mapping[tuple[int, int], float] = field(default_factory=dict)
-    channel_leak_uS: Mapping[int, float] = field(default_factory=dict)
-    channel_electronics: Mapping[int, tuple[Stage, ...]] = field(default_factory=dict)
-    separate_channels: bool = False
-
-    @property
-    def of_channels(self) -> tuple[tuple[str, int], ...]:
-        """In words, what is of single channels, each with the highest of the channels that it needs."""
-        return (
-            *((f"crosstalk into 'channel-{n}'", n) for n in self.crosstalk),
-            *((f"crosstalk between 'channel-{i}' and 'channel-{j}'", max(i, j)) for i, j in self.mutual_pF),
-            *((f"a leak of 'channel-{n}'", n) for n in self.channel_leak_uS),
-            *((f"a filter of 'channel-{n}'", n) for n in self.channel_electronics),
-        )
+    stages: tuple[Stage, ...] = ()
+    channels: tuple[ChannelPart, ...] = ()
 
     @property
     def follows_time(self) -> bool:

@@ -20,7 +20,7 @@ from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.model import Readout
 from solve.open_interfaces import OpenInterface
 from solve.physics import Physics
-from solve.readout.channels import mutual_F
+from solve.readout.channel_parts import capacitances_F, conductances_uS
 from solve.symmetry import electrode_rectangles, orbits
 from solve.system import System
 from solve.terms.base import Term
@@ -60,6 +60,7 @@ class Builder:
     materials: Mapping[str, Material]
     physics: Physics
     readout: Readout | None
+    separate_channels: bool
     tet_mesh: TetMesh
     opened: tuple[OpenInterface, ...]
     points: Floats
@@ -89,18 +90,21 @@ def build_system(
     readout: Readout | None = None,
     opened: tuple[OpenInterface, ...] = (),
     units: Units | None = None,
+    separate_channels: bool = False,
 ) -> System:
     """Discretise a press. materials : region name -> material, one for each region of the mesh.
 
-    tet_mesh and opened as solve.open_interfaces.open_interfaces gives them; units : to share them with another system.
+    tet_mesh and opened as solve.open_interfaces.open_interfaces gives them; units : to share them with another system;
+    separate_channels : as of a Model.
     """
     physics = physics or Physics()
     laws = {name: materials[name].law.scaled(1e6) for name in tet_mesh.region_names if name != "film"}
     numbers = Numbers()
-    unknowns = _number(segment, materials, laws, tet_mesh, physics, readout, force_driven, numbers)
+    parallel = readout is not None and not separate_channels
+    unknowns = _number(segment, materials, laws, tet_mesh, physics, readout, parallel, force_driven, numbers)
     units = units or solver_units(segment, laws, materials)
     points = tet_mesh.points_mm * (1e-3 / units.length)
-    make = Builder(segment, materials, physics, readout, tet_mesh, opened, points, unknowns, units)
+    make = Builder(segment, materials, physics, readout, separate_channels, tet_mesh, opened, points, unknowns, units)
     terms: list[Term] = [_solid(make, name, law) for name, law in laws.items()]
     film = _film(make)
     terms += [film, *_sides(make), *_bonds(make, numbers), *_circuit(make, film)]
@@ -122,6 +126,7 @@ def _number(
     tet_mesh: TetMesh,
     physics: Physics,
     readout: Readout | None,
+    parallel: bool,
     force_driven: bool,
     numbers: Numbers,
 ) -> Unknowns:
@@ -136,7 +141,7 @@ def _number(
         without_pressure=("film", *(name for name, law in laws.items() if law.compressible)),
         electrodes=orbits(electrode_rectangles(segment), tet_mesh.planes),
         two_way=two_way and not virtual_ground,
-        parallel=readout is not None and not physics.separate_channels,
+        parallel=parallel,
         approach=force_driven or physics.rig_compliance_mm_per_N > 0.0,
     )
 
@@ -220,22 +225,23 @@ def _circuit(make: Builder, film: FilmRegion) -> Iterator[Term]:
     readout, units, dofs = make.readout, make.units, make.unknowns.voltage
     if readout is None or dofs[0] < 0:
         return
-    farad, inputs_apart = units.charge / units.voltage, make.physics.separate_channels
+    farad, inputs_apart = units.charge / units.voltage, make.separate_channels
+    parts = make.physics.channels if inputs_apart else ()
+    leak_uS, mutual_F = conductances_uS(parts, len(dofs)), capacitances_F(parts, len(dofs))
     for dof in np.unique(dofs):
         joined = dofs == dof
         inputs = int(joined.sum()) if inputs_apart else 1
         share = inputs * meshed_share(make.segment, make.tet_mesh)
-        channel = int(np.flatnonzero(joined)[0]) + 1  # its images have the same
-        leak_uS = make.physics.channel_leak_uS.get(channel, 0.0) if inputs_apart else 0.0
-        conductance_uS = 1.0 / (readout.input_resistance_MOhm or np.inf) + leak_uS
+        own_uS = float(leak_uS[np.flatnonzero(joined)[0]])  # its images have the same
+        conductance_uS = 1.0 / (readout.input_resistance_MOhm or np.inf) + own_uS
         resistance = (1e6 / conductance_uS if conductance_uS else np.inf) * farad / share
         input_capacitance = 1e-12 * readout.input_capacitance_pF / farad * share
         yield Circuit(int(dof), float(film.capacitance()[joined].sum()), input_capacitance, resistance)
-    if inputs_apart and make.physics.mutual_pF:
+    if mutual_F.any():
         known, of = np.unique(dofs, return_inverse=True)
         joined_by = np.eye(len(known))[of]
         share = meshed_share(make.segment, make.tet_mesh) / farad
-        matrix = joined_by.T @ mutual_F(make.physics.mutual_pF, len(dofs)) @ joined_by
+        matrix = joined_by.T @ mutual_F @ joined_by
         yield Tied(known, share * matrix)
 
 

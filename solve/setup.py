@@ -75,8 +75,9 @@ def set_up(
         raise ValueError("the press is not symmetric about a plane at which its mesh ends")
     driven = model.press.force_N is not None
     system = build_system(
-        model.segment, model.materials, dot, tet_mesh, driven, model.physics, model.amplifier, opened, units
-    )
+        model.segment, model.materials, dot, tet_mesh, driven, model.physics, model.amplifier, opened, units,
+        model.separate_channels,
+    )  # fmt: skip
     refuse_unresolved(model.segment, tet_mesh, system.film)
     recorder = Recorder(system, tet_mesh, model.physics, model.segment, model.materials)
     return Setup(model, tet_mesh, (), opened, system, recorder)

@@ -17,6 +17,7 @@ from solve.materials.film import FilmLaw, film_law
 from solve.materials.parameters import PiezoelectricFilm
 from solve.model import Model
 from solve.physics import Delamination
+from solve.readout.channel_parts import capacitances_F, conductances_uS
 from solve.tensors import strain_rotation
 
 SAME_MM, SAME = 1e-9, 1e-9
@@ -86,14 +87,13 @@ def electrode_images(rectangles: Floats, axis: int) -> Ints | None:
 
 def _mirrored_inputs(model: Model, axis: int) -> bool:
     """Whether amplifiers of electrodes that act back on the film are their own images."""
-    physics, image = model.physics, electrode_images(electrode_rectangles(model.segment), axis)
-    if not physics.separate_channels or image is None:
+    image = electrode_images(electrode_rectangles(model.segment), axis)
+    if not model.separate_channels or image is None:
         return image is not None
-    of = {number + 1: int(other) + 1 for number, other in enumerate(image)}
-    tied = {(of[i], of[j]) if of[i] < of[j] else (of[j], of[i]): value for (i, j), value in physics.mutual_pF.items()}
-    return tied == dict(physics.mutual_pF) and {of[n]: g for n, g in physics.channel_leak_uS.items()} == dict(
-        physics.channel_leak_uS
-    )
+    leaks = conductances_uS(model.physics.channels, len(image))
+    between = capacitances_F(model.physics.channels, len(image))
+    off = np.abs(leaks[image] - leaks).max(), np.abs(between[image][:, image] - between).max()
+    return bool(off[0] <= SAME * leaks.max() and off[1] <= SAME * np.abs(between).max())
 
 
 def _mirrored_patches(patches: tuple[Delamination, ...], axis: int, is_slice: bool) -> bool:

@@ -166,7 +166,7 @@ class ArrayCase:
         the amplifiers differ.
         """
         press = self.press_over(self.layout.places[0])
-        if press.model.physics.crosstalk:
+        if press.model.physics.channels:
             return ()
         place = self.layout.places[0]
         at_origin = replace(press.dot, origin_mm=press.dot.origin_mm - [place.x_mm, place.y_mm, 0.0])

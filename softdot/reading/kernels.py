@@ -90,7 +90,7 @@ def electronics_of(kernel: ArrayKernel, readout: Readout) -> tuple[Readout, Phys
     config = config_from(kernel.about["config"])
     behind = [one for one in config.mechanisms if one.traits.electrical]
     model = with_mechanisms(Model(config.segment, {}, config.dot, readout=readout), behind)
-    apart = [told for told, _ in model.physics.of_channels]
+    apart = [part.words for part in model.physics.channels]
     apart += [one.name for one in config.mechanisms if one.name == CONTACT_ELECTRIFICATION.name and not one.is_off]
     if apart:
         raise InputError(

@@ -47,8 +47,8 @@ def stages(readout: Readout, physics: Physics, channel: int = 0) -> list[Stage]:
     limit = [] if readout.limit_V is None else [Saturation(readout.limit_V)]
     low = [] if readout.low_pass_Hz is None else [Filter(readout.low_pass_Hz, order)]
     high = [] if readout.high_pass_Hz is None else [Filter(readout.high_pass_Hz, order, "high")]
-    own = physics.channel_electronics.get(channel, ())
-    return sorted([*limit, *low, *high, *physics.electronics, *own], key=lambda stage: stage.place)
+    own = [stage for part in physics.channels for stage in part.stages_behind(channel)]
+    return sorted([*limit, *low, *high, *physics.stages, *own], key=lambda stage: stage.place)
 
 
 @nb.njit(cache=True)
@@ -83,9 +83,3 @@ def curved_integral(time: Floats, charge: Floats, capacitance: float, resistance
             gained = rise * steps * first + 2.0 * bend * steps**2 * second
             voltage[n + steps] = np.exp(-decay) * voltage[n] + gained / capacitance
     return voltage
-
-
-def mixed_channels(alone: Floats, physics: Physics) -> Floats:
-    """Voltages (e, t) of all channels with crosstalk: to each its share of the sum of the others."""
-    coupling = np.array([physics.crosstalk.get(channel + 1, 0.0) for channel in range(len(alone))])
-    return np.asarray(alone + coupling[:, None] * (alone.sum(axis=0) - alone))

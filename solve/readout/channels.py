@@ -9,7 +9,7 @@ and each of them is integrated exactly for charges that are linear between the s
 are virtual grounds: a capacitance between them carries nothing.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 import numpy as np
 from scipy.linalg import eigh
@@ -17,7 +17,8 @@ from scipy.linalg import eigh
 from foundation.arrays import Floats
 from solve.model import Readout
 from solve.physics import Physics
-from solve.readout.amplifier import behind_input, input_of, leaky_integral, mixed_channels
+from solve.readout.amplifier import behind_input, input_of, leaky_integral
+from solve.readout.channel_parts import capacitances_F, conductances_uS, mixed_V
 
 
 def amplify_channels(
@@ -34,7 +35,7 @@ def amplify_channels(
 def behind_inputs(time_s: Floats, voltage_V: Floats, readout: Readout, physics: Physics) -> Floats:
     """What all channels give (e, t) for the voltages (e, t) at their inputs, crosstalk included."""
     alone = [behind_input(time_s, own, readout, physics, number) for number, own in enumerate(voltage_V, start=1)]
-    return mixed_channels(np.array(alone), physics)
+    return mixed_V(physics.channels, np.array(alone))
 
 
 Integral = Callable[[Floats, Floats, float, float], Floats]
@@ -56,28 +57,16 @@ def input_voltages(
     if readout.mode == "charge":
         charges = zip(charge_C.T, inputs, strict=True)
         return np.array([integral(time_s, np.ascontiguousarray(q), c, r) for q, (c, r) in charges])
-    leak = [1e-6 * physics.channel_leak_uS.get(number, 0.0) for number in range(1, len(inputs) + 1)]
-    conductance = np.array([1.0 / r for _, r in inputs]) + leak
+    between = capacitances_F(physics.channels, len(inputs))
+    conductance = np.array([1.0 / r for _, r in inputs]) + 1e-6 * conductances_uS(physics.channels, len(inputs))
     capacitance = np.array([c for c, _ in inputs])
-    if not physics.mutual_pF:
+    if not between.any():
         told = zip(charge_C.T, capacitance, conductance, strict=True)
         return np.array([integral(time_s, np.ascontiguousarray(q), c, _resistance(g)) for q, c, g in told])
-    rate, shape = eigh(np.diag(conductance), np.diag(capacitance) + mutual_F(physics.mutual_pF, len(inputs)))
+    rate, shape = eigh(np.diag(conductance), np.diag(capacitance) + between)
     driven = np.ascontiguousarray((charge_C @ shape).T)
     modes = [integral(time_s, own, 1.0, _resistance(a)) for own, a in zip(driven, rate, strict=True)]
     return np.asarray(shape @ np.array(modes))
-
-
-def mutual_F(mutual_pF: Mapping[tuple[int, int], float], channels: int) -> Floats:
-    """What capacitances between channels, numbered from 1, add to the matrix (e, e). ValueError for one that is not."""
-    added = np.zeros((channels, channels))
-    for (one, other), value in mutual_pF.items():
-        if max(one, other) > channels:
-            raise ValueError(f"there is no channel {max(one, other)}: there are {channels}")
-        way = np.zeros(channels)
-        way[one - 1], way[other - 1] = 1.0, -1.0
-        added += 1e-12 * value * np.outer(way, way)
-    return added
 
 
 def _resistance(conductance: float) -> float:

@@ -51,7 +51,7 @@ class QuadraticCapacitance(Parameters):
 
 
 def switch_on(model, component, values):  # noqa: ARG001 - as all are called
-    return with_physics(model, electronics=(*model.physics.electronics, QuadraticInput(values.k_per_V2)))
+    return with_physics(model, stages=(*model.physics.stages, QuadraticInput(values.k_per_V2)))
 
 
 def of_segment(scene):

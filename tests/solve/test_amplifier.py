@@ -38,7 +38,7 @@ def test_amplifier_is_its_transfer_function(readout, resistance, capacitance):
     time = np.linspace(0.0, 2.0, 6001)
     charge = 1e-10 * np.sin(9.0 * time) ** 2
     expected = by_scipy(time, charge, resistance, capacitance, readout, (40.0, 2, "low"))
-    found = amplify(time, charge, FILM_F, readout, Physics(electronics=(Filter(40.0, 2),)))
+    found = amplify(time, charge, FILM_F, readout, Physics(stages=(Filter(40.0, 2),)))
     np.testing.assert_allclose(found, expected, atol=1e-9 * np.abs(expected).max())
 
 

@@ -6,6 +6,7 @@ import pytest
 from solve.model import Readout
 from solve.physics import Physics
 from solve.readout.amplifier import leaky_integral
+from solve.readout.channel_parts import MutualCapacitance
 from solve.readout.channels import input_voltages
 from solve.terms.circuit import Circuit, Tied
 from tests.cases import for_each
@@ -95,5 +96,6 @@ def test_tied_inputs_are_the_channels_of_the_read_out(resistance, error):
         found.append(voltage)
     readout = Readout(input_resistance_MOhm=1e-6 * resistance if resistance < np.inf else None)
     readout = readout.model_copy(update={"input_capacitance_pF": 1e12 * C_INPUT})
-    exact = input_voltages(time, charge, np.full(2, C_FILM), readout, Physics(mutual_pF={(1, 2): 0.8e12}))
+    physics = Physics(channels=(MutualCapacitance(1, 2, 0.8e12),))
+    exact = input_voltages(time, charge, np.full(2, C_FILM), readout, physics)
     assert np.abs(np.array(found) - exact.T).max() < error

@@ -73,7 +73,7 @@ def test_saturation_and_polarity():
 @for_each(("limit_V", "shown_V"), [(0.5, 0.3), (0.2, 0.2)])
 def test_of_two_limits_in_a_row_the_lower_one_counts(limit_V, shown_V):
     readout = Readout(mode="charge", feedback_pF=1000.0, limit_V=0.3)
-    physics = Physics(electronics=(Saturation(limit_V),))
+    physics = Physics(stages=(Saturation(limit_V),))
     assert readout_voltage(LINEAR, Press(), readout, physics)[-1] == pytest.approx(-shown_V)
 
 

@@ -137,7 +137,7 @@ def test_electrodes_behind_amplifiers_of_their_own_act_back_one_by_one():
         "readout": {"input_resistance_MOhm": 1.0, "input_capacitance_pF": 50.0},
     }
     pair, one = array(shared=[], tables=tables), array(columns=1, shared=[], tables=tables)
-    assert pair.press_over(pair.layout.places[0]).model.physics.separate_channels
+    assert pair.press_over(pair.layout.places[0]).model.separate_channels
     both, alone = (solved(case.press_over(case.layout.places[0])).steps[-1] for case in (pair, one))
     assert both.film_charge_C[0] == pytest.approx(alone.film_charge_C[0], rel=5e-3)
     assert abs(both.film_charge_C[1]) < 1e-6 * abs(both.film_charge_C[0])

@@ -150,7 +150,7 @@ class SegmentEngine:
         on = with_mechanisms(replace(self.model, readout=self._readout(run)), direct)
         values = self._driven(drive, on, settings)
         found = self._mechanics(run, drive, values, on, settings)
-        on = replace(on, physics=replace(on.physics, electronics=(*on.physics.electronics, *hum)))
+        on = replace(on, physics=replace(on.physics, stages=(*on.physics.stages, *hum)))
         signals = shown(run, names, drive, values, found, self._film(on), on, ahead_s)
         if not all(np.isfinite(signal[drive.touching]).all() for signal in signals.values()):
             raise ValueError(f"run '{run.label}': a signal is beyond all numbers")

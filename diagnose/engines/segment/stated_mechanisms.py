@@ -25,8 +25,8 @@ def stated_apart(model: Model) -> tuple[Mechanism, ...]:
 def without_stated(model: Model) -> Model:
     """The model without them."""
     apart = stated_apart(model)
-    electronics = tuple(stage for stage in model.physics.electronics if not isinstance(stage, Hum))
-    physics = replace(model.physics, friction=0.0, softening={}, film_yield=None, electronics=electronics)
+    stages = tuple(stage for stage in model.physics.stages if not isinstance(stage, Hum))
+    physics = replace(model.physics, friction=0.0, softening={}, film_yield=None, stages=stages)
     return replace(model, physics=physics, mechanisms=tuple(one for one in model.mechanisms if one not in apart))
 
 

@@ -19,6 +19,7 @@ from solve.mechanisms.base import (
     with_readout,
 )
 from solve.model import Model, Readout
+from solve.readout.channel_parts import ChannelLeak
 
 
 class ChargeLeakage(Parameters):
@@ -31,9 +32,8 @@ def switch_on(model: Model, component: str, values: ChargeLeakage) -> Model:
     """The model with this physics at a component: an input of its own where that is a channel."""
     if component in CHANNELS:
         (channel,) = channels_of(component)
-        known = model.physics.channel_leak_uS
-        leaks = {**known, channel: known.get(channel, 0.0) + 1.0 / values.resistance_MOhm}
-        return with_physics(model, channel_leak_uS=leaks)
+        leak = ChannelLeak(channel, 1.0 / values.resistance_MOhm)
+        return with_physics(model, channels=(*model.physics.channels, leak))
     have = (model.readout or Readout()).input_resistance_MOhm
     conductance = 1.0 / values.resistance_MOhm + (1.0 / have if have is not None else 0.0)
     return with_readout(model, input_resistance_MOhm=1.0 / conductance)

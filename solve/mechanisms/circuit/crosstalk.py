@@ -19,6 +19,7 @@ from solve.mechanisms.base import (
     with_physics,
 )
 from solve.model import Model
+from solve.readout.channel_parts import ChannelPart, Coupling, MutualCapacitance
 
 
 class Crosstalk(Parameters):
@@ -35,10 +36,17 @@ def switch_on(model: Model, component: str, values: Crosstalk) -> Model:
     channels = channels_of(component)
     if len(channels) == 1:
         _refuse("capacitance_pF", values.capacitance_pF, "two channels", "one takes coupling")
-        return with_physics(model, crosstalk={**model.physics.crosstalk, channels[0]: values.coupling})
+        return _with(model, Coupling(channels[0], values.coupling))
     _refuse("coupling", values.coupling, "one channel", "two take capacitance_pF")
     one, other = channels
-    return with_physics(model, mutual_pF={**model.physics.mutual_pF, (one, other): values.capacitance_pF})
+    return _with(model, MutualCapacitance(one, other, values.capacitance_pF))
+
+
+def _with(model: Model, part: ChannelPart) -> Model:
+    """In place of another one of the same kind between the same channels."""
+    known = model.physics.channels
+    others = (one for one in known if type(one) is not type(part) or one.channels != part.channels)
+    return with_physics(model, channels=(*others, part))
 
 
 def _refuse(name: str, value: float, what: str, instead: str) -> None:

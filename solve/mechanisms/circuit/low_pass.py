@@ -19,6 +19,7 @@ from solve.mechanisms.base import (
     with_physics,
 )
 from solve.model import Model
+from solve.readout.channel_parts import ChannelStage
 from solve.readout.filters import Filter
 
 
@@ -44,9 +45,8 @@ def switch_on(model: Model, component: str, values: LowPass) -> Model:
     own = Filter(values.cutoff_Hz, values.order, quality=values.quality, delay_s=values.delay_s)
     if component in CHANNELS:
         (channel,) = channels_of(component)
-        known = model.physics.channel_electronics
-        return with_physics(model, channel_electronics={**known, channel: (*known.get(channel, ()), own)})
-    return with_physics(model, electronics=(*model.physics.electronics, own))
+        return with_physics(model, channels=(*model.physics.channels, ChannelStage(channel, own)))
+    return with_physics(model, stages=(*model.physics.stages, own))
 
 
 LOW_PASS = register(

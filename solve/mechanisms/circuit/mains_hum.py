@@ -20,7 +20,7 @@ class MainsHum(Parameters):
 
 def switch_on(model: Model, component: str, values: MainsHum) -> Model:
     """The model with this physics at a component."""
-    return with_physics(model, electronics=(*model.physics.electronics, Hum(values.frequency_Hz, values.amplitude_V)))
+    return with_physics(model, stages=(*model.physics.stages, Hum(values.frequency_Hz, values.amplitude_V)))
 
 
 MAINS_HUM = register(

@@ -33,7 +33,7 @@ class SaturationLimit(Parameters):
 def switch_on(model: Model, component: str, values: SaturationLimit) -> Model:
     """The model with this physics at a component."""
     sharpness = np.inf if values.sharpness is None else values.sharpness
-    return with_physics(model, electronics=(*model.physics.electronics, Saturation(values.limit_V, sharpness)))
+    return with_physics(model, stages=(*model.physics.stages, Saturation(values.limit_V, sharpness)))
 
 
 SATURATION = register(

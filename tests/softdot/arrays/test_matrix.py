@@ -36,10 +36,18 @@ def test_mirror_images_are_not_solved_again():
     assert array(2, 3, segment={"film": {"draw_angle_deg": 30.0}}).solved == list(range(6))
 
 
-def test_channels_that_differ_have_no_images():
-    """An amplifier whose first channel hears the others reads other presses otherwise."""
-    leak = {"name": "crosstalk", "component": "channel-1", "parameters": {"coupling": 0.1}}
-    assert array(2, 3, tables={"mechanisms": [leak]}).solved == list(range(6))
+@for_each(
+    ("name", "parameters"),
+    [
+        ("crosstalk", {"coupling": 0.1}),
+        ("charge-leakage", {"resistance_MOhm": 500.0}),
+        ("low-pass", {"cutoff_Hz": 20.0}),
+    ],
+)
+def test_channels_that_differ_have_no_images(name, parameters):
+    """An amplifier whose first channel hears the others, leaks or filters reads other presses otherwise."""
+    one = {"name": name, "component": "channel-1", "parameters": parameters}
+    assert array(2, 3, tables={"mechanisms": [one]}).solved == list(range(6))
 
 
 def test_a_dot_beside_the_middle_keeps_the_symmetry_across():

@@ -46,7 +46,7 @@ def test_what_the_design_states_of_the_circuit_acts(kernel):
     readout, physics = electronics_of(with_mechanisms(kernel, leak, farads), Readout())
     assert readout.input_resistance_MOhm == pytest.approx(1000.0)
     assert readout.input_capacitance_pF == pytest.approx(180.0)
-    assert physics.electronics == ()
+    assert physics.stages == ()
     _, physics = electronics_of(with_mechanisms(kernel, low), Readout())
     own = replace(reader(kernel, Readout()), physics=physics)
     time = np.linspace(0.0, 2.0, 2001)
