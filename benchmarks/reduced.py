@@ -28,7 +28,7 @@ RELAXING = {"medium2": 0.3, "medium1": 0.2}
 DEPTH_MM, ANSWERS = 0.3, 21
 READOUT = Readout(input_resistance_MOhm=100.0, input_capacitance_pF=100.0, low_pass_Hz=200.0, high_pass_Hz=0.1)
 VISCOUS = Physics(
-    viscosity={"medium2": Prony((0.1, 0.1, 0.1), (0.01, 0.2, 3.0)), "medium1": Prony((0.1, 0.1), (0.05, 1.0))},
+    inelastic={"medium2": (Prony((0.1, 0.1, 0.1), (0.01, 0.2, 3.0)),), "medium1": (Prony((0.1, 0.1), (0.05, 1.0)),)},
     stages=(Hum(50.0, 0.01),),
 )
 CASES = {

@@ -35,9 +35,10 @@ from mesh.sizing import sizing_field
 from mesh.types import Planes
 from softdot.config.schema import Config
 from softdot.memory import needed_GB, refuse_too_little_memory
+from solve.materials.film_yield import Yield
 from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.model import Model
-from solve.physics import declared_bonds
+from solve.physics import declared_bonds, laws_of
 from solve.readout.course import PressCourse
 from solve.result import PressResult
 from solve.solution.schedule import duration_s, largest_fraction
@@ -152,7 +153,7 @@ def result_warnings(model: Model, dot_shape: DotShape, result: PressResult) -> l
     """Warnings that a solution gives: the solver's own, yield of the film where it is no part of it, strain beyond the
     data.
     """
-    yields = model.physics.film_yield is not None
+    yields = bool(laws_of(model.physics.inelastic, Yield))
     warnings = [*result.warnings, *([] if yields else _yield(model, result)), *doubts(model, result)]
     for layer, material in model.materials.items():
         warnings += _beyond_fit(layer, material, result)

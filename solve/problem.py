@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -13,8 +14,7 @@ from mesh.types import TetMesh
 from solve.fem.numbering import Numbers, Unknowns, number
 from solve.fem.pattern import build_pattern
 from solve.materials.film import FilmLaw, film_law
-from solve.materials.film_yield import FilmPlasticity, YieldLaw
-from solve.materials.inelastic import Inelastic
+from solve.materials.inelastic import Inelastic, in_order
 from solve.materials.laws import MediumLaw
 from solve.materials.parameters import Material, PiezoelectricFilm
 from solve.model import Readout
@@ -78,6 +78,11 @@ class Builder:
     def per_area(self, stiffness_N_per_mm3: float) -> float:
         """A traction per displacement in solver units."""
         return 1e9 * stiffness_N_per_mm3 * self.units.length / self.units.stress
+
+    def laws_around(self, place: str, elastic: Any) -> tuple[Inelastic, ...]:
+        """The laws with memory around that of a layer, in solver units, or of a bond."""
+        stated = in_order(self.physics.inelastic.get(place, ()))
+        return tuple(law.around(elastic, 1e6 / self.units.stress) for law in stated)
 
 
 def build_system(
@@ -152,12 +157,8 @@ def _solid(make: Builder, name: str, law: MediumLaw) -> SolidRegion:
     dofs = make.unknowns.displacement[tets].reshape(-1, 30)
     if not law.compressible:
         dofs = np.concatenate([dofs, make.unknowns.pressure[index]], axis=1)
-    scaled, inelastic = law.scaled(1.0 / make.units.stress), list[Inelastic]()
-    if name in make.physics.softening:
-        inelastic.append(make.physics.softening[name].scaled(1e6 / make.units.stress))
-    if name in make.physics.viscosity:
-        inelastic.append(make.physics.viscosity[name].acting_on(scaled.shear_modulus))
-    return solid_region(name, scaled, make.points, tets, dofs, tuple(inelastic))
+    scaled = law.scaled(1.0 / make.units.stress)
+    return solid_region(name, scaled, make.points, tets, dofs, make.laws_around(name, scaled))
 
 
 def _film(make: Builder) -> FilmRegion:
@@ -169,15 +170,6 @@ def _film(make: Builder) -> FilmRegion:
         permittivity=law.permittivity * units.voltage**2 / (units.length**2 * units.stress),
         to_film_axes=law.to_film_axes,
     )
-    inelastic: list[Inelastic] = []
-    if make.physics.film_yield is not None:
-        limit = make.physics.film_yield
-        flow = YieldLaw(
-            scaled.stiffness, 1e6 * limit.stress_MPa / units.stress, 1e6 * limit.hardening_MPa / units.stress
-        )
-        inelastic.append(FilmPlasticity(flow))
-    if "film" in make.physics.viscosity:
-        inelastic.append(make.physics.viscosity["film"])
     return film_region(
         scaled,
         make.points,
@@ -187,7 +179,7 @@ def _film(make: Builder) -> FilmRegion:
         electrode_rectangles(make.segment) * (1e-3 / units.length),
         1e-6 * make.segment.film.thickness_um / units.length,
         make.physics.prestretch,
-        tuple(inelastic),
+        make.laws_around("film", scaled),
     )
 
 
@@ -208,8 +200,8 @@ def _bonds(make: Builder, numbers: Numbers) -> Iterator[Term]:
         if line is not None and glued.any():
             normal = make.per_area(line.normal_stiffness_N_per_mm3)
             shear = make.per_area(line.shear_stiffness_N_per_mm3)
-            series = [make.physics.viscosity[face.name]] if face.name in make.physics.viscosity else []
-            yield bond(make.points, face.lower[glued], face.upper[glued], dofs, normal, shear, tuple(series))
+            laws = make.laws_around(face.name, None)
+            yield bond(make.points, face.lower[glued], face.upper[glued], dofs, normal, shear, laws)
         if face.delaminated.any():
             lower, upper = face.lower[face.delaminated], face.upper[face.delaminated]
             multipliers = numbers.take(opening_nodes(lower, upper, dofs)[1])

@@ -88,7 +88,7 @@ def _refuse_beyond_bounds(key: str, model: Model) -> None:
 
 def _refuse_viscous_perfect_bond(key: str, mechanism: Mechanism, model: Model) -> None:
     name = mechanism.component
-    if name in model.physics.viscosity and name.startswith("bond-") and name not in model.physics.bonds:
+    if name in model.physics.inelastic and name.startswith("bond-") and name not in model.physics.bonds:
         raise InputError(
             f"{key}: {mechanism.name} needs a compliant bond there; add adhesive-compliance or segment.bonds"
         )

@@ -14,13 +14,13 @@ iterates climb to the root from L = 0 without fail. For isotropic C it is linear
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 import scipy.linalg
 
 from foundation.arrays import Floats
-from solve.materials.inelastic import Memory, StressResponse
+from solve.materials.inelastic import YIELD, Inelastic, Memory, StatedLaw, StressResponse
 
 # S.P S = dev S : dev S for stresses 11, 22, 33, 12, 23, 13
 DEVIATOR = np.diag([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
@@ -147,3 +147,21 @@ class FilmPlasticity:
     def time_error(self, memory: Memory, new: Memory, time_step: float, after_kink: bool) -> float:
         """No rate enters."""
         return 0.0
+
+
+@dataclass(frozen=True)
+class Yield(StatedLaw):
+    """Yield stress of the film and its linear isotropic hardening modulus."""
+
+    stress_MPa: float
+    hardening_MPa: float = 0.0
+    order: ClassVar[float] = YIELD
+
+    @property
+    def is_off(self) -> bool:
+        """It never yields."""
+        return bool(np.isinf(self.stress_MPa))
+
+    def around(self, elastic: Any, MPa: float) -> Inelastic:
+        """The plasticity of a film with this stiffness."""
+        return FilmPlasticity(YieldLaw(elastic.stiffness, MPa * self.stress_MPa, MPa * self.hardening_MPa))

@@ -1,8 +1,9 @@
 """What a law answers at a quadrature point, and what a law with memory makes of it."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, ClassVar, Protocol
 
 from foundation.arrays import Floats
 
@@ -40,6 +41,36 @@ class Inelastic(Protocol):
 
     def time_error(self, memory: Memory, new: Memory, time_step: float, after_kink: bool) -> float:
         """Error of the time integration in a step, relative to the largest stress; 0 for a law without rates."""
+
+
+class StatedLaw(ABC):
+    """A law with memory as it is stated, with stresses in MPa and times in s.
+
+    order : laws around one material act in this order, from the elastic one on; one takes the place of another of its
+    order. linear : in the history of the elastic stress. follows_time : whether the path or its speed matters to it.
+    """
+
+    order: ClassVar[float]
+    linear = False
+    follows_time = True
+
+    @property
+    def is_off(self) -> bool:
+        """Whether its values change nothing."""
+        return False
+
+    @abstractmethod
+    def around(self, elastic: Any, MPa: float) -> Inelastic:
+        """The law around an elastic one of a medium or the film, None of a bond; MPa : one in the solver's unit."""
+
+
+SOFTENING, YIELD, RELAXATION = 0.0, 1.0, 2.0
+"""The order of the laws: what relaxes is the stress that softening and yield leave."""
+
+
+def in_order(laws: Sequence[StatedLaw]) -> list[StatedLaw]:
+    """From the elastic law on."""
+    return sorted(laws, key=lambda law: law.order)
 
 
 def at_rest(laws: Sequence[Inelastic], points: int, components: int = 6) -> tuple[Memory, ...]:

@@ -7,24 +7,35 @@ Proc. R. Soc. A 455, 1999, in the form with beta of Abaqus). With dW = S0 : dE t
 """
 
 from dataclasses import dataclass, replace
+from typing import Any, ClassVar
 
 import numpy as np
 from scipy.special import erf
 
 from foundation.arrays import Floats
-from solve.materials.inelastic import Memory, StressResponse
+from solve.materials.inelastic import SOFTENING, Memory, StatedLaw, StressResponse
 
 ROUNDING = 1e-14  # energies below this part of the stiffness are rounding: strains below 1e-7
 
 
 @dataclass(frozen=True)
-class Softening:
+class Softening(StatedLaw):
     """loss : 1/r, the largest relative loss of stress; energy : m, in the unit of stress; beta : without unit."""
 
     loss: float
     energy: float = 0.0
     beta: float = 0.3
     needs_energy = True
+    order: ClassVar[float] = SOFTENING
+
+    @property
+    def is_off(self) -> bool:
+        """No stress is lost."""
+        return self.loss == 0.0
+
+    def around(self, elastic: Any, MPa: float) -> "Softening":
+        """The law in the solver's unit of stress."""
+        return self.scaled(MPa)
 
     def scaled(self, factor: float) -> "Softening":
         """The law with its moduli times a factor, for another unit of stress."""

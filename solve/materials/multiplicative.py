@@ -16,6 +16,7 @@ may flow: S = (1 - sum g_i) S0 + sum (f S_i + (1 - f) Q_i) with mu_i = g_i mu.
 """
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -35,9 +36,9 @@ class MultiplicativeMaxwell(Prony):
     shear_modulus: float = 1.0
     linear = False
 
-    def acting_on(self, shear_modulus: float) -> "MultiplicativeMaxwell":
-        """The branches of a medium with this shear modulus, in the solver's unit of stress."""
-        return replace(self, shear_modulus=shear_modulus)
+    def around(self, elastic: Any, MPa: float) -> "MultiplicativeMaxwell":
+        """The branches of a medium with the shear modulus of this law, in the solver's unit of stress."""
+        return replace(self, shear_modulus=elastic.shear_modulus)
 
     def start(self, points: int, components: int = 6) -> Memory:
         """That of a Prony series; C_i (n, i, 6), and C^ (n, 6) at the last step."""

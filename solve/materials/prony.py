@@ -10,13 +10,14 @@ stress of rubber the volume stays elastic; of a foam the whole stress relaxes.
 """
 
 from dataclasses import dataclass
+from typing import Any, ClassVar
 
 import numba as nb
 import numpy as np
 
 from foundation.arrays import Floats
 from solve.decay import mean_decay
-from solve.materials.inelastic import Memory, StressResponse
+from solve.materials.inelastic import RELAXATION, Memory, StatedLaw, StressResponse
 
 
 @nb.vectorize(cache=True)  # type: ignore[no-untyped-call]
@@ -26,23 +27,26 @@ def branch_stress(branch, fade, gain, change):  # type: ignore[no-untyped-def]
 
 
 @dataclass(frozen=True)
-class Prony:
-    """relative_moduli : g_i, sum below 1; relaxation_times : tau_i in s. No terms: elastic.
-
-    linear : in the history of the elastic stress.
-    """
+class Prony(StatedLaw):
+    """relative_moduli : g_i, sum below 1; relaxation_times : tau_i in s. No terms: elastic."""
 
     relative_moduli: tuple[float, ...]
     relaxation_times: tuple[float, ...]
     needs_energy = False
+    order: ClassVar[float] = RELAXATION
     linear = True
+
+    @property
+    def is_off(self) -> bool:
+        """Nothing relaxes."""
+        return sum(self.relative_moduli) == 0.0
 
     def scaled(self, factor: float) -> "Prony":
         """The series itself: its moduli are relative."""
         return self
 
-    def acting_on(self, shear_modulus: float) -> "Prony":
-        """The series itself, whatever the shear modulus of the elastic law."""
+    def around(self, elastic: Any, MPa: float) -> "Prony":
+        """The series itself, whatever the elastic law."""
         return self
 
     def start(self, points: int, components: int = 6) -> Memory:

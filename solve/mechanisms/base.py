@@ -10,6 +10,7 @@ from pydantic import Field, field_validator
 from pydantic_core import PydanticCustomError
 
 from geometry.parameters import Finite, Table
+from solve.materials.inelastic import StatedLaw
 from solve.materials.parameters import Material
 from solve.model import Model, Readout
 
@@ -132,6 +133,15 @@ def register(mechanism: MechanismType) -> MechanismType:
 def with_physics(model: Model, **changes: Any) -> Model:
     """The model with other physics beyond the baseline."""
     return replace(model, physics=replace(model.physics, **changes))
+
+
+def with_law(model: Model, component: str, law: StatedLaw) -> Model:
+    """The model with a law around a layer or a bond, in place of one of the same order; as it is where that is off."""
+    if law.is_off:
+        return model
+    known = model.physics.inelastic
+    others = (one for one in known.get(component, ()) if one.order != law.order)
+    return with_physics(model, inelastic={**known, component: (*others, law)})
 
 
 def in_place(parts: tuple[Part, ...], new: Part) -> tuple[Part, ...]:

@@ -34,10 +34,10 @@ def measured(
     """Largest errors over the presses kept out. NoEquilibriumError where one of these has no answer."""
     found = []
     for waveform, depth, share in _held_out(bool(model.relaxing)):
-        viscosity = {layer: Prony((share * most,), (waveform.rise_s,)) for layer, most in model.relaxing.items()}
+        inelastic = {layer: (Prony((share * most,), (waveform.rise_s,)),) for layer, most in model.relaxing.items()}
         tested = Physics(
             bonds=physics.bonds, delaminations=physics.delaminations, prestretch=physics.prestretch,
-            viscosity=viscosity,
+            inelastic=inelastic,
         )  # fmt: skip
         press = Press(indentation_mm=depth * model.depth_mm, load_steps=8, waveform=waveform)
         result = press_segment(Model(segment, materials, Dot(), press, None, tested), tet_mesh, dot=dot)

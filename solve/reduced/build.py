@@ -17,6 +17,7 @@ from geometry.dot import DotShape
 from geometry.parameters import Dot, Segment
 from mesh.types import TetMesh
 from solve.materials.parameters import Material, PiezoelectricFilm
+from solve.materials.prony import Prony
 from solve.model import Model, Press
 from solve.physics import Physics
 from solve.reduced.accuracy import measured
@@ -79,7 +80,8 @@ def _refuse(case: ReductionTask) -> None:
     film = case.materials["film"]
     if isinstance(film, PiezoelectricFilm) and film.coupling == "two-way":
         raise ValueError("coupling = 'two-way': the reduced model needs a film whose voltage does not act back")
-    if case.physics.friction > 0.0 or case.physics.softening or case.physics.film_yield is not None:
+    laws = (law for laws in case.physics.inelastic.values() for law in laws)
+    if case.physics.friction > 0.0 or not all(isinstance(law, Prony) for law in laws):
         raise ValueError("friction, softening and yield depend on the path: they need the full solver")
     if case.relaxing and case.physics.prestretch != (0.0, 0.0):
         raise ValueError("a prestretched film with relaxing layers needs the full solver")
@@ -113,7 +115,7 @@ def _build(case: ReductionTask, check: bool) -> ReducedModel:
 def _sampler(case: ReductionTask, layers: tuple[str, ...]) -> Sampler:
     physics = Physics(
         bonds=case.physics.bonds, delaminations=case.physics.delaminations, prestretch=case.physics.prestretch,
-        viscosity={layer: Frozen(layer=layer) for layer in layers},
+        inelastic={layer: (Frozen(layer=layer),) for layer in layers},
     )  # fmt: skip
     press = Press(indentation_mm=case.depth_mm)
     model = Model(case.segment, case.materials, Dot(), press, None, physics)

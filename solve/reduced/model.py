@@ -8,8 +8,9 @@ import numpy as np
 
 from foundation.arrays import Floats
 from solve.added import Motion, added_charge_C
+from solve.materials.prony import Prony
 from solve.model import Readout
-from solve.physics import Physics
+from solve.physics import Physics, laws_of
 from solve.readout.amplifier import amplify, input_of, stages
 from solve.reduced.fit import CELLS, ResponseTable
 from solve.reduced.recording import branches, given, second_differences, sensed
@@ -67,11 +68,12 @@ class ReducedModel:
         return ReducedResponse(time, path + gap_mm, force, charge, each, voltage, bound)
 
     def _refuse(self, physics: Physics) -> None:
-        if physics.friction > 0.0 or physics.softening or physics.film_yield is not None:
+        viscosity = laws_of(physics.inelastic, Prony)
+        if physics.friction > 0.0 or sum(map(len, physics.inelastic.values())) > len(viscosity):
             raise ValueError("the reduced model has no friction, softening or yield: these need the full solver")
         if structure(physics) != self.structure:
             raise ValueError("the reduced model was made with other bonds, delaminations or prestretch: build it again")
-        for name, series in physics.viscosity.items():
+        for name, series in viscosity.items():
             if not series.linear:
                 raise ValueError(f"the reduced model has no branches that flow: {name} needs the full solver")
             share, known = sum(series.relative_moduli), self.relaxing.get(name, 0.0)
@@ -83,7 +85,7 @@ class ReducedModel:
         if kind == BY_DEPTH and compliance == 0.0 and drive.max() > self.depth_mm * (1.0 + 1e-9):
             raise ValueError(f"depth {drive.max():.4g} mm: the reduced model knows up to {self.depth_mm:g} mm")
         path, outputs = np.empty(len(time)), np.empty((len(time), 2 + len(self.film)))
-        moduli, times, layer = branches(physics.viscosity, tuple(self.relaxing))
+        moduli, times, layer = branches(laws_of(physics.inelastic, Prony), tuple(self.relaxing))
         fit, mass = self.fit, 1e-6 * physics.moving_mass_g  # N s2 / mm
         status = follow(
             time, drive, kind, compliance, mass, fit.table, fit.touch, self.depth_mm, fit.pairs, fit.start, moduli,

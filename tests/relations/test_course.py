@@ -180,7 +180,7 @@ def test_a_charge_amplifier_decays_in_the_hold_and_swings_over_in_the_release():
 
 
 OWN = Waveform(shape="trapezoid", rise_s=0.5, hold_s=1.0, fall_s=0.5)
-VISCOUS = Physics(viscosity={"medium2": Prony((0.2,), (0.3,))})
+VISCOUS = Physics(inelastic={"medium2": (Prony((0.2,), (0.3,)),)})
 SLOW_RC = Readout(input_resistance_MOhm=1e4, input_capacitance_pF=100.0)
 
 

@@ -14,7 +14,7 @@ from tests.pressing import press_segment
 from tests.solve.segments import cap, coarse_mesh, materials, segment
 
 PRESS = Press(indentation_mm=0.1, load_steps=2, waveform=Waveform(shape="trapezoid", hold_s=0.2))
-VISCOUS = Physics(viscosity={"medium2": Prony((0.3,), (0.2,))}, prestretch=(0.002, 0.001))
+VISCOUS = Physics(inelastic={"medium2": (Prony((0.3,), (0.2,)),)}, prestretch=(0.002, 0.001))
 
 
 class KilledError(Exception):

@@ -20,7 +20,7 @@ from solve.terms.guide import GuideFriction
 from tests.cases import for_each
 
 STIFFNESS, FULL, SHARE, TAU = 2.0, 0.5, 0.3, 0.2
-SOLID = Physics(viscosity={"medium2": Prony((SHARE,), (TAU,))})
+SOLID = Physics(inelastic={"medium2": (Prony((SHARE,), (TAU,)),)})
 
 
 def solid(share=0.6) -> ReducedModel:
@@ -82,7 +82,7 @@ def test_a_constant_force_creeps():
 def test_two_branches_add():
     """Two branches of one time are one branch."""
     time = np.linspace(0.0, 1.0, 501)
-    split = Physics(viscosity={"medium2": Prony((0.1, 0.2), (TAU, TAU))})
+    split = Physics(inelastic={"medium2": (Prony((0.1, 0.2), (TAU, TAU)),)})
     one, two = (solid().respond(time, 0.4 * np.sin(3 * time), p).force_N for p in (SOLID, split))
     np.testing.assert_allclose(one, two, atol=1e-8)
 
@@ -156,6 +156,10 @@ def test_heat_begins_with_the_touch_and_not_with_the_first_sample():
 TIME = np.linspace(0.0, 1.0, 11)
 
 
+def relaxing(layer, share):
+    return Physics(inelastic={layer: (Prony((share,), (1.0,)),)})
+
+
 @for_each(
     ("asked", "reason"),
     [
@@ -166,8 +170,11 @@ TIME = np.linspace(0.0, 1.0, 11)
         ({}, "either depth_mm or force_N"),
         ({"depth_mm": 0 * TIME, "physics": Physics(friction=0.3)}, "friction"),
         ({"depth_mm": 0 * TIME, "physics": Physics(prestretch=(0.01, 0.0))}, "prestretch"),
-        ({"depth_mm": 0 * TIME, "physics": Physics(viscosity={"film": Prony((0.1,), (1.0,))})}, "film relaxes by 0.1"),
-        ({"depth_mm": 0 * TIME, "physics": Physics(viscosity={"medium2": Prony((0.7,), (1.0,))})}, "up to 0.6"),
+        (
+            {"depth_mm": 0 * TIME, "physics": relaxing("film", 0.1)},
+            "film relaxes by 0.1",
+        ),
+        ({"depth_mm": 0 * TIME, "physics": relaxing("medium2", 0.7)}, "up to 0.6"),
     ],
 )
 def test_what_the_samples_do_not_cover_is_refused(asked, reason):

@@ -5,10 +5,11 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from solve.materials.film_yield import Yield
 from solve.materials.mullins import Softening
 from solve.materials.parameters import Linear
 from solve.materials.prony import Prony
-from solve.physics import Physics, Yield
+from solve.physics import Physics
 from solve.solution.schedule import Target
 from solve.system import Load
 from tests.cases import for_each
@@ -44,7 +45,7 @@ def test_an_elastic_press_stores_all_work_and_gives_it_back():
 def test_viscosity(monkeypatch):
     monkeypatch.setattr("solve.solution.march.TIME_TOLERANCE", np.inf)
     series = Prony((0.3, 0.2), (0.05, 0.5))
-    balance = cycle(Physics(viscosity={"medium2": series, "effector": series}), hookean(), 60, 0.1)
+    balance = cycle(Physics(inelastic={"medium2": (series,), "effector": (series,)}), hookean(), 60, 0.1)
     assert balance.loss > 0.02
     assert balance.error < TOLERANCE
 
@@ -52,7 +53,7 @@ def test_viscosity(monkeypatch):
 @pytest.mark.press
 def test_stress_softening():
     law = Softening(0.4, 0.0, 0.3)
-    balance = cycle(Physics(softening={"medium2": law, "effector": law}), steps=40)
+    balance = cycle(Physics(inelastic={"medium2": (law,), "effector": (law,)}), steps=40)
     assert balance.loss > 0.02
     assert balance.error < TOLERANCE
 
@@ -60,7 +61,7 @@ def test_stress_softening():
 @pytest.mark.press
 @for_each("hardening_MPa", [0.0, 200.0])
 def test_film_yield(hardening_MPa):
-    balance = cycle(Physics(film_yield=Yield(3.0, hardening_MPa)), steps=40)
+    balance = cycle(Physics(inelastic={"film": (Yield(3.0, hardening_MPa),)}), steps=40)
     assert balance.loss > 0.02
     assert balance.error < TOLERANCE
 

@@ -10,7 +10,7 @@ from tests.verification.slices import charge, force, pressed, waved
 
 G, TAU = (0.3, 0.2), (0.05, 0.7)
 SERIES = Prony(G, TAU)
-EVERYWHERE = Physics(viscosity={"medium1": SERIES, "medium2": SERIES, "film": SERIES})
+EVERYWHERE = Physics(inelastic={"medium1": (SERIES,), "medium2": (SERIES,), "film": (SERIES,)})
 SMALL_MM = 2e-3  # of a block 2.5 mm high: linear within 0.1 %
 
 
@@ -68,12 +68,12 @@ def test_a_cycle_loses_the_work_of_the_loss_modulus(tmp_path):
 @for_each("series", [Prony((), ()), Prony((0.0,), (0.5,))])
 def test_without_relaxing_share_the_segment_is_elastic(series):
     press = waved("ramp", 3, rise_s=0.1)
-    viscous, elastic = pressed(press, Physics(viscosity={"medium2": series, "film": series})), pressed(press)
+    viscous, elastic = pressed(press, Physics(inelastic={"medium2": (series,), "film": (series,)})), pressed(press)
     assert force(viscous)[-1] == pytest.approx(force(elastic)[-1], rel=1e-9)
     assert charge(viscous)[-1] == pytest.approx(charge(elastic)[-1], rel=1e-9)
 
 
-RUBBER = Physics(viscosity={"medium2": SERIES, "effector": SERIES})
+RUBBER = Physics(inelastic={"medium2": (SERIES,), "effector": (SERIES,)})
 
 
 @pytest.mark.press

@@ -25,7 +25,7 @@ DOT = cap(STACK)
 HOLD = Waveform(shape="trapezoid", rise_s=0.1, hold_s=0.3, fall_s=0.1)
 SLOW = Waveform(shape="half-sine", rise_s=0.6)
 CABLE = Readout(input_resistance_MOhm=1000.0, input_capacitance_pF=100.0, low_pass_Hz=60.0)
-SERIES = {"medium2": Prony((0.1, 0.2), (0.03, 0.2)), "medium1": Prony((0.2,), (0.5,))}
+SERIES = {"medium2": (Prony((0.1, 0.2), (0.03, 0.2)),), "medium1": (Prony((0.2,), (0.5,)),)}
 DEPTH_MM, PEAK = 0.3, 0.01
 MESH = MeshOptions(element_size_mm=0.9, contact_element_size_mm=0.45, mesher="layered")
 
@@ -67,12 +67,12 @@ def errors(model, mesh_3d, waveform, depth_mm, physics, gap_mm=0.0):
 
 
 CASES = {
-    "rate-independent": (HOLD, 0.27, Physics(viscosity={"medium2": Prony((0.0,), (1.0,))}), 0.0),
-    "hold and release": (HOLD, 0.3, Physics(viscosity=SERIES), 0.0),
-    "slow and shallower": (SLOW, 0.2, Physics(viscosity=SERIES), 0.0),
-    "less relaxation": (HOLD, 0.25, Physics(viscosity={"medium2": Prony((0.15,), (1.0,))}), 0.0),
-    "compliant rig": (HOLD, 0.3, Physics(viscosity=SERIES, rig_compliance_mm_per_N=0.2), 0.0),
-    "gap": (HOLD, 0.3, Physics(viscosity=SERIES), 0.03),
+    "rate-independent": (HOLD, 0.27, Physics(inelastic={"medium2": (Prony((0.0,), (1.0,)),)}), 0.0),
+    "hold and release": (HOLD, 0.3, Physics(inelastic=SERIES), 0.0),
+    "slow and shallower": (SLOW, 0.2, Physics(inelastic=SERIES), 0.0),
+    "less relaxation": (HOLD, 0.25, Physics(inelastic={"medium2": (Prony((0.15,), (1.0,)),)}), 0.0),
+    "compliant rig": (HOLD, 0.3, Physics(inelastic=SERIES, rig_compliance_mm_per_N=0.2), 0.0),
+    "gap": (HOLD, 0.3, Physics(inelastic=SERIES), 0.03),
 }
 
 
@@ -92,6 +92,6 @@ def test_a_viscous_bond_and_film_answer_as_in_the_3d_model(mesh_3d):
     model = build_reduced(
         STACK, materials(), DOT, mesh_3d, DEPTH_MM, relaxing, Physics(bonds=bonds), check=False, cache=False
     )
-    viscosity = {name: Prony((0.4,), (0.1,)), "film": Prony((0.1,), (0.3,))}
-    found, _ = errors(model, mesh_3d, HOLD, DEPTH_MM, Physics(bonds=bonds, viscosity=viscosity))
+    inelastic = {name: (Prony((0.4,), (0.1,)),), "film": (Prony((0.1,), (0.3,)),)}
+    found, _ = errors(model, mesh_3d, HOLD, DEPTH_MM, Physics(bonds=bonds, inelastic=inelastic))
     assert max(found.values()) <= PEAK

@@ -19,7 +19,7 @@ WAVE = Waveform(shape="raised-cosine", rise_s=0.1)
 SERIES = Prony((0.3,), (0.1,))
 CASES = {
     "elastic": lambda _: Physics(),
-    "viscous": lambda _: Physics(viscosity={"medium2": SERIES}),
+    "viscous": lambda _: Physics(inelastic={"medium2": (SERIES,)}),
     "friction": lambda _: Physics(friction=0.4),
     "soft rig": lambda s: Physics(rig_compliance_mm_per_N=0.05 / s),
     "moving mass behind a soft rig": lambda s: Physics(rig_compliance_mm_per_N=0.05 / s, moving_mass_g=5.0 * s),

@@ -27,9 +27,12 @@ from foundation.arrays import Floats
 from foundation.errors import InputError
 from foundation.progress import Report
 from solve.added import Motion
+from solve.materials.mullins import Softening
 from solve.materials.parameters import Material, PiezoelectricFilm, find_material
+from solve.materials.prony import Prony
 from solve.mechanisms import Mechanism
 from solve.model import Model
+from solve.physics import laws_of
 from solve.reduced.recording import felt
 from solve.solution.errors import NoEquilibriumError
 
@@ -131,8 +134,8 @@ def point_of(specimen: Specimen, model: Model) -> MaterialPoint:
         kinematics_of(specimen.model_copy(update={"thickness_mm": thickness})),
         material.law,
         float(np.mean(ratio)),
-        physics.softening.get(LAYER),
-        physics.viscosity.get(LAYER, NO_SERIES),
+        laws_of(physics.inelastic, Softening).get(LAYER),
+        laws_of(physics.inelastic, Prony).get(LAYER, NO_SERIES),
         physics.rig_compliance_mm_per_N,
     )
 

@@ -26,6 +26,7 @@ from solve.materials.mullins import Softening
 from solve.materials.parameters import PiezoelectricFilm
 from solve.materials.prony import Prony
 from solve.model import Model, Readout
+from solve.physics import laws_of
 from solve.readout.amplifier import amplify
 
 HERTZ = 2.0 / 3.0
@@ -46,8 +47,9 @@ class Loading:
 
 def strain(model: Model, loading: Loading) -> Floats:
     """Strain (t,) of the medium over that at the largest force at the baseline. NoEquilibriumError."""
-    physics, material = model.physics, model.materials[LAYER]
-    series, softening = physics.viscosity.get(LAYER, NO_SERIES), physics.softening.get(LAYER)
+    inelastic, material = model.physics.inelastic, model.materials[LAYER]
+    series = laws_of(inelastic, Prony).get(LAYER, NO_SERIES)
+    softening = laws_of(inelastic, Softening).get(LAYER)
     if material == MEDIUM and softening is None and series == NO_SERIES:
         return loading.force
     return _solved(material.law, softening, series, loading)
@@ -65,7 +67,7 @@ def _solved(law: MediumLaw, softening: Softening | None, series: Prony, loading:
 def film_charge(model: Model, loading: Loading) -> Floats:
     """Charge (t,) that follows the load, in units of s, the film's own relaxation included. NoEquilibriumError."""
     charge = strain(model, loading)
-    series = model.physics.viscosity.get("film")
+    series = laws_of(model.physics.inelastic, Prony).get("film")
     if series is None:
         return charge
     return Relaxation.of(series, loading.time_s).relaxed(charge[:, None])[:, 0]

@@ -30,6 +30,7 @@ from foundation.progress import Report
 from solve.materials.parameters import PiezoelectricFilm
 from solve.mechanisms import Mechanism, with_mechanisms
 from solve.model import Model, Readout
+from solve.physics import nonlinear_laws
 from solve.readout.stages import Hum
 from solve.reduced.fit import ResponseTable
 from solve.tables.rig_mesh import MeshSettings, mesh_of
@@ -163,13 +164,13 @@ class SegmentEngine:
         believed = replace(moved(base.model, beside), readout=self._readout(asked))
         stated = [setting.candidate.switched_on(setting.values) for setting in self.declared]
         on = with_mechanisms(believed, [*stated, *mechanisms])
-        elastic, values = replace(on, physics=replace(on.physics, viscosity={})), self._driven(drive, on, ())
+        elastic, values = replace(on, physics=replace(on.physics, inelastic={})), self._driven(drive, on, ())
 
         def shape(fit: ResponseTable) -> full.Shape:
             return lambda of, values: mechanics(fit, base.depth_mm, base.relaxing, of, values, elastic)
 
         tet_mesh = mesh_of(on, base.model, base.presses.tet_mesh, base.presses.options)
-        before = asked.largest_before.get(asked.drive, 0.0) if on.physics.softening or on.physics.film_yield else 0.0
+        before = asked.largest_before.get(asked.drive, 0.0) if nonlinear_laws(on.physics.inelastic) else 0.0
         alike = shape(base.raw), shape(base.fit)
         task = full.Task(asked, drive, values, on, tet_mesh, self._film(on), *alike, before)
         return full.solve(task, report)
@@ -207,7 +208,7 @@ class SegmentEngine:
     def _reached_before(self, run: Run, fit: ResponseTable, on: Model, settings: Sequence[Setting]) -> float:
         """Deepest path of the dot (mm) in the runs before; what depends on the path does not act back on it here."""
         base, _ = self.stands.at(run.dot_offset_mm)
-        at_once = replace(on, physics=replace(on.physics, viscosity={}, moving_mass_g=0.0))
+        at_once = replace(on, physics=replace(on.physics, inelastic={}, moving_mass_g=0.0))
         deepest = 0.0
         for name, value in run.largest_before.items():
             drive = pressed_once(value, name)

@@ -14,7 +14,9 @@ from diagnose.forward import Signals
 from diagnose.signals.recording import Run
 from foundation.arrays import Floats
 from foundation.progress import Report
+from solve.materials.prony import Prony
 from solve.model import Model, Press
+from solve.physics import laws_of
 from solve.press import press_segment
 from solve.result import PressResult, Trace
 from solve.solution.errors import NoEquilibriumError
@@ -106,7 +108,8 @@ def _earlier_press(task: Task) -> tuple[Floats, Floats]:
     """Times (p,) and shares (p,) of a press to the largest drive before, and a rest until nothing relaxes any more."""
     if task.before <= 0.0:
         return np.zeros(1), np.zeros(1)
-    times = [time for series in task.model.physics.viscosity.values() for time in series.relaxation_times]
+    viscosity = laws_of(task.model.physics.inelastic, Prony)
+    times = [time for series in viscosity.values() for time in series.relaxation_times]
     rest_s = RESTED * max(times, default=0.0)
     return np.array([0.0, 1.0, 2.0, 3.0 + rest_s]), np.array([0.0, task.before / task.largest, 0.0, 0.0])
 

@@ -14,6 +14,7 @@ from diagnose.engines.segment.drive import Drive
 from diagnose.engines.segment.response import Mechanics, mechanics
 from foundation.arrays import Floats
 from solve.model import Model
+from solve.physics import linear_laws
 from solve.reduced.fit import ResponseTable
 
 Question = TypeVar("Question")
@@ -55,7 +56,7 @@ class Courses:
     ) -> Mechanics:
         """As mechanics()."""
         physics = on.physics
-        acting = physics.viscosity, physics.rig_compliance_mm_per_N, physics.moving_mass_g
+        acting = linear_laws(physics.inelastic), physics.rig_compliance_mm_per_N, physics.moving_mass_g
         return self._recent.of(
             (fit, drive, values, acting), lambda: mechanics(fit, depth_mm, layers, drive, values, on)
         )

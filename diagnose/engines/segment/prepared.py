@@ -18,6 +18,7 @@ from foundation.executor import HERE, Executor
 from foundation.progress import Report
 from solve.mechanisms.layers.viscoelasticity import VISCOELASTICITY
 from solve.model import Model
+from solve.physics import linear_laws
 from solve.reduced.fit import CELLS, ResponseTable
 from solve.solution.errors import NoEquilibriumError
 from solve.tables.depth_press import DepthPress
@@ -75,7 +76,7 @@ class Prepared:
 
         NoEquilibriumError where the baseline has none, or a layer that relaxes by rig.toml.
         """
-        declared = self.model.physics.viscosity
+        declared = linear_laws(self.model.physics.inelastic)
         layers = sorted(relaxable(self.model), key=lambda layer: layer not in declared)
         while True:
             reduction = Reduction(

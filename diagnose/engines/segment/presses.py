@@ -14,7 +14,7 @@ from foundation.progress import Report
 from solve.delaminations import with_rims_of_patches
 from solve.mechanisms import with_mechanisms
 from solve.model import Model
-from solve.physics import Physics
+from solve.physics import Physics, nonlinear_laws
 from solve.solution.errors import NoEquilibriumError
 from solve.tables import cache
 from solve.tables.depth_press import DepthPress
@@ -66,7 +66,7 @@ class Presses:
     def job(self, model: Model, mesh: Sizes | None = None) -> DepthPress:
         """The press of a changed model on a mesh, moved with its layers, at once: nothing relaxes."""
         on = model.physics
-        own = replace(structural(on), friction=on.friction, softening=on.softening, film_yield=on.film_yield)
+        own = replace(structural(on), friction=on.friction, inelastic=nonlinear_laws(on.inelastic))
         tet_mesh = mesh_of(model, self.model, *(mesh or (self.tet_mesh, self.options)), MOST_NODES)
         return DepthPress(replace(ungapped(model), physics=own, readout=None), tet_mesh, self.depth_mm, SHARES)
 

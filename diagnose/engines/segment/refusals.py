@@ -4,7 +4,9 @@ from diagnose.signals.recording import Recording
 from foundation.errors import InputError
 from geometry.checks import check_press_depth
 from solve.materials.parameters import PiezoelectricFilm
+from solve.materials.prony import Prony
 from solve.model import Model
+from solve.physics import laws_of
 
 
 def refuse(model: Model, recording: Recording) -> None:
@@ -12,9 +14,10 @@ def refuse(model: Model, recording: Recording) -> None:
     film, physics = model.materials["film"], model.physics
     if isinstance(film, PiezoelectricFilm) and film.coupling == "two-way":
         raise InputError("coupling = 'two-way': a diagnosis needs a film whose voltage does not act back")
-    if not all(series.linear for series in physics.viscosity.values()):
+    viscosity = laws_of(physics.inelastic, Prony)
+    if not all(series.linear for series in viscosity.values()):
         raise InputError("mechanisms: a diagnosis of a segment takes viscoelasticity with flowing_share = 0 alone")
-    if physics.viscosity and physics.prestretch != (0.0, 0.0):
+    if viscosity and physics.prestretch != (0.0, 0.0):
         raise InputError("mechanisms: a diagnosis accepts declared viscoelasticity or film-prestretch, but not both")
     for run in recording.runs:
         if run.drive == "displacement_mm":

@@ -9,8 +9,9 @@ from diagnose.engines.segment.drive import Drive
 from diagnose.signals.recording import Run
 from foundation.arrays import Floats
 from solve.added import Motion, added_charge_C
+from solve.materials.prony import Prony
 from solve.model import Model, Readout
-from solve.physics import Physics
+from solve.physics import Physics, laws_of
 from solve.readout.amplifier import amplify
 from solve.readout.channels import amplify_channels
 from solve.reduced.fit import ResponseTable
@@ -51,7 +52,7 @@ def mechanics(
     physics, modes = on.physics, int(fit.start[-1])
     observed = fit.table.shape[2] - modes
     path, outputs = np.empty(len(values)), np.empty((len(values), observed))
-    moduli, times, layer = branches(physics.viscosity, layers)
+    moduli, times, layer = branches(laws_of(physics.inelastic, Prony), layers)
     mass = 1e-6 * physics.moving_mass_g  # N s2 / mm
     status = follow(
         drive.time_s, values, drive.kind, physics.rig_compliance_mm_per_N, mass, fit.table, fit.touch, depth_mm,

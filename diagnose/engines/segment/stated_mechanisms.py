@@ -11,6 +11,7 @@ from dataclasses import replace
 from diagnose.forward import Candidate, Coordinate, Setting
 from solve.mechanisms import Mechanism, with_mechanisms
 from solve.model import Model, Readout
+from solve.physics import linear_laws
 from solve.readout.stages import Hum
 
 STATED = Coordinate("stated", 0.0, 1.0, (1.0,), nodes=(1.0,))
@@ -26,7 +27,7 @@ def without_stated(model: Model) -> Model:
     """The model without them."""
     apart = stated_apart(model)
     stages = tuple(stage for stage in model.physics.stages if not isinstance(stage, Hum))
-    physics = replace(model.physics, friction=0.0, softening={}, film_yield=None, stages=stages)
+    physics = replace(model.physics, friction=0.0, inelastic=linear_laws(model.physics.inelastic), stages=stages)
     return replace(model, physics=physics, mechanisms=tuple(one for one in model.mechanisms if one not in apart))
 
 

@@ -18,6 +18,7 @@ from solve.materials.mullins import Softening
 from solve.materials.parameters import PiezoelectricFilm
 from solve.mechanisms.base import MEDIA
 from solve.mechanisms.layers.stress_softening import STRESS_SOFTENING
+from solve.physics import laws_of
 
 LOSS = 0.7  # filled rubber loses up to 40 % on the first press, soft tough ones more
 ENERGY, BLUNTEST = 0.01, 0.8  # up to 4 % of Young's modulus: what a strain of 30 % stores
@@ -43,7 +44,7 @@ def of_unknown_geometry(scene: Scene, recording: Recording) -> Iterator[Candidat
 
 def _softening(scene: Scene, component: str) -> Candidate:
     """The largest loss of stress and, of a slice, the energy."""
-    declared = scene.model.physics.softening.get(component, Softening(0.0))
+    declared = laws_of(scene.model.physics.inelastic, Softening).get(component, Softening(0.0))
     loss = Coordinate("loss", 0.0, LOSS, (0.1, 0.4), (0.35, LOSS))
     energy = Coordinate("energy", 0.0, BLUNTEST, (0.5,), (0.4, BLUNTEST), levels_off=(False, True))
     material = scene.model.materials[component]

@@ -15,6 +15,7 @@ from diagnose.vocabulary.scene import CouponScene, Scene
 from solve.materials.prony import Prony
 from solve.mechanisms.layers.viscoelasticity import VISCOELASTICITY
 from solve.model import Model
+from solve.physics import laws_of
 
 BRANCHES = 4
 LARGEST_SHARE = 0.75
@@ -30,7 +31,8 @@ MOST_OF_SENSOR = 1.0  # modulus of one branch of an unknown sensor, in terms of 
 def of_segment(scene: Scene) -> Iterator[Candidate]:
     """All that can relax."""
     for component in relaxable(scene.model):
-        yield _candidate(scene, component, scene.model.physics.viscosity.get(component, Prony((), ())))
+        declared = laws_of(scene.model.physics.inelastic, Prony)
+        yield _candidate(scene, component, declared.get(component, Prony((), ())))
 
 
 def of_coupon(scene: CouponScene) -> Iterator[Candidate]:

@@ -8,15 +8,15 @@ from math import inf
 from pydantic import Field
 
 from geometry.parameters import NonNegative, Positive
+from solve.materials.film_yield import Yield
 from solve.mechanisms.base import (
     MechanismType,
     Parameters,
     Traits,
     register,
-    with_physics,
+    with_law,
 )
 from solve.model import Model
-from solve.physics import Yield
 
 
 class FilmYield(Parameters):
@@ -28,7 +28,7 @@ class FilmYield(Parameters):
 
 def switch_on(model: Model, component: str, values: FilmYield) -> Model:
     """The model with this physics at a component."""
-    return with_physics(model, film_yield=Yield(values.yield_stress_MPa, values.hardening_modulus_MPa))
+    return with_law(model, component, Yield(values.yield_stress_MPa, values.hardening_modulus_MPa))
 
 
 FILM_YIELD = register(

@@ -9,7 +9,7 @@ from pydantic import Field
 
 from geometry.parameters import NonNegative, Positive
 from solve.materials.mullins import Softening
-from solve.mechanisms.base import MEDIA, MechanismType, Parameters, Traits, register, with_physics
+from solve.mechanisms.base import MEDIA, MechanismType, Parameters, Traits, register, with_law
 from solve.model import Model
 
 
@@ -25,9 +25,7 @@ class StressSoftening(Parameters):
 
 def switch_on(model: Model, component: str, values: StressSoftening) -> Model:
     """The model with this physics at a component."""
-    law = Softening(values.loss_ratio, values.energy_MPa, values.beta)
-    on = {component: law} if law.loss > 0.0 else {}
-    return with_physics(model, softening={**model.physics.softening, **on})
+    return with_law(model, component, Softening(values.loss_ratio, values.energy_MPa, values.beta))
 
 
 STRESS_SOFTENING = register(

@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from geometry.parameters import Positive, require_one_of_each
 from solve.materials.multiplicative import MultiplicativeMaxwell
 from solve.materials.prony import Prony
-from solve.mechanisms.base import BONDS, MEDIA, MechanismType, Moduli, Parameters, Traits, register, with_physics
+from solve.mechanisms.base import BONDS, MEDIA, MechanismType, Moduli, Parameters, Traits, register, with_law
 from solve.model import Model
 
 
@@ -41,8 +41,7 @@ def switch_on(model: Model, component: str, values: Viscoelasticity) -> Model:
         if component not in MEDIA or model.materials[component].law.compressible:
             raise ValueError(f"parameters.flowing_share = {share:g}: '{component}' is no medium of rubber; must be 0")
         series = MultiplicativeMaxwell(values.relative_moduli, values.relaxation_times_s, share)
-    on = {component: series} if sum(series.relative_moduli) > 0.0 else {}
-    return with_physics(model, viscosity={**model.physics.viscosity, **on})
+    return with_law(model, component, series)
 
 
 VISCOELASTICITY = register(

@@ -33,7 +33,7 @@ class Coupon:
         nodes = np.arange(3 * len(self.points)).reshape(-1, 3)
         dofs = np.concatenate([nodes[tets].reshape(-1, 30), nodes.size + local.reshape(-1, 4)], axis=1)
         self.free = np.flatnonzero(np.append(~held(self.points).ravel(), np.ones(len(corners), bool)))
-        laws = SOFTENING, series.acting_on(LAW.shear_modulus)
+        laws = SOFTENING, series.around(LAW, 1.0)
         self.solid = solid_region("coupon", LAW, self.points, tets, dofs, laws)
         self.x = np.zeros(nodes.size + len(corners))
         self.history = self.solid.start()

@@ -37,7 +37,7 @@ def test_relaxation_becomes_a_mechanism_of_medium_2(tmp_path):
     assert config.materials["mine"].youngs_modulus_MPa == pytest.approx(1.2)
     (relaxing,) = config.mechanisms
     assert (relaxing.name, relaxing.component) == ("viscoelasticity", "medium2")
-    assert "medium2" in model_of(config).physics.viscosity
+    assert "medium2" in model_of(config).physics.inelastic
 
 
 def test_the_modulus_is_that_which_was_fitted(tmp_path):
