@@ -23,6 +23,8 @@ from solve.physics import Physics
 from solve.readout.stages import Hum
 from solve.reduced.build import build_reduced
 from solve.reduced.model import ReducedModel
+from solve.terms.inertia import MovingMass
+from solve.terms.rig import RigSpring
 
 RELAXING = {"medium2": 0.3, "medium1": 0.2}
 DEPTH_MM, ANSWERS = 0.3, 21
@@ -34,9 +36,9 @@ VISCOUS = Physics(
 CASES = {
     "rate-independent": (Physics(), False),
     "viscoelastic": (VISCOUS, False),
-    "viscoelastic, compliant rig": (replace(VISCOUS, rig_compliance_mm_per_N=0.1), False),
+    "viscoelastic, compliant rig": (replace(VISCOUS, terms=(RigSpring(0.1),)), False),
     "viscoelastic, driven by force": (VISCOUS, True),
-    "viscoelastic, compliant rig, 5 g": (replace(VISCOUS, rig_compliance_mm_per_N=0.1, moving_mass_g=5.0), False),
+    "viscoelastic, compliant rig, 5 g": (replace(VISCOUS, terms=(RigSpring(0.1), MovingMass(5.0))), False),
 }
 
 

@@ -40,11 +40,9 @@ class Added:
     """One effect that is added to a trace; those that are not overridden add nothing.
 
     follows_time : whether the path or its speed matters to it.
-    rides_with_dot : it feels the motion of the dot, and is one of the terms of the problem where that is unknown.
     """
 
     follows_time = False
-    rides_with_dot = False
 
     @property
     def is_off(self) -> bool:
@@ -58,12 +56,6 @@ class Added:
     def charge_C(self, film: TouchedFilm) -> Floats:
         """Charge (t, e) in C on the electrodes."""
         return np.zeros((len(film.time_s), len(film.area_m2)))
-
-
-def added_force_N(added: Iterable[Added], motion: Motion, dot_is_free: bool) -> Floats:
-    """Sum (t,) of their forces in N. dot_is_free : the dot's own path is another one than the sensor's."""
-    acting = (one.force_N(motion) for one in added if not (dot_is_free and one.rides_with_dot))
-    return np.asarray(sum(acting, np.zeros(len(motion.path_mm))))
 
 
 def added_charge_C(

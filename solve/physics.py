@@ -4,11 +4,15 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TypeVar
 
+import numpy as np
+
+from foundation.arrays import Floats
 from geometry.parameters import Segment
-from solve.added import Added
+from solve.added import Added, Motion
 from solve.materials.inelastic import StatedLaw
 from solve.readout.channel_parts import ChannelPart
 from solve.readout.stages import Stage
+from solve.terms.definition import TermDefinition
 
 
 @dataclass(frozen=True)
@@ -33,33 +37,46 @@ class Delamination:
 class Physics:
     """What acts on the segment besides the baseline.
 
-    inelastic : layer or bond -> the laws with memory around it. bonds : bond -> stiffness.
-    friction : Coulomb coefficient between dot and surface. rig_compliance_mm_per_N lies between the displacement sensor
-    and the dot, moving_mass_g between the force sensor and the dot. prestretch : nominal strain of the film in x and y.
-    added : what is added to a trace afterwards. stages : of every amplifier, beside those of the read-out.
-    channels : what is of single channels, which need an amplifier for each electrode.
+    terms : of rig, dot and segment, beside those of every problem. inelastic : layer or bond -> the laws with memory
+    around it. bonds : bond -> stiffness. prestretch : nominal strain of the film in x and y.
+    stages : of every amplifier, beside those of the read-out; channels : what is of single channels, which need an
+    amplifier for each electrode. added : what is added to a trace afterwards.
     """
 
+    terms: tuple[TermDefinition, ...] = ()
     inelastic: Mapping[str, tuple[StatedLaw, ...]] = field(default_factory=dict)
     bonds: Mapping[str, BondLine] = field(default_factory=dict)
     delaminations: tuple[Delamination, ...] = ()
-    friction: float = 0.0
-    rig_compliance_mm_per_N: float = 0.0
-    moving_mass_g: float = 0.0
     prestretch: tuple[float, float] = (0.0, 0.0)
-    added: tuple[Added, ...] = ()
     stages: tuple[Stage, ...] = ()
     channels: tuple[ChannelPart, ...] = ()
+    added: tuple[Added, ...] = ()
 
     @property
     def follows_time(self) -> bool:
         """Whether the path, or its speed, matters: the press then follows its waveform to the end."""
-        return bool(
-            any(law.follows_time for laws in self.inelastic.values() for law in laws)
-            or self.friction > 0.0
-            or self.moving_mass_g > 0.0
-            or any(one.follows_time for one in self.added)
-        )
+        laws = (law.follows_time for laws in self.inelastic.values() for law in laws)
+        return any((*laws, *(term.follows_time for term in self.terms), *(one.follows_time for one in self.added)))
+
+    @property
+    def structure(self) -> "Physics":
+        """What of it is in an elastic press of the dot alone: neither time and path nor rig and read-out."""
+        elastic = tuple(term for term in self.terms if not (term.follows_time or term.of_rig))
+        return Physics(bonds=self.bonds, delaminations=self.delaminations, prestretch=self.prestretch, terms=elastic)
+
+    @property
+    def rig_terms(self) -> tuple[TermDefinition, ...]:
+        """What acts between the rig and the dot."""
+        return tuple(term for term in self.terms if term.of_rig)
+
+    def added_force_N(self, motion: Motion, dot_is_free: bool) -> Floats:
+        """Force (t,) in N that the sensor carries beside the segment's.
+
+        dot_is_free : the dot's own path is another one than the sensor's, so that what acts on it is in the answer.
+        """
+        forces = [one.force_N(motion) for one in self.added]
+        forces += [] if dot_is_free else [term.force_N(motion) for term in self.terms]
+        return np.asarray(sum(forces, np.zeros(len(motion.path_mm))))
 
 
 Part = TypeVar("Part")

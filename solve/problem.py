@@ -1,12 +1,10 @@
 """From parameters and a mesh to the discrete problem in solver units."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from foundation.arrays import Floats
 from foundation.errors import InputError
 from geometry.dot import DotShape
 from geometry.parameters import Segment
@@ -25,11 +23,12 @@ from solve.symmetry import electrode_rectangles, orbits
 from solve.system import System
 from solve.terms.base import Term
 from solve.terms.bond import bond
+from solve.terms.builder import Builder
 from solve.terms.circuit import Circuit, Tied
 from solve.terms.contact import contact_facets
+from solve.terms.definition import TermDefinition
 from solve.terms.elastic_sides import side_springs
 from solve.terms.film import FilmRegion, film_region
-from solve.terms.friction import FrictionalContact
 from solve.terms.rig import RigTerm
 from solve.terms.rigid_dot import RigidDot
 from solve.terms.solid import SolidRegion, solid_region
@@ -52,39 +51,6 @@ def refuse_unresolved(segment: Segment, tet_mesh: TetMesh, film: FilmRegion) -> 
             )
 
 
-@dataclass(frozen=True)
-class Builder:
-    """What every term is built from; points in solver units."""
-
-    segment: Segment
-    materials: Mapping[str, Material]
-    physics: Physics
-    readout: Readout | None
-    separate_channels: bool
-    tet_mesh: TetMesh
-    opened: tuple[OpenInterface, ...]
-    points: Floats
-    unknowns: Unknowns
-    units: Units
-
-    @property
-    def film_material(self) -> PiezoelectricFilm:
-        """TypeError when the film's material is none of a film."""
-        film = self.materials["film"]
-        if not isinstance(film, PiezoelectricFilm):
-            raise TypeError(f"the film needs a piezoelectric-film material, not {film.model}")
-        return film
-
-    def per_area(self, stiffness_N_per_mm3: float) -> float:
-        """A traction per displacement in solver units."""
-        return 1e9 * stiffness_N_per_mm3 * self.units.length / self.units.stress
-
-    def laws_around(self, place: str, elastic: Any) -> tuple[Inelastic, ...]:
-        """The laws with memory around that of a layer, in solver units, or of a bond."""
-        stated = in_order(self.physics.inelastic.get(place, ()))
-        return tuple(law.around(elastic, 1e6 / self.units.stress) for law in stated)
-
-
 def build_system(
     segment: Segment,
     materials: Mapping[str, Material],
@@ -104,22 +70,17 @@ def build_system(
     """
     physics = physics or Physics()
     laws = {name: materials[name].law.scaled(1e6) for name in tet_mesh.region_names if name != "film"}
-    numbers = Numbers()
-    parallel = readout is not None and not separate_channels
+    numbers, parallel = Numbers(), readout is not None and not separate_channels
     unknowns = _number(segment, materials, laws, tet_mesh, physics, readout, parallel, force_driven, numbers)
     units = units or solver_units(segment, laws, materials)
     points = tet_mesh.points_mm * (1e-3 / units.length)
-    make = Builder(segment, materials, physics, readout, separate_channels, tet_mesh, opened, points, unknowns, units)
-    terms: list[Term] = [_solid(make, name, law) for name, law in laws.items()]
-    film = _film(make)
-    terms += [film, *_sides(make), *_bonds(make, numbers), *_circuit(make, film)]
     contact = contact_facets(points, tet_mesh.facets["contact"], unknowns, RigidDot(dot, 1e3 * units.length))
-    if physics.friction > 0.0:
-        dofs = numbers.take(3 * len(contact.pressure_dofs)).reshape(-1, 3)
-        terms.append(FrictionalContact(contact, dofs, physics.friction))
-    else:
-        terms.append(contact)
-    terms += _rig(make, force_driven)
+    share = meshed_share(segment, tet_mesh)
+    make = Builder(segment, materials, tet_mesh, points, unknowns, numbers, units, contact, share, force_driven)
+    film = _film(make, physics)
+    terms: list[Term] = [*(_solid(make, physics, name, law) for name, law in laws.items()), film, *_sides(make)]
+    terms += [*_bonds(make, physics, opened), *_circuit(make, film, physics, readout, separate_channels)]
+    terms += _dot(make, physics.terms)
     pattern = build_pattern([group for term in terms for group in term.groups], numbers.count)
     return System(points, unknowns, numbers.count, units, tuple(terms), contact, pattern)
 
@@ -147,21 +108,22 @@ def _number(
         electrodes=orbits(electrode_rectangles(segment), tet_mesh.planes),
         two_way=two_way and not virtual_ground,
         parallel=parallel,
-        approach=force_driven or physics.rig_compliance_mm_per_N > 0.0,
+        approach=force_driven or any(one.frees_dot for one in physics.terms),
+        freed=tuple(name for one in physics.terms for name in one.frees),
     )
 
 
-def _solid(make: Builder, name: str, law: MediumLaw) -> SolidRegion:
+def _solid(make: Builder, physics: Physics, name: str, law: MediumLaw) -> SolidRegion:
     index = make.tet_mesh.region_tets(name)
     tets = make.tet_mesh.tets[index]
     dofs = make.unknowns.displacement[tets].reshape(-1, 30)
     if not law.compressible:
         dofs = np.concatenate([dofs, make.unknowns.pressure[index]], axis=1)
     scaled = law.scaled(1.0 / make.units.stress)
-    return solid_region(name, scaled, make.points, tets, dofs, make.laws_around(name, scaled))
+    return solid_region(name, scaled, make.points, tets, dofs, _laws_around(make, physics, name, scaled))
 
 
-def _film(make: Builder) -> FilmRegion:
+def _film(make: Builder, physics: Physics) -> FilmRegion:
     units, film = make.units, make.film_material
     law = film_law(film, make.segment.film.draw_angle_deg)
     scaled = FilmLaw(
@@ -178,8 +140,8 @@ def _film(make: Builder) -> FilmRegion:
         make.unknowns.voltage,
         electrode_rectangles(make.segment) * (1e-3 / units.length),
         1e-6 * make.segment.film.thickness_um / units.length,
-        make.physics.prestretch,
-        make.laws_around("film", scaled),
+        physics.prestretch,
+        _laws_around(make, physics, "film", scaled),
     )
 
 
@@ -193,37 +155,37 @@ def _sides(make: Builder) -> Iterator[Term]:
             yield side_springs(make.points, facets[f"side-{name}"], make.unknowns.displacement, stiffness)
 
 
-def _bonds(make: Builder, numbers: Numbers) -> Iterator[Term]:
+def _bonds(make: Builder, physics: Physics, opened: tuple[OpenInterface, ...]) -> Iterator[Term]:
     dofs = make.unknowns.displacement
-    for face in make.opened:
-        line, glued = make.physics.bonds.get(face.name), ~face.delaminated
+    for face in opened:
+        line, glued = physics.bonds.get(face.name), ~face.delaminated
         if line is not None and glued.any():
             normal = make.per_area(line.normal_stiffness_N_per_mm3)
             shear = make.per_area(line.shear_stiffness_N_per_mm3)
-            laws = make.laws_around(face.name, None)
+            laws = _laws_around(make, physics, face.name, None)
             yield bond(make.points, face.lower[glued], face.upper[glued], dofs, normal, shear, laws)
         if face.delaminated.any():
             lower, upper = face.lower[face.delaminated], face.upper[face.delaminated]
-            multipliers = numbers.take(opening_nodes(lower, upper, dofs)[1])
+            multipliers = make.numbers.take(opening_nodes(lower, upper, dofs)[1])
             yield unilateral_interface(make.points, lower, upper, dofs, multipliers)
 
 
-def _circuit(make: Builder, film: FilmRegion) -> Iterator[Term]:
+def _circuit(
+    make: Builder, film: FilmRegion, physics: Physics, readout: Readout | None, separate_channels: bool
+) -> Iterator[Term]:
     """The inputs of the amplifiers where their voltages act back on the film.
 
     Electrodes of one voltage, in parallel or images of each other, have the inputs of all of them: one in parallel, one
     for each image.
     """
-    readout, units, dofs = make.readout, make.units, make.unknowns.voltage
+    units, dofs = make.units, make.unknowns.voltage
     if readout is None or dofs[0] < 0:
         return
-    farad, inputs_apart = units.charge / units.voltage, make.separate_channels
-    parts = make.physics.channels if inputs_apart else ()
+    farad, parts = units.charge / units.voltage, physics.channels if separate_channels else ()
     leak_uS, mutual_F = conductances_uS(parts, len(dofs)), capacitances_F(parts, len(dofs))
     for dof in np.unique(dofs):
         joined = dofs == dof
-        inputs = int(joined.sum()) if inputs_apart else 1
-        share = inputs * meshed_share(make.segment, make.tet_mesh)
+        share = make.share * (int(joined.sum()) if separate_channels else 1)
         own_uS = float(leak_uS[np.flatnonzero(joined)[0]])  # its images have the same
         conductance_uS = 1.0 / (readout.input_resistance_MOhm or np.inf) + own_uS
         resistance = (1e6 / conductance_uS if conductance_uS else np.inf) * farad / share
@@ -232,16 +194,20 @@ def _circuit(make: Builder, film: FilmRegion) -> Iterator[Term]:
     if mutual_F.any():
         known, of = np.unique(dofs, return_inverse=True)
         joined_by = np.eye(len(known))[of]
-        share = meshed_share(make.segment, make.tet_mesh) / farad
         matrix = joined_by.T @ mutual_F @ joined_by
-        yield Tied(known, share * matrix)
+        yield Tied(known, make.share / farad * matrix)
 
 
-def _rig(make: Builder, force_driven: bool) -> Iterator[Term]:
-    if make.unknowns.approach < 0:
-        return
-    units, physics = make.units, make.physics
-    share = meshed_share(make.segment, make.tet_mesh)
-    compliance = 1e-3 * physics.rig_compliance_mm_per_N * units.force / units.length / share
-    mass = 1e-3 * physics.moving_mass_g / units.mass * share
-    yield RigTerm(make.unknowns.approach, mass, None if force_driven else compliance)
+def _dot(make: Builder, stated: tuple[TermDefinition, ...]) -> Iterator[Term]:
+    """The contact, what a mechanism states, and the force that drives."""
+    if not any(one.is_contact for one in stated):
+        yield make.contact
+    for one in stated:
+        yield from one.build(make)
+    if make.force_driven:
+        yield RigTerm(make.unknowns.approach, None, alone=not any(one.resists for one in stated))
+
+
+def _laws_around(make: Builder, physics: Physics, place: str, elastic: Any) -> tuple[Inelastic, ...]:
+    """The laws with memory around that of a layer, in solver units, or of a bond."""
+    return tuple(law.around(elastic, make.MPa) for law in in_order(physics.inelastic.get(place, ())))

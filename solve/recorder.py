@@ -1,7 +1,6 @@
 """What is recorded of every converged state: loads and charges; and fields at the reported steps.
 
-The force sensor reads more than the contact: the mass that moves on a prescribed path, F_contact + m a'', and the
-friction of a guide.
+The force sensor reads more than the contact: what acts on the dot along a prescribed path, and beside the segment.
 """
 
 from collections.abc import Mapping
@@ -14,7 +13,7 @@ from foundation.arrays import Floats
 from geometry.parameters import Segment
 from mesh.symmetry import mirrored_mesh
 from mesh.types import TetMesh
-from solve.added import Motion, added_charge_C, added_force_N
+from solve.added import Motion, added_charge_C
 from solve.convergence_warnings import doubtful_results
 from solve.fields import fields
 from solve.film_means import film_peak
@@ -198,14 +197,14 @@ class Recorder:
         return -float(self.system.dot_force(trial)[2]) if rig is None else rig.drive_force(trial)
 
     def trace(self, press: Press) -> Trace:
-        """All that was recorded, with the force of a moving mass and all that the physics adds."""
-        trace = self._with_inertia(self._trace(), press)
+        """All that was recorded, with what the physics adds."""
+        trace = self._trace()
         motion = Motion(
             1e3 * trace.indentation_m,
             lambda: 1e3 * prescribed_velocity(press, trace),
             lambda: 1e3 * prescribed_acceleration(press, trace),
         )
-        added_N = added_force_N(self.physics.added, motion, dot_is_free=self.system.rig is not None)
+        added_N = self.physics.added_force_N(motion, dot_is_free=self.system.rig is not None)
         return replace(
             trace,
             reaction_force_N=trace.reaction_force_N + added_N,
@@ -222,14 +221,6 @@ class Recorder:
             film_charge_C=np.array([r.film_charge_C for r in self.records]),
             contact_area_m2=np.array([r.contact_area_m2 for r in self.records]),
         )
-
-    def _with_inertia(self, trace: Trace, press: Press) -> Trace:
-        """Where the dot's path is prescribed the force sensor also feels its mass: F = F_contact + m a''."""
-        if self.system.rig is not None or self.physics.moving_mass_g == 0.0:
-            return trace
-        acceleration = prescribed_acceleration(press, trace)
-        force = trace.reaction_force_N + 1e-3 * self.physics.moving_mass_g * acceleration
-        return replace(trace, reaction_force_N=force)
 
     def _added_charge(self, trace: Trace) -> Floats:
         """Charge that is not of the strain, (t, e) in C."""

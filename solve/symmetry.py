@@ -43,6 +43,7 @@ def _is_mirrored(model: Model, dot: DotShape, axis: int) -> bool:
         and electrode_images(electrode_rectangles(model.segment), axis) is not None
         and _mirrored_inputs(model, axis)
         and _mirrored_patches(model.physics.delaminations, axis, model.segment.section == "plane-strain")
+        and all(term.mirrored for term in model.physics.terms)
         and mirrored_dot(dot, axis)
         and all(point[axis] == 0.0 for point in model.press.path_xy_mm)
     )

@@ -39,11 +39,14 @@ class Unknowns:
     approach: int
 
 
-def fixed_nodes(tet_mesh: TetMesh, held_regions: tuple[str, ...]) -> Ints:
-    """Nodes whose displacement is zero: the base and the sides of the regions that the case holds."""
-    names = ["base", *(f"side-{name}" for name in held_regions)]
+def fixed_nodes(tet_mesh: TetMesh, held_regions: tuple[str, ...], freed: tuple[str, ...] = ()) -> Ints:
+    """Nodes whose displacement is zero: the base and the sides of the regions that the case holds.
+
+    freed : names of those surfaces that something else holds.
+    """
+    names = [name for name in ("base", *(f"side-{name}" for name in held_regions)) if name not in freed]
     facets = [tet_mesh.facets[name].ravel() for name in names if name in tet_mesh.facets]
-    return np.unique(np.concatenate(facets))
+    return np.unique(np.concatenate([np.zeros(0, np.int64), *facets]))
 
 
 def number(
@@ -56,14 +59,15 @@ def number(
     two_way: bool,
     parallel: bool,
     approach: bool,
+    freed: tuple[str, ...] = (),
 ) -> Unknowns:
     """Number the unknowns of a problem.
 
     electrodes : (e,) numbers from 0, equal for electrodes of equal voltage; two_way : voltages act back, of electrodes
-    in parallel or each alone.
+    in parallel or each alone. freed : surfaces that are not held still.
     """
     twin = tet_mesh.twin
-    free = _free(tet_mesh, held_regions, plane_strain)
+    free = _free(tet_mesh, fixed_nodes(tet_mesh, held_regions, freed), plane_strain)
     displacement = np.full(free.shape, -1)
     displacement[free] = numbers.take(int(free.sum()))
     pressure, corners = _pressures(tet_mesh, numbers, without_pressure)
@@ -80,11 +84,11 @@ def number(
     return Unknowns(new[displacement][twin], new[pressure], voltage, new[contact][twin], dot)
 
 
-def _free(tet_mesh: TetMesh, held_regions: tuple[str, ...], plane_strain: bool) -> Bools:
+def _free(tet_mesh: TetMesh, fixed: Ints, plane_strain: bool) -> Bools:
     """Which displacements are unknown (n, 3); of twins only the first."""
     free = np.zeros((len(tet_mesh.points_mm), 3), bool)
     free[tet_mesh.twin[tet_mesh.tets]] = True
-    free[tet_mesh.twin[fixed_nodes(tet_mesh, held_regions)]] = False
+    free[tet_mesh.twin[fixed]] = False
     if plane_strain:
         free[:, 1] = False
     for axis in tet_mesh.planes:

@@ -155,6 +155,7 @@ class Yield(StatedLaw):
 
     stress_MPa: float
     hardening_MPa: float = 0.0
+    words: ClassVar[str] = "yield of the film"
     order: ClassVar[float] = YIELD
 
     @property

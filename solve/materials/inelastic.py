@@ -44,12 +44,13 @@ class Inelastic(Protocol):
 
 
 class StatedLaw(ABC):
-    """A law with memory as it is stated, with stresses in MPa and times in s.
+    """A law with memory as it is stated, with stresses in MPa and times in s. words : what it is, for a reader.
 
     order : laws around one material act in this order, from the elastic one on; one takes the place of another of its
     order. linear : in the history of the elastic stress. follows_time : whether the path or its speed matters to it.
     """
 
+    words: ClassVar[str]
     order: ClassVar[float]
     linear = False
     follows_time = True

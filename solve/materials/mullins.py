@@ -26,6 +26,7 @@ class Softening(StatedLaw):
     energy: float = 0.0
     beta: float = 0.3
     needs_energy = True
+    words: ClassVar[str] = "stress softening"
     order: ClassVar[float] = SOFTENING
 
     @property

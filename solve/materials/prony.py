@@ -33,6 +33,7 @@ class Prony(StatedLaw):
     relative_moduli: tuple[float, ...]
     relaxation_times: tuple[float, ...]
     needs_energy = False
+    words: ClassVar[str] = "relaxation"
     order: ClassVar[float] = RELAXATION
     linear = True
 

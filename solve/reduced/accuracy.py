@@ -1,7 +1,7 @@
 """The reduced model against presses of the 3D model that had no part in its making."""
 
 from collections.abc import Mapping
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import numpy as np
 
@@ -35,10 +35,7 @@ def measured(
     found = []
     for waveform, depth, share in _held_out(bool(model.relaxing)):
         inelastic = {layer: (Prony((share * most,), (waveform.rise_s,)),) for layer, most in model.relaxing.items()}
-        tested = Physics(
-            bonds=physics.bonds, delaminations=physics.delaminations, prestretch=physics.prestretch,
-            inelastic=inelastic,
-        )  # fmt: skip
+        tested = replace(physics.structure, inelastic=inelastic)
         press = Press(indentation_mm=depth * model.depth_mm, load_steps=8, waveform=waveform)
         result = press_segment(Model(segment, materials, Dot(), press, None, tested), tet_mesh, dot=dot)
         if result.failure is not None:

@@ -17,7 +17,6 @@ from geometry.dot import DotShape
 from geometry.parameters import Dot, Segment
 from mesh.types import TetMesh
 from solve.materials.parameters import Material, PiezoelectricFilm
-from solve.materials.prony import Prony
 from solve.model import Model, Press
 from solve.physics import Physics
 from solve.reduced.accuracy import measured
@@ -26,6 +25,7 @@ from solve.reduced.fit import FINER, fit
 from solve.reduced.frozen_memory import Frozen
 from solve.reduced.model import ReducedModel, structure
 from solve.reduced.response import Accuracy
+from solve.reduced.rig import unknown_of_segment
 from solve.reduced.sampling import Sample, SampledPress, Sampler
 from solve.reduced.task import ReductionTask
 from solve.setup import discretise
@@ -50,10 +50,10 @@ def build_reduced(
     """A reduced model down to depth_mm. materials : layer -> material.
 
     relaxing : layer or compliant bond -> largest sum of its relative moduli, between 0 and 1. physics : its bonds,
-    delaminations and prestretch are built in, the rest is given when the model is asked. depth_nodes : states sampled
-    on the way down. check : measure the error on 3D presses kept out of the fit; without it the bound is infinite.
-    cache : keep the model on disk by what it depends on. ValueError with one sentence for what it cannot describe;
-    NoEquilibriumError where the 3D model has no answer.
+    delaminations, prestretch and elastic terms are built in, the rest is given when the model is asked.
+    depth_nodes : states sampled on the way down. check : measure the error on 3D presses kept out of the fit; without
+    it the bound is infinite. cache : keep the model on disk by what it depends on. ValueError with one sentence for
+    what it cannot describe; NoEquilibriumError where the 3D model has no answer.
     """
     asked = ReductionTask(
         segment, materials, dot, tet_mesh, depth_mm, dict(relaxing or {}), physics or Physics(), depth_nodes
@@ -80,9 +80,8 @@ def _refuse(case: ReductionTask) -> None:
     film = case.materials["film"]
     if isinstance(film, PiezoelectricFilm) and film.coupling == "two-way":
         raise ValueError("coupling = 'two-way': the reduced model needs a film whose voltage does not act back")
-    laws = (law for laws in case.physics.inelastic.values() for law in laws)
-    if case.physics.friction > 0.0 or not all(isinstance(law, Prony) for law in laws):
-        raise ValueError("friction, softening and yield depend on the path: they need the full solver")
+    if unknown := unknown_of_segment(case.physics):
+        raise ValueError(f"{', '.join(unknown)}: what depends on the path needs the full solver")
     if case.relaxing and case.physics.prestretch != (0.0, 0.0):
         raise ValueError("a prestretched film with relaxing layers needs the full solver")
     for layer, share in case.relaxing.items():
@@ -113,10 +112,7 @@ def _build(case: ReductionTask, check: bool) -> ReducedModel:
 
 
 def _sampler(case: ReductionTask, layers: tuple[str, ...]) -> Sampler:
-    physics = Physics(
-        bonds=case.physics.bonds, delaminations=case.physics.delaminations, prestretch=case.physics.prestretch,
-        inelastic={layer: (Frozen(layer=layer),) for layer in layers},
-    )  # fmt: skip
+    physics = replace(case.physics.structure, inelastic={layer: (Frozen(layer=layer),) for layer in layers})
     press = Press(indentation_mm=case.depth_mm)
     model = Model(case.segment, case.materials, Dot(), press, None, physics)
     return Sampler(discretise(model, case.tet_mesh, case.dot), layers, case.depth_nodes)

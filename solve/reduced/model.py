@@ -15,7 +15,8 @@ from solve.readout.amplifier import amplify, input_of, stages
 from solve.reduced.fit import CELLS, ResponseTable
 from solve.reduced.recording import branches, given, second_differences, sensed
 from solve.reduced.response import Accuracy, ErrorBound, Raw, ReducedResponse
-from solve.reduced.time_stepping import BY_DEPTH, TOO_DEEP, follow
+from solve.reduced.rig import compliance_mm_per_N, mass_Ns2_per_mm, unknown_of_rig, unknown_of_segment
+from solve.reduced.time_stepping import BY_DEPTH, BY_FORCE, TOO_DEEP, follow
 
 MARGIN = 2.0  # of the bound over the largest error that was measured
 
@@ -68,12 +69,12 @@ class ReducedModel:
         return ReducedResponse(time, path + gap_mm, force, charge, each, voltage, bound)
 
     def _refuse(self, physics: Physics) -> None:
-        viscosity = laws_of(physics.inelastic, Prony)
-        if physics.friction > 0.0 or sum(map(len, physics.inelastic.values())) > len(viscosity):
-            raise ValueError("the reduced model has no friction, softening or yield: these need the full solver")
+        if unknown := unknown_of_segment(physics):
+            raise ValueError(f"the reduced model has no {' and no '.join(unknown)}: that needs the full solver")
         if structure(physics) != self.structure:
-            raise ValueError("the reduced model was made with other bonds, delaminations or prestretch: build it again")
-        for name, series in viscosity.items():
+            other = "other bonds, delaminations, prestretch or elastic terms"
+            raise ValueError(f"the reduced model was made with {other}: build it again")
+        for name, series in laws_of(physics.inelastic, Prony).items():
             if not series.linear:
                 raise ValueError(f"the reduced model has no branches that flow: {name} needs the full solver")
             share, known = sum(series.relative_moduli), self.relaxing.get(name, 0.0)
@@ -81,12 +82,15 @@ class ReducedModel:
                 raise ValueError(f"{name} relaxes by {share:g} of its stress: the reduced model knows up to {known:g}")
 
     def _follow(self, time: Floats, drive: Floats, kind: int, physics: Physics) -> tuple[Floats, Floats]:
-        compliance = physics.rig_compliance_mm_per_N
+        compliance = compliance_mm_per_N(physics)
+        unknown = unknown_of_rig(physics) if kind == BY_FORCE or compliance > 0.0 else []
+        if unknown:
+            raise ValueError(f"the reduced model moves no dot with {' and '.join(unknown)}: that needs the full solver")
         if kind == BY_DEPTH and compliance == 0.0 and drive.max() > self.depth_mm * (1.0 + 1e-9):
             raise ValueError(f"depth {drive.max():.4g} mm: the reduced model knows up to {self.depth_mm:g} mm")
         path, outputs = np.empty(len(time)), np.empty((len(time), 2 + len(self.film)))
         moduli, times, layer = branches(laws_of(physics.inelastic, Prony), tuple(self.relaxing))
-        fit, mass = self.fit, 1e-6 * physics.moving_mass_g  # N s2 / mm
+        fit, mass = self.fit, mass_Ns2_per_mm(physics)
         status = follow(
             time, drive, kind, compliance, mass, fit.table, fit.touch, self.depth_mm, fit.pairs, fit.start, moduli,
             times, layer, outputs.shape[1], path, outputs,
@@ -124,4 +128,5 @@ class ReducedModel:
 
 def structure(physics: Physics) -> str:
     """What of the physics the samples contain."""
-    return repr((sorted(physics.bonds.items()), physics.delaminations, physics.prestretch))
+    built_in = physics.structure
+    return repr((sorted(built_in.bonds.items()), built_in.delaminations, built_in.prestretch, built_in.terms))

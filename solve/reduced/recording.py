@@ -5,9 +5,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from foundation.arrays import Floats, Ints
-from solve.added import Motion, added_force_N
+from solve.added import Motion
 from solve.materials.prony import Prony
 from solve.physics import Physics
+from solve.reduced.rig import compliance_mm_per_N
 from solve.reduced.time_stepping import BY_DEPTH, BY_FORCE
 
 
@@ -37,22 +38,16 @@ def branches(viscosity: Mapping[str, Prony], layers: tuple[str, ...]) -> tuple[F
 
 
 def sensed(drive: Floats, kind: int, path: Floats, contact: Floats, physics: Physics, motion: Motion) -> Floats:
-    """What the force sensor reads (t,): the force that drives, that of the rig's spring, or as felt.
+    """What the force sensor reads (t,): the force that drives, that of the rig's spring, or of the contact.
 
-    To the force of the spring comes what the physics adds. motion : the drive.
+    To either of the latter comes what the physics adds. motion : the drive.
     """
     if kind == BY_FORCE:
         return drive.copy()
-    if physics.rig_compliance_mm_per_N > 0.0:
-        spring = (drive - path) / physics.rig_compliance_mm_per_N
-        return np.asarray(spring + added_force_N(physics.added, motion, dot_is_free=True))
-    return felt(contact, physics, motion)
-
-
-def felt(force: Floats, physics: Physics, motion: Motion) -> Floats:
-    """Force (t,) with that of a moving mass and all that the physics adds along a path: F + m a'' + f."""
-    total = np.asarray(force + added_force_N(physics.added, motion, dot_is_free=False))
-    return total + 1e-6 * physics.moving_mass_g * motion.acceleration() if physics.moving_mass_g > 0.0 else total
+    compliance = compliance_mm_per_N(physics)
+    if compliance > 0.0:
+        return np.asarray((drive - path) / compliance + physics.added_force_N(motion, dot_is_free=True))
+    return np.asarray(contact + physics.added_force_N(motion, dot_is_free=False))
 
 
 def second_differences(time: Floats, path: Floats) -> Floats:

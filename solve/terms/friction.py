@@ -22,7 +22,9 @@ import numpy as np
 
 from foundation.arrays import Bools, Floats, Ints
 from solve.terms.base import Block, History, Term, Trial
+from solve.terms.builder import Builder
 from solve.terms.contact import ACTIVE_SET_STIFFNESS, HATS, SHAPES, ContactFacets
+from solve.terms.definition import TermDefinition
 
 SLIP_LIMIT = 1.9  # below 2, see _shift; it, too, only steers the iteration
 MOTION = np.r_[0:18, 24]  # columns of a facet that move its surface against the dot
@@ -241,6 +243,26 @@ class FrictionalContact(Term):
         turning *= self._turnable[index][..., None]
         rows += _apply(law.by_normal[index], turning) + law.by_gap[index][..., None] * closing[:, :, None, :]
         ke[:, 25:, MOTION] = rows.reshape(count, 18, 19)
+
+
+@dataclass(frozen=True)
+class Friction(TermDefinition):
+    """Coulomb friction between the dot and the surface."""
+
+    coefficient: float = 0.0
+    words = "friction of the dot"
+    follows_time = True
+    is_contact = True
+
+    @property
+    def is_off(self) -> bool:
+        """It slips freely."""
+        return self.coefficient == 0.0
+
+    def build(self, make: Builder) -> Iterator[Term]:
+        """The contact, with three more multipliers at each of its nodes."""
+        dofs = make.numbers.take(3 * len(make.contact.pressure_dofs)).reshape(-1, 3)
+        yield FrictionalContact(make.contact, dofs, self.coefficient)
 
 
 def _projection_slope(vectors: Floats, normal: Floats, turn: Floats) -> Floats:

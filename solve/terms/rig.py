@@ -1,17 +1,8 @@
-"""What stands between the rig's sensor and the dot: a spring, a moving mass, or a prescribed force.
+"""What drives a dot whose approach is unknown: a spring between the rig's sensor and the dot, or a force.
 
-The dot's approach a is unknown (Newton's law for the mass m that moves with it):
-    m a'' + F_contact(a) = (u - a) / c    driven by a sensor displacement u through the compliance c, or
-    m a'' + F_contact(a) = F              driven by a force F.
-Time integration by the alpha method of Wood, Bossak and Zienkiewicz (Int. J. Numer. Methods Eng. 15, 1981), second
-order: the mass feels (1 - alpha) a''_new + alpha a''_old, Newmark's beta = (1 - alpha)^2 / 4, gamma = 1/2 - alpha. Of
-an oscillation too fast for the step a share FADE is left after each; one that is resolved keeps its energy to third
-order. Without this a small mass between coarse steps would ring at a made-up frequency for ever. The contact adds
-F_contact.
-
-Where the dot strikes within a step that is too coarse for the blow, the velocities of that method are made up, and the
-dot may rebound with more energy than it came with. Such a step is damped: by Euler's implicit method, which never gains
-energy against a contact whose force grows with the depth.
+The balance of forces along the approach a is
+    F_contact(a) + what else acts on the dot = (u - a) / c    driven by a displacement u through the compliance c, or
+                                             = F              driven by a force F.
 """
 
 from collections.abc import Iterator
@@ -21,19 +12,20 @@ import numpy as np
 
 from foundation.arrays import Floats, Ints
 from solve.terms.base import Block, History, Term, Trial
-
-FADE = 0.5  # spectral radius at infinite frequency
-ALPHA = (FADE - 1.0) / (FADE + 1.0)
-BETA, GAMMA = 0.25 * (1.0 - ALPHA) ** 2, 0.5 - ALPHA
+from solve.terms.builder import Builder
+from solve.terms.definition import TermDefinition
 
 
 @dataclass(frozen=True)
 class RigTerm(Term):
-    """approach_dof : unknown number; mass, compliance : solver units, None where a force drives."""
+    """approach_dof : unknown number; compliance : solver units, None where a force drives.
+
+    alone : nothing but the contact resists the force, so that the dot rests where none pushes.
+    """
 
     approach_dof: int
-    mass: float
     compliance: float | None
+    alone: bool = True
     is_load = True
 
     @property
@@ -41,33 +33,13 @@ class RigTerm(Term):
         """The dot's approach."""
         return (np.array([[self.approach_dof]]),)
 
-    def start(self) -> History:
-        """Velocity, acceleration of the dot and the approach itself, (3,)."""
-        return np.zeros(3)
-
-    def _motion(self, trial: Trial, history: History) -> Floats:
-        """Velocity, acceleration and approach at the end of the step."""
-        velocity, acceleration, before = history
-        now, dt = float(trial.x[self.approach_dof]), trial.time_step
-        if np.isinf(dt):  # long at rest
-            return np.array([0.0, 0.0, now])
-        if trial.damped:
-            mean = (now - before) / dt
-            return np.array([mean, (mean - velocity) / dt, now])
-        new = (now - before - dt * velocity) / (BETA * dt**2) - (0.5 / BETA - 1.0) * acceleration
-        return np.array([velocity + dt * ((1.0 - GAMMA) * acceleration + GAMMA * new), new, now])
-
     def elements(self, trial: Trial, history: History) -> Iterator[Block]:
-        """Residual and tangent of the balance of forces without the contact's."""
+        """Residual and tangent of the drive."""
         residual, tangent = -self.drive_force(trial), 0.0
         if self.compliance is not None:
             tangent += 1.0 / self.compliance
-        elif np.isinf(trial.time_step) or (trial.drive == 0.0 and self.mass == 0.0):  # nothing pushes: it is at rest
+        elif np.isinf(trial.time_step) or (trial.drive == 0.0 and self.alone):  # nothing pushes: it is at rest
             residual, tangent = float(trial.x[self.approach_dof]), 1.0
-        if self.mass > 0.0:
-            new, alpha, beta = float(self._motion(trial, history)[1]), *((0.0, 1.0) if trial.damped else (ALPHA, BETA))
-            residual += self.mass * ((1.0 - alpha) * new + alpha * float(history[1]))
-            tangent += self.mass * (1.0 - alpha) / (beta * trial.time_step**2)
         yield Block(0, slice(0, 1), np.array([[[tangent]]]), np.array([[residual]]))
 
     def load_norm(self, trial: Trial, forces: Floats) -> float:
@@ -80,16 +52,27 @@ class RigTerm(Term):
             return trial.drive
         return (trial.drive - float(trial.x[self.approach_dof])) / self.compliance
 
-    def advance(self, trial: Trial, history: History) -> History:
-        """Motion at the converged state."""
-        return self._motion(trial, history) if self.mass > 0.0 else history
 
-    def time_error(self, history: History, new: History, time_step: float, after_kink: bool) -> float:
-        """Local error (beta - 1/6) dt^2 (a_new - a_old) of the approach (Zienkiewicz and Xie, 1991), relative to it.
+@dataclass(frozen=True)
+class RigSpring(TermDefinition):
+    """A compliance between the displacement sensor and the dot, which a force that drives does not feel."""
 
-        The acceleration does not jump where the rate of loading does.
-        """
-        if self.mass == 0.0:
-            return 0.0
-        largest = max(abs(float(new[2])), abs(float(history[2])), 1e-12)
-        return (BETA - 1.0 / 6.0) * time_step**2 * abs(float(new[1] - history[1])) / largest
+    compliance_mm_per_N: float = 0.0
+    words = "a compliant rig"
+    of_rig = True
+
+    @property
+    def frees_dot(self) -> bool:
+        """Where it gives way."""
+        return not self.is_off
+
+    @property
+    def is_off(self) -> bool:
+        """The rig is rigid."""
+        return self.compliance_mm_per_N == 0.0
+
+    def build(self, make: Builder) -> Iterator[Term]:
+        """The spring, where a displacement drives."""
+        if not (make.force_driven or self.is_off):
+            compliance = 1e-3 * self.compliance_mm_per_N * make.units.force / make.units.length / make.share
+            yield RigTerm(make.unknowns.approach, compliance)

@@ -230,7 +230,8 @@ def work(pressed):
     force, path = trace.contact_force_N[:, 2], trace.dot_path_m
     if press.path_xy_mm:
         return
-    if pressed.model.physics.friction == 0.0 and force.min() < -1e-6 * max(force.max(), 1e-9):
+    rubs = any(term.is_contact for term in pressed.model.physics.terms)
+    if not rubs and force.min() < -1e-6 * max(force.max(), 1e-9):
         yield f"the dot is pulled with {force.min():g} N"
     done = np.concatenate([[0.0], np.cumsum(0.5 * (force[1:] + force[:-1]) * np.diff(path))])
     if any("time integration" in said for said in pressed.result.warnings):  # a rebound within one sub-step

@@ -16,7 +16,10 @@ from solve.reduced import cache
 from solve.reduced.fit import CELLS, ResponseTable
 from solve.reduced.model import ReducedModel, structure
 from solve.reduced.response import Accuracy
+from solve.terms.friction import Friction
 from solve.terms.guide import GuideFriction
+from solve.terms.inertia import MovingMass
+from solve.terms.rig import RigSpring
 from tests.cases import for_each
 
 STIFFNESS, FULL, SHARE, TAU = 2.0, 0.5, 0.3, 0.2
@@ -89,7 +92,7 @@ def test_two_branches_add():
 
 def test_the_rig_is_a_spring_in_series():
     time = np.linspace(0.0, 1.0, 101)
-    answer = solid().respond(time, 0.4 * time, Physics(rig_compliance_mm_per_N=0.25))
+    answer = solid().respond(time, 0.4 * time, Physics(terms=(RigSpring(0.25),)))
     np.testing.assert_allclose(answer.force_N, 0.4 * time * STIFFNESS / (1 + 0.25 * STIFFNESS), atol=1e-9)
 
 
@@ -97,7 +100,7 @@ def test_a_gap_shifts_the_touch():
     time = np.linspace(0.0, 1.0, 101)
     answer = solid().respond(time, 0.4 * time, gap_mm=0.1)
     np.testing.assert_allclose(answer.force_N, STIFFNESS * np.maximum(0.4 * time - 0.1, 0.0), atol=1e-9)
-    soft = solid().respond(time, 0.4 * time, Physics(rig_compliance_mm_per_N=0.25), gap_mm=0.1)
+    soft = solid().respond(time, 0.4 * time, Physics(terms=(RigSpring(0.25),)), gap_mm=0.1)
     np.testing.assert_allclose(soft.force_N, answer.force_N / (1 + 0.25 * STIFFNESS), atol=1e-9)
     np.testing.assert_allclose(soft.dot_path_mm, 0.4 * time - 0.25 * soft.force_N, atol=1e-9)
 
@@ -108,7 +111,7 @@ def test_a_mass_rings_at_its_natural_frequency():
     w = np.sqrt(1e3 * STIFFNESS / (1e-3 * mass_g))
     time = np.append(-1e-9, np.linspace(0.0, 2 * np.pi / w, 401))
     force = np.where(time < 0.0, 0.0, 0.3)
-    path = solid().respond(time, None, Physics(moving_mass_g=mass_g), force_N=force).dot_path_mm
+    path = solid().respond(time, None, Physics(terms=(MovingMass(mass_g),)), force_N=force).dot_path_mm
     np.testing.assert_allclose(path, 0.15 * (1 - np.cos(w * time)), atol=0.01 * 0.3)
 
 
@@ -116,7 +119,7 @@ def test_a_prescribed_path_adds_the_force_of_the_mass():
     """m a'' of u = a (1 - cos w t): m a w^2 cos w t."""
     time, w = np.linspace(0.0, 1.0, 4001), 2 * np.pi
     depth = 0.1 * (1 - np.cos(w * time))
-    with_mass, without = (solid().respond(time, depth, Physics(moving_mass_g=m)).force_N for m in (50.0, 0.0))
+    with_mass, without = (solid().respond(time, depth, Physics(terms=(MovingMass(m),))).force_N for m in (50.0, 0.0))
     expected = 0.05 * 1e-4 * w**2 * np.cos(w * time)
     np.testing.assert_allclose((with_mass - without)[1:-1], expected[1:-1], atol=1e-4 * np.abs(expected).max())
 
@@ -126,7 +129,7 @@ def test_a_guide_rubs_where_the_rig_travels_and_the_dot_feels_nothing(compliance
     """0.3 N more on the way in and less on the way out, once it has slipped after 0.02 mm."""
     depth = 0.2 * (1.0 - np.abs(np.linspace(-1.0, 1.0, 401)))
     rubs = GuideFriction((0.3,), (0.02,))
-    rigs = (Physics(rig_compliance_mm_per_N=compliance, added=added) for added in ((rubs,), ()))
+    rigs = (Physics(terms=(RigSpring(compliance),), added=added) for added in ((rubs,), ()))
     rubbing, plain = (solid().respond(np.linspace(0.0, 2.0, 401), depth, rig) for rig in rigs)
     extra = rubbing.force_N - plain.force_N
     np.testing.assert_allclose(extra[21:201], 0.3, rtol=1e-9)
@@ -168,7 +171,7 @@ def relaxing(layer, share):
         ({"depth_mm": TIME[:5]}, "same length"),
         ({"depth_mm": np.full(11, np.nan)}, "finite"),
         ({}, "either depth_mm or force_N"),
-        ({"depth_mm": 0 * TIME, "physics": Physics(friction=0.3)}, "friction"),
+        ({"depth_mm": 0 * TIME, "physics": Physics(terms=(Friction(0.3),))}, "friction"),
         ({"depth_mm": 0 * TIME, "physics": Physics(prestretch=(0.01, 0.0))}, "prestretch"),
         (
             {"depth_mm": 0 * TIME, "physics": relaxing("film", 0.1)},

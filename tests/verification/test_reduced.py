@@ -15,6 +15,7 @@ from solve.physics import BondLine, Physics
 from solve.readout.amplifier import amplify
 from solve.reduced.accuracy import BETWEEN, refined, relative_error
 from solve.reduced.build import build_reduced
+from solve.terms.rig import RigSpring
 from solve.waveform import Waveform
 from tests.cases import for_each
 from tests.pressing import press_segment
@@ -71,7 +72,7 @@ CASES = {
     "hold and release": (HOLD, 0.3, Physics(inelastic=SERIES), 0.0),
     "slow and shallower": (SLOW, 0.2, Physics(inelastic=SERIES), 0.0),
     "less relaxation": (HOLD, 0.25, Physics(inelastic={"medium2": (Prony((0.15,), (1.0,)),)}), 0.0),
-    "compliant rig": (HOLD, 0.3, Physics(inelastic=SERIES, rig_compliance_mm_per_N=0.2), 0.0),
+    "compliant rig": (HOLD, 0.3, Physics(inelastic=SERIES, terms=(RigSpring(0.2),)), 0.0),
     "gap": (HOLD, 0.3, Physics(inelastic=SERIES), 0.03),
 }
 

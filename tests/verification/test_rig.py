@@ -8,6 +8,8 @@ import pytest
 from solve.model import Press
 from solve.physics import Physics
 from solve.terms.guide import GuideFriction
+from solve.terms.inertia import MovingMass
+from solve.terms.rig import RigSpring
 from tests.cases import for_each
 from tests.pressing import press_segment
 from tests.solve.segments import materials, ridge
@@ -25,7 +27,7 @@ def rigid():
 
 @pytest.fixture(scope="module")
 def soft():
-    return pressed(Press(indentation_mm=0.2, load_steps=4), Physics(rig_compliance_mm_per_N=COMPLIANCE))
+    return pressed(Press(indentation_mm=0.2, load_steps=4), Physics(terms=(RigSpring(COMPLIANCE),)))
 
 
 def test_a_spring_in_series_gives_the_rigid_curve_at_the_travel_that_is_left(soft):
@@ -58,7 +60,7 @@ def test_a_gap_shifts_the_curve(rigid):
 def test_a_mass_on_a_prescribed_path_adds_its_inertia():
     """F = F_contact + m a'', a of the raised cosine d/2 (1 - cos(pi t / T)), T = 20 ms."""
     press = waved("raised-cosine", 16, rise_s=0.02)
-    result = pressed(press, Physics(moving_mass_g=MASS_G))
+    result = pressed(press, Physics(terms=(MovingMass(MASS_G),)))
     time = result.trace.time_s[1:-1]
     acceleration = 0.5 * 2e-4 * (np.pi / 0.02) ** 2 * np.cos(np.pi * time / 0.02)
     extra = force(result)[1:-1] + result.trace.contact_force_N[1:-1, 2] * np.sign(-result.trace.contact_force_N[-1, 2])
@@ -105,7 +107,7 @@ def tapped(stiffness, steps):
     omega = np.sqrt(stiffness / (1e-3 * MASS_G))
     ratio, push = 0.5, REACH_M * stiffness
     press = waved("half-sine", steps, force_N=push, rise_s=0.5 * np.pi / (ratio * omega))
-    result = pressed(press, Physics(moving_mass_g=MASS_G), flat=True)
+    result = pressed(press, Physics(terms=(MovingMass(MASS_G),)), flat=True)
     time = result.trace.time_s
     exact = (np.sin(ratio * omega * time) - ratio * np.sin(omega * time)) / (1.0 - ratio**2)
     return result.trace.dot_path_m / REACH_M, exact
@@ -135,7 +137,7 @@ def test_a_light_dot_that_strikes_too_fast_for_the_steps_gains_nothing_from_the_
     away = plate(BLOCK)
     away = replace(away, origin_mm=away.origin_mm + np.array([0.0, 0.0, 0.09]))
     press = Press(force_N=0.005, load_steps=steps)
-    result = press_segment(BLOCK, foams(), away, press, mesh_of(True), None, Physics(moving_mass_g=0.03))
+    result = press_segment(BLOCK, foams(), away, press, mesh_of(True), None, Physics(terms=(MovingMass(0.03),)))
     work = put_in(result)
     assert result.converged
     assert work.min() > -0.05 * work.max()

@@ -9,6 +9,9 @@ from geometry.parameters import Film, Medium
 from solve.materials.prony import Prony
 from solve.model import Press
 from solve.physics import Physics
+from solve.terms.friction import Friction
+from solve.terms.inertia import MovingMass
+from solve.terms.rig import RigSpring
 from solve.waveform import Waveform
 from tests.cases import for_each
 from tests.pressing import press_segment
@@ -20,9 +23,9 @@ SERIES = Prony((0.3,), (0.1,))
 CASES = {
     "elastic": lambda _: Physics(),
     "viscous": lambda _: Physics(inelastic={"medium2": (SERIES,)}),
-    "friction": lambda _: Physics(friction=0.4),
-    "soft rig": lambda s: Physics(rig_compliance_mm_per_N=0.05 / s),
-    "moving mass behind a soft rig": lambda s: Physics(rig_compliance_mm_per_N=0.05 / s, moving_mass_g=5.0 * s),
+    "friction": lambda _: Physics(terms=(Friction(0.4),)),
+    "soft rig": lambda s: Physics(terms=(RigSpring(0.05 / s),)),
+    "moving mass behind a soft rig": lambda s: Physics(terms=(RigSpring(0.05 / s), MovingMass(5.0 * s))),
 }
 
 

@@ -33,7 +33,7 @@ from solve.materials.prony import Prony
 from solve.mechanisms import Mechanism
 from solve.model import Model
 from solve.physics import laws_of
-from solve.reduced.recording import felt
+from solve.reduced.rig import compliance_mm_per_N
 from solve.solution.errors import NoEquilibriumError
 
 ACCURACY = 1e-3  # of a drive that is taken as straight between its samples
@@ -109,7 +109,7 @@ class CouponEngine(SolvedOutright):
             return {"displacement_mm": found.values}
         held = np.maximum(found.values, -buckling_load_N(self.specimen, model.materials[LAYER]))
         motion = Motion(drive, lambda: run.velocity_mm_per_s, lambda: run.acceleration_mm_per_s2)
-        return {"force_N": felt(held, model.physics, motion)}
+        return {"force_N": np.asarray(held + model.physics.added_force_N(motion, dot_is_free=False))}
 
 
 def buckling_load_N(specimen: Specimen, material: Material) -> float:
@@ -136,7 +136,7 @@ def point_of(specimen: Specimen, model: Model) -> MaterialPoint:
         float(np.mean(ratio)),
         laws_of(physics.inelastic, Softening).get(LAYER),
         laws_of(physics.inelastic, Prony).get(LAYER, NO_SERIES),
-        physics.rig_compliance_mm_per_N,
+        compliance_mm_per_N(physics),
     )
 
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnose.engines.segment.presses import structural, ungapped
+from diagnose.engines.segment.presses import ungapped
 from diagnose.forward import Candidate, Coordinate
 from diagnose.signals.recording import Recording
 from diagnose.vocabulary.layers.property_error import nuisance as wrong_number
@@ -36,7 +36,7 @@ def rounded_up(value: float) -> float:
 
 def reached(model: Model, tet_mesh: Mesh, force_N: float) -> float:
     """Depth in mm under a force. NoEquilibriumError."""
-    pushed = replace(model, press=Press(force_N=force_N, load_steps=4), readout=None, physics=structural(model.physics))
+    pushed = replace(model, press=Press(force_N=force_N, load_steps=4), readout=None, physics=model.physics.structure)
     name = cache.key(DepthPress(pushed, tet_mesh, force_N, ()))
     found = cache.recall(name)
     if found is None:

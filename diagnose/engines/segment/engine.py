@@ -33,6 +33,7 @@ from solve.model import Model, Readout
 from solve.physics import nonlinear_laws
 from solve.readout.stages import Hum
 from solve.reduced.fit import ResponseTable
+from solve.reduced.rig import compliance_mm_per_N
 from solve.tables.rig_mesh import MeshSettings, mesh_of
 from solve.tables.table_changes import changed
 
@@ -194,7 +195,7 @@ class SegmentEngine:
             return found
         histories = self._histories.of(asked, lambda: base.histories(settings))
         before_mm = self._reached_before(run, fit, on, settings)
-        give = on.physics.rig_compliance_mm_per_N if drive.by_depth else 1.0
+        give = compliance_mm_per_N(on.physics) if drive.by_depth else 1.0
         added = np.zeros(len(values))
         for _ in range(ROUNDS):
             whole = with_history(found, histories, fit, base.depth_mm, before_mm)
@@ -208,7 +209,8 @@ class SegmentEngine:
     def _reached_before(self, run: Run, fit: ResponseTable, on: Model, settings: Sequence[Setting]) -> float:
         """Deepest path of the dot (mm) in the runs before; what depends on the path does not act back on it here."""
         base, _ = self.stands.at(run.dot_offset_mm)
-        at_once = replace(on, physics=replace(on.physics, inelastic={}, moving_mass_g=0.0))
+        slowly = tuple(term for term in on.physics.terms if not term.follows_time)
+        at_once = replace(on, physics=replace(on.physics, inelastic={}, terms=slowly))
         deepest = 0.0
         for name, value in run.largest_before.items():
             drive = pressed_once(value, name)

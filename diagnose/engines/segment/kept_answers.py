@@ -56,7 +56,7 @@ class Courses:
     ) -> Mechanics:
         """As mechanics()."""
         physics = on.physics
-        acting = linear_laws(physics.inelastic), physics.rig_compliance_mm_per_N, physics.moving_mass_g
+        acting = linear_laws(physics.inelastic), physics.rig_terms
         return self._recent.of(
             (fit, drive, values, acting), lambda: mechanics(fit, depth_mm, layers, drive, values, on)
         )

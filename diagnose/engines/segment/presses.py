@@ -14,7 +14,7 @@ from foundation.progress import Report
 from solve.delaminations import with_rims_of_patches
 from solve.mechanisms import with_mechanisms
 from solve.model import Model
-from solve.physics import Physics, nonlinear_laws
+from solve.physics import nonlinear_laws
 from solve.solution.errors import NoEquilibriumError
 from solve.tables import cache
 from solve.tables.depth_press import DepthPress
@@ -66,7 +66,8 @@ class Presses:
     def job(self, model: Model, mesh: Sizes | None = None) -> DepthPress:
         """The press of a changed model on a mesh, moved with its layers, at once: nothing relaxes."""
         on = model.physics
-        own = replace(structural(on), friction=on.friction, inelastic=nonlinear_laws(on.inelastic))
+        of_segment = tuple(term for term in on.terms if not term.of_rig)
+        own = replace(on.structure, terms=of_segment, inelastic=nonlinear_laws(on.inelastic))
         tet_mesh = mesh_of(model, self.model, *(mesh or (self.tet_mesh, self.options)), MOST_NODES)
         return DepthPress(replace(ungapped(model), physics=own, readout=None), tet_mesh, self.depth_mm, SHARES)
 
@@ -76,7 +77,7 @@ class Presses:
         finer = candidate.traits.on_middle_mesh or (self.all_finer and not back)
         changed = with_mechanisms(self.model, [candidate.switched_on(point)])
         job = self.job(changed, self.middle_mesh if finer else None)
-        parts = SLIPS if job.model.physics.friction > 0.0 else 1
+        parts = SLIPS if any(term.follows_time for term in job.model.physics.terms) else 1
         return replace(job, back=back, parts=parts), int(finer)
 
     def compared(
@@ -130,8 +131,3 @@ def all_there(outputs: list[Floats]) -> list[Floats]:
 def ungapped(model: Model) -> Model:
     """The dot at its first touch."""
     return replace(model, dot=model.dot.model_copy(update={"gap_mm": 0.0}))
-
-
-def structural(physics: Physics) -> Physics:
-    """What of the physics is in an elastic press."""
-    return Physics(bonds=physics.bonds, delaminations=physics.delaminations, prestretch=physics.prestretch)

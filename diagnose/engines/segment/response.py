@@ -16,6 +16,7 @@ from solve.readout.amplifier import amplify
 from solve.readout.channels import amplify_channels
 from solve.reduced.fit import ResponseTable
 from solve.reduced.recording import branches, sensed
+from solve.reduced.rig import compliance_mm_per_N, mass_Ns2_per_mm, unknown_of_rig
 from solve.reduced.time_stepping import TOO_DEEP, follow
 
 
@@ -48,14 +49,18 @@ class Mechanics:
 def mechanics(
     fit: ResponseTable, depth_mm: float, layers: tuple[str, ...], drive: Drive, values: Floats, on: Model
 ) -> Mechanics:
-    """The dot and the segment under a drive of these values (t,). ValueError where it goes deeper than the table."""
+    """The dot and the segment under a drive of these values (t,). ValueError where it goes deeper than the table, and
+    for what acts on a dot that is free to move and is neither spring nor mass."""
     physics, modes = on.physics, int(fit.start[-1])
     observed = fit.table.shape[2] - modes
     path, outputs = np.empty(len(values)), np.empty((len(values), observed))
     moduli, times, layer = branches(laws_of(physics.inelastic, Prony), layers)
-    mass = 1e-6 * physics.moving_mass_g  # N s2 / mm
+    compliance = compliance_mm_per_N(physics)
+    unknown = [] if drive.by_depth and compliance == 0.0 else unknown_of_rig(physics)
+    if unknown:
+        raise ValueError(f"{', '.join(unknown)}: without the 3D model a dot moves on its own by spring and mass alone")
     status = follow(
-        drive.time_s, values, drive.kind, physics.rig_compliance_mm_per_N, mass, fit.table, fit.touch, depth_mm,
+        drive.time_s, values, drive.kind, compliance, mass_Ns2_per_mm(physics), fit.table, fit.touch, depth_mm,
         fit.pairs, fit.start, moduli, times, layer, observed, path, outputs,
     )  # fmt: skip
     if status == TOO_DEEP:

@@ -27,7 +27,8 @@ def without_stated(model: Model) -> Model:
     """The model without them."""
     apart = stated_apart(model)
     stages = tuple(stage for stage in model.physics.stages if not isinstance(stage, Hum))
-    physics = replace(model.physics, friction=0.0, inelastic=linear_laws(model.physics.inelastic), stages=stages)
+    terms = tuple(term for term in model.physics.terms if term.of_rig or not term.follows_time)
+    physics = replace(model.physics, terms=terms, inelastic=linear_laws(model.physics.inelastic), stages=stages)
     return replace(model, physics=physics, mechanisms=tuple(one for one in model.mechanisms if one not in apart))
 
 

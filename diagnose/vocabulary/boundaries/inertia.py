@@ -9,6 +9,8 @@ from diagnose.vocabulary.base import Vocabulary, register
 from diagnose.vocabulary.scales import growing
 from diagnose.vocabulary.scene import CouponScene, Scene
 from solve.mechanisms.boundaries.inertia import INERTIA
+from solve.physics import like
+from solve.terms.inertia import MovingMass
 
 MASS_G, GRIP_G = 5.0, 50.0  # of a small dot, and of a clip
 HEAVIEST_G = 20_000.0  # the grips, or the crosshead, of a large tester, which may press a segment too
@@ -33,7 +35,7 @@ def of_coupon(scene: CouponScene) -> Iterator[Candidate]:
 
 def _mass(scene: Scene) -> Candidate:
     """The dot, its holder and half of the beam: grams."""
-    have = scene.model.physics.moving_mass_g
+    have = like(scene.model.physics.terms, MovingMass()).mass_g
     coordinate = growing("mass", MASS_G, HEAVIEST_G, (MASS_G, 10.0 * MASS_G))
 
     def parameters(values: Sequence[float]) -> dict[str, Any]:

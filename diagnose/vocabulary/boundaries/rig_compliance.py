@@ -9,6 +9,8 @@ from diagnose.vocabulary.base import GIVES_WAY, Vocabulary, register
 from diagnose.vocabulary.scales import growing
 from diagnose.vocabulary.scene import CouponScene, Scene
 from solve.mechanisms.boundaries.rig_compliance import RIG_COMPLIANCE
+from solve.physics import like
+from solve.terms.rig import RigSpring
 
 MOST_OF_TRAVEL = 0.25  # a tester that takes more than a quarter of the travel is seen to bend
 
@@ -32,7 +34,7 @@ def of_coupon(scene: CouponScene) -> Iterator[Candidate]:
 def _compliance(scene: Scene) -> Candidate:
     """Scaled by the segment's own: at ten times that the rig takes nearly all of the travel."""
     scale = scene.depth_mm / scene.force_N
-    have = scene.model.physics.rig_compliance_mm_per_N
+    have = like(scene.model.physics.terms, RigSpring()).compliance_mm_per_N
     coordinate = growing("compliance", scale, 10.0 * scale, (0.05 * scale, scale))
 
     def parameters(values: Sequence[float]) -> dict[str, Any]:

@@ -7,8 +7,9 @@ from typing import Annotated
 
 from pydantic import Field
 
-from solve.mechanisms.base import MechanismType, Parameters, Traits, register, with_physics
+from solve.mechanisms.base import MechanismType, Parameters, Traits, in_place, register, with_physics
 from solve.model import Model
+from solve.terms.friction import Friction as RubbingDot
 
 
 class Friction(Parameters):
@@ -19,7 +20,7 @@ class Friction(Parameters):
 
 def switch_on(model: Model, component: str, values: Friction) -> Model:
     """The model with this physics at a component."""
-    return with_physics(model, friction=values.coefficient)
+    return with_physics(model, terms=in_place(model.physics.terms, RubbingDot(values.coefficient)))
 
 
 FRICTION = register(

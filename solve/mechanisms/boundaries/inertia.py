@@ -6,8 +6,9 @@ Equation, source and typical values: docs/mechanisms.md#inertia.
 from pydantic import Field
 
 from geometry.parameters import NonNegative
-from solve.mechanisms.base import MechanismType, Parameters, Traits, register, with_physics
+from solve.mechanisms.base import MechanismType, Parameters, Traits, in_place, register, with_physics
 from solve.model import Model
+from solve.terms.inertia import MovingMass
 
 
 class Inertia(Parameters):
@@ -18,7 +19,7 @@ class Inertia(Parameters):
 
 def switch_on(model: Model, component: str, values: Inertia) -> Model:
     """The model with this physics at a component."""
-    return with_physics(model, moving_mass_g=values.moving_mass_g)
+    return with_physics(model, terms=in_place(model.physics.terms, MovingMass(values.moving_mass_g)))
 
 
 INERTIA = register(

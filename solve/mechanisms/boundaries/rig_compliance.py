@@ -6,8 +6,9 @@ Equation, source and typical values: docs/mechanisms.md#rig-compliance.
 from pydantic import Field
 
 from geometry.parameters import NonNegative
-from solve.mechanisms.base import MechanismType, Parameters, Traits, register, with_physics
+from solve.mechanisms.base import MechanismType, Parameters, Traits, in_place, register, with_physics
 from solve.model import Model
+from solve.terms.rig import RigSpring
 
 
 class RigCompliance(Parameters):
@@ -18,7 +19,7 @@ class RigCompliance(Parameters):
 
 def switch_on(model: Model, component: str, values: RigCompliance) -> Model:
     """The model with this physics at a component."""
-    return with_physics(model, rig_compliance_mm_per_N=values.compliance_mm_per_N)
+    return with_physics(model, terms=in_place(model.physics.terms, RigSpring(values.compliance_mm_per_N)))
 
 
 RIG_COMPLIANCE = register(
