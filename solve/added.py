@@ -1,6 +1,5 @@
-"""What is added to a trace once it is solved, since it acts neither on the segment nor on the dot.
-
-Force that the sensor carries beside the segment, and charge of the film that is not the press's.
+"""What is added to a trace once it is solved, since it acts neither on the segment nor on the dot: a force that the
+sensor carries beside the segment, or charge of the film that is not of its strain.
 """
 
 from collections.abc import Callable, Iterable

@@ -1,7 +1,4 @@
-"""What is recorded of every converged state: loads and charges; and fields at the reported steps.
-
-The force sensor reads more than the contact: what acts on the dot along a prescribed path, and beside the segment.
-"""
+"""What is recorded of every converged state: loads and charges; and fields at the reported steps."""
 
 from collections.abc import Mapping
 from dataclasses import replace

@@ -246,7 +246,7 @@ class FrictionalContact(Term):
 
 
 @dataclass(frozen=True)
-class Friction(TermDefinition):
+class DotFriction(TermDefinition):
     """Coulomb friction between the dot and the surface."""
 
     coefficient: float = 0.0

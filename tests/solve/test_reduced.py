@@ -16,7 +16,7 @@ from solve.reduced import cache
 from solve.reduced.fit import CELLS, ResponseTable
 from solve.reduced.model import ReducedModel, structure
 from solve.reduced.response import Accuracy
-from solve.terms.friction import Friction
+from solve.terms.friction import DotFriction
 from solve.terms.guide import GuideFriction
 from solve.terms.inertia import MovingMass
 from solve.terms.rig import RigSpring
@@ -171,7 +171,7 @@ def relaxing(layer, share):
         ({"depth_mm": TIME[:5]}, "same length"),
         ({"depth_mm": np.full(11, np.nan)}, "finite"),
         ({}, "either depth_mm or force_N"),
-        ({"depth_mm": 0 * TIME, "physics": Physics(terms=(Friction(0.3),))}, "friction"),
+        ({"depth_mm": 0 * TIME, "physics": Physics(terms=(DotFriction(0.3),))}, "friction"),
         ({"depth_mm": 0 * TIME, "physics": Physics(prestretch=(0.01, 0.0))}, "prestretch"),
         (
             {"depth_mm": 0 * TIME, "physics": relaxing("film", 0.1)},

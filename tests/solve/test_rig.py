@@ -24,10 +24,11 @@ def drive(rig, loads, time, stiffness=STIFFNESS):
     """Approach, velocity and acceleration (t, 3) of the dot under drives (t,) at times (t,), from rest."""
     histories, a, motion = [one.start() for one in rig], 0.0, [np.zeros(3)]
     for load, dt in zip(loads[1:], np.diff(time), strict=True):
+        step = {"time_step": dt, "drive": load, "previous_move": np.array([0.0, 0.0, -a])}
         for _ in range(2):  # linear: the second iteration finds no residual
-            residual, tangent = balance(rig, trial(np.zeros((1, 3)), [a], dt, drive=load), histories)
+            residual, tangent = balance(rig, trial(np.zeros((1, 3)), [a], **step), histories)
             a -= (residual + stiffness * a) / (tangent + stiffness)
-        state = trial(np.zeros((1, 3)), [a], dt, drive=load)
+        state = trial(np.zeros((1, 3)), [a], **step)
         histories = [one.advance(state, history) for one, history in zip(rig, histories, strict=True)]
         velocity, acceleration, _ = histories[-1] if len(rig) > 1 else np.zeros(3)
         motion.append(np.array([a, velocity, acceleration]))

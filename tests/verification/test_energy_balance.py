@@ -12,7 +12,7 @@ from solve.materials.prony import Prony
 from solve.physics import Physics
 from solve.solution.schedule import Target
 from solve.system import Load
-from solve.terms.friction import Friction
+from solve.terms.friction import DotFriction
 from tests.cases import for_each
 from tests.solve.segments import materials
 from tests.verification.energies import follow
@@ -70,7 +70,7 @@ def test_film_yield(hardening_MPa):
 @pytest.mark.press
 def test_friction():
     """Down 0.2 mm, 0.1 mm aside, back and up."""
-    setup = setup_of(waved("ramp"), Physics(terms=(Friction(0.4),)))
+    setup = setup_of(waved("ramp"), Physics(terms=(DotFriction(0.4),)))
     corners = [(0.0, 0.0), (0.0, 1.0), (0.1, 1.0), (0.0, 1.0), (0.0, 0.0)]
     legs, unit = [], 1e-3 / setup.system.units.length
     for k, (a, b) in enumerate(pairwise(corners)):

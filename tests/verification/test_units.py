@@ -9,7 +9,7 @@ from geometry.parameters import Film, Medium
 from solve.materials.prony import Prony
 from solve.model import Press
 from solve.physics import Physics
-from solve.terms.friction import Friction
+from solve.terms.friction import DotFriction
 from solve.terms.inertia import MovingMass
 from solve.terms.rig import RigSpring
 from solve.waveform import Waveform
@@ -23,7 +23,7 @@ SERIES = Prony((0.3,), (0.1,))
 CASES = {
     "elastic": lambda _: Physics(),
     "viscous": lambda _: Physics(inelastic={"medium2": (SERIES,)}),
-    "friction": lambda _: Physics(terms=(Friction(0.4),)),
+    "friction": lambda _: Physics(terms=(DotFriction(0.4),)),
     "soft rig": lambda s: Physics(terms=(RigSpring(0.05 / s),)),
     "moving mass behind a soft rig": lambda s: Physics(terms=(RigSpring(0.05 / s), MovingMass(5.0 * s))),
 }

@@ -9,7 +9,7 @@ from pydantic import Field
 
 from solve.mechanisms.base import MechanismType, Parameters, Traits, in_place, register, with_physics
 from solve.model import Model
-from solve.terms.friction import Friction as RubbingDot
+from solve.terms.friction import DotFriction
 
 
 class Friction(Parameters):
@@ -20,7 +20,7 @@ class Friction(Parameters):
 
 def switch_on(model: Model, component: str, values: Friction) -> Model:
     """The model with this physics at a component."""
-    return with_physics(model, terms=in_place(model.physics.terms, RubbingDot(values.coefficient)))
+    return with_physics(model, terms=in_place(model.physics.terms, DotFriction(values.coefficient)))
 
 
 FRICTION = register(
