@@ -57,5 +57,5 @@ def test_a_recipe_works(name, tmp_path):
 
 
 def test_there_is_a_recipe_for_each_thing_that_is_added_often():
-    often = ["mechanism", "material", "export", "Braille", "converter", "command", "decoder"]
+    often = ["mechanism", "mechanism", "material", "export", "Braille", "converter", "command", "decoder"]
     assert [name.split()[1] for name in RECIPES] == often
