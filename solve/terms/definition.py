@@ -12,12 +12,12 @@ from solve.terms.builder import Builder
 
 
 class TermDefinition(ABC):
-    """words : what it is, for a reader. follows_time : whether the path or its speed matters to it.
+    """A part of the problem that a mechanism adds. words : what it is, for a reader.
 
-    of_rig : it acts between the rig and the dot, not on the segment. resists : by itself it holds a dot whose approach
-    is unknown.
-    is_contact : it stands in for the contact without friction. frees : surfaces of the mesh that it holds in place of
-    the clamp, such as "base". mirrored : it is its own image in the planes x = 0 and y = 0.
+    follows_time : whether the path or its speed matters to it. of_rig : it acts between the rig and the dot, not on the
+    segment. resists : by itself it holds a dot whose approach is unknown. is_contact : it stands in for the contact
+    without friction. frees : surfaces of the mesh that it holds in place of the clamp, such as "base". mirrored : it is
+    its own image in the planes x = 0 and y = 0.
     """
 
     words: str
