@@ -140,7 +140,7 @@ class Samples:
         density = np.empty(len(self))
         for block in self.blocks:
             law = block.whitening.noise
-            density[block.rows] = law.autoregression.density(self.frequency_Hz[block.rows], law.step_s)
+            density[block.rows] = law.autoregression.spectral_density(self.frequency_Hz[block.rows], law.step_s)
         return density
 
     @cached_property

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from diagnose.fit.samples import Samples, noise_degrees
-from diagnose.noise.repeats import repeated
+from diagnose.noise.repeats import repeat_groups
 from foundation.arrays import Floats, Ints
 
 TINY = np.finfo(float).tiny ** 0.5
@@ -23,7 +23,7 @@ VISIBLE = 0.01
 
 def in_plain_units(samples: Samples) -> Samples:
     """The same samples with their noise taken as white: sums of squares are then those of the errors themselves."""
-    white = {id(law): law.white() for law in samples.noise.values()}
+    white = {id(law): law.white_equivalent() for law in samples.noise.values()}
     laws = {key: white[id(law)] for key, law in samples.noise.items()}
     return Samples(samples.recording, laws, samples.shared)
 
@@ -93,7 +93,7 @@ def _seen(count: Ints, unit: Floats, blur: Floats) -> Floats:
 def conditions(samples: Samples) -> Ints:
     """Label (n,) of what is held out together: runs that repeat each other; where all do, presses or phases."""
     home = {number: number for number in range(len(samples.recording.runs))}
-    for group in repeated(samples.recording.runs, samples.recording.phases):
+    for group in repeat_groups(samples.recording.runs, samples.recording.phases):
         home |= dict.fromkeys(group, group[0])
     labels = np.array([home[number] for number in range(len(home))])[samples.run]
     return np.asarray(labels if len(np.unique(labels)) > 1 else samples.fold, dtype=np.int64)

@@ -12,7 +12,7 @@ import numpy as np
 
 from diagnose.engines.passing_on import PassingOn
 from diagnose.forward import Candidate, Coordinate, Engine, Setting, Signals
-from diagnose.noise.mains_lines import Line, basis
+from diagnose.noise.mains_lines import Line, line_basis
 from diagnose.noise.model import NoiseModel
 from diagnose.signals.recording import Recording, Run
 from foundation.arrays import Floats
@@ -39,7 +39,7 @@ def loud_lines(recording: Recording, noise: NoiseModels) -> dict[tuple[str, str]
 
 def _power(model: NoiseModel, line: Line, time_s: Floats) -> float:
     """Of a line in whitened samples, whose other noise has power 1."""
-    white = model.without_lines().whitening(np.ones(len(time_s), dtype=bool), time_s)(basis([line], time_s))
+    white = model.without_lines().whitening(np.ones(len(time_s), dtype=bool), time_s)(line_basis([line], time_s))
     return float((white**2).sum(axis=1).mean())
 
 

@@ -18,13 +18,16 @@ SAMPLES_PER_ORDER = 10
 
 @dataclass(frozen=True)
 class Autoregression:
-    """coefficients : (p,), none for white noise. variance : of the innovations e."""
+    """An autoregressive model of order p. coefficients : (p,), none for white noise.
+
+    variance : of the innovations e, in the square of the channel's unit.
+    """
 
     coefficients: Floats
     variance: float
 
     def autocovariance(self, lags: int) -> Floats:
-        """Covariances (lags,) at distances 0, 1, ..., lags - 1, by the Yule-Walker equations."""
+        """Covariances (lags,) of samples 0, 1, ..., lags - 1 apart, by the Yule-Walker equations."""
         order = len(self.coefficients)
         rows = np.eye(order + 1)
         for i in range(order + 1):
@@ -37,33 +40,34 @@ class Autoregression:
         return np.array(values[:lags])
 
     def start_covariance(self) -> Floats:
-        """Covariance (p, p) of p neighbouring samples."""
+        """Covariance (p, p) of p neighbouring samples; (1, 1) for white noise."""
         return np.asarray(toeplitz(self.autocovariance(max(len(self.coefficients), 1))))
 
-    def density(self, frequency_Hz: Floats, step_s: float) -> Floats:
+    def spectral_density(self, frequency_Hz: Floats, step_s: float) -> Floats:
         """One-sided power spectral density (k,), in the square of the unit per hertz."""
         turns = np.exp(-2j * np.pi * np.outer(frequency_Hz * step_s, np.arange(1, len(self.coefficients) + 1)))
         return np.asarray(2.0 * step_s * self.variance / np.abs(1.0 - turns @ self.coefficients) ** 2)
 
 
 def fit_autoregression(stretches: Sequence[Floats], least_variance: float = 0.0) -> Autoregression:
-    """Fit to stretches (n_i,) of zero mean, sampled alike. least_variance : of the innovations, as of rounding.
+    """Fit an autoregression to stretches (n_i,) of zero mean, sampled alike, with the order of least AIC.
 
-    ValueError when there is no sample.
+    least_variance : the least that the innovations can have, such as the variance of rounding. ValueError when there is
+    no sample.
     """
     longest, count = max((len(s) for s in stretches), default=0), sum(len(s) for s in stretches)
     if count == 0:
         raise ValueError("no samples of noise")
     largest = min(LARGEST_ORDER, count // SAMPLES_PER_ORDER, longest - 2)
     best, lowest = Autoregression(np.zeros(0), _mean_square(stretches)), np.inf
-    for model in _burg(stretches, max(largest, 0)):
+    for model in _burg_models(stretches, max(largest, 0)):
         criterion = count * np.log(max(model.variance, np.finfo(float).tiny)) + 2 * len(model.coefficients)
         if criterion < lowest:
             best, lowest = model, criterion
-    return _no_less_than(best, least_variance)
+    return _with_least_variance(best, least_variance)
 
 
-def _no_less_than(model: Autoregression, least_variance: float) -> Autoregression:
+def _with_least_variance(model: Autoregression, least_variance: float) -> Autoregression:
     """The model, or white noise of the least variance where a silent channel would promise better."""
     if model.variance >= least_variance:
         return model
@@ -75,8 +79,8 @@ def _mean_square(stretches: Sequence[Floats]) -> float:
     return float(sum(s @ s for s in stretches) / sum(len(s) for s in stretches))
 
 
-def _burg(stretches: Sequence[Floats], largest: int) -> list[Autoregression]:
-    """The models of order 0 to largest."""
+def _burg_models(stretches: Sequence[Floats], largest: int) -> list[Autoregression]:
+    """Models of order 0 to largest by Burg's method; fewer where the innovations vanish."""
     forward, backward = [s.copy() for s in stretches], [s.copy() for s in stretches]
     coefficients, variance = np.zeros(0), _mean_square(stretches)
     models = [Autoregression(coefficients, variance)]

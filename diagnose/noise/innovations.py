@@ -38,25 +38,25 @@ def innovations(
             for j in range(order):
                 state[j] = values[n - 1 - j]
         if n > 0:
-            _predict(state, coefficients)
+            _predict_state(state, coefficients)
             if known < order:
                 _predict_covariance(covariance, coefficients, variance)
             else:
-                _just_predicted(covariance, variance)
+                _reset_covariance(covariance, variance)
         if not observed[n]:
             known = 0
             continue
         deviations[n] = np.sqrt(covariance[0, 0])
         for c in range(columns):
             errors[n, c] = values[n, c] - state[0, c]
-        _condition(state, covariance, errors[n])
+        _condition_on_sample(state, covariance, errors[n])
         known += 1
     return errors, deviations
 
 
 @nb.njit(cache=True)
-def _predict(state: Floats, coefficients: Floats) -> None:
-    """F x for the companion matrix F, in place: x (p, k)."""
+def _predict_state(state: Floats, coefficients: Floats) -> None:
+    """Advance the state x (p, k) by one sample, in place: F x with the companion matrix F."""
     order, columns = state.shape
     for c in range(columns):
         newest = 0.0
@@ -69,7 +69,7 @@ def _predict(state: Floats, coefficients: Floats) -> None:
 
 @nb.njit(cache=True)
 def _predict_covariance(covariance: Floats, coefficients: Floats, variance: float) -> None:
-    """F P F' + Q, in place."""
+    """Advance the covariance P (p, p) of the state by one sample, in place: F P F' + Q."""
     order = len(coefficients)
     row = np.zeros(order)
     corner = variance
@@ -87,8 +87,8 @@ def _predict_covariance(covariance: Floats, coefficients: Floats, variance: floa
 
 
 @nb.njit(cache=True)
-def _just_predicted(covariance: Floats, variance: float) -> None:
-    """All p samples before are known: only the newest is uncertain."""
+def _reset_covariance(covariance: Floats, variance: float) -> None:
+    """Covariance (p, p) where all p samples before are known, in place: only the newest is uncertain."""
     for i in range(len(covariance)):
         for j in range(len(covariance)):
             covariance[i, j] = 0.0
@@ -96,8 +96,11 @@ def _just_predicted(covariance: Floats, variance: float) -> None:
 
 
 @nb.njit(cache=True)
-def _condition(state: Floats, covariance: Floats, error: Floats) -> None:
-    """What the newest sample says of all p, in place. error : (k,) by which it differs from its prediction."""
+def _condition_on_sample(state: Floats, covariance: Floats, error: Floats) -> None:
+    """Kalman update of all p samples of the state by the newest one, in place.
+
+    error : (k,) by which the newest sample differs from its prediction.
+    """
     order, columns = state.shape
     spread = covariance[0, 0]
     for i in range(order - 1, -1, -1):

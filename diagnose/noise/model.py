@@ -14,19 +14,20 @@ from scipy.signal import lfilter, lfiltic
 
 from diagnose.noise.autoregression import Autoregression
 from diagnose.noise.innovations import innovations
-from diagnose.noise.mains_lines import Line, basis
+from diagnose.noise.mains_lines import Line, line_basis
 from diagnose.signals.recording import even_pieces, is_even
 from foundation.arrays import Bools, Floats
 
-SAME_RATE = 0.1  # relative: at another rate the autoregression says only how large the noise is
+SAME_RATE_TOLERANCE = 0.1  # relative: at another rate the autoregression says only how large the noise is
 
 
 @dataclass(frozen=True)
 class NoiseModel:
-    """step_s : sampling step at which it was fitted. source : from which samples, samples : how many of them.
+    """Noise of one channel. step_s : sampling step at which it was fitted. source : what the samples come from.
 
-    quantisation : step of the converter in the unit of the channel, None where none was seen; its variance, a twelfth
-    of the square, is the least that the innovations can have.
+    samples : number of samples that it was fitted to, 0 where it is stated. quantisation : step of the converter in the
+    unit of the channel, None where none was seen; its variance, a twelfth of the square, is the least that the
+    innovations can have.
     """
 
     autoregression: Autoregression
@@ -38,27 +39,30 @@ class NoiseModel:
 
     @property
     def rms(self) -> float:
-        """Standard deviation of one sample, lines included."""
+        """Standard deviation of one sample in the unit of the channel, lines included."""
         own = float(self.autoregression.autocovariance(1)[0])
         return float(np.sqrt(own + sum(0.5 * line.amplitude**2 for line in self.lines)))
 
     def without_lines(self) -> "NoiseModel":
-        """The noise without the mains, for the question whether hum is what the model lacks."""
+        """This noise without the mains lines, for the question whether hum is what the model lacks."""
         return replace(self, lines=())
 
-    def white(self) -> "NoiseModel":
-        """Noise of the same power without colour: whitened samples are then samples in units of its deviation."""
+    def white_equivalent(self) -> "NoiseModel":
+        """White noise of the same power; whitened samples are then samples in units of its standard deviation."""
         return replace(
             self, autoregression=Autoregression(np.zeros(0), float(self.autoregression.autocovariance(1)[0]))
         )
 
     def whitening(self, observed: Bools, time_s: Floats | None = None) -> "Whitening":
-        """The map that whitens samples at times (n,), even if None, of which only the observed (n,) are there."""
-        time = self._time(len(observed)) if time_s is None else time_s
+        """Map that whitens samples at times (n,), of which only the observed ones, (n,) flags, are there.
+
+        time_s : None for even times.
+        """
+        time = self._even_times(len(observed)) if time_s is None else time_s
         return Whitening(self, observed, time)
 
     def whiten(self, residual: Floats, time_s: Floats | None = None) -> Floats:
-        """Independent samples (m,) of unit variance from the m finite ones of a residual (n,)."""
+        """Independent samples (m,) of unit variance from the m finite samples of a residual (n,)."""
         return self.whitening(np.isfinite(residual), time_s)(residual)
 
     def log_density(self, residual: Floats, time_s: Floats | None = None) -> float:
@@ -68,20 +72,22 @@ class NoiseModel:
         return -0.5 * float(white @ white) - 0.5 * len(white) * float(np.log(2.0 * np.pi)) - whitening.log_scale
 
     def draw(self, rng: np.random.Generator, count: int, time_s: Floats | None = None) -> Floats:
-        """One realisation (count,), stationary from its first sample; every piece of time_s starts anew."""
-        time = self._time(count) if time_s is None else time_s
-        lines = basis(self.lines, time)
+        """One realisation (count,), stationary from its first sample; every even piece of time_s starts anew."""
+        time = self._even_times(count) if time_s is None else time_s
+        lines = line_basis(self.lines, time)
         values = lines @ rng.standard_normal(lines.shape[1])
         for piece in even_pieces(time):
-            values[piece] += _drawn(_at_rate(self, time[piece]), rng, piece.stop - piece.start)
+            values[piece] += _draw_autoregression(
+                _autoregression_at_rate(self, time[piece]), rng, piece.stop - piece.start
+            )
         return np.asarray(values)
 
-    def _time(self, count: int) -> Floats:
-        """Even times (count,) from 0."""
+    def _even_times(self, count: int) -> Floats:
+        """Even times (count,) in s, from 0."""
         return np.asarray(self.step_s * np.arange(count), dtype=np.float64)
 
     def summary(self) -> Mapping[str, Any]:
-        """Numbers for a verdict, by name; in the unit of the channel."""
+        """Numbers of the model for a verdict, by name; amplitudes in the unit of the channel."""
         return {
             "source": self.source,
             "samples": self.samples,
@@ -96,7 +102,7 @@ class NoiseModel:
 
 
 class Whitening:
-    """Whitens any number of signals that share their times and missing samples: residuals, sensitivities.
+    """A map that whitens any number of signals which share their times and missing samples.
 
     log_scale : half the logarithm of the determinant of the covariance.
     """
@@ -104,9 +110,9 @@ class Whitening:
     def __init__(self, noise: NoiseModel, observed: Bools, time_s: Floats) -> None:
         self.noise, self.observed, self.time_s = noise, observed, time_s
         self._pieces = even_pieces(time_s)
-        laws = [_at_rate(noise, time_s[piece]) for piece in self._pieces]
+        laws = [_autoregression_at_rate(noise, time_s[piece]) for piece in self._pieces]
         self._laws = [(law, law.start_covariance()) for law in laws]
-        lines = basis(noise.lines, time_s)
+        lines = line_basis(noise.lines, time_s)
         white, deviations = self._innovations(lines)
         self.log_scale = float(np.log(deviations).sum())
         self._directions, self._shrink = np.zeros((len(white), 0)), np.zeros(0)
@@ -116,14 +122,14 @@ class Whitening:
             self.log_scale += 0.5 * float(np.log1p(spread**2).sum())
 
     def __call__(self, values: Floats) -> Floats:
-        """Whitened (m,) or (m, k) from (n,) or (n, k); only the m observed rows come back."""
+        """Whitened signals (m,) or (m, k) from (n,) or (n, k); only the m observed rows come back."""
         columns = values.reshape(len(values), -1)
         white, _ = self._innovations(columns)
         white = white + self._directions @ (self._shrink[:, None] * (self._directions.T @ white))
         return white.reshape(-1, *values.shape[1:])
 
     def _innovations(self, columns: Floats) -> tuple[Floats, Floats]:
-        """Prediction errors over their deviations (m, k), and the deviations (m,), without the lines."""
+        """Prediction errors over their standard deviations (m, k), and the deviations (m,), without the lines."""
         filled = np.where(self.observed[:, None], columns, 0.0)
         errors, deviations = np.empty_like(filled), np.empty(len(filled))
         for piece, (model, start) in zip(self._pieces, self._laws, strict=True):
@@ -138,18 +144,18 @@ class Whitening:
         return errors[self.observed] / spread[:, None], spread
 
 
-def _at_rate(noise: NoiseModel, time_s: Floats) -> Autoregression:
-    """The autoregression on these samples: itself at its own rate, white of equal power at another."""
+def _autoregression_at_rate(noise: NoiseModel, time_s: Floats) -> Autoregression:
+    """Autoregression for samples at times (t,): the fitted one at its own rate, white of equal power at another."""
     own = noise.autoregression
     if len(time_s) < 2:
         return own
-    same = abs(float(np.median(np.diff(time_s))) / noise.step_s - 1.0) < SAME_RATE
+    same = abs(float(np.median(np.diff(time_s))) / noise.step_s - 1.0) < SAME_RATE_TOLERANCE
     if len(own.coefficients) == 0 or (same and is_even(time_s)):
         return own
     return Autoregression(np.zeros(0), float(own.autocovariance(1)[0]))
 
 
-def _drawn(model: Autoregression, rng: np.random.Generator, count: int) -> Floats:
+def _draw_autoregression(model: Autoregression, rng: np.random.Generator, count: int) -> Floats:
     """Stationary samples (count,) of an autoregression."""
     order = len(model.coefficients)
     driven = np.sqrt(model.variance) * rng.standard_normal(count)
@@ -162,5 +168,5 @@ def _drawn(model: Autoregression, rng: np.random.Generator, count: int) -> Float
 
 
 def white_noise(sigma: float, step_s: float, source: str) -> NoiseModel:
-    """Independent samples of this standard deviation at a step; source : who says so."""
+    """Model of independent samples of standard deviation sigma, every step_s; source : who states it."""
     return NoiseModel(Autoregression(np.zeros(0), sigma**2), step_s, source, 0)

@@ -89,6 +89,8 @@ def _fitted(spline: CubicSpline, length: int, signal: Floats, shift: float) -> _
 def _standard_error(fit: _Fit) -> float:
     """Of the shift, in steps: sqrt(w' C w) / w' w, with C of an autoregression fitted to the rest, by its density."""
     weights, count = fit.sensitivity, 2 * len(fit.sensitivity)
-    density = 0.5 * fit_autoregression([fit.rest]).density(np.asarray(np.fft.fftfreq(count), dtype=np.float64), 1.0)
+    density = 0.5 * fit_autoregression([fit.rest]).spectral_density(
+        np.asarray(np.fft.fftfreq(count), dtype=np.float64), 1.0
+    )
     variance = np.mean(np.abs(np.fft.fft(weights, count)) ** 2 * density)
     return float(np.sqrt(variance) / (weights @ weights))

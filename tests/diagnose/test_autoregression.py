@@ -41,7 +41,7 @@ def test_autocovariance_of_the_first_order_is_geometric():
 
 def test_density_integrates_to_the_variance():
     frequency = np.linspace(0.0, 500.0, 20_001)
-    power = trapezoid(TRUE.density(frequency, 1e-3), frequency)
+    power = trapezoid(TRUE.spectral_density(frequency, 1e-3), frequency)
     assert power == pytest.approx(TRUE.autocovariance(1)[0], rel=1e-4)
 
 

@@ -6,7 +6,7 @@ from scipy.linalg import toeplitz
 from scipy.stats import chi2, multivariate_normal
 
 from diagnose.noise.autoregression import Autoregression
-from diagnose.noise.mains_lines import Line, basis, find_lines
+from diagnose.noise.mains_lines import Line, find_lines, line_basis
 from diagnose.noise.model import NoiseModel
 from diagnose.noise.quantisation import quantisation_step
 from tests.cases import for_each
@@ -20,7 +20,7 @@ GAPS = {"none": [], "first": [0], "scattered": [0, 3, 5, 7, 20], "blocks": [*ran
 
 def dense(model, count):
     """Covariance (n, n) of even samples, by its definition."""
-    columns = basis(model.lines, model.step_s * np.arange(count))
+    columns = line_basis(model.lines, model.step_s * np.arange(count))
     return toeplitz(model.autoregression.autocovariance(count)) + columns @ columns.T
 
 
