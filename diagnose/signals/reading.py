@@ -42,11 +42,6 @@ def read_recording(
 
     height_mm : of the segment, beyond which no dot goes in.
     """
-    files = [run.file for run in runs]
-    for number, file in enumerate(files):
-        if file in files[:number]:
-            where = f"recording '{folder / 'rig.toml'}': runs[{number}].file = '{file}'"
-            raise InputError(f"{where}: is that of runs[{files.index(file)}] too; samples that count twice hide noise")
     refuse_by_size(folder / run.file for run in runs)
     pairs = []
     for table, label, readout in zip(runs, distinct([run.name for run in runs]), readouts, strict=True):

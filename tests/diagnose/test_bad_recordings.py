@@ -36,7 +36,6 @@ RIGS = {
     GOOD + "[runs.noise]\nvoltage_V = 2.0": (
         "noise.voltage_V = 2 of the run 'press' is more than its whole range, 0.306; is it in another unit?"
     ),
-    GOOD + RUN: "runs[1].file = 'press.csv': is that of runs[0] too; samples that count twice hide noise",
     GOOD + "temperature_C = 296.0": "runs[0].temperature_C = 296: must be at most 150",
     GOOD + "dot_offset_mm = [0.0, -9.0]": (
         "dot_offset_mm = [0.0, -9.0] of the run 'press' is beside the segment of 2.5 mm x 2.5 mm"
